@@ -1,0 +1,48 @@
+/*
+ * labial/blob.h - models from files or flash pages instead of compiled-in tables.
+ *
+ * A binary model (`labial export --blob` writes NAME.lbm) is little-endian and is used in place: nothing is copied, the
+ * bytes must stay where they are for as long as the model is used. It is not trusted: labial_model_load() checks every
+ * length before it takes a pointer, and labial_model_check() every value.
+ *
+ *   bytes 0-3    "LBM1"
+ *   bytes 4-7    size of the whole model in bytes, uint32
+ *   bytes 8-11   CRC-32 (the one of zlib and PNG) of all that follows, uint32
+ *   bytes 12-25  format, frames_per_second, component_count (uint16); phoneme_count, class_count, state_count, silence,
+ *                soft, kernel_taps, kernel_stride, kernel_behind (uint8)
+ *   byte 26      which optional tables follow: 1 contexts, 2 slopes, 4 precisions
+ *   byte 27      0
+ *   then the tables of labial_model_t in their order, each padded with zeros to a multiple of four bytes: phonemes,
+ *   components, contexts, shapes, slopes, precisions, kernels; and for each channel centre (int16), shape_scale,
+ *   slope_scale, kernel_scale (uint16), then emissions, states, rows, edges
+ */
+#ifndef LABIAL_BLOB_H
+#define LABIAL_BLOB_H
+
+#include <stddef.h>
+
+#include "labial/model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A model over a binary file, with the room that its channels need. Caller-owned; must not be moved once loaded. */
+typedef struct {
+    labial_model_t model;
+    labial_channel_t channels[LABIAL_CHANNELS];
+} labial_blob_t;
+
+/*
+ * Lays `blob->model` over the `size` bytes at `data`, which are aligned to four.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION (another format, or a big-endian machine) or
+ * LABIAL_ERROR_MODEL (misaligned, truncated, damaged, or out of range).
+ */
+int labial_model_load(labial_blob_t *blob, const void *data, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,123 @@
+/*
+ * labial/model.h - what a model is made of, as the exporter writes it and the run-time reads it.
+ *
+ * A model is a set of constant tables: it stays in flash, is never written, and may serve any number of streams at
+ * once. Programs do not fill these structures by hand: `labial export` writes a C file that does, and
+ * labial_model_load() (labial/blob.h) lays one over a binary file.
+ *
+ * Number formats, the same in every table:
+ *
+ *   position   int16, Q4: 1/16 FAP unit, relative to the channel's `centre`; at most +-LABIAL_POSITION_MAX
+ *   cost       1/32 nat: a negative log-probability times 32, so that smaller is better
+ *   gain       of a Gaussian with standard deviation s: 2^18 / (s * sqrt 2). For a distance x in the unit of s,
+ *              z = x * gain / 2^12 is in Q6 and z^2 / 2^7 is the Gaussian's exponent as a cost
+ *   weight     an 8-bit minifloat, exponent e in the high and mantissa m in the low four bits: m when e is zero,
+ *              (16 + m) << (e - 1) otherwise. Precisions (inverse variances) of one channel share one free scale.
+ */
+#ifndef LABIAL_MODEL_H
+#define LABIAL_MODEL_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Version of the tables' meaning. A generated model of another version does not compile, a binary one is refused. */
+#define LABIAL_MODEL_FORMAT 1
+
+/* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
+#define LABIAL_CHANNELS 13
+
+/* Limits that the run-time's arithmetic and memory are built for; labial_model_check() holds every model to them. */
+#define LABIAL_PHONEMES_MAX 128          /* phonemes of one model */
+#define LABIAL_CLASSES_MAX 32            /* viseme classes of one model */
+#define LABIAL_PHONEME_COMPONENTS_MAX 8  /* mixture components of one phoneme */
+#define LABIAL_STATES_MAX 64             /* codebook entries of one channel */
+#define LABIAL_KERNEL_TAPS_MAX 32        /* taps of one temporal kernel */
+#define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
+#define LABIAL_WEIGHT_SUM_MAX 32767      /* the largest diagonal element that equation 3 may have */
+#define LABIAL_WEIGHT_MIN 8              /* the least that holds a state in place: weight[0] + anchor */
+
+/* A phoneme: which mixture components are its own and which viseme class its neighbours see. */
+typedef struct {
+    uint16_t first_component; /* index into `components` */
+    uint8_t component_count;  /* 1 .. LABIAL_PHONEME_COMPONENTS_MAX */
+    uint8_t viseme_class;     /* below class_count */
+    uint8_t boundary;         /* 1 when a unit begins and ends here (vowels, p, b, m), else 0 */
+    uint8_t reserved;         /* 0 */
+} labial_phoneme_t;
+
+/* A mixture component's duration model (equation 2): log a_c + log N(d; mu_c, var_c) as a cost. */
+typedef struct {
+    uint16_t cost;          /* -log a_c + log sigma_c, cost, less the least of its phoneme */
+    uint16_t duration_mean; /* mu_c, milliseconds */
+    uint16_t duration_gain; /* gain of sigma_c, milliseconds */
+} labial_component_t;
+
+/* How a codebook entry looks to the Viterbi search: a Gaussian on the static feature alone. */
+typedef struct {
+    int16_t mean;    /* position */
+    uint16_t gain;   /* gain of the standard deviation in positions */
+    uint8_t cost;    /* log sigma, cost, less the least of its channel */
+    uint8_t initial; /* cost of starting a unit here */
+} labial_emission_t;
+
+/* What a codebook entry asks of the trajectory (equation 3): means of m, its delta and its delta-delta, per frame. */
+typedef struct {
+    int16_t mean[3];   /* Q4: position; positions per frame; positions per frame squared */
+    uint8_t weight[3]; /* precisions: static; a quarter of delta's; delta-delta's */
+    uint8_t anchor;    /* precision that ties the frame to its target; 0 in the published method */
+} labial_state_t;
+
+/* One channel's scales and its hidden Markov model. Transitions are lists of predecessors: those of state q are
+ * edges[rows[q]] .. edges[rows[q + 1] - 1], each the predecessor in the low and the transition's cost in the high
+ * byte. Every state has at least one. */
+typedef struct {
+    int16_t centre;        /* Q4 FAP: added to every position on output */
+    uint16_t shape_scale;  /* positions per step of `shapes`, Q8; at most 32767 */
+    uint16_t slope_scale;  /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
+    uint16_t kernel_scale; /* positions per step of `kernels`, Q8 */
+    const labial_emission_t *emissions; /* state_count */
+    const labial_state_t *states;       /* state_count */
+    const uint16_t *rows;               /* state_count + 1 */
+    const uint16_t *edges;              /* rows[state_count] */
+} labial_channel_t;
+
+/* A model. Arrays are row-major in the order given; those marked optional may be null. */
+typedef struct {
+    uint16_t format;            /* LABIAL_MODEL_FORMAT */
+    uint16_t frames_per_second; /* 1 .. 250 */
+    uint16_t component_count;   /* N: components of all phonemes */
+    uint8_t phoneme_count;      /* P: 1 .. LABIAL_PHONEMES_MAX */
+    uint8_t class_count;        /* V: 1 .. LABIAL_CLASSES_MAX */
+    uint8_t state_count;        /* Q: 1 .. LABIAL_STATES_MAX */
+    uint8_t silence;            /* the phoneme that stands before, after and for what is another model's */
+    uint8_t soft;               /* 1: shapes are the mixture's mean; 0: those of its best component (equation 2) */
+    uint8_t kernel_taps;        /* L: 0 .. LABIAL_KERNEL_TAPS_MAX; 0 without temporal kernels */
+    uint8_t kernel_stride;      /* frames from tap to tap */
+    uint8_t kernel_behind;      /* taps that lie before the frame: tap i is at (i - kernel_behind) * kernel_stride */
+    const labial_phoneme_t *phonemes;     /* P */
+    const labial_component_t *components; /* N */
+    const uint8_t *contexts;   /* N x 2 x V, cost of the previous and of the next phoneme's class; optional */
+    const int8_t *shapes;      /* N x 13, mean shape in steps of shape_scale */
+    const int8_t *slopes;      /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
+    const uint8_t *precisions; /* N x 13, weight with which the phoneme ties its frames to the target; optional */
+    const int8_t *kernels;     /* P x L x 13, in steps of kernel_scale; null when L is 0 */
+    const labial_channel_t *channels; /* 13 */
+} labial_model_t;
+
+/*
+ * Checks everything that labial_init() and the stream rely on: the version, every count, index and sum, and that no
+ * pointer that is needed is null. It cannot know how long the arrays are; a model from outside the program goes through
+ * labial_model_load(), which does.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_MODEL (labial/labial.h).
+ */
+int labial_model_check(const labial_model_t *model);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,155 @@
+#include "labial/blob.h"
+
+#include "labial/labial.h"
+
+#define HEADER_SIZE 28u
+#define CHECKED_FROM 12u /* first byte that the checksum covers */
+
+enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_PRECISIONS = 4 };
+
+typedef char labial_tables_are_packed[sizeof(labial_phoneme_t) == 6 && sizeof(labial_component_t) == 6 &&
+                                              sizeof(labial_emission_t) == 6 && sizeof(labial_state_t) == 10
+                                          ? 1
+                                          : -1];
+
+/* Where the reading stands. `damaged` is set when a table would end beyond the data. */
+typedef struct {
+    const uint8_t *data;
+    size_t size, at;
+    int damaged;
+} reader_t;
+
+static uint16_t u16(const uint8_t *at)
+{
+    return (uint16_t)(at[0] | at[1] << 8);
+}
+
+static uint32_t u32(const uint8_t *at)
+{
+    return u16(at) | (uint32_t)u16(at + 2) << 16;
+}
+
+/* CRC-32, polynomial 0xedb88320, bit by bit: run once per model, so small before fast. */
+static uint32_t checksum(const uint8_t *at, size_t size)
+{
+    uint32_t crc = UINT32_MAX;
+    unsigned bit;
+    for (; size > 0; size--) {
+        crc ^= *at++;
+        for (bit = 0; bit < 8; bit++)
+            crc = (crc >> 1) ^ ((crc & 1u) ? 0xedb88320u : 0u);
+    }
+    return ~crc;
+}
+
+static int is_little_endian(void)
+{
+    const uint16_t one = 1;
+    return *(const uint8_t *)(const void *)&one;
+}
+
+/* The next table of `count` elements of `size` bytes, and the padding behind it. Counts and sizes come from 8- and
+ * 16-bit fields, so that their product does not overflow. */
+static const void *table(reader_t *reader, uint32_t count, uint32_t size)
+{
+    const uint8_t *start = reader->data + reader->at;
+    const uint32_t padded = (count * size + 3u) / 4u * 4u;
+    if (reader->damaged || padded > reader->size - reader->at) {
+        reader->damaged = 1;
+        return NULL;
+    }
+    reader->at += padded;
+    return start;
+}
+
+static void read_channel(reader_t *reader, uint32_t states, labial_channel_t *channel)
+{
+    const uint8_t *scales = (const uint8_t *)table(reader, 4u, 2u);
+    if (!scales)
+        return;
+    channel->centre = (int16_t)u16(scales);
+    channel->shape_scale = u16(scales + 2);
+    channel->slope_scale = u16(scales + 4);
+    channel->kernel_scale = u16(scales + 6);
+    channel->emissions = (const labial_emission_t *)table(reader, states, sizeof(labial_emission_t));
+    channel->states = (const labial_state_t *)table(reader, states, sizeof(labial_state_t));
+    channel->rows = (const uint16_t *)table(reader, states + 1u, 2u);
+    if (!reader->damaged)
+        channel->edges = (const uint16_t *)table(reader, channel->rows[states], 2u);
+}
+
+static void read_tables(reader_t *reader, unsigned optional, labial_model_t *model, labial_channel_t *channels)
+{
+    const uint32_t components = model->component_count, shape = components * LABIAL_CHANNELS;
+    unsigned k;
+    model->phonemes = (const labial_phoneme_t *)table(reader, model->phoneme_count, sizeof(labial_phoneme_t));
+    model->components = (const labial_component_t *)table(reader, components, sizeof(labial_component_t));
+    model->contexts = NULL;
+    model->slopes = NULL;
+    model->precisions = NULL;
+    model->kernels = NULL;
+    if (optional & HAS_CONTEXTS)
+        model->contexts = (const uint8_t *)table(reader, components, 2u * model->class_count);
+    model->shapes = (const int8_t *)table(reader, shape, 1u);
+    if (optional & HAS_SLOPES)
+        model->slopes = (const int8_t *)table(reader, shape, 1u);
+    if (optional & HAS_PRECISIONS)
+        model->precisions = (const uint8_t *)table(reader, shape, 1u);
+    if (model->kernel_taps)
+        model->kernels = (const int8_t *)table(
+            reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        read_channel(reader, model->state_count, &channels[k]);
+    model->channels = channels;
+}
+
+/* labial_model_check() trusts that rows[i] index into the edges; the rows must ascend to the count that was read. */
+static int rows_ascend(const labial_model_t *model)
+{
+    unsigned k, q;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        for (q = 0; q < model->state_count; q++)
+            if (model->channels[k].rows[q] > model->channels[k].rows[q + 1u])
+                return 0;
+    return 1;
+}
+
+int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
+{
+    const uint8_t *header = (const uint8_t *)data;
+    labial_model_t *model;
+    reader_t reader;
+
+    if (!blob || !data)
+        return LABIAL_ERROR_NULL;
+    if (!is_little_endian())
+        return LABIAL_ERROR_VERSION;
+    if (((uintptr_t)data & 3u) || size < HEADER_SIZE || header[0] != 'L' || header[1] != 'B' || header[2] != 'M' ||
+        header[3] != '1' || u32(header + 4) != size)
+        return LABIAL_ERROR_MODEL;
+    if (u16(header + 12) != LABIAL_MODEL_FORMAT)
+        return LABIAL_ERROR_VERSION;
+    if (u32(header + 8) != checksum(header + CHECKED_FROM, size - CHECKED_FROM))
+        return LABIAL_ERROR_MODEL;
+
+    model = &blob->model;
+    model->format = LABIAL_MODEL_FORMAT;
+    model->frames_per_second = u16(header + 14);
+    model->component_count = u16(header + 16);
+    model->phoneme_count = header[18];
+    model->class_count = header[19];
+    model->state_count = header[20];
+    model->silence = header[21];
+    model->soft = header[22];
+    model->kernel_taps = header[23];
+    model->kernel_stride = header[24];
+    model->kernel_behind = header[25];
+    reader.data = header;
+    reader.size = size;
+    reader.at = HEADER_SIZE;
+    reader.damaged = 0;
+    read_tables(&reader, header[26], model, blob->channels);
+    if (reader.damaged || reader.at != size || !rows_ascend(model))
+        return LABIAL_ERROR_MODEL;
+    return labial_model_check(model);
+}

@@ -1,0 +1,95 @@
+/*
+ * fixed.h - the arithmetic that every step shares: rounded products, minifloat weights, Gaussian costs.
+ *
+ * Signed right shifts are arithmetic on every compiler the library is built with; the build stops where they are not.
+ * Sums that a damaged model could drive beyond 32 bits are made in uint32, whose overflow is defined.
+ */
+#ifndef LABIAL_FIXED_H
+#define LABIAL_FIXED_H
+
+#include <stdint.h>
+
+typedef char labial_arithmetic_shift_is_required[((-1) >> 1) == -1 ? 1 : -1];
+
+/* Cores whose widest product is 32 x 32 -> 32 bits make a 64-bit product from four small ones. Set by hand to test
+ * that both ways give the same bits. */
+#ifndef LABIAL_NARROW_MULTIPLY
+#if defined(__ARM_ARCH_6M__) || defined(__ARM_ARCH_8M_BASE__)
+#define LABIAL_NARROW_MULTIPLY 1
+#else
+#define LABIAL_NARROW_MULTIPLY 0
+#endif
+#endif
+
+/* a + b and a - b, modulo 2^32. */
+static inline int32_t labial_add(int32_t a, int32_t b)
+{
+    return (int32_t)((uint32_t)a + (uint32_t)b);
+}
+
+static inline int32_t labial_sub(int32_t a, int32_t b)
+{
+    return (int32_t)((uint32_t)a - (uint32_t)b);
+}
+
+/* a * b / 2^shift, rounded to the nearest (halves up), modulo 2^32. 16 <= shift <= 31. */
+static inline int32_t labial_mulshift(int32_t a, int32_t b, unsigned shift)
+{
+#if LABIAL_NARROW_MULTIPLY
+    /* a = ah * 2^16 + al with al unsigned, likewise b; the product's halves are put together with carries. */
+    const uint32_t al = (uint32_t)a & 0xffffu, bl = (uint32_t)b & 0xffffu;
+    const int32_t ah = a >> 16, bh = b >> 16;
+    const uint32_t low = al * bl;
+    const int32_t cross_a = ah * (int32_t)bl, cross_b = (int32_t)al * bh;
+    uint32_t bottom = low + ((uint32_t)cross_a << 16);
+    uint32_t top = (uint32_t)(ah * bh) + (uint32_t)(cross_a >> 16) + (uint32_t)(cross_b >> 16);
+    uint32_t sum;
+    top += bottom < low;
+    sum = bottom + ((uint32_t)cross_b << 16);
+    top += sum < bottom;
+    bottom = sum + (1u << (shift - 1u));
+    top += bottom < sum;
+    return (int32_t)((top << (32u - shift)) | (bottom >> shift));
+#else
+    return (int32_t)(uint32_t)(uint64_t)(((int64_t)a * b + ((int64_t)1 << (shift - 1u))) >> shift);
+#endif
+}
+
+/* x * 2^up, modulo 2^32; rounded (halves up) where `up` is negative. -31 <= up <= 31. */
+static inline int32_t labial_scale(int32_t x, int up)
+{
+    if (up >= 0)
+        return (int32_t)((uint32_t)x << up);
+    return labial_add(x, (int32_t)(1u << (-up - 1))) >> -up;
+}
+
+/* The number that an 8-bit minifloat weight stands for, 0 .. 507904. */
+static inline uint32_t labial_weight(uint8_t code)
+{
+    const uint32_t exponent = (uint32_t)code >> 4, mantissa = (uint32_t)code & 15u;
+    return exponent ? (16u + mantissa) << (exponent - 1u) : mantissa;
+}
+
+/* Largest z, just below 16 in Q6; beyond it, some 22 standard deviations away, a Gaussian's cost no longer grows. */
+#define LABIAL_Z_MAX 1023u
+
+/* |distance| * gain as z in Q6 (labial/model.h), at most LABIAL_Z_MAX; distance up to 65535. */
+static inline uint32_t labial_z(uint32_t distance, uint16_t gain)
+{
+    const uint32_t z = (distance * gain) >> 12;
+    return z < LABIAL_Z_MAX ? z : LABIAL_Z_MAX;
+}
+
+/* A Gaussian's exponent z^2 as a cost. */
+static inline uint32_t labial_z_cost(uint32_t z)
+{
+    return (z * z) >> 7;
+}
+
+/* value, not beyond +-limit. */
+static inline int32_t labial_clamp(int32_t value, int32_t limit)
+{
+    return value > limit ? limit : value < -limit ? -limit : value;
+}
+
+#endif

@@ -1,0 +1,106 @@
+#include <stddef.h>
+
+#include "fixed.h"
+#include "labial/labial.h"
+
+static int phonemes_are_sound(const labial_model_t *model)
+{
+    unsigned p;
+    for (p = 0; p < model->phoneme_count; p++) {
+        const labial_phoneme_t *phoneme = &model->phonemes[p];
+        if (phoneme->component_count == 0 || phoneme->component_count > LABIAL_PHONEME_COMPONENTS_MAX ||
+            (uint32_t)phoneme->first_component + phoneme->component_count > model->component_count ||
+            phoneme->viseme_class >= model->class_count || phoneme->boundary > 1)
+            return 0;
+    }
+    return 1;
+}
+
+static int is_position(int32_t value)
+{
+    return value >= -LABIAL_POSITION_MAX && value <= LABIAL_POSITION_MAX;
+}
+
+/* Every position is in range, every frame is held, and no diagonal element of equation 3 can exceed its limit. */
+static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel, uint32_t tie)
+{
+    uint32_t held = 0, delta = 0, delta2 = 0;
+    unsigned q, i;
+    for (q = 0; q < model->state_count; q++) {
+        const labial_state_t *state = &channel->states[q];
+        const uint32_t hold = labial_weight(state->weight[0]) + labial_weight(state->anchor);
+        if (!is_position(channel->emissions[q].mean) || hold < LABIAL_WEIGHT_MIN)
+            return 0;
+        for (i = 0; i < 3; i++)
+            if (!is_position(state->mean[i]))
+                return 0;
+        held = hold > held ? hold : held;
+        delta = labial_weight(state->weight[1]) > delta ? labial_weight(state->weight[1]) : delta;
+        delta2 = labial_weight(state->weight[2]) > delta2 ? labial_weight(state->weight[2]) : delta2;
+    }
+    return held + tie + 2u * delta + 6u * delta2 <= LABIAL_WEIGHT_SUM_MAX;
+}
+
+static int transitions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
+{
+    unsigned q, i;
+    if (channel->rows[0] != 0)
+        return 0;
+    for (q = 0; q < model->state_count; q++) {
+        if (channel->rows[q + 1u] <= channel->rows[q])
+            return 0;
+        for (i = channel->rows[q]; i < channel->rows[q + 1u]; i++)
+            if ((channel->edges[i] & 0xffu) >= model->state_count)
+                return 0;
+    }
+    return 1;
+}
+
+static int channel_is_sound(const labial_model_t *model, unsigned k)
+{
+    const labial_channel_t *channel = &model->channels[k];
+    uint32_t tie = 0;
+    size_t c;
+    if (!is_position(channel->centre) || channel->shape_scale > 32767u || channel->slope_scale > 16383u)
+        return 0;
+    for (c = 0; model->precisions && c < model->component_count; c++) {
+        const uint32_t weight = labial_weight(model->precisions[c * LABIAL_CHANNELS + k]);
+        tie = weight > tie ? weight : tie;
+    }
+    return tie <= LABIAL_WEIGHT_SUM_MAX && states_are_sound(model, channel, tie) &&
+           transitions_are_sound(model, channel);
+}
+
+int labial_model_check(const labial_model_t *model)
+{
+    unsigned k;
+    if (!model)
+        return LABIAL_ERROR_NULL;
+    if (model->format != LABIAL_MODEL_FORMAT)
+        return LABIAL_ERROR_VERSION;
+    if (!model->phonemes || !model->components || !model->shapes || !model->channels ||
+        (model->kernel_taps && !model->kernels))
+        return LABIAL_ERROR_NULL;
+    if (model->frames_per_second == 0 || model->frames_per_second > 250u || model->component_count == 0 ||
+        model->phoneme_count == 0 || model->phoneme_count > LABIAL_PHONEMES_MAX || model->class_count == 0 ||
+        model->class_count > LABIAL_CLASSES_MAX || model->state_count == 0 ||
+        model->state_count > LABIAL_STATES_MAX || model->silence >= model->phoneme_count || model->soft > 1)
+        return LABIAL_ERROR_MODEL;
+    if (model->kernel_taps) {
+        if (model->kernel_taps > LABIAL_KERNEL_TAPS_MAX || model->kernel_behind >= model->kernel_taps ||
+            (uint32_t)model->kernel_behind * model->kernel_stride > LABIAL_REACH ||
+            (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride > LABIAL_REACH)
+            return LABIAL_ERROR_MODEL;
+    }
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const labial_channel_t *channel = &model->channels[k];
+        if (!channel->emissions || !channel->states || !channel->rows || !channel->edges)
+            return LABIAL_ERROR_NULL;
+    }
+    if (!phonemes_are_sound(model))
+        return LABIAL_ERROR_MODEL;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        if (!channel_is_sound(model, k))
+            return LABIAL_ERROR_MODEL;
+    return LABIAL_OK;
+}

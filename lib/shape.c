@@ -1,0 +1,111 @@
+#include "shape.h"
+
+#include <stddef.h>
+
+#include "fixed.h"
+
+#define ONE 4096 /* a component's share of the mixture, Q12 */
+
+/* Durations farther than three standard deviations from a component's mean change its shape no more: 3 / sqrt 2, Q6. */
+#define SLOPE_Z_MAX 136
+
+/* exp(-i / 2) and exp(-i / 32), Q15: a cost difference of 16 h + l has likelihood coarse[h] * fine[l]. */
+static const uint16_t coarse[16] = { 32768, 19875, 12055, 7312, 4435, 2690, 1631, 990,
+                                     600,   364,   221,   134,  81,   49,   30,   18 };
+static const uint16_t fine[16] = { 32768, 31760, 30783, 29836, 28918, 28028, 27166, 26330,
+                                   25520, 24735, 23974, 23236, 22521, 21828, 21157, 20506 };
+
+static uint32_t likelihood(uint32_t cost)
+{
+    if (cost > 255u)
+        return 0;
+    return ((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15;
+}
+
+/* Costs and signed z of a phoneme's components; returns the best one's index within the phoneme. */
+static unsigned score(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms,
+                      unsigned previous_class, unsigned next_class, uint32_t *costs, int16_t *deviations)
+{
+    const unsigned classes = model->class_count;
+    unsigned c, best = 0;
+    for (c = 0; c < phoneme->component_count; c++) {
+        const unsigned index = phoneme->first_component + c;
+        const labial_component_t *component = &model->components[index];
+        const int32_t distance = (int32_t)ms - component->duration_mean;
+        const uint32_t z = labial_z((uint32_t)(distance < 0 ? -distance : distance), component->duration_gain);
+        uint32_t cost = component->cost + labial_z_cost(z);
+        if (model->contexts) {
+            const uint8_t *context = model->contexts + (size_t)index * 2u * classes;
+            cost += (uint32_t)context[previous_class] + context[classes + next_class];
+        }
+        costs[c] = cost;
+        deviations[c] = (int16_t)(distance < 0 ? -(int32_t)z : (int32_t)z);
+        if (cost < costs[best])
+            best = c;
+    }
+    return best;
+}
+
+unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme_number, uint16_t ms,
+                             unsigned previous_class, unsigned next_class, int16_t shape[LABIAL_CHANNELS])
+{
+    const labial_phoneme_t *phoneme = &model->phonemes[phoneme_number];
+    const unsigned count = phoneme->component_count;
+    uint32_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* first costs, then the mixture's weights, Q12 */
+    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* first z, Q6, then share * z, Q12 */
+    const unsigned best = score(model, phoneme, ms, previous_class, next_class, shares, deviations);
+    unsigned c, k;
+
+    if (model->soft) {
+        const uint32_t least = shares[best];
+        uint32_t sum = 0, rest = ONE;
+        for (c = 0; c < count; c++) {
+            shares[c] = likelihood(shares[c] - least);
+            sum += shares[c];
+        }
+        for (c = 0; c < count; c++) {
+            shares[c] = shares[c] * ONE / sum;
+            rest -= shares[c];
+        }
+        shares[best] += rest;
+    } else {
+        for (c = 0; c < count; c++)
+            shares[c] = c == best ? ONE : 0;
+    }
+    for (c = 0; c < count; c++)
+        deviations[c] = (int16_t)(((int32_t)shares[c] * labial_clamp(deviations[c], SLOPE_Z_MAX)) >> 6);
+
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const labial_channel_t *channel = &model->channels[k];
+        const size_t first = (size_t)phoneme->first_component * LABIAL_CHANNELS + k;
+        int32_t mean = 0, change = 0; /* in table steps, Q12 */
+        for (c = 0; c < count; c++) {
+            mean += (int32_t)shares[c] * model->shapes[first + c * LABIAL_CHANNELS];
+            if (model->slopes)
+                change += deviations[c] * model->slopes[first + c * LABIAL_CHANNELS];
+        }
+        mean = ((mean >> 4) * channel->shape_scale + 32768) >> 16;
+        change = ((change >> 4) * channel->slope_scale + 32768) >> 16;
+        shape[k] = (int16_t)labial_clamp(mean + change, LABIAL_POSITION_MAX);
+    }
+    return phoneme->first_component + best;
+}
+
+void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL_CHANNELS], const uint8_t *labels,
+                         int16_t target[LABIAL_CHANNELS])
+{
+    int32_t sum[LABIAL_CHANNELS] = { 0 };
+    unsigned k, tap;
+    const unsigned stride = model->kernel_stride, taps = model->kernel_taps;
+    const uint8_t *label = labels - model->kernel_behind * stride;
+
+    for (tap = 0; tap < taps; tap++, label += stride) {
+        const int8_t *kernel = model->kernels + ((size_t)*label * taps + tap) * LABIAL_CHANNELS;
+        for (k = 0; k < LABIAL_CHANNELS; k++)
+            sum[k] += kernel[k];
+    }
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const int32_t added = (sum[k] * (int32_t)model->channels[k].kernel_scale + 128) >> 8;
+        target[k] = (int16_t)labial_clamp(shape[k] + added, LABIAL_POSITION_MAX);
+    }
+}
