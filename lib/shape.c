@@ -51,8 +51,8 @@ unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme_numbe
 {
     const labial_phoneme_t *phoneme = &model->phonemes[phoneme_number];
     const unsigned count = phoneme->component_count;
-    uint32_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* first costs, then the mixture's weights, Q12 */
-    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* first z, Q6, then share * z, Q12 */
+    uint32_t shares[LABIAL_PHONEME_COMPONENTS_MAX] = { 0 }; /* first costs, then the mixture's weights, Q12 */
+    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX];      /* first z, Q6, then share * z, Q12 */
     const unsigned best = score(model, phoneme, ms, previous_class, next_class, shares, deviations);
     unsigned c, k;
 
