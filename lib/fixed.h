@@ -70,14 +70,11 @@ static inline uint32_t labial_weight(uint8_t code)
     return exponent ? (16u + mantissa) << (exponent - 1u) : mantissa;
 }
 
-/* Largest z, just below 16 in Q6; beyond it, some 22 standard deviations away, a Gaussian's cost no longer grows. */
-#define LABIAL_Z_MAX 1023u
-
-/* |distance| * gain as z in Q6 (labial/model.h), at most LABIAL_Z_MAX; distance up to 65535. */
-static inline uint32_t labial_z(uint32_t distance, uint16_t gain)
+/* |distance| * gain as z in Q6 (labial/model.h), at most `limit`; distance up to 65535, limit likewise. */
+static inline uint32_t labial_z(uint32_t distance, uint16_t gain, uint32_t limit)
 {
     const uint32_t z = (distance * gain) >> 12;
-    return z < LABIAL_Z_MAX ? z : LABIAL_Z_MAX;
+    return z < limit ? z : limit;
 }
 
 /* A Gaussian's exponent z^2 as a cost. */

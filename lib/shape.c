@@ -6,6 +6,9 @@
 
 #define ONE 4096 /* a component's share of the mixture, Q12 */
 
+/* Largest z of a duration: over a thousand standard deviations, so that the widest component takes an endless pause. */
+#define DURATION_Z_MAX 65535u
+
 /* Durations farther than three standard deviations from a component's mean change its shape no more: 3 / sqrt 2, Q6. */
 #define SLOPE_Z_MAX 136
 
@@ -22,7 +25,7 @@ static uint32_t likelihood(uint32_t cost)
     return ((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15;
 }
 
-/* Costs and signed z of a phoneme's components; returns the best one's index within the phoneme. */
+/* Costs and signed, limited z of a phoneme's components; returns the best one's index within the phoneme. */
 static unsigned score(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms,
                       unsigned previous_class, unsigned next_class, uint32_t *costs, int16_t *deviations)
 {
@@ -32,14 +35,16 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
         const unsigned index = phoneme->first_component + c;
         const labial_component_t *component = &model->components[index];
         const int32_t distance = (int32_t)ms - component->duration_mean;
-        const uint32_t z = labial_z((uint32_t)(distance < 0 ? -distance : distance), component->duration_gain);
+        const uint32_t z = labial_z((uint32_t)(distance < 0 ? -distance : distance), component->duration_gain,
+                                    DURATION_Z_MAX);
+        const int32_t reach = z < SLOPE_Z_MAX ? (int32_t)z : SLOPE_Z_MAX;
         uint32_t cost = component->cost + labial_z_cost(z);
         if (model->contexts) {
             const uint8_t *context = model->contexts + (size_t)index * 2u * classes;
             cost += (uint32_t)context[previous_class] + context[classes + next_class];
         }
         costs[c] = cost;
-        deviations[c] = (int16_t)(distance < 0 ? -(int32_t)z : (int32_t)z);
+        deviations[c] = (int16_t)(distance < 0 ? -reach : reach);
         if (cost < costs[best])
             best = c;
     }
@@ -52,7 +57,7 @@ unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme_numbe
     const labial_phoneme_t *phoneme = &model->phonemes[phoneme_number];
     const unsigned count = phoneme->component_count;
     uint32_t shares[LABIAL_PHONEME_COMPONENTS_MAX] = { 0 }; /* first costs, then the mixture's weights, Q12 */
-    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX];      /* first z, Q6, then share * z, Q12 */
+    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX];      /* first z, Q6, held to SLOPE_Z_MAX, then share * z, Q12 */
     const unsigned best = score(model, phoneme, ms, previous_class, next_class, shares, deviations);
     unsigned c, k;
 
@@ -73,7 +78,7 @@ unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme_numbe
             shares[c] = c == best ? ONE : 0;
     }
     for (c = 0; c < count; c++)
-        deviations[c] = (int16_t)(((int32_t)shares[c] * labial_clamp(deviations[c], SLOPE_Z_MAX)) >> 6);
+        deviations[c] = (int16_t)(((int32_t)shares[c] * deviations[c]) >> 6);
 
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];

@@ -4,11 +4,15 @@
 
 #include "fixed.h"
 
+/* Largest z of an emission, just below 16 in Q6: beyond some 22 standard deviations a state costs no more. It keeps the
+ * scores of the longest window within 24 bits. */
+#define EMISSION_Z_MAX 1023u
+
 /* Negative log-likelihood of a position in a state. */
 static uint32_t emission(const labial_emission_t *state, int32_t position)
 {
     const int32_t distance = position - state->mean;
-    return labial_z_cost(labial_z((uint32_t)(distance < 0 ? -distance : distance), state->gain)) + state->cost;
+    return labial_z_cost(labial_z((uint32_t)(distance < 0 ? -distance : distance), state->gain, EMISSION_Z_MAX)) + state->cost;
 }
 
 void labial_viterbi_start(const labial_channel_t *channel, unsigned states, int32_t position, uint32_t *scores)

@@ -1,0 +1,269 @@
+"""Writes an exported model as C: NAME.c and NAME.h with the tables, NAME_names.c with the phonemes' names."""
+
+from __future__ import annotations
+
+import keyword
+import os
+import re
+import struct
+import textwrap
+import zlib
+from pathlib import Path
+from typing import Dict, Iterable, List, Union
+
+import numpy as np
+
+from labial import __version__
+from labial.errors import ModelError
+from labial.faps import CHANNELS, FAP_NAMES
+from labial.quantise import FORMAT, ExportedModel
+
+_C_KEYWORDS = frozenset(
+    """alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const constexpr const_cast
+    continue decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto
+    if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
+    register reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch template
+    this thread_local throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while
+    xor xor_eq main errno""".split()
+)
+
+
+def check_name(name: str) -> None:
+    """Raises ModelError unless `name` can be a global name in C and C++."""
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,47}", name) or "__" in name:
+        raise ModelError(f"{name!r} is no name for a model: letters, digits and single underscores, a letter first, at most 48")
+    if name in _C_KEYWORDS or keyword.iskeyword(name) or name.startswith("labial"):
+        raise ModelError(f"{name!r} is no name for a model: C, C++ or the library already uses it")
+
+
+def phoneme_constants(model: ExportedModel) -> List[str]:
+    """The C constant of each phoneme, ``NAME_LABEL``; labels that C cannot spell are numbered."""
+    used: Dict[str, int] = {}
+    names = []
+    for number, label in enumerate(model.phonemes):
+        spelled = re.sub(r"[^A-Za-z0-9_]", "_", label).upper()
+        if not spelled or spelled in used:
+            spelled = f"PHONEME_{number}"
+        used[spelled] = number
+        names.append(f"{model.name.upper()}_{spelled}")
+    return names
+
+
+def table_bytes(model: ExportedModel) -> Dict[str, int]:
+    """Flash bytes of each group of tables on a 32-bit target, without names."""
+    components, states = len(model.cost), model.rows.shape[1] - 1
+    optional = {"contexts": model.contexts, "slopes": model.slopes, "precisions": model.precisions}
+    return {
+        "phonemes": 6 * len(model.phonemes) + 6 * components,
+        "shapes": CHANNELS * components,
+        **{name: 0 if table is None else int(table.size) for name, table in optional.items()},
+        "kernels": int(model.kernels.size),
+        "states": CHANNELS * states * 16,
+        "transitions": 2 * int(model.rows.size) + 2 * sum(len(edges) for edges in model.edges),
+        "descriptors": 24 * CHANNELS + 52,
+    }
+
+
+def _numbers(values: Iterable[int], indent: str = "    ") -> str:
+    return textwrap.fill(", ".join(str(int(v)) for v in values), width=118, initial_indent=indent,
+                         subsequent_indent=indent)
+
+
+def _table(declaration: str, values: np.ndarray) -> str:
+    return f"static const {declaration}[{values.size}] = {{\n{_numbers(values.ravel())}\n}};\n"
+
+
+def _records(declaration: str, rows: Iterable[str]) -> str:
+    lines = list(rows)
+    body = textwrap.fill(", ".join(line.replace(" ", "\u00a0") for line in lines), width=118, initial_indent="    ",
+                         subsequent_indent="    ", break_on_hyphens=False).replace("\u00a0", " ")
+    return f"static const {declaration}[{len(lines)}] = {{\n{body}\n}};\n"
+
+
+def _comment(model: ExportedModel, what: str) -> str:
+    text = (f"{what} {model.kind} model, method {model.method}, {model.fps} frames per second. "
+            f"Written by labial export {__version__}; do not edit.")
+    if model.attribution:
+        text += f" {model.attribution}"
+    body = textwrap.fill(text.replace("*/", "* /"), width=114, initial_indent=" * ", subsequent_indent=" * ")
+    return f"/*\n{body}\n */\n"
+
+
+def header(model: ExportedModel) -> str:
+    """NAME.h: the model's symbol, sizes and phoneme numbers."""
+    upper = model.name.upper()
+    constants = ",\n".join(f"    {name} = {number}" for number, name in enumerate(phoneme_constants(model)))
+    return f"""{_comment(model, f"{model.name}.h - the")}#ifndef LABIAL_MODEL_{upper}_H
+#define LABIAL_MODEL_{upper}_H
+
+#include "labial/labial.h"
+#include "labial/names.h"
+
+#if LABIAL_MODEL_FORMAT != {FORMAT}
+#error "{model.name} was exported for another version of Labial: run labial export again."
+#endif
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+#define {upper}_FPS {model.fps}
+#define {upper}_PHONEMES {len(model.phonemes)}
+#define {upper}_STATES {model.rows.shape[1] - 1}
+#define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({upper}_STATES)
+
+/* Phoneme numbers. */
+enum {{
+{constants}
+}};
+
+/* The model, {sum(table_bytes(model).values())} bytes on a 32-bit target. */
+extern const labial_model_t {model.name};
+
+/* Its labels and aliases; linked only when used. */
+extern const labial_names_t {model.name}_names;
+
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+"""
+
+
+def source(model: ExportedModel) -> str:
+    """NAME.c: the tables."""
+    parts = [_comment(model, f"{model.name}.c - the"), f'#include "{model.name}.h"\n\n#include <stddef.h>\n\n']
+    parts.append(_records("labial_phoneme_t phonemes", (
+        f"{{ {first}, {count}, {viseme}, {boundary}, 0 }}"
+        for first, count, viseme, boundary in zip(
+            model.first_component, model.component_count, model.viseme_class, model.boundary))))
+    parts.append("\n" + _records("labial_component_t components", (
+        f"{{ {cost}, {mean}, {width} }}"
+        for cost, mean, width in zip(model.cost, model.duration_mean, model.duration_gain))))
+    optional = (("contexts", "uint8_t", model.contexts), ("shapes", "int8_t", model.shapes),
+                ("slopes", "int8_t", model.slopes), ("precisions", "uint8_t", model.precisions),
+                ("kernels", "int8_t", model.kernels if model.kernels.size else None))
+    for name, kind, table in optional:
+        if table is not None:
+            parts.append("\n" + _table(f"{kind} {name}", table))
+    for k in range(CHANNELS):
+        parts.append(f"\n/* {FAP_NAMES[k]} */\n")
+        parts.append(_records(f"labial_emission_t emissions_{k}", (
+            f"{{ {mean}, {width}, {cost}, {initial} }}"
+            for mean, width, cost, initial in zip(
+                model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k]))))
+        parts.append(_records(f"labial_state_t states_{k}", (
+            "{ { " + ", ".join(map(str, mean)) + " }, { " + ", ".join(map(str, weight)) + f" }}, {anchor} }}"
+            for mean, weight, anchor in zip(
+                model.state_mean[k].tolist(), model.state_weight[k].tolist(), model.state_anchor[k]))))
+        parts.append(_table(f"uint16_t rows_{k}", model.rows[k]))
+        parts.append(_table(f"uint16_t edges_{k}", model.edges[k]))
+    channels = ",\n".join(
+        f"    {{ {model.centre[k]}, {model.shape_scale[k]}, {model.slope_scale[k]}, {model.kernel_scale[k]}, "
+        f"emissions_{k}, states_{k}, rows_{k}, edges_{k} }}"
+        for k in range(CHANNELS))
+    parts.append(f"\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {{\n{channels}\n}};\n")
+    names = {name: name if table is not None else "NULL" for name, _, table in optional}
+    parts.append(f"""
+const labial_model_t {model.name} = {{
+    {FORMAT}, /* format */
+    {model.fps}, /* frames_per_second */
+    {len(model.cost)}, /* component_count */
+    {len(model.phonemes)}, /* phoneme_count */
+    {len(model.classes)}, /* class_count */
+    {model.rows.shape[1] - 1}, /* state_count */
+    {model.silence}, /* silence */
+    {int(model.soft)}, /* soft */
+    {model.kernels.shape[1]}, /* kernel_taps */
+    {model.kernel_stride}, /* kernel_stride */
+    {model.kernel_behind}, /* kernel_behind */
+    phonemes,
+    components,
+    {names["contexts"]}, /* contexts */
+    shapes,
+    {names["slopes"]}, /* slopes */
+    {names["precisions"]}, /* precisions */
+    {names["kernels"]}, /* kernels */
+    channels
+}};
+""")
+    return "".join(parts)
+
+
+def _string(text: str) -> str:
+    """A C string literal of UTF-8; bytes beyond ASCII are octal, which no following character can lengthen."""
+    return '"' + "".join(
+        chr(b) if 32 <= b < 127 and b not in (34, 92, 63) else f"\\{b:03o}" for b in text.encode()) + '"'
+
+
+def names_source(model: ExportedModel) -> str:
+    """NAME_names.c: labels and aliases in the order of their bytes."""
+    entries = "\n".join(f"    {{ {_string(text)}, {number} }}," for text, number in model.aliases).rstrip(",")
+    labels = textwrap.fill(", ".join(_string(label) for label in model.phonemes), width=118, initial_indent="    ",
+                           subsequent_indent="    ")
+    return f"""{_comment(model, f"{model.name}_names.c - names of the phonemes of the")}#include "{model.name}.h"
+
+static const labial_name_t entries[{len(model.aliases)}] = {{
+{entries}
+}};
+
+static const char *const labels[{len(model.phonemes)}] = {{
+{labels}
+}};
+
+const labial_names_t {model.name}_names = {{ {len(model.aliases)}, {len(model.phonemes)}, entries, labels }};
+"""
+
+
+def blob(model: ExportedModel) -> bytes:
+    """NAME.lbm: the binary form that ``labial_model_load`` reads (``include/labial/blob.h``)."""
+    states = model.rows.shape[1] - 1
+    optional = (model.contexts is not None) | (model.slopes is not None) << 1 | (model.precisions is not None) << 2
+    parts: List[bytes] = []
+
+    def add(data: bytes) -> None:
+        parts.append(data + bytes(-len(data) % 4))
+
+    def table(values: Union[np.ndarray, None], dtype: str) -> None:
+        if values is not None:
+            add(np.ascontiguousarray(values).astype(dtype).tobytes())
+
+    add(b"".join(struct.pack("<HBBBB", *row, 0) for row in zip(
+        model.first_component, model.component_count, model.viseme_class, model.boundary)))
+    add(b"".join(struct.pack("<HHH", *row) for row in zip(model.cost, model.duration_mean, model.duration_gain)))
+    table(model.contexts, "u1")
+    table(model.shapes, "i1")
+    table(model.slopes, "i1")
+    table(model.precisions, "u1")
+    table(model.kernels, "i1")
+    for k in range(CHANNELS):
+        add(struct.pack("<hHHH", model.centre[k], model.shape_scale[k], model.slope_scale[k], model.kernel_scale[k]))
+        add(b"".join(struct.pack("<hHBB", *row) for row in zip(
+            model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k])))
+        add(b"".join(struct.pack("<hhhBBBB", *mean, *weight, anchor) for mean, weight, anchor in zip(
+            model.state_mean[k], model.state_weight[k], model.state_anchor[k])))
+        table(model.rows[k], "<u2")
+        table(model.edges[k], "<u2")
+    body = struct.pack(
+        "<HHHBBBBBBBBBB", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,
+        model.silence, int(model.soft), model.kernels.shape[1], model.kernel_stride, model.kernel_behind, optional, 0,
+    ) + b"".join(parts)
+    return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body
+
+
+def write(model: ExportedModel, directory: Union[str, os.PathLike], *, binary: bool = False) -> List[Path]:
+    """Writes the C files, and with `binary` NAME.lbm, into `directory`; returns their paths."""
+    check_name(model.name)
+    folder = Path(directory)
+    folder.mkdir(parents=True, exist_ok=True)
+    files = {
+        f"{model.name}.h": header(model).encode(),
+        f"{model.name}.c": source(model).encode(),
+        f"{model.name}_names.c": names_source(model).encode(),
+    }
+    if binary:
+        files[f"{model.name}.lbm"] = blob(model)
+    for file, data in files.items():
+        (folder / file).write_bytes(data)
+    return [folder / file for file in files]

@@ -1,0 +1,51 @@
+"""The number formats of the exported tables (``include/labial/model.h``) and the library's integer helpers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: Costs are 1/32 nat.
+COST_SCALE = 32
+
+#: Positions are 1/16 FAP unit, at most this far from the channel's centre.
+POSITION_SCALE = 16
+POSITION_MAX = 16383
+
+#: Bounds of equation 3's weights: the largest diagonal element, and the least that holds a frame in place.
+WEIGHT_SUM_MAX = 32767
+WEIGHT_MIN = 8
+
+#: The largest z, Q6, of a duration and of an emission; beyond it a Gaussian's cost no longer grows.
+DURATION_Z_MAX = 65535
+EMISSION_Z_MAX = 1023
+
+#: Numbers that the 256 codes of the minifloat weight stand for.
+WEIGHTS = np.array([m if e == 0 else (16 + m) << (e - 1) for e in range(16) for m in range(16)], dtype=np.int64)
+
+
+def weight_value(code: np.ndarray) -> np.ndarray:
+    """int64: the weights that minifloat codes stand for."""
+    return WEIGHTS[np.asarray(code, dtype=np.int64)]
+
+
+def weight_code(value: np.ndarray) -> np.ndarray:
+    """uint8: the codes whose weights are nearest to the values, which must not be negative."""
+    value = np.asarray(value, dtype=np.float64)
+    above = np.clip(np.searchsorted(WEIGHTS, value), 1, 255)
+    nearer_below = value - WEIGHTS[above - 1] <= WEIGHTS[above] - value
+    return np.where(nearer_below, above - 1, above).astype(np.uint8)
+
+
+def gain(deviation: np.ndarray) -> np.ndarray:
+    """int64: the gain of a standard deviation, 2^18 / (deviation sqrt 2), held to 1 .. 65535."""
+    return np.clip(np.rint(2.0**18 / (np.asarray(deviation) * np.sqrt(2.0))), 1, 65535).astype(np.int64)
+
+
+def z_cost(z: np.ndarray) -> np.ndarray:
+    """A Gaussian's exponent z^2 as a cost."""
+    return (z * z) >> 7
+
+
+def rounded_shift(value: np.ndarray, shift: int) -> np.ndarray:
+    """value / 2^shift, rounded to the nearest, halves up."""
+    return (value + (1 << (shift - 1))) >> shift

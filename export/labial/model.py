@@ -1,0 +1,181 @@
+"""The trained float model: what it holds, and the .npz file it is kept in.
+
+Shapes use P phonemes, N mixture components (of all phonemes), V viseme classes, Q states, L kernel taps and the 13
+channels of :mod:`labial.faps`. Positions are FAP units, durations seconds, probabilities natural logarithms,
+precisions inverse variances.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import zipfile
+from dataclasses import dataclass, field, fields
+from typing import Dict, Tuple, Union
+
+import numpy as np
+
+from labial.errors import ModelError
+from labial.faps import CHANNELS
+
+#: Version of the .npz layout.
+FORMAT = 1
+
+#: Methods a model may be trained with.
+METHODS = ("paper", "labial")
+
+#: Kinds of corpora and models.
+KINDS = ("speech", "laughter")
+
+_TEXT = ("kind", "method", "phonemes", "classes", "silence", "fps", "soft", "aliases", "substitutes", "attribution", "training")
+
+
+@dataclass(frozen=True)
+class Model:
+    """A trained model. Arrays are float64 unless said otherwise; all are finite but for log-probabilities of 0 (-inf),
+    which only `log_transition` and `log_initial` may hold."""
+
+    kind: str  #: "speech" or "laughter"
+    method: str  #: "paper" or "labial"
+    fps: int  #: frames per second
+    phonemes: Tuple[str, ...]  #: P labels
+    classes: Tuple[str, ...]  #: V names of viseme classes
+    silence: str  #: the label that stands before and after an utterance
+    soft: bool  #: shapes are the mixture's conditional mean, not its best component's
+    phoneme_class: np.ndarray  #: (P,) int64, index into `classes`
+    boundary: np.ndarray  #: (P,) bool, units begin and end here
+    component_count: np.ndarray  #: (P,) int64, sums to N; components are stored phoneme by phoneme
+    log_weight: np.ndarray  #: (N,) log a_c, normalised per phoneme
+    duration_mean: np.ndarray  #: (N,) seconds
+    duration_variance: np.ndarray  #: (N,) seconds squared
+    shape: np.ndarray  #: (N, 13) mean shape at duration_mean, FAP
+    slope: np.ndarray  #: (N, 13) FAP per second of duration beyond the mean; zero in the published method
+    precision: np.ndarray  #: (N, 13) with which the phoneme ties its frames to the target, 1/FAP^2, >= 0; zero in the published method
+    log_previous: np.ndarray  #: (N, V) log P(class of the previous phoneme | c), or (N, 0) without context
+    log_next: np.ndarray  #: (N, V) log P(class of the next phoneme | c), or (N, 0) without context
+    kernel: np.ndarray  #: (P, L, 13) FAP that a phoneme at a tap's lag adds to the target; L = 0 without kernels
+    kernel_lag: np.ndarray  #: (L,) int64, frames from the target's frame to the phoneme's (negative: it lies before), evenly spaced
+    decode_mean: np.ndarray  #: (13, Q) static mean that the Viterbi search sees, FAP
+    decode_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
+    state_mean: np.ndarray  #: (13, Q, 3) of m, delta m, delta-delta m for equation 3, FAP (per frame, per frame^2)
+    state_precision: np.ndarray  #: (13, Q, 3) their precisions, > 0
+    state_anchor: np.ndarray  #: (13, Q) precision that ties a frame in this state to its target, >= 0; zero in the published method
+    log_transition: np.ndarray  #: (13, Q, Q) [from, to]
+    log_initial: np.ndarray  #: (13, Q)
+    aliases: Dict[str, str] = field(default_factory=dict)  #: label in some phone set -> label in `phonemes`
+    substitutes: Dict[str, str] = field(default_factory=dict)  #: phoneme without samples -> what stands in for it
+    attribution: str = ""  #: what whoever passes the model on must say
+    training: Dict[str, object] = field(default_factory=dict)  #: options and counts of the training, JSON values
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def first_component(self) -> np.ndarray:
+        """(P + 1,) int64: the components of phoneme p are first[p] .. first[p + 1] - 1."""
+        return np.concatenate([[0], np.cumsum(self.component_count)]).astype(np.int64)
+
+
+def _expect(condition: bool, message: str) -> None:
+    if not condition:
+        raise ModelError(message)
+
+
+def check(model: Model) -> None:
+    """Raises ModelError unless every array has its shape, is finite and means what its name says."""
+    p, v = len(model.phonemes), len(model.classes)
+    n = int(np.sum(model.component_count))
+    q = np.shape(model.log_initial)[-1]
+    taps = len(model.kernel_lag)
+    context = np.shape(model.log_previous)[-1]
+    _expect(model.kind in KINDS, f"kind is {model.kind!r}, not one of {', '.join(KINDS)}")
+    _expect(model.method in METHODS, f"method is {model.method!r}, not one of {', '.join(METHODS)}")
+    _expect(isinstance(model.fps, int) and 1 <= model.fps <= 250, "fps is not a whole number from 1 to 250")
+    _expect(p > 0 and len(set(model.phonemes)) == p, "phoneme labels are missing or not unique")
+    _expect(model.silence in model.phonemes, f"the silence phoneme {model.silence!r} is not a phoneme")
+    _expect(context in (0, v), f"context tables have {context} classes, the model {v}")
+    shapes = {
+        "phoneme_class": (p,),
+        "boundary": (p,),
+        "component_count": (p,),
+        "log_weight": (n,),
+        "duration_mean": (n,),
+        "duration_variance": (n,),
+        "shape": (n, CHANNELS),
+        "slope": (n, CHANNELS),
+        "precision": (n, CHANNELS),
+        "log_previous": (n, context),
+        "log_next": (n, context),
+        "kernel": (p, taps, CHANNELS),
+        "kernel_lag": (taps,),
+        "decode_mean": (CHANNELS, q),
+        "decode_variance": (CHANNELS, q),
+        "state_mean": (CHANNELS, q, 3),
+        "state_precision": (CHANNELS, q, 3),
+        "state_anchor": (CHANNELS, q),
+        "log_transition": (CHANNELS, q, q),
+        "log_initial": (CHANNELS, q),
+    }
+    for name, shape in shapes.items():
+        value = getattr(model, name)
+        _expect(np.shape(value) == shape, f"{name} has shape {np.shape(value)}, not {shape}")
+        if name in ("log_transition", "log_initial"):
+            _expect(not np.isnan(value).any() and (value < 1e-9).all(), f"{name} holds NaN or values above 0")
+        else:
+            _expect(bool(np.isfinite(value).all()), f"{name} holds NaN or infinities")
+    _expect((model.component_count >= 1).all(), "a phoneme has no mixture component")
+    _expect(((model.phoneme_class >= 0) & (model.phoneme_class < v)).all(), "a phoneme's viseme class does not exist")
+    for name in ("duration_variance", "decode_variance", "state_precision"):
+        _expect((getattr(model, name) > 0).all(), f"{name} must be positive")
+    for name in ("precision", "state_anchor"):
+        _expect((getattr(model, name) >= 0).all(), f"{name} must not be negative")
+    _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
+    _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
+    if taps > 1:
+        _expect(len(np.unique(np.diff(model.kernel_lag))) == 1 and model.kernel_lag[1] > model.kernel_lag[0],
+                "kernel lags are not evenly spaced and increasing")
+    for alias, label in model.aliases.items():
+        _expect(label in model.phonemes, f"alias {alias!r} names the unknown phoneme {label!r}")
+    for missing, label in model.substitutes.items():
+        _expect(missing in model.phonemes and label in model.phonemes, f"substitute {missing!r} -> {label!r} is not known")
+
+
+def save(model: Model, path: Union[str, os.PathLike]) -> None:
+    """Writes the model. The same model gives the same bytes: members are in order, uncompressed times are fixed."""
+    text = {name: getattr(model, name) for name in _TEXT}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+
+        def add(name: str, data: bytes) -> None:
+            info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            info.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(info, data, compresslevel=9)
+
+        add("model.json", json.dumps({"format": FORMAT, **text}, indent=1, sort_keys=True, ensure_ascii=False).encode())
+        for item in fields(model):
+            if item.name not in _TEXT:
+                buffer = io.BytesIO()
+                np.lib.format.write_array(buffer, np.ascontiguousarray(getattr(model, item.name)), allow_pickle=False)
+                add(item.name + ".npy", buffer.getvalue())
+
+
+def load(path: Union[str, os.PathLike]) -> Model:
+    """Reads and checks a model. Raises ModelError, which names the file, for anything that is not one."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            text = json.loads(archive.read("model.json"))
+            version = text.pop("format", None)
+            _expect(version == FORMAT, f"format {version}, but this version of labial reads format {FORMAT}")
+            values = {name: text[name] for name in _TEXT}
+            for item in fields(Model):
+                if item.name not in _TEXT:
+                    with archive.open(item.name + ".npy") as member:
+                        values[item.name] = np.lib.format.read_array(member, allow_pickle=False)
+        values["phonemes"] = tuple(values["phonemes"])
+        values["classes"] = tuple(values["classes"])
+        return Model(**values)
+    except FileNotFoundError:
+        raise ModelError(f"{os.fspath(path)}: no such file") from None
+    except ModelError as error:
+        raise ModelError(f"{os.fspath(path)}: {error}") from None
+    except (OSError, KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        raise ModelError(f"{os.fspath(path)}: not a labial model ({error})") from None

@@ -1,0 +1,276 @@
+"""From the float model to the library's integer tables (``include/labial/model.h`` says what each means)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Tuple
+
+import numpy as np
+
+from labial.errors import ModelError
+from labial.faps import CHANNELS
+from labial.fixed import COST_SCALE, POSITION_MAX, POSITION_SCALE, WEIGHT_MIN, WEIGHT_SUM_MAX, gain, weight_code, weight_value
+from labial.model import Model
+
+#: Version of the tables' meaning.
+FORMAT = 1
+
+#: The library's limits.
+LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20}
+
+#: Predecessors that are kept for each state by default.
+DEFAULT_PREDECESSORS = 10
+
+#: Each phoneme's duration deviates at least so much, seconds, that the gain fits its 16 bits.
+_DURATION_DEVIATION_MIN = 0.003
+
+
+@dataclass(frozen=True)
+class ExportedModel:
+    """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, L taps; all arrays int64 that fit
+    the C types; `contexts`, `slopes`, `precisions` are None where the model has no use for them."""
+
+    name: str
+    kind: str
+    method: str
+    attribution: str
+    fps: int
+    phonemes: Tuple[str, ...]
+    aliases: Tuple[Tuple[str, int], ...]  #: every label and alias with its phoneme number
+    silence: int
+    soft: bool
+    first_component: np.ndarray  #: (P,)
+    component_count: np.ndarray  #: (P,)
+    viseme_class: np.ndarray  #: (P,)
+    classes: Tuple[str, ...]
+    boundary: np.ndarray  #: (P,)
+    cost: np.ndarray  #: (N,)
+    duration_mean: np.ndarray  #: (N,) ms
+    duration_gain: np.ndarray  #: (N,)
+    contexts: Optional[np.ndarray]  #: (N, 2, V)
+    shapes: np.ndarray  #: (N, 13)
+    slopes: Optional[np.ndarray]  #: (N, 13)
+    precisions: Optional[np.ndarray]  #: (N, 13)
+    kernels: np.ndarray  #: (P, L, 13)
+    kernel_stride: int
+    kernel_behind: int
+    centre: np.ndarray  #: (13,)
+    shape_scale: np.ndarray  #: (13,)
+    slope_scale: np.ndarray  #: (13,)
+    kernel_scale: np.ndarray  #: (13,)
+    emission_mean: np.ndarray  #: (13, Q)
+    emission_gain: np.ndarray  #: (13, Q)
+    emission_cost: np.ndarray  #: (13, Q)
+    initial: np.ndarray  #: (13, Q)
+    state_mean: np.ndarray  #: (13, Q, 3)
+    state_weight: np.ndarray  #: (13, Q, 3) codes
+    state_anchor: np.ndarray  #: (13, Q) codes
+    rows: np.ndarray  #: (13, Q + 1)
+    edges: Tuple[np.ndarray, ...]  #: 13 of (E,), predecessor | cost << 8
+
+    def dense_transitions(self) -> np.ndarray:
+        """(13, Q, Q) costs [from, to], inf where there is no edge."""
+        states = self.rows.shape[1] - 1
+        dense = np.full((CHANNELS, states, states), np.inf)
+        for k in range(CHANNELS):
+            to = np.repeat(np.arange(states), np.diff(self.rows[k]))
+            dense[k, self.edges[k] & 255, to] = self.edges[k] >> 8
+        return dense
+
+
+def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSORS) -> ExportedModel:
+    """The exported tables of `model`, with the `predecessors` likeliest transitions into each state kept.
+
+    Raises ModelError where the model exceeds the library's limits.
+    """
+    _check_limits(model)
+    first, kept = _shared_components(model)
+    centre = _centres(model)
+    lags = np.asarray(model.kernel_lag)
+    shapes, shape_scale = _steps(model.shape - centre / POSITION_SCALE, 32767, "shapes")
+    deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
+    slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
+    kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
+    rows, edges = _transitions(model, predecessors)
+    weights, anchors, precisions = _weights(model)
+    aliases = {**model.aliases, **{label: label for label in model.phonemes}}
+    return ExportedModel(
+        name=name,
+        kind=model.kind,
+        method=model.method,
+        attribution=model.attribution,
+        fps=model.fps,
+        phonemes=model.phonemes,
+        aliases=tuple(sorted(((text, model.phonemes.index(label)) for text, label in aliases.items()),
+                             key=lambda item: item[0].encode())),
+        silence=model.phonemes.index(model.silence),
+        soft=model.soft,
+        first_component=first,
+        component_count=np.asarray(model.component_count),
+        viseme_class=np.asarray(model.phoneme_class),
+        classes=model.classes,
+        boundary=np.asarray(model.boundary).astype(np.int64),
+        cost=_component_costs(model, deviation)[kept],
+        duration_mean=np.clip(np.rint(model.duration_mean * 1000.0), 0, 65535).astype(np.int64)[kept],
+        duration_gain=gain(deviation * 1000.0)[kept],
+        contexts=_contexts(model, kept),
+        shapes=shapes[kept],
+        slopes=slopes[kept] if model.slope.any() else None,
+        precisions=precisions[kept] if model.precision.any() else None,
+        kernels=kernels,
+        kernel_stride=int(lags[1] - lags[0]) if len(lags) > 1 else 1,
+        kernel_behind=_taps_behind(lags),
+        centre=centre,
+        shape_scale=shape_scale,
+        slope_scale=slope_scale,
+        kernel_scale=kernel_scale,
+        emission_mean=_positions(model.decode_mean - centre[:, None] / POSITION_SCALE, "decode_mean"),
+        emission_gain=gain(np.sqrt(model.decode_variance) * POSITION_SCALE),
+        emission_cost=_costs(-0.5 * np.log(model.decode_variance), 255),
+        initial=_costs(model.log_initial, 255),
+        state_mean=_positions(
+            model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
+        ),
+        state_weight=weights,
+        state_anchor=anchors,
+        rows=rows,
+        edges=edges,
+    )
+
+
+def _check_limits(model: Model) -> None:
+    counts = {
+        "phonemes": len(model.phonemes),
+        "classes": len(model.classes),
+        "components": int(np.max(model.component_count)),
+        "states": model.log_initial.shape[1],
+        "taps": len(model.kernel_lag),
+        "reach": int(np.abs(model.kernel_lag).max()) if len(model.kernel_lag) else 0,
+    }
+    for what, count in counts.items():
+        if count > LIMITS[what]:
+            raise ModelError(f"the model has {what} {count}, the library's limit is {LIMITS[what]}")
+    _taps_behind(np.asarray(model.kernel_lag))
+
+
+def _taps_behind(lags: np.ndarray) -> int:
+    """Taps before the frame itself; the lags must be multiples of their spacing."""
+    if not len(lags):
+        return 0
+    stride = int(lags[1] - lags[0]) if len(lags) > 1 else 1
+    if lags[0] > 0 or lags[-1] < 0 or lags[0] % stride:
+        raise ModelError("kernel lags must be multiples of their spacing, from 0 or before to 0 or after")
+    return int(-lags[0] // stride)
+
+
+def _centres(model: Model) -> np.ndarray:
+    """(13,) middle of what the channel's states and shapes span, Q4."""
+    values = np.concatenate([model.state_mean[..., 0], model.decode_mean], axis=1)
+    return np.rint((values.min(axis=1) + values.max(axis=1)) / 2.0 * POSITION_SCALE).astype(np.int64)
+
+
+def _positions(values: np.ndarray, what: str) -> np.ndarray:
+    """Values in FAP units as positions."""
+    positions = np.rint(values * POSITION_SCALE).astype(np.int64)
+    if np.abs(positions).max() > POSITION_MAX:
+        raise ModelError(f"{what} lies {np.abs(values).max():.0f} FAP units from the channel's centre, "
+                         f"the library's limit is {POSITION_MAX // POSITION_SCALE}")
+    return positions
+
+
+def _steps(values: np.ndarray, largest: int, what: str) -> Tuple[np.ndarray, np.ndarray]:
+    """int8 steps (..., 13) of values in FAP units, and the size of a step per channel, (13,), positions in Q8."""
+    if not values.size:
+        return np.zeros(values.shape, dtype=np.int64), np.zeros(CHANNELS, dtype=np.int64)
+    extent = np.abs(values).reshape(-1, CHANNELS).max(axis=0)
+    scale = np.ceil(extent * POSITION_SCALE * 256.0 / 127.0).astype(np.int64)
+    if scale.max() > largest:
+        raise ModelError(f"{what} reach {extent.max():.0f} FAP units, which is more than the tables hold")
+    steps = np.rint(values * POSITION_SCALE * 256.0 / np.maximum(scale, 1)).astype(np.int64)
+    return np.clip(steps, -127, 127), scale
+
+
+def _costs(log_probability: np.ndarray, largest: int) -> np.ndarray:
+    """Costs of log-probabilities (..., Q), less the least of their row, held to `largest`."""
+    best = log_probability.max(axis=-1, keepdims=True)
+    return np.minimum(np.rint((best - log_probability) * COST_SCALE), largest).astype(np.int64)
+
+
+def _component_costs(model: Model, deviation: np.ndarray) -> np.ndarray:
+    cost = np.rint((np.log(deviation) - model.log_weight) * COST_SCALE)
+    for begin, end in zip(model.first_component()[:-1], model.first_component()[1:]):
+        cost[begin:end] -= cost[begin:end].min()
+    return np.minimum(cost, 65535).astype(np.int64)
+
+
+def _contexts(model: Model, kept: np.ndarray) -> Optional[np.ndarray]:
+    if not model.log_previous.shape[1]:
+        return None
+    log_probability = np.stack([model.log_previous, model.log_next], axis=1)[kept]
+    return np.minimum(np.rint(-COST_SCALE * log_probability), 255).astype(np.int64)
+
+
+def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
+    """First component (P,) of each phoneme among those that are kept (N',): substitutes share their model's."""
+    tables = (model.log_weight, model.duration_mean, model.duration_variance, model.shape, model.slope,
+              model.precision, model.log_previous, model.log_next)
+    known: Dict[bytes, int] = {}
+    first, kept = [], []
+    bounds = model.first_component()
+    for begin, end in zip(bounds[:-1], bounds[1:]):
+        key = b"".join(np.ascontiguousarray(table[begin:end]).tobytes() for table in tables)
+        if key not in known:
+            known[key] = len(kept)
+            kept.extend(range(begin, end))
+        first.append(known[key])
+    return np.array(first, dtype=np.int64), np.array(kept, dtype=np.int64)
+
+
+def _transitions(model: Model, predecessors: int) -> Tuple[np.ndarray, Tuple[np.ndarray, ...]]:
+    """Rows and edges: for each state the likeliest predecessors, itself among them, in ascending order."""
+    states = model.log_initial.shape[1]
+    rows: List[List[int]] = []
+    edges: List[np.ndarray] = []
+    for k in range(CHANNELS):
+        cost = np.minimum(np.rint(-COST_SCALE * model.log_transition[k]), 1e9)
+        row, packed = [0], []
+        for q in range(states):
+            order = np.argsort(cost[:, q], kind="stable")
+            kept = [int(p) for p in order[:predecessors] if cost[p, q] <= 255 or p == q]
+            if q not in kept:
+                kept = kept[: predecessors - 1] + [q]
+            packed += [p | int(min(cost[p, q], 255)) << 8 for p in sorted(kept)]
+            row.append(len(packed))
+        rows.append(row)
+        edges.append(np.array(packed, dtype=np.int64))
+    return np.array(rows, dtype=np.int64), tuple(edges)
+
+
+def _weights(model: Model) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Codes of the states' weights (13, Q, 3) and anchors (13, Q), and of the components' precisions (N, 13).
+
+    Each channel's precisions are scaled so that no diagonal element of equation 3 can exceed its limit; what would then
+    hold a frame by less than WEIGHT_MIN is raised to it.
+    """
+    weights = np.zeros(model.state_precision.shape, dtype=np.int64)
+    anchors = np.zeros(model.state_anchor.shape, dtype=np.int64)
+    ties = np.zeros(model.precision.shape, dtype=np.int64)
+    for k in range(CHANNELS):
+        precision = model.state_precision[k] * np.array([1.0, 0.25, 1.0])
+        largest = _largest_diagonal(precision, model.state_anchor[k], model.precision[:, k])
+        scale = WEIGHT_SUM_MAX / largest
+        while True:
+            weights[k] = weight_code(precision * scale)
+            anchors[k] = weight_code(model.state_anchor[k] * scale)
+            ties[:, k] = weight_code(model.precision[:, k] * scale)
+            short = weight_value(weights[k, :, 0]) + weight_value(anchors[k]) < WEIGHT_MIN
+            weights[k, short, 0] = weight_code(np.array(WEIGHT_MIN))
+            if (_largest_diagonal(weight_value(weights[k]), weight_value(anchors[k]), weight_value(ties[:, k]))
+                    <= WEIGHT_SUM_MAX):
+                break
+            scale *= 0.99
+    return weights, anchors, ties
+
+
+def _largest_diagonal(weights: np.ndarray, anchors: np.ndarray, ties: np.ndarray) -> float:
+    return float((weights[:, 0] + anchors).max() + ties.max() + 2 * weights[:, 1].max() + 6 * weights[:, 2].max())

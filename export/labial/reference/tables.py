@@ -1,0 +1,177 @@
+"""The two kinds of tables that the reference runs on, behind one interface.
+
+Positions are FAP units as float64 with :class:`FloatTables`, integers in 1/16 FAP unit relative to each channel's centre
+with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap` and `equation` leave these units.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Tuple, Union
+
+import numpy as np
+
+from labial.faps import CHANNELS
+from labial.fixed import DURATION_Z_MAX, EMISSION_Z_MAX, POSITION_MAX, rounded_shift, weight_value, z_cost
+from labial.model import Model
+from labial.quantise import ExportedModel
+
+#: Durations farther than this many standard deviations from a component's mean change its shape no more.
+SLOPE_LIMIT = 3.0
+
+
+@dataclass(frozen=True)
+class Equation:
+    """What equation 3 asks of each frame. Weights are precisions, all in one channel's free scale; (T, 13, 3) for
+    static, delta and delta-delta, (T, 13) for the anchor; means and targets are FAP units."""
+
+    weight: np.ndarray
+    mean: np.ndarray
+    anchor: np.ndarray
+    target: np.ndarray
+
+
+class FloatTables:
+    """The trained model as it is."""
+
+    dtype = np.float64  #: of positions
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.fps = model.fps
+        self.phonemes = model.phonemes
+        self.silence = model.phonemes.index(model.silence)
+        self.boundary = np.asarray(model.boundary, dtype=bool)
+        self.viseme_class = np.asarray(model.phoneme_class)
+        self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
+        self.initial = -np.asarray(model.log_initial)
+        self.transition = -np.asarray(model.log_transition)
+        self._first = model.first_component()
+
+    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> Tuple[np.ndarray, int]:
+        """(13,) shape of a phoneme of this duration between these viseme classes, and its best component."""
+        model = self.model
+        own = slice(self._first[phoneme], self._first[phoneme + 1])
+        deviation = milliseconds / 1000.0 - model.duration_mean[own]
+        variance = model.duration_variance[own]
+        score = model.log_weight[own] - 0.5 * (np.log(2 * np.pi * variance) + deviation**2 / variance)
+        if model.log_previous.shape[1]:
+            score = score + model.log_previous[own, previous] + model.log_next[own, following]
+        best = int(np.argmax(score))
+        share = np.exp(score - score[best]) if model.soft else (np.arange(len(score)) == best).astype(np.float64)
+        share = share / share.sum()
+        limit = SLOPE_LIMIT * np.sqrt(variance)
+        shapes = model.shape[own] + model.slope[own] * np.clip(deviation, -limit, limit)[:, None]
+        return share @ shapes, int(self._first[phoneme]) + best
+
+    def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+        """(T, 13) targets: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to them."""
+        taps = np.arange(neighbours.shape[1])
+        return shapes + self.model.kernel[neighbours, taps].sum(axis=1)
+
+    def emission(self, targets: np.ndarray) -> np.ndarray:
+        """(T, 13, Q) cost of every state for the targets."""
+        variance = self.model.decode_variance
+        distance = targets[:, :, None] - self.model.decode_mean
+        return 0.5 * (distance**2 / variance + np.log(variance))
+
+    def equation(self, path: np.ndarray, targets: np.ndarray, components: np.ndarray, frames: np.ndarray) -> Equation:
+        """Equation 3's terms for `path` (T, 13); `components` and `frames` (T,) are those of each frame's phoneme."""
+        channel = np.arange(CHANNELS)
+        return Equation(
+            weight=self.model.state_precision[channel, path],
+            mean=self.model.state_mean[channel, path],
+            anchor=self.model.state_anchor[channel, path] + self.model.precision[components] / frames[:, None],
+            target=targets,
+        )
+
+    @staticmethod
+    def to_fap(positions: np.ndarray) -> np.ndarray:
+        """Positions in FAP units."""
+        return positions
+
+
+class ExportedTables:
+    """The exported model; shapes, targets and costs are the library's integers, computed independently of it."""
+
+    dtype = np.int64  #: of positions
+
+    def __init__(self, exported: ExportedModel) -> None:
+        self.exported = exported
+        self.fps = exported.fps
+        self.phonemes = exported.phonemes
+        self.silence = exported.silence
+        self.boundary = exported.boundary.astype(bool)
+        self.viseme_class = exported.viseme_class
+        taps = exported.kernels.shape[1]
+        self.lags = (np.arange(taps) - exported.kernel_behind) * exported.kernel_stride
+        self.initial = exported.initial.astype(np.float64)
+        self.transition = exported.dense_transitions()
+
+    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> Tuple[np.ndarray, int]:
+        """As :meth:`FloatTables.select`, in positions."""
+        model = self.exported
+        first = int(model.first_component[phoneme])
+        own = slice(first, first + int(model.component_count[phoneme]))
+        distance = min(milliseconds, 65535) - model.duration_mean[own]
+        z = np.minimum((np.abs(distance) * model.duration_gain[own]) >> 12, DURATION_Z_MAX)
+        cost = model.cost[own] + z_cost(z)
+        if model.contexts is not None:
+            cost = cost + model.contexts[own, 0, previous] + model.contexts[own, 1, following]
+        best = int(np.argmin(cost))
+        share = np.zeros(len(cost), dtype=np.int64)
+        if model.soft:
+            likelihood = _likelihood(cost - cost[best])
+            share = likelihood * 4096 // likelihood.sum()
+        share[best] += 4096 - share.sum()
+        deviation = (share * np.clip(np.where(distance < 0, -z, z), -136, 136)) >> 6
+        position = rounded_shift(((share @ model.shapes[own]) >> 4) * model.shape_scale, 16)
+        if model.slopes is not None:
+            position = position + rounded_shift(((deviation @ model.slopes[own]) >> 4) * model.slope_scale, 16)
+        return np.clip(position, -POSITION_MAX, POSITION_MAX), first + best
+
+    def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+        """As :meth:`FloatTables.targets`, in positions."""
+        model = self.exported
+        taps = np.arange(neighbours.shape[1])
+        added = rounded_shift(model.kernels[neighbours, taps].sum(axis=1) * model.kernel_scale, 8)
+        return np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
+
+    def emission(self, targets: np.ndarray) -> np.ndarray:
+        """As :meth:`FloatTables.emission`, in 1/32 nat."""
+        model = self.exported
+        distance = np.abs(targets[:, :, None] - model.emission_mean)
+        return (z_cost(np.minimum((distance * model.emission_gain) >> 12, EMISSION_Z_MAX)) + model.emission_cost).astype(np.float64)
+
+    def equation(self, path: np.ndarray, targets: np.ndarray, components: np.ndarray, frames: np.ndarray) -> Equation:
+        """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""
+        model = self.exported
+        channel = np.arange(CHANNELS)
+        weight = weight_value(model.state_weight[channel, path]).astype(np.float64)
+        weight[..., 1] *= 4.0  # the tables hold a quarter of delta's precision
+        anchor = weight_value(model.state_anchor[channel, path])
+        if model.precisions is not None:
+            share = np.where(frames > 65536, 0, np.minimum(65536 // np.maximum(frames, 1), 65535))
+            anchor = anchor + rounded_shift(weight_value(model.precisions[components]) * share[:, None], 16)
+        return Equation(
+            weight=weight,
+            mean=model.state_mean[channel, path] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
+            anchor=anchor.astype(np.float64),
+            target=self.to_fap(targets),
+        )
+
+    def to_fap(self, positions: np.ndarray) -> np.ndarray:
+        """Positions in FAP units."""
+        return (positions + self.exported.centre) / 16.0
+
+
+def _likelihood(cost: np.ndarray) -> np.ndarray:
+    """exp(-cost / 32) in Q15, from the products of two rounded factors; 0 beyond cost 255."""
+    cost = np.asarray(cost, dtype=np.int64)
+    coarse = np.rint(32768 * np.exp(-np.arange(16) / 2)).astype(np.int64)
+    fine = np.rint(32768 * np.exp(-np.arange(16) / 32)).astype(np.int64)
+    near = np.minimum(cost, 255)
+    return np.where(cost > 255, 0, (coarse[near >> 4] * fine[near & 15]) >> 15)
+
+
+Tables = Union[FloatTables, ExportedTables]

@@ -1,0 +1,86 @@
+"""Models and phoneme streams made up for the tests."""
+
+from __future__ import annotations
+
+from typing import Dict, List, Tuple
+
+import numpy as np
+
+from labial.faps import CHANNELS
+from labial.model import Model
+
+Stream = List[Tuple[int, int]]
+
+
+def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: int = 12, components: int = 3) -> Model:
+    """A model with every table filled: phoneme 0 is silence, every third phoneme is a boundary."""
+    rng = np.random.default_rng(seed)
+    own = method == "labial"
+    classes = 4
+    count = phonemes * components
+    reach = 300.0 * rng.uniform(0.1, 1.0, CHANNELS)
+    mean = rng.uniform(-1.0, 1.0, (CHANNELS, states)) * reach[:, None]
+    variance = (reach[:, None] * rng.uniform(0.05, 0.3, (CHANNELS, states))) ** 2
+    state_mean = np.stack([mean, rng.normal(0, 0.05, mean.shape) * reach[:, None],
+                           rng.normal(0, 0.02, mean.shape) * reach[:, None]], axis=-1)
+    precision = np.stack([0.3 / variance, 3.0 / variance, 6.0 / variance], axis=-1)
+    stay = np.eye(states) * 3.0 + rng.uniform(0.0, 1.0, (CHANNELS, states, states))
+    taps = np.arange(-6, 7, 2) if own else np.zeros(0, dtype=np.int64)
+
+    def log_share(shape: Tuple[int, ...]) -> np.ndarray:
+        value = rng.uniform(0.05, 1.0, shape)
+        return np.log(value / value.sum(axis=-1, keepdims=True))
+
+    return Model(
+        kind="speech",
+        method=method,
+        fps=50,
+        phonemes=tuple(["SIL"] + [f"P{i}" for i in range(1, phonemes)]),
+        classes=tuple(f"class {i}" for i in range(classes)),
+        silence="SIL",
+        soft=own,
+        phoneme_class=np.arange(phonemes) % classes,
+        boundary=np.arange(phonemes) % 3 == 1,
+        component_count=np.full(phonemes, components),
+        log_weight=log_share((phonemes, components)).ravel(),
+        duration_mean=rng.uniform(0.04, 0.25, count),
+        duration_variance=rng.uniform(0.01, 0.05, count) ** 2,
+        shape=rng.uniform(-0.8, 0.8, (count, CHANNELS)) * reach,
+        slope=rng.normal(0, 2.0, (count, CHANNELS)) * reach if own else np.zeros((count, CHANNELS)),
+        precision=rng.uniform(0, 1.0, (count, CHANNELS)) / reach**2 if own else np.zeros((count, CHANNELS)),
+        log_previous=log_share((count, classes)) if own else np.zeros((count, 0)),
+        log_next=log_share((count, classes)) if own else np.zeros((count, 0)),
+        kernel=rng.normal(0, 0.05, (phonemes, len(taps), CHANNELS)) * reach,
+        kernel_lag=taps,
+        decode_mean=mean,
+        decode_variance=variance,
+        state_mean=state_mean,
+        state_precision=precision,
+        state_anchor=3.0 / variance if own else np.zeros_like(variance),
+        log_transition=np.log(stay / stay.sum(axis=-1, keepdims=True)),
+        log_initial=log_share((CHANNELS, states)),
+        aliases={"sil": "SIL", "p1": "P1", "ɑ": "P2"},
+        attribution="Made up.",
+    )
+
+
+def streams(phonemes: int, boundary: np.ndarray, seed: int) -> Dict[str, Stream]:
+    """Phoneme streams of all kinds, by name."""
+    rng = np.random.default_rng(seed)
+    vowels, consonants = np.flatnonzero(boundary), np.flatnonzero(~boundary)
+
+    def draw(among: np.ndarray, count: int, low: int, high: int) -> Stream:
+        return [(int(rng.choice(among)), int(rng.integers(low, high))) for _ in range(count)]
+
+    every = np.arange(phonemes)
+    return {
+        "ordinary": draw(every, 60, 30, 200),
+        "one frame each": [(int(p), 20) for p in rng.choice(every, 120)],
+        "one millisecond each": [(int(p), 1) for p in rng.choice(every, 300)],
+        "long pauses": sum((draw(every, 4, 40, 160) + [(0, 2500)] for _ in range(4)), []),
+        "only vowels": draw(vowels, 40, 20, 300),
+        "only consonants": draw(consonants, 40, 20, 300),
+        "long": draw(every, 20, 300, 1500),
+        "with zeros": [(p, ms if rng.random() < 0.6 else 0) for p, ms in draw(every, 60, 10, 150)],
+        "one phoneme": draw(every, 1, 20, 500),
+    }
