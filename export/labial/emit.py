@@ -19,19 +19,21 @@ from labial.faps import CHANNELS, FAP_NAMES
 from labial.quantise import FORMAT, ExportedModel
 
 _C_KEYWORDS = frozenset(
-    """alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const constexpr const_cast
-    continue decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto
-    if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
-    register reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch template
-    this thread_local throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while
-    xor xor_eq main errno""".split()
+    """alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const constexpr
+    const_cast continue decltype default delete do double dynamic_cast else enum explicit export extern false float for
+    friend goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
+    public register reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch
+    template this thread_local throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t
+    while xor xor_eq main errno""".split()
 )
 
 
 def check_name(name: str) -> None:
     """Raises ModelError unless `name` can be a global name in C and C++."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,47}", name) or "__" in name:
-        raise ModelError(f"{name!r} is no name for a model: letters, digits and single underscores, a letter first, at most 48")
+        raise ModelError(
+            f"{name!r} is no name for a model: letters, digits and single underscores, a letter first, at most 48"
+        )
     if name in _C_KEYWORDS or keyword.iskeyword(name) or name.startswith("labial"):
         raise ModelError(f"{name!r} is no name for a model: C, C++ or the library already uses it")
 

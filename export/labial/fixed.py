@@ -11,9 +11,11 @@ COST_SCALE = 32
 POSITION_SCALE = 16
 POSITION_MAX = 16383
 
-#: Bounds of equation 3's weights: the largest diagonal element, and the least that holds a frame in place.
-WEIGHT_SUM_MAX = 32767
+#: Bounds of equation 3: the largest diagonal element, the least weight that holds a frame in place, and the largest
+#: right-hand side.
+WEIGHT_SUM_MAX = 262143
 WEIGHT_MIN = 8
+PULL_MAX = 2**30 - 1
 
 #: The largest z, Q6, of a duration and of an emission; beyond it a Gaussian's cost no longer grows.
 DURATION_Z_MAX = 65535

@@ -28,7 +28,9 @@ METHODS = ("paper", "labial")
 #: Kinds of corpora and models.
 KINDS = ("speech", "laughter")
 
-_TEXT = ("kind", "method", "phonemes", "classes", "silence", "fps", "soft", "aliases", "substitutes", "attribution", "training")
+_TEXT = (
+    "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "aliases", "substitutes", "attribution", "training",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -51,16 +53,16 @@ class Model:
     duration_variance: np.ndarray  #: (N,) seconds squared
     shape: np.ndarray  #: (N, 13) mean shape at duration_mean, FAP
     slope: np.ndarray  #: (N, 13) FAP per second of duration beyond the mean; zero in the published method
-    precision: np.ndarray  #: (N, 13) with which the phoneme ties its frames to the target, 1/FAP^2, >= 0; zero in the published method
+    precision: np.ndarray  #: (N, 13) that ties the phoneme's frames to the target, 1/FAP^2; 0 in the published method
     log_previous: np.ndarray  #: (N, V) log P(class of the previous phoneme | c), or (N, 0) without context
     log_next: np.ndarray  #: (N, V) log P(class of the next phoneme | c), or (N, 0) without context
     kernel: np.ndarray  #: (P, L, 13) FAP that a phoneme at a tap's lag adds to the target; L = 0 without kernels
-    kernel_lag: np.ndarray  #: (L,) int64, frames from the target's frame to the phoneme's (negative: it lies before), evenly spaced
+    kernel_lag: np.ndarray  #: (L,) int64, frames from the target to the phoneme (negative: before), evenly spaced
     decode_mean: np.ndarray  #: (13, Q) static mean that the Viterbi search sees, FAP
     decode_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
     state_mean: np.ndarray  #: (13, Q, 3) of m, delta m, delta-delta m for equation 3, FAP (per frame, per frame^2)
     state_precision: np.ndarray  #: (13, Q, 3) their precisions, > 0
-    state_anchor: np.ndarray  #: (13, Q) precision that ties a frame in this state to its target, >= 0; zero in the published method
+    state_anchor: np.ndarray  #: (13, Q) precision that ties a frame to its target; 0 in the published method
     log_transition: np.ndarray  #: (13, Q, Q) [from, to]
     log_initial: np.ndarray  #: (13, Q)
     aliases: Dict[str, str] = field(default_factory=dict)  #: label in some phone set -> label in `phonemes`
@@ -137,7 +139,8 @@ def check(model: Model) -> None:
     for alias, label in model.aliases.items():
         _expect(label in model.phonemes, f"alias {alias!r} names the unknown phoneme {label!r}")
     for missing, label in model.substitutes.items():
-        _expect(missing in model.phonemes and label in model.phonemes, f"substitute {missing!r} -> {label!r} is not known")
+        known = missing in model.phonemes and label in model.phonemes
+        _expect(known, f"substitute {missing!r} -> {label!r} is not known")
 
 
 def save(model: Model, path: Union[str, os.PathLike]) -> None:

@@ -63,7 +63,7 @@ def library_root(given: Optional[str] = None) -> Path:
     """The folder that holds ``include/labial`` and ``lib``: `given`, or the one that this package lies in."""
     root = Path(given) if given else Path(__file__).resolve().parents[2]
     if not (root / "include" / "labial" / "labial.h").is_file() or not (root / "lib" / "stream.c").is_file():
-        raise LabialError(f"{root}: not the Labial library (no include/labial/labial.h); name its folder with --library")
+        raise LabialError(f"{root}: no include/labial/labial.h, so not the Labial library; name its folder with --library")
     return root
 
 
@@ -93,8 +93,9 @@ class NativeModel:
             (folder / "driver.c").write_text(driver)
             sources = sorted((self._root / "lib").glob("*.c"))
             self._program = folder / "driver"
-            command = [compiler(), "-std=c99", *self._flags, f"-I{self._root / 'include'}", f"-I{folder}",
-                       str(folder / "driver.c"), str(folder / f"{name}.c"), *map(str, sources), "-o", str(self._program)]
+            includes = [f"-I{self._root / 'include'}", f"-I{folder}"]
+            files = [folder / "driver.c", folder / f"{name}.c", *sources]
+            command = [compiler(), "-std=c99", *self._flags, *includes, *map(str, files), "-o", str(self._program)]
             done = subprocess.run(command, capture_output=True, text=True)
             if done.returncode:
                 raise LabialError(f"the exported model does not compile:\n{done.stderr}")

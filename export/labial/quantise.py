@@ -9,7 +9,17 @@ import numpy as np
 
 from labial.errors import ModelError
 from labial.faps import CHANNELS
-from labial.fixed import COST_SCALE, POSITION_MAX, POSITION_SCALE, WEIGHT_MIN, WEIGHT_SUM_MAX, gain, weight_code, weight_value
+from labial.fixed import (
+    COST_SCALE,
+    POSITION_MAX,
+    POSITION_SCALE,
+    PULL_MAX,
+    WEIGHT_MIN,
+    WEIGHT_SUM_MAX,
+    gain,
+    weight_code,
+    weight_value,
+)
 from labial.model import Model
 
 #: Version of the tables' meaning.
@@ -27,8 +37,8 @@ _DURATION_DEVIATION_MIN = 0.003
 
 @dataclass(frozen=True)
 class ExportedModel:
-    """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, L taps; all arrays int64 that fit
-    the C types; `contexts`, `slopes`, `precisions` are None where the model has no use for them."""
+    """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, L taps; all arrays int64 that
+    fit the C types; `contexts`, `slopes`, `precisions` are None where the model has no use for them."""
 
     name: str
     kind: str
@@ -249,28 +259,32 @@ def _transitions(model: Model, predecessors: int) -> Tuple[np.ndarray, Tuple[np.
 def _weights(model: Model) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Codes of the states' weights (13, Q, 3) and anchors (13, Q), and of the components' precisions (N, 13).
 
-    Each channel's precisions are scaled so that no diagonal element of equation 3 can exceed its limit; what would then
-    hold a frame by less than WEIGHT_MIN is raised to it.
+    Each channel's precisions are scaled as high as equation 3's bounds let them; what would then hold a frame by less
+    than WEIGHT_MIN is raised to it.
     """
     weights = np.zeros(model.state_precision.shape, dtype=np.int64)
     anchors = np.zeros(model.state_anchor.shape, dtype=np.int64)
     ties = np.zeros(model.precision.shape, dtype=np.int64)
     for k in range(CHANNELS):
         precision = model.state_precision[k] * np.array([1.0, 0.25, 1.0])
-        largest = _largest_diagonal(precision, model.state_anchor[k], model.precision[:, k])
-        scale = WEIGHT_SUM_MAX / largest
+        mean = np.abs(np.rint(model.state_mean[k] * POSITION_SCALE))
+        scale = 1.0 / _fill(precision, model.state_anchor[k], model.precision[:, k], mean)
         while True:
             weights[k] = weight_code(precision * scale)
             anchors[k] = weight_code(model.state_anchor[k] * scale)
             ties[:, k] = weight_code(model.precision[:, k] * scale)
             short = weight_value(weights[k, :, 0]) + weight_value(anchors[k]) < WEIGHT_MIN
             weights[k, short, 0] = weight_code(np.array(WEIGHT_MIN))
-            if (_largest_diagonal(weight_value(weights[k]), weight_value(anchors[k]), weight_value(ties[:, k]))
-                    <= WEIGHT_SUM_MAX):
+            if _fill(weight_value(weights[k]), weight_value(anchors[k]), weight_value(ties[:, k]), mean) <= 1.0:
                 break
             scale *= 0.99
     return weights, anchors, ties
 
 
-def _largest_diagonal(weights: np.ndarray, anchors: np.ndarray, ties: np.ndarray) -> float:
-    return float((weights[:, 0] + anchors).max() + ties.max() + 2 * weights[:, 1].max() + 6 * weights[:, 2].max())
+def _fill(weights: np.ndarray, anchors: np.ndarray, ties: np.ndarray, mean: np.ndarray) -> float:
+    """How much of equation 3's bounds a channel's weights (Q, 3), anchors (Q,) and ties (N,) use, the larger of two
+    shares; `mean` (Q, 3) in positions."""
+    held = (weights[:, 0] + anchors).max() + ties.max()
+    diagonal = held + 2 * weights[:, 1].max() + 6 * weights[:, 2].max()
+    pull = held * POSITION_MAX + 4 * (weights * mean)[:, 1].max() + 4 * (weights * mean)[:, 2].max()
+    return max(float(diagonal) / WEIGHT_SUM_MAX, float(pull) / PULL_MAX)

@@ -19,7 +19,7 @@ DURATION_MAX = 3_600_000
 
 
 def frame_counts(milliseconds: Sequence[int], fps: int) -> List[int]:
-    """Frames of each phoneme. They amount to the rounded sum of the durations: what one leaves over goes to the next."""
+    """Frames of each phoneme; what one leaves over goes to the next, so that they amount to the rounded sum."""
     counts = []
     remainder = 500
     for duration in milliseconds:

@@ -1,7 +1,7 @@
 """The two kinds of tables that the reference runs on, behind one interface.
 
-Positions are FAP units as float64 with :class:`FloatTables`, integers in 1/16 FAP unit relative to each channel's centre
-with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap` and `equation` leave these units.
+Positions are FAP units as float64 with :class:`FloatTables`, integers in 1/16 FAP unit relative to each channel's
+centre with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap` and `equation` leave these units.
 """
 
 from __future__ import annotations
@@ -141,7 +141,8 @@ class ExportedTables:
         """As :meth:`FloatTables.emission`, in 1/32 nat."""
         model = self.exported
         distance = np.abs(targets[:, :, None] - model.emission_mean)
-        return (z_cost(np.minimum((distance * model.emission_gain) >> 12, EMISSION_Z_MAX)) + model.emission_cost).astype(np.float64)
+        z = np.minimum((distance * model.emission_gain) >> 12, EMISSION_Z_MAX)
+        return (z_cost(z) + model.emission_cost).astype(np.float64)
 
     def equation(self, path: np.ndarray, targets: np.ndarray, components: np.ndarray, frames: np.ndarray) -> Equation:
         """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""

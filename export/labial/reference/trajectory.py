@@ -13,8 +13,8 @@ from labial.reference.units import Piece
 def solve(terms: Equation) -> np.ndarray:
     """(T, 13) trajectories m that solve (W' U^-1 W + A) m = W' U^-1 mu + A x, per channel.
 
-    W stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame; those
-    whose window would leave the piece are dropped. The matrix is pentadiagonal; it is factored as L D L'.
+    W stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame;
+    those whose window would leave the piece are dropped. The matrix is pentadiagonal; it is factored as L D L'.
     """
     weight, mean = terms.weight.copy(), terms.mean
     frames = len(weight)

@@ -8,7 +8,7 @@ import numpy as np
 def viterbi(emission: np.ndarray, transition: np.ndarray, initial: np.ndarray) -> np.ndarray:
     """The state path of least total cost.
 
-    `emission` is (T, ..., Q), the cost of each state in each frame; `transition` (..., Q, Q) the cost of going [from, to];
+    `emission` is (T, ..., Q), the cost of each state in each frame; `transition` (..., Q, Q) that of going [from, to];
     `initial` (..., Q) that of starting. Costs are negative log-probabilities, +inf forbids. Any leading axes
     (channels) are searched independently, each with its own tables. Returns (T, ...) int64. Ties go to the lower
     state, and for a frame's predecessor to the lower predecessor.

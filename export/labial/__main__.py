@@ -1,0 +1,7 @@
+"""``python -m labial``."""
+
+import sys
+
+from labial.cli import main
+
+sys.exit(main())

@@ -1,0 +1,79 @@
+"""Holds an exported model, run by the C library, to the limits of the method (section 6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, Optional, Sequence
+
+import numpy as np
+
+from labial.faps import FAP_NAMES
+from labial.loss import channel_extent
+from labial.model import Model
+from labial.native import NativeModel
+from labial.phones import Stream
+from labial.quantise import ExportedModel
+from labial.reference.stream import synthesise
+from labial.reference.tables import ExportedTables, FloatTables
+
+#: Against float64 on the same tables, after rounding to whole FAP units.
+LARGEST = 1.0
+RMS = 0.25
+
+#: Against the float model: root mean square in percent of each channel's range.
+SHARE = 1.0
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Per channel, (13,), FAP: the library against the reference on the same tables, rounded as the library rounds, and
+    against the float model; and the range of each channel."""
+
+    frames: int
+    tables_largest: np.ndarray
+    tables_rms: np.ndarray
+    model_rms: np.ndarray
+    extent: np.ndarray
+
+    def failures(self) -> List[str]:
+        """A sentence for each limit that is exceeded."""
+        found = []
+        for k, name in enumerate(FAP_NAMES):
+            if self.tables_largest[k] > LARGEST:
+                found.append(f"{name}: {self.tables_largest[k]:.0f} FAP units from the reference on the same tables, "
+                             f"limit {LARGEST:.0f}")
+            if self.tables_rms[k] > RMS:
+                found.append(f"{name}: RMS {self.tables_rms[k]:.3f} from the reference on the same tables, limit {RMS}")
+            share = 100.0 * self.model_rms[k] / self.extent[k]
+            if share > SHARE:
+                found.append(f"{name}: RMS {share:.2f} % of its range from the float model, limit {SHARE} %")
+        return found
+
+    def table(self) -> str:
+        """What was measured, one line per channel."""
+        lines = [f"{self.frames} frames; FAP units",
+                 f"{'channel':<24}{'same tables: max':>18}{'rms':>8}{'float model: rms':>20}{'% of range':>12}"]
+        for k, name in enumerate(FAP_NAMES):
+            share = 100.0 * self.model_rms[k] / self.extent[k]
+            lines.append(f"{name:<24}{self.tables_largest[k]:>18.0f}{self.tables_rms[k]:>8.3f}"
+                         f"{self.model_rms[k]:>20.3f}{share:>12.2f}")
+        return "\n".join(lines)
+
+
+def compare(
+    model: Model, exported: ExportedModel, streams: Sequence[Stream], library: Optional[str] = None
+) -> Comparison:
+    """Runs `streams` through the library, compiled with the host's C compiler, and through both references."""
+    with NativeModel(exported, library) as native:
+        frames = np.concatenate(native.synthesise(streams))
+    tables, ideal = ExportedTables(exported), FloatTables(model)
+    same = np.concatenate([synthesise(tables, stream) for stream in streams])
+    wanted = np.concatenate([synthesise(ideal, stream) for stream in streams])
+    difference = frames - np.floor(same + 0.5)
+    return Comparison(
+        frames=len(frames),
+        tables_largest=np.abs(difference).max(axis=0),
+        tables_rms=np.sqrt(np.mean(difference**2, axis=0)),
+        model_rms=np.sqrt(np.mean((frames - wanted) ** 2, axis=0)),
+        extent=channel_extent(model, wanted),
+    )

@@ -1,0 +1,175 @@
+"""The command ``labial``: train, synth, export, check, laughter-corpus."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import warnings
+from typing import List, Optional
+
+from labial import __version__
+from labial.errors import LabialError
+
+
+def _positive(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return value
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    top = argparse.ArgumentParser(
+        prog="labial", description="Trains lip-motion models and exports them for the C library."
+    )
+    top.add_argument("--version", action="version", version=f"labial {__version__}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    train = commands.add_parser("train", help="train a model on a corpus")
+    train.add_argument("corpus", help="Labial corpus folder, IEMOCAP or AVLaughterCycle")
+    train.add_argument("-o", "--output", required=True, metavar="MODEL.npz")
+    train.add_argument("--kind", choices=("speech", "laughter"), default="speech")
+    train.add_argument("--method", choices=("paper", "labial"), default="labial")
+    train.add_argument("--fps", type=_positive, default=50, help="frames per second (50)")
+    train.add_argument("--codebook", type=_positive, default=50, help="states per channel (50)")
+    train.add_argument("--components", type=_positive, default=5, help="mixture components per phoneme (5)")
+    train.add_argument("--seed", type=int, default=0)
+    train.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, help="processes; the result is the same")
+    train.add_argument("--attribution", default="", help="what whoever passes the model on must say; kept in the model")
+    train.add_argument("--quiet", action="store_true", help="no progress bars")
+    train.set_defaults(run=_train)
+
+    synth = commands.add_parser("synth", help="synthesise frames with the float64 reference")
+    synth.add_argument("model", metavar="MODEL.npz")
+    synth.add_argument("phones", metavar="PHONES", help="phoneme timings: .lab, .TextGrid, .phseg, .pho, flite -psdur")
+    synth.add_argument("-o", "--output", metavar="FRAMES.csv", help="standard output without it")
+    synth.add_argument("--whole", action="store_true", help="decode the whole utterance at once, not unit by unit")
+    synth.set_defaults(run=_synth)
+
+    export = commands.add_parser("export", help="write a model as C tables")
+    export.add_argument("model", metavar="MODEL.npz")
+    export.add_argument("--name", required=True, help="of the C symbol and the files")
+    export.add_argument("-o", "--output", required=True, metavar="DIR")
+    export.add_argument("--blob", action="store_true", help="write NAME.lbm for labial_model_load() too")
+    _add_predecessors(export)
+    export.set_defaults(run=_export)
+
+    check = commands.add_parser("check", help="compare the C library with the float64 reference")
+    check.add_argument("model", metavar="MODEL.npz")
+    check.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
+    check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
+    _add_predecessors(check)
+    check.set_defaults(run=_check)
+
+    laughter = commands.add_parser("laughter-corpus", help="generate the synthetic laughter corpus")
+    laughter.add_argument("output", metavar="OUT", help="folder, new or empty")
+    laughter.add_argument("--episodes", type=_positive, default=200)
+    laughter.add_argument("--seed", type=int, default=0)
+    laughter.set_defaults(run=_laughter_corpus)
+    return top
+
+
+def _add_predecessors(command: argparse.ArgumentParser) -> None:
+    from labial.quantise import DEFAULT_PREDECESSORS
+
+    command.add_argument("--predecessors", type=_positive, default=DEFAULT_PREDECESSORS,
+                         help=f"transitions kept into each state ({DEFAULT_PREDECESSORS})")
+
+
+def _train(options: argparse.Namespace) -> int:
+    try:
+        from labial.train.train import train
+    except ModuleNotFoundError as error:
+        raise LabialError(f"training needs the package {error.name}: install labial[train]") from None
+    from labial.corpus import read_corpus
+    from labial.model import save
+
+    model = train(read_corpus(options.corpus, options.kind), kind=options.kind, method=options.method, fps=options.fps,
+                  codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
+                  progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution)
+    save(model, options.output)
+    print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
+          f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")
+    return 0
+
+
+def _synth(options: argparse.Namespace) -> int:
+    from labial.frames import write_csv
+    from labial.model import load
+    from labial.phones import read_stream
+    from labial.reference.stream import synthesise
+    from labial.reference.tables import FloatTables
+
+    model = load(options.model)
+    frames = synthesise(FloatTables(model), read_stream(options.phones, model), whole=options.whole)
+    if options.output:
+        with open(options.output, "w", encoding="ascii", newline="\n") as out:
+            write_csv(out, frames, model.fps)
+    else:
+        write_csv(sys.stdout, frames, model.fps)
+    return 0
+
+
+def _export(options: argparse.Namespace) -> int:
+    from labial import emit, report
+    from labial.loss import measure
+    from labial.model import load
+    from labial.phones import drawn_streams
+    from labial.quantise import quantise
+
+    emit.check_name(options.name)
+    model = load(options.model)
+    exported = quantise(model, options.name, predecessors=options.predecessors)
+    loss = measure(model, exported, drawn_streams(model))
+    for path in emit.write(exported, options.output, binary=options.blob):
+        print(path)
+    print(report.memory(exported))
+    print(report.quantisation(loss, model, exported))
+    return 0
+
+
+def _check(options: argparse.Namespace) -> int:
+    from labial.check import compare
+    from labial.model import load
+    from labial.phones import read_stream
+    from labial.quantise import quantise
+
+    model = load(options.model)
+    exported = quantise(model, "checked_model", predecessors=options.predecessors)
+    comparison = compare(model, exported, [read_stream(path, model) for path in options.phones], options.library)
+    print(comparison.table())
+    failures = comparison.failures()
+    for failure in failures:
+        print(f"labial check: {failure}", file=sys.stderr)
+    return 1 if failures else 0
+
+
+def _laughter_corpus(options: argparse.Namespace) -> int:
+    from labial.corpus.laughter import generate
+
+    generate(options.output, episodes=options.episodes, seed=options.seed)
+    print(f"{options.output}: {options.episodes} synthetic episodes")
+    return 0
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
+    options = parser().parse_args(arguments)
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: print(f"labial: warning: {message}", file=sys.stderr)
+        try:
+            return int(options.run(options))
+        except LabialError as error:
+            print(f"labial: {error}", file=sys.stderr)
+            return 1
+        except BrokenPipeError:  # whoever reads the output has seen enough
+            sys.stderr.close()
+            return 1
+        except OSError as error:
+            print(f"labial: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
+            return 1
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,243 @@
+"""A synthetic corpus of laughter: phonemes with the timings that have been published, motion of our own design.
+
+No recording of laughter's lip motion with its phonemes is public, so this program stands in for one. What comes from
+where:
+
+* **Timings are published facts.** Laughter pulses follow each other every 210 ms (notes of some 75 ms, getting
+  softer) [Provine and Yong 1991]; a train has a median of 3 pulses and up to 17; median durations of the phoneme
+  classes are those of annotated laughs (`MEDIANS`); more than half of a laugh is silence or breath; an inhalation
+  follows a train of exhalations; phonemes of 20 ms, the same phoneme twice and silences of 5 s occur.
+* **Weak articulation is a published fact** [Bachorowski et al. 2001]: central vowels and h-like sounds dominate, so
+  the vowels' shapes here differ little. That the smile deepens with the laugh's intensity is, too [Ruch]; so is that
+  the corners stay drawn back and up through the bout while the jaw quivers with the pulses.
+* **Amplitudes are design choices:** every number of FAP units below, the speed of the smile, the asymmetry, the noise.
+  So are the shares of the phonemes and the durations of "o", "grunt" and of the pauses between trains.
+
+The bottom lip follows the jaw, the top lip rises a little with the smile, and both meet when the lips are closed.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import List, Tuple, Union
+
+import numpy as np
+
+from labial.corpus.folder import HEADER
+from labial.errors import DataError
+from labial.faps import CHANNELS, FAP_NUMBERS
+
+#: Frames per second of the corpus; a frame is the motion at its centre.
+FPS = 50
+#: Median duration in milliseconds of what is drawn on its own; fricatives and silences inside a pulse fill its period.
+MEDIANS = {"a": 98, "e": 92, "o": 92, "ic": 80, "cackle": 48, "nasal": 80, "ne": 240, "fricative": 120, "click": 40,
+           "plosive": 40, "grunt": 200}  # fmt: skip
+_SPREAD = 0.22  # standard deviation of a duration's logarithm
+_PERIOD, _PERIOD_SPREAD = 210.0, 25.0  # ms from onset to onset
+_TRAIN_MEDIAN, _TRAIN_SPREAD, _TRAIN_LONGEST = 3.0, 0.6, 17
+
+#: What a phoneme asks of the mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
+_GESTURES = {
+    "silence": (0.16, 0.60, 0.0),
+    "ne": (0.04, 0.15, 0.0),
+    "nasal": (0.10, 0.05, 0.0),
+    "click": (0.22, 0.60, 0.1),
+    "plosive": (0.16, 0.50, 0.0),
+    "fricative": (0.34, 0.90, 0.0),
+    "ic": (0.62, 1.00, -0.2),
+    "e": (0.74, 1.00, 0.0),
+    "o": (0.72, 1.00, 1.0),
+    "grunt": (0.20, 0.45, 0.1),
+    "cackle": (0.80, 1.00, 0.0),
+    "a": (0.90, 1.00, 0.0),
+}
+_JAW = 330.0  # FAP 3 of the widest opening: about 10 mm of an adult's face
+_STEP = 5  # ms between samples of the motion before it is sampled at FPS
+
+#: Kinds of a pulse and their shares: vowel after breath, vowel and silence, cackle, closed lips, glottal stop first.
+_PULSES, _PULSE_SHARES = ("h", "bare", "cackle", "nasal", "stop"), (0.62, 0.12, 0.10, 0.09, 0.07)
+_VOWELS, _VOWEL_SHARES = ("a", "e", "o", "ic"), (0.40, 0.34, 0.10, 0.16)
+
+_Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
+
+
+def generate(out_dir: Union[str, os.PathLike], episodes: int = 200, seed: int = 0) -> None:
+    """Writes a Labial corpus folder of `episodes` bouts of laughter; the same seed gives the same bytes.
+
+    Raises DataError when `out_dir` exists and is not empty: another run's episodes would mix with these.
+    """
+    folder = Path(out_dir)
+    folder.mkdir(parents=True, exist_ok=True)
+    if any(folder.iterdir()):
+        raise DataError(folder, None, "the folder is not empty")
+    random = np.random.Generator(np.random.PCG64(seed))
+    for number in range(episodes):
+        phonemes, intensity = _bout(random)
+        frames = _motion(random, phonemes, intensity)
+        _write(folder / f"laugh{number:04d}.csv", _csv(frames))
+        _write(folder / f"laugh{number:04d}.lab", _lab(random, phonemes))
+    _write(folder / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
+
+
+def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
+    """A bout's phonemes and its intensity, 0.35 to 1."""
+    intensity = float(random.uniform(0.35, 1.0))
+    bout: List[_Phoneme] = [("silence", int(random.uniform(200, 500)), 0.0)]
+    for label, share in (("ne", 0.25), ("click", 0.15), ("grunt", 0.20), ("plosive", 0.15)):
+        if random.random() < share:
+            bout.append((label, _duration(random, label), 0.5 * intensity))
+            break
+    trains = 2 + int(random.binomial(4, intensity))
+    for train in range(trains):
+        loudness = intensity * 0.88**train
+        bout += _train(random, loudness)
+        pause = random.random()
+        if pause < 0.75:  # air runs out and is drawn in again
+            bout.append(("silence", _duration(random, "silence"), 0.25 * loudness))
+            if random.random() < 0.2:
+                bout.append(("click", _duration(random, "click"), 0.6 * loudness))
+            inhaled = "ne" if random.random() < 0.75 else "fricative"
+            bout.append((inhaled, _duration(random, inhaled), 0.7 * loudness))
+        if random.random() < 0.18:
+            bout.append(("grunt", _duration(random, "grunt"), 0.5 * loudness))
+        if random.random() < 0.5:
+            bout.append(("silence", _duration(random, "silence"), 0.25 * loudness))
+        if random.random() < 0.15:
+            longest = 5000 if random.random() < 0.1 else 900
+            bout.append(("silence", int(random.uniform(0.5, 1.0) * longest), 0.0))
+    if random.random() < 0.5:
+        bout.append(("ne", _duration(random, "ne"), 0.3 * intensity))
+    bout.append(("silence", int(random.uniform(700, 1600)), 0.0))
+    return bout, intensity
+
+
+def _train(random: np.random.Generator, loudness: float) -> List[_Phoneme]:
+    """Pulses of one exhalation, each softer than the one before; most have the train's own vowel."""
+    count = min(max(round(_TRAIN_MEDIAN * float(np.exp(random.normal(0, _TRAIN_SPREAD)))), 1), _TRAIN_LONGEST)
+    kind, vowel = random.choice(_PULSES, p=_PULSE_SHARES), random.choice(_VOWELS, p=_VOWEL_SHARES)
+    train: List[_Phoneme] = []
+    for pulse in range(count):
+        if random.random() < 0.15:
+            kind = random.choice(_PULSES, p=_PULSE_SHARES)
+        if random.random() < 0.15:
+            vowel = random.choice(_VOWELS, p=_VOWEL_SHARES)
+        loud = loudness * 0.93**pulse * float(np.exp(random.normal(0, 0.10)))
+        period = int(np.clip(random.normal(_PERIOD, _PERIOD_SPREAD), 140, 280))
+        note = str({"cackle": "cackle", "nasal": "nasal"}.get(str(kind), vowel))
+        sound = min(_duration(random, note), period - 40)
+        rest = period - sound
+        if kind == "h":
+            train += [("fricative", rest, loud), (note, sound, loud)]
+        elif kind == "stop":
+            stop = min(_duration(random, "plosive"), rest - 20)
+            train += [("plosive", stop, loud), (note, sound, loud), ("silence", rest - stop, 0.5 * loud)]
+        elif random.random() < 0.05:  # the voice does not stop: the same phoneme twice
+            train += [(note, sound, loud), (note, max(rest - 60, 20), 0.8 * loud), ("silence", 60, 0.5 * loud)]
+        else:
+            train += [(note, sound, loud), ("silence", rest, 0.5 * loud)]
+    return train
+
+
+def _duration(random: np.random.Generator, label: str) -> int:
+    """Milliseconds, at least one frame."""
+    if label == "silence":
+        return max(int(random.uniform(160, 420)), 20)
+    return max(round(MEDIANS[label] * float(np.exp(random.normal(0, _SPREAD)))), 20)
+
+
+def _motion(random: np.random.Generator, phonemes: List[_Phoneme], intensity: float) -> np.ndarray:
+    """(T, 13) FAPs of a bout, T frames from its beginning."""
+    total = sum(milliseconds for _, milliseconds, _ in phonemes)
+    count = total // _STEP + 1
+    jaw, apart, rounding, effort = (np.zeros(count) for _ in range(4))
+    begin = 0
+    for label, milliseconds, loudness in phonemes:
+        span = slice(begin // _STEP, max((begin + milliseconds) // _STEP, begin // _STEP + 1))
+        wide, free, rounded = _GESTURES[label]
+        vigour = loudness**0.7 * float(np.exp(random.normal(0, 0.10)))
+        jaw[span], rounding[span], effort[span] = wide * vigour, rounded * vigour, loudness
+        apart[span] = free if loudness > 0 else 0.0
+        begin += milliseconds
+    smile = _follow(_smooth(effort, 150), intensity)
+    jaw = np.clip(_smooth(jaw, 34), 0, None) * _JAW + 14 * smile
+    # Lips part by the jaw's opening and the teeth that a smile bares; at rest they close as the smile fades.
+    seal = np.clip(_smooth(apart, 38), 0, 1)
+    seal = np.maximum(seal, 0.35 * np.clip(smile - 0.3, 0, 1))
+    aperture = seal * (1.08 * jaw + 60 * smile)
+    rounding = _smooth(rounding, 45)
+    raised = 0.16 * aperture + 42 * smile
+    frames = np.empty((count, CHANNELS))
+    channel = {number: index for index, number in enumerate(FAP_NUMBERS)}
+    frames[:, channel[3]] = jaw
+    frames[:, channel[16]] = -34 * smile - 0.10 * jaw + 40 * rounding
+    frames[:, channel[17]] = -48 * smile + 42 * rounding
+    frames[:, channel[51]] = -raised
+    frames[:, channel[52]] = raised - aperture
+    corner_out = 150 * smile - 0.05 * jaw - 34 * rounding
+    corner_up = 195 * smile - 0.16 * jaw
+    lean = float(random.normal(0, 0.04))  # one side of the face smiles a little more
+    for left, right, centre, smiling in ((55, 56, -0.80 * raised, -30), (57, 58, 0.78 * (raised - aperture), 34)):
+        frames[:, channel[left]] = centre + smiling * smile * (1 + lean)
+        frames[:, channel[right]] = centre + smiling * smile * (1 - lean)
+    for left, right, value in ((53, 54, corner_out), (59, 60, corner_up)):
+        frames[:, channel[left]], frames[:, channel[right]] = value * (1 + lean), value * (1 - lean)
+    frames = _sampled(frames, total)
+    noise = random.normal(0, 1.0, (len(frames) + 2, CHANNELS))  # as of a tracker: small, a little smoothed
+    return frames + 0.5 * noise[1:-1] + 0.25 * (noise[:-2] + noise[2:])
+
+
+def _sampled(frames: np.ndarray, milliseconds: int) -> np.ndarray:
+    """(T, 13) at the centres of T = milliseconds * FPS / 1000 frames, from samples every `_STEP` ms."""
+    moments = (np.arange(max(round(milliseconds * FPS / 1000), 1)) + 0.5) * 1000 / FPS
+    return np.stack([np.interp(moments, np.arange(len(frames)) * _STEP, item) for item in frames.T], axis=1)
+
+
+def _smooth(signal: np.ndarray, sigma: float) -> np.ndarray:
+    """A Gaussian blur of `sigma` milliseconds: a gesture begins before its sound and outlasts it. Edges are held."""
+    reach = int(3 * sigma / _STEP) + 1
+    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) * _STEP / sigma) ** 2)
+    return np.convolve(np.pad(signal, reach, mode="edge"), kernel / kernel.sum(), mode="valid")
+
+
+def _follow(effort: np.ndarray, intensity: float) -> np.ndarray:
+    """The smile, 0..1: rises with the loudness of laughing within 0.2 s, sinks over 2.5 s, never below a faint one."""
+    target = np.maximum(effort**0.6, 0.12 * intensity)
+    smile = np.empty_like(target)
+    level = 0.5 * target[0]
+    for index, goal in enumerate(target):
+        level += (goal - level) * _STEP / (200 if goal > level else 2500)
+        smile[index] = level
+    return _smooth(smile, 60)
+
+
+def _csv(frames: np.ndarray) -> str:
+    lines = [HEADER]
+    for number, frame in enumerate(np.round(frames, 2) + 0.0):  # + 0.0: no "-0.00"
+        lines.append(",".join([f"{(number + 0.5) / FPS:.3f}", *(f"{value:.2f}" for value in frame)]))
+    return "\n".join(lines) + "\n"
+
+
+def _lab(random: np.random.Generator, phonemes: List[_Phoneme]) -> str:
+    """Timings with apexes: the envelope's maximum lies at two fifths of a phoneme, give or take."""
+    lines, begin = [], 0
+    for label, milliseconds, _ in phonemes:
+        place = float(np.clip(random.normal(0.42, 0.08), 0.1, 0.9))
+        apex = begin + round(place * milliseconds)
+        lines.append(f"{begin / 1000:.3f} {(begin + milliseconds) / 1000:.3f} {label} {apex / 1000:.3f}")
+        begin += milliseconds
+    return "\n".join(lines) + "\n"
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_bytes(text.encode("utf-8"))
+
+
+_README = """# Synthetic laughter
+
+Nobody laughed for this corpus: {episodes} bouts of laughter were computed by `labial.corpus.laughter` (seed {seed}).
+Timings follow published statistics of laughter; amplitudes of the motion are design choices. See that module for both.
+
+Per bout: `NAME.csv` (`time` in s, 13 FAP channels in FAP units, {fps} frames/s) and `NAME.lab` (`start end phoneme
+apex`, s). A model that is trained on it imitates this program, not people, and should say so.
+"""

@@ -1,0 +1,57 @@
+"""Phoneme timings as what a model is driven with: phoneme numbers and whole milliseconds."""
+
+from __future__ import annotations
+
+import os
+from typing import List, Tuple, Union
+
+import numpy as np
+
+from labial.corpus.timings import phoneme_segments, read_timings
+from labial.model import Model
+from labial.phonesets import PhoneSet
+
+#: A phoneme stream: (phoneme number, milliseconds) pairs.
+Stream = List[Tuple[int, int]]
+
+
+def phone_set(model: Model) -> PhoneSet:
+    """The phone set that a model brings with it."""
+    return PhoneSet(
+        kind=model.kind,
+        phonemes=model.phonemes,
+        classes=model.classes,
+        phoneme_class=tuple(int(c) for c in model.phoneme_class),
+        boundary=tuple(bool(b) for b in model.boundary),
+        silence=model.silence,
+        aliases=model.aliases,
+    )
+
+
+def read_stream(path: Union[str, os.PathLike], model: Model) -> Stream:
+    """Reads phoneme timings of any format that corpora come in; gaps are silence.
+
+    Boundaries are rounded to milliseconds, so that rounding never adds up. Raises DataError, which names the file and
+    the line, for what is malformed and for labels that the model does not know.
+    """
+    segments = phoneme_segments(path, read_timings(path), phone_set(model))
+    bounds = [round(1000 * segment.end) for segment in segments]
+    begins = [0, *bounds[:-1]]
+    return [(model.phonemes.index(segment.label), end - begin) for segment, begin, end in zip(segments, begins, bounds)]
+
+
+def drawn_streams(model: Model, count: int = 24, length: int = 24, seed: int = 0) -> List[Stream]:
+    """Streams made up for measuring a model without its corpus: phonemes in random order, durations drawn from the
+    model's own mixtures, silence at both ends."""
+    rng = np.random.default_rng(seed)
+    first = model.first_component()
+    silence = model.phonemes.index(model.silence)
+
+    def duration(phoneme: int) -> int:
+        own = np.arange(first[phoneme], first[phoneme + 1])
+        share = np.exp(model.log_weight[own])
+        c = rng.choice(own, p=share / share.sum())
+        return int(np.clip(rng.normal(model.duration_mean[c], np.sqrt(model.duration_variance[c])) * 1000, 20, 1000))
+
+    return [[(int(p), duration(int(p))) for p in (silence, *rng.integers(len(model.phonemes), size=length), silence)]
+            for _ in range(count)]

@@ -1,0 +1,47 @@
+"""What the exporter prints about a model that it wrote."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from labial import emit
+from labial.faps import FAP_NAMES
+from labial.fixed import WEIGHT_MIN, weight_value
+from labial.loss import Loss
+from labial.model import Model
+from labial.quantise import ExportedModel
+from labial.reference.units import WINDOW
+
+#: Reach of the kernels that the library's workspace provides for, frames (LABIAL_REACH).
+_REACH = 20
+
+
+def workspace_bytes(states: int) -> int:
+    """LABIAL_WORKSPACE_SIZE of the library's default limits."""
+    decoding = (8 * states + WINDOW * max(states, 12) + 3) // 4 * 4
+    return decoding + WINDOW * (2 * 13 + 4) + (WINDOW * 2 + 2 * _REACH + 3) // 4 * 4
+
+
+def memory(exported: ExportedModel) -> str:
+    """Flash by group of tables, and RAM."""
+    tables = emit.table_bytes(exported)
+    names = sum(len(text.encode()) + 1 + 8 for text, _ in exported.aliases) + 4 * len(exported.phonemes) + 12
+    lines = [f"{'flash, ' + name:<32}{size:>8} bytes" for name, size in tables.items()]
+    lines.append(f"{'flash, model':<32}{sum(tables.values()):>8} bytes")
+    lines.append(f"{'flash, names, if used':<32}{names:>8} bytes")
+    lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.rows.shape[1] - 1):>8} bytes")
+    return "\n".join(lines)
+
+
+def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
+    """The loss per channel, and what was dropped or held to a limit."""
+    lines = [f"{'quantisation loss, FAP units':<32}{'rms':>8}{'max':>8}{'% of range':>12}{'nats per unit':>15}"]
+    for k, name in enumerate(FAP_NAMES):
+        lines.append(f"{name:<32}{loss.rms[k]:>8.3f}{loss.largest[k]:>8.2f}{loss.share[k]:>12.2f}{loss.path[k]:>15.3f}")
+    possible = int(np.isfinite(model.log_transition).sum())
+    kept = sum(len(edges) for edges in exported.edges)
+    floor = int((weight_value(exported.state_weight[..., 0]) + weight_value(exported.state_anchor) <= WEIGHT_MIN).sum())
+    lines.append(f"transitions kept: {kept} of {possible}; the state paths lose {loss.path.mean():.3f} nats per unit "
+                 "and channel on average")
+    lines.append(f"states held by no more than the least weight: {floor} of {exported.state_anchor.size}")
+    return "\n".join(lines)

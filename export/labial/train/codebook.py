@@ -1,0 +1,165 @@
+"""The hidden Markov model of a channel (section 3 of the paper): an LBG codebook of human motion and its counts.
+
+A frame's features are m, delta m = (m[t+1] - m[t-1]) / 2 and delta-delta m = m[t+1] - 2 m[t] + m[t-1], each z-scored
+over the corpus. The codebook is grown by binary splitting (Linde, Buzo and Gray 1980): each cell is split in two along
+its widest feature and all are refined by Lloyd's iteration; where the size asked for is not a power of two, the last
+round splits the cells of largest distortion alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, Tuple
+from typing import Sequence as SequenceOf
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+#: A split moves the two halves by this share of the cell's standard deviation, along its widest feature.
+SPLIT = 0.5
+
+#: Lloyd's iteration ends when the distortion falls by less than this share, or after MAXIMUM_ITERATIONS. Before the
+#: last split a rougher solution does as well.
+TOLERANCE = 1e-4
+ROUGH_TOLERANCE = 1e-3
+MAXIMUM_ITERATIONS = 60
+
+#: Least variance of a state, as a share of the feature's variance over the corpus.
+VARIANCE_FLOOR = 1e-3
+
+#: Transitions and starts that were never counted have probability 0, but for those that keep every state within
+#: reach: to itself and to its neighbours in static mean, which get this count on top of what was seen.
+NEIGHBOUR_COUNT = 0.5
+
+#: Added to the starts of every state, spread in proportion to how often the state occurs.
+INITIAL_COUNT = 5.0
+
+
+def features(motion: np.ndarray) -> np.ndarray:
+    """(T, 3) m, delta m and delta-delta m of one channel's motion (T,); the ends are held for the outer frames."""
+    held = np.concatenate([motion[:1], motion, motion[-1:]])
+    return np.stack([motion, (held[2:] - held[:-2]) / 2, held[2:] - 2 * motion + held[:-2]], axis=1)
+
+
+def assign(points: np.ndarray, centres: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """(n,) the nearest centre of each of (n, D) points, and its squared distance."""
+    distance, nearest = cKDTree(centres).query(points)
+    return nearest.astype(np.int64), distance**2
+
+
+def _moments(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Counts (size,), means and variances (size, D) of the points in each cell; zeros where a cell is empty."""
+    count = np.bincount(cell, minlength=size).astype(np.float64)
+    divisor = np.maximum(count, 1)[:, None]
+    total = np.stack([np.bincount(cell, weights=column, minlength=size) for column in points.T], axis=1)
+    mean = total / divisor
+    offset = (points - mean[cell]) ** 2
+    spread = np.stack([np.bincount(cell, weights=column, minlength=size) for column in offset.T], axis=1)
+    return count, mean, spread / divisor
+
+
+def lloyd(
+    points: np.ndarray, centres: np.ndarray, tolerance: float = TOLERANCE
+) -> Tuple[np.ndarray, np.ndarray, float]:
+    """Refines (Q, D) centres on (n, D) points. Returns centres, cells (n,) and the mean squared distance.
+
+    A centre that loses all its points is put beside the centre of the cell with the largest distortion, splitting it.
+    """
+    before = np.inf
+    for _ in range(MAXIMUM_ITERATIONS):
+        cell, distance = assign(points, centres)
+        count, mean, variance = _moments(points, cell, len(centres))
+        distortion = float(distance.mean())
+        empty = np.flatnonzero(count == 0)
+        if not len(empty) and before - distortion <= tolerance * distortion:
+            break
+        before = np.inf if len(empty) else distortion
+        load = count * variance.sum(axis=1)
+        centres = mean
+        for lost in empty:
+            widest = int(load.argmax())
+            axis = int(variance[widest].argmax())
+            if load[widest] <= 0:
+                break  # fewer different points than centres: the rest stay empty
+            centres[lost] = centres[widest]
+            centres[lost, axis] += SPLIT * np.sqrt(variance[widest, axis])
+            load[widest] = 0
+    cell, distance = assign(points, centres)
+    return centres, cell, float(distance.mean())
+
+
+def lbg(points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
+    """The codebook of `size` centres for (n, D) points: centres (size, D), cells (n,), mean squared distance."""
+    centres, cell, distortion = lloyd(points, points.mean(axis=0, keepdims=True))
+    while len(centres) < size:
+        count, mean, variance = _moments(points, cell, len(centres))
+        load = count * variance.sum(axis=1)
+        split = np.argsort(-load, kind="stable")[: min(len(centres), size - len(centres))]
+        axis = variance[split].argmax(axis=1)
+        step = np.zeros((len(split), points.shape[1]))
+        step[np.arange(len(split)), axis] = SPLIT * np.sqrt(variance[split, axis])
+        grown = centres.copy()
+        grown[split] -= step
+        grown = np.concatenate([grown, centres[split] + step])
+        centres, cell, distortion = lloyd(points, grown, TOLERANCE if len(grown) == size else ROUGH_TOLERANCE)
+    return centres, cell, distortion
+
+
+@dataclass(frozen=True)
+class Codebook:
+    """One channel's states in the order of their static means."""
+
+    mean: np.ndarray  #: (Q, 3) of m, delta m, delta-delta m, FAP (per frame, per frame^2)
+    variance: np.ndarray  #: (Q, 3)
+    count: np.ndarray  #: (Q,) training frames
+    log_transition: np.ndarray  #: (Q, Q) [from, to]
+    log_initial: np.ndarray  #: (Q,)
+
+
+def transitions(paths: SequenceOf[np.ndarray], size: int) -> np.ndarray:
+    """(Q, Q) log-probabilities [from, to] from the counts of state paths; see NEIGHBOUR_COUNT for the smoothing."""
+    counts = np.zeros((size, size))
+    for path in paths:
+        np.add.at(counts, (path[:-1], path[1:]), 1)
+    counts += NEIGHBOUR_COUNT * (np.abs(np.subtract.outer(np.arange(size), np.arange(size))) <= 1)
+    with np.errstate(divide="ignore"):
+        return np.log(counts / counts.sum(axis=1, keepdims=True))
+
+
+def initials(paths: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size: int) -> np.ndarray:
+    """(Q,) log-probabilities of the states at the frames `starts` of each path, where units begin."""
+    occurring = sum(np.bincount(path, minlength=size) for path in paths) + 1.0
+    counts = INITIAL_COUNT * occurring / occurring.sum()
+    for path, start in zip(paths, starts):
+        counts = counts + np.bincount(path[start], minlength=size)
+    return np.log(counts / counts.sum())
+
+
+def train_channel(motion: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size: int) -> Codebook:
+    """The codebook of one channel.
+
+    `motion` holds the channel's human motion (T,) of every sequence in FAP, `starts` the frames at which boundary
+    phonemes, and so units, begin.
+    """
+    rows = [features(item) for item in motion]
+    points = np.concatenate(rows)
+    overall = points.var(axis=0)
+    scale = np.where(overall > 1e-12, np.sqrt(overall), 1.0)
+    _, cell, _ = lbg(points / scale, size)
+    count, mean, variance = _moments(points, cell, size)
+    largest = int(count.argmax())  # stands in for cells that stay empty, where motion has fewer values than there are
+    mean = np.where(count[:, None] > 0, mean, mean[largest])
+    variance = np.where(count[:, None] > 0, variance, variance[largest])
+    variance = np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6))
+    order = np.lexsort((mean[:, 2], mean[:, 1], mean[:, 0]))
+    rank = np.empty(size, dtype=np.int64)
+    rank[order] = np.arange(size)
+    ends = np.cumsum([len(item) for item in rows])[:-1]
+    paths: List[np.ndarray] = np.split(rank[cell], ends)
+    return Codebook(
+        mean=mean[order],
+        variance=variance[order],
+        count=count[order],
+        log_transition=transitions(paths, size),
+        log_initial=initials(paths, starts, size),
+    )

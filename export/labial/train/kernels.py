@@ -1,0 +1,162 @@
+"""Temporal kernels (beyond the paper): what each phoneme adds to every channel before, during and after itself.
+
+The target of a frame is the shape of its phoneme plus one tap of the kernel of the phoneme at each of L lags:
+
+    x(t) = sum over components c of p_c (shape_c + slope_c (d - mu_c))
+         + sum over taps i of kernel[phoneme(t + lag_i), i]
+
+The shares p_c come from the context-aware mixtures; shapes, slopes and kernels are then fitted jointly to the human
+motion by ridge regression, for a shape that was taken at the apex without regard to kernels says the same twice.
+
+A phoneme's kernel is its viseme class's kernel plus a residual of its own, with penalties 1 : RESIDUAL_PENALTY on their
+squares. Summed over both parts that is one Gaussian prior on the phonemes' kernels, with covariance M M' + I /
+RESIDUAL_PENALTY between phonemes (M: P x V membership), and this is how it is solved: a phoneme that never occurs
+comes out with its class's kernel. Along the taps the prior is a first-order process of correlation SMOOTHNESS.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Sequence as SequenceOf
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse import csr_matrix, diags, hstack
+
+from labial.train.selection import Choice
+from labial.train.sequences import Sequence
+from labial.train.shapes import ShapeTables
+
+#: The taps reach this far to each side and are this far apart, in seconds.
+REACH = 0.36
+SPACING = 0.04
+
+
+@dataclass(frozen=True)
+class Penalties:
+    """Strength of the priors, in frames at 50 frames per second: what has this many frames is believed by half. Chosen
+    on held-out words."""
+
+    kernel: float = 50.0  #: of the class kernels
+    residual: float = 6.0  #: how many times more a phoneme's own residual costs
+    smoothness: float = 0.5  #: correlation of neighbouring taps
+    shape: float = 30.0  #: of a component's shape
+    slope: float = 30.0  #: of a component's slope per standard deviation of its duration
+    silence: float = 0.1  #: weight of a frame of silence
+
+
+def lags(fps: int) -> np.ndarray:
+    """(L,) int64 frames: evenly spaced taps out to REACH seconds to both sides, the middle one at 0."""
+    spacing = max(1, round(SPACING * fps))
+    side = round(REACH * fps) // spacing
+    return np.arange(-side, side + 1, dtype=np.int64) * spacing
+
+
+def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int) -> np.ndarray:
+    """(T, L) int64: the phoneme at each lag from each of T frames; `silence` outside the utterance."""
+    at = np.arange(len(phoneme_at))[:, None] + lag[None, :]
+    inside = (at >= 0) & (at < len(phoneme_at))
+    return np.where(inside, phoneme_at[np.clip(at, 0, len(phoneme_at) - 1)], silence)
+
+
+def add_kernels(
+    shape_at: np.ndarray, phoneme_at: np.ndarray, kernel: np.ndarray, lag: np.ndarray, silence: int
+) -> np.ndarray:
+    """(T, 13) the moving target: the frames' shapes (T, 13) plus their neighbours' kernels, FAP."""
+    if not len(lag):
+        return shape_at
+    return shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
+
+
+def kernel_prior(phoneme_class: np.ndarray, taps: int, penalties: Penalties) -> np.ndarray:
+    """(P L, P L) inverse covariance of all phonemes' kernels of one channel, phoneme by phoneme, for a penalty of 1."""
+    member = phoneme_class[:, None] == phoneme_class[None, :]
+    between_phonemes = member + np.eye(len(phoneme_class)) / penalties.residual
+    distance = np.abs(np.subtract.outer(np.arange(taps), np.arange(taps)))
+    return np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(penalties.smoothness**distance))
+
+
+def _design(
+    material: SequenceOf[Sequence], choice: Choice, deviation: np.ndarray, phonemes: int, lag: np.ndarray, silence: int
+) -> csr_matrix:
+    """(T, P L + 2 N) of all frames: one-hot taps, shares of the components, and those times (d - mu_c) / sigma_c.
+
+    `deviation` is (N,), sigma_c in seconds.
+    """
+    taps, components = len(lag), len(deviation)
+    column = np.concatenate([tapped(item.phoneme_at(), lag, silence) for item in material]) * taps + np.arange(taps)
+    rows = len(column)
+    onehot = csr_matrix(
+        (np.ones(column.size), column.ravel(), np.arange(rows + 1) * taps), shape=(rows, phonemes * taps)
+    )
+    occurrences, width = choice.share.shape
+    start = np.arange(occurrences + 1) * width
+
+    def per_component(values: np.ndarray) -> csr_matrix:
+        return csr_matrix((values.ravel(), choice.component.ravel(), start), shape=(occurrences, components))
+
+    lengths = np.concatenate([item.length for item in material])
+    segment = np.repeat(np.arange(occurrences), lengths)
+    share = per_component(choice.share)[segment]
+    slope = per_component(choice.share * choice.offset / deviation[choice.component])[segment]
+    return hstack([onehot, share, slope]).tocsr()
+
+
+@dataclass(frozen=True)
+class Kernels:
+    """The temporal kernels, and the shapes that go with them."""
+
+    kernel: np.ndarray  #: (P, L, 13) FAP
+    lag: np.ndarray  #: (L,) int64 frames
+    tables: ShapeTables  #: with shapes and slopes fitted jointly
+
+
+def fit_kernels(
+    material: SequenceOf[Sequence],
+    choice: Choice,
+    tables: ShapeTables,
+    phoneme_class: np.ndarray,
+    stand_in: SequenceOf[int],
+    silence: int,
+    fps: int,
+    penalties: Penalties,
+) -> Kernels:
+    """Fits kernels, shapes and slopes to the human motion of `material`; `choice` are its occurrences' components.
+
+    `phoneme_class` is (P,), `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself.
+    """
+    lag = lags(fps)
+    phonemes, taps = len(phoneme_class), len(lag)
+    deviation = np.sqrt(tables.duration_variance)
+    design = _design(material, choice, deviation, phonemes, lag, silence)
+    phoneme_at = np.concatenate([item.phoneme_at() for item in material])
+    weight = np.where(phoneme_at == silence, penalties.silence, 1.0) * 50.0 / fps
+    motion = np.concatenate([item.frames for item in material])
+    base = np.average(motion, axis=0, weights=weight)
+
+    weighted = (diags(weight) @ design).T.tocsr()
+    normal = (weighted @ design).toarray()
+    kernels = slice(0, phonemes * taps)
+    normal[kernels, kernels] += penalties.kernel * kernel_prior(phoneme_class, taps, penalties)
+    components = len(deviation)
+    ridge = np.repeat([penalties.shape, penalties.slope], components)
+    index = np.arange(phonemes * taps, len(normal))
+    normal[index, index] += ridge
+    solution = cho_solve(cho_factor(normal), weighted @ (motion - base))
+
+    shape, slope = np.split(solution[phonemes * taps :], 2)
+    fitted = Kernels(
+        kernel=solution[kernels].reshape(phonemes, taps, motion.shape[1]),
+        lag=lag,
+        tables=replace(tables, shape=base + shape, slope=slope / deviation[:, None]),
+    )
+    return substitute(fitted, stand_in)
+
+
+def substitute(fitted: Kernels, stand_in: SequenceOf[int]) -> Kernels:
+    """Gives phonemes that are substituted, (P,) by `stand_in`, all that the phoneme that stands in for them has."""
+    owner = np.asarray(stand_in, dtype=np.int64)
+    first = np.concatenate([[0], np.cumsum(fitted.tables.component_count)])
+    own = np.concatenate([np.arange(first[other], first[other + 1]) for other in owner])
+    tables = replace(fitted.tables, shape=fitted.tables.shape[own], slope=fitted.tables.slope[own])
+    return Kernels(fitted.kernel[owner], fitted.lag, tables)

@@ -1,0 +1,98 @@
+"""Training material: episodes on the model's frame grid, with phonemes as numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterable, List, Tuple
+
+import numpy as np
+
+from labial.corpus import resample
+from labial.corpus.episode import Episode
+from labial.errors import LabialError
+from labial.phonesets import PhoneSet
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """One episode with S phonemes, of at least a frame each, in T frames. Frame t of the human motion is sampled at
+    (t + 1/2) / fps."""
+
+    name: str
+    phoneme: np.ndarray  #: (S,) int64, index into the phone set
+    duration: np.ndarray  #: (S,) seconds
+    length: np.ndarray  #: (S,) int64, frames of each phoneme; sums to T
+    apex: np.ndarray  #: (S,) int64, the frame of the audio envelope's maximum, or of the middle
+    frames: np.ndarray  #: (T, 13) human motion, FAP
+
+    def segment_at(self) -> np.ndarray:
+        """(T,) int64: the phoneme occurrence that each frame belongs to."""
+        return np.repeat(np.arange(len(self.length)), self.length)
+
+    def phoneme_at(self) -> np.ndarray:
+        """(T,) int64: the phoneme of each frame."""
+        return np.repeat(self.phoneme, self.length)
+
+
+def sequences(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Sequence]:
+    """Brings every episode to `fps` frames per second and its labels to numbers."""
+    number = {label: index for index, label in enumerate(phone_set.phonemes)}
+    result = []
+    for episode in corpus:
+        timeline = resample(episode, fps)
+        if len(timeline.frames) < 3:
+            continue  # too short for a delta-delta
+        unknown = sorted(set(timeline.labels) - set(number))
+        if unknown:
+            raise LabialError(f"{episode.name}: labels {', '.join(unknown)} are not in the {phone_set.kind} phone set")
+        seen = np.flatnonzero(np.asarray(timeline.frames_per_segment) > 0)  # the run-time skips phonemes of no frame
+        result.append(
+            Sequence(
+                name=episode.name,
+                phoneme=np.array([number[timeline.labels[index]] for index in seen], dtype=np.int64),
+                duration=np.asarray(timeline.durations, dtype=np.float64)[seen],
+                length=np.asarray(timeline.frames_per_segment, dtype=np.int64)[seen],
+                apex=np.asarray(timeline.apex_frame, dtype=np.int64)[seen],
+                frames=np.asarray(timeline.frames, dtype=np.float64),
+            )
+        )
+    if not result:
+        raise LabialError("the corpus holds no episode that is long enough to train on")
+    return result
+
+
+@dataclass(frozen=True)
+class Occurrences:
+    """All S phoneme occurrences of a set of sequences, one after the other."""
+
+    sequence: np.ndarray  #: (S,) int64, the sequence each comes from
+    phoneme: np.ndarray  #: (S,) int64
+    duration: np.ndarray  #: (S,) seconds
+    previous: np.ndarray  #: (S,) int64, viseme class of the phoneme before; that of silence at the start
+    next: np.ndarray  #: (S,) int64, viseme class of the phoneme after; that of silence at the end
+    apex_shape: np.ndarray  #: (S, 13) human motion at the apex, FAP
+
+    def vectors(self) -> np.ndarray:
+        """(S, 14): the training vectors of section 2, shape (FAP) at the apex joined with the duration (seconds)."""
+        return np.concatenate([self.apex_shape, self.duration[:, None]], axis=1)
+
+
+def neighbours(phoneme: np.ndarray, phoneme_class: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
+    """Viseme classes of the phonemes before and after each of (S,) phonemes; silence lies beyond both ends."""
+    classes = phoneme_class[np.concatenate([[silence], phoneme, [silence]])]
+    return classes[:-2], classes[2:]
+
+
+def occurrences(material: List[Sequence], phone_set: PhoneSet) -> Occurrences:
+    """Gathers the phoneme occurrences of `material` in order."""
+    silence = phone_set.phonemes.index(phone_set.silence)
+    phoneme_class = np.asarray(phone_set.phoneme_class, dtype=np.int64)
+    around = [neighbours(item.phoneme, phoneme_class, silence) for item in material]
+    return Occurrences(
+        sequence=np.repeat(np.arange(len(material)), [len(item.phoneme) for item in material]),
+        phoneme=np.concatenate([item.phoneme for item in material]),
+        duration=np.concatenate([item.duration for item in material]),
+        previous=np.concatenate([before for before, _ in around]),
+        next=np.concatenate([after for _, after in around]),
+        apex_shape=np.concatenate([item.frames[item.apex] for item in material]),
+    )

@@ -1,0 +1,157 @@
+"""Lip shape mixtures (section 2 of the paper): one Gaussian mixture per phoneme over shape and duration.
+
+A training vector is the 13 channel values at the apex of a phoneme occurrence joined with its duration in seconds;
+equation 1 gives each phoneme a mixture with full covariances over these 14 dimensions. scikit-learn fits it on
+vectors divided by `scale` (the corpus's standard deviations), so that one regularisation suits FAP units and seconds.
+
+Phonemes with few samples back off: one component per SAMPLES_PER_COMPONENT samples; below MINIMUM_SAMPLES the pooled
+samples of the viseme class; where even those are too few, a substitute that the phone set declares.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Tuple
+
+import numpy as np
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.mixture import GaussianMixture
+
+from labial.errors import LabialError
+from labial.faps import CHANNELS
+from labial.phonesets import PhoneSet, substitute_for
+
+#: A component is worth having for this many samples. A full covariance of 14 dimensions takes about as many.
+SAMPLES_PER_COMPONENT = 15
+
+#: Fewer samples than this do not make a mixture of a phoneme's own.
+MINIMUM_SAMPLES = 10
+
+#: Added to the diagonal of every covariance of scaled vectors, whose variances over the corpus are 1.
+REGULARISATION = 0.02
+
+#: The time axis of a training vector.
+DURATION = CHANNELS
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """A phoneme's mixture of C components over [shape, duration], with context tables where it was fitted with them."""
+
+    weight: np.ndarray  #: (C,) a_c
+    mean: np.ndarray  #: (C, 14) FAP and seconds
+    covariance: np.ndarray  #: (C, 14, 14)
+    log_previous: np.ndarray  #: (C, V) or (C, 0)
+    log_next: np.ndarray  #: (C, V) or (C, 0)
+
+
+def component_limit(samples: int, components: int) -> int:
+    """How many components `samples` vectors can carry."""
+    return max(1, min(components, samples // SAMPLES_PER_COMPONENT))
+
+
+def corpus_scale(vectors: np.ndarray) -> np.ndarray:
+    """(14,) standard deviations of all training vectors (S, 14); 1 where a dimension never moves."""
+    deviation = vectors.std(axis=0)
+    return np.where(deviation > 1e-9, deviation, 1.0)
+
+
+def fit_mixture(vectors: np.ndarray, scale: np.ndarray, components: int, seed: int) -> Mixture:
+    """Equation 1: the mixture of one phoneme from its vectors (n, 14). `scale` is :func:`corpus_scale`."""
+    scaled = vectors / scale
+    count = component_limit(len(vectors), components)
+    model = GaussianMixture(count, covariance_type="full", reg_covar=REGULARISATION, max_iter=200, random_state=seed)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # repeated vectors leave fewer clusters than components
+        model.fit(scaled if len(scaled) > 1 else np.repeat(scaled, 2, axis=0))
+    none = np.zeros((count, 0))
+    return Mixture(
+        weight=model.weights_,
+        mean=model.means_ * scale,
+        covariance=model.covariances_ * scale[:, None] * scale[None, :],
+        log_previous=none,
+        log_next=none,
+    )
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Whose samples each phoneme's mixture is made of."""
+
+    members: Tuple[Optional[Tuple[int, ...]], ...]  #: per phoneme the phonemes whose samples it uses; None: substituted
+    stand_in: Tuple[int, ...]  #: per phoneme the phoneme whose mixture it uses; itself unless substituted
+    pooled: Dict[str, str]  #: phoneme with too few samples -> viseme class whose samples it uses
+    substitutes: Dict[str, str]  #: phoneme whose class has too few samples -> phoneme that stands in
+
+
+def back_off(counts: np.ndarray, phone_set: PhoneSet) -> Plan:
+    """Decides for every phoneme, from its samples (P,), whether it has its own mixture, its class's or another's."""
+    labels = phone_set.phonemes
+    classes = np.asarray(phone_set.phoneme_class, dtype=np.int64)
+    members: List[Optional[Tuple[int, ...]]] = []
+    pooled: Dict[str, str] = {}
+    for index, label in enumerate(labels):
+        group = np.flatnonzero(classes == classes[index])
+        if counts[index] >= MINIMUM_SAMPLES:
+            members.append((index,))
+        elif counts[group].sum() >= MINIMUM_SAMPLES:
+            members.append(tuple(int(other) for other in group if counts[other]))
+            pooled[label] = phone_set.classes[classes[index]]
+        else:
+            members.append(None)
+    own = [label for label, count in zip(labels, counts) if count >= MINIMUM_SAMPLES]
+    available = own or [label for label, who in zip(labels, members) if who is not None]
+    if not available:
+        raise LabialError(f"no phoneme has the {MINIMUM_SAMPLES} samples that a lip shape mixture needs")
+    stand_in = list(range(len(labels)))
+    substitutes: Dict[str, str] = {}
+    for index, label in enumerate(labels):
+        if members[index] is None:
+            substitutes[label] = substitute_for(label, available)
+            stand_in[index] = labels.index(substitutes[label])
+    return Plan(tuple(members), tuple(stand_in), pooled, substitutes)
+
+
+@dataclass(frozen=True)
+class ShapeTables:
+    """The mixtures of P phonemes as the run-time reads them: N components, phoneme by phoneme; see labial.model."""
+
+    component_count: np.ndarray  #: (P,) int64
+    log_weight: np.ndarray  #: (N,)
+    duration_mean: np.ndarray  #: (N,) seconds
+    duration_variance: np.ndarray  #: (N,) seconds squared
+    shape: np.ndarray  #: (N, 13) FAP
+    slope: np.ndarray  #: (N, 13) FAP per second
+    precision: np.ndarray  #: (N, 13) 1 / FAP^2
+    log_previous: np.ndarray  #: (N, V) or (N, 0)
+    log_next: np.ndarray  #: (N, V) or (N, 0)
+
+
+def shape_tables(mixtures: List[Mixture], *, conditional: bool) -> ShapeTables:
+    """Tables of the mixtures of P phonemes.
+
+    `conditional` gives each component its regression of the shape on the duration: slope = cov(m, d) / var(d), and
+    the precision that is left, 1 / (var(m) - cov(m, d)^2 / var(d)). Without it the shape is mu_c^(m) alone, as in
+    equation 2, and both are zero.
+    """
+
+    def joined(name: str) -> np.ndarray:
+        return np.concatenate([getattr(mixture, name) for mixture in mixtures])
+
+    mean, covariance = joined("mean"), joined("covariance")
+    variance = covariance[:, DURATION, DURATION]
+    slope = covariance[:, :CHANNELS, DURATION] / variance[:, None]
+    left = np.diagonal(covariance, axis1=1, axis2=2)[:, :CHANNELS] - slope**2 * variance[:, None]
+    zero = np.zeros_like(slope)
+    return ShapeTables(
+        component_count=np.array([len(mixture.weight) for mixture in mixtures], dtype=np.int64),
+        log_weight=np.log(np.maximum(joined("weight"), 1e-12)),
+        duration_mean=mean[:, DURATION].copy(),
+        duration_variance=variance.copy(),
+        shape=mean[:, :CHANNELS].copy(),
+        slope=slope if conditional else zero,
+        precision=1.0 / left if conditional else zero,
+        log_previous=joined("log_previous"),
+        log_next=joined("log_next"),
+    )

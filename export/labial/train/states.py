@@ -1,0 +1,146 @@
+"""Matched states (beyond the paper): what a state of the decoded path says about human motion.
+
+The codebook's variances describe human motion inside a cell. What the run-time decodes is a state path for a target,
+which is another thing: it rests and jumps where the mouth glides. So the training set is decoded from its own targets,
+and each state's three means and variances are taken from the human frames that fell under it. The same frames say how
+far the human motion strays from the target: the inverse of that variance is the anchor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Sequence as SequenceOf
+from typing import Tuple
+
+import numpy as np
+
+from labial.faps import CHANNELS
+from labial.reference.viterbi import viterbi
+from labial.train.codebook import VARIANCE_FLOOR, Codebook, features
+
+#: A state's statistics are joined with those of its codebook cell (means) and of all states (variances), which
+#: count as this many frames.
+PRIOR_FRAMES = 20.0
+
+#: Largest diagonal element of equation 3's matrix over the least of static + anchor, per channel: half the range that
+#: the device's weights carry.
+DYNAMIC_RANGE = 2000.0
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What the inverse variances are multiplied by to become precisions. Static, delta and delta-delta features repeat
+    each other and the anchor, so that their evidence must not be counted in full; chosen on held-out episodes."""
+
+    static: float = 0.2
+    delta: float = 0.1
+    acceleration: float = 0.1
+    anchor: float = 1.0
+    phoneme: float = 0.1  #: of the components' precisions
+
+
+@dataclass(frozen=True)
+class StateTables:
+    """The tables of all channels for decoding and for equation 3; see labial.model."""
+
+    decode_mean: np.ndarray  #: (13, Q) FAP
+    decode_variance: np.ndarray  #: (13, Q) FAP^2
+    state_mean: np.ndarray  #: (13, Q, 3)
+    state_precision: np.ndarray  #: (13, Q, 3)
+    state_anchor: np.ndarray  #: (13, Q)
+    log_transition: np.ndarray  #: (13, Q, Q)
+    log_initial: np.ndarray  #: (13, Q)
+
+
+def codebook_tables(codebooks: SequenceOf[Codebook]) -> StateTables:
+    """The paper's tables: every state as its codebook cell is, no anchors."""
+    mean = np.stack([book.mean for book in codebooks])
+    variance = np.stack([book.variance for book in codebooks])
+    return StateTables(
+        decode_mean=mean[..., 0].copy(),
+        decode_variance=variance[..., 0].copy(),
+        state_mean=mean,
+        state_precision=1.0 / variance,
+        state_anchor=np.zeros(mean.shape[:2]),
+        log_transition=np.stack([book.log_transition for book in codebooks]),
+        log_initial=np.stack([book.log_initial for book in codebooks]),
+    )
+
+
+def emission_costs(target: np.ndarray, tables: StateTables) -> np.ndarray:
+    """(T, 13, Q) costs of the states for a target (T, 13) in FAP, in nats: -log N without the constant."""
+    offset = target[:, :, None] - tables.decode_mean
+    return 0.5 * (offset**2 / tables.decode_variance + np.log(tables.decode_variance))
+
+
+def decode(target: np.ndarray, tables: StateTables) -> np.ndarray:
+    """(T, 13) int64: the state path of every channel for a target (T, 13), over the whole utterance."""
+    return viterbi(emission_costs(target, tables), -tables.log_transition, -tables.log_initial)
+
+
+def _state_moments(values: np.ndarray, path: np.ndarray, prior_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Means and variances (Q,) of the values (n,) under each state of the path (n,), with PRIOR_FRAMES."""
+    size = len(prior_mean)
+    count = np.bincount(path, minlength=size)
+    mean = (np.bincount(path, weights=values, minlength=size) + PRIOR_FRAMES * prior_mean) / (count + PRIOR_FRAMES)
+    squares = np.bincount(path, weights=(values - mean[path]) ** 2, minlength=size)
+    pooled = squares.sum() / count.sum()
+    return mean, (squares + PRIOR_FRAMES * pooled) / (count + PRIOR_FRAMES)
+
+
+def match_states(
+    tables: StateTables,
+    paths: SequenceOf[np.ndarray],
+    targets: SequenceOf[np.ndarray],
+    human: SequenceOf[np.ndarray],
+    scales: Scales,
+) -> StateTables:
+    """The tables with means, precisions and anchors re-estimated on decoded paths (T, 13) of targets and human motion
+    (T, 13) in FAP. The tables that decode stay as they are."""
+    path, target, motion = (np.concatenate(items) for items in (paths, targets, human))
+    size = tables.decode_mean.shape[1]
+    mean = np.empty((CHANNELS, size, 3))
+    variance = np.empty((CHANNELS, size, 3))
+    anchor = np.empty((CHANNELS, size))
+    for channel in range(CHANNELS):
+        states = path[:, channel]
+        rows = np.concatenate([features(item[:, channel]) for item in human])
+        floor = np.maximum(VARIANCE_FLOOR * rows.var(axis=0), 1e-6)
+        for feature in range(3):
+            prior = tables.state_mean[channel, :, feature]
+            mean[channel, :, feature], spread = _state_moments(rows[:, feature], states, prior)
+            variance[channel, :, feature] = np.maximum(spread, floor[feature])
+        stray = motion[:, channel] - target[:, channel]
+        _, residual = _state_moments(stray, states, np.zeros(size))
+        anchor[channel] = scales.anchor / np.maximum(residual, floor[0])
+    weight = np.array([scales.static, scales.delta, scales.acceleration])
+    precision, anchor = limit_range(weight / variance, anchor)
+    return StateTables(
+        decode_mean=tables.decode_mean,
+        decode_variance=tables.decode_variance,
+        state_mean=mean,
+        state_precision=precision,
+        state_anchor=anchor,
+        log_transition=tables.log_transition,
+        log_initial=tables.log_initial,
+    )
+
+
+def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Holds (13, Q, 3) precisions and (13, Q) anchors within DYNAMIC_RANGE, channel by channel.
+
+    A frame's diagonal element is static + anchor and at most delta / 2 + 6 delta-delta. Either part of a state is
+    scaled down where it exceeds half of DYNAMIC_RANGE times the channel's least static + anchor.
+    """
+    hold = precision[..., 0] + anchor
+    moving = precision[..., 1] / 2 + 6 * precision[..., 2]
+    most = DYNAMIC_RANGE / 2 * hold.min(axis=1, keepdims=True)
+    hold_share = np.minimum(1.0, most / hold)
+    moving_share = np.minimum(1.0, most / moving)
+    limited = precision * np.stack([hold_share, moving_share, moving_share], axis=-1)
+    return limited, anchor * hold_share
+
+
+def hold_limit(tables: StateTables) -> np.ndarray:
+    """(13,) the largest precision that a phoneme may add to a frame's static + anchor; see :func:`limit_range`."""
+    return DYNAMIC_RANGE / 2 * (tables.state_precision[..., 0] + tables.state_anchor).min(axis=1)

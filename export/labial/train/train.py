@@ -1,0 +1,222 @@
+"""From a corpus to a model: the whole training, in the order of the method."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Dict, List, Tuple
+from typing import Sequence as SequenceOf
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from labial.corpus.episode import Episode
+from labial.errors import LabialError
+from labial.faps import CHANNELS
+from labial.model import KINDS, METHODS, Model
+from labial.phonesets import PHONE_SETS, PhoneSet
+from labial.train.codebook import Codebook, train_channel
+from labial.train.context import fit_context
+from labial.train.kernels import Penalties, add_kernels, fit_kernels
+from labial.train.selection import Choice, choose, shapes
+from labial.train.sequences import Occurrences, Sequence, occurrences, sequences
+from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
+from labial.train.states import Scales, StateTables, codebook_tables, decode, hold_limit, match_states
+from labial.train.workers import Workers
+
+
+@dataclass(frozen=True)
+class _MixtureTask:
+    vectors: np.ndarray
+    previous: np.ndarray
+    next: np.ndarray
+    scale: np.ndarray
+    components: int
+    classes: int  # 0: without context
+    seed: int
+
+
+def _mixture(task: _MixtureTask) -> Mixture:
+    mixture = fit_mixture(task.vectors, task.scale, task.components, task.seed)
+    if task.classes:
+        mixture = fit_context(mixture, task.vectors, task.scale, task.previous, task.next, task.classes)
+    return mixture
+
+
+def _mixture_tasks(
+    items: Occurrences, plan: Plan, classes: int, components: int, seed: int
+) -> List[_MixtureTask]:
+    vectors = items.vectors()
+    scale = corpus_scale(vectors)
+    tasks = []
+    for members in plan.members:
+        if members is not None:
+            rows = np.flatnonzero(np.isin(items.phoneme, members))
+            tasks.append(
+                _MixtureTask(vectors[rows], items.previous[rows], items.next[rows], scale, components, classes, seed)
+            )
+    return tasks
+
+
+def _tables(plan: Plan, fitted: List[Mixture], conditional: bool) -> ShapeTables:
+    """The tables of all phonemes from the mixtures of those that have one of their own."""
+    own = iter(fitted)
+    mixtures: Dict[int, Mixture] = {p: next(own) for p, members in enumerate(plan.members) if members is not None}
+    return shape_tables([mixtures[other] for other in plan.stand_in], conditional=conditional)
+
+
+def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int]) -> Codebook:
+    return train_channel(*task)
+
+
+def _decode(task: Tuple[np.ndarray, StateTables]) -> np.ndarray:
+    return decode(*task)
+
+
+def _unit_starts(item: Sequence, boundary: np.ndarray) -> np.ndarray:
+    """Frames at which boundary phonemes, and so units, begin; the utterance's first and last phoneme are some too."""
+    starts = np.cumsum(item.length) - item.length
+    begins = boundary[item.phoneme].copy()
+    begins[[0, -1]] = True
+    return starts[begins & (item.length > 0)]
+
+
+def _targets(
+    choice: Choice,
+    tables: ShapeTables,
+    material: SequenceOf[Sequence],
+    kernel: np.ndarray,
+    lag: np.ndarray,
+    silence: int,
+) -> List[np.ndarray]:
+    """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
+    selected = np.split(shapes(tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
+    return [
+        add_kernels(np.repeat(shape, item.length, axis=0), item.phoneme_at(), kernel, lag, silence)
+        for shape, item in zip(selected, material)
+    ]
+
+
+def _check(
+    corpus: SequenceOf[Episode], kind: str, method: str, fps: int, codebook: int, components: int, jobs: int
+) -> None:
+    if kind not in KINDS:
+        raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
+    if method not in METHODS:
+        raise LabialError(f"method is {method!r}, not one of {', '.join(METHODS)}")
+    for name, value, most in (
+        ("fps", fps, 250),
+        ("codebook", codebook, 64),
+        ("components", components, 8),
+        ("jobs", jobs, 1024),
+    ):
+        if not 1 <= value <= most:
+            raise LabialError(f"{name} is {value}, not within 1 .. {most}")
+    if not corpus:
+        raise LabialError("the corpus is empty")
+
+
+def _report(plan: Plan, phone_set: PhoneSet, counts: np.ndarray) -> None:
+    """Says which phonemes had too few samples, and what they use instead."""
+    for label, name in plan.pooled.items():
+        print(f"{label}: {counts[phone_set.phonemes.index(label)]} samples, uses those of its viseme class {name}")
+    for label, other in plan.substitutes.items():
+        print(f"{label}: {counts[phone_set.phonemes.index(label)]} samples, uses the shapes of {other}")
+
+
+def train(
+    corpus: SequenceOf[Episode],
+    *,
+    kind: str,
+    method: str,
+    fps: int = 50,
+    codebook: int = 50,
+    components: int = 5,
+    seed: int = 0,
+    jobs: int = 2,
+    progress: bool = True,
+    attribution: str = "",
+    penalties: Penalties = Penalties(),  # noqa: B008 - immutable
+    scales: Scales = Scales(),  # noqa: B008 - immutable
+) -> Model:
+    """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
+
+    `method` is "paper", the published one, or "labial": context-aware mixtures (section 2), temporal kernels, matched
+    states and anchors on top. `codebook` is Q, the states of each channel, `components` C of each phoneme's mixture.
+    `attribution` is kept in the model for whoever passes it on. The same arguments give the same model, whatever
+    `jobs`, the number of processes, is. Back-offs are printed; the corpus's counts and all options are kept in the
+    model.
+    """
+    _check(corpus, kind, method, fps, codebook, components, jobs)
+    phone_set = PHONE_SETS[kind]
+    phonemes, classes = len(phone_set.phonemes), len(phone_set.classes)
+    silence = phone_set.phonemes.index(phone_set.silence)
+    phoneme_class = np.array(phone_set.phoneme_class, dtype=np.int64)
+    boundary = np.array(phone_set.boundary, dtype=bool)
+    extended = method == "labial"
+
+    material = sequences(corpus, phone_set, fps)
+    items = occurrences(material, phone_set)
+    counts = np.bincount(items.phoneme, minlength=phonemes)
+    plan = back_off(counts, phone_set)
+    _report(plan, phone_set, counts)
+
+    with Workers(jobs, progress) as workers, threadpool_limits(1):
+        tasks = _mixture_tasks(items, plan, classes if extended else 0, components, seed)
+        tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), extended)
+        starts = [_unit_starts(item, boundary) for item in material]
+        motion = [([item.frames[:, c] for item in material], starts, codebook) for c in range(CHANNELS)]
+        states = codebook_tables(workers.run("codebooks", _channel, motion))
+        kernel, lag = np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64)
+        if extended:
+            choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
+            fitted = fit_kernels(material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties)
+            kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
+            targets = _targets(choice, tables, material, kernel, lag, silence)
+            paths = workers.run("matched states", _decode, [(target, states) for target in targets])
+            states = match_states(states, paths, targets, [item.frames for item in material], scales)
+
+    precision = np.minimum(tables.precision * scales.phoneme, hold_limit(states)) if extended else tables.precision
+    training: Dict[str, object] = {
+        "codebook": codebook,
+        "components": components,
+        "seed": seed,
+        "episodes": len(material),
+        "frames": int(sum(len(item.frames) for item in material)),
+        "occurrences": {label: int(count) for label, count in zip(phone_set.phonemes, counts)},
+        "pooled": dict(plan.pooled),
+    }
+    if extended:
+        training.update(penalties=asdict(penalties), scales=asdict(scales))
+    return Model(
+        kind=kind,
+        method=method,
+        fps=fps,
+        phonemes=phone_set.phonemes,
+        classes=phone_set.classes,
+        silence=phone_set.silence,
+        soft=extended,
+        phoneme_class=phoneme_class,
+        boundary=boundary,
+        component_count=tables.component_count,
+        log_weight=tables.log_weight,
+        duration_mean=tables.duration_mean,
+        duration_variance=tables.duration_variance,
+        shape=tables.shape,
+        slope=tables.slope,
+        precision=precision,
+        log_previous=tables.log_previous,
+        log_next=tables.log_next,
+        kernel=kernel,
+        kernel_lag=lag,
+        decode_mean=states.decode_mean,
+        decode_variance=states.decode_variance,
+        state_mean=states.state_mean,
+        state_precision=states.state_precision,
+        state_anchor=states.state_anchor,
+        log_transition=states.log_transition,
+        log_initial=states.log_initial,
+        aliases=dict(phone_set.aliases),
+        substitutes=dict(plan.substitutes),
+        attribution=attribution,
+        training=training,
+    )
