@@ -21,10 +21,25 @@ static int is_position(int32_t value)
     return value >= -LABIAL_POSITION_MAX && value <= LABIAL_POSITION_MAX;
 }
 
-/* Every position is in range, every frame is held, and no diagonal element of equation 3 can exceed its limit. */
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+/* weight * |mean|, no more than fits. */
+static uint32_t pull(uint32_t weight, int32_t mean)
+{
+    const uint32_t distance = (uint32_t)(mean < 0 ? -mean : mean);
+    return distance && weight > LABIAL_PULL_MAX / distance ? LABIAL_PULL_MAX : weight * distance;
+}
+
+/*
+ * Every position is in range, every frame is held, and neither a diagonal element nor a right-hand side of equation 3
+ * can exceed its limit. `tie` is the largest precision of a phoneme.
+ */
 static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel, uint32_t tie)
 {
-    uint32_t held = 0, delta = 0, delta2 = 0;
+    uint32_t held = 0, delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
     unsigned q, i;
     for (q = 0; q < model->state_count; q++) {
         const labial_state_t *state = &channel->states[q];
@@ -34,11 +49,18 @@ static int states_are_sound(const labial_model_t *model, const labial_channel_t 
         for (i = 0; i < 3; i++)
             if (!is_position(state->mean[i]))
                 return 0;
-        held = hold > held ? hold : held;
-        delta = labial_weight(state->weight[1]) > delta ? labial_weight(state->weight[1]) : delta;
-        delta2 = labial_weight(state->weight[2]) > delta2 ? labial_weight(state->weight[2]) : delta2;
+        held = larger(held, hold);
+        delta = larger(delta, labial_weight(state->weight[1]));
+        delta2 = larger(delta2, labial_weight(state->weight[2]));
+        delta_pull = larger(delta_pull, pull(labial_weight(state->weight[1]), state->mean[1]));
+        delta2_pull = larger(delta2_pull, pull(labial_weight(state->weight[2]), state->mean[2]));
     }
-    return held + tie + 2u * delta + 6u * delta2 <= LABIAL_WEIGHT_SUM_MAX;
+    held += tie;
+    return held + 2u * delta + 6u * delta2 <= LABIAL_WEIGHT_SUM_MAX && delta_pull <= LABIAL_PULL_MAX / 4 &&
+           delta2_pull <= LABIAL_PULL_MAX / 4 && held <= LABIAL_PULL_MAX / LABIAL_POSITION_MAX &&
+           held * LABIAL_POSITION_MAX <= LABIAL_PULL_MAX - (4u * delta_pull + 4u * delta2_pull > LABIAL_PULL_MAX
+                                                                ? LABIAL_PULL_MAX
+                                                                : 4u * delta_pull + 4u * delta2_pull);
 }
 
 static int transitions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
@@ -67,7 +89,7 @@ static int channel_is_sound(const labial_model_t *model, unsigned k)
         const uint32_t weight = labial_weight(model->precisions[c * LABIAL_CHANNELS + k]);
         tie = weight > tie ? weight : tie;
     }
-    return tie <= LABIAL_WEIGHT_SUM_MAX && states_are_sound(model, channel, tie) &&
+    return states_are_sound(model, channel, tie) &&
            transitions_are_sound(model, channel);
 }
 

@@ -8,11 +8,11 @@
  *     z_t      = r_t - lambda_(t-1) z_(t-1) - kappa_(t-2) z_(t-2)
  *     m_t      = z_t / D_t - lambda_t m_(t+1) - kappa_t m_(t+2)         (backwards)
  *
- * with a, b, c the diagonals and r the right-hand side. Formats: weights, and so a, b, c, are integers and a is at most
- * 2^15; D, e, c are in Q15; r and z in weight times Q4 FAP; lambda and kappa in Q24; z / D and m in Q12 FAP. What keeps
- * this inside 32 bits: every diagonal element is at most LABIAL_WEIGHT_SUM_MAX and every frame is held by at least
- * LABIAL_WEIGHT_MIN, hence 8 <= D <= 2^15 and |lambda| <= sqrt(2^15 / 8) = 64; |kappa| <= 1 because D_t holds all of the
- * row that gives c_t.
+ * with a, b, c the diagonals and r the right-hand side. Formats: weights, and so a, b, c, are integers; D, e, c are in
+ * Q12; r and z in weight times Q4 FAP; lambda and kappa in Q23; z / D and m in Q12 FAP. What keeps this inside 32 bits:
+ * every diagonal element is at most LABIAL_WEIGHT_SUM_MAX, every |r| at most LABIAL_PULL_MAX, and every frame is held by
+ * at least LABIAL_WEIGHT_MIN, hence 8 <= D < 2^18 and |lambda| <= sqrt(2^18 / 8) < 182; |kappa| <= 1 because D_t holds
+ * all of the row that gives c_t.
  */
 #include "trajectory.h"
 
@@ -65,7 +65,7 @@ static int32_t reciprocal(int32_t d)
     return x;
 }
 
-/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^15 <= d < 2^31. */
+/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^12 <= d < 2^31. */
 static int headroom(int32_t d)
 {
     int shift = 0;
@@ -109,22 +109,22 @@ void labial_trajectory_solve(const labial_channel_t *channel, const labial_ties_
         r = labial_add(here->static_pull, labial_sub(before->delta_pull, after->delta_pull));
         r = labial_add(r, labial_add(labial_sub(before->delta2_pull, 2 * here->delta2_pull), after->delta2_pull));
 
-        a *= 1 << 15;
-        c *= 1 << 15;
-        e = labial_sub(b * (1 << 15), labial_mulshift(kappa1, e1, 24));
-        d = labial_sub(a, labial_add(labial_mulshift(lambda1, e1, 24), labial_mulshift(kappa2, c2, 24)));
-        if (d < (int32_t)1 << 15) /* a sound model never comes here; a damaged one stays within the arithmetic */
-            d = (int32_t)1 << 15;
-        z = labial_sub(r, labial_add(labial_mulshift(lambda1, z1, 24), labial_mulshift(kappa2, z2, 24)));
+        a *= 1 << 12;
+        c *= 1 << 12;
+        e = labial_sub(b * (1 << 12), labial_mulshift(kappa1, e1, 23));
+        d = labial_sub(a, labial_add(labial_mulshift(lambda1, e1, 23), labial_mulshift(kappa2, c2, 23)));
+        if (d < (int32_t)1 << 12) /* not with a model that was checked; it keeps what follows defined */
+            d = (int32_t)1 << 12;
+        z = labial_sub(r, labial_add(labial_mulshift(lambda1, z1, 23), labial_mulshift(kappa2, z2, 23)));
 
         shift = headroom(d);
         inverse = reciprocal(d << shift);
         kappa2 = kappa1;
-        lambda1 = labial_scale(labial_mulshift(e, inverse, 30), shift - 6);
-        kappa1 = labial_scale(labial_mulshift(c, inverse, 30), shift - 6);
+        lambda1 = labial_scale(labial_mulshift(e, inverse, 30), shift - 7);
+        kappa1 = labial_scale(labial_mulshift(c, inverse, 30), shift - 7);
         out[0] = lambda1;
         out[1] = kappa1;
-        out[2] = labial_scale(labial_mulshift(z, inverse, 30), shift - 7);
+        out[2] = labial_scale(labial_mulshift(z, inverse, 30), shift - 10);
         out += 3;
 
         z2 = z1;
@@ -141,7 +141,7 @@ void labial_trajectory_solve(const labial_channel_t *channel, const labial_ties_
     for (t = length; t-- > 0;) {
         int32_t m;
         out -= 3;
-        m = labial_sub(out[2], labial_add(labial_mulshift(out[0], m1, 24), labial_mulshift(out[1], m2, 24)));
+        m = labial_sub(out[2], labial_add(labial_mulshift(out[0], m1, 23), labial_mulshift(out[1], m2, 23)));
         m2 = m1;
         m1 = m;
         positions[(size_t)t * LABIAL_CHANNELS] =

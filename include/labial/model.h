@@ -36,8 +36,9 @@ extern "C" {
 #define LABIAL_STATES_MAX 64             /* codebook entries of one channel */
 #define LABIAL_KERNEL_TAPS_MAX 32        /* taps of one temporal kernel */
 #define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
-#define LABIAL_WEIGHT_SUM_MAX 32767      /* the largest diagonal element that equation 3 may have */
+#define LABIAL_WEIGHT_SUM_MAX 262143     /* the largest diagonal element that equation 3 may have */
 #define LABIAL_WEIGHT_MIN 8              /* the least that holds a state in place: weight[0] + anchor */
+#define LABIAL_PULL_MAX 1073741823       /* the largest right-hand side that equation 3 may have */
 
 /* A phoneme: which mixture components are its own and which viseme class its neighbours see. */
 typedef struct {

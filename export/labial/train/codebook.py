@@ -21,7 +21,7 @@ SPLIT = 0.5
 #: Lloyd's iteration ends when the distortion falls by less than this share, or after MAXIMUM_ITERATIONS. Before the
 #: last split a rougher solution does as well.
 TOLERANCE = 1e-4
-ROUGH_TOLERANCE = 1e-3
+ROUGH_TOLERANCE = 1e-2
 MAXIMUM_ITERATIONS = 60
 
 #: Least variance of a state, as a share of the feature's variance over the corpus.
