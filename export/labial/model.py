@@ -29,7 +29,8 @@ METHODS = ("paper", "labial")
 KINDS = ("speech", "laughter")
 
 _TEXT = (
-    "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "aliases", "substitutes", "attribution", "training",
+    "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "aliases", "substitutes", "attribution",
+    "training",
 )  # fmt: skip
 
 

@@ -63,7 +63,7 @@ def library_root(given: Optional[str] = None) -> Path:
     """The folder that holds ``include/labial`` and ``lib``: `given`, or the one that this package lies in."""
     root = Path(given) if given else Path(__file__).resolve().parents[2]
     if not (root / "include" / "labial" / "labial.h").is_file() or not (root / "lib" / "stream.c").is_file():
-        raise LabialError(f"{root}: no include/labial/labial.h, so not the Labial library; name its folder with --library")
+        raise LabialError(f"{root}: not the Labial library, no include/labial/labial.h; name its folder by --library")
     return root
 
 

@@ -30,7 +30,7 @@ class Episode:
     """One utterance or bout of laughter.
 
     `times` is (T,), seconds, strictly increasing; `frames` is (T, 13), float64, FAP units relative to the neutral
-    mouth; `segments` follow each other without gaps or overlaps (gaps in a source are filled with silence by its reader).
+    mouth; `segments` follow each other without gaps or overlaps (readers fill gaps with silence).
     """
 
     name: str

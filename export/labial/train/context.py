@@ -24,8 +24,8 @@ from scipy.special import logsumexp
 from labial.train.shapes import REGULARISATION, Mixture
 
 WEIGHT_PRIOR = 1.0
-CLASS_PRIOR = 0.5
-COVARIANCE_PRIOR = 6.0
+CLASS_PRIOR = 0.1
+COVARIANCE_PRIOR = 3.0
 COVARIANCE_SHRINK = 0.5
 
 #: The least log-probability of a class: the device's tables end at 255 / 32 nats below the best.

@@ -31,6 +31,9 @@ from labial.train.shapes import ShapeTables
 REACH = 0.36
 SPACING = 0.04
 
+#: But never farther than the device's memory of phonemes, in frames.
+REACH_FRAMES = 20
+
 
 @dataclass(frozen=True)
 class Penalties:
@@ -46,9 +49,10 @@ class Penalties:
 
 
 def lags(fps: int) -> np.ndarray:
-    """(L,) int64 frames: evenly spaced taps out to REACH seconds to both sides, the middle one at 0."""
+    """(L,) int64 frames: evenly spaced taps out to REACH seconds (at most REACH_FRAMES) to both sides, the middle one
+    at 0."""
     spacing = max(1, round(SPACING * fps))
-    side = round(REACH * fps) // spacing
+    side = min(round(REACH * fps), REACH_FRAMES) // spacing
     return np.arange(-side, side + 1, dtype=np.int64) * spacing
 
 

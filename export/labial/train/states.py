@@ -33,10 +33,10 @@ class Scales:
     each other and the anchor, so that their evidence must not be counted in full; chosen on held-out episodes."""
 
     static: float = 0.2
-    delta: float = 0.1
-    acceleration: float = 0.1
+    delta: float = 0.04
+    acceleration: float = 0.04
     anchor: float = 1.0
-    phoneme: float = 0.1  #: of the components' precisions
+    phoneme: float = 0.3  #: of the components' precisions
 
 
 @dataclass(frozen=True)

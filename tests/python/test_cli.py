@@ -1,0 +1,77 @@
+"""The command line: each sub-command end to end, and errors as one line with status 1."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from labial.cli import main
+from labial.faps import FAP_COLUMNS
+from labial.model import save
+from models import random_model
+
+LAB = "0.00 0.20 SIL\n0.20 0.31 P1\n0.31 0.42 p1\n0.50 0.71 P4\n0.71 1.00 SIL\n"
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Path:
+    save(random_model(1), tmp_path / "model.npz")
+    (tmp_path / "phones.lab").write_text(LAB)
+    return tmp_path
+
+
+def test_synth_writes_every_frame(given: Path) -> None:
+    """1 s is 50 frames, the gap from 0.42 to 0.50 is silence, times and columns are those of a frames file."""
+    for option in ([], ["--whole"]):
+        out = given / "frames.csv"
+        assert main(["synth", str(given / "model.npz"), str(given / "phones.lab"), "-o", str(out), *option]) == 0
+        lines = out.read_text().splitlines()
+        assert lines[0] == ",".join(("time", *FAP_COLUMNS))
+        values = np.array([[float(x) for x in line.split(",")] for line in lines[1:]])
+        assert values.shape == (50, 14) and np.allclose(values[:, 0], np.arange(50) / 50)
+        assert np.ptp(values[:, 1]) > 1
+
+
+def test_export_prints_memory_and_loss(given: Path, capsys: pytest.CaptureFixture) -> None:
+    """The files are there and the tables name what was measured."""
+    assert main(["export", str(given / "model.npz"), "--name", "my_model", "-o", str(given / "out"), "--blob"]) == 0
+    text = capsys.readouterr().out
+    assert {path.name for path in (given / "out").iterdir()} == {
+        "my_model.c", "my_model.h", "my_model_names.c", "my_model.lbm"}  # fmt: skip
+    assert "flash, model" in text and "RAM, workspace" in text and "open_jaw" in text and "nats per unit" in text
+
+
+def test_check_compares_with_both_references(given: Path, capsys: pytest.CaptureFixture) -> None:
+    """The made-up model's paths flip at near ties, so the verdict is open; the comparison on the same tables is not."""
+    status = main(["check", str(given / "model.npz"), str(given / "phones.lab"), "--predecessors", "12"])
+    captured = capsys.readouterr()
+    assert "50 frames" in captured.out and "open_jaw" in captured.out
+    assert "same tables" not in captured.err
+    assert status == (1 if captured.err else 0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["synth", "missing.npz", "phones.lab"], "missing.npz: no such file"),
+        (["synth", "phones.lab", "phones.lab"], "phones.lab: not a labial model"),
+        (["synth", "model.npz", "missing.lab"], "missing.lab"),
+        (["synth", "model.npz", "unknown.lab"], "unknown.lab:2:"),
+        (["synth", "model.npz", "backwards.lab"], "backwards.lab:1:"),
+        (["export", "model.npz", "--name", "int", "-o", "out"], "no name for a model"),
+        (["train", "nowhere", "-o", "x.npz"], "nowhere"),
+        (["laughter-corpus", "."], "."),
+        (["check", "model.npz", "phones.lab", "--library", "."], "--library"),
+    ],
+)
+def test_errors_are_one_line(
+    given: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, arguments: list, message: str
+) -> None:
+    """Files and lines are named; no traceback."""
+    monkeypatch.chdir(given)
+    (given / "unknown.lab").write_text("0 0.1 SIL\n0.1 0.2 QQ\n")
+    (given / "backwards.lab").write_text("0.3 0.1 SIL\n")
+    assert main(arguments) == 1
+    error = capsys.readouterr().err
+    assert error.startswith("labial: ") and message in error and error.count("\n") == 1

@@ -1,0 +1,44 @@
+"""The C library against the float64 reference, on phoneme streams of all kinds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from labial.native import NativeModel
+from labial.quantise import quantise
+from labial.reference.stream import synthesise
+from labial.reference.tables import ExportedTables
+from models import random_model, streams
+
+
+@pytest.mark.parametrize("method", ["paper", "labial"])
+@pytest.mark.parametrize("seed", range(6))
+def test_library_follows_the_reference(method: str, seed: int) -> None:
+    """At most one FAP unit anywhere and RMS 0.25 (method, section 6): any wrong decision or overflow is far beyond."""
+    model = random_model(seed, method, states=50 if seed % 2 else 12)
+    exported = quantise(model, "tested_model")
+    asked = list(streams(len(model.phonemes), model.boundary, seed).values())
+    if seed == 0:
+        rng = np.random.default_rng(0)
+        asked.append([(int(rng.integers(9)), int(rng.integers(20, 150))) for _ in range(2000)])
+    tables = ExportedTables(exported)
+    with NativeModel(exported) as native:
+        for stream, found in zip(asked, native.synthesise(asked)):
+            expected = synthesise(tables, stream)
+            assert found.shape == expected.shape
+            difference = found - np.floor(expected + 0.5)
+            assert np.abs(difference).max(initial=0) <= 1
+            assert np.abs(found - expected).max(initial=0) <= 0.6
+            assert np.sqrt(np.mean(difference**2)) <= 0.25 if difference.size > 1000 else True
+
+
+def test_narrow_products_give_the_same_bits() -> None:
+    """Cores without a 64-bit product take another way to the same result."""
+    model = random_model(3)
+    exported = quantise(model, "tested_model")
+    asked = list(streams(len(model.phonemes), model.boundary, 3).values())
+    results = []
+    for narrow in (0, 1):
+        with NativeModel(exported, flags=["-O1", f"-DLABIAL_NARROW_MULTIPLY={narrow}"]) as native:
+            results.append(np.concatenate(native.synthesise(asked)))
+    assert np.array_equal(*results)

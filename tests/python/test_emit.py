@@ -1,0 +1,146 @@
+"""The generated files: deterministic, clean for strict compilers, and the same model in every form."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from labial import emit
+from labial.errors import LabialError, ModelError
+from labial.native import NativeModel, compiler, library_root
+from labial.quantise import quantise
+from labial.report import workspace_bytes
+from models import random_model, streams
+
+STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
+          "-Wshadow", "-Werror"]  # fmt: skip
+
+
+def build(folder: Path, *files: str, flags: list = STRICT) -> Path:
+    program = folder / "program"
+    root = library_root()
+    library = [str(path) for path in sorted((root / "lib").glob("*.c"))]
+    sources = [str(folder / file) for file in files]
+    subprocess.run([compiler(), *flags, f"-I{root / 'include'}", f"-I{folder}", *sources, *library, "-o", str(program)],
+                   check=True)
+    return program
+
+
+def test_same_model_same_bytes(tmp_path: Path) -> None:
+    """An iteration order or a date in the output would show."""
+    for folder in ("a", "b"):
+        emit.write(quantise(random_model(1), "some_model"), tmp_path / folder, binary=True)
+    for path in sorted((tmp_path / "a").iterdir()):
+        assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    "name", ["", "9lives", "with space", "int", "labial_x", "a__b", "a-b", "_x", "class", "x" * 60, "ä"]
+)
+def test_refuses_names_that_c_cannot_use(tmp_path: Path, name: str) -> None:
+    """Such a file would not compile, or would collide."""
+    with pytest.raises(ModelError, match="no name for a model"):
+        emit.write(quantise(random_model(1), name), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("method", ["paper", "labial"])
+def test_generated_code_is_clean_and_names_are_found(tmp_path: Path, method: str) -> None:
+    """Strict warnings are errors; labels, aliases and labels from outside ASCII must survive as C strings."""
+    model = quantise(random_model(2, method), "some_model")
+    emit.write(model, tmp_path)
+    (tmp_path / "main.c").write_text("""
+#include <string.h>
+#include "some_model.h"
+static int find(const char *name) { return labial_find(&some_model_names, name, strlen(name)); }
+int main(void)
+{
+    if (labial_model_check(&some_model) != LABIAL_OK) return 1;
+    if (find("P3") != SOME_MODEL_P3 || find("sil") != SOME_MODEL_SIL || find("\\311\\221") != SOME_MODEL_P2) return 2;
+    if (find("nothing") != LABIAL_ERROR_NAME) return 3;
+    if (strcmp(some_model_names.labels[SOME_MODEL_P4], "P4") != 0) return 4;
+    return 0;
+}
+""")
+    program = build(tmp_path, "main.c", "some_model.c", "some_model_names.c")
+    assert subprocess.run([str(program)]).returncode == 0
+
+
+def test_another_format_does_not_compile(tmp_path: Path) -> None:
+    """Tables of another version must not be linked by accident."""
+    emit.write(quantise(random_model(2), "some_model"), tmp_path)
+    header = tmp_path / "some_model.h"
+    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 1", "LABIAL_MODEL_FORMAT != 2"))
+    done = subprocess.run([compiler(), "-std=c99", f"-I{library_root() / 'include'}", "-fsyntax-only",
+                           str(tmp_path / "some_model.c")], capture_output=True, text=True)
+    assert done.returncode != 0 and "run labial export again" in done.stderr
+
+
+@pytest.mark.parametrize("method", ["paper", "labial"])
+def test_binary_model_moves_as_the_compiled_one(tmp_path: Path, method: str) -> None:
+    """A table in another order or of another width would be refused or move differently."""
+    model = quantise(random_model(3, method), "some_model")
+    stream = streams(9, random_model(3).boundary, 3)["ordinary"]
+    emit.write(model, tmp_path, binary=True)
+    (tmp_path / "main.c").write_text("""
+#include <stdio.h>
+#include "labial/blob.h"
+#include "labial/labial.h"
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)user; (void)frame;
+    fwrite(faps, 2, LABIAL_CHANNELS, stdout);
+}
+int main(int argc, char **argv)
+{
+    static uint32_t data[65536], workspace[LABIAL_WORKSPACE_SIZE(64) / 4];
+    static labial_t stream;
+    labial_blob_t blob;
+    unsigned phoneme, ms;
+    FILE *file = argc > 1 ? fopen(argv[1], "rb") : NULL;
+    size_t size;
+    if (!file) return 2;
+    size = fread(data, 1, sizeof data, file);
+    if (labial_model_load(&blob, data, size) != LABIAL_OK) return 3;
+    if (labial_init(&stream, &blob.model, workspace, sizeof workspace, on_frame, NULL) != LABIAL_OK) return 4;
+    while (scanf("%u %u", &phoneme, &ms) == 2) {
+        while (labial_push(&stream, phoneme, ms) == LABIAL_ERROR_FULL) labial_tick(&stream);
+    }
+    labial_end(&stream);
+    while (labial_tick(&stream) != LABIAL_DONE) { }
+    return 0;
+}
+""")
+    program = build(tmp_path, "main.c", flags=["-std=c99", "-O1"])
+    done = subprocess.run([str(program), str(tmp_path / "some_model.lbm")], capture_output=True,
+                          input=" ".join(f"{p} {ms}" for p, ms in stream).encode())
+    assert done.returncode == 0
+    with NativeModel(model) as native:
+        expected = native.synthesise([stream])[0]
+    assert np.array_equal(np.frombuffer(done.stdout, "<i2").reshape(-1, 13), expected)
+
+
+def test_sizes_that_are_printed_are_the_librarys(tmp_path: Path) -> None:
+    """The report counts in Python what the C compiler lays out."""
+    model = quantise(random_model(4), "some_model")
+    emit.write(model, tmp_path)
+    (tmp_path / "main.c").write_text("""
+#include <stdio.h>
+#include "some_model.h"
+int main(void)
+{
+    printf("%u %u %u %u", (unsigned)SOME_MODEL_WORKSPACE_SIZE, (unsigned)labial_workspace_size(&some_model),
+           (unsigned)(sizeof(labial_emission_t) + sizeof(labial_state_t)), (unsigned)sizeof(labial_phoneme_t));
+    return 0;
+}
+""")
+    done = subprocess.run([str(build(tmp_path, "main.c", "some_model.c"))], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == [str(workspace_bytes(12)), str(workspace_bytes(12)), "16", "6"]
+
+
+def test_compiler_errors_are_reported(tmp_path: Path) -> None:
+    """A library folder without the library is named, not traced."""
+    with pytest.raises(LabialError, match="--library"):
+        library_root(str(tmp_path))

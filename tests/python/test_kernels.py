@@ -1,0 +1,138 @@
+"""Temporal kernels: against the two-part regression they stand for, and on planted kernels."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from labial.train.kernels import Penalties, add_kernels, fit_kernels, lags, tapped
+from labial.train.selection import Choice, shapes
+from labial.train.sequences import Sequence
+from labial.train.shapes import ShapeTables
+
+CLASS = np.array([0, 1, 1, 2, 2, 2])  # phoneme 0 is silence, phoneme 5 never occurs
+PHONEMES = len(CLASS)
+FPS = 50
+
+
+def tables() -> ShapeTables:
+    """One component per phoneme, of 100 ms +- 20 ms."""
+    zero = np.zeros((PHONEMES, 13))
+    none = np.zeros((PHONEMES, 0))
+    return ShapeTables(
+        component_count=np.ones(PHONEMES, dtype=np.int64),
+        log_weight=np.zeros(PHONEMES),
+        duration_mean=np.full(PHONEMES, 0.10),
+        duration_variance=np.full(PHONEMES, 0.02**2),
+        shape=zero,
+        slope=zero,
+        precision=zero,
+        log_previous=none,
+        log_next=none,
+    )
+
+
+def episode(rng: np.random.Generator, count: int) -> Sequence:
+    """A random sequence of phonemes 0 to 4 with no motion yet."""
+    length = rng.integers(2, 9, count)
+    phoneme = np.concatenate([[0], rng.integers(1, 5, count - 2), [0]])
+    return Sequence("x", phoneme, length / FPS, length, np.cumsum(length) - 1, np.zeros((length.sum(), 13)))
+
+
+def choice_of(material) -> Choice:
+    phoneme = np.concatenate([item.phoneme for item in material])
+    offset = np.clip(np.concatenate([item.duration for item in material]) - 0.10, -0.06, 0.06)
+    return Choice(phoneme[:, None], np.ones((len(phoneme), 1)), offset[:, None])
+
+
+def targets(item: Sequence, given: ShapeTables, kernel: np.ndarray) -> np.ndarray:
+    shape = np.repeat(shapes(given, choice_of([item])), item.length, axis=0)
+    return add_kernels(shape, item.phoneme_at(), kernel, lags(FPS), 0)
+
+
+def planted(seed: int, episodes: int):
+    """Episodes whose motion is exactly what smooth kernels, shapes and slopes of each phoneme make."""
+    rng = np.random.default_rng(seed)
+    taps = len(lags(FPS))
+    hump = np.exp(-0.5 * ((np.arange(taps) - taps / 2) / 3) ** 2)
+    truth = np.random.default_rng(99)
+    kernel = truth.normal(0, 40, (PHONEMES, 1, 13)) * np.roll(hump, 2)[None, :, None]
+    given = replace(tables(), shape=truth.normal(0, 50, (6, 13)), slope=truth.normal(0, 300, (6, 13)))
+    result = []
+    for _ in range(episodes):
+        item = episode(rng, 30)
+        motion = targets(item, given, kernel)
+        result.append(Sequence(item.name, item.phoneme, item.duration, item.length, item.apex, motion))
+    return result, given, kernel
+
+
+def test_lags_and_taps_by_hand():
+    # Catches lags with the sign turned round or beyond the device's limits, and neighbours beyond the ends that are not silence.
+    np.testing.assert_array_equal(lags(50), np.arange(-18, 19, 2))
+    np.testing.assert_array_equal(lags(25), np.arange(-9, 10))
+    np.testing.assert_array_equal(lags(100), np.arange(-20, 21, 4))  # the device sees 20 frames to each side
+    for fps in range(1, 251):
+        assert 1 <= len(lags(fps)) <= 32 and -20 <= lags(fps)[0] == -lags(fps)[-1]
+    found = tapped(np.array([1, 2, 3]), np.array([-2, 0, 1]), silence=7)
+    np.testing.assert_array_equal(found, [[7, 1, 2], [7, 2, 3], [1, 3, 7]])
+
+
+def test_recovers_planted_kernels():
+    # Catches a kernel, shape or slope laid at the wrong lag, phoneme or scale: motion of other episodes is predicted.
+    material, _, _ = planted(1, 120)
+    weak = Penalties(kernel=1e-2, shape=1e-2, slope=1e-2, silence=1.0)
+    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, weak)
+    for item in planted(2, 5)[0]:
+        error = targets(item, fitted.tables, fitted.kernel) - item.frames
+        assert np.sqrt((error**2).mean()) < 0.01 * item.frames.std()
+
+
+def test_recovers_the_curve_itself():
+    # Catches kernels that only predict in sum: away from lag 0, where shapes do the same, differences are unique.
+    material, _, kernel = planted(3, 200)
+    weak = Penalties(kernel=1e-2, shape=1e-2, slope=1e-2, silence=1.0)
+    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, weak)
+    away = np.abs(lags(FPS)) >= 2
+    found, true = ((item[1:5] - item[1])[:, away] for item in (fitted.kernel, kernel))
+    assert np.abs(found - true).max() < 0.05 * np.abs(true).max()
+
+
+def test_equals_the_regression_in_two_parts():
+    # Catches a prior that is not that of a class kernel plus a residual: here both are columns of a plain ridge.
+    rng = np.random.default_rng(4)
+    material = [episode(rng, 25) for _ in range(6)]
+    material = [
+        Sequence(i.name, i.phoneme, i.duration, i.length, i.apex, rng.normal(0, 50, i.frames.shape)) for i in material
+    ]
+    penalties = Penalties(kernel=20.0, residual=6.0, smoothness=0.0, shape=15.0, slope=25.0, silence=0.25)
+    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, penalties)
+
+    lag, classes = lags(FPS), 3
+    blocks = []
+    for item in material:
+        taps = tapped(item.phoneme_at(), lag, 0)
+        own = np.eye(PHONEMES)[item.phoneme_at()]
+        z = np.repeat(choice_of([item]).offset / 0.02, item.length, axis=0)
+        parts = [np.eye(classes)[CLASS[taps]], np.eye(PHONEMES)[taps]]
+        blocks.append(np.hstack([part.transpose(0, 2, 1).reshape(len(taps), -1) for part in parts] + [own, own * z]))
+    x, y = np.concatenate(blocks), np.concatenate([item.frames for item in material])
+    weight = np.where(np.concatenate([item.phoneme_at() for item in material]) == 0, 0.25, 1.0)
+    y = y - np.average(y, axis=0, weights=weight)
+    counts = [classes * len(lag), PHONEMES * len(lag), PHONEMES, PHONEMES]
+    ridge = np.repeat([20.0, 120.0, 15.0, 25.0], counts)
+    solution = np.linalg.solve((x * weight[:, None]).T @ x + np.diag(ridge), (x * weight[:, None]).T @ y)
+    by_class, residual = (item.reshape(-1, len(lag), 13) for item in np.split(solution[: sum(counts[:2])], [counts[0]]))
+    np.testing.assert_allclose(fitted.kernel, by_class[CLASS] + residual, atol=1e-6)
+    np.testing.assert_allclose(fitted.tables.slope * 0.02, solution[-PHONEMES:], atol=1e-6)
+    np.testing.assert_allclose(fitted.kernel[5], by_class[2], atol=1e-6)  # never seen: its class's kernel
+
+
+def test_a_substituted_phoneme_moves_as_its_substitute():
+    # Catches a phoneme whose whole class is missing and that would rest at the mean of all motion.
+    material, _, _ = planted(5, 20)
+    stand_in = [0, 1, 2, 3, 4, 1]
+    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, stand_in, 0, FPS, Penalties())
+    np.testing.assert_array_equal(fitted.kernel[5], fitted.kernel[1])
+    np.testing.assert_array_equal(fitted.tables.shape[5], fitted.tables.shape[1])
+    np.testing.assert_array_equal(fitted.tables.slope[5], fitted.tables.slope[1])
+    assert np.abs(fitted.tables.shape[4] - fitted.tables.shape[1]).max() > 1

@@ -1,0 +1,157 @@
+"""The synthetic laughter corpus: published timings, plausible faces, the same bytes every time."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+import pytest
+from labial.corpus import read_corpus
+from labial.corpus.laughter import generate
+from labial.errors import DataError
+from labial.faps import FAP_NUMBERS
+from labial.phonesets import LAUGHTER
+
+CHANNEL = {number: index for index, number in enumerate(FAP_NUMBERS)}
+ONSETS = ("a", "e", "o", "ic", "cackle")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The corpus at its full size."""
+    path = tmp_path_factory.mktemp("laughter") / "corpus"
+    generate(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def episodes(folder):
+    """Its episodes, as the trainer reads them."""
+    return read_corpus(folder, "laughter")
+
+
+def trains(episode):
+    """Lists of pulse onsets in seconds: vowels and cackles that begin within 0.35 s of each other."""
+    result = [[]]
+    for segment in episode.segments:
+        if segment.label in ONSETS:
+            if result[-1] and segment.start - result[-1][-1] > 0.35:
+                result.append([])
+            result[-1].append(segment.start)
+    return [train for train in result if train]
+
+
+def test_every_phoneme_occurs_often_enough_to_train(episodes):
+    """Catches a phoneme that the generator all but forgets."""
+    counts = defaultdict(int)
+    for episode in episodes:
+        for segment in episode.segments:
+            counts[segment.label] += 1
+    assert len(episodes) == 200 and set(counts) == set(LAUGHTER.phonemes) and min(counts.values()) >= 60
+
+
+@pytest.mark.parametrize("label, low, high", [
+    ("a", 80, 116), ("e", 80, 104), ("fricative", 120, 120), ("ic", 80, 80), ("cackle", 48, 48), ("nasal", 80, 80),
+    ("ne", 240, 240), ("silence", 160, 220), ("click", 40, 40), ("plosive", 40, 40),
+])  # fmt: skip
+def test_median_durations_are_the_published_ones(episodes, label, low, high):
+    """Catches durations that drift when a pulse's parts are fitted into its period."""
+    durations = [1000 * s.duration for e in episodes for s in e.segments if s.label == label]
+    assert 0.85 * low <= np.median(durations) <= 1.15 * high
+
+
+def test_pulses_and_trains_have_the_published_rhythm(episodes):
+    """Catches trains that are too slow, too regular or too long, and laughs without pauses."""
+    groups = [train for episode in episodes for train in trains(episode)]
+    intervals = 1000 * np.concatenate([np.diff(train) for train in groups])
+    assert 195 <= np.median(intervals) <= 225 and 15 <= np.percentile(intervals, 84) - np.median(intervals) <= 50
+    lengths = [len(train) for train in groups]
+    assert np.median(lengths) == 3 and 10 <= max(lengths)
+    quiet = sum(s.duration for e in episodes for s in e.segments if s.label in ("silence", "ne", "fricative"))
+    assert quiet > 0.5 * sum(e.segments[-1].end for e in episodes)
+
+
+def test_rare_but_published_sequences_occur(episodes):
+    """Catches a corpus of regular laughs only: real ones have one-frame phonemes, repeats and silences of seconds."""
+    segments = [list(e.segments) for e in episodes]
+    assert any(s.duration <= 0.02 for item in segments for s in item)
+    assert any(s.duration > 4 for item in segments for s in item)
+    assert any(a.label == b.label != "silence" for item in segments for a, b in zip(item, item[1:]))
+
+
+def test_segments_tile_and_motion_covers_them(episodes):
+    """Catches rounding that leaves gaps, apexes outside of their phonemes, motion of another length."""
+    for episode in episodes:
+        assert episode.segments[0].start == 0
+        assert all(a.end == b.start for a, b in zip(episode.segments, episode.segments[1:]))
+        assert all(s.start <= s.apex <= s.end for s in episode.segments)
+        assert abs(len(episode.times) / 50 - episode.segments[-1].end) <= 0.011
+
+
+def test_jaw_beats_with_the_pulses(episodes):
+    """Catches a jaw that does not open for vowels, lags behind them, or stays open in silence."""
+    opened, closed, lags = [], [], []
+    for episode in episodes:
+        jaw = episode.frames[:, CHANNEL[3]]
+        for segment in episode.segments:
+            middle = (segment.start + segment.end) / 2
+            if segment.label == "a":
+                near = np.flatnonzero(abs(episode.times - middle) < 0.08)
+                opened.append(jaw[near].max())
+                lags.append(episode.times[near[np.argmax(jaw[near])]] - middle)
+            elif segment.label == "silence" and segment.duration > 0.3:
+                closed.append(np.interp(middle, episode.times, jaw))
+    assert np.median(opened) > 100 and np.median(closed) < 0.25 * np.median(opened) and abs(np.median(lags)) < 0.02
+
+
+def test_faces_are_plausible(episodes):
+    """Catches lips that cross, corners that a laugh pulls down or together, faces that lean, jumps and noise."""
+    frames = np.concatenate([e.frames for e in episodes])
+    jaw, openness = frames[:, CHANNEL[3]], -(frames[:, CHANNEL[51]] + frames[:, CHANNEL[52]])
+    assert openness.min() > -10 and jaw.min() > -6 and np.percentile(jaw, 99) < 350
+    slope = np.polyfit(jaw, frames[:, CHANNEL[52]], 1)[0]
+    assert -1.1 < slope < -0.7
+    start = np.stack([e.frames[:3].mean(axis=0) for e in episodes])
+    assert abs(np.median(start, axis=0)).max() < 15
+    for left, right in ((53, 54), (55, 56), (57, 58), (59, 60)):
+        a, b = frames[:, CHANNEL[left]], frames[:, CHANNEL[right]]
+        assert np.corrcoef(a, b)[0, 1] > 0.95 and 0 < np.std(a - b) < 12
+    assert np.median(frames[:, CHANNEL[53]]) > 30 and np.median(frames[:, CHANNEL[59]]) > 40
+    assert np.percentile(frames[:, CHANNEL[51]], 10) < -40
+    for episode in episodes:
+        assert abs(np.diff(episode.frames, axis=0)).max() < 80
+
+
+def test_the_smile_grows_with_intensity_and_outlasts_the_pulses(episodes):
+    """Catches a smile that is constant, or that ends with the voice, or never."""
+    loud, smile, after = [], [], []
+    for episode in episodes:
+        voiced = [s for s in episode.segments if s.label in ONSETS]
+        inside = (episode.times > voiced[0].start) & (episode.times < voiced[-1].end)
+        loud.append(np.percentile(episode.frames[inside, CHANNEL[3]], 95))
+        smile.append(episode.frames[inside, CHANNEL[59]].mean())
+        ends = np.interp(voiced[-1].end + np.array([0.1, 1.1]), episode.times, episode.frames[:, CHANNEL[59]])
+        if voiced[-1].end + 1.1 < episode.times[-1]:
+            after.append(ends[1] / ends[0])
+    assert np.corrcoef(loud, smile)[0, 1] > 0.6
+    assert len(after) > 100 and 0.7 < np.median(after) < 0.95  # what a second of the slow decay leaves
+
+
+def test_no_negative_zeros(folder):
+    """Catches "-0.00", which other platforms' rounding may write as "0.00"."""
+    assert not any(b",-0.00" in path.read_bytes() for path in folder.glob("*.csv"))
+
+
+def test_same_seed_same_bytes_and_no_mixing(tmp_path):
+    """Catches unseeded randomness, output that depends on the number of episodes, and two runs in one folder."""
+    for name, count, seed in (("a", 5, 7), ("b", 5, 7), ("c", 3, 7), ("d", 5, 8)):
+        generate(tmp_path / name, count, seed)
+
+    def content(name):
+        return {p.name: p.read_bytes() for p in (tmp_path / name).iterdir() if p.suffix != ".md"}
+
+    assert content("a") == content("b") and content("c").items() <= content("a").items()
+    assert content("a")["laugh0000.csv"] != content("d")["laugh0000.csv"]
+    assert "synthetic" in (tmp_path / "a" / "README.md").read_text().lower()
+    with pytest.raises(DataError, match="not empty"):
+        generate(tmp_path / "a", 5, 7)

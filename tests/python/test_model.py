@@ -1,0 +1,93 @@
+"""The model file: what is written is read back, and nothing else is accepted."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from labial.errors import ModelError
+from labial.model import load, save
+from models import random_model
+
+
+def test_round_trip_and_same_bytes(tmp_path: Path) -> None:
+    """A lost field, or a time stamp in the archive, shows."""
+    model = random_model(1)
+    save(model, tmp_path / "a.npz")
+    save(load(tmp_path / "a.npz"), tmp_path / "b.npz")
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+    again = load(tmp_path / "b.npz")
+    for item in dataclasses.fields(model):
+        assert np.array_equal(getattr(model, item.name), getattr(again, item.name)), item.name
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("shape", np.nan),
+        ("kernel", np.inf),
+        ("duration_variance", 0.0),
+        ("state_precision", -1.0),
+        ("state_anchor", -1e-9),
+        ("log_transition", 0.5),
+        ("phoneme_class", 99),
+        ("component_count", 0),
+    ],
+)
+def test_refuses_values_out_of_range(field: str, value: float) -> None:
+    """Each would otherwise come out as tables that mean nothing."""
+    model = random_model(2)
+    array = getattr(model, field).copy()
+    array.flat[0] = value
+    with pytest.raises(ModelError):
+        dataclasses.replace(model, **{field: array})
+
+
+def test_refuses_a_state_that_cannot_be_reached() -> None:
+    """The library's Viterbi search relies on a predecessor for every state."""
+    model = random_model(2)
+    transition = model.log_transition.copy()
+    transition[3, :, 5] = -np.inf
+    with pytest.raises(ModelError, match="predecessor"):
+        dataclasses.replace(model, log_transition=transition)
+
+
+def test_names_the_file_that_is_no_model(tmp_path: Path) -> None:
+    """Missing, truncated and foreign files end in a message with their name, not in a traceback."""
+    path = tmp_path / "model.npz"
+    with pytest.raises(ModelError, match="model.npz: no such file"):
+        load(path)
+    save(random_model(1), path)
+    data = path.read_bytes()
+    half = data[: len(data) // 2]
+    for damaged in (b"", b"junk", half, _without(data, "kernel.npy"), _with(data, "model.json", b"{}")):
+        path.write_bytes(damaged)
+        with pytest.raises(ModelError, match="model.npz"):
+            load(path)
+
+
+def _rewritten(data: bytes, skip: str) -> tuple[io.BytesIO, zipfile.ZipFile]:
+    out = io.BytesIO()
+    target = zipfile.ZipFile(out, "w")
+    with zipfile.ZipFile(io.BytesIO(data)) as source:
+        for name in source.namelist():
+            if name != skip:
+                target.writestr(name, source.read(name))
+    return out, target
+
+
+def _without(data: bytes, name: str) -> bytes:
+    out, archive = _rewritten(data, name)
+    archive.close()
+    return out.getvalue()
+
+
+def _with(data: bytes, name: str, content: bytes) -> bytes:
+    out, archive = _rewritten(data, name)
+    archive.writestr(name, content)
+    archive.close()
+    return out.getvalue()

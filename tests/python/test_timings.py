@@ -1,0 +1,203 @@
+"""Readers of phoneme timings: right times from right files, and file and line of what is wrong."""
+
+from __future__ import annotations
+
+import pytest
+from labial.corpus.timings import (
+    phoneme_segments,
+    read_flite,
+    read_lab,
+    read_pho,
+    read_phseg,
+    read_textgrid,
+    read_timings,
+)
+from labial.errors import DataError
+from labial.phonesets import SPEECH
+
+LONG = """File type = "ooTextFile"
+Object class = "TextGrid"
+
+xmin = 0
+xmax = 1
+tiers? <exists>
+size = 2
+item []:
+    item [1]:
+        class = "IntervalTier"
+        name = "words"
+        xmin = 0
+        xmax = 1
+        intervals: size = 1
+        intervals [1]:
+            xmin = 0
+            xmax = 1
+            text = "a ""b"" c"
+    item [2]:
+        class = "IntervalTier"
+        name = "phones"
+        xmin = 0
+        xmax = 1
+        intervals: size = 3
+        intervals [1]:
+            xmin = 0
+            xmax = 0.25
+            text = "AH0"
+        intervals [2]:
+            xmin = 0.25
+            xmax = 0.75
+            text = "B"
+        intervals [3]:
+            xmin = 0.75
+            xmax = 1
+            text = ""
+"""
+SHORT = """File type = "ooTextFile"
+Object class = "TextGrid"
+
+0
+1
+<exists>
+1
+"IntervalTier"
+"phones"
+0
+1
+3
+0
+0.25
+"AH0"
+0.25
+0.75
+"B"
+0.75
+1
+""
+"""
+PHSEG = "  SFrm  EFrm  SegAScr Phone\n    0    11    -1234 SIL\n   12    19   -99 HH SIL AY b\n Total score:   -1333\n"
+
+
+def put(folder, name, text, encoding="utf-8"):
+    """Writes a file and returns its path."""
+    path = folder / name
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+def rows(segments):
+    """Start, end and label of each."""
+    return [(round(s.start, 6), round(s.end, 6), s.label) for s in segments]
+
+
+def fails(reader, path, line, words):
+    """Asserts a DataError that names the file, `line` and `words`."""
+    with pytest.raises(DataError) as caught:
+        reader(path)
+    where = f"{path}:{line}: " if line else f"{path}: "
+    assert str(caught.value).startswith(where) and words in str(caught.value)
+
+
+def test_lab_with_three_to_five_columns(tmp_path):
+    """Catches swapped apex and word, and Windows line ends or a byte order mark that break the first line."""
+    path = put(tmp_path, "a.lab", "\ufeff0 0.1 SIL\r\n0.1 0.25 B 0.2\r\n\r\n0.25 0.3 IH .27 bin\r\n")
+    segments = read_lab(path)
+    assert rows(segments) == [(0, 0.1, "SIL"), (0.1, 0.25, "B"), (0.25, 0.3, "IH")]
+    assert [(s.apex, s.word, s.line) for s in segments] == [(None, None, 1), (0.2, None, 2), (0.27, "bin", 4)]
+
+
+@pytest.mark.parametrize("text, line, words", [
+    ("0 0.1\n", 1, "columns"), ("0 .1 A\n.1 .2 B .15 w x\n", 2, "columns"), ("0 .1 A\n.1 x B\n", 2, "finite"),
+    ("0 nan A\n", 1, "finite"), ("0 inf A\n", 1, "finite"), ("0 .1 A\n.2 .15 B\n", 2, "before its start"),
+    ("0 .2 A\n.1 .3 B\n", 2, "before the end"), ("0 .1 A .3\n", 1, "apex"), ("0 3700000 sil\n", 1, "seconds"),
+    ("0 .1 A -\n", 1, "apex"), ("\n\n", None, "no segments"),
+])  # fmt: skip
+def test_malformed_lab_names_the_line(tmp_path, text, line, words):
+    """Catches a bad line that is skipped, or reported without its place."""
+    fails(read_lab, put(tmp_path, "a.lab", text), line, words)
+
+
+def test_phseg_frames_are_inclusive_and_tile(tmp_path):
+    """Catches end = EFrm/100, which leaves a 10 ms hole after each phone, and context read as the phone."""
+    segments = read_phseg(put(tmp_path, "a.phseg", PHSEG))
+    assert rows(segments) == [(0, 0.12, "SIL"), (0.12, 0.2, "HH")]
+
+
+@pytest.mark.parametrize("old, new, line", [
+    ("SFrm", "Start", 1), ("   12 ", "   1x ", 3), ("   12    19", "   12    10", 3), ("   12 ", "   10 ", 3),
+    ("-99 HH SIL AY b", "", 3), ("    0    11", "Total score: 3\n 0 11", 2),
+])  # fmt: skip
+def test_malformed_phseg_names_the_line(tmp_path, old, new, line):
+    """Catches rows lost behind an early total, overlapping frames, and a file of another kind."""
+    fails(read_phseg, put(tmp_path, "a.phseg", PHSEG.replace(old, new)), line, "")
+
+
+def test_flite_times_are_ends(tmp_path):
+    """Catches end times that are taken for durations."""
+    path = put(tmp_path, "a.psdur", "pau:0.220 hh:0.295 ax:0.342 \n")
+    assert rows(read_flite(path)) == [(0, 0.22, "pau"), (0.22, 0.295, "hh"), (0.295, 0.342, "ax")]
+    fails(read_flite, put(tmp_path, "b.psdur", "pau:0.2 hh:0.1"), 1, "before its start")
+    fails(read_flite, put(tmp_path, "c.psdur", "pau 0.2"), 1, "label:end")
+
+
+def test_pho_durations_add_up_without_drift(tmp_path):
+    """Catches comments read as phonemes, pitch points read as durations, and sums of seconds that drift."""
+    text = "; hello\n_ 50\nh 60 50 120 ; comment\n" + "a 1\n" * 1000
+    segments = read_pho(put(tmp_path, "a.pho", text))
+    assert rows(segments)[:2] == [(0, 0.05, "_"), (0.05, 0.11, "h")] and segments[-1].end == 1.11
+    fails(read_pho, put(tmp_path, "b.pho", "_ 50\na -5\n"), 2, "negative")
+    fails(read_pho, put(tmp_path, "c.pho", "_ 50\na\n"), 2, "milliseconds")
+    fails(read_pho, put(tmp_path, "d.pho", "_ 50 10 x\n"), 1, "finite")
+
+
+@pytest.mark.parametrize("text", [LONG, SHORT], ids=["long", "short"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_textgrid_forms_and_encodings(tmp_path, text, encoding):
+    """Catches the words tier being taken for the phones, and a lost unlabelled interval at the end."""
+    path = put(tmp_path, "a.TextGrid", text, encoding)
+    assert rows(read_textgrid(path)) == [(0, 0.25, "AH0"), (0.25, 0.75, "B"), (0.75, 1, "")]
+
+
+@pytest.mark.parametrize("text, line, words", [
+    ("", 1, "TextGrid"), ("hello", 1, "TextGrid"), (LONG[:-30], None, "well-formed"),
+    (LONG.replace("xmin = 0.25", "xmin = -0.25"), 30, "negative"), (LONG.replace("size = 3", "size = 4"), None, "3"),
+    (LONG.replace("xmax = 0.25", "xmax = 0.5"), None, "overlap"), (SHORT[:-11], None, "1 could be read"),
+    (SHORT.replace('"B"', "B"), None, ""), (LONG.replace("IntervalTier", "TextTier"), None, ""),
+    (SHORT.replace("0.75", "x"), None, "well-formed"),
+])  # fmt: skip
+def test_malformed_textgrid_is_a_data_error(tmp_path, text, line, words):
+    """Catches what the TextGrid library lets pass: lost signs, truncated short files, counts that do not hold."""
+    fails(read_textgrid, put(tmp_path, "a.TextGrid", text), line, words)
+
+
+@pytest.mark.parametrize("name, text, count", [
+    ("a.LAB", "0 1 A\n", 1), ("a.textgrid", SHORT, 3), ("a.txt", SHORT, 3), ("a.txt", PHSEG, 2), ("a.pho", "_ 50\n", 1),
+    ("a.txt", "pau:0.2 hh:0.3\n", 2), ("a.txt", "0 .1 A\n", 1), ("a.txt", "; x\n_ 50\na 50 50 120\n", 2),
+])  # fmt: skip
+def test_format_is_told_by_suffix_then_content(tmp_path, name, text, count):
+    """Catches a format that is only found under its usual name."""
+    assert len(read_timings(put(tmp_path, name, text))) == count
+
+
+def test_unknown_content_and_missing_files(tmp_path):
+    """Catches an OSError or UnicodeError that reaches the user bare."""
+    fails(read_timings, put(tmp_path, "a.txt", "lorem ipsum\n"), None, "no known format")
+    fails(read_timings, tmp_path / "none.lab", None, "")
+    fails(read_lab, put(tmp_path, "b.lab", "0 1 é\n", "latin-1"), None, "text")
+
+
+def test_gaps_become_silence_and_rounding_is_closed(tmp_path):
+    """Catches segments that do not tile: a late start, a gap, an overlap of rounding, an unlabelled interval."""
+    path = put(tmp_path, "a.lab", "0.1 0.2 hh\n0.1995 0.3 AH1 0.25\n0.3004 0.4 l\n0.5 0.6 OW\n")
+    segments = phoneme_segments(path, read_lab(path), SPEECH)
+    assert [s.label for s in segments] == ["SIL", "HH", "AH", "L", "SIL", "OW"]
+    assert segments[0].start == 0 and all(a.end == b.start for a, b in zip(segments, segments[1:]))
+    grid = put(tmp_path, "a.TextGrid", LONG)
+    assert [s.label for s in phoneme_segments(grid, read_textgrid(grid), SPEECH)] == ["AH", "B", "SIL"]
+
+
+def test_unknown_labels_are_named_with_their_place(tmp_path):
+    """Catches an unknown label that becomes silence or an error without a line."""
+    path = put(tmp_path, "a.lab", "0 0.1 hh\n0.1 0.2 XX\n")
+    fails(lambda p: phoneme_segments(p, read_lab(p), SPEECH), path, 2, "'XX'")
+    grid = put(tmp_path, "a.TextGrid", LONG.replace('"B"', '"XX"'))
+    fails(lambda p: phoneme_segments(p, read_textgrid(p), SPEECH), grid, None, "interval 2")

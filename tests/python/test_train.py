@@ -1,0 +1,170 @@
+"""The whole training on a small synthetic corpus: the same bytes always, and motion that follows the phonemes."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from labial.corpus import Episode, Segment
+from labial.errors import LabialError
+from labial.model import Model, load, save
+from labial.phonesets import SPEECH
+from labial.reference.stream import synthesise
+from labial.reference.tables import FloatTables
+from labial.train import train
+from labial.train.states import DYNAMIC_RANGE, Scales, limit_range, match_states
+from labial.train.train import codebook_tables, train_channel
+
+LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
+OPTIONS = {"kind": "speech", "codebook": 12, "components": 2, "progress": False, "attribution": "synthetic"}
+
+
+def episode(seed: int) -> Episode:
+    """Thirty phonemes, each with a lip shape of its own that the mouth glides to, recorded at 100 frames/s."""
+    rng = np.random.default_rng(seed)
+    labels = ["SIL", *rng.choice(LABELS, 28), "SIL"]
+    lengths = rng.integers(5, 16, 30) / 100.0
+    ends = np.cumsum(lengths)
+    shape = {label: np.random.default_rng(index).normal(0, 150, 13) for index, label in enumerate(("SIL", *LABELS))}
+    times = np.arange(0.0, ends[-1], 0.01) + 0.005
+    steps = np.stack([shape[labels[index]] for index in np.searchsorted(ends, times).clip(max=29)])
+    window = np.hanning(13) / np.hanning(13).sum()
+    held = np.pad(steps, ((6, 6), (0, 0)), mode="edge")
+    frames = np.stack([np.convolve(channel, window, "valid") for channel in held.T], axis=1)
+    segments = [Segment(end - length, end, label) for end, length, label in zip(ends, lengths, labels)]
+    return Episode(f"e{seed}", times, frames + rng.normal(0, 2, frames.shape), tuple(segments))
+
+
+@pytest.fixture(scope="module")
+def corpus():
+    return [episode(seed) for seed in range(24)]
+
+
+@pytest.fixture(scope="module")
+def models(corpus):
+    return {method: train(corpus, method=method, jobs=1, **OPTIONS) for method in ("paper", "labial")}
+
+
+def saved(model: Model) -> bytes:
+    buffer = io.BytesIO()
+    save(model, buffer)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize("method", ["paper", "labial"])
+def test_the_same_bytes_for_any_number_of_jobs(corpus, models, method, tmp_path):
+    # Catches random seeds that are not fixed, results in the order they arrive, times or paths kept in the model.
+    once, again = models[method], train(corpus, method=method, jobs=2, **OPTIONS)
+    assert saved(once) == saved(again)
+    save(once, tmp_path / "model.npz")
+    assert saved(load(tmp_path / "model.npz")) == saved(once)
+
+
+def motion_error(model: Model, item: Episode) -> float:
+    """RMS error over the motion's standard deviation, on frames of 20 ms."""
+    stream = [(model.phonemes.index(s.label), round(1000 * s.duration)) for s in item.segments]
+    found = synthesise(FloatTables(model), stream)
+    centre = (np.arange(len(found)) + 0.5) / model.fps
+    human = np.stack([np.interp(centre, item.times, channel) for channel in item.frames.T], axis=1)
+    return float(np.sqrt(((found - human) ** 2).mean()) / human.std())
+
+
+def test_models_reproduce_unseen_episodes(models):
+    # Catches a sign, lag, unit or table order that training and run-time do not share. The mean alone would give 1.
+    unseen = [episode(seed) for seed in (100, 101)]
+    errors = {method: np.mean([motion_error(model, item) for item in unseen]) for method, model in models.items()}
+    assert errors["labial"] < 0.25
+    assert errors["paper"] < 0.8
+    assert errors["labial"] < errors["paper"]
+
+
+def test_the_published_method_has_nothing_added(models):
+    # Catches additions that leak into the method that comparisons call the paper's.
+    model = models["paper"]
+    assert not model.soft and not model.slope.any() and not model.precision.any() and not model.state_anchor.any()
+    assert model.kernel.shape == (40, 0, 13) and model.log_previous.shape[1] == 0
+
+
+def test_every_phoneme_has_shapes_and_back_offs_are_told(corpus, models, capsys):
+    # Catches a phoneme missing from the model, or replaced without a word.
+    train(corpus, method="paper", jobs=1, **OPTIONS)
+    told = capsys.readouterr().out
+    model = models["labial"]
+    assert model.phonemes == SPEECH.phonemes and (model.component_count >= 1).all()
+    pooled = model.training["pooled"]
+    for label in set(SPEECH.phonemes) - {"SIL", *LABELS}:
+        assert (label in pooled) != (label in model.substitutes)
+        assert f"{label}: 0 samples" in told
+    assert pooled["B"] == "bilabial" and model.substitutes["F"] in LABELS
+    assert "P: " not in told
+
+
+def test_every_state_can_be_reached_and_left(models):
+    # Catches -inf where the search could come to a dead end.
+    for model in models.values():
+        assert np.isfinite(model.log_initial).all()
+        assert np.isfinite(np.diagonal(model.log_transition, axis1=1, axis2=2)).all()
+        np.testing.assert_allclose(np.exp(model.log_transition).sum(axis=2), 1)
+        np.testing.assert_allclose(np.exp(model.log_initial).sum(axis=1), 1)
+
+
+def test_diagonals_stay_within_the_devices_range(models):
+    # Catches precisions that 8-bit weights cannot hold together: the library's range is 1 : 4095.
+    model = models["labial"]
+    hold = model.state_precision[..., 0] + model.state_anchor
+    whole = hold + model.state_precision[..., 1] / 2 + 6 * model.state_precision[..., 2]
+    first = np.concatenate([[0], np.cumsum(model.component_count)])[:-1]
+    held = np.maximum.reduceat(model.precision, first).max(axis=0)
+    assert ((whole.max(axis=1) + held) / hold.min(axis=1) < 4095).all()
+
+
+def test_wild_precisions_are_limited():
+    # Catches a limit that changes what is within it, or does not reach what is beyond.
+    precision = np.full((13, 3, 3), 0.01)
+    anchor = np.full((13, 3), 0.01)
+    same, same_anchor = limit_range(precision, anchor)
+    np.testing.assert_array_equal(same, precision)
+    np.testing.assert_array_equal(same_anchor, anchor)
+    precision[2, 1, 2] = 1e9
+    anchor[3, 0] = 1e9
+    limited, limited_anchor = limit_range(precision, anchor)
+    hold = limited[..., 0] + limited_anchor
+    whole = hold + limited[..., 1] / 2 + 6 * limited[..., 2]
+    assert (whole.max(axis=1) <= DYNAMIC_RANGE * hold.min(axis=1)).all()
+    np.testing.assert_array_equal(limited[2, [0, 2]], precision[2, [0, 2]])
+
+
+def test_matched_states_follow_the_human_under_them():
+    # Catches statistics of the target instead of the human motion, and anchors of the wrong variance.
+    rng = np.random.default_rng(0)
+    human = np.repeat(np.where(np.arange(4000) // 500 % 2, 100.0, -100.0)[:, None], 13, axis=1)
+    human = human + rng.normal(0, [5.0] * 12 + [20.0], human.shape)
+    books = [train_channel([human[:, channel]], [np.array([0])], 2) for channel in range(13)]
+    tables = codebook_tables(books)
+    path = (human > 0).astype(np.int64)
+    target = np.where(human > 0, 90.0, -90.0)
+    matched = match_states(tables, [path], [target], [human], Scales(static=0.5, anchor=2.0))
+    np.testing.assert_allclose(matched.state_mean[:, :, 0], np.tile([-100.0, 100.0], (13, 1)), atol=2)
+    np.testing.assert_allclose(0.5 / matched.state_precision[0, :, 0], 25, rtol=0.2)
+    np.testing.assert_allclose(2.0 / matched.state_anchor[12], 400, rtol=0.2)
+    np.testing.assert_array_equal(matched.decode_mean, tables.decode_mean)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"method": "other"}, {"kind": "song"}, {"codebook": 65}, {"components": 9}, {"fps": 0}, {"jobs": 0}]
+)
+def test_options_out_of_range_are_refused(corpus, wrong):
+    # Catches a model that no device could hold, found out only after the training.
+    with pytest.raises(LabialError):
+        train(corpus, **{**OPTIONS, "method": "paper", **wrong})
+
+
+def test_labels_and_corpora_that_cannot_be_used(corpus):
+    # Catches a KeyError in place of a message that names the episode.
+    with pytest.raises(LabialError, match="empty"):
+        train([], method="paper", **OPTIONS)
+    strange = replace(corpus[0], segments=(replace(corpus[0].segments[0], label="QQ"), *corpus[0].segments[1:]))
+    with pytest.raises(LabialError, match="QQ"):
+        train([strange], method="paper", **OPTIONS)
