@@ -88,6 +88,7 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     model->slopes = NULL;
     model->precisions = NULL;
     model->kernels = NULL;
+    model->floors = NULL;
     if (optional & HAS_CONTEXTS)
         model->contexts = (const uint8_t *)table(reader, components, 2u * model->class_count);
     model->shapes = (const int8_t *)table(reader, shape, 1u);
@@ -98,6 +99,8 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     if (model->kernel_taps)
         model->kernels = (const int8_t *)table(
             reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
+    if (model->floor_count)
+        model->floors = (const int16_t *)table(reader, (uint32_t)model->floor_count * LABIAL_CHANNELS, 2u);
     for (k = 0; k < LABIAL_CHANNELS; k++)
         read_channel(reader, model->state_count, &channels[k]);
     model->channels = channels;
@@ -144,6 +147,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     model->kernel_taps = header[23];
     model->kernel_stride = header[24];
     model->kernel_behind = header[25];
+    model->floor_count = header[27];
     reader.data = header;
     reader.size = size;
     reader.at = HEADER_SIZE;

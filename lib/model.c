@@ -10,7 +10,8 @@ static int phonemes_are_sound(const labial_model_t *model)
         const labial_phoneme_t *phoneme = &model->phonemes[p];
         if (phoneme->component_count == 0 || phoneme->component_count > LABIAL_PHONEME_COMPONENTS_MAX ||
             (uint32_t)phoneme->first_component + phoneme->component_count > model->component_count ||
-            phoneme->viseme_class >= model->class_count || phoneme->boundary > 1)
+            phoneme->viseme_class >= model->class_count || phoneme->boundary > 1 ||
+            phoneme->floor > model->floor_count)
             return 0;
     }
     return 1;
@@ -96,12 +97,13 @@ static int channel_is_sound(const labial_model_t *model, unsigned k)
 int labial_model_check(const labial_model_t *model)
 {
     unsigned k;
+    size_t i;
     if (!model)
         return LABIAL_ERROR_NULL;
     if (model->format != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
     if (!model->phonemes || !model->components || !model->shapes || !model->channels ||
-        (model->kernel_taps && !model->kernels))
+        (model->kernel_taps && !model->kernels) || (model->floor_count && !model->floors))
         return LABIAL_ERROR_NULL;
     if (model->frames_per_second == 0 || model->frames_per_second > 250u || model->component_count == 0 ||
         model->phoneme_count == 0 || model->phoneme_count > LABIAL_PHONEMES_MAX || model->class_count == 0 ||
@@ -119,6 +121,9 @@ int labial_model_check(const labial_model_t *model)
         if (!channel->emissions || !channel->states || !channel->rows || !channel->edges)
             return LABIAL_ERROR_NULL;
     }
+    for (i = 0; i < (size_t)model->floor_count * LABIAL_CHANNELS; i++)
+        if (model->floors[i] > LABIAL_POSITION_MAX || model->floors[i] < LABIAL_NO_FLOOR)
+            return LABIAL_ERROR_MODEL;
     if (!phonemes_are_sound(model))
         return LABIAL_ERROR_MODEL;
     for (k = 0; k < LABIAL_CHANNELS; k++)

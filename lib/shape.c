@@ -103,6 +103,7 @@ void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL
     unsigned k, tap;
     const unsigned stride = model->kernel_stride, taps = model->kernel_taps;
     const uint8_t *label = labels - model->kernel_behind * stride;
+    const unsigned floor = model->phonemes[*labels].floor;
 
     for (tap = 0; tap < taps; tap++, label += stride) {
         const int8_t *kernel = model->kernels + ((size_t)*label * taps + tap) * LABIAL_CHANNELS;
@@ -112,5 +113,11 @@ void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const int32_t added = (sum[k] * (int32_t)model->channels[k].kernel_scale + 128) >> 8;
         target[k] = (int16_t)labial_clamp(shape[k] + added, LABIAL_POSITION_MAX);
+    }
+    if (floor) {
+        const int16_t *least = model->floors + (floor - 1u) * LABIAL_CHANNELS;
+        for (k = 0; k < LABIAL_CHANNELS; k++)
+            if (target[k] < least[k])
+                target[k] = least[k];
     }
 }

@@ -16,8 +16,9 @@ unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme, uint
                              unsigned next_class, int16_t shape[LABIAL_CHANNELS]);
 
 /*
- * The target of one frame: the phoneme's shape and what the temporal kernels of its neighbours add. `labels` points to
- * the frame's phoneme in an array that reaches as far to both sides as the kernels do.
+ * The target of one frame: the phoneme's shape and what the temporal kernels of its neighbours add, but not below the
+ * phoneme's floor. `labels` points to the frame's phoneme in an array that reaches as far to both sides as the kernels
+ * do.
  */
 void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL_CHANNELS], const uint8_t *labels,
                          int16_t target[LABIAL_CHANNELS]);

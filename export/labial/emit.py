@@ -60,9 +60,10 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
         "shapes": CHANNELS * components,
         **{name: 0 if table is None else int(table.size) for name, table in optional.items()},
         "kernels": int(model.kernels.size),
+        "floors": 2 * CHANNELS * (len(model.floors) - 1),
         "states": CHANNELS * states * 16,
         "transitions": 2 * int(model.rows.size) + 2 * sum(len(edges) for edges in model.edges),
-        "descriptors": 24 * CHANNELS + 52,
+        "descriptors": 24 * CHANNELS + 56,
     }
 
 
@@ -137,15 +138,16 @@ def source(model: ExportedModel) -> str:
     """NAME.c: the tables."""
     parts = [_comment(model, f"{model.name}.c - the"), f'#include "{model.name}.h"\n\n#include <stddef.h>\n\n']
     parts.append(_records("labial_phoneme_t phonemes", (
-        f"{{ {first}, {count}, {viseme}, {boundary}, 0 }}"
-        for first, count, viseme, boundary in zip(
-            model.first_component, model.component_count, model.viseme_class, model.boundary))))
+        f"{{ {first}, {count}, {viseme}, {boundary}, {floor} }}"
+        for first, count, viseme, boundary, floor in zip(
+            model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor))))
     parts.append("\n" + _records("labial_component_t components", (
         f"{{ {cost}, {mean}, {width} }}"
         for cost, mean, width in zip(model.cost, model.duration_mean, model.duration_gain))))
     optional = (("contexts", "uint8_t", model.contexts), ("shapes", "int8_t", model.shapes),
                 ("slopes", "int8_t", model.slopes), ("precisions", "uint8_t", model.precisions),
-                ("kernels", "int8_t", model.kernels if model.kernels.size else None))
+                ("kernels", "int8_t", model.kernels if model.kernels.size else None),
+                ("floors", "int16_t", model.floors[1:] if len(model.floors) > 1 else None))
     for name, kind, table in optional:
         if table is not None:
             parts.append("\n" + _table(f"{kind} {name}", table))
@@ -180,6 +182,7 @@ const labial_model_t {model.name} = {{
     {model.kernels.shape[1]}, /* kernel_taps */
     {model.kernel_stride}, /* kernel_stride */
     {model.kernel_behind}, /* kernel_behind */
+    {len(model.floors) - 1}, /* floor_count */
     phonemes,
     components,
     {names["contexts"]}, /* contexts */
@@ -187,6 +190,7 @@ const labial_model_t {model.name} = {{
     {names["slopes"]}, /* slopes */
     {names["precisions"]}, /* precisions */
     {names["kernels"]}, /* kernels */
+    {names["floors"]}, /* floors */
     channels
 }};
 """)
@@ -231,14 +235,15 @@ def blob(model: ExportedModel) -> bytes:
         if values is not None:
             add(np.ascontiguousarray(values).astype(dtype).tobytes())
 
-    add(b"".join(struct.pack("<HBBBB", *row, 0) for row in zip(
-        model.first_component, model.component_count, model.viseme_class, model.boundary)))
+    add(b"".join(struct.pack("<HBBBB", *row) for row in zip(
+        model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor)))
     add(b"".join(struct.pack("<HHH", *row) for row in zip(model.cost, model.duration_mean, model.duration_gain)))
     table(model.contexts, "u1")
     table(model.shapes, "i1")
     table(model.slopes, "i1")
     table(model.precisions, "u1")
     table(model.kernels, "i1")
+    table(model.floors[1:], "<i2")
     for k in range(CHANNELS):
         add(struct.pack("<hHHH", model.centre[k], model.shape_scale[k], model.slope_scale[k], model.kernel_scale[k]))
         add(b"".join(struct.pack("<hHBB", *row) for row in zip(
@@ -249,7 +254,8 @@ def blob(model: ExportedModel) -> bytes:
         table(model.edges[k], "<u2")
     body = struct.pack(
         "<HHHBBBBBBBBBB", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,
-        model.silence, int(model.soft), model.kernels.shape[1], model.kernel_stride, model.kernel_behind, optional, 0,
+        model.silence, int(model.soft), model.kernels.shape[1], model.kernel_stride, model.kernel_behind, optional,
+        len(model.floors) - 1,
     ) + b"".join(parts)
     return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body
 

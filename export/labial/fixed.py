@@ -10,6 +10,7 @@ COST_SCALE = 32
 #: Positions are 1/16 FAP unit, at most this far from the channel's centre.
 POSITION_SCALE = 16
 POSITION_MAX = 16383
+NO_FLOOR = -16384
 
 #: Bounds of equation 3: the largest diagonal element, the least weight that holds a frame in place, and the largest
 #: right-hand side.

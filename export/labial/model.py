@@ -36,8 +36,8 @@ _TEXT = (
 
 @dataclass(frozen=True)
 class Model:
-    """A trained model. Arrays are float64 unless said otherwise; all are finite but for log-probabilities of 0 (-inf),
-    which only `log_transition` and `log_initial` may hold."""
+    """A trained model. Arrays are float64 unless said otherwise; all are finite, but `log_transition`, `log_initial` and
+    `floor` may hold -inf."""
 
     kind: str  #: "speech" or "laughter"
     method: str  #: "paper" or "labial"
@@ -59,6 +59,7 @@ class Model:
     log_next: np.ndarray  #: (N, V) log P(class of the next phoneme | c), or (N, 0) without context
     kernel: np.ndarray  #: (P, L, 13) FAP that a phoneme at a tap's lag adds to the target; L = 0 without kernels
     kernel_lag: np.ndarray  #: (L,) int64, frames from the target to the phoneme (negative: before), evenly spaced
+    floor: np.ndarray  #: (P, 13) FAP that the target does not fall below in the phoneme; -inf where none
     decode_mean: np.ndarray  #: (13, Q) static mean that the Viterbi search sees, FAP
     decode_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
     state_mean: np.ndarray  #: (13, Q, 3) of m, delta m, delta-delta m for equation 3, FAP (per frame, per frame^2)
@@ -111,6 +112,7 @@ def check(model: Model) -> None:
         "log_next": (n, context),
         "kernel": (p, taps, CHANNELS),
         "kernel_lag": (taps,),
+        "floor": (p, CHANNELS),
         "decode_mean": (CHANNELS, q),
         "decode_variance": (CHANNELS, q),
         "state_mean": (CHANNELS, q, 3),
@@ -122,7 +124,9 @@ def check(model: Model) -> None:
     for name, shape in shapes.items():
         value = getattr(model, name)
         _expect(np.shape(value) == shape, f"{name} has shape {np.shape(value)}, not {shape}")
-        if name in ("log_transition", "log_initial"):
+        if name == "floor":
+            _expect(not np.isnan(value).any() and (value < np.inf).all(), "floor holds NaN or infinity")
+        elif name in ("log_transition", "log_initial"):
             _expect(not np.isnan(value).any() and (value < 1e-9).all(), f"{name} holds NaN or values above 0")
         else:
             _expect(bool(np.isfinite(value).all()), f"{name} holds NaN or infinities")

@@ -11,6 +11,7 @@ from labial.errors import ModelError
 from labial.faps import CHANNELS
 from labial.fixed import (
     COST_SCALE,
+    NO_FLOOR,
     POSITION_MAX,
     POSITION_SCALE,
     PULL_MAX,
@@ -64,6 +65,8 @@ class ExportedModel:
     kernels: np.ndarray  #: (P, L, 13)
     kernel_stride: int
     kernel_behind: int
+    floor: np.ndarray  #: (P,) row of `floors`
+    floors: np.ndarray  #: (1 + F, 13); row 0, which the C tables leave out, is NO_FLOOR throughout
     centre: np.ndarray  #: (13,)
     shape_scale: np.ndarray  #: (13,)
     slope_scale: np.ndarray  #: (13,)
@@ -101,6 +104,7 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
     slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
     kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
+    floor, floors = _floors(model, centre)
     rows, edges = _transitions(model, predecessors)
     weights, anchors, precisions = _weights(model)
     aliases = {**model.aliases, **{label: label for label in model.phonemes}}
@@ -130,6 +134,8 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         kernels=kernels,
         kernel_stride=int(lags[1] - lags[0]) if len(lags) > 1 else 1,
         kernel_behind=_taps_behind(lags),
+        floor=floor,
+        floors=floors,
         centre=centre,
         shape_scale=shape_scale,
         slope_scale=slope_scale,
@@ -198,6 +204,20 @@ def _steps(values: np.ndarray, largest: int, what: str) -> Tuple[np.ndarray, np.
         raise ModelError(f"{what} reach {extent.max():.0f} FAP units, which is more than the tables hold")
     steps = np.rint(values * POSITION_SCALE * 256.0 / np.maximum(scale, 1)).astype(np.int64)
     return np.clip(steps, -127, 127), scale
+
+
+def _floors(model: Model, centre: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Row (P,) of each phoneme's floor, and the rows (1 + F, 13), positions."""
+    position = np.clip(np.rint(model.floor * POSITION_SCALE) - centre, -POSITION_MAX, POSITION_MAX)
+    position = np.where(np.isneginf(model.floor), NO_FLOOR, position)
+    rows = np.full((1, CHANNELS), NO_FLOOR, dtype=np.int64)
+    index = np.zeros(len(model.phonemes), dtype=np.int64)
+    for p, own in enumerate(position.astype(np.int64)):
+        same = np.flatnonzero((rows == own).all(axis=1))
+        if not len(same):
+            rows, same = np.vstack([rows, own]), np.array([len(rows)])
+        index[p] = same[0]
+    return index, rows
 
 
 def _costs(log_probability: np.ndarray, largest: int) -> np.ndarray:

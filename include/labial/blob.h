@@ -11,9 +11,10 @@
  *   bytes 12-25  format, frames_per_second, component_count (uint16); phoneme_count, class_count, state_count, silence,
  *                soft, kernel_taps, kernel_stride, kernel_behind (uint8)
  *   byte 26      which optional tables follow: 1 contexts, 2 slopes, 4 precisions
- *   byte 27      0
+ *   byte 27      floor_count (uint8)
  *   then the tables of labial_model_t in their order, each padded with zeros to a multiple of four bytes: phonemes,
- *   components, contexts, shapes, slopes, precisions, kernels; and for each channel centre (int16), shape_scale,
+ *   components, contexts, shapes, slopes, precisions, kernels,
+ *   floors; and for each channel centre (int16), shape_scale,
  *   slope_scale, kernel_scale (uint16), then emissions, states, rows, edges
  */
 #ifndef LABIAL_BLOB_H

@@ -35,6 +35,7 @@ extern "C" {
 #define LABIAL_PHONEME_COMPONENTS_MAX 8  /* mixture components of one phoneme */
 #define LABIAL_STATES_MAX 64             /* codebook entries of one channel */
 #define LABIAL_KERNEL_TAPS_MAX 32        /* taps of one temporal kernel */
+#define LABIAL_NO_FLOOR (-16384)         /* in `floors`: below every position */
 #define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
 #define LABIAL_WEIGHT_SUM_MAX 262143     /* the largest diagonal element that equation 3 may have */
 #define LABIAL_WEIGHT_MIN 8              /* the least that holds a state in place: weight[0] + anchor */
@@ -46,7 +47,7 @@ typedef struct {
     uint8_t component_count;  /* 1 .. LABIAL_PHONEME_COMPONENTS_MAX */
     uint8_t viseme_class;     /* below class_count */
     uint8_t boundary;         /* 1 when a unit begins and ends here (vowels, p, b, m), else 0 */
-    uint8_t reserved;         /* 0 */
+    uint8_t floor;            /* 1 + its row of `floors`, 0 without */
 } labial_phoneme_t;
 
 /* A mixture component's duration model (equation 2): log a_c + log N(d; mu_c, var_c) as a cost. */
@@ -98,6 +99,7 @@ typedef struct {
     uint8_t kernel_taps;        /* L: 0 .. LABIAL_KERNEL_TAPS_MAX; 0 without temporal kernels */
     uint8_t kernel_stride;      /* frames from tap to tap */
     uint8_t kernel_behind;      /* taps that lie before the frame: tap i is at (i - kernel_behind) * kernel_stride */
+    uint8_t floor_count;        /* F: rows of `floors`, 0 .. 255 */
     const labial_phoneme_t *phonemes;     /* P */
     const labial_component_t *components; /* N */
     const uint8_t *contexts;   /* N x 2 x V, cost of the previous and of the next phoneme's class; optional */
@@ -105,6 +107,8 @@ typedef struct {
     const int8_t *slopes;      /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
     const uint8_t *precisions; /* N x 13, weight with which the phoneme ties its frames to the target; optional */
     const int8_t *kernels;     /* P x L x 13, in steps of kernel_scale; null when L is 0 */
+    const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below: how p, b, m close the
+                                * lips whatever their neighbours do; LABIAL_NO_FLOOR where none; null when F is 0 */
     const labial_channel_t *channels; /* 13 */
 } labial_model_t;
 

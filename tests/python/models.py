@@ -51,6 +51,7 @@ def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: i
         log_next=log_share((count, classes)) if own else np.zeros((count, 0)),
         kernel=rng.normal(0, 0.05, (phonemes, len(taps), CHANNELS)) * reach,
         kernel_lag=taps,
+        floor=np.where(rng.random((phonemes, CHANNELS)) < (0.15 if own else 0.0), 0.3 * reach, -np.inf),
         decode_mean=mean,
         decode_variance=variance,
         state_mean=state_mean,

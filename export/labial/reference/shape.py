@@ -38,4 +38,4 @@ def targets(tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int]
     reach = int(np.abs(tables.lags).max()) if len(tables.lags) else 0
     padded = np.concatenate([np.full(reach, tables.silence), labels, np.full(reach, tables.silence)]).astype(np.int64)
     at = np.arange(len(labels))[:, None] + reach + tables.lags[None, :]
-    return Targets(tables.targets(shapes[index], padded[at]), components[index], counts[index])
+    return Targets(tables.targets(shapes[index], labels, padded[at]), components[index], counts[index])

@@ -64,10 +64,11 @@ class FloatTables:
         shapes = model.shape[own] + model.slope[own] * np.clip(deviation, -limit, limit)[:, None]
         return share @ shapes, int(self._first[phoneme]) + best
 
-    def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
-        """(T, 13) targets: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to them."""
+    def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+        """(T, 13) targets: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to them, but not
+        below the floors of `labels` (T,), the frames' own phonemes."""
         taps = np.arange(neighbours.shape[1])
-        return shapes + self.model.kernel[neighbours, taps].sum(axis=1)
+        return np.maximum(shapes + self.model.kernel[neighbours, taps].sum(axis=1), self.model.floor[labels])
 
     def emission(self, targets: np.ndarray) -> np.ndarray:
         """(T, 13, Q) cost of every state for the targets."""
@@ -130,12 +131,13 @@ class ExportedTables:
             position = position + rounded_shift(((deviation @ model.slopes[own]) >> 4) * model.slope_scale, 16)
         return np.clip(position, -POSITION_MAX, POSITION_MAX), first + best
 
-    def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.targets`, in positions."""
         model = self.exported
         taps = np.arange(neighbours.shape[1])
         added = rounded_shift(model.kernels[neighbours, taps].sum(axis=1) * model.kernel_scale, 8)
-        return np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
+        held = np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
+        return np.maximum(held, model.floors[model.floor[labels]])
 
     def emission(self, targets: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.emission`, in 1/32 nat."""

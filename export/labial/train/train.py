@@ -208,6 +208,7 @@ def train(
         log_next=tables.log_next,
         kernel=kernel,
         kernel_lag=lag,
+        floor=np.full((phonemes, CHANNELS), -np.inf),
         decode_mean=states.decode_mean,
         decode_variance=states.decode_variance,
         state_mean=states.state_mean,

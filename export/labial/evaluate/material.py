@@ -1,0 +1,97 @@
+"""What methods are given and what they are judged by: timelines of phonemes, and the human motion beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Iterable, List, Optional, Tuple
+
+import numpy as np
+
+from labial.corpus import resample
+from labial.corpus.episode import Episode
+from labial.errors import LabialError
+from labial.phonesets import PhoneSet
+from labial.reference.stream import frame_counts
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """All that a method is told of an utterance of S segments and T frames: phonemes and whole milliseconds."""
+
+    phoneme: np.ndarray  #: (S,) int64, index into the phone set
+    milliseconds: np.ndarray  #: (S,) int64
+    length: np.ndarray  #: (S,) int64 frames; sums to T; 0 for a segment too short for a frame of its own
+
+    @property
+    def frames(self) -> int:
+        """T."""
+        return int(self.length.sum())
+
+    @property
+    def stream(self) -> List[Tuple[int, int]]:
+        """Pairs of phoneme number and milliseconds, as the library takes them."""
+        return [(int(p), int(ms)) for p, ms in zip(self.phoneme, self.milliseconds)]
+
+    @cached_property
+    def held(self) -> np.ndarray:
+        """(H,) int64: the segments that have frames; the others leave no trace in any method."""
+        return np.flatnonzero(self.length > 0)
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """(S,) int64: first frame of each segment."""
+        return np.cumsum(self.length) - self.length
+
+    @cached_property
+    def segment_at(self) -> np.ndarray:
+        """(T,) int64: the segment of each frame."""
+        return np.repeat(np.arange(len(self.length)), self.length)
+
+    @cached_property
+    def phoneme_at(self) -> np.ndarray:
+        """(T,) int64: the phoneme of each frame."""
+        return self.phoneme[self.segment_at]
+
+
+@dataclass(frozen=True)
+class Utterance:
+    """An episode on the frame grid. Frame t of the human motion is sampled at (t + 1/2) / fps."""
+
+    episode: Episode
+    timeline: Timeline
+    words: Tuple[Optional[str], ...]  #: (S,)
+    human: np.ndarray  #: (T, 13) FAP
+
+    def in_words(self, words: Iterable[str]) -> np.ndarray:
+        """(T,) bool: frames of segments that belong to one of `words`."""
+        wanted = set(words)
+        return np.array([word in wanted for word in self.words], dtype=bool)[self.timeline.segment_at]
+
+
+def timeline(phonemes: Iterable[int], milliseconds: Iterable[int], fps: int) -> Timeline:
+    """The timeline of a stream of phoneme numbers and durations."""
+    durations = np.array(list(milliseconds), dtype=np.int64)
+    counts = frame_counts([int(item) for item in durations], fps)
+    return Timeline(np.array(list(phonemes), dtype=np.int64), durations, np.array(counts, dtype=np.int64))
+
+
+def utterance(episode: Episode, phone_set: PhoneSet, fps: int) -> Utterance:
+    """One episode. Boundaries are rounded to milliseconds, so that rounding never adds up; where the frames that this
+    leaves differ from those of the recording, the last frame is repeated or left out."""
+    number = {label: index for index, label in enumerate(phone_set.phonemes)}
+    unknown = sorted({segment.label for segment in episode.segments} - set(number))
+    if unknown:
+        raise LabialError(f"{episode.name}: labels {', '.join(unknown)} are not in the {phone_set.kind} phone set")
+    human = resample(episode, fps).frames
+    origin = episode.segments[0].start
+    bounds = [0, *(round(1000 * (segment.end - origin)) for segment in episode.segments)]
+    given = timeline((number[segment.label] for segment in episode.segments), np.diff(bounds), fps)
+    aligned = human[np.minimum(np.arange(given.frames), len(human) - 1)]
+    return Utterance(episode, given, tuple(segment.word for segment in episode.segments), aligned)
+
+
+def utterances(episodes: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Utterance]:
+    """All episodes of three frames or more; shorter ones have no acceleration to learn from or to judge."""
+    result = [utterance(episode, phone_set, fps) for episode in episodes]
+    return [item for item in result if item.timeline.frames >= 3]

@@ -1,0 +1,50 @@
+/*
+ * laughter_synthetic.h - the laughter model, method labial, 50 frames per second. Written by labial export 0.1.0;
+ * do not edit. Trained on a synthetic corpus: amplitudes are design choices, timings follow published facts.
+ */
+#ifndef LABIAL_MODEL_LAUGHTER_SYNTHETIC_H
+#define LABIAL_MODEL_LAUGHTER_SYNTHETIC_H
+
+#include "labial/labial.h"
+#include "labial/names.h"
+
+#if LABIAL_MODEL_FORMAT != 1
+#error "laughter_synthetic was exported for another version of Labial: run labial export again."
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LAUGHTER_SYNTHETIC_FPS 50
+#define LAUGHTER_SYNTHETIC_PHONEMES 12
+#define LAUGHTER_SYNTHETIC_STATES 50
+#define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(LAUGHTER_SYNTHETIC_STATES)
+
+/* Phoneme numbers. */
+enum {
+    LAUGHTER_SYNTHETIC_SILENCE = 0,
+    LAUGHTER_SYNTHETIC_NE = 1,
+    LAUGHTER_SYNTHETIC_CLICK = 2,
+    LAUGHTER_SYNTHETIC_NASAL = 3,
+    LAUGHTER_SYNTHETIC_PLOSIVE = 4,
+    LAUGHTER_SYNTHETIC_FRICATIVE = 5,
+    LAUGHTER_SYNTHETIC_IC = 6,
+    LAUGHTER_SYNTHETIC_E = 7,
+    LAUGHTER_SYNTHETIC_O = 8,
+    LAUGHTER_SYNTHETIC_GRUNT = 9,
+    LAUGHTER_SYNTHETIC_CACKLE = 10,
+    LAUGHTER_SYNTHETIC_A = 11
+};
+
+/* The model, 31012 bytes on a 32-bit target. */
+extern const labial_model_t laughter_synthetic;
+
+/* Its labels and aliases; linked only when used. */
+extern const labial_names_t laughter_synthetic_names;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
