@@ -37,8 +37,10 @@ enum { STAGE_FIND, STAGE_TARGET, STAGE_SEARCH, STAGE_SOLVE, STAGE_JOIN };
 #define COST_SOLVE(frames) (1u + (frames) / 2u)
 #define COST_JOIN 1u
 
-/* The share of one tick: two frames' worth of every stage. */
-#define TICK_SHARE (2u * (COST_TARGET + COST_JOIN + LABIAL_CHANNELS * COST_SEARCH + LABIAL_CHANNELS / 2u + 1u))
+/* The share of one tick: what the shortest pieces take, two frames of which one is delivered. */
+#define TICK_SHARE                                                                  \
+    (COST_FIND + 2u * (COST_TARGET + LABIAL_CHANNELS * COST_SEARCH + COST_JOIN) +   \
+     LABIAL_CHANNELS * COST_SOLVE(2u))
 
 /* The workspace's parts, in the order that LABIAL_WORKSPACE_SIZE counts them. */
 typedef struct {

@@ -9,10 +9,11 @@
  *     m_t      = z_t / D_t - lambda_t m_(t+1) - kappa_t m_(t+2)         (backwards)
  *
  * with a, b, c the diagonals and r the right-hand side. Formats: weights, and so a, b, c, are integers; D, e, c are in
- * Q12; r and z in weight times Q4 FAP; lambda and kappa in Q23; z / D and m in Q12 FAP. What keeps this inside 32 bits:
+ * Q12; r and z in weight times Q4 FAP; lambda and kappa in Q28; z / D and m in Q12 FAP. What keeps this inside 32 bits:
  * every diagonal element is at most LABIAL_WEIGHT_SUM_MAX, every |r| at most LABIAL_PULL_MAX, and every frame is held by
- * at least LABIAL_WEIGHT_MIN, hence 8 <= D < 2^18 and |lambda| <= sqrt(2^18 / 8) < 182; |kappa| <= 1 because D_t holds
- * all of the row that gives c_t.
+ * at least LABIAL_WEIGHT_MIN, hence 8 <= D < 2^18; |kappa| <= 1 because D_t holds all of the row that gives c_t; and
+ * |lambda| <= 2 as long as earlier frames, given this one, are expected no farther from zero than it is, which is what
+ * holds, equal neighbours and straight lines all amount to. Were it ever otherwise, lambda is held below 8.
  */
 #include "trajectory.h"
 
@@ -111,17 +112,18 @@ void labial_trajectory_solve(const labial_channel_t *channel, const labial_ties_
 
         a *= 1 << 12;
         c *= 1 << 12;
-        e = labial_sub(b * (1 << 12), labial_mulshift(kappa1, e1, 23));
-        d = labial_sub(a, labial_add(labial_mulshift(lambda1, e1, 23), labial_mulshift(kappa2, c2, 23)));
+        e = labial_sub(b * (1 << 12), labial_mulshift(kappa1, e1, 28));
+        d = labial_sub(a, labial_add(labial_mulshift(lambda1, e1, 28), labial_mulshift(kappa2, c2, 28)));
         if (d < (int32_t)1 << 12) /* not with a model that was checked; it keeps what follows defined */
             d = (int32_t)1 << 12;
-        z = labial_sub(r, labial_add(labial_mulshift(lambda1, z1, 23), labial_mulshift(kappa2, z2, 23)));
+        e = labial_clamp(e, d < (int32_t)1 << 27 ? 8 * d - 1 : INT32_MAX);
+        z = labial_sub(r, labial_add(labial_mulshift(lambda1, z1, 28), labial_mulshift(kappa2, z2, 28)));
 
         shift = headroom(d);
         inverse = reciprocal(d << shift);
         kappa2 = kappa1;
-        lambda1 = labial_scale(labial_mulshift(e, inverse, 30), shift - 7);
-        kappa1 = labial_scale(labial_mulshift(c, inverse, 30), shift - 7);
+        lambda1 = labial_scale(labial_mulshift(e, inverse, 30), shift - 2);
+        kappa1 = labial_scale(labial_mulshift(c, inverse, 30), shift - 2);
         out[0] = lambda1;
         out[1] = kappa1;
         out[2] = labial_scale(labial_mulshift(z, inverse, 30), shift - 10);
@@ -141,7 +143,7 @@ void labial_trajectory_solve(const labial_channel_t *channel, const labial_ties_
     for (t = length; t-- > 0;) {
         int32_t m;
         out -= 3;
-        m = labial_sub(out[2], labial_add(labial_mulshift(out[0], m1, 23), labial_mulshift(out[1], m2, 23)));
+        m = labial_sub(out[2], labial_add(labial_mulshift(out[0], m1, 28), labial_mulshift(out[1], m2, 28)));
         m2 = m1;
         m1 = m;
         positions[(size_t)t * LABIAL_CHANNELS] =

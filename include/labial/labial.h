@@ -69,7 +69,8 @@ extern "C" {
 #define LABIAL_PREROLL (LABIAL_WINDOW / 2)
 #endif
 
-/* Models that phonemes of one stream may wait for at the same time. */
+/* Models whose phonemes a stream can hold at the same time. A model makes room for another when its phonemes have been
+ * decoded and are no longer needed as context. */
 #ifndef LABIAL_MODELS
 #define LABIAL_MODELS 2
 #endif
@@ -98,7 +99,7 @@ extern "C" {
     X(LABIAL_ERROR_DURATION, -7, "the duration exceeds LABIAL_DURATION_MAX")                                     \
     X(LABIAL_ERROR_FULL, -8, "the queue is full; tick and push again")                                           \
     X(LABIAL_ERROR_RATE, -9, "the model's frame rate is not the stream's")                                       \
-    X(LABIAL_ERROR_MODELS, -10, "too many models wait in the queue; tick and try again")                         \
+    X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still held")                         \
     X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")
 
 typedef enum {

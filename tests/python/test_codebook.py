@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 
 import numpy as np
-import pytest
+
 from labial.train.codebook import (
     INITIAL_COUNT,
     NEIGHBOUR_COUNT,
@@ -16,6 +16,8 @@ from labial.train.codebook import (
     train_channel,
     transitions,
 )
+from oracles import sptk
+
 
 def motion(seed: int, frames: int = 3000) -> np.ndarray:
     """(frames,) a smooth wandering channel in FAP."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+
 from labial.train.kernels import Penalties, add_kernels, fit_kernels, lags, tapped
 from labial.train.selection import Choice, shapes
 from labial.train.sequences import Sequence
@@ -67,7 +68,8 @@ def planted(seed: int, episodes: int):
 
 
 def test_lags_and_taps_by_hand():
-    # Catches lags with the sign turned round or beyond the device's limits, and neighbours beyond the ends that are not silence.
+    # Catches lags with the sign turned round or beyond the device's limits, and neighbours beyond the ends that are
+    # not silence.
     np.testing.assert_array_equal(lags(50), np.arange(-18, 19, 2))
     np.testing.assert_array_equal(lags(25), np.arange(-9, 10))
     np.testing.assert_array_equal(lags(100), np.arange(-20, 21, 4))  # the device sees 20 frames to each side

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.special import logsumexp
+from sklearn.mixture import GaussianMixture
+
 from labial.errors import LabialError
 from labial.phonesets import SPEECH
 from labial.train.context import log_normal
@@ -18,8 +21,6 @@ from labial.train.shapes import (
     fit_mixture,
     shape_tables,
 )
-from scipy.special import logsumexp
-from sklearn.mixture import GaussianMixture
 
 
 def two_clusters(rng: np.random.Generator, count: int) -> np.ndarray:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from labial.corpus import Episode, Segment
 from labial.errors import LabialError
 from labial.model import Model, load, save

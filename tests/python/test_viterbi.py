@@ -6,6 +6,7 @@ import itertools
 
 import numpy as np
 from hmmlearn.hmm import GaussianHMM
+
 from labial.reference.viterbi import path_cost, viterbi
 
 

@@ -1,0 +1,1 @@
+"""The methods that are compared, each with ``fit(training)`` that returns a predictor."""

@@ -1,0 +1,95 @@
+"""Ridge regression of motion on features of the timeline; what the regression baselines share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Sequence
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse import csr_matrix, diags, vstack
+
+from labial.evaluate.material import Timeline, Utterance
+from labial.evaluate.training import Training, best, validation_error
+
+#: Weight of a frame of silence, which is not judged: enough to keep the mouth at rest in pauses.
+SILENCE_WEIGHT = 0.1
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Features of T frames: sparse ones (T, K1), then dense ones (T, K2)."""
+
+    sparse: csr_matrix
+    dense: np.ndarray
+
+    def __matmul__(self, weights: np.ndarray) -> np.ndarray:
+        """(T, 13) for weights (K1 + K2, 13)."""
+        count = self.sparse.shape[1]
+        return self.sparse @ weights[:count] + self.dense @ weights[count:]
+
+
+Design = Callable[[Timeline], Rows]
+
+
+@dataclass(frozen=True)
+class Normal:
+    """Normal equations of K features: `gram` (K, K) and `cross` (K, 13)."""
+
+    gram: np.ndarray
+    cross: np.ndarray
+
+
+def normal(design: Design, utterances: Sequence[Utterance], base: np.ndarray, silence: int) -> Normal:
+    """The weighted normal equations of the human motion less `base` (13,)."""
+    rows = [design(item.timeline) for item in utterances]
+    sparse, dense = vstack([row.sparse for row in rows]).tocsr(), np.concatenate([row.dense for row in rows])
+    phoneme_at = np.concatenate([item.timeline.phoneme_at for item in utterances])
+    weight = np.where(phoneme_at == silence, SILENCE_WEIGHT, 1.0)
+    motion = np.concatenate([item.human for item in utterances]) - base
+    weighted = (diags(weight) @ sparse).T.tocsr()
+    heavy = dense * weight[:, None]
+    mixed = weighted @ dense
+    gram = np.block([[(weighted @ sparse).toarray(), mixed], [mixed.T, heavy.T @ dense]])
+    return Normal(gram, np.concatenate([weighted @ motion, heavy.T @ motion]))
+
+
+def solve(equations: Normal, penalty: np.ndarray) -> np.ndarray:
+    """(K, 13) weights of least squared error plus penalty (K,) times their squares."""
+    return cho_solve(cho_factor(equations.gram + np.diag(penalty)), equations.cross)
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Motion that is linear in the features."""
+
+    design: Design
+    base: np.ndarray  #: (13,) FAP
+    weights: np.ndarray  #: (K, 13)
+
+    def predict(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13)."""
+        return self.base + self.design(timeline) @ self.weights
+
+
+def fit(
+    training: Training, make_design: Callable[[Training], Design], penalties: Sequence[np.ndarray]
+) -> Linear:
+    """Chooses among `penalties`, each (K,), on the inner validation part, then fits on the whole training part.
+
+    `make_design` makes the features of a part, for they may themselves be trained.
+    """
+    frames = [item.human[item.timeline.phoneme_at != training.silence] for item in training.utterances]
+    base = np.concatenate(frames).mean(axis=0)
+    inner, held_out = training.inner
+    rough = make_design(inner)
+    equations = normal(rough, inner.utterances, base, training.silence)
+    rows = {id(item.timeline): rough(item.timeline) for item in held_out}
+
+    def error(penalty: np.ndarray) -> float:
+        weights = solve(equations, penalty)
+        return validation_error(training, held_out, lambda timeline: base + rows[id(timeline)] @ weights)
+
+    penalty = best(penalties, error)
+    design = make_design(training)
+    return Linear(design, base, solve(normal(design, training.utterances, base, training.silence), penalty))

@@ -1,0 +1,70 @@
+"""Baseline: the step stream, each phoneme's selected mean shape held for the phoneme (equation 2 of the paper).
+
+Also the step stream of the context-aware mixtures (section 2 of the method), which other baselines build on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict
+
+import numpy as np
+
+from labial.evaluate.material import Timeline
+from labial.evaluate.training import Training
+from labial.train.context import fit_context
+from labial.train.selection import choose, shapes
+from labial.train.sequences import neighbours, occurrences, sequences
+from labial.train.shapes import Mixture, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
+
+#: Components of each phoneme's mixture (C of equation 1).
+COMPONENTS = 5
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Selected shapes; hard and without context as the paper has it, or soft and with it."""
+
+    tables: ShapeTables
+    phoneme_class: np.ndarray  #: (P,)
+    silence: int
+    soft: bool
+
+    def selected(self, timeline: Timeline) -> np.ndarray:
+        """(H, 13) FAP: the shape of every segment that has frames."""
+        phoneme = timeline.phoneme[timeline.held]
+        seconds = timeline.milliseconds[timeline.held] / 1000.0
+        before, after = neighbours(phoneme, self.phoneme_class, self.silence)
+        return shapes(self.tables, choose(self.tables, phoneme, seconds, before, after, soft=self.soft))
+
+    def predict(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13) the shapes, each for the length of its segment."""
+        return np.repeat(self.selected(timeline), timeline.length[timeline.held], axis=0)
+
+
+def _fit(training: Training, context: bool) -> Steps:
+    phone_set = training.phone_set
+    material = sequences([item.episode for item in training.utterances], phone_set, training.fps)
+    items = occurrences(material, phone_set)
+    plan = back_off(np.bincount(items.phoneme, minlength=len(phone_set.phonemes)), phone_set)
+    vectors = items.vectors()
+    scale = corpus_scale(vectors)
+    fitted: Dict[object, Mixture] = {}  # by the phonemes whose samples it is made of
+    for members in filter(None, plan.members):
+        if members in fitted:
+            continue
+        rows = np.flatnonzero(np.isin(items.phoneme, members))
+        mixture = fit_mixture(vectors[rows], scale, COMPONENTS, training.seed)
+        if context:
+            mixture = fit_context(
+                mixture, vectors[rows], scale, items.previous[rows], items.next[rows], len(phone_set.classes)
+            )
+        fitted[members] = mixture
+    mixtures = [fitted[plan.members[stand_in]] for stand_in in plan.stand_in]
+    tables = shape_tables(mixtures, conditional=context)
+    return Steps(tables, np.array(phone_set.phoneme_class, dtype=np.int64), training.silence, context)
+
+
+def fit(training: Training, context: bool = False) -> Steps:
+    """The step stream of equation 2; with `context` that of the context-aware mixtures."""
+    return training.derived(("steps", context), lambda: _fit(training, context))

@@ -1,0 +1,198 @@
+"""The measures of section 5: one method's motion on the test part, held against the human's, as named numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Sequence
+
+import numpy as np
+
+from labial.evaluate.material import Utterance
+from labial.evaluate.trajectories import (
+    JUDGED,
+    JUDGED_NAMES,
+    PARAMETERS,
+    amplitude,
+    correlation,
+    differences,
+    joins,
+    labial_parameters,
+)
+from labial.phonesets import PhoneSet
+from labial.reference.units import pieces
+
+#: Lips count as closed below this percentile of the openness of all training frames but silence.
+CLOSED_PERCENTILE = 20.0
+
+#: And as firmly closed below this percentile of the human's least openness in the training part's p, b and m.
+FIRM_PERCENTILE = 50.0
+
+#: A closure is looked for in its segment and this many seconds to both sides.
+CLOSURE_REACH = 0.04
+
+#: The viseme class whose phonemes close the lips; a phone set without it has no closure rates.
+CLOSED_CLASS = "bilabial"
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What the training part says about the size of things."""
+
+    maximum: np.ndarray  #: (4,) largest absolute value of each labial parameter but in silence, FAP
+    closed: float  #: openness below which lips count as closed, FAP
+    firm: float  #: and as firmly closed, FAP; NaN without bilabials
+
+
+def silence_of(phone_set: PhoneSet) -> int:
+    """The number of the silence phoneme."""
+    return phone_set.phonemes.index(phone_set.silence)
+
+
+def _bilabials(phone_set: PhoneSet) -> np.ndarray:
+    """(P,) bool: phonemes that close the lips."""
+    return np.array([phone_set.classes[c] == CLOSED_CLASS for c in phone_set.phoneme_class], dtype=bool)
+
+
+def least_openness(item: Utterance, frames: np.ndarray, mask: np.ndarray, phone_set: PhoneSet, fps: int) -> np.ndarray:
+    """(n,) FAP: the least openness of each p, b, m that has a judged frame, within CLOSURE_REACH of its segment."""
+    openness = labial_parameters(frames)[:, 0]
+    reach, given, closing = round(CLOSURE_REACH * fps), item.timeline, _bilabials(phone_set)
+    found = []
+    for segment in given.held[closing[given.phoneme[given.held]]]:
+        begin = int(given.start[segment])
+        end = begin + int(given.length[segment])
+        if mask[begin:end].any():
+            found.append(openness[max(begin - reach, 0) : end + reach].min())
+    return np.array(found)
+
+
+def measure_scale(training: Sequence[Utterance], phone_set: PhoneSet, fps: int) -> Scale:
+    """The scale of a training part, from human motion outside silence."""
+    silence = silence_of(phone_set)
+    masks = [item.timeline.phoneme_at != silence for item in training]
+    speech = np.concatenate([labial_parameters(item.human)[mask] for item, mask in zip(training, masks)])
+    least = np.concatenate(
+        [least_openness(item, item.human, mask, phone_set, fps) for item, mask in zip(training, masks)]
+    )
+    return Scale(
+        maximum=np.maximum(np.abs(speech).max(axis=0), 1e-9),
+        closed=float(np.percentile(speech[:, 0], CLOSED_PERCENTILE)),
+        firm=float(np.percentile(least, FIRM_PERCENTILE)) if len(least) else float("nan"),
+    )
+
+
+def mean_difference(scale: Scale, human: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """(4,) the paper's diff, |ori - syn| / maximum, of frames (T, 13)."""
+    return np.abs(labial_parameters(human) - labial_parameters(motion)).mean(axis=0) / scale.maximum
+
+
+class Judge:
+    """Holds methods to the human motion of a test part."""
+
+    def __init__(
+        self,
+        test: Sequence[Utterance],
+        masks: Sequence[np.ndarray],
+        scale: Scale,
+        phone_set: PhoneSet,
+        fps: int,
+    ) -> None:
+        """`masks`: per utterance (T,) bool, the frames that are judged."""
+        self._test, self._masks, self._scale = list(test), list(masks), scale
+        self._phone_set, self._fps = phone_set, fps
+        self._human = self._pooled([item.human for item in test])
+        self._class_at = np.concatenate(
+            [np.array(phone_set.phoneme_class)[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)]
+        )
+        self._joins = [self._unit_joins(item) for item in test]
+        self._human_jerk = self._jerk([item.human for item in test])
+
+    @property
+    def frames(self) -> int:
+        """How many frames are judged."""
+        return len(self._human)
+
+    def _pooled(self, motion: Sequence[np.ndarray]) -> np.ndarray:
+        return np.concatenate([frames[mask] for frames, mask in zip(motion, self._masks)])
+
+    def _unit_joins(self, item: Utterance) -> np.ndarray:
+        """(T - 2,) bool: see :func:`joins`. Methods without units are judged at the same frames."""
+        given = item.timeline
+        boundary = [self._phone_set.boundary[p] for p in given.phoneme]
+        cut = pieces([int(count) for count in given.length], boundary)
+        return joins([piece.begin for piece in cut[1:]], [piece.fade_in for piece in cut[1:]], given.frames)
+
+    def _jerk(self, motion: Sequence[np.ndarray]) -> np.ndarray:
+        """(4,) RMS third difference of the judged channels, FAP per frame cubed."""
+        third = np.concatenate([differences(f[:, JUDGED], mask, 3) for f, mask in zip(motion, self._masks)])
+        return np.sqrt((third**2).mean(axis=0)) if len(third) else np.full(len(JUDGED), np.nan)
+
+    def _seams(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
+        at, away = [], []
+        for frames, mask, touched in zip(motion, self._masks, self._joins):
+            if len(frames) < 3:
+                continue
+            size = np.abs(np.diff(frames[:, JUDGED], n=2, axis=0))
+            judged = np.lib.stride_tricks.sliding_window_view(mask, 3).all(axis=1)
+            at.append(size[judged & touched])
+            away.append(size[judged & ~touched])
+        here = np.concatenate(at) if at else np.zeros((0, len(JUDGED)))
+        there = np.concatenate(away) if away else np.zeros((0, len(JUDGED)))
+        if not len(here) or not len(there):
+            return {"seam/mean": float("nan"), "seam/largest": float("nan")}
+        return {
+            "seam/mean": _mean_ratio(here.mean(axis=0), there.mean(axis=0)),
+            "seam/largest": _mean_ratio(here.max(axis=0), there.max(axis=0)),
+        }
+
+    def _closure(self, motion: Sequence[np.ndarray]) -> np.ndarray:
+        """(2,) share of p, b, m whose lips close, and close firmly."""
+        least = [
+            least_openness(item, frames, mask, self._phone_set, self._fps)
+            for item, frames, mask in zip(self._test, motion, self._masks)
+        ]
+        found = np.concatenate(least) if least else np.zeros(0)
+        if not len(found):
+            return np.full(2, np.nan)
+        return np.array([(found < self._scale.closed).mean(), (found < self._scale.firm).mean()])
+
+    def measure(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
+        """All measures of a method's motion, one (T, 13) per utterance of the test part, by name."""
+        found = self._pooled(motion)
+        human, judged = self._human[:, JUDGED], found[:, JUDGED]
+        apart = np.abs(labial_parameters(self._human) - labial_parameters(found)) / self._scale.maximum
+        result = _named("diff", PARAMETERS, apart.mean(axis=0))
+        result.update(_named("correlation", JUDGED_NAMES, correlation(human, judged)))
+        result.update(_named("amplitude", JUDGED_NAMES, amplitude(human, judged)))
+        closed, by_human = self._closure(motion), self._closure([item.human for item in self._test])
+        for name, own, reference in zip(("closure", "firm closure"), closed, by_human):
+            result[f"{name}/rate"] = float(own)
+            result[f"{name}/of human"] = float(own / reference) if reference > 0 else float("nan")
+        result["jitter"] = _mean_ratio(self._jerk(motion), self._human_jerk)
+        result.update(self._seams(motion))
+        for index, name in enumerate(self._phone_set.classes):
+            own = self._class_at == index
+            if own.any():
+                result[f"class/{name}"] = float(apart[own].mean())
+        return result
+
+
+def _named(what: str, names: Sequence[str], values: np.ndarray) -> Dict[str, float]:
+    result = {f"{what}/{name}": float(value) for name, value in zip(names, values)}
+    result[f"{what}/mean"] = float(np.mean(values))
+    return result
+
+
+def _mean_ratio(own: np.ndarray, other: np.ndarray) -> float:
+    """Mean over the channels of own / other; those where `other` is still are left out, 1 where both are."""
+    moving = other > 1e-12
+    if not moving.any():
+        return 1.0 if not (own > 1e-12).any() else float("nan")
+    return float((own[moving] / other[moving]).mean())
+
+
+def judged_frames(test: Sequence[Utterance], phone_set: PhoneSet, words: Sequence[str] = ()) -> List[np.ndarray]:
+    """Per utterance (T,) bool: all frames but silence, of `words` alone where any are given."""
+    silence = silence_of(phone_set)
+    masks = [item.timeline.phoneme_at != silence for item in test]
+    return [mask & item.in_words(words) for item, mask in zip(test, masks)] if words else masks

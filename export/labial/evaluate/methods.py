@@ -1,0 +1,57 @@
+"""The methods by name, in the order of the tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, List, Sequence, Tuple
+
+import numpy as np
+
+from labial.errors import LabialError
+from labial.evaluate.baselines import blur, dominance, hmm, mean, regression, steps, trained, window
+from labial.evaluate.material import Timeline
+from labial.evaluate.training import Predictor, Training
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method that can be fitted; `title` is what tables call it."""
+
+    name: str
+    title: str
+    fit: Callable[[Training], Predictor]
+
+
+METHODS: Tuple[Method, ...] = (
+    Method("mean", "mean shape", mean.fit),
+    Method("steps", "steps (eq. 2)", steps.fit),
+    Method("blur", "steps + Gaussian blur", blur.fit),
+    Method("cohen_massaro", "Cohen-Massaro dominance", dominance.fit),
+    Method("regression", "linear regression", regression.fit),
+    Method("ridge_phonemes", "ridge, phoneme window", window.fit_phonemes),
+    Method("ridge_classes", "ridge, class window + shapes", window.fit_classes),
+    Method("hmm_synthesis", "HMM synthesis", hmm.fit),
+    Method("paper", "paper", trained.fit_paper),
+    Method("labial", "Labial, float64", trained.fit_labial),
+    Method("device", "Labial, device", trained.fit_device),
+)
+
+
+def select(names: str) -> List[Method]:
+    """The methods of a comma-separated list, in the tables' order; "all" for every one."""
+    wanted = [name.strip() for name in names.split(",") if name.strip()]
+    known = {method.name for method in METHODS}
+    unknown = [name for name in wanted if name not in known and name != "all"]
+    if unknown or not wanted:
+        raise LabialError(f"methods {names!r}: not among all, {', '.join(method.name for method in METHODS)}")
+    return [method for method in METHODS if "all" in wanted or method.name in wanted]
+
+
+def predict_all(predictor: Predictor, timelines: Sequence[Timeline]) -> List[np.ndarray]:
+    """(T, 13) of every timeline, all at once where the predictor can. Raises LabialError for what is no motion."""
+    at_once = getattr(predictor, "predict_all", None)
+    motion = at_once(timelines) if at_once else [predictor.predict(item) for item in timelines]
+    for frames, item in zip(motion, timelines):
+        if len(frames) != item.frames or not np.isfinite(frames).all():
+            raise LabialError(f"a method made {len(frames)} frames of {item.frames}, or such as are not finite")
+    return motion

@@ -1,0 +1,126 @@
+"""The protocol of section 5: fit every method on each split's training part, measure it on the rest."""
+
+from __future__ import annotations
+
+import multiprocessing
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from queue import Empty
+from typing import Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+from tqdm import tqdm
+
+from labial.corpus.episode import Episode
+from labial.errors import LabialError
+from labial.evaluate.baselines import steps
+from labial.evaluate.material import Utterance, utterances
+from labial.evaluate.measures import Judge, judged_frames
+from labial.evaluate.methods import predict_all, select
+from labial.evaluate.splits import Split, make_splits
+from labial.evaluate.training import Training
+from labial.phonesets import PHONE_SETS
+
+#: The human's own motion goes through the same measures under this name.
+HUMAN = "human"
+
+
+@dataclass(frozen=True)
+class Options:
+    """What an evaluation is asked to do."""
+
+    kind: str = "speech"
+    methods: str = "all"
+    splits: int = 20
+    seed: int = 0
+    fps: int = 50
+    held_out: Tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Example:
+    """An utterance of the test part and what every method made of it, for the plots; (T, 13) each, FAP."""
+
+    utterance: Utterance
+    steps: np.ndarray
+    motion: Dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One split: measures by method and name; processor seconds by method, shared work with the first that asks."""
+
+    split: Split
+    frames: int  #: that are judged
+    measures: Dict[str, Dict[str, float]]
+    seconds: Dict[str, float] = field(compare=False)
+    example: Optional[Example] = None
+
+
+def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell=lambda: None) -> Outcome:
+    """Fits and measures all methods on one split. `tell` is called after each method."""
+    phone_set = PHONE_SETS[options.kind]
+    training = Training([corpus[i] for i in split.training], phone_set, options.fps, options.seed + split.number)
+    masks = judged_frames([corpus[i] for i in split.test], phone_set, split.words or ())
+    judged = [(corpus[i], mask) for i, mask in zip(split.test, masks) if mask.any()]
+    if not judged:
+        raise LabialError(f"split {split.number}: no frame to judge")
+    test, kept = [item for item, _ in judged], [mask for _, mask in judged]
+    judge = Judge(test, kept, training.scale, phone_set, options.fps)
+    measures = {HUMAN: judge.measure([item.human for item in test])}
+    motion: Dict[str, np.ndarray] = {}
+    seconds: Dict[str, float] = {}
+    for method in select(options.methods):
+        begun = time.process_time()
+        made = predict_all(method.fit(training), [item.timeline for item in test])
+        measures[method.name] = judge.measure(made)
+        seconds[method.name] = time.process_time() - begun
+        motion[method.name] = made[0]
+        tell()
+    example = Example(test[0], steps.fit(training).predict(test[0].timeline), motion) if split.number == 0 else None
+    return Outcome(split, judge.frames, measures, seconds, example)
+
+
+_corpus: List[Utterance] = []  # of a worker process
+_told = None  # queue to the process that shows progress
+
+
+def _begin(corpus: List[Utterance], told) -> None:
+    global _corpus, _told
+    _corpus, _told = corpus, told
+
+
+def _run(task: Tuple[Split, Options]) -> Outcome:
+    with threadpool_limits(1):
+        return run_split(_corpus, *task, tell=lambda: _told.put(1))
+
+
+def evaluate(
+    episodes: Sequence[Episode], options: Options, *, jobs: int = 1, progress: bool = True
+) -> List[Outcome]:
+    """All splits in order. The outcomes do not depend on `jobs`, the number of processes."""
+    corpus = utterances(episodes, PHONE_SETS[options.kind], options.fps)
+    splits = make_splits(corpus, options.splits, options.seed, options.held_out)
+    total = len(splits) * len(select(options.methods))
+    with tqdm(total=total, desc="methods", disable=not progress, leave=False) as bar:
+        if jobs == 1:
+            with threadpool_limits(1):
+                return [run_split(corpus, split, options, bar.update) for split in splits]
+        with multiprocessing.Manager() as manager:
+            told = manager.Queue()
+            with ProcessPoolExecutor(jobs, initializer=_begin, initargs=(corpus, told)) as pool:
+                waiting = [pool.submit(_run, (split, options)) for split in splits]
+                while not all(item.done() for item in waiting):
+                    if any(item.done() and item.exception() for item in waiting):
+                        break
+                    try:
+                        bar.update(told.get(timeout=0.5))
+                    except Empty:
+                        continue
+                for item in waiting:
+                    if item.done() and item.exception():
+                        pool.shutdown(wait=False, cancel_futures=True)
+                        raise item.exception()
+                return [item.result() for item in waiting]
