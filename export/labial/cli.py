@@ -1,4 +1,4 @@
-"""The command ``labial``: train, synth, export, check, laughter-corpus."""
+"""The command ``labial``: train, synth, export, check, evaluate, laughter-corpus."""
 
 from __future__ import annotations
 
@@ -62,6 +62,20 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
     _add_predecessors(check)
     check.set_defaults(run=_check)
+
+    evaluate = commands.add_parser("evaluate", help="compare all methods with the human's motion on held-out episodes")
+    evaluate.add_argument("corpus", help="as for train")
+    evaluate.add_argument("-o", "--output", required=True, metavar="REPORT", help="folder for tables and plots")
+    evaluate.add_argument("--kind", choices=("speech", "laughter"), default="speech")
+    evaluate.add_argument("--splits", type=_positive, default=20, help="random 80/20 splits by episode (20)")
+    evaluate.add_argument("--seed", type=int, default=0)
+    evaluate.add_argument("--methods", default="all", metavar="A,B,...", help="methods to compare (all)")
+    evaluate.add_argument("--fps", type=_positive, default=50, help="frames per second (50)")
+    evaluate.add_argument("--jobs", type=_positive, default=2, help="splits at a time (2); the result is the same")
+    evaluate.add_argument("--hold-out-words", default="", metavar="W1,W2,...",
+                          help="train without the episodes that hold these words, judge these words' frames alone")
+    evaluate.add_argument("--quiet", action="store_true", help="no progress bar")
+    evaluate.set_defaults(run=_evaluate)
 
     laughter = commands.add_parser("laughter-corpus", help="generate the synthetic laughter corpus")
     laughter.add_argument("output", metavar="OUT", help="folder, new or empty")
@@ -144,6 +158,21 @@ def _check(options: argparse.Namespace) -> int:
     for failure in failures:
         print(f"labial check: {failure}", file=sys.stderr)
     return 1 if failures else 0
+
+
+def _evaluate(options: argparse.Namespace) -> int:
+    try:
+        from labial.evaluate.command import run
+        from labial.evaluate.protocol import Options
+    except ModuleNotFoundError as error:
+        raise LabialError(f"evaluating needs the package {error.name}: install labial[train,evaluate]") from None
+
+    words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
+    asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words)
+    for path in run(options.corpus, options.output, asked, jobs=options.jobs,
+                    progress=not options.quiet and sys.stderr.isatty()):
+        print(path)
+    return 0
 
 
 def _laughter_corpus(options: argparse.Namespace) -> int:

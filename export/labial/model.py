@@ -36,8 +36,8 @@ _TEXT = (
 
 @dataclass(frozen=True)
 class Model:
-    """A trained model. Arrays are float64 unless said otherwise; all are finite, but `log_transition`, `log_initial` and
-    `floor` may hold -inf."""
+    """A trained model. Arrays are float64 unless said otherwise; all are finite, but that `log_transition`,
+    `log_initial` and `floor` may hold -inf."""
 
     kind: str  #: "speech" or "laughter"
     method: str  #: "paper" or "labial"

@@ -1,6 +1,7 @@
 /*
  * laughter_synthetic.h - the laughter model, method labial, 50 frames per second. Written by labial export 0.1.0;
- * do not edit. Trained on a synthetic corpus: amplitudes are design choices, timings follow published facts.
+ * do not edit. Trained on a synthetic corpus: the timings follow published statistics, the amplitudes are design
+ * choices.
  */
 #ifndef LABIAL_MODEL_LAUGHTER_SYNTHETIC_H
 #define LABIAL_MODEL_LAUGHTER_SYNTHETIC_H
@@ -37,7 +38,7 @@ enum {
     LAUGHTER_SYNTHETIC_A = 11
 };
 
-/* The model, 31012 bytes on a 32-bit target. */
+/* The model, 31016 bytes on a 32-bit target. */
 extern const labial_model_t laughter_synthetic;
 
 /* Its labels and aliases; linked only when used. */

@@ -1,7 +1,7 @@
 /*
  * laughter_synthetic_names.c - names of the phonemes of the laughter model, method labial, 50 frames per second.
- * Written by labial export 0.1.0; do not edit. Trained on a synthetic corpus: amplitudes are design choices,
- * timings follow published facts.
+ * Written by labial export 0.1.0; do not edit. Trained on a synthetic corpus: the timings follow published
+ * statistics, the amplitudes are design choices.
  */
 #include "laughter_synthetic.h"
 

@@ -1,6 +1,6 @@
 /*
  * speech_en.h - the speech model, method labial, 50 frames per second. Written by labial export 0.1.0; do not
- * edit. x
+ * edit. Trained on the GRID audio-visual speech corpus (Cooke, Barker, Cunningham and Shao, 2006), CC BY 4.0.
  */
 #ifndef LABIAL_MODEL_SPEECH_EN_H
 #define LABIAL_MODEL_SPEECH_EN_H
@@ -65,7 +65,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 47854 bytes on a 32-bit target. */
+/* The model, 47942 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

@@ -184,11 +184,9 @@ def _named(what: str, names: Sequence[str], values: np.ndarray) -> Dict[str, flo
 
 
 def _mean_ratio(own: np.ndarray, other: np.ndarray) -> float:
-    """Mean over the channels of own / other; those where `other` is still are left out, 1 where both are."""
-    moving = other > 1e-12
-    if not moving.any():
-        return 1.0 if not (own > 1e-12).any() else float("nan")
-    return float((own[moving] / other[moving]).mean())
+    """Mean over the channels of own / other; those where `other` is still are left out, NaN if all are."""
+    moving = other > 1e-9
+    return float((own[moving] / other[moving]).mean()) if moving.any() else float("nan")
 
 
 def judged_frames(test: Sequence[Utterance], phone_set: PhoneSet, words: Sequence[str] = ()) -> List[np.ndarray]:

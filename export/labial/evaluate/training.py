@@ -10,7 +10,7 @@ from typing import Callable, Dict, List, Protocol, Sequence, Tuple, TypeVar
 import numpy as np
 
 from labial.evaluate.material import Timeline, Utterance
-from labial.evaluate.measures import Scale, measure_scale, mean_difference, silence_of
+from labial.evaluate.measures import Scale, mean_difference, measure_scale, silence_of
 from labial.model import Model
 from labial.phonesets import PhoneSet
 from labial.train import train

@@ -14,8 +14,10 @@ from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.model import KINDS, METHODS, Model
 from labial.phonesets import PHONE_SETS, PhoneSet
+from labial.train.closures import floors
 from labial.train.codebook import Codebook, train_channel
 from labial.train.context import fit_context
+from labial.train.expression import restored
 from labial.train.kernels import Penalties, add_kernels, fit_kernels
 from labial.train.selection import Choice, choose, shapes
 from labial.train.sequences import Occurrences, Sequence, occurrences, sequences
@@ -87,11 +89,15 @@ def _targets(
     kernel: np.ndarray,
     lag: np.ndarray,
     silence: int,
+    floor: np.ndarray,
 ) -> List[np.ndarray]:
     """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
     selected = np.split(shapes(tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
     return [
-        add_kernels(np.repeat(shape, item.length, axis=0), item.phoneme_at(), kernel, lag, silence)
+        np.maximum(
+            add_kernels(np.repeat(shape, item.length, axis=0), item.phoneme_at(), kernel, lag, silence),
+            floor[item.phoneme_at()],
+        )
         for shape, item in zip(selected, material)
     ]
 
@@ -160,6 +166,7 @@ def train(
     plan = back_off(counts, phone_set)
     _report(plan, phone_set, counts)
 
+    floor = floors(material, phone_set, fps) if extended else np.full((phonemes, CHANNELS), -np.inf)
     with Workers(jobs, progress) as workers, threadpool_limits(1):
         tasks = _mixture_tasks(items, plan, classes if extended else 0, components, seed)
         tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), extended)
@@ -171,12 +178,16 @@ def train(
             choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
             fitted = fit_kernels(material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties)
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
-            targets = _targets(choice, tables, material, kernel, lag, silence)
+            targets = _targets(choice, tables, material, kernel, lag, silence, floor)
             paths = workers.run("matched states", _decode, [(target, states) for target in targets])
             states = match_states(states, paths, targets, [item.frames for item in material], scales)
 
     precision = np.minimum(tables.precision * scales.phoneme, hold_limit(states)) if extended else tables.precision
+    everything = np.concatenate([item.frames for item in material])
+    voiced = np.concatenate([item.phoneme_at() != silence for item in material])
     training: Dict[str, object] = {
+        "channel_range": np.round(np.diff(np.percentile(everything, [1, 99], axis=0), axis=0)[0], 3).tolist(),
+        "mean_pose": np.round(everything[voiced if voiced.any() else slice(None)].mean(axis=0), 3).tolist(),
         "codebook": codebook,
         "components": components,
         "seed": seed,
@@ -187,7 +198,7 @@ def train(
     }
     if extended:
         training.update(penalties=asdict(penalties), scales=asdict(scales))
-    return Model(
+    model = Model(
         kind=kind,
         method=method,
         fps=fps,
@@ -208,7 +219,7 @@ def train(
         log_next=tables.log_next,
         kernel=kernel,
         kernel_lag=lag,
-        floor=np.full((phonemes, CHANNELS), -np.inf),
+        floor=floor,
         decode_mean=states.decode_mean,
         decode_variance=states.decode_variance,
         state_mean=states.state_mean,
@@ -221,3 +232,7 @@ def train(
         attribution=attribution,
         training=training,
     )
+    if not extended:
+        return model
+    with Workers(jobs, progress) as workers, threadpool_limits(1):
+        return restored(model, material, workers)

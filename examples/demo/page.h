@@ -1,0 +1,44 @@
+/*
+ * page.h - motion and the phonemes it came from, written as a page that plays them.
+ */
+#ifndef LABIAL_EXAMPLE_PAGE_H
+#define LABIAL_EXAMPLE_PAGE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "labial/model.h"
+
+/* What the template holds, once, where the data goes. */
+#define PAGE_PLACEHOLDER "@LABIAL_DATA@"
+
+/* A phoneme's place among the frames. */
+typedef struct {
+    const char *label; /* static */
+    const char *kind;  /* "speech", "laughter" or "silence"; static */
+    uint32_t start_frame;
+    uint32_t frames;
+} page_phoneme_t;
+
+/* What a page plays. Zero-initialise, fill with the two functions below, release with page_release(). */
+typedef struct {
+    const char *title;
+    unsigned frames_per_second;
+    int16_t (*frames)[LABIAL_CHANNELS];
+    size_t frame_count, frame_room;
+    page_phoneme_t *phonemes;
+    size_t phoneme_count, phoneme_room;
+} page_t;
+
+/* Append a copy of a frame or a phoneme. Return 0, or -1 when memory is short. */
+int page_add_frame(page_t *page, const int16_t faps[LABIAL_CHANNELS]);
+int page_add_phoneme(page_t *page, const page_phoneme_t *phoneme);
+
+/* Writes `template_text`, with the page's data as JSON in the place of PAGE_PLACEHOLDER, to `out`. Returns 0, or -1
+ * when the placeholder is not there exactly once or writing fails. */
+int page_write(const page_t *page, const char *template_text, FILE *out);
+
+void page_release(page_t *page);
+
+#endif

@@ -1,0 +1,46 @@
+/*
+ * frames.h - frames written as text.
+ *
+ *   csv  a header `time,fap3,fap16,...`, then a line per frame, written as it comes: seconds with three decimals and
+ *        the 13 channels in FAP units.
+ *   fap  MPEG-4 text: a header `2.1 NAME FPS NFRAMES`, then two lines per frame: a mask of 68 zeros and ones, and the
+ *        frame's number followed by the value of each FAP whose mask is one, here the 23 of inner and outer lips. The
+ *        header needs the number of frames, so they are kept in memory and written by frames_finish().
+ */
+#ifndef LABIAL_EXAMPLE_FRAMES_H
+#define LABIAL_EXAMPLE_FRAMES_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "labial/faps.h"
+
+typedef enum { FRAMES_CSV, FRAMES_FAP } frames_format_t;
+
+/* A writer. Private. */
+typedef struct {
+    FILE *out;
+    frames_format_t format;
+    const char *name;
+    unsigned frames_per_second;
+    uint32_t count;
+    int failed;
+    int16_t (*kept)[LABIAL_CHANNELS]; /* fap: `count` frames in room for `room`, owned */
+    size_t room;
+} frames_t;
+
+/* Prepares a writer and writes what precedes the first frame. `name` is the animation's in a fap file and must stay
+ * valid. frames_finish() releases what the writer owns. */
+void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char *name, unsigned frames_per_second);
+
+/* Appends a frame. Failures are remembered and returned by frames_flush() and frames_finish(). */
+void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS]);
+
+/* Sends what is written so far on its way. Returns 0, or -1 when writing failed or memory was short. */
+int frames_flush(frames_t *frames);
+
+/* Writes what is still kept and flushes, or drops it when `complete` is 0. Returns as frames_flush() does. */
+int frames_finish(frames_t *frames, int complete);
+
+#endif

@@ -1,0 +1,39 @@
+"""How far the mouth moves: the trade between the smallest average error and motion as wide as a human's.
+
+What is learned by least squares is an average, and averages move less than what they were taken from: lips that follow
+them mumble. Widening the motion about its mean gives the range back; the average error grows, slowly at first.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Union
+
+import numpy as np
+
+from labial.faps import CHANNELS
+from labial.model import Model
+
+
+def mean_pose(model: Model) -> np.ndarray:
+    """(13,) FAP: the pose that motion is widened about, the mean of the corpus outside silence."""
+    known = model.training.get("mean_pose")
+    if isinstance(known, list) and len(known) == CHANNELS:
+        return np.asarray(known, dtype=np.float64)
+    return model.decode_mean.mean(axis=1)
+
+
+def widened(model: Model, gain: Union[float, np.ndarray]) -> Model:
+    """The model with its targets moved away from the mean pose by a factor, one for all or one per channel (13,).
+
+    Both terms of a target are linear, so that the factor goes into the tables: shape' = c + g (shape - c), slope' and
+    kernel' are g times theirs. Floors, which say where lips meet, stay; the search and equation 3 follow the targets.
+    """
+    factor = np.broadcast_to(np.asarray(gain, dtype=np.float64), (CHANNELS,))
+    centre = mean_pose(model)
+    return dataclasses.replace(
+        model,
+        shape=centre + (model.shape - centre) * factor,
+        slope=model.slope * factor,
+        kernel=model.kernel * factor,
+    )

@@ -1,0 +1,34 @@
+"""The command ``labial evaluate``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Dict, List, Sequence
+
+from labial.corpus import read_corpus
+from labial.evaluate import plots, report
+from labial.evaluate.methods import select
+from labial.evaluate.protocol import Options, Outcome, evaluate
+
+
+def processor_time(outcomes: Sequence[Outcome]) -> str:
+    """Processor seconds per split, all methods and each; for the terminal, since no two runs are alike in them."""
+    total: Dict[str, float] = {}
+    for item in outcomes:
+        for method, seconds in item.seconds.items():
+            total[method] = total.get(method, 0.0) + seconds / len(outcomes)
+    each = ", ".join(f"{method} {seconds:.1f}" for method, seconds in total.items())
+    return f"processor time per split: {sum(total.values()):.1f} s ({each})"
+
+
+def run(corpus: str, output: str, options: Options, *, jobs: int, progress: bool) -> List[Path]:
+    """Evaluates and writes the report into the folder `output`; returns what was written."""
+    select(options.methods)  # before the corpus is read
+    outcomes = evaluate(read_corpus(corpus, options.kind), options, jobs=jobs, progress=progress)
+    folder = Path(output)
+    folder.mkdir(parents=True, exist_ok=True)
+    drawn = plots.write(outcomes, options.fps, folder)
+    written = report.write(outcomes, options, folder, drawn)
+    print(report.markdown_table(outcomes, report.methods_of(outcomes), report.TABLE_1))
+    print(processor_time(outcomes))
+    return [*written, *(folder / name for name in drawn)]

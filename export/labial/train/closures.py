@@ -1,0 +1,51 @@
+"""Closures: how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v.
+
+A sum of learned curves cannot promise contact: an open vowel on either side pulls the lips of a /b/ apart. So the
+target in such a phoneme does not fall below a *floor*, which is what speakers do when they close firmly.
+"""
+
+from __future__ import annotations
+
+from typing import Sequence as SequenceOf
+
+import numpy as np
+
+from labial.faps import CHANNELS, FAP_NUMBERS
+from labial.phonesets import PhoneSet
+from labial.train.sequences import Sequence
+
+#: Viseme classes that make contact, and the FAPs that do: those of the upper lip, which lower it, and of the lower lip,
+#: which raise it.
+CONTACTS = {"bilabial": (51, 52, 55, 56, 57, 58), "labiodental": (52, 57, 58)}
+
+#: Contact is looked for this far outside the segment too, seconds: alignments err by about so much.
+MARGIN = 0.04
+
+#: The share of a class's occurrences, those that close most, whose mean pose is the floor.
+FIRMEST = 0.5
+
+
+def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> np.ndarray:
+    """(P, 13) FAP: the pose of firm contact in the channels that make it, -inf elsewhere and for other phonemes.
+
+    The pose is the mean over the FIRMEST occurrences of the phoneme's class, each at its frame of closest contact.
+    """
+    result = np.full((len(phone_set.phonemes), CHANNELS), -np.inf)
+    classes = np.array(phone_set.phoneme_class)
+    margin = round(MARGIN * fps)
+    for name, faps in CONTACTS.items():
+        if name not in phone_set.classes:
+            continue
+        channels = [FAP_NUMBERS.index(number) for number in faps]
+        number = phone_set.classes.index(name)
+        poses = []
+        for item in material:
+            begins = np.cumsum(item.length) - item.length
+            for i in np.flatnonzero((classes[item.phoneme] == number) & (item.length > 0)):
+                near = item.frames[max(begins[i] - margin, 0) : begins[i] + item.length[i] + margin, channels]
+                poses.append(near[near.sum(axis=1).argmax()])
+        if poses:
+            contact = np.array(poses)
+            firm = np.argsort(-contact.sum(axis=1), kind="stable")[: max(round(FIRMEST * len(poses)), 1)]
+            result[np.ix_(classes == number, channels)] = contact[firm].mean(axis=0)
+    return result

@@ -1,0 +1,286 @@
+/*
+ * fixture.c - models made by hand and streams of phonemes for the tests.
+ */
+#include "fixture.h"
+
+#include <string.h>
+
+uint32_t fixture_random(fixture_random_t *random)
+{
+    uint32_t x = random->state ? random->state : 0x9e3779b9u;
+    x ^= x << 13;
+    x ^= x >> 17;
+    x ^= x << 5;
+    random->state = x;
+    return x * 0x2545f491u;
+}
+
+uint32_t fixture_below(fixture_random_t *random, uint32_t limit)
+{
+    return (uint32_t)(((uint64_t)fixture_random(random) * limit) >> 32);
+}
+
+/* ---- Models ---- */
+
+double fixture_weight_value(uint8_t code)
+{
+    const unsigned exponent = (unsigned)code >> 4, mantissa = (unsigned)code & 15u;
+    return exponent == 0 ? (double)mantissa : (double)((16ul + mantissa) << (exponent - 1u));
+}
+
+uint8_t fixture_weight_code(double value)
+{
+    unsigned best = 0, code;
+    for (code = 1; code < 256; code++) {
+        const double error = fixture_weight_value((uint8_t)code) - value;
+        const double least = fixture_weight_value((uint8_t)best) - value;
+        if ((error < 0 ? -error : error) < (least < 0 ? -least : least))
+            best = code;
+    }
+    return (uint8_t)best;
+}
+
+/* Steps of a component's shape; 127 steps are 300 FAP units. */
+static int shape_steps(unsigned phoneme, unsigned component, unsigned channel)
+{
+    const int steps = (int)((phoneme * 37u + channel * 53u + phoneme * channel * 11u) % 41u) * 5 - 100;
+    return (phoneme == FIXTURE_SIL ? steps / 10 : steps) + (int)component * 12;
+}
+
+#define SHAPE_SCALE 9675u /* Q8 positions per step: 127 steps are 4,800 positions */
+
+static int position_of_steps(int steps)
+{
+    return (int)((double)steps * SHAPE_SCALE / 256.0 + (steps < 0 ? -0.5 : 0.5));
+}
+
+static int centre_of(unsigned channel)
+{
+    return ((int)channel - 6) * 40;
+}
+
+int32_t fixture_target(unsigned phoneme, unsigned channel)
+{
+    return position_of_steps(shape_steps(phoneme, 0, channel)) + centre_of(channel);
+}
+
+/* Every state with itself, its neighbours and, within eight states, every other as predecessors. */
+static void connect(fixture_model_t *f, unsigned c, unsigned count, int ring)
+{
+    unsigned q, p, n = 0;
+    for (q = 0; q < count; q++) {
+        f->rows[c][q] = (uint16_t)n;
+        for (p = 0; p < count; p++) {
+            const unsigned away = p > q ? p - q : q - p;
+            const unsigned cost = away == 0 ? 4 : away == 1 ? 60 : 90;
+            if (away <= 1 || (!ring && away < 4))
+                f->edges[c][n++] = (uint16_t)(p | cost << 8);
+        }
+    }
+    f->rows[c][count] = (uint16_t)n;
+}
+
+/* gain = 2^18 / (sigma * sqrt 2) */
+static uint16_t gain_of(double sigma)
+{
+    return (uint16_t)(262144.0 / (sigma * 1.41421356237) + 0.5);
+}
+
+/* Tables that all fixtures share; `count` phonemes of two components each. */
+static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned silence, int ring)
+{
+    unsigned p, k, c, q;
+    memset(f, 0, sizeof *f);
+    f->model.format = LABIAL_MODEL_FORMAT;
+    f->model.frames_per_second = FIXTURE_RATE;
+    f->model.component_count = (uint16_t)(2 * count);
+    f->model.phoneme_count = (uint8_t)count;
+    f->model.class_count = FIXTURE_CLASSES;
+    f->model.state_count = (uint8_t)states;
+    f->model.silence = (uint8_t)silence;
+    f->model.phonemes = f->phonemes;
+    f->model.components = f->components;
+    f->model.shapes = f->shapes;
+    f->model.channels = f->channels;
+    for (p = 0; p < count; p++) {
+        f->phonemes[p].first_component = (uint16_t)(2 * p);
+        f->phonemes[p].component_count = 2;
+        f->phonemes[p].viseme_class = (uint8_t)(p % FIXTURE_CLASSES);
+        for (k = 0; k < 2; k++) {
+            labial_component_t *component = &f->components[2 * p + k];
+            component->cost = (uint16_t)(k * 10);
+            component->duration_mean = (uint16_t)(k ? 260 : 100);
+            component->duration_gain = gain_of(k ? 70 : 40);
+            for (c = 0; c < LABIAL_CHANNELS; c++)
+                f->shapes[(2 * p + k) * LABIAL_CHANNELS + c] = (int8_t)shape_steps(p, k, c);
+        }
+    }
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        labial_channel_t *channel = &f->channels[c];
+        channel->centre = (int16_t)centre_of(c);
+        channel->shape_scale = SHAPE_SCALE;
+        channel->slope_scale = 256;
+        channel->kernel_scale = 256;
+        channel->emissions = f->emissions[c];
+        channel->states = f->states[c];
+        channel->rows = f->rows[c];
+        channel->edges = f->edges[c];
+        for (q = 0; q < states; q++) {
+            labial_emission_t *emission = &f->emissions[c][q];
+            labial_state_t *state = &f->states[c][q];
+            /* The shapes of the phonemes first; the rest are spread over +-300 FAP units. */
+            const int mean = q < count ? position_of_steps(shape_steps(q, 0, c))
+                                       : -4800 + (int)(9600u * (q - count) / (states > count + 1 ? states - count - 1 : 1));
+            emission->mean = (int16_t)mean;
+            emission->gain = gain_of(240.0); /* 15 FAP units; the nearest state is the likeliest */
+            emission->initial = (uint8_t)(60 + q % 5);
+            state->mean[0] = (int16_t)mean;
+            state->weight[0] = fixture_weight_code(64);
+            state->weight[1] = fixture_weight_code(90);
+            state->weight[2] = fixture_weight_code(200);
+        }
+        connect(f, c, states, ring);
+    }
+}
+
+static void make_speech(fixture_model_t *f, unsigned states, int ring)
+{
+    build(f, FIXTURE_SPEECH_COUNT, states, FIXTURE_SIL, ring);
+    f->phonemes[FIXTURE_A].boundary = 1;
+    f->phonemes[FIXTURE_O].boundary = 1;
+    f->phonemes[FIXTURE_P].boundary = 1;
+}
+
+/* All that goes beyond the published method. */
+static void enrich(fixture_model_t *f)
+{
+    unsigned i, c, q;
+    fixture_random_t random = {7};
+    f->model.soft = 1;
+    f->model.kernel_taps = FIXTURE_TAPS;
+    f->model.kernel_stride = 3;
+    f->model.kernel_behind = 4;
+    f->model.contexts = f->contexts;
+    f->model.slopes = f->slopes;
+    f->model.precisions = f->precisions;
+    f->model.kernels = f->kernels;
+    f->model.floor_count = FIXTURE_FLOORS;
+    f->model.floors = f->floors;
+    f->phonemes[FIXTURE_P].floor = 1;
+    f->phonemes[FIXTURE_O].floor = 2;
+    for (i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
+        f->floors[i] = (int16_t)(i % 3 ? LABIAL_NO_FLOOR : (int)fixture_below(&random, 4000) - 2000);
+    for (i = 0; i < sizeof f->contexts; i++)
+        f->contexts[i] = (uint8_t)fixture_below(&random, 90);
+    for (i = 0; i < sizeof f->slopes; i++)
+        f->slopes[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
+    for (i = 0; i < sizeof f->precisions; i++)
+        f->precisions[i] = fixture_weight_code((double)fixture_below(&random, 600));
+    for (i = 0; i < sizeof f->kernels; i++)
+        f->kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
+        f->channels[c].kernel_scale = 512; /* 100 steps: 12.5 FAP units */
+        for (q = 0; q < f->model.state_count; q++) {
+            labial_state_t *state = &f->states[c][q];
+            f->emissions[c][q].gain = gain_of(400.0 + 40.0 * (double)(q % 3));
+            f->emissions[c][q].cost = (uint8_t)(q % 3 * 3);
+            state->mean[1] = (int16_t)((int)fixture_below(&random, 161) - 80);
+            state->mean[2] = (int16_t)((int)fixture_below(&random, 41) - 20);
+            state->weight[0] = fixture_weight_code(20.0 + (double)fixture_below(&random, 100));
+            state->anchor = fixture_weight_code(100.0 + (double)fixture_below(&random, 300));
+        }
+    }
+}
+
+void fixture_plain(fixture_model_t *fixture)
+{
+    make_speech(fixture, FIXTURE_SPEECH_STATES, 0);
+}
+
+void fixture_rich(fixture_model_t *fixture)
+{
+    make_speech(fixture, FIXTURE_SPEECH_STATES, 0);
+    enrich(fixture);
+}
+
+void fixture_slow(fixture_model_t *fixture)
+{
+    make_speech(fixture, LABIAL_STATES_MAX, 0);
+    enrich(fixture);
+    fixture->model.kernel_taps = 5;
+    fixture->model.kernel_stride = LABIAL_REACH / 2;
+    fixture->model.kernel_behind = 2;
+}
+
+void fixture_laughter(fixture_model_t *fixture)
+{
+    unsigned i;
+    build(fixture, FIXTURE_LAUGH_COUNT, FIXTURE_LAUGH_STATES, FIXTURE_LAUGH_SIL, 1);
+    fixture->phonemes[FIXTURE_HA].boundary = 1;
+    for (i = 0; i < LABIAL_CHANNELS; i++) /* silence near neutral, as that of the speech models */
+        fixture->shapes[2 * FIXTURE_LAUGH_SIL * LABIAL_CHANNELS + i] = 5;
+}
+
+/* ---- Streams of phonemes ---- */
+
+void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, uint32_t seed)
+{
+    fixture_random_t random;
+    size_t i;
+    random.state = seed * 2654435761u + (uint32_t)kind + 1u;
+    for (i = 0; i < count; i++) {
+        fixture_phoneme_t *p = &out[i];
+        p->model = 0;
+        p->phoneme = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
+        p->ms = 40 + fixture_below(&random, 160);
+        switch (kind) {
+        case FIXTURE_ONE_FRAME:
+            p->ms = 1000 / FIXTURE_RATE;
+            break;
+        case FIXTURE_PAUSES:
+            if (i % 4 == 0) {
+                p->phoneme = FIXTURE_SIL;
+                p->ms = 900 + fixture_below(&random, 6000);
+            }
+            break;
+        case FIXTURE_VOWELS:
+            p->phoneme = (uint8_t)(FIXTURE_A + fixture_below(&random, 2));
+            break;
+        case FIXTURE_CONSONANTS:
+            p->phoneme = (uint8_t)(FIXTURE_S + fixture_below(&random, 2));
+            break;
+        case FIXTURE_RANDOM:
+        case FIXTURE_LONG:
+            p->ms = fixture_below(&random, 401);
+            break;
+        case FIXTURE_MILLI:
+            p->ms = 1;
+            break;
+        case FIXTURE_ZERO:
+            p->ms = 0;
+            break;
+        case FIXTURE_HOUR:
+            if (i == 0)
+                p->ms = LABIAL_DURATION_MAX;
+            break;
+        case FIXTURE_KINDS:
+            break;
+        }
+    }
+}
+
+uint64_t fixture_duration(const fixture_phoneme_t *input, size_t count)
+{
+    uint64_t sum = 0;
+    size_t i;
+    for (i = 0; i < count; i++)
+        sum += input[i].ms;
+    return sum;
+}
+
+int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate)
+{
+    const uint64_t wanted = ms * rate, got = frames * 1000u;
+    return (wanted > got ? wanted - got : got - wanted) <= 500u;
+}

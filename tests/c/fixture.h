@@ -1,0 +1,186 @@
+/*
+ * fixture.h - what the tests share: small models made by hand, streams of phonemes, a host that plays them.
+ *
+ * The models are built at run time from plain numbers, so that a test may change one value of a copy. Nothing here
+ * depends on a test framework; the fuzz targets use it too.
+ */
+#ifndef LABIAL_TEST_FIXTURE_H
+#define LABIAL_TEST_FIXTURE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "labial/labial.h"
+
+/* ---- Pseudo-random numbers: the same on every machine for one seed. ---- */
+
+typedef struct {
+    uint32_t state;
+} fixture_random_t;
+
+uint32_t fixture_random(fixture_random_t *random);                /* 32 bits */
+uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit - 1 */
+
+/* ---- Models ---- */
+
+#define FIXTURE_PHONEMES 8
+#define FIXTURE_COMPONENTS 16
+#define FIXTURE_CLASSES 4
+#define FIXTURE_TAPS 7
+#define FIXTURE_FLOORS 2
+
+/* A model with the tables that it points to. Must not be moved: fixture_*() are called on the place it stays in. */
+typedef struct {
+    labial_model_t model;
+    labial_channel_t channels[LABIAL_CHANNELS];
+    labial_phoneme_t phonemes[FIXTURE_PHONEMES];
+    labial_component_t components[FIXTURE_COMPONENTS];
+    uint8_t contexts[FIXTURE_COMPONENTS * 2 * FIXTURE_CLASSES];
+    int8_t shapes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
+    int8_t slopes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
+    uint8_t precisions[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
+    int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
+    int16_t floors[FIXTURE_FLOORS * LABIAL_CHANNELS];
+    labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
+    labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
+    uint16_t rows[LABIAL_CHANNELS][LABIAL_STATES_MAX + 1];
+    uint16_t edges[LABIAL_CHANNELS][LABIAL_STATES_MAX * 8];
+} fixture_model_t;
+
+/* Phonemes of the two speech fixtures. */
+enum { FIXTURE_SIL, FIXTURE_A, FIXTURE_O, FIXTURE_P, FIXTURE_S, FIXTURE_T, FIXTURE_SPEECH_COUNT };
+
+/* Phonemes of the laughter fixture; silence is not its first one. */
+enum { FIXTURE_HA, FIXTURE_NASAL, FIXTURE_LAUGH_SIL, FIXTURE_FRICATIVE, FIXTURE_LAUGH_COUNT };
+
+#define FIXTURE_SPEECH_STATES 8
+#define FIXTURE_LAUGH_STATES 5
+#define FIXTURE_RATE 50
+
+/* The published method alone: no optional table, hard selection. The first component of every phoneme lasts 100 ms and
+ * every channel has a state whose mean is exactly that component's shape. */
+void fixture_plain(fixture_model_t *fixture);
+
+/* The same phonemes with contexts, slopes, precisions, anchors, kernels, floors and soft selection. */
+void fixture_rich(fixture_model_t *fixture);
+
+/* Other phonemes, other states, the same frame rate. */
+void fixture_laughter(fixture_model_t *fixture);
+
+/* The rich model with LABIAL_STATES_MAX states and kernels that reach as far as they may, to both sides. */
+void fixture_slow(fixture_model_t *fixture);
+
+/* Shape of the first component of a speech phoneme on one channel, Q4 FAP, `centre` included. */
+int32_t fixture_target(unsigned phoneme, unsigned channel);
+
+/* Nearest minifloat weight (labial/model.h) and the value of one. */
+uint8_t fixture_weight_code(double value);
+double fixture_weight_value(uint8_t code);
+
+/* ---- Streams of phonemes ---- */
+
+typedef struct {
+    uint32_t ms;
+    uint8_t phoneme;
+    uint8_t model; /* index into the host's models */
+} fixture_phoneme_t;
+
+typedef enum {
+    FIXTURE_ONE_FRAME,  /* every phoneme exactly one frame */
+    FIXTURE_PAUSES,     /* silences of many windows between words */
+    FIXTURE_VOWELS,     /* boundaries only */
+    FIXTURE_CONSONANTS, /* no boundary at all */
+    FIXTURE_RANDOM,     /* 0 .. 400 ms, any phoneme */
+    FIXTURE_LONG,       /* the same, meant for 2,000 phonemes */
+    FIXTURE_MILLI,      /* all 1 ms */
+    FIXTURE_ZERO,       /* all 0 ms */
+    FIXTURE_HOUR,       /* one phoneme of an hour and then `count` - 1 ordinary ones */
+    FIXTURE_KINDS
+} fixture_kind_t;
+
+/* Fills `out` with `count` speech phonemes of that kind; an hour ends in `count` - 1 ordinary ones. */
+void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, uint32_t seed);
+
+/* Sum of the durations. */
+uint64_t fixture_duration(const fixture_phoneme_t *input, size_t count);
+
+/* Whether `frames` is the rounded length of `ms`; an exact half may go either way. */
+int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate);
+
+/* ---- A host that plays a stream ---- */
+
+typedef struct {
+    int16_t (*frames)[LABIAL_CHANNELS];
+    size_t count, capacity;
+    uint32_t next;      /* number that the next frame must have */
+    unsigned misnumbered; /* frames that had another */
+    unsigned calls;     /* since it was last cleared by the host */
+} fixture_recorder_t;
+
+/* labial_frame_fn: `user` is a fixture_recorder_t. */
+void fixture_record(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
+
+typedef enum {
+    FIXTURE_FILL,   /* as much as room allows before every tick */
+    FIXTURE_SINGLE, /* one phoneme before every tick */
+    FIXTURE_HUNGRY, /* one phoneme when a tick says that it waits for one, never earlier */
+    FIXTURE_WORK,   /* as FILL, and labial_work() until it has nothing to do */
+    FIXTURE_CHANCE, /* random pushes and random bursts of labial_work() */
+    FIXTURE_FEEDS
+} fixture_feed_t;
+
+typedef struct {
+    labial_t *stream;          /* on the heap, so that overruns are seen */
+    uint32_t *workspace;       /* on the heap, exactly as large as is demanded */
+    const labial_model_t *models[3];
+    unsigned model_count, current;
+    fixture_recorder_t recorder;
+    int moving;                /* move the stream's structure before every tick */
+    fixture_random_t random;
+
+    /* What happened so far. */
+    unsigned longest_stall, stall; /* ticks in a row that returned LABIAL_BUSY */
+    unsigned seen[5];              /* how often a tick returned each value from LABIAL_OK to LABIAL_DONE */
+    int last;                      /* what the tick before returned */
+    int ended, restarted;          /* set by whoever calls labial_end(), labial_cancel() and labial_restart() */
+    const char *complaint;         /* the first thing that went wrong, else null */
+} fixture_host_t;
+
+/* Returns what labial_init() does with the first model. The workspace suits the largest of them. */
+int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count);
+void fixture_close(fixture_host_t *host);
+
+/* One tick, its result and the callbacks checked against each other; also moves the stream when asked to. */
+int fixture_tick(fixture_host_t *host);
+
+/* Pushes one phoneme, of another model if need be. LABIAL_ERROR_FULL and LABIAL_ERROR_MODELS mean: tick, try again. */
+int fixture_push(fixture_host_t *host, const fixture_phoneme_t *phoneme);
+
+/* Plays all of `input`, ends the stream, and ticks until it is done. Returns 0 when all went as it must, else -1 with
+ * host->complaint set. */
+int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, fixture_feed_t feed);
+
+/* Open, play with `feed`, and leave the host open for a look at its recorder. Returns as fixture_play(). */
+int fixture_run(fixture_host_t *host, const labial_model_t *model, const fixture_phoneme_t *input, size_t count,
+                fixture_feed_t feed);
+
+/* First frame at which two recordings differ, or -1 when they are the same, lengths included. */
+long fixture_difference(const fixture_recorder_t *a, const fixture_recorder_t *b);
+
+/* Remembers what went wrong first. */
+void fixture_complain(fixture_host_t *host, const char *what);
+
+/* Largest change of any channel from frame - 1 to frame. */
+int fixture_step(const fixture_recorder_t *recorder, size_t frame);
+
+/* ---- Binary models (labial/blob.h) ---- */
+
+uint32_t fixture_crc32(const uint8_t *data, size_t size);
+
+/* Writes `model` as a binary model and returns its size; nothing is written when `room` is too small for it. */
+size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room);
+
+/* Writes size and CRC of a binary model of `size` bytes anew. */
+void fixture_seal(uint8_t *blob, size_t size);
+
+#endif

@@ -1,0 +1,141 @@
+/*
+ * fixture_blob.c - binary models, written from the description in labial/blob.h alone.
+ */
+#include "fixture.h"
+
+uint32_t fixture_crc32(const uint8_t *data, size_t size)
+{
+    uint32_t crc = 0xffffffffu;
+    size_t i;
+    int bit;
+    for (i = 0; i < size; i++) {
+        crc ^= data[i];
+        for (bit = 0; bit < 8; bit++)
+            crc = crc & 1u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
+    }
+    return crc ^ 0xffffffffu;
+}
+
+/* Output that counts beyond its end and then writes nothing more. */
+typedef struct {
+    uint8_t *out;
+    size_t size, room;
+} writer_t;
+
+static void put(writer_t *w, uint32_t value, unsigned bytes)
+{
+    for (; bytes; bytes--, value >>= 8, w->size++)
+        if (w->size < w->room)
+            w->out[w->size] = (uint8_t)value;
+}
+
+static void put_bytes(writer_t *w, const void *table, size_t bytes)
+{
+    const uint8_t *from = (const uint8_t *)table;
+    size_t i;
+    for (i = 0; from && i < bytes; i++)
+        put(w, from[i], 1);
+}
+
+static void pad(writer_t *w)
+{
+    while (w->size % 4u)
+        put(w, 0, 1);
+}
+
+static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned states)
+{
+    unsigned q, i;
+    put(w, (uint16_t)channel->centre, 2);
+    put(w, channel->shape_scale, 2);
+    put(w, channel->slope_scale, 2);
+    put(w, channel->kernel_scale, 2);
+    for (q = 0; q < states; q++) {
+        put(w, (uint16_t)channel->emissions[q].mean, 2);
+        put(w, channel->emissions[q].gain, 2);
+        put(w, channel->emissions[q].cost, 1);
+        put(w, channel->emissions[q].initial, 1);
+    }
+    pad(w);
+    for (q = 0; q < states; q++) {
+        for (i = 0; i < 3; i++)
+            put(w, (uint16_t)channel->states[q].mean[i], 2);
+        put_bytes(w, channel->states[q].weight, 3);
+        put(w, channel->states[q].anchor, 1);
+    }
+    pad(w);
+    for (q = 0; q <= states; q++)
+        put(w, channel->rows[q], 2);
+    pad(w);
+    for (i = 0; i < channel->rows[states]; i++)
+        put(w, channel->edges[i], 2);
+    pad(w);
+}
+
+size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
+{
+    const size_t n = model->component_count;
+    writer_t w;
+    unsigned i;
+    w.out = out;
+    w.size = 0;
+    w.room = room;
+    put_bytes(&w, "LBM1", 4);
+    put(&w, 0, 4);
+    put(&w, 0, 4);
+    put(&w, model->format, 2);
+    put(&w, model->frames_per_second, 2);
+    put(&w, model->component_count, 2);
+    put(&w, model->phoneme_count, 1);
+    put(&w, model->class_count, 1);
+    put(&w, model->state_count, 1);
+    put(&w, model->silence, 1);
+    put(&w, model->soft, 1);
+    put(&w, model->kernel_taps, 1);
+    put(&w, model->kernel_stride, 1);
+    put(&w, model->kernel_behind, 1);
+    put(&w, (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u) | (model->precisions ? 4u : 0u), 1);
+    put(&w, model->floor_count, 1);
+    for (i = 0; i < model->phoneme_count; i++) {
+        put(&w, model->phonemes[i].first_component, 2);
+        put(&w, model->phonemes[i].component_count, 1);
+        put(&w, model->phonemes[i].viseme_class, 1);
+        put(&w, model->phonemes[i].boundary, 1);
+        put(&w, model->phonemes[i].floor, 1);
+    }
+    pad(&w);
+    for (i = 0; i < n; i++) {
+        put(&w, model->components[i].cost, 2);
+        put(&w, model->components[i].duration_mean, 2);
+        put(&w, model->components[i].duration_gain, 2);
+    }
+    pad(&w);
+    put_bytes(&w, model->contexts, n * 2u * model->class_count);
+    pad(&w);
+    put_bytes(&w, model->shapes, n * LABIAL_CHANNELS);
+    pad(&w);
+    put_bytes(&w, model->slopes, n * LABIAL_CHANNELS);
+    pad(&w);
+    put_bytes(&w, model->precisions, n * LABIAL_CHANNELS);
+    pad(&w);
+    put_bytes(&w, model->kernels, (size_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS);
+    pad(&w);
+    for (i = 0; i < (unsigned)model->floor_count * LABIAL_CHANNELS; i++)
+        put(&w, (uint16_t)model->floors[i], 2);
+    pad(&w);
+    for (i = 0; i < LABIAL_CHANNELS; i++)
+        put_channel(&w, &model->channels[i], model->state_count);
+    if (w.size <= room)
+        fixture_seal(out, w.size);
+    return w.size;
+}
+
+void fixture_seal(uint8_t *blob, size_t size)
+{
+    writer_t w;
+    w.out = blob;
+    w.size = 4;
+    w.room = 12;
+    put(&w, (uint32_t)size, 4);
+    put(&w, fixture_crc32(blob + 12, size - 12), 4);
+}

@@ -1,0 +1,242 @@
+/*
+ * fixture_host.c - a program that plays streams, and holds the library to what its header promises on every call.
+ */
+#include "fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Ticks without a new frame and without a new phoneme after which a stream counts as stuck. */
+#define STUCK 2000u
+
+void fixture_complain(fixture_host_t *host, const char *what)
+{
+    if (!host->complaint)
+        host->complaint = what;
+}
+
+void fixture_record(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    fixture_recorder_t *recorder = (fixture_recorder_t *)user;
+    recorder->calls++;
+    if (frame != recorder->next)
+        recorder->misnumbered++;
+    recorder->next = frame + 1;
+    if (recorder->count == recorder->capacity) {
+        recorder->capacity = recorder->capacity ? recorder->capacity * 2 : 256;
+        recorder->frames = (int16_t(*)[LABIAL_CHANNELS])realloc(recorder->frames,
+                                                                recorder->capacity * sizeof recorder->frames[0]);
+        if (!recorder->frames)
+            abort();
+    }
+    memcpy(recorder->frames[recorder->count++], faps, sizeof recorder->frames[0]);
+}
+
+int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count)
+{
+    uint32_t size = 0;
+    unsigned i;
+    memset(host, 0, sizeof *host);
+    host->random.state = 0x1234567u;
+    host->last = LABIAL_WAITING;
+    host->model_count = model_count;
+    for (i = 0; i < model_count; i++) {
+        const uint32_t wanted = labial_workspace_size(models[i]);
+        host->models[i] = models[i];
+        if (wanted > size)
+            size = wanted;
+    }
+    host->stream = (labial_t *)malloc(sizeof *host->stream);
+    host->workspace = (uint32_t *)malloc(size ? size : 4u);
+    if (!host->stream || !host->workspace)
+        abort();
+    memset(host->stream, 0xa5, sizeof *host->stream);
+    memset(host->workspace, 0x5a, size);
+    return labial_init(host->stream, models[0], host->workspace, size, fixture_record, &host->recorder);
+}
+
+void fixture_close(fixture_host_t *host)
+{
+    free(host->stream);
+    free(host->workspace);
+    free(host->recorder.frames);
+    memset(host, 0, sizeof *host);
+}
+
+static void move(fixture_host_t *host)
+{
+    labial_t *place = (labial_t *)malloc(sizeof *place);
+    if (!place)
+        abort();
+    memcpy(place, host->stream, sizeof *place);
+    memset(host->stream, 0xdd, sizeof *host->stream);
+    free(host->stream);
+    host->stream = place;
+}
+
+int fixture_tick(fixture_host_t *host)
+{
+    labial_latency_t before;
+    unsigned room;
+    int result;
+    if (host->moving)
+        move(host);
+    before = labial_latency(host->stream);
+    room = labial_room(host->stream);
+    host->recorder.calls = 0;
+    result = labial_tick(host->stream);
+    if (host->recorder.calls != (result == LABIAL_OK ? 1u : 0u))
+        fixture_complain(host, "the callback was not called exactly once per LABIAL_OK");
+    if (host->recorder.misnumbered)
+        fixture_complain(host, "frame numbers are not consecutive");
+    if (result != LABIAL_OK && (before.ready >= LABIAL_PREROLL || (before.ready > 0 && host->last == LABIAL_OK)))
+        fixture_complain(host, "a frame that was reported ready was not delivered");
+    host->last = result;
+    if (result < LABIAL_OK || result > LABIAL_DONE) {
+        fixture_complain(host, "a tick returned an error or an unknown result");
+        return result;
+    }
+    host->seen[result]++;
+    host->stall = result == LABIAL_BUSY ? host->stall + 1 : 0;
+    if (host->stall > host->longest_stall)
+        host->longest_stall = host->stall;
+    if (result == LABIAL_WAITING || result == LABIAL_STARVED) {
+        if (host->ended)
+            fixture_complain(host, "waits for more phonemes after the end");
+        else if (room == 0)
+            fixture_complain(host, "waits for more phonemes with a full queue");
+        if (!host->restarted && (result == LABIAL_WAITING) != (host->recorder.count == 0))
+            fixture_complain(host, "WAITING is for the first frame, STARVED for every other");
+    }
+    if (result == LABIAL_DONE && !host->ended)
+        fixture_complain(host, "done before the end");
+    return result;
+}
+
+int fixture_push(fixture_host_t *host, const fixture_phoneme_t *phoneme)
+{
+    const unsigned room = labial_room(host->stream);
+    int result;
+    if (phoneme->model != host->current) {
+        result = labial_use(host->stream, host->models[phoneme->model]);
+        if (result != LABIAL_OK)
+            return result;
+        host->current = phoneme->model;
+    }
+    result = labial_push(host->stream, phoneme->phoneme, phoneme->ms);
+    if (result == LABIAL_ERROR_FULL && room > 0)
+        fixture_complain(host, "the queue is full although labial_room() saw room");
+    return result;
+}
+
+/* Work until there is none, bounded; ticks must then find every frame that can be had. */
+static void work(fixture_host_t *host, unsigned steps)
+{
+    const unsigned all = 1000000u;
+    unsigned i;
+    int result = LABIAL_OK;
+    host->recorder.calls = 0;
+    for (i = 0; i < (steps ? steps : all) && result == LABIAL_OK; i++)
+        result = labial_work(host->stream);
+    if (host->recorder.calls)
+        fixture_complain(host, "labial_work() delivered a frame");
+    if (result != LABIAL_OK && result != LABIAL_WAITING && result != LABIAL_DONE)
+        fixture_complain(host, "labial_work() returned what it must not");
+    if (i == all)
+        fixture_complain(host, "labial_work() does not come to an end");
+    if (result == LABIAL_WAITING && host->ended && labial_latency(host->stream).ready == 0)
+        fixture_complain(host, "labial_work() waits after the end with no frame ready");
+}
+
+/* Pushes what may be pushed now; returns how many. */
+static size_t feed_some(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, fixture_feed_t feed,
+                        int last)
+{
+    size_t most = count, pushed = 0;
+    if (feed == FIXTURE_SINGLE)
+        most = 1;
+    else if (feed == FIXTURE_HUNGRY)
+        most = last == LABIAL_WAITING || last == LABIAL_STARVED ? 1 : 0;
+    else if (feed == FIXTURE_CHANCE)
+        most = fixture_below(&host->random, 3) ? 0 : fixture_below(&host->random, LABIAL_QUEUE + 1);
+    while (pushed < count && pushed < most && labial_room(host->stream) > 0) {
+        const int result = fixture_push(host, &input[pushed]);
+        if (result == LABIAL_ERROR_MODELS)
+            break;
+        if (result != LABIAL_OK) {
+            fixture_complain(host, "a proper push was refused");
+            break;
+        }
+        pushed++;
+    }
+    return pushed;
+}
+
+int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, fixture_feed_t feed)
+{
+    labial_latency_t left;
+    size_t i = 0;
+    unsigned stuck = 0;
+    int result = LABIAL_WAITING;
+    while (!host->complaint) {
+        const size_t pushed = feed_some(host, input + i, count - i, feed, result);
+        i += pushed;
+        if (i == count && !host->ended) {
+            if (labial_end(host->stream) != LABIAL_OK)
+                fixture_complain(host, "the end was refused");
+            host->ended = 1;
+        }
+        if (feed == FIXTURE_WORK)
+            work(host, 0);
+        else if (feed == FIXTURE_CHANCE && fixture_below(&host->random, 2))
+            work(host, 1 + fixture_below(&host->random, 40));
+        result = fixture_tick(host);
+        if (feed == FIXTURE_WORK && result == LABIAL_BUSY)
+            fixture_complain(host, "a tick was busy after labial_work() had done everything");
+        if (result == LABIAL_DONE)
+            break;
+        stuck = pushed || result == LABIAL_OK ? 0 : stuck + 1;
+        if (stuck > STUCK)
+            fixture_complain(host, "no progress");
+    }
+    if (host->complaint)
+        return -1;
+    left = labial_latency(host->stream);
+    if (left.frames || left.milliseconds || left.ready)
+        fixture_complain(host, "latency is not zero when the stream is done");
+    if (fixture_tick(host) != LABIAL_DONE)
+        fixture_complain(host, "done is not for good");
+    return host->complaint ? -1 : 0;
+}
+
+int fixture_run(fixture_host_t *host, const labial_model_t *model, const fixture_phoneme_t *input, size_t count,
+                fixture_feed_t feed)
+{
+    if (fixture_open(host, &model, 1) != LABIAL_OK) {
+        fixture_complain(host, "labial_init() refused the model");
+        return -1;
+    }
+    return fixture_play(host, input, count, feed);
+}
+
+long fixture_difference(const fixture_recorder_t *a, const fixture_recorder_t *b)
+{
+    size_t i;
+    for (i = 0; i < a->count && i < b->count; i++)
+        if (memcmp(a->frames[i], b->frames[i], sizeof a->frames[i]) != 0)
+            return (long)i;
+    return a->count == b->count ? -1 : (long)i;
+}
+
+int fixture_step(const fixture_recorder_t *recorder, size_t frame)
+{
+    int largest = 0;
+    unsigned c;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        const int change = recorder->frames[frame][c] - recorder->frames[frame - 1][c];
+        const int size = change < 0 ? -change : change;
+        if (size > largest)
+            largest = size;
+    }
+    return largest;
+}

@@ -1,0 +1,285 @@
+/*
+ * test_blob.c - binary models: the serialiser of the fixture writes them from the description in labial/blob.h.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixture.h"
+#include "labial/blob.h"
+
+#define ROOM 65536
+
+static fixture_model_t plain, rich, slow, laugh;
+static const labial_model_t *models[4];
+static fixture_phoneme_t input[40];
+static uint32_t written[ROOM / 4];
+static uint8_t *const bytes = (uint8_t *)written;
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_plain(&plain);
+    fixture_rich(&rich);
+    fixture_slow(&slow);
+    fixture_laughter(&laugh);
+    models[0] = &plain.model;
+    models[1] = &rich.model;
+    models[2] = &slow.model;
+    models[3] = &laugh.model;
+    return 0;
+}
+
+static size_t serialise(const labial_model_t *model)
+{
+    const size_t size = fixture_serialise(model, bytes, ROOM);
+    assert_true(size > 100 && size <= ROOM && size % 4 == 0);
+    return size;
+}
+
+/* Loads a copy that ends exactly where its heap block does, so that a sanitizer sees every byte read beyond it. */
+static int load(labial_blob_t *blob, size_t size, void **copy)
+{
+    *copy = malloc(size ? size : 1);
+    assert_non_null(*copy);
+    memcpy(*copy, bytes, size);
+    return labial_model_load(blob, *copy, size);
+}
+
+/* Would catch a table at the wrong place, a wrong pad, a scale that is not read. */
+static void a_binary_model_gives_the_same_frames(void **state)
+{
+    unsigned m, i;
+    (void)state;
+    for (m = 0; m < 4; m++) {
+        labial_blob_t blob;
+        fixture_host_t wanted, host;
+        void *copy;
+        memset(&blob, 0xee, sizeof blob);
+        assert_int_equal(load(&blob, serialise(models[m]), &copy), LABIAL_OK);
+        fixture_stream(input, 40, FIXTURE_RANDOM, m);
+        for (i = 0; i < 40; i++)
+            input[i].phoneme = (uint8_t)(input[i].phoneme % models[m]->phoneme_count);
+        if (fixture_run(&wanted, models[m], input, 40, FIXTURE_FILL) != 0)
+            fail_msg("%s", wanted.complaint);
+        if (fixture_run(&host, &blob.model, input, 40, FIXTURE_FILL) != 0)
+            fail_msg("%s", host.complaint);
+        assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
+        assert_memory_equal(copy, bytes, 64); /* used in place and never written */
+        fixture_close(&wanted);
+        fixture_close(&host);
+        free(copy);
+    }
+}
+
+static void every_truncation_is_refused(void **state)
+{
+    unsigned m;
+    (void)state;
+    for (m = 0; m < 2; m++) {
+        const size_t size = serialise(models[m]);
+        size_t n;
+        for (n = 0; n < size; n++) {
+            labial_blob_t blob;
+            void *copy;
+            if (load(&blob, n, &copy) != LABIAL_ERROR_MODEL)
+                fail_msg("%zu of %zu bytes are accepted", n, size);
+            free(copy);
+        }
+    }
+}
+
+/* Would catch a size that is not compared with what the tables take: the model that was meant is another one. */
+static void surplus_bytes_are_refused(void **state)
+{
+    const size_t size = serialise(&rich.model);
+    labial_blob_t blob;
+    (void)state;
+    memset(bytes + size, 0, 4);
+    fixture_seal(bytes, size + 4);
+    assert_int_equal(labial_model_load(&blob, bytes, size + 4), LABIAL_ERROR_MODEL);
+    fixture_seal(bytes, size);
+    assert_int_equal(labial_model_load(&blob, bytes, size), LABIAL_OK);
+}
+
+/* Truncated, with a size and a checksum that fit what is left: every length must be checked before it is relied on. */
+static void every_truncation_that_is_sealed_is_refused(void **state)
+{
+    unsigned m;
+    (void)state;
+    for (m = 0; m < 2; m++) {
+        const size_t size = serialise(models[m]);
+        size_t n;
+        for (n = 12; n < size; n++) {
+            labial_blob_t blob;
+            void *copy;
+            int result;
+            fixture_seal(bytes, n);
+            result = load(&blob, n, &copy);
+            if (result != LABIAL_ERROR_MODEL)
+                fail_msg("%zu of %zu bytes give %d", n, size, result);
+            free(copy);
+        }
+    }
+}
+
+/* Would catch bytes that the checksum does not cover, and a checksum that is not compared in full. */
+static void every_damaged_byte_is_refused(void **state)
+{
+    static const uint8_t flips[] = {0x01, 0x80, 0xff};
+    const size_t size = serialise(&rich.model);
+    labial_blob_t blob;
+    size_t n;
+    unsigned i;
+    (void)state;
+    assert_int_equal(labial_model_load(&blob, bytes, size), LABIAL_OK);
+    for (n = 0; n < size; n++) {
+        for (i = 0; i < sizeof flips; i++) {
+            int result;
+            bytes[n] ^= flips[i];
+            result = labial_model_load(&blob, bytes, size);
+            bytes[n] ^= flips[i];
+            if (result != LABIAL_ERROR_MODEL && result != LABIAL_ERROR_VERSION)
+                fail_msg("byte %zu ^ %u gives %d", n, flips[i], result);
+        }
+    }
+    assert_int_equal(labial_model_load(&blob, bytes, size), LABIAL_OK);
+}
+
+/* Would catch a value that passes the check and then leads outside of memory: what is accepted must play. */
+static void damage_that_is_sealed_is_refused_or_plays(void **state)
+{
+    const size_t size = serialise(&rich.model);
+    unsigned refused = 0, played = 0;
+    size_t n;
+    (void)state;
+    for (n = 12; n < size; n++) {
+        static const uint8_t values[] = {0x00, 0xff, 0x80, 0x7f};
+        const uint8_t was = bytes[n];
+        labial_blob_t blob;
+        void *copy;
+        int result;
+        bytes[n] = n % 5 == 4 ? (uint8_t)(was ^ 1u) : values[(n + n / 5) % 4];
+        fixture_seal(bytes, size);
+        result = load(&blob, size, &copy);
+        bytes[n] = was;
+        if (result == LABIAL_OK) {
+            fixture_host_t host;
+            unsigned i;
+            fixture_stream(input, 8, FIXTURE_ONE_FRAME, (uint32_t)n);
+            for (i = 0; i < 8; i++) {
+                input[i].phoneme = (uint8_t)(input[i].phoneme % blob.model.phoneme_count);
+                input[i].ms = i * 16;
+            }
+            if (fixture_run(&host, &blob.model, input, 8, FIXTURE_FILL) != 0)
+                fail_msg("byte %zu: %s", n, host.complaint);
+            assert_true(fixture_is_exact(host.recorder.count, fixture_duration(input, 8),
+                                         blob.model.frames_per_second));
+            fixture_close(&host);
+            played++;
+        } else {
+            assert_true(result == LABIAL_ERROR_MODEL || result == LABIAL_ERROR_VERSION);
+            refused++;
+        }
+        free(copy);
+    }
+    assert_true(refused > 100 && played > 100); /* both ways were taken */
+}
+
+static void misaligned_data_is_refused(void **state)
+{
+    const size_t size = serialise(&plain.model);
+    labial_blob_t blob;
+    unsigned shift;
+    (void)state;
+    for (shift = 1; shift < 4; shift++) {
+        memmove(bytes + shift, bytes + shift - 1, size);
+        assert_int_equal(labial_model_load(&blob, bytes + shift, size), LABIAL_ERROR_MODEL);
+    }
+    memmove(bytes + 4, bytes + 3, size);
+    assert_int_equal(labial_model_load(&blob, bytes + 4, size), LABIAL_OK);
+}
+
+static void other_formats_are_refused(void **state)
+{
+    static const uint8_t formats[][2] = {{LABIAL_MODEL_FORMAT + 1, 0}, {0, 0}, {LABIAL_MODEL_FORMAT, 1}, {0xff, 0xff}};
+    const size_t size = serialise(&plain.model);
+    labial_blob_t blob;
+    unsigned i;
+    (void)state;
+    for (i = 0; i < 4; i++) {
+        memcpy(bytes + 12, formats[i], 2);
+        fixture_seal(bytes, size);
+        assert_int_equal(labial_model_load(&blob, bytes, size), LABIAL_ERROR_VERSION);
+    }
+    (void)serialise(&plain.model);
+    memcpy(bytes, "LBM2", 4); /* not covered by the checksum */
+    assert_true(labial_model_load(&blob, bytes, size) < 0);
+    memcpy(bytes, "1MBL", 4);
+    assert_true(labial_model_load(&blob, bytes, size) < 0);
+}
+
+static void null_is_refused(void **state)
+{
+    const size_t size = serialise(&plain.model);
+    labial_blob_t blob;
+    (void)state;
+    assert_int_equal(labial_model_load(NULL, bytes, size), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_model_load(&blob, NULL, size), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_model_load(&blob, bytes, 0), LABIAL_ERROR_MODEL);
+}
+
+/* Would catch a checksum of another polynomial or bit order: this one's check value is that of zlib and PNG. */
+static void the_serialisers_checksum_is_the_known_one(void **state)
+{
+    (void)state;
+    assert_int_equal(fixture_crc32((const uint8_t *)"123456789", 9), 0xcbf43926u);
+}
+
+/* Counts that contradict the tables' true lengths, with everything else intact. */
+static void counts_that_lie_are_refused(void **state)
+{
+    static const struct {
+        unsigned at;
+        uint8_t value;
+    } lies[] = {
+        {16, 0}, {17, 0xff}, {18, 1}, {18, 7}, {18, 255}, {19, 1}, {19, 32}, {20, 1}, {20, 64}, {20, 255},
+        {21, 6}, {22, 2},    {23, 0}, {23, 8}, {24, 255}, {25, 7}, {26, 0},  {26, 6}, {26, 5},  {26, 3},
+        {27, 0}, {27, 1},    {27, 3}, {27, 255},
+    };
+    unsigned i;
+    (void)state;
+    for (i = 0; i < sizeof lies / sizeof lies[0]; i++) {
+        const size_t size = serialise(&rich.model);
+        labial_blob_t blob;
+        void *copy;
+        bytes[lies[i].at] = lies[i].value;
+        fixture_seal(bytes, size);
+        if (load(&blob, size, &copy) != LABIAL_ERROR_MODEL)
+            fail_msg("byte %u = %u is accepted", lies[i].at, lies[i].value);
+        free(copy);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_serialisers_checksum_is_the_known_one),
+        cmocka_unit_test(a_binary_model_gives_the_same_frames),
+        cmocka_unit_test(every_truncation_is_refused),
+        cmocka_unit_test(every_truncation_that_is_sealed_is_refused),
+        cmocka_unit_test(surplus_bytes_are_refused),
+        cmocka_unit_test(every_damaged_byte_is_refused),
+        cmocka_unit_test(damage_that_is_sealed_is_refused_or_plays),
+        cmocka_unit_test(misaligned_data_is_refused),
+        cmocka_unit_test(other_formats_are_refused),
+        cmocka_unit_test(null_is_refused),
+        cmocka_unit_test(counts_that_lie_are_refused),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

@@ -1,0 +1,162 @@
+/*
+ * test_fixed.c - the shared arithmetic, in both of its forms, against exact 64-bit integers and doubles.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "fixture.h"
+
+/* The header twice: once for cores with 64-bit products, once for those without. */
+#define LABIAL_NARROW_MULTIPLY 0
+#include "fixed.h"
+#undef LABIAL_FIXED_H
+#undef LABIAL_NARROW_MULTIPLY
+#define LABIAL_NARROW_MULTIPLY 1
+#define labial_arithmetic_shift_is_required narrow_arithmetic_shift_is_required
+#define labial_add narrow_add
+#define labial_sub narrow_sub
+#define labial_mulshift narrow_mulshift
+#define labial_scale narrow_scale
+#define labial_weight narrow_weight
+#define labial_z narrow_z
+#define labial_z_cost narrow_z_cost
+#define labial_clamp narrow_clamp
+#include "fixed.h"
+#undef labial_add
+#undef labial_sub
+#undef labial_mulshift
+#undef labial_scale
+#undef labial_weight
+#undef labial_z
+#undef labial_z_cost
+#undef labial_clamp
+
+static const int32_t corners[] = {0,      1,       -1,        2,          -2,         3,         255,       -256,
+                                  32767,  32768,   -32768,    -32769,     65535,      65536,     -65536,    -65537,
+                                  98304,  1 << 20, 0x7fff8000, 0x7fffffff, -0x7fffffff, INT32_MIN, INT32_MIN + 1, 0x55555555};
+
+#define CORNERS (sizeof corners / sizeof corners[0])
+
+/* floor((a b + 2^(shift - 1)) / 2^shift) modulo 2^32, by division. */
+static uint32_t wanted_product(int32_t a, int32_t b, unsigned shift)
+{
+    const int64_t unit = (int64_t)1 << shift, sum = (int64_t)a * b + unit / 2;
+    int64_t quotient = sum / unit;
+    if (sum % unit < 0)
+        quotient--;
+    return (uint32_t)(quotient & 0xffffffff);
+}
+
+static void check_product(int32_t a, int32_t b, unsigned shift)
+{
+    const uint32_t wanted = wanted_product(a, b, shift);
+    if ((uint32_t)labial_mulshift(a, b, shift) != wanted)
+        fail_msg("wide: %d * %d >> %u is %d", a, b, shift, labial_mulshift(a, b, shift));
+    if ((uint32_t)narrow_mulshift(a, b, shift) != wanted)
+        fail_msg("narrow: %d * %d >> %u is %d", a, b, shift, narrow_mulshift(a, b, shift));
+}
+
+/* Would catch a lost carry between the four small products, and rounding that differs from target to target. */
+static void products_are_rounded_alike_and_exactly(void **state)
+{
+    fixture_random_t random = {1};
+    unsigned i, k, shift;
+    (void)state;
+    for (shift = 16; shift <= 31; shift++) {
+        for (i = 0; i < CORNERS; i++)
+            for (k = 0; k < CORNERS; k++)
+                check_product(corners[i], corners[k], shift);
+        for (i = 0; i < 20000; i++) {
+            const int32_t a = (int32_t)fixture_random(&random), b = (int32_t)fixture_random(&random);
+            check_product(a, b, shift);
+            check_product(a >> (i % 31), b >> (i / 31 % 31), shift);
+        }
+    }
+}
+
+static void sums_wrap(void **state)
+{
+    (void)state;
+    assert_int_equal(labial_add(2147483647, 1), INT32_MIN);
+    assert_int_equal(labial_sub(INT32_MIN, 1), 2147483647);
+    assert_int_equal(labial_add(-5, 3), -2);
+    assert_int_equal(labial_sub(-5, 3), -8);
+}
+
+/* Would catch rounding towards zero, which pulls motion towards neutral. */
+static void scaling_rounds_to_the_nearest(void **state)
+{
+    fixture_random_t random = {2};
+    unsigned i;
+    int down;
+    (void)state;
+    assert_int_equal(labial_scale(5, 0), 5);
+    assert_int_equal(labial_scale(-5, 4), -80);
+    assert_int_equal(labial_scale(5, -1), 3);
+    assert_int_equal(labial_scale(-5, -1), -2); /* halves up */
+    for (i = 0; i < 10000; i++) {
+        const int32_t x = (int32_t)fixture_random(&random) >> 1;
+        for (down = 1; down < 25; down++)
+            assert_int_equal((uint32_t)labial_scale(x, -down), wanted_product(x, 1, (unsigned)down));
+    }
+}
+
+static void weights_are_minifloats(void **state)
+{
+    unsigned code;
+    (void)state;
+    for (code = 0; code < 256; code++) {
+        assert_true((double)labial_weight((uint8_t)code) == fixture_weight_value((uint8_t)code));
+        assert_true(code == 0 || labial_weight((uint8_t)code) > labial_weight((uint8_t)(code - 1)));
+    }
+    assert_int_equal(labial_weight(0x0f), 15);
+    assert_int_equal(labial_weight(0x10), 16);
+    assert_int_equal(labial_weight(0xff), 507904);
+}
+
+/* z = x * gain / 2^12 in Q6 and z^2 / 2^7 the exponent, both rounded down; z ends at the limit. */
+static void gaussian_costs_follow_their_formula(void **state)
+{
+    fixture_random_t random = {3};
+    unsigned i;
+    (void)state;
+    for (i = 0; i < 200000; i++) {
+        const uint32_t x = fixture_random(&random) >> (16 + i % 16);
+        const uint16_t gain = (uint16_t)(fixture_random(&random) >> (16 + i / 16 % 16));
+        const uint32_t limit = i % 3 ? 1023 : fixture_random(&random) >> 16;
+        const double exact = (double)x * gain / 4096.0;
+        const uint32_t z = labial_z(x, gain, limit);
+        if (exact < (double)limit)
+            assert_true((double)z <= exact && exact < (double)z + 1.0);
+        else
+            assert_int_equal(z, limit);
+        assert_int_equal(labial_z_cost(z), (uint32_t)((double)z * (double)z / 128.0));
+    }
+    assert_int_equal(labial_z(65535, 65535, 65535), 65535);
+    assert_int_equal(labial_z(65535, 65535, 1023), 1023);
+    /* One standard deviation of 100 is half a nat, 16 cost units. */
+    assert_in_range(labial_z_cost(labial_z(100, (uint16_t)(262144.0 / 141.421356 + 0.5), 1023)), 15, 16);
+}
+
+static void clamping(void **state)
+{
+    (void)state;
+    assert_int_equal(labial_clamp(11, 10), 10);
+    assert_int_equal(labial_clamp(-11, 10), -10);
+    assert_int_equal(labial_clamp(10, 10), 10);
+    assert_int_equal(labial_clamp(-10, 10), -10);
+    assert_int_equal(labial_clamp(INT32_MIN, 16383), -16383);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(products_are_rounded_alike_and_exactly), cmocka_unit_test(sums_wrap),
+        cmocka_unit_test(scaling_rounds_to_the_nearest),          cmocka_unit_test(weights_are_minifloats),
+        cmocka_unit_test(gaussian_costs_follow_their_formula),    cmocka_unit_test(clamping),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,373 @@
+/*
+ * test_model.c - labial_model_check() accepts what labial/model.h allows and refuses every rule's violation alone.
+ *
+ * Each refusal starts from a model that is accepted and changes one thing, so that a check that was forgotten shows.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <string.h>
+
+#include "fixture.h"
+
+static fixture_model_t f;
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_rich(&f);
+    return 0;
+}
+
+/* Sets `place` to a value, wants `expected` from the check, and puts the old value back. */
+#define TRY(type, place, value, expected)                                                          \
+    do {                                                                                           \
+        type const old_ = (place);                                                                 \
+        int got_;                                                                                  \
+        (place) = (type)(value);                                                                   \
+        got_ = labial_model_check(&f.model);                                                       \
+        (place) = old_;                                                                            \
+        if (got_ != (expected))                                                                    \
+            fail_msg("%s = %s gives %d, not %s", #place, #value, got_, #expected);                 \
+    } while (0)
+
+#define REFUSED(type, place, value) TRY(type, place, value, LABIAL_ERROR_MODEL)
+#define ACCEPTED(type, place, value) TRY(type, place, value, LABIAL_OK)
+
+/* Would catch a rule that is stricter than the header: exporters could not write such models. */
+static void accepts_the_fixtures(void **state)
+{
+    (void)state;
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    fixture_plain(&f);
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    fixture_laughter(&f);
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    fixture_slow(&f);
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+}
+
+static void refuses_null(void **state)
+{
+    unsigned c;
+    (void)state;
+    assert_int_equal(labial_model_check(NULL), LABIAL_ERROR_NULL);
+    TRY(const labial_phoneme_t *, f.model.phonemes, NULL, LABIAL_ERROR_NULL);
+    TRY(const labial_component_t *, f.model.components, NULL, LABIAL_ERROR_NULL);
+    TRY(const int8_t *, f.model.shapes, NULL, LABIAL_ERROR_NULL);
+    TRY(const int8_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL); /* there are taps */
+    TRY(const int16_t *, f.model.floors, NULL, LABIAL_ERROR_NULL); /* there are floors */
+    TRY(const labial_channel_t *, f.model.channels, NULL, LABIAL_ERROR_NULL);
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        TRY(const labial_emission_t *, f.channels[c].emissions, NULL, LABIAL_ERROR_NULL);
+        TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
+        TRY(const uint16_t *, f.channels[c].rows, NULL, LABIAL_ERROR_NULL);
+        TRY(const uint16_t *, f.channels[c].edges, NULL, LABIAL_ERROR_NULL);
+    }
+}
+
+/* Would catch a model that must carry tables of what it does not use. */
+static void optional_tables_may_be_null(void **state)
+{
+    (void)state;
+    ACCEPTED(const uint8_t *, f.model.contexts, NULL);
+    ACCEPTED(const int8_t *, f.model.slopes, NULL);
+    ACCEPTED(const uint8_t *, f.model.precisions, NULL);
+    f.model.kernel_taps = 0;
+    ACCEPTED(const int8_t *, f.model.kernels, NULL);
+    f.model.floor_count = 0;
+    f.phonemes[FIXTURE_P].floor = f.phonemes[FIXTURE_O].floor = 0;
+    ACCEPTED(const int16_t *, f.model.floors, NULL);
+    REFUSED(uint8_t, f.phonemes[FIXTURE_P].floor, 1); /* a row of a table that is not there */
+}
+
+static void refuses_other_versions(void **state)
+{
+    (void)state;
+    TRY(uint16_t, f.model.format, 0, LABIAL_ERROR_VERSION);
+    TRY(uint16_t, f.model.format, LABIAL_MODEL_FORMAT + 1, LABIAL_ERROR_VERSION);
+    TRY(uint16_t, f.model.format, LABIAL_MODEL_FORMAT << 8, LABIAL_ERROR_VERSION);
+}
+
+static void refuses_counts_out_of_range(void **state)
+{
+    (void)state;
+    REFUSED(uint16_t, f.model.frames_per_second, 0);
+    REFUSED(uint16_t, f.model.frames_per_second, 251);
+    ACCEPTED(uint16_t, f.model.frames_per_second, 1);
+    ACCEPTED(uint16_t, f.model.frames_per_second, 250);
+    REFUSED(uint8_t, f.model.phoneme_count, 0);
+    REFUSED(uint8_t, f.model.phoneme_count, LABIAL_PHONEMES_MAX + 1);
+    REFUSED(uint8_t, f.model.class_count, 0);
+    REFUSED(uint8_t, f.model.class_count, LABIAL_CLASSES_MAX + 1);
+    REFUSED(uint8_t, f.model.state_count, 0);
+    REFUSED(uint8_t, f.model.state_count, LABIAL_STATES_MAX + 1);
+    REFUSED(uint16_t, f.model.component_count, 0);
+    REFUSED(uint8_t, f.model.silence, FIXTURE_SPEECH_COUNT);
+    REFUSED(uint8_t, f.model.silence, 255);
+    ACCEPTED(uint8_t, f.model.silence, FIXTURE_SPEECH_COUNT - 1);
+    REFUSED(uint8_t, f.model.soft, 2);
+    ACCEPTED(uint8_t, f.model.soft, 0);
+}
+
+static void refuses_bad_phonemes(void **state)
+{
+    unsigned p;
+    (void)state;
+    for (p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
+        REFUSED(uint8_t, f.phonemes[p].component_count, 0);
+        REFUSED(uint16_t, f.phonemes[p].first_component, 2 * FIXTURE_SPEECH_COUNT);
+        REFUSED(uint16_t, f.phonemes[p].first_component, 2 * FIXTURE_SPEECH_COUNT - 1); /* the second lies outside */
+        REFUSED(uint16_t, f.phonemes[p].first_component, 65535);
+        REFUSED(uint8_t, f.phonemes[p].viseme_class, FIXTURE_CLASSES);
+        REFUSED(uint8_t, f.phonemes[p].boundary, 2);
+        REFUSED(uint8_t, f.phonemes[p].floor, FIXTURE_FLOORS + 1);
+        REFUSED(uint8_t, f.phonemes[p].floor, 255);
+        ACCEPTED(uint8_t, f.phonemes[p].floor, FIXTURE_FLOORS);
+        ACCEPTED(uint16_t, f.phonemes[p].first_component, 3); /* components may be shared */
+    }
+    REFUSED(uint8_t, f.phonemes[0].component_count, LABIAL_PHONEME_COMPONENTS_MAX + 1);
+    ACCEPTED(uint8_t, f.phonemes[0].component_count, LABIAL_PHONEME_COMPONENTS_MAX);
+    ACCEPTED(uint16_t, f.model.component_count, 2 * FIXTURE_SPEECH_COUNT);
+    REFUSED(uint16_t, f.model.component_count, 2 * FIXTURE_SPEECH_COUNT - 1);
+}
+
+static void refuses_bad_transitions(void **state)
+{
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        REFUSED(uint16_t, f.rows[c][3], f.rows[c][2]);     /* state 2 without a predecessor */
+        REFUSED(uint16_t, f.rows[c][3], f.rows[c][2] - 1); /* descending */
+        REFUSED(uint16_t, f.rows[c][FIXTURE_SPEECH_STATES], f.rows[c][FIXTURE_SPEECH_STATES - 1]);
+        REFUSED(uint16_t, f.edges[c][0], FIXTURE_SPEECH_STATES);
+        REFUSED(uint16_t, f.edges[c][f.rows[c][FIXTURE_SPEECH_STATES] - 1], 0x0aff);
+        ACCEPTED(uint16_t, f.edges[c][0], 0xff00 | (FIXTURE_SPEECH_STATES - 1));
+    }
+}
+
+static void refuses_positions_out_of_range(void **state)
+{
+    const unsigned last = FIXTURE_SPEECH_STATES - 1;
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        REFUSED(int16_t, f.emissions[c][0].mean, LABIAL_POSITION_MAX + 1);
+        REFUSED(int16_t, f.emissions[c][last].mean, -LABIAL_POSITION_MAX - 1);
+        REFUSED(int16_t, f.emissions[c][last].mean, INT16_MIN);
+        ACCEPTED(int16_t, f.emissions[c][0].mean, -LABIAL_POSITION_MAX);
+        ACCEPTED(int16_t, f.emissions[c][last].mean, LABIAL_POSITION_MAX);
+        REFUSED(int16_t, f.states[c][0].mean[0], LABIAL_POSITION_MAX + 1);
+        REFUSED(int16_t, f.states[c][last].mean[0], -LABIAL_POSITION_MAX - 1);
+        REFUSED(int16_t, f.states[c][last].mean[0], INT16_MIN);
+        ACCEPTED(int16_t, f.states[c][0].mean[0], -LABIAL_POSITION_MAX);
+        ACCEPTED(int16_t, f.states[c][last].mean[0], LABIAL_POSITION_MAX);
+    }
+}
+
+static void refuses_floors_out_of_range(void **state)
+{
+    const unsigned last = FIXTURE_FLOORS * LABIAL_CHANNELS - 1;
+    (void)state;
+    REFUSED(int16_t, f.floors[0], LABIAL_POSITION_MAX + 1);
+    REFUSED(int16_t, f.floors[last], LABIAL_NO_FLOOR - 1);
+    REFUSED(int16_t, f.floors[last], INT16_MIN);
+    ACCEPTED(int16_t, f.floors[0], LABIAL_NO_FLOOR);
+    ACCEPTED(int16_t, f.floors[last], LABIAL_POSITION_MAX);
+    REFUSED(uint8_t, f.model.floor_count, FIXTURE_FLOORS - 1); /* the last phoneme's row lies outside */
+}
+
+static void refuses_scales_out_of_range(void **state)
+{
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        REFUSED(uint16_t, f.channels[c].shape_scale, 32768);
+        REFUSED(uint16_t, f.channels[c].shape_scale, 65535);
+        ACCEPTED(uint16_t, f.channels[c].shape_scale, 32767);
+        REFUSED(uint16_t, f.channels[c].slope_scale, 16384);
+        REFUSED(uint16_t, f.channels[c].slope_scale, 65535);
+        ACCEPTED(uint16_t, f.channels[c].slope_scale, 16383);
+    }
+}
+
+/* The least weight above `value`, and the largest that is not. */
+static uint8_t above(double value)
+{
+    uint8_t code = 0;
+    while (fixture_weight_value(code) <= value)
+        code++;
+    return code;
+}
+
+static uint8_t not_above(double value)
+{
+    return (uint8_t)(above(value) - 1);
+}
+
+/* The diagonal of equation 3 is, at most, static + 2 * (delta / 4) + 6 * delta-delta + anchor + precision; what pulls a
+ * frame, that many times a position. */
+static void refuses_weights_beyond_the_largest_sum(void **state)
+{
+    const double sum = LABIAL_WEIGHT_SUM_MAX, pull = (double)LABIAL_PULL_MAX / LABIAL_POSITION_MAX;
+    const uint8_t fits = not_above((sum < pull ? sum : pull) - 1500); /* the fixture's other weights fill 1,400 */
+    unsigned c, q;
+    (void)state;
+    fixture_plain(&f);
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (q = 0; q < FIXTURE_SPEECH_STATES; q += FIXTURE_SPEECH_STATES - 1) {
+            labial_state_t *s = &f.states[c][q];
+            const uint8_t anchor = s->anchor;
+            REFUSED(uint8_t, s->weight[0], above(sum));
+            ACCEPTED(uint8_t, s->weight[0], fits);
+            REFUSED(uint8_t, s->weight[1], above(sum / 2)); /* counts twice */
+            ACCEPTED(uint8_t, s->weight[1], not_above(sum / 2 - 1500));
+            REFUSED(uint8_t, s->weight[2], above(sum / 6)); /* in a frame between two others of the state */
+            ACCEPTED(uint8_t, s->weight[2], not_above(sum / 6 - 500));
+            REFUSED(uint8_t, s->anchor, above(sum));
+            ACCEPTED(uint8_t, s->anchor, fits);
+            REFUSED(uint8_t, s->weight[0], 0xff);
+            s->anchor = above(sum / 2);
+            REFUSED(uint8_t, s->weight[0], above(sum / 2));
+            s->anchor = anchor;
+        }
+    }
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+}
+
+/* Would catch a check that forgets what a phoneme's own precision adds to the diagonal. */
+static void refuses_precisions_beyond_the_largest_sum(void **state)
+{
+    const double sum = LABIAL_WEIGHT_SUM_MAX, pull = (double)LABIAL_PULL_MAX / LABIAL_POSITION_MAX;
+    const double least = sum < pull ? sum : pull;
+    const unsigned last = 2 * FIXTURE_SPEECH_COUNT * LABIAL_CHANNELS - 1;
+    (void)state;
+    memset(f.precisions, 0, sizeof f.precisions);
+    REFUSED(uint8_t, f.precisions[0], above(sum));
+    REFUSED(uint8_t, f.precisions[last], above(sum));
+    REFUSED(uint8_t, f.precisions[last], 0xff);
+    ACCEPTED(uint8_t, f.precisions[last], not_above(least / 2));
+    f.states[12][3].weight[0] = not_above(least / 2);
+    f.states[12][3].anchor = 0;
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    REFUSED(uint8_t, f.precisions[last], above(least / 2 + 2000)); /* one channel's last component */
+}
+
+/* A right-hand side is 2 * weight * mean of delta from either neighbour, and 4 times that of delta-delta. */
+static void refuses_pulls_beyond_the_largest(void **state)
+{
+    const double pull = (double)LABIAL_PULL_MAX / LABIAL_POSITION_MAX;
+    unsigned c, i;
+    (void)state;
+    fixture_plain(&f);
+    for (c = 0; c < LABIAL_CHANNELS; c += 6) {
+        for (i = 1; i < 3; i++) {
+            f.states[c][2].mean[i] = LABIAL_POSITION_MAX;
+            f.states[c][5].mean[i] = -LABIAL_POSITION_MAX;
+            f.states[c][5].weight[i] = above(pull / 4);
+            assert_true(fixture_weight_value(above(pull / 4)) * 6 < LABIAL_WEIGHT_SUM_MAX); /* not for its weight */
+            REFUSED(uint8_t, f.states[c][2].weight[i], above(pull / 4));
+            f.states[c][5].weight[i] = not_above(pull / 16);
+            ACCEPTED(uint8_t, f.states[c][2].weight[i], not_above(pull / 16));
+            f.states[c][2].mean[i] = f.states[c][5].mean[i] = 0;
+        }
+    }
+}
+
+static void refuses_states_that_nothing_holds(void **state)
+{
+    unsigned c;
+    (void)state;
+    memset(f.precisions, 0x40, sizeof f.precisions); /* a phoneme's precision may be spread thin, so it does not count */
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        labial_state_t *s = &f.states[c][c % FIXTURE_SPEECH_STATES];
+        s->anchor = 0;
+        REFUSED(uint8_t, s->weight[0], 0);
+        REFUSED(uint8_t, s->weight[0], LABIAL_WEIGHT_MIN - 1);
+        ACCEPTED(uint8_t, s->weight[0], LABIAL_WEIGHT_MIN);
+        s->anchor = LABIAL_WEIGHT_MIN / 2;
+        ACCEPTED(uint8_t, s->weight[0], LABIAL_WEIGHT_MIN / 2);
+        s->anchor = LABIAL_WEIGHT_MIN;
+        ACCEPTED(uint8_t, s->weight[0], 0);
+    }
+}
+
+static void refuses_kernels_beyond_their_reach(void **state)
+{
+    static int8_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * LABIAL_CHANNELS];
+    (void)state;
+    f.model.kernels = kernels;
+    f.model.kernel_taps = 3;
+    f.model.kernel_stride = LABIAL_REACH;
+    f.model.kernel_behind = 1;
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK); /* exactly as far as it goes, to both sides */
+    REFUSED(uint8_t, f.model.kernel_stride, LABIAL_REACH + 1);
+    REFUSED(uint8_t, f.model.kernel_behind, 0); /* the last tap at 2 * LABIAL_REACH */
+    REFUSED(uint8_t, f.model.kernel_behind, 2); /* the first */
+    REFUSED(uint8_t, f.model.kernel_behind, 255);
+    REFUSED(uint8_t, f.model.kernel_taps, 4);
+    f.model.kernel_stride = 1;
+    f.model.kernel_behind = 16;
+    ACCEPTED(uint8_t, f.model.kernel_taps, LABIAL_KERNEL_TAPS_MAX);
+    REFUSED(uint8_t, f.model.kernel_taps, LABIAL_KERNEL_TAPS_MAX + 1);
+    REFUSED(uint8_t, f.model.kernel_stride, 255);
+}
+
+/* Would catch an index or a product that is too narrow for the largest model the limits allow. */
+static void accepts_the_largest_counts(void **state)
+{
+    enum { COMPONENTS = LABIAL_PHONEMES_MAX * LABIAL_PHONEME_COMPONENTS_MAX };
+    static labial_phoneme_t phonemes[LABIAL_PHONEMES_MAX];
+    static labial_component_t components[COMPONENTS];
+    static int8_t shapes[COMPONENTS * LABIAL_CHANNELS];
+    unsigned p;
+    (void)state;
+    fixture_slow(&f);
+    for (p = 0; p < LABIAL_PHONEMES_MAX; p++) {
+        phonemes[p].first_component = (uint16_t)(p * LABIAL_PHONEME_COMPONENTS_MAX);
+        phonemes[p].component_count = LABIAL_PHONEME_COMPONENTS_MAX;
+        phonemes[p].viseme_class = (uint8_t)(p % LABIAL_CLASSES_MAX);
+    }
+    f.model.phonemes = phonemes;
+    f.model.components = components;
+    f.model.shapes = shapes;
+    f.model.contexts = NULL;
+    f.model.slopes = NULL;
+    f.model.precisions = NULL;
+    f.model.kernel_taps = 0;
+    f.model.kernels = NULL;
+    f.model.floor_count = 0;
+    f.model.floors = NULL;
+    f.model.phoneme_count = LABIAL_PHONEMES_MAX;
+    f.model.class_count = LABIAL_CLASSES_MAX;
+    f.model.component_count = COMPONENTS;
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    REFUSED(uint16_t, f.model.component_count, COMPONENTS - 1);
+    REFUSED(uint8_t, phonemes[LABIAL_PHONEMES_MAX - 1].viseme_class, LABIAL_CLASSES_MAX);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(accepts_the_fixtures, setup),
+        cmocka_unit_test_setup(refuses_null, setup),
+        cmocka_unit_test_setup(optional_tables_may_be_null, setup),
+        cmocka_unit_test_setup(refuses_other_versions, setup),
+        cmocka_unit_test_setup(refuses_counts_out_of_range, setup),
+        cmocka_unit_test_setup(refuses_bad_phonemes, setup),
+        cmocka_unit_test_setup(refuses_bad_transitions, setup),
+        cmocka_unit_test_setup(refuses_positions_out_of_range, setup),
+        cmocka_unit_test_setup(refuses_floors_out_of_range, setup),
+        cmocka_unit_test_setup(refuses_scales_out_of_range, setup),
+        cmocka_unit_test_setup(refuses_weights_beyond_the_largest_sum, setup),
+        cmocka_unit_test_setup(refuses_precisions_beyond_the_largest_sum, setup),
+        cmocka_unit_test_setup(refuses_pulls_beyond_the_largest, setup),
+        cmocka_unit_test_setup(refuses_states_that_nothing_holds, setup),
+        cmocka_unit_test_setup(refuses_kernels_beyond_their_reach, setup),
+        cmocka_unit_test_setup(accepts_the_largest_counts, setup),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

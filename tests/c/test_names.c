@@ -1,0 +1,163 @@
+/*
+ * test_names.c - phonemes by name: labels, aliases, and the marks that do not change the mouth's shape.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "labial/labial.h"
+#include "labial/names.h"
+
+/* Ascending by bytes. "AA1" is a name of its own here, other than "AA" with a stress digit. */
+static const labial_name_t entries[] = {
+    {"A", 9},        {"AA", 1},   {"AA1", 2},       {"AE", 3}, {"B", 4}, {"_:", 8}, {"a", 5},
+    {"a\xca\x8a", 6}, {"sil", 0}, {"\xc9\x91", 1}, /* a + upsilon; alpha */
+    {"\xca\x83", 7},                                /* esh, the last entry */
+};
+
+static const char *const labels[] = {"sil", "AA", "AA1", "AE", "B", "a", "a\xca\x8a", "\xca\x83", "_:", "A"};
+
+static const labial_names_t names = {sizeof entries / sizeof entries[0], sizeof labels / sizeof labels[0], entries,
+                                     labels};
+
+/* Looks `name` up at the very end of a heap block: a sanitizer sees every byte read beyond it. */
+static int find(const char *name)
+{
+    const size_t length = strlen(name);
+    char *copy = (char *)malloc(length ? length : 1);
+    int result;
+    assert_non_null(copy);
+    memcpy(copy, name, length);
+    result = labial_find(&names, copy, length);
+    free(copy);
+    return result;
+}
+
+/* Would catch an off-by-one of the search at either end of the table. */
+static void every_entry_is_found(void **state)
+{
+    unsigned i;
+    (void)state;
+    for (i = 0; i < names.count; i++)
+        assert_int_equal(find(entries[i].name), entries[i].phoneme);
+}
+
+static void length_is_obeyed(void **state)
+{
+    (void)state;
+    assert_int_equal(labial_find(&names, "AA1xyz", 3), 2);
+    assert_int_equal(labial_find(&names, "AA1xyz", 2), 1);
+    assert_int_equal(labial_find(&names, "AA1xyz", 1), 9);
+    assert_int_equal(labial_find(&names, "AA\0", 3), LABIAL_ERROR_NAME); /* a NUL is a byte as any other */
+    assert_int_equal(labial_find(&names, "si\0l", 4), LABIAL_ERROR_NAME);
+}
+
+static void unknown_names_are_refused(void **state)
+{
+    static const char *const unknown[] = {"AAA", "0", "ZZ", "b", "AB", "AAx", "Zzzzzzzzzzzzzzzzzzzzzzzzzzzz", "si",
+                                          "sill", "\xff", "\xca", "\xca\x8a", "x1", "1AA"};
+    unsigned i;
+    (void)state;
+    for (i = 0; i < sizeof unknown / sizeof unknown[0]; i++)
+        if (find(unknown[i]) != LABIAL_ERROR_NAME)
+            fail_msg("%s is %d", unknown[i], find(unknown[i]));
+}
+
+static void empty_names_are_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(find(""), LABIAL_ERROR_NAME);
+    assert_int_equal(labial_find(&names, "AA", 0), LABIAL_ERROR_NAME);
+}
+
+static void null_is_an_error(void **state)
+{
+    labial_names_t none;
+    (void)state;
+    memset(&none, 0, sizeof none);
+    assert_int_equal(labial_find(NULL, "AA", 2), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_find(&names, NULL, 2), LABIAL_ERROR_NULL);
+    none.entries = entries;
+    assert_int_equal(labial_find(&none, "AA", 2), LABIAL_ERROR_NAME); /* an empty table */
+}
+
+static void stress_digits_are_dropped(void **state)
+{
+    (void)state;
+    assert_int_equal(find("AA0"), 1);
+    assert_int_equal(find("AA2"), 1);
+    assert_int_equal(find("AE1"), 3);
+    assert_int_equal(find("A1"), 9);
+    assert_int_equal(find("B0"), 4);
+}
+
+/* Would catch stripping before looking: names that end in a digit or a colon are names first. */
+static void a_name_as_it_stands_comes_first(void **state)
+{
+    (void)state;
+    assert_int_equal(find("AA1"), 2);
+    assert_int_equal(find("_:"), 8);
+}
+
+static void ipa_marks_are_dropped(void **state)
+{
+    (void)state;
+    assert_int_equal(find("\xcb\x88\xc9\x91"), 1);         /* primary stress, alpha */
+    assert_int_equal(find("\xcb\x8c\xc9\x91"), 1);         /* secondary stress, alpha */
+    assert_int_equal(find("\xc9\x91\xcb\x90"), 1);         /* alpha, long */
+    assert_int_equal(find("\xc9\x91\xcb\x91"), 1);         /* alpha, half-long */
+    assert_int_equal(find("\xcb\x88\xc9\x91\xcb\x90"), 1); /* both */
+    assert_int_equal(find("\xcb\x88"
+                          "a\xca\x8a"),
+                     6);
+    assert_int_equal(find("\xca\x83\xcb\x90"), 7);
+}
+
+/* Would catch a mark taken for a name, half a mark, and a length that wraps below zero. */
+static void marks_alone_are_unknown(void **state)
+{
+    static const char *const marks[] = {"\xcb\x88", "\xcb\x8c", "\xcb\x90", "\xcb\x88\xcb\x90", "\xcb", "\x88",
+                                        "\xcb\x88\xcb\x88", "1", "00", "\x90", "\xcb\x88\x31"};
+    unsigned i;
+    (void)state;
+    for (i = 0; i < sizeof marks / sizeof marks[0]; i++)
+        if (find(marks[i]) != LABIAL_ERROR_NAME)
+            fail_msg("mark %u is %d", i, find(marks[i]));
+    assert_int_equal(find("AA\xcb"), LABIAL_ERROR_NAME);
+    assert_int_equal(find("\xcb" "AA"), LABIAL_ERROR_NAME);
+}
+
+/* Would catch a search that only works at one size of the table. */
+static void tables_of_every_size(void **state)
+{
+    labial_names_t part = names;
+    unsigned count, i;
+    (void)state;
+    for (count = 1; count <= names.count; count++) {
+        part.count = (uint16_t)count;
+        for (i = 0; i < names.count; i++) {
+            const int got = labial_find(&part, entries[i].name, strlen(entries[i].name));
+            if (i < count)
+                assert_int_equal(got, entries[i].phoneme);
+            else if (got != (i == 2 && count == 2 ? 1 : LABIAL_ERROR_NAME)) /* without its entry, "AA1" is "AA" stressed */
+                fail_msg("entry %u is found beyond a table of %u", i, count);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_entry_is_found), cmocka_unit_test(length_is_obeyed),
+        cmocka_unit_test(unknown_names_are_refused), cmocka_unit_test(empty_names_are_refused),
+        cmocka_unit_test(null_is_an_error), cmocka_unit_test(stress_digits_are_dropped),
+        cmocka_unit_test(a_name_as_it_stands_comes_first), cmocka_unit_test(ipa_marks_are_dropped),
+        cmocka_unit_test(marks_alone_are_unknown), cmocka_unit_test(tables_of_every_size),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,72 @@
+/*
+ * test_result.c - the sentences for results, in step with the enumeration.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <limits.h>
+#include <string.h>
+
+#include "labial/labial.h"
+
+#define UNKNOWN "unknown result"
+
+static const int codes[] = {
+    LABIAL_OK, LABIAL_WAITING, LABIAL_STARVED, LABIAL_BUSY, LABIAL_DONE, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION,
+    LABIAL_ERROR_MODEL, LABIAL_ERROR_WORKSPACE, LABIAL_ERROR_STATE, LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION,
+    LABIAL_ERROR_FULL, LABIAL_ERROR_RATE, LABIAL_ERROR_MODELS, LABIAL_ERROR_NAME,
+};
+
+#define CODES (sizeof codes / sizeof codes[0])
+
+/* Would catch a renumbering, which breaks programs linked against an older library. */
+static void zero_is_success_and_errors_are_negative(void **state)
+{
+    unsigned i;
+    (void)state;
+    assert_int_equal(LABIAL_OK, 0);
+    for (i = 1; i < 5; i++)
+        assert_int_equal(codes[i], (int)i);
+    for (i = 5; i < CODES; i++)
+        assert_int_equal(codes[i], 4 - (int)i);
+    assert_int_equal(LABIAL_RESULT_LAST_, codes[CODES - 1]);
+}
+
+/* Would catch a text of the wrong row, and two codes with one text. */
+static void every_code_has_its_own_text(void **state)
+{
+    unsigned i, k;
+    (void)state;
+    for (i = 0; i < CODES; i++) {
+        const char *text = labial_result_text(codes[i]);
+        assert_non_null(text);
+        assert_true(strlen(text) > 0);
+        assert_string_not_equal(text, UNKNOWN);
+        for (k = 0; k < i; k++)
+            assert_string_not_equal(text, labial_result_text(codes[k]));
+    }
+    assert_string_equal(labial_result_text(LABIAL_OK), "success");
+    assert_string_equal(labial_result_text(LABIAL_DONE), "the stream has ended and every frame was delivered");
+    assert_string_equal(labial_result_text(LABIAL_ERROR_NAME), "no phoneme of this name is known");
+}
+
+static void other_numbers_are_unknown(void **state)
+{
+    static const int others[] = {5, 6, 255, -12, -13, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1};
+    unsigned i;
+    (void)state;
+    for (i = 0; i < sizeof others / sizeof others[0]; i++)
+        assert_string_equal(labial_result_text(others[i]), UNKNOWN);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(zero_is_success_and_errors_are_negative), cmocka_unit_test(every_code_has_its_own_text),
+        cmocka_unit_test(other_numbers_are_unknown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

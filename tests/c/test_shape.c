@@ -1,0 +1,255 @@
+/*
+ * test_shape.c - shape selection (equation 2 and its additions) and moving targets, against doubles.
+ *
+ * The oracle takes costs as the tables state them, in whole units of 1/32 nat, so that what is compared is the choice
+ * and the mixture, not the rounding of costs.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "fixture.h"
+#include "shape.h"
+
+#define COMPONENTS LABIAL_PHONEME_COMPONENTS_MAX
+
+static fixture_model_t f;
+static labial_phoneme_t phoneme;
+static labial_component_t components[COMPONENTS];
+static uint8_t contexts[COMPONENTS * 2 * FIXTURE_CLASSES];
+static int8_t shapes[COMPONENTS * LABIAL_CHANNELS], slopes[COMPONENTS * LABIAL_CHANNELS];
+
+/* One phoneme of `count` random components, with all optional tables. */
+static void make(fixture_random_t *random, unsigned count)
+{
+    unsigned c, i;
+    fixture_rich(&f);
+    memset(&phoneme, 0, sizeof phoneme);
+    phoneme.component_count = (uint8_t)count;
+    for (c = 0; c < COMPONENTS; c++) {
+        components[c].cost = (uint16_t)fixture_below(random, 80);
+        components[c].duration_mean = (uint16_t)(40 + fixture_below(random, 300));
+        components[c].duration_gain = (uint16_t)(262144.0 / ((15.0 + fixture_below(random, 100)) * sqrt(2.0)));
+    }
+    for (i = 0; i < sizeof contexts; i++)
+        contexts[i] = (uint8_t)fixture_below(random, 100);
+    for (i = 0; i < sizeof shapes; i++) {
+        shapes[i] = (int8_t)((int)fixture_below(random, 255) - 127);
+        slopes[i] = (int8_t)((int)fixture_below(random, 255) - 127);
+    }
+    for (i = 0; i < LABIAL_CHANNELS; i++) {
+        f.channels[i].shape_scale = (uint16_t)(1000 + fixture_below(random, 15000));
+        f.channels[i].slope_scale = (uint16_t)fixture_below(random, 3000);
+    }
+    f.model.phoneme_count = 1;
+    f.model.silence = 0;
+    f.model.component_count = COMPONENTS;
+    f.model.phonemes = &phoneme;
+    f.model.components = components;
+    f.model.contexts = contexts;
+    f.model.shapes = shapes;
+    f.model.slopes = slopes;
+    f.model.precisions = NULL;
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+}
+
+/* (d - mu) / (sigma sqrt 2) */
+static double deviation(unsigned c, unsigned ms)
+{
+    return ((double)ms - components[c].duration_mean) * components[c].duration_gain / 4096.0 / 64.0;
+}
+
+/* z, in 1/64, counts up to 65535: a thousand and more deviations. */
+static double cost_of(unsigned c, unsigned ms, unsigned previous, unsigned next)
+{
+    const double exact = floor(fabs(deviation(c, ms)) * 64.0), z = exact < 65535.0 ? exact : 65535.0;
+    double cost = components[c].cost + floor(z * z / 128.0);
+    if (f.model.contexts)
+        cost += contexts[c * 2 * FIXTURE_CLASSES + previous] + contexts[(c * 2 + 1) * FIXTURE_CLASSES + next];
+    return cost;
+}
+
+/* The expected shape of one channel; z counts up to three standard deviations. */
+static double oracle(const double *shares, unsigned count, unsigned ms, unsigned channel)
+{
+    const labial_channel_t *k = &f.channels[channel];
+    const double most = 3.0 / sqrt(2.0);
+    double sum = 0;
+    unsigned c;
+    for (c = 0; c < count; c++) {
+        double z = deviation(c, ms);
+        z = z > most ? most : z < -most ? -most : z;
+        sum += shares[c] * shapes[c * LABIAL_CHANNELS + channel] * k->shape_scale / 256.0;
+        if (f.model.slopes)
+            sum += shares[c] * z * slopes[c * LABIAL_CHANNELS + channel] * k->slope_scale / 256.0;
+    }
+    return sum > LABIAL_POSITION_MAX ? LABIAL_POSITION_MAX : sum < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX : sum;
+}
+
+/* Rounding of z to 1/64 of a slope of 127 steps, and of shares to 1/4096 of shapes 254 steps apart. */
+static double tolerance(unsigned channel, unsigned count)
+{
+    const labial_channel_t *k = &f.channels[channel];
+    return 2.0 + (f.model.slopes ? 127.0 * k->slope_scale / 256.0 * (1.5 / 64.0 + count * 3.0 / 4096.0) : 0.0) +
+           (f.model.soft ? count * 254.0 * k->shape_scale / 256.0 / 4096.0 * 1.5 : 0.0);
+}
+
+/* Compares one selection; `soft` as the model says. */
+static void compare(unsigned count, unsigned ms, unsigned previous, unsigned next)
+{
+    int16_t shape[LABIAL_CHANNELS];
+    double costs[COMPONENTS], shares[COMPONENTS], least, sum = 0;
+    unsigned c, k;
+    const unsigned best = labial_shape_select(&f.model, 0, (uint16_t)ms, previous, next, shape);
+    assert_true(best < count);
+    for (c = 0; c < count; c++)
+        costs[c] = cost_of(c, ms, previous, next);
+    least = costs[0];
+    for (c = 1; c < count; c++)
+        least = costs[c] < least ? costs[c] : least;
+    assert_true(costs[best] == least); /* equation 2 */
+    for (c = 0; c < count; c++) {
+        shares[c] = f.model.soft ? exp((least - costs[c]) / 32.0) : c == best;
+        sum += shares[c];
+    }
+    for (c = 0; c < count; c++)
+        shares[c] /= sum;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const double wanted = oracle(shares, count, ms, k);
+        if (fabs(shape[k] - wanted) > tolerance(k, count))
+            fail_msg("%u components, %u ms, channel %u: %d, not %g (+- %g)", count, ms, k, shape[k], wanted,
+                     tolerance(k, count));
+    }
+}
+
+/* All combinations of what a model may have, on random tables and durations from none to beyond every component. */
+static void selection_follows_the_formula(void **state)
+{
+    fixture_random_t random = {31};
+    unsigned round;
+    (void)state;
+    for (round = 0; round < 4000; round++) {
+        const unsigned count = 1 + round % COMPONENTS;
+        make(&random, count);
+        f.model.soft = (uint8_t)(round / 8 % 2);
+        if (round / 16 % 2)
+            f.model.contexts = NULL;
+        if (round / 32 % 2)
+            f.model.slopes = NULL;
+        compare(count, fixture_below(&random, round % 5 ? 400 : 65536), fixture_below(&random, FIXTURE_CLASSES),
+                fixture_below(&random, FIXTURE_CLASSES));
+    }
+}
+
+/* Would catch previous and next taken for each other. */
+static void context_has_a_direction(void **state)
+{
+    fixture_random_t random = {32};
+    int16_t shape[LABIAL_CHANNELS];
+    (void)state;
+    make(&random, 2);
+    f.model.soft = 0;
+    components[0] = components[1];
+    memset(contexts, 0, sizeof contexts);
+    contexts[(0 * 2 + 0) * FIXTURE_CLASSES + 3] = 100; /* component 0 hardly ever follows class 3 */
+    contexts[(1 * 2 + 1) * FIXTURE_CLASSES + 3] = 100; /* component 1 hardly ever precedes it */
+    assert_int_equal(labial_shape_select(&f.model, 0, 100, 3, 0, shape), 1);
+    assert_int_equal(labial_shape_select(&f.model, 0, 100, 0, 3, shape), 0);
+    assert_int_equal(labial_shape_select(&f.model, 0, 100, 0, 0, shape), 0);
+}
+
+/* Of the longest durations and the strangest tables: within the range of positions. */
+static void extremes_stay_within_the_range(void **state)
+{
+    fixture_random_t random = {33};
+    unsigned round, i;
+    (void)state;
+    for (round = 0; round < 600; round++) {
+        int16_t shape[LABIAL_CHANNELS];
+        const unsigned count = 1 + round % COMPONENTS;
+        make(&random, count);
+        f.model.soft = (uint8_t)(round & 1);
+        for (i = 0; i < LABIAL_CHANNELS; i++) {
+            f.channels[i].shape_scale = 32767;
+            f.channels[i].slope_scale = 16383;
+        }
+        for (i = 0; i < sizeof shapes; i++) {
+            shapes[i] = (int8_t)(i % 2 ? -128 : 127);
+            slopes[i] = (int8_t)(i % 2 ? -128 : 127);
+        }
+        for (i = 0; i < COMPONENTS; i++) {
+            components[i].cost = (uint16_t)fixture_random(&random);
+            components[i].duration_gain = (uint16_t)fixture_random(&random);
+            components[i].duration_mean = (uint16_t)fixture_random(&random);
+        }
+        assert_true(labial_shape_select(&f.model, 0, (uint16_t)fixture_random(&random), 0, 1, shape) < count);
+        for (i = 0; i < LABIAL_CHANNELS; i++)
+            assert_true(shape[i] >= -LABIAL_POSITION_MAX && shape[i] <= LABIAL_POSITION_MAX);
+    }
+}
+
+/* Shape plus, for every tap i, the curve of the phoneme at (i - behind) * stride, and not below the floor of the frame's
+ * own phoneme: would catch taps in the wrong order, a wrong row of either table, a missing limit. */
+static void targets_are_shapes_kernels_and_floors(void **state)
+{
+    static int8_t kernels[FIXTURE_SPEECH_COUNT * LABIAL_KERNEL_TAPS_MAX * LABIAL_CHANNELS];
+    fixture_random_t random = {34};
+    unsigned round, i, k, raised = 0;
+    (void)state;
+    fixture_rich(&f);
+    for (round = 0; round < 2000; round++) {
+        uint8_t labels[2 * LABIAL_REACH + 1];
+        int16_t shape[LABIAL_CHANNELS], target[LABIAL_CHANNELS];
+        const unsigned taps = fixture_below(&random, LABIAL_KERNEL_TAPS_MAX + 1);
+        f.model.kernels = kernels;
+        f.model.kernel_taps = (uint8_t)taps;
+        f.model.kernel_behind = (uint8_t)(taps ? fixture_below(&random, taps) : 0);
+        f.model.kernel_stride = (uint8_t)(1 + fixture_below(&random, 20));
+        if (labial_model_check(&f.model) != LABIAL_OK)
+            f.model.kernel_taps = f.model.kernel_behind = 0;
+        for (i = 0; i < sizeof kernels; i++)
+            kernels[i] = (int8_t)fixture_random(&random);
+        for (i = 0; i < sizeof labels; i++)
+            labels[i] = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            shape[k] = (int16_t)((int)fixture_below(&random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
+            f.channels[k].kernel_scale = (uint16_t)(fixture_random(&random) >> (16 + k));
+        }
+        labial_shape_target(&f.model, shape, labels + LABIAL_REACH, target);
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            double sum = 0, wanted;
+            for (i = 0; i < f.model.kernel_taps; i++) {
+                const int at = LABIAL_REACH + ((int)i - f.model.kernel_behind) * f.model.kernel_stride;
+                sum += kernels[(labels[at] * (size_t)f.model.kernel_taps + i) * LABIAL_CHANNELS + k];
+            }
+            wanted = shape[k] + sum * f.channels[k].kernel_scale / 256.0;
+            if (f.phonemes[labels[LABIAL_REACH]].floor) {
+                const int least = f.floors[(f.phonemes[labels[LABIAL_REACH]].floor - 1) * LABIAL_CHANNELS + (int)k];
+                raised += wanted < least;
+                wanted = wanted < least ? least : wanted;
+            }
+            wanted = wanted > LABIAL_POSITION_MAX    ? LABIAL_POSITION_MAX
+                     : wanted < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX
+                                                     : wanted;
+            if (fabs(target[k] - wanted) > 0.51)
+                fail_msg("%u taps, channel %u: %d, not %g", taps, k, target[k], wanted);
+        }
+    }
+    assert_true(raised > 500); /* floors were met */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(selection_follows_the_formula),
+        cmocka_unit_test(context_has_a_direction),
+        cmocka_unit_test(extremes_stay_within_the_range),
+        cmocka_unit_test(targets_are_shapes_kernels_and_floors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

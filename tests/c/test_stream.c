@@ -1,0 +1,323 @@
+/*
+ * test_stream.c - what a stream delivers: the same frames however it is fed and wherever it lies, and sane motion.
+ *
+ * The host of the fixture checks on every tick that the callback comes once per LABIAL_OK, that frames are numbered
+ * without a gap, and that waiting, starving, being busy and being done are told apart (fixture_host.c).
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixture.h"
+
+#define COUNT 150
+
+static fixture_model_t plain, rich, slow;
+static fixture_phoneme_t input[COUNT];
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_plain(&plain);
+    fixture_rich(&rich);
+    fixture_slow(&slow);
+    return 0;
+}
+
+static void run(fixture_host_t *host, const labial_model_t *model, size_t count, fixture_feed_t feed)
+{
+    if (fixture_run(host, model, input, count, feed) != 0)
+        fail_msg("feed %d: %s (frame %zu)", (int)feed, host->complaint, host->recorder.count);
+}
+
+/* Would catch a unit whose extent depends on what happens to be in the queue, work that a tick and labial_work() do
+ * differently, and a stall on any kind of input. */
+static void frames_do_not_depend_on_the_feeding(void **state)
+{
+    const labial_model_t *models[2];
+    unsigned m;
+    int kind, feed;
+    (void)state;
+    models[0] = &plain.model;
+    models[1] = &rich.model;
+    for (m = 0; m < 2; m++) {
+        for (kind = 0; kind < FIXTURE_HOUR; kind++) {
+            fixture_host_t wanted;
+            fixture_stream(input, COUNT, (fixture_kind_t)kind, m);
+            run(&wanted, models[m], COUNT, FIXTURE_FILL);
+            if (kind != FIXTURE_ZERO && wanted.recorder.count == 0)
+                fail_msg("kind %d delivers nothing", kind);
+            for (feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
+                fixture_host_t host;
+                long at;
+                run(&host, models[m], COUNT, (fixture_feed_t)feed);
+                at = fixture_difference(&wanted.recorder, &host.recorder);
+                if (at >= 0)
+                    fail_msg("model %u, kind %d, feed %d: frame %ld differs", m, kind, feed, at);
+                fixture_close(&host);
+            }
+            fixture_close(&wanted);
+        }
+    }
+}
+
+/* Would catch a pointer of the structure into itself. The old place is overwritten and freed. */
+static void frames_do_not_depend_on_where_the_structure_lies(void **state)
+{
+    fixture_host_t wanted, host;
+    const labial_model_t *model = &rich.model;
+    (void)state;
+    fixture_stream(input, COUNT, FIXTURE_RANDOM, 5);
+    run(&wanted, model, COUNT, FIXTURE_CHANCE);
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    host.moving = 1;
+    if (fixture_play(&host, input, COUNT, FIXTURE_CHANCE) != 0)
+        fail_msg("%s", host.complaint);
+    assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
+    fixture_close(&wanted);
+    fixture_close(&host);
+}
+
+/* Would catch memory that is read before it is written: the hosts fill it with other values before labial_init(). */
+static void frames_do_not_depend_on_what_memory_held(void **state)
+{
+    fixture_host_t wanted, host;
+    const uint32_t size = labial_workspace_size(&rich.model);
+    (void)state;
+    fixture_stream(input, 40, FIXTURE_RANDOM, 8);
+    run(&wanted, &rich.model, 40, FIXTURE_FILL);
+    run(&host, &rich.model, 40, FIXTURE_FILL); /* the stream is used, then initialised anew */
+    memset(host.workspace, 0xff, size);
+    host.recorder.count = 0;
+    host.recorder.next = 0;
+    host.ended = 0;
+    assert_int_equal(labial_init(host.stream, &rich.model, host.workspace, size, fixture_record, &host.recorder),
+                     LABIAL_OK);
+    if (fixture_play(&host, input, 40, FIXTURE_FILL) != 0)
+        fail_msg("%s", host.complaint);
+    assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
+    fixture_close(&wanted);
+    fixture_close(&host);
+}
+
+/* Would catch static variables, and a workspace that is larger inside than outside. */
+static void two_streams_do_not_disturb_each_other(void **state)
+{
+    static fixture_phoneme_t other[COUNT];
+    fixture_host_t alone[2], together[2];
+    const labial_model_t *models[2];
+    const fixture_phoneme_t *inputs[2];
+    size_t next[2] = {0, 0};
+    int done[2] = {0, 0};
+    unsigned i, rounds = 0;
+    (void)state;
+    models[0] = &rich.model;
+    models[1] = &slow.model;
+    inputs[0] = input;
+    inputs[1] = other;
+    fixture_stream(input, COUNT, FIXTURE_RANDOM, 11);
+    fixture_stream(other, COUNT, FIXTURE_PAUSES, 12);
+    for (i = 0; i < 2; i++) {
+        if (fixture_run(&alone[i], models[i], inputs[i], COUNT, FIXTURE_FILL) != 0)
+            fail_msg("%s", alone[i].complaint);
+        assert_int_equal(fixture_open(&together[i], &models[i], 1), LABIAL_OK);
+    }
+    while (!done[0] || !done[1]) {
+        assert_true(rounds++ < 200000);
+        for (i = 0; i < 2; i++) {
+            fixture_host_t *host = &together[i];
+            if (next[i] < COUNT && labial_room(host->stream) > 0)
+                assert_int_equal(fixture_push(host, &inputs[i][next[i]++]), LABIAL_OK);
+            if (next[i] == COUNT && !host->ended) {
+                assert_int_equal(labial_end(host->stream), LABIAL_OK);
+                host->ended = 1;
+            }
+            if (rounds % 3 == i)
+                assert_true(labial_work(host->stream) >= 0);
+            done[i] = fixture_tick(host) == LABIAL_DONE;
+        }
+    }
+    for (i = 0; i < 2; i++) {
+        if (together[i].complaint)
+            fail_msg("%s", together[i].complaint);
+        assert_int_equal(fixture_difference(&alone[i].recorder, &together[i].recorder), -1);
+        fixture_close(&alone[i]);
+        fixture_close(&together[i]);
+    }
+}
+
+static void a_stream_without_phonemes_is_done_at_once(void **state)
+{
+    fixture_host_t host;
+    const labial_model_t *model = &plain.model;
+    (void)state;
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
+    assert_int_equal(labial_work(host.stream), LABIAL_WAITING);
+    assert_int_equal(labial_end(host.stream), LABIAL_OK);
+    host.ended = 1;
+    assert_int_equal(labial_work(host.stream), LABIAL_DONE);
+    assert_int_equal(fixture_tick(&host), LABIAL_DONE);
+    assert_int_equal(host.recorder.count, 0);
+    assert_null(host.complaint);
+    fixture_close(&host);
+}
+
+/* Would catch a stream that holds back what cannot change any more, or one that claims the end while it starves. */
+static void starving_is_neither_waiting_nor_done(void **state)
+{
+    fixture_host_t host;
+    const labial_model_t *model = &rich.model;
+    size_t before;
+    int result, i;
+    (void)state;
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
+    assert_int_equal(labial_push(host.stream, FIXTURE_A, 10000), LABIAL_OK); /* 500 frames, ten windows and more */
+    assert_int_equal(labial_push(host.stream, FIXTURE_S, 100), LABIAL_OK);   /* what follows it is known */
+    do
+        result = fixture_tick(&host);
+    while (result == LABIAL_OK || result == LABIAL_BUSY);
+    assert_int_equal(result, LABIAL_STARVED);
+    before = host.recorder.count;
+    assert_in_range(before, 505 - 3 * LABIAL_WINDOW, 504);
+    for (i = 0; i < 5; i++)
+        assert_int_equal(fixture_tick(&host), LABIAL_STARVED);
+    assert_int_equal(host.recorder.count, before);
+    assert_int_equal(labial_latency(host.stream).frames, 505 - before);
+    if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
+        fail_msg("%s", host.complaint);
+    assert_int_equal(host.recorder.count, 505);
+    fixture_close(&host);
+}
+
+/* Would catch an uneven share of work: while the queue is kept full no frame is late (labial_tick()), not even with the
+ * largest number of states. */
+static void no_frame_is_late_while_the_queue_is_full(void **state)
+{
+    const labial_model_t *model = &slow.model;
+    int kind, result;
+    (void)state;
+    for (kind = 0; kind < FIXTURE_MILLI; kind++) {
+        fixture_host_t host;
+        fixture_random_t random = {77};
+        fixture_phoneme_t more[8];
+        unsigned k, i = 8;
+        assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+        for (k = 0; k < 3000; k++) {
+            while (labial_room(host.stream) > 0) {
+                if (i == 8) {
+                    fixture_stream(more, 8, (fixture_kind_t)kind, fixture_random(&random));
+                    i = 0;
+                }
+                assert_int_equal(fixture_push(&host, &more[i++]), LABIAL_OK);
+            }
+            result = fixture_tick(&host);
+            if (result != LABIAL_OK && host.recorder.count > 0)
+                fail_msg("kind %d: frame %zu is late", kind, host.recorder.count);
+        }
+        assert_null(host.complaint);
+        assert_true(host.recorder.count > 2900);
+        fixture_close(&host);
+    }
+}
+
+/* Would catch a stream that never recovers when its ticks are few, or whose work has no bound. */
+static void every_stall_is_short(void **state)
+{
+    int kind;
+    (void)state;
+    for (kind = 0; kind < FIXTURE_HOUR; kind++) {
+        fixture_host_t host;
+        fixture_stream(input, COUNT, (fixture_kind_t)kind, 21);
+        run(&host, &slow.model, COUNT, FIXTURE_FILL);
+        if (host.longest_stall > 2 * LABIAL_WINDOW)
+            fail_msg("kind %d: %u ticks without a frame", kind, host.longest_stall);
+        fixture_close(&host);
+    }
+}
+
+/* A phoneme held for long is its own shape (equation 2), for that is also a state's mean in the plain model; or that of
+ * another state, when it is so near that their costs are equal: z below 11.3 / 64, hence 4 FAP units. */
+static void a_held_phoneme_settles_to_its_shape(void **state)
+{
+    unsigned p, c, i;
+    (void)state;
+    for (p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
+        fixture_host_t host;
+        size_t middle;
+        for (i = 0; i < 60; i++) {
+            input[i].phoneme = (uint8_t)p;
+            input[i].ms = 100;
+            input[i].model = 0;
+        }
+        run(&host, &plain.model, 60, FIXTURE_FILL);
+        assert_int_equal(host.recorder.count, 300);
+        for (middle = 60; middle < 240; middle++) {
+            for (c = 0; c < LABIAL_CHANNELS; c++) {
+                const int wanted = fixture_target(p, c) / 16, got = host.recorder.frames[middle][c];
+                if (abs(got - wanted) > 5)
+                    fail_msg("phoneme %u, channel %u, frame %zu: %d, not %d", p, c, middle, got, wanted);
+            }
+        }
+        fixture_close(&host);
+    }
+}
+
+/* Would catch a wrong sign, a wrong centre, wrapped arithmetic: the plain model's motion stays near its states' means,
+ * and it moves over most of the range of the phonemes' shapes. */
+static void motion_stays_within_the_states_range(void **state)
+{
+    fixture_host_t host;
+    unsigned c, q;
+    size_t i;
+    (void)state;
+    fixture_stream(input, COUNT, FIXTURE_RANDOM, 31);
+    run(&host, &plain.model, COUNT, FIXTURE_FILL);
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        int low = INT16_MAX, high = INT16_MIN, least = INT16_MAX, most = INT16_MIN, lowest = 0, highest = 0, span;
+        for (q = 0; q < FIXTURE_SPEECH_STATES; q++) {
+            const int mean = (plain.states[c][q].mean[0] + plain.channels[c].centre) / 16;
+            low = mean < low ? mean : low;
+            high = mean > high ? mean : high;
+        }
+        for (q = 0; q < FIXTURE_SPEECH_COUNT; q++) {
+            const int shape = fixture_target(q, c) / 16;
+            lowest = q == 0 || shape < lowest ? shape : lowest;
+            highest = q == 0 || shape > highest ? shape : highest;
+        }
+        for (i = 0; i < host.recorder.count; i++) {
+            const int x = host.recorder.frames[i][c];
+            least = x < least ? x : least;
+            most = x > most ? x : most;
+        }
+        span = high - low;
+        if (least < low - span / 5 || most > high + span / 5)
+            fail_msg("channel %u: %d .. %d where states are %d .. %d", c, least, most, low, high);
+        if (most - least < (highest - lowest) * 2 / 3)
+            fail_msg("channel %u hardly moves: %d .. %d", c, least, most);
+    }
+    fixture_close(&host);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_do_not_depend_on_the_feeding),
+        cmocka_unit_test(frames_do_not_depend_on_where_the_structure_lies),
+        cmocka_unit_test(frames_do_not_depend_on_what_memory_held),
+        cmocka_unit_test(two_streams_do_not_disturb_each_other),
+        cmocka_unit_test(a_stream_without_phonemes_is_done_at_once),
+        cmocka_unit_test(starving_is_neither_waiting_nor_done),
+        cmocka_unit_test(no_frame_is_late_while_the_queue_is_full),
+        cmocka_unit_test(every_stall_is_short),
+        cmocka_unit_test(a_held_phoneme_settles_to_its_shape),
+        cmocka_unit_test(motion_stays_within_the_states_range),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

@@ -1,0 +1,266 @@
+/*
+ * test_stream_cancel.c - cancelling eases to the neutral face; a stream that is done or cancelled can be taken up again.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixture.h"
+
+static fixture_model_t rich;
+static fixture_phoneme_t input[80];
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_rich(&rich);
+    return 0;
+}
+
+/* A stream that has delivered `frames` frames and holds more. */
+static void begin(fixture_host_t *host, unsigned rate, size_t frames)
+{
+    const labial_model_t *model = &rich.model;
+    unsigned i, guard = 0;
+    rich.model.frames_per_second = (uint16_t)rate;
+    assert_int_equal(fixture_open(host, &model, 1), LABIAL_OK);
+    fixture_stream(input, 80, FIXTURE_VOWELS, 23);
+    for (i = 0; i < 80 && labial_room(host->stream) > 0; i++)
+        assert_int_equal(fixture_push(host, &input[i]), LABIAL_OK);
+    while (host->recorder.count < frames) {
+        assert_true(guard++ < 1000);
+        (void)fixture_tick(host);
+    }
+}
+
+/* Ticks until done; every tick must deliver. Returns the frames delivered. */
+static size_t drain(fixture_host_t *host)
+{
+    const size_t before = host->recorder.count;
+    int result;
+    host->ended = 1;
+    for (;;) {
+        result = fixture_tick(host);
+        if (result == LABIAL_DONE)
+            break;
+        assert_int_equal(result, LABIAL_OK);
+        assert_true(host->recorder.count - before <= 1000);
+    }
+    if (host->complaint)
+        fail_msg("%s", host->complaint);
+    assert_int_equal(fixture_tick(host), LABIAL_DONE);
+    return host->recorder.count - before;
+}
+
+static int is_neutral(const int16_t *frame)
+{
+    static const int16_t neutral[LABIAL_CHANNELS] = {0};
+    return memcmp(frame, neutral, sizeof neutral) == 0;
+}
+
+/* Would catch rounding down, a length of zero, an overflow of milliseconds times frames per second. */
+static void easing_takes_the_time_asked_for_rounded_up(void **state)
+{
+    static const struct {
+        unsigned rate;
+        uint32_t ms;
+        size_t frames;
+    } cases[] = {
+        {50, 0, 1},     {50, 1, 1},     {50, 20, 1},       {50, 21, 2},          {50, 200, 10},
+        {30, 100, 3},   {30, 101, 4},   {50, 20000, 1000}, {50, 20001, 1000},    {50, 3600000, 1000},
+        {250, 17179870, 1000}, {50, 85899346, 1000}, {250, UINT32_MAX, 1000}, {10, 1, 1}, {10, 2001, 21},
+        {50, UINT32_MAX, 1000}, {250, 4000, 1000}, {250, 3997, 1000}, {250, 3996, 999},
+    };
+    unsigned i;
+    (void)state;
+    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        fixture_host_t host;
+        size_t frames;
+        begin(&host, cases[i].rate, 30);
+        assert_int_equal(labial_cancel(host.stream, cases[i].ms), LABIAL_OK);
+        frames = drain(&host);
+        if (frames != cases[i].frames)
+            fail_msg("%u frames/s, %u ms: %zu frames, not %zu", cases[i].rate, cases[i].ms, frames, cases[i].frames);
+        assert_true(is_neutral(host.recorder.frames[host.recorder.count - 1]));
+        fixture_close(&host);
+    }
+}
+
+/* Would catch an overshoot, a turn on the way and a jump at its beginning. */
+static void easing_is_monotonic_and_even(void **state)
+{
+    static const unsigned lengths[] = {1, 2, 3, 7, 10, 50, 333, 1000};
+    unsigned i, c, moved = 0;
+    size_t t;
+    (void)state;
+    for (i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+        const int n = (int)lengths[i];
+        fixture_host_t host;
+        begin(&host, FIXTURE_RATE, 40 + i);
+        assert_int_equal(labial_cancel(host.stream, lengths[i] * 20), LABIAL_OK);
+        assert_int_equal(drain(&host), lengths[i]);
+        for (c = 0; c < LABIAL_CHANNELS; c++) {
+            const int pose = host.recorder.frames[39 + i][c];
+            moved += abs(pose) > 50;
+            for (t = 40 + i; t < host.recorder.count; t++) {
+                const int last = host.recorder.frames[t - 1][c], now = host.recorder.frames[t][c];
+                if (abs(now) > abs(last) || (now > 0 && pose < 0) || (now < 0 && pose > 0))
+                    fail_msg("%d frames, channel %u: from %d to %d", n, c, last, now);
+                if (abs(now - last) > 2 * abs(pose) / n + 1)
+                    fail_msg("%d frames, channel %u: %d in one of them from a pose of %d", n, c, now - last, pose);
+            }
+        }
+        fixture_close(&host);
+    }
+    assert_true(moved > 10); /* there was something to ease */
+}
+
+static void nothing_is_accepted_after_a_cancel(void **state)
+{
+    fixture_host_t host;
+    labial_latency_t latency;
+    (void)state;
+    begin(&host, FIXTURE_RATE, 30);
+    assert_int_equal(labial_cancel(host.stream, 100), LABIAL_OK);
+    assert_int_equal(labial_room(host.stream), 0);
+    assert_int_equal(labial_push(host.stream, FIXTURE_A, 100), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_use(host.stream, &rich.model), LABIAL_ERROR_STATE);
+    assert_true(labial_work(host.stream) >= 0);
+    assert_int_equal(drain(&host), 5);
+    latency = labial_latency(host.stream);
+    assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.ready == 0);
+    fixture_close(&host);
+}
+
+/* Would catch an ease from a pose that never was: all there is to ease is the neutral face. */
+static void cancel_before_the_first_frame_stays_neutral(void **state)
+{
+    unsigned ticks;
+    (void)state;
+    for (ticks = 0; ticks < 4; ticks++) {
+        fixture_host_t host;
+        unsigned i;
+        size_t t;
+        begin(&host, FIXTURE_RATE, 0);
+        for (i = 0; i < ticks; i++)
+            assert_int_equal(fixture_tick(&host), LABIAL_BUSY);
+        assert_int_equal(labial_cancel(host.stream, 200), LABIAL_OK);
+        assert_in_range(drain(&host), 1, 10);
+        for (t = 0; t < host.recorder.count; t++)
+            assert_true(is_neutral(host.recorder.frames[t]));
+        fixture_close(&host);
+    }
+}
+
+/* Plays input[0 .. count) on a host that was restarted. */
+static void play_again(fixture_host_t *host, size_t count)
+{
+    host->ended = 0;
+    host->restarted = 1;
+    if (fixture_play(host, input, count, FIXTURE_FILL) != 0)
+        fail_msg("%s (frame %zu)", host->complaint, host->recorder.count);
+}
+
+/* Would catch numbering that begins anew, time that is carried over, and a jump from the pose that was held. */
+static void a_stream_is_taken_up_where_it_stopped(void **state)
+{
+    fixture_host_t host, fresh;
+    size_t first, i;
+    unsigned c, far = 0;
+    (void)state;
+    rich.model.frames_per_second = FIXTURE_RATE;
+    for (i = 0; i < 30; i++) {
+        input[i].phoneme = FIXTURE_A;
+        input[i].ms = 60;
+        input[i].model = 0;
+    }
+    if (fixture_run(&host, &rich.model, input, 30, FIXTURE_FILL) != 0)
+        fail_msg("%s", host.complaint);
+    first = host.recorder.count;
+    assert_int_equal(first, 90);
+    for (i = 0; i < 30; i++)
+        input[i].phoneme = FIXTURE_O;
+    if (fixture_run(&fresh, &rich.model, input, 30, FIXTURE_FILL) != 0)
+        fail_msg("%s", fresh.complaint);
+    assert_int_equal(labial_restart(host.stream), LABIAL_OK);
+    assert_int_equal(labial_room(host.stream), LABIAL_QUEUE);
+    play_again(&host, 30);
+    assert_int_equal(host.recorder.count, 180);
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        const int pose = host.recorder.frames[first - 1][c];
+        const int apart = abs(fresh.recorder.frames[0][c] - pose);
+        far += apart > 60;
+        for (i = first; i < first + LABIAL_CUT_OVERLAP; i++) {
+            const int step = abs(host.recorder.frames[i][c] - host.recorder.frames[i - 1][c]);
+            const int own = i == first ? 0 : abs(fresh.recorder.frames[i - first][c] -
+                                                 fresh.recorder.frames[i - first - 1][c]);
+            if (step > apart / 3 + own + 2)
+                fail_msg("channel %u, frame %zu: a step of %d where %d are to be bridged", c, i - first, step, apart);
+        }
+        /* After the cross-fade the motion is that of a fresh stream. */
+        for (i = LABIAL_CUT_OVERLAP; i < 90; i++)
+            assert_int_equal(host.recorder.frames[first + i][c], fresh.recorder.frames[i][c]);
+    }
+    assert_true(far >= 3); /* else there was nothing to jump */
+    fixture_close(&host);
+    fixture_close(&fresh);
+}
+
+static void a_cancelled_stream_is_taken_up_from_neutral(void **state)
+{
+    fixture_host_t host;
+    size_t first;
+    unsigned c;
+    (void)state;
+    begin(&host, FIXTURE_RATE, 30);
+    assert_int_equal(labial_cancel(host.stream, 200), LABIAL_OK);
+    assert_int_equal(drain(&host), 10);
+    assert_int_equal(labial_restart(host.stream), LABIAL_OK);
+    first = host.recorder.count;
+    play_again(&host, 20);
+    assert_true(fixture_is_exact(host.recorder.count - first, fixture_duration(input, 20), FIXTURE_RATE));
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        if (abs(host.recorder.frames[first][c]) > 100) /* shapes are up to 500 from neutral */
+            fail_msg("channel %u begins at %d", c, host.recorder.frames[first][c]);
+    fixture_close(&host);
+}
+
+/* Would catch state that one round leaves behind for the next. */
+static void many_rounds(void **state)
+{
+    fixture_host_t host;
+    fixture_random_t random = {5};
+    unsigned round;
+    (void)state;
+    begin(&host, FIXTURE_RATE, 10);
+    assert_int_equal(labial_cancel(host.stream, 0), LABIAL_OK);
+    (void)drain(&host);
+    for (round = 0; round < 60; round++) {
+        const size_t before = host.recorder.count;
+        const uint32_t count = fixture_below(&random, 60);
+        assert_int_equal(labial_restart(host.stream), LABIAL_OK);
+        fixture_stream(input, 60, (fixture_kind_t)(round % FIXTURE_HOUR), round);
+        play_again(&host, count);
+        assert_true(fixture_is_exact(host.recorder.count - before, fixture_duration(input, count), FIXTURE_RATE));
+    }
+    fixture_close(&host);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(easing_takes_the_time_asked_for_rounded_up),
+        cmocka_unit_test(easing_is_monotonic_and_even),
+        cmocka_unit_test(nothing_is_accepted_after_a_cancel),
+        cmocka_unit_test(cancel_before_the_first_frame_stays_neutral),
+        cmocka_unit_test(a_stream_is_taken_up_where_it_stopped),
+        cmocka_unit_test(a_cancelled_stream_is_taken_up_from_neutral),
+        cmocka_unit_test(many_rounds),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

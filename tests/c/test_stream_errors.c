@@ -1,0 +1,329 @@
+/*
+ * test_stream_errors.c - misuse: every wrong call says what is wrong and leaves the stream as it was.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixture.h"
+
+#define COUNT 60
+
+static fixture_model_t plain, rich, slow, laugh, other_rate, broken, third;
+static fixture_phoneme_t input[COUNT];
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_plain(&plain);
+    fixture_rich(&rich);
+    fixture_slow(&slow);
+    fixture_laughter(&laugh);
+    fixture_laughter(&third);
+    fixture_plain(&other_rate);
+    other_rate.model.frames_per_second = 25;
+    fixture_plain(&broken);
+    broken.phonemes[2].component_count = 0;
+    fixture_stream(input, COUNT, FIXTURE_RANDOM, 2);
+    return 0;
+}
+
+/* Every wrong call there is at this moment. */
+static void commit_errors(labial_t *stream, int ended)
+{
+    assert_int_equal(labial_push(NULL, 0, 10), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_tick(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_use(stream, NULL), LABIAL_ERROR_NULL);
+    if (ended) {
+        assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_ERROR_STATE);
+        assert_int_equal(labial_use(stream, &laugh.model), LABIAL_ERROR_STATE);
+        assert_int_equal(labial_room(stream), 0);
+        assert_int_equal(labial_end(stream), LABIAL_OK); /* "also when called again" */
+        return;
+    }
+    assert_int_equal(labial_use(stream, &other_rate.model), LABIAL_ERROR_RATE);
+    assert_int_equal(labial_use(stream, &slow.model), LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_use(stream, &broken.model), LABIAL_ERROR_MODEL);
+    if (labial_room(stream) > 0) {
+        assert_int_equal(labial_push(stream, FIXTURE_SPEECH_COUNT, 100), LABIAL_ERROR_PHONEME);
+        assert_int_equal(labial_push(stream, 255, 100), LABIAL_ERROR_PHONEME);
+        assert_int_equal(labial_push(stream, 256 + FIXTURE_A, 100), LABIAL_ERROR_PHONEME); /* 1 in the low byte */
+        assert_int_equal(labial_push(stream, UINT32_MAX, 100), LABIAL_ERROR_PHONEME);
+        assert_int_equal(labial_push(stream, FIXTURE_A, LABIAL_DURATION_MAX + 1), LABIAL_ERROR_DURATION);
+        assert_int_equal(labial_push(stream, FIXTURE_A, UINT32_MAX), LABIAL_ERROR_DURATION);
+    } else {
+        assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_ERROR_FULL);
+    }
+}
+
+/* Would catch an error that is found after something was changed already. */
+static void errors_leave_the_stream_unchanged(void **state)
+{
+    fixture_host_t calm, host;
+    const labial_model_t *model = &rich.model;
+    size_t i = 0;
+    unsigned rounds = 0;
+    int result = LABIAL_WAITING;
+    (void)state;
+    if (fixture_run(&calm, model, input, COUNT, FIXTURE_FILL) != 0)
+        fail_msg("%s", calm.complaint);
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    while (result != LABIAL_DONE) {
+        labial_latency_t before = labial_latency(host.stream), after;
+        assert_true(rounds++ < 10000);
+        commit_errors(host.stream, host.ended);
+        if (result == LABIAL_OK && before.frames > 0)
+            assert_int_equal(labial_restart(host.stream), LABIAL_ERROR_STATE); /* frames are still to come */
+        after = labial_latency(host.stream);
+        assert_true(before.frames == after.frames && before.phonemes == after.phonemes &&
+                    before.ready == after.ready);
+        if (i < COUNT && labial_room(host.stream) > 0)
+            assert_int_equal(fixture_push(&host, &input[i++]), LABIAL_OK);
+        commit_errors(host.stream, host.ended);
+        if (i == COUNT && !host.ended) {
+            assert_int_equal(labial_end(host.stream), LABIAL_OK);
+            host.ended = 1;
+        }
+        result = fixture_tick(&host);
+    }
+    assert_null(host.complaint);
+    assert_int_equal(fixture_difference(&calm.recorder, &host.recorder), -1);
+    fixture_close(&calm);
+    fixture_close(&host);
+}
+
+/* "labial_room(): phonemes that can be pushed before the queue is full". */
+static void the_queue_takes_as_many_as_it_says(void **state)
+{
+    fixture_host_t host;
+    const labial_model_t *model = &rich.model;
+    unsigned room, i;
+    (void)state;
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    room = labial_room(host.stream);
+    assert_int_equal(room, LABIAL_QUEUE);
+    for (i = 0; i < room; i++) {
+        assert_int_equal(labial_room(host.stream), room - i);
+        assert_int_equal(labial_push(host.stream, i % FIXTURE_SPEECH_COUNT, 20), LABIAL_OK);
+    }
+    assert_int_equal(labial_room(host.stream), 0);
+    commit_errors(host.stream, 0); /* LABIAL_ERROR_FULL among them */
+    assert_int_equal(labial_latency(host.stream).frames, room);
+    if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
+        fail_msg("%s", host.complaint);
+    assert_int_equal(host.recorder.count, room);
+    fixture_close(&host);
+}
+
+static void check_unusable(labial_t *stream)
+{
+    const labial_latency_t latency = labial_latency(stream);
+    assert_int_equal(labial_push(stream, 0, 100), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_use(stream, &plain.model), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_end(stream), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_tick(stream), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_work(stream), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_cancel(stream, 100), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_restart(stream), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_room(stream), 0);
+    assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0 && latency.ready == 0);
+}
+
+/* Would catch the use of pointers that were never set. */
+static void nothing_works_before_init(void **state)
+{
+    static const int fills[] = {0x00, 0xff, 0x01, 0xa5, 0x7f};
+    labial_t *stream = (labial_t *)malloc(sizeof *stream);
+    unsigned i, k;
+    (void)state;
+    assert_non_null(stream);
+    for (i = 0; i < sizeof fills / sizeof fills[0]; i++) {
+        memset(stream, fills[i], sizeof *stream);
+        check_unusable(stream);
+    }
+    for (i = 0; i < 20; i++) {
+        fixture_random_t random = {i + 1};
+        for (k = 0; k < sizeof *stream; k++)
+            ((uint8_t *)stream)[k] = (uint8_t)fixture_random(&random);
+        check_unusable(stream);
+    }
+    free(stream);
+}
+
+static void null_streams_are_refused(void **state)
+{
+    const labial_latency_t latency = labial_latency(NULL);
+    (void)state;
+    assert_int_equal(labial_push(NULL, 0, 100), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_use(NULL, &plain.model), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_end(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_tick(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_work(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_cancel(NULL, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_restart(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_room(NULL), 0);
+    assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0 && latency.ready == 0);
+}
+
+/* Would catch a failed labial_init() that leaves an earlier stream half alive. */
+static void a_failed_init_makes_the_stream_unusable(void **state)
+{
+    const uint32_t size = labial_workspace_size(&plain.model);
+    uint32_t *workspace = (uint32_t *)malloc(size);
+    labial_t *stream = (labial_t *)malloc(sizeof *stream);
+    uint8_t *bytes = (uint8_t *)workspace;
+    fixture_recorder_t recorder;
+    unsigned i;
+    (void)state;
+    assert_true(workspace && stream);
+    memset(&recorder, 0, sizeof recorder);
+    for (i = 0; i < 9; i++) {
+        int got = 1, wanted = 1;
+        assert_int_equal(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_OK);
+        assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_OK);
+        switch (i) {
+        case 0: /* null pointers */
+            wanted = LABIAL_ERROR_NULL;
+            got = labial_init(stream, NULL, workspace, size, fixture_record, &recorder);
+            break;
+        case 1:
+            wanted = LABIAL_ERROR_NULL;
+            got = labial_init(stream, &plain.model, NULL, size, fixture_record, &recorder);
+            break;
+        case 2:
+            wanted = LABIAL_ERROR_NULL;
+            got = labial_init(stream, &plain.model, workspace, size, NULL, &recorder);
+            break;
+        case 3: /* one byte short */
+            wanted = LABIAL_ERROR_WORKSPACE;
+            got = labial_init(stream, &plain.model, workspace, size - 1, fixture_record, &recorder);
+            break;
+        case 4:
+            wanted = LABIAL_ERROR_WORKSPACE;
+            got = labial_init(stream, &plain.model, workspace, 0, fixture_record, &recorder);
+            break;
+        case 5: /* the workspace suits 8 states, not 64 */
+            wanted = LABIAL_ERROR_WORKSPACE;
+            got = labial_init(stream, &slow.model, workspace, size, fixture_record, &recorder);
+            break;
+        case 6: /* misaligned */
+            wanted = LABIAL_ERROR_WORKSPACE;
+            got = labial_init(stream, &laugh.model, bytes + 1, size - 4, fixture_record, &recorder);
+            break;
+        case 7:
+            wanted = LABIAL_ERROR_WORKSPACE;
+            got = labial_init(stream, &laugh.model, bytes + 2, size - 4, fixture_record, &recorder);
+            break;
+        default:
+            wanted = LABIAL_ERROR_MODEL;
+            got = labial_init(stream, &broken.model, workspace, size, fixture_record, &recorder);
+            break;
+        }
+        if (got != wanted)
+            fail_msg("case %u: %d, not %d", i, got, wanted);
+        check_unusable(stream);
+    }
+    assert_int_equal(labial_init(NULL, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_ERROR_NULL);
+    assert_int_equal(recorder.count, 0);
+    free(workspace);
+    free(stream);
+}
+
+/* Would catch a formula that differs between the macro and the function; the tests' workspaces are exactly this large. */
+static void workspace_sizes_agree(void **state)
+{
+    static uint32_t constant[LABIAL_WORKSPACE_SIZE(FIXTURE_SPEECH_STATES) / 4];
+    unsigned q;
+    (void)state;
+    assert_int_equal(sizeof constant, labial_workspace_size(&plain.model));
+    for (q = 1; q <= LABIAL_STATES_MAX; q++) {
+        slow.model.state_count = (uint8_t)q;
+        assert_int_equal(labial_workspace_size(&slow.model), LABIAL_WORKSPACE_SIZE(q));
+        assert_int_equal(labial_workspace_size(&slow.model) % 4, 0);
+    }
+    assert_int_equal(labial_workspace_size(NULL), 0);
+}
+
+/* Would catch writes beside the workspace where no sanitizer looks, on a target for instance; also when the workspace is
+ * larger than need be, where parts may be counted from its end, or of an odd size. */
+static void memory_beside_the_workspace_is_untouched(void **state)
+{
+    enum { GUARD = 64, EXTRA = 9 };
+    static uint32_t memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX) / 4 + EXTRA + GUARD];
+    uint8_t *const bytes = (uint8_t *)memory;
+    unsigned extra, i, k;
+    (void)state;
+    for (extra = 0; extra < 4 * EXTRA; extra += 3) {
+        labial_t stream;
+        fixture_recorder_t recorder;
+        const labial_model_t *model = extra % 2 ? &slow.model : &rich.model;
+        const uint32_t size = LABIAL_WORKSPACE_SIZE(extra % 2 ? LABIAL_STATES_MAX : FIXTURE_SPEECH_STATES) + extra;
+        fixture_slow(&slow);
+        memset(&recorder, 0, sizeof recorder);
+        memset(memory, 0xc3, sizeof memory);
+        assert_int_equal(labial_init(&stream, model, memory + GUARD, size, fixture_record, &recorder), LABIAL_OK);
+        for (i = 0; i < COUNT && labial_room(&stream) > 0; i++)
+            assert_int_equal(labial_push(&stream, input[i].phoneme, input[i].ms), LABIAL_OK);
+        assert_int_equal(labial_end(&stream), LABIAL_OK);
+        for (i = 0; i < 10000 && labial_tick(&stream) != LABIAL_DONE; i++)
+            ;
+        assert_true(recorder.count > 100);
+        for (k = 0; k < sizeof memory; k++)
+            if ((k < GUARD * 4 || k >= GUARD * 4 + size) && bytes[k] != 0xc3)
+                fail_msg("byte %ld of a workspace of %u", (long)k - GUARD * 4, size);
+        free(recorder.frames);
+    }
+}
+
+/* More models than LABIAL_MODELS: refused while phonemes of all others wait, accepted once ticks have used them up. */
+static void too_many_models_are_refused_until_ticks_make_room(void **state)
+{
+    fixture_host_t host;
+    const labial_model_t *models[3];
+    unsigned i;
+    int result = LABIAL_ERROR_MODELS;
+    (void)state;
+    models[0] = &rich.model;
+    models[1] = &laugh.model;
+    models[2] = &third.model;
+    assert_int_equal(LABIAL_MODELS, 2); /* what this test is written for */
+    assert_int_equal(fixture_open(&host, models, 3), LABIAL_OK);
+    for (i = 0; i < 6; i++)
+        assert_int_equal(labial_push(host.stream, FIXTURE_A, 100), LABIAL_OK);
+    assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
+    for (i = 0; i < 30; i++)
+        assert_int_equal(labial_push(host.stream, FIXTURE_HA, 100), LABIAL_OK);
+    assert_int_equal(labial_use(host.stream, models[2]), LABIAL_ERROR_MODELS);
+    assert_int_equal(labial_use(host.stream, models[0]), LABIAL_OK); /* known already */
+    assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
+    for (i = 0; i < 400 && result == LABIAL_ERROR_MODELS; i++) {
+        (void)fixture_tick(&host);
+        result = labial_use(host.stream, models[2]);
+    }
+    assert_int_equal(result, LABIAL_OK);
+    assert_int_equal(labial_push(host.stream, FIXTURE_HA, 1000), LABIAL_OK);
+    if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
+        fail_msg("%s", host.complaint);
+    assert_int_equal(host.recorder.count, (36 * 100 + 1000) / 20);
+    fixture_close(&host);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_leave_the_stream_unchanged),
+        cmocka_unit_test(the_queue_takes_as_many_as_it_says),
+        cmocka_unit_test(nothing_works_before_init),
+        cmocka_unit_test(null_streams_are_refused),
+        cmocka_unit_test(a_failed_init_makes_the_stream_unusable),
+        cmocka_unit_test(workspace_sizes_agree),
+        cmocka_unit_test(memory_beside_the_workspace_is_untouched),
+        cmocka_unit_test(too_many_models_are_refused_until_ticks_make_room),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

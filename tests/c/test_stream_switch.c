@@ -1,0 +1,213 @@
+/*
+ * test_stream_switch.c - speech and laughter in one stream: no jump where they meet, exact time, room made for a third.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "fixture.h"
+
+#define COUNT 240
+
+static fixture_model_t speech, laugh, slow;
+static fixture_phoneme_t input[COUNT];
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_rich(&speech);
+    fixture_laughter(&laugh);
+    fixture_slow(&slow);
+    return 0;
+}
+
+/* Runs of 1 .. `longest` phonemes of the host's models in turn. */
+static void alternate(unsigned models, uint32_t longest, uint32_t shortest_ms, uint32_t range_ms, uint32_t seed)
+{
+    fixture_random_t random;
+    unsigned i = 0, model = 0;
+    random.state = seed + 1;
+    while (i < COUNT) {
+        uint32_t run = 1 + fixture_below(&random, longest);
+        for (; run > 0 && i < COUNT; run--, i++) {
+            input[i].model = (uint8_t)model;
+            input[i].phoneme = (uint8_t)fixture_below(
+                &random, model == 1 ? (uint32_t)FIXTURE_LAUGH_COUNT : (uint32_t)FIXTURE_SPEECH_COUNT);
+            input[i].ms = shortest_ms + fixture_below(&random, range_ms);
+        }
+        model = (model + 1) % models;
+    }
+}
+
+static void play(fixture_host_t *host, unsigned model_count, size_t count, fixture_feed_t feed, const char *what)
+{
+    const labial_model_t *models[3];
+    models[0] = &speech.model;
+    models[1] = &laugh.model;
+    models[2] = &slow.model;
+    assert_int_equal(fixture_open(host, models, model_count), LABIAL_OK);
+    if (fixture_play(host, input, count, feed) != 0)
+        fail_msg("%s, feed %d: %s (frame %zu)", what, (int)feed, host->complaint, host->recorder.count);
+    if (!fixture_is_exact(host->recorder.count, fixture_duration(input, count), FIXTURE_RATE))
+        fail_msg("%s: %zu frames for %lu ms", what, host->recorder.count,
+                 (unsigned long)fixture_duration(input, count));
+}
+
+/* Would catch frames lost or doubled where models meet, whatever the length of the runs: many are shorter than the
+ * cross-fade, some one frame, some none. The frames must not depend on the feeding here either. */
+static void switching_keeps_time_and_does_not_depend_on_feeding(void **state)
+{
+    static const struct {
+        uint32_t longest, shortest_ms, range_ms;
+        const char *what;
+    } cases[] = {
+        {12, 40, 200, "words"},       {1, 0, 60, "single short phonemes"}, {1, 20, 1, "single frames"},
+        {3, 0, 400, "short runs"},    {4, 0, 3, "less than a frame"},      {2, 600, 3000, "pauses"},
+    };
+    unsigned i, seed;
+    int feed;
+    (void)state;
+    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (seed = 0; seed < 4; seed++) {
+            fixture_host_t wanted;
+            alternate(2, cases[i].longest, cases[i].shortest_ms, cases[i].range_ms, seed);
+            play(&wanted, 2, COUNT, FIXTURE_FILL, cases[i].what);
+            for (feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
+                fixture_host_t host;
+                long at;
+                play(&host, 2, COUNT, (fixture_feed_t)feed, cases[i].what);
+                at = fixture_difference(&wanted.recorder, &host.recorder);
+                if (at >= 0)
+                    fail_msg("%s, feed %d: frame %ld differs", cases[i].what, feed, at);
+                fixture_close(&host);
+            }
+            fixture_close(&wanted);
+        }
+    }
+}
+
+/* Would catch a join without a cross-fade: both models hold shapes far apart, and the way from one to the other takes
+ * the frames of the fade instead of one. */
+static void models_are_faded_into_each_other(void **state)
+{
+    fixture_host_t host;
+    unsigned i;
+    size_t frame;
+    int inside = 0, at_joins = 0, far = 0;
+    unsigned c;
+    (void)state;
+    for (i = 0; i < 40; i++) { /* ten phonemes of 100 ms each in turn: models change every 50 frames */
+        input[i].model = (uint8_t)(i / 10 % 2);
+        input[i].phoneme = (uint8_t)(input[i].model ? FIXTURE_FRICATIVE : i % 2 ? FIXTURE_A : FIXTURE_S);
+        input[i].ms = 100;
+    }
+    play(&host, 2, 40, FIXTURE_FILL, "ten in turn");
+    assert_int_equal(host.recorder.count, 200);
+    for (frame = 1; frame < 200; frame++) {
+        const size_t from_join = frame % 50 < 25 ? frame % 50 : 50 - frame % 50;
+        const int step = fixture_step(&host.recorder, frame);
+        if (frame < 25 || frame >= 175 || from_join > LABIAL_CUT_OVERLAP + 4)
+            inside = step > inside ? step : inside;
+        else
+            at_joins = step > at_joins ? step : at_joins;
+    }
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        const int change = host.recorder.frames[75][c] - host.recorder.frames[25][c];
+        far = change > far ? change : -change > far ? -change : far;
+    }
+    assert_true(far > 100); /* else there is nothing to fade */
+    if (at_joins > 2 * inside && at_joins > far / 3)
+        fail_msg("%d at the joins, %d elsewhere, %d from one to the other", at_joins, inside, far);
+    fixture_close(&host);
+}
+
+/* Would catch phoneme numbers that are looked up in the wrong model: those of the other model are silence. A stream
+ * whose laughter is unlike silence only in phonemes that speech does not have gives the same speech. */
+static void the_other_models_phonemes_are_silence(void **state)
+{
+    fixture_host_t a, b;
+    unsigned i;
+    size_t frame;
+    (void)state;
+    for (i = 0; i < 30; i++) {
+        input[i].model = (uint8_t)(i >= 15);
+        input[i].phoneme = (uint8_t)(i % 4);
+        input[i].ms = 120;
+    }
+    play(&a, 2, 30, FIXTURE_FILL, "one laugh");
+    for (i = 15; i < 30; i++)
+        input[i].phoneme = (uint8_t)((i + 1) % 4);
+    play(&b, 2, 30, FIXTURE_FILL, "another laugh");
+    for (frame = 0; frame < 15 * 6; frame++)
+        assert_memory_equal(a.recorder.frames[frame], b.recorder.frames[frame], sizeof a.recorder.frames[0]);
+    assert_true(fixture_difference(&a.recorder, &b.recorder) >= 0); /* the laughs themselves differ */
+    fixture_close(&a);
+    fixture_close(&b);
+}
+
+/* "A model makes room for another when its phonemes have been decoded and are no longer needed as context": so it must,
+ * in turn after turn, where the phonemes between them are many. */
+static void three_models_in_turn_make_room(void **state)
+{
+    unsigned seed, i;
+    (void)state;
+    for (seed = 0; seed < 4; seed++) {
+        fixture_host_t host;
+        alternate(3, 1, 150, 200, seed);
+        for (i = 0; i < COUNT; i++) {
+            input[i].model = (uint8_t)(i / 14 % 3);
+            input[i].phoneme = (uint8_t)(input[i].phoneme % FIXTURE_LAUGH_COUNT);
+        }
+        play(&host, 3, COUNT, seed % 2 ? FIXTURE_CHANCE : FIXTURE_FILL, "three models");
+        fixture_close(&host);
+    }
+}
+
+/* Where they are few, the third model may never be taken. The stream must say so and come to a proper end. */
+static void a_model_that_is_refused_does_no_harm(void **state)
+{
+    const labial_model_t *models[3];
+    unsigned seed, refused = 0;
+    (void)state;
+    models[0] = &speech.model;
+    models[1] = &laugh.model;
+    models[2] = &slow.model;
+    for (seed = 0; seed < 6; seed++) {
+        fixture_host_t host;
+        unsigned i = 0, ticks = 0;
+        int result;
+        assert_int_equal(fixture_open(&host, models, 3), LABIAL_OK);
+        alternate(3, 1 + seed, 20, 300, seed);
+        while (i < COUNT && ticks < 300) {
+            result = labial_room(host.stream) > 0 ? fixture_push(&host, &input[i]) : LABIAL_ERROR_FULL;
+            if (result == LABIAL_OK) {
+                i++;
+                ticks = 0;
+                continue;
+            }
+            assert_true(result == LABIAL_ERROR_MODELS || result == LABIAL_ERROR_FULL);
+            refused += result == LABIAL_ERROR_MODELS;
+            (void)fixture_tick(&host);
+            ticks++;
+        }
+        if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
+            fail_msg("seed %u: %s", seed, host.complaint);
+        assert_true(i > 1 && fixture_is_exact(host.recorder.count, fixture_duration(input, i), FIXTURE_RATE));
+        fixture_close(&host);
+    }
+    assert_true(refused > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(switching_keeps_time_and_does_not_depend_on_feeding),
+        cmocka_unit_test(models_are_faded_into_each_other),
+        cmocka_unit_test(the_other_models_phonemes_are_silence),
+        cmocka_unit_test(three_models_in_turn_make_room),
+        cmocka_unit_test(a_model_that_is_refused_does_no_harm),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

@@ -1,0 +1,223 @@
+/*
+ * test_stream_time.c - exact time: the frames delivered are the rounded sum of the durations, and what the stream says
+ * of its latency adds up on the way.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "fixture.h"
+
+#define MANY 2000
+
+static fixture_model_t plain, rich;
+static fixture_phoneme_t input[MANY];
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_plain(&plain);
+    fixture_rich(&rich);
+    return 0;
+}
+
+/* Plays `count` phonemes at `rate` and wants the exact number of frames. */
+static void play(fixture_model_t *f, unsigned rate, size_t count, fixture_feed_t feed, const char *what)
+{
+    fixture_host_t host;
+    f->model.frames_per_second = (uint16_t)rate;
+    if (fixture_run(&host, &f->model, input, count, feed) != 0)
+        fail_msg("%s at %u frames/s: %s", what, rate, host.complaint);
+    if (!fixture_is_exact(host.recorder.count, fixture_duration(input, count), rate))
+        fail_msg("%s at %u frames/s: %zu frames for %lu ms", what, rate, host.recorder.count,
+                 (unsigned long)fixture_duration(input, count));
+    fixture_close(&host);
+    f->model.frames_per_second = FIXTURE_RATE;
+}
+
+/* Would catch rounding per phoneme, dropped or shortened phonemes, frames lost where units are cut or joined. */
+static void every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes(void **state)
+{
+    static const unsigned rates[] = {1, 24, 30, 50, 60, 99, 250};
+    unsigned r;
+    int kind;
+    (void)state;
+    for (kind = 0; kind < FIXTURE_HOUR; kind++) {
+        for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
+            fixture_stream(input, 120, (fixture_kind_t)kind, r);
+            play(&plain, rates[r], 120, FIXTURE_FILL, "plain");
+            play(&rich, rates[r], 120, FIXTURE_CHANCE, "rich");
+        }
+    }
+}
+
+static void two_thousand_phonemes_are_exact(void **state)
+{
+    (void)state;
+    fixture_stream(input, MANY, FIXTURE_LONG, 9);
+    play(&rich, 50, MANY, FIXTURE_FILL, "long");
+    fixture_stream(input, MANY, FIXTURE_MILLI, 9);
+    play(&plain, 30, MANY, FIXTURE_SINGLE, "milliseconds");
+}
+
+/* Would catch 16-bit counts of frames, and a window that a phoneme of 180,000 frames overflows. */
+static void one_hour_is_exact(void **state)
+{
+    (void)state;
+    fixture_stream(input, 3, FIXTURE_HOUR, 4);
+    play(&plain, 50, 3, FIXTURE_FILL, "an hour");
+    input[0].phoneme = FIXTURE_A;
+    play(&plain, 7, 3, FIXTURE_SINGLE, "an hour of a vowel");
+}
+
+/* Whether `ms` is the length of `frames` rounded to the nearest; an exact half may go either way. */
+static int is_nearest_ms(uint64_t ms, uint64_t frames, unsigned rate)
+{
+    const uint64_t wanted = 2000u * frames, got = 2u * ms * rate;
+    return (wanted > got ? wanted - got : got - wanted) <= rate;
+}
+
+/* The same for every number of pushes, not only at the end. */
+static void every_prefix_is_exact(void **state)
+{
+    static const unsigned rates[] = {1, 7, 24, 30, 50, 60, 240, 250};
+    unsigned r, i, round;
+    (void)state;
+    for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
+        for (round = 0; round < 8; round++) {
+            fixture_host_t host;
+            const labial_model_t *model = &plain.model;
+            uint64_t ms = 0;
+            plain.model.frames_per_second = (uint16_t)rates[r];
+            fixture_stream(input, 80, round % 2 ? FIXTURE_RANDOM : FIXTURE_MILLI, round);
+            assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+            for (i = 0; i < 80; i++) {
+                labial_latency_t latency;
+                assert_int_equal(fixture_push(&host, &input[i]), LABIAL_OK);
+                ms += input[i].ms;
+                latency = labial_latency(host.stream);
+                if (!fixture_is_exact(latency.frames, ms, rates[r]))
+                    fail_msg("%u frames/s: %u frames for %lu ms", rates[r], latency.frames, (unsigned long)ms);
+                if (!is_nearest_ms(latency.milliseconds, latency.frames, rates[r]))
+                    fail_msg("%u frames/s: %u ms for %u frames", rates[r], latency.milliseconds, latency.frames);
+            }
+            fixture_close(&host);
+        }
+    }
+    plain.model.frames_per_second = FIXTURE_RATE;
+}
+
+/* Would catch 32-bit products: a queue full of hours is 900,000 frames times the queue, and its milliseconds still fit. */
+static void a_queue_full_of_hours_is_counted_exactly(void **state)
+{
+    fixture_host_t host;
+    const labial_model_t *model = &plain.model;
+    uint32_t count = 0;
+    labial_latency_t latency;
+    (void)state;
+    plain.model.frames_per_second = 250;
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    for (; labial_room(host.stream) > 0; count++)
+        assert_int_equal(labial_push(host.stream, FIXTURE_T, LABIAL_DURATION_MAX), LABIAL_OK);
+    assert_true(count >= LABIAL_WINDOW);
+    latency = labial_latency(host.stream);
+    assert_int_equal(latency.frames, count * 900000u);
+    assert_int_equal(latency.milliseconds, count * 3600000u);
+    assert_int_equal(latency.phonemes, count);
+    assert_int_equal(fixture_tick(&host), LABIAL_BUSY); /* and it begins to play */
+    for (count = 0; count < 200 && host.recorder.count < 100; count++)
+        (void)fixture_tick(&host);
+    assert_null(host.complaint);
+    assert_int_equal(host.recorder.count, 100);
+    assert_int_equal(labial_latency(host.stream).frames, latency.frames - 100);
+    fixture_close(&host);
+    plain.model.frames_per_second = FIXTURE_RATE;
+}
+
+/* Would catch a count that drifts from what is pushed and delivered, at any moment of a stream. */
+static void latency_is_what_was_pushed_and_not_delivered(void **state)
+{
+    fixture_host_t host;
+    const labial_model_t *model = &rich.model;
+    fixture_random_t random = {3};
+    size_t i = 0;
+    uint32_t pushed = 0;
+    int result = LABIAL_WAITING;
+    labial_latency_t latency;
+    (void)state;
+    fixture_stream(input, 200, FIXTURE_RANDOM, 14);
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    latency = labial_latency(host.stream);
+    assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0 && latency.ready == 0);
+    while (result != LABIAL_DONE) {
+        uint32_t burst = fixture_below(&random, 4);
+        for (; i < 200 && burst > 0 && labial_room(host.stream) > 0; burst--, i++) {
+            input[i].ms = input[i].ms / 20 * 20; /* whole frames: what was pushed is known without rounding */
+            assert_int_equal(fixture_push(&host, &input[i]), LABIAL_OK);
+            pushed += input[i].ms / 20;
+        }
+        if (i == 200 && !host.ended) {
+            assert_int_equal(labial_end(host.stream), LABIAL_OK);
+            host.ended = 1;
+        }
+        result = fixture_tick(&host);
+        latency = labial_latency(host.stream);
+        assert_null(host.complaint);
+        assert_int_equal(latency.frames, pushed - host.recorder.count);
+        assert_int_equal(latency.milliseconds, latency.frames * 20);
+        assert_true(latency.ready <= latency.frames);
+        assert_true(latency.phonemes <= LABIAL_QUEUE);
+        if (!host.ended)
+            assert_int_equal(latency.phonemes + labial_room(host.stream), LABIAL_QUEUE);
+    }
+    assert_int_equal(host.recorder.count, pushed);
+    assert_int_equal(latency.frames, 0);
+    assert_int_equal(latency.ready, 0);
+    fixture_close(&host);
+}
+
+/* "A phoneme that gets no frame of its own leaves no trace but its time": not as a neighbour, not in the kernels, not
+ * as a boundary. The rich model sees all of these. */
+static void phonemes_without_time_leave_no_trace(void **state)
+{
+    static fixture_phoneme_t padded[3 * 100];
+    fixture_host_t without, with;
+    fixture_random_t random = {6};
+    size_t i, n = 0;
+    (void)state;
+    fixture_stream(input, 100, FIXTURE_RANDOM, 17);
+    for (i = 0; i < 100; i++) {
+        uint32_t extra = fixture_below(&random, 3);
+        input[i].ms += 20; /* each of them gets a frame */
+        for (; extra > 0; extra--) {
+            padded[n].model = 0;
+            padded[n].ms = 0;
+            padded[n++].phoneme = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
+        }
+        padded[n++] = input[i];
+    }
+    assert_true(n > 150);
+    if (fixture_run(&without, &rich.model, input, 100, FIXTURE_FILL) != 0)
+        fail_msg("%s", without.complaint);
+    if (fixture_run(&with, &rich.model, padded, n, FIXTURE_FILL) != 0)
+        fail_msg("%s", with.complaint);
+    assert_int_equal(fixture_difference(&without.recorder, &with.recorder), -1);
+    fixture_close(&without);
+    fixture_close(&with);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes),
+        cmocka_unit_test(two_thousand_phonemes_are_exact),
+        cmocka_unit_test(one_hour_is_exact),
+        cmocka_unit_test(every_prefix_is_exact),
+        cmocka_unit_test(a_queue_full_of_hours_is_counted_exactly),
+        cmocka_unit_test(latency_is_what_was_pushed_and_not_delivered),
+        cmocka_unit_test(phonemes_without_time_leave_no_trace),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

@@ -1,0 +1,252 @@
+/*
+ * fuzz_stream.c - any sequence of calls, right and wrong ones: libFuzzer's bytes choose them.
+ *
+ * The structure and the workspace lie on the heap, exactly as large as they must be, so that AddressSanitizer sees every
+ * access beside them. Beyond that: results are those the header lists, frames are numbered without a gap, the callback
+ * comes once per LABIAL_OK, errors change nothing that can be asked for, and a stream that ends lasts exactly as long
+ * as its phonemes.
+ */
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixture.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+#define REQUIRE(condition) \
+    do {                   \
+        if (!(condition))  \
+            abort();       \
+    } while (0)
+
+static fixture_model_t speech, laugh, plain, slow, other_rate;
+
+typedef struct {
+    const uint8_t *data;
+    size_t size;
+} bytes_t;
+
+static uint32_t take(bytes_t *bytes, unsigned count)
+{
+    uint32_t value = 0;
+    for (; count > 0 && bytes->size > 0; count--, bytes->size--)
+        value = value << 8 | *bytes->data++;
+    return value;
+}
+
+/* What the stream must have become. */
+typedef struct {
+    labial_t *stream;
+    uint32_t next;      /* frame number that is due */
+    unsigned calls;     /* of the callback, since the last tick began */
+    uint64_t ms, frames; /* pushed and delivered since the stream began or was taken up again */
+    int ended, cancelled, done;
+    unsigned phonemes;  /* of the current model */
+} watch_t;
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    watch_t *watch = (watch_t *)user;
+    unsigned c;
+    REQUIRE(frame == watch->next);
+    watch->next++;
+    watch->calls++;
+    watch->frames++;
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        REQUIRE(faps[c] >= -2048 && faps[c] <= 2048);
+}
+
+static int tick(watch_t *watch)
+{
+    const unsigned room = labial_room(watch->stream);
+    int result;
+    watch->calls = 0;
+    result = labial_tick(watch->stream);
+    REQUIRE(result >= LABIAL_OK && result <= LABIAL_DONE);
+    REQUIRE(watch->calls == (result == LABIAL_OK ? 1u : 0u));
+    if (result == LABIAL_DONE) {
+        REQUIRE(watch->ended);
+        if (!watch->done && !watch->cancelled)
+            REQUIRE(fixture_is_exact(watch->frames, watch->ms, FIXTURE_RATE));
+        REQUIRE(labial_latency(watch->stream).frames == 0 && labial_latency(watch->stream).ready == 0);
+        watch->done = 1;
+    }
+    if (result == LABIAL_WAITING || result == LABIAL_STARVED)
+        REQUIRE(!watch->ended && room > 0);
+    return result;
+}
+
+static int is_same(labial_latency_t a, labial_latency_t b)
+{
+    return a.frames == b.frames && a.milliseconds == b.milliseconds && a.phonemes == b.phonemes && a.ready == b.ready;
+}
+
+static void push(watch_t *watch, unsigned phoneme, uint32_t ms)
+{
+    const labial_latency_t before = labial_latency(watch->stream);
+    const unsigned room = labial_room(watch->stream);
+    const int result = labial_push(watch->stream, phoneme, ms);
+    if (result == LABIAL_OK) {
+        REQUIRE(!watch->ended && room > 0 && phoneme < watch->phonemes && ms <= LABIAL_DURATION_MAX);
+        watch->ms += ms;
+        return;
+    }
+    REQUIRE(is_same(before, labial_latency(watch->stream)) && room == labial_room(watch->stream));
+    if (watch->ended)
+        REQUIRE(result == LABIAL_ERROR_STATE);
+    else
+        REQUIRE((result == LABIAL_ERROR_FULL && room == 0) ||
+                (result == LABIAL_ERROR_PHONEME && phoneme >= watch->phonemes) ||
+                (result == LABIAL_ERROR_DURATION && ms > LABIAL_DURATION_MAX));
+}
+
+static void use(watch_t *watch, unsigned choice)
+{
+    const labial_model_t *const models[] = {&speech.model, &laugh.model, &plain.model, &slow.model, &other_rate.model};
+    const labial_model_t *model = choice < 5 ? models[choice] : NULL;
+    const labial_latency_t before = labial_latency(watch->stream);
+    const int result = labial_use(watch->stream, model);
+    REQUIRE(is_same(before, labial_latency(watch->stream)));
+    if (!model)
+        REQUIRE(result == LABIAL_ERROR_NULL);
+    else if (watch->ended)
+        REQUIRE(result == LABIAL_ERROR_STATE);
+    else if (choice == 3)
+        REQUIRE(result == LABIAL_ERROR_WORKSPACE);
+    else if (choice == 4)
+        REQUIRE(result == LABIAL_ERROR_RATE);
+    else
+        REQUIRE(result == LABIAL_OK || result == LABIAL_ERROR_MODELS);
+    if (result == LABIAL_OK)
+        watch->phonemes = model->phoneme_count;
+}
+
+static void restart(watch_t *watch)
+{
+    const int result = labial_restart(watch->stream);
+    REQUIRE(result == LABIAL_OK || result == LABIAL_ERROR_STATE);
+    if (watch->done)
+        REQUIRE(result == LABIAL_OK);
+    if (result == LABIAL_OK) {
+        REQUIRE(watch->ended);
+        watch->ms = watch->frames = 0;
+        watch->ended = watch->cancelled = watch->done = 0;
+    }
+}
+
+/* The structure may lie elsewhere after every call. */
+static void move(watch_t *watch)
+{
+    labial_t *place = (labial_t *)malloc(sizeof *place);
+    REQUIRE(place);
+    memcpy(place, watch->stream, sizeof *place);
+    free(watch->stream);
+    watch->stream = place;
+}
+
+static void one_call(watch_t *watch, bytes_t *bytes)
+{
+    const unsigned call = take(bytes, 1);
+    unsigned i;
+    int result;
+    switch (call % 16) {
+    case 0:
+    case 1:
+    case 2:
+    case 3: /* an ordinary phoneme */
+        push(watch, (call >> 4) % watch->phonemes, take(bytes, 1) * 2);
+        break;
+    case 4: /* a long one */
+        push(watch, (call >> 4) % watch->phonemes, take(bytes, 2));
+        break;
+    case 5: /* any numbers */
+        push(watch, take(bytes, (call >> 4) % 5), take(bytes, 4));
+        break;
+    case 6: /* many short ones */
+        for (i = call >> 2; i > 0; i--)
+            push(watch, i % watch->phonemes, call >> 4);
+        break;
+    case 7:
+    case 8:
+        (void)tick(watch);
+        break;
+    case 9:
+        for (i = call; i > 0 && tick(watch) == LABIAL_OK; i--)
+            ;
+        break;
+    case 10:
+    case 11:
+        watch->calls = 0;
+        for (i = call; i > 0; i--) {
+            result = labial_work(watch->stream);
+            REQUIRE(result == LABIAL_OK || result == LABIAL_WAITING || result == LABIAL_DONE);
+            REQUIRE(result != LABIAL_DONE || watch->ended);
+        }
+        REQUIRE(watch->calls == 0);
+        break;
+    case 12:
+        use(watch, call >> 4);
+        break;
+    case 13:
+        if (call & 128) {
+            REQUIRE(labial_end(watch->stream) == LABIAL_OK);
+            watch->ended = 1;
+        } else {
+            move(watch);
+        }
+        break;
+    case 14:
+        if (call & 128) {
+            REQUIRE(labial_cancel(watch->stream, take(bytes, (call >> 4) % 8 / 2)) == LABIAL_OK);
+            watch->ended = watch->cancelled = 1;
+            watch->done = 0;
+        }
+        break;
+    default:
+        restart(watch);
+        break;
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    bytes_t bytes;
+    watch_t watch;
+    const labial_model_t *model;
+    void *workspace;
+    uint32_t room;
+    unsigned calls, i;
+    if (speech.model.format == 0) {
+        fixture_rich(&speech);
+        fixture_laughter(&laugh);
+        fixture_plain(&plain);
+        fixture_slow(&slow);
+        fixture_plain(&other_rate);
+        other_rate.model.frames_per_second = 30;
+    }
+    bytes.data = data;
+    bytes.size = size;
+    memset(&watch, 0, sizeof watch);
+    model = take(&bytes, 1) % 2 ? &plain.model : &speech.model;
+    room = labial_workspace_size(model);
+    workspace = malloc(room);
+    watch.stream = (labial_t *)malloc(sizeof *watch.stream);
+    REQUIRE(workspace && watch.stream);
+    watch.phonemes = model->phoneme_count;
+    REQUIRE(labial_init(watch.stream, model, workspace, room, on_frame, &watch) == LABIAL_OK);
+    move(&watch);
+    for (calls = 0; bytes.size > 0 && calls < 2000; calls++)
+        one_call(&watch, &bytes);
+
+    /* The rest is played, unless it lasts for hours. */
+    REQUIRE(labial_end(watch.stream) == LABIAL_OK);
+    watch.ended = 1;
+    if (labial_latency(watch.stream).frames < 10000)
+        for (i = 0; tick(&watch) != LABIAL_DONE; i++)
+            REQUIRE(i < 100000);
+    free(workspace);
+    free(watch.stream);
+    return 0;
+}
