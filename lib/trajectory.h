@@ -8,7 +8,7 @@
 
 /*
  * What ties frame t to its target beside the state's own anchor: the precision of component[t] in this channel, times
- * share[t] / 2^16. `precisions` is the model's table at the channel; null without such a table.
+ * share[t] / 2^16, rounded to a whole weight. `precisions` is the model's table at the channel; null without such a table.
  */
 typedef struct {
     const uint8_t *precisions;

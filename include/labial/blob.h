@@ -35,7 +35,8 @@ typedef struct {
 } labial_blob_t;
 
 /*
- * Lays `blob->model` over the `size` bytes at `data`, which are aligned to four.
+ * Lays `blob->model` over the `size` bytes at `data`, which are aligned to four; `size` is the model's own size, as its
+ * header has it.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION (another format, or a big-endian machine) or
  * LABIAL_ERROR_MODEL (misaligned, truncated, damaged, or out of range).

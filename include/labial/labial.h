@@ -229,6 +229,9 @@ int labial_use(labial_t *stream, const labial_model_t *model);
  * added exactly: after any number of pushes the frames amount to the rounded sum of the durations. A phoneme that gets
  * no frame of its own leaves no trace but its time.
  *
+ * How a phoneme looks depends on its successor: its frames wait until that is pushed and the kernels' reach is known,
+ * or until labial_end(). A program that goes on without end pushes its pauses in short pieces.
+ *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
  * labial_cancel()), LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION or LABIAL_ERROR_FULL.
  */
@@ -280,7 +283,7 @@ typedef struct {
     uint32_t frames;       /* pushed and not yet delivered */
     uint32_t milliseconds; /* the same as time, rounded to the nearest */
     unsigned phonemes;     /* held in the queue, those included that are only kept as context */
-    unsigned ready;        /* frames that can be delivered without more work or input */
+    unsigned ready;        /* frames that are computed; the first wait until LABIAL_PREROLL of them are */
 } labial_latency_t;
 
 /* The stream's look-ahead at this moment; all zero for a null or uninitialised stream. */

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Dict, List, Tuple
 
 import numpy as np
+
 from labial.faps import CHANNELS
 from labial.model import Model
 

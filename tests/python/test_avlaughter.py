@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from labial.corpus import read_corpus
 from labial.corpus.avlaughter import read_avlaughter
 from labial.corpus.folder import HEADER

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from labial.cli import main
 from labial.faps import FAP_COLUMNS
 from labial.model import save

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from labial.native import NativeModel
 from labial.quantise import quantise
 from labial.reference.stream import synthesise

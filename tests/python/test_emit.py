@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from labial import emit
 from labial.errors import LabialError, ModelError
 from labial.native import NativeModel, compiler, library_root

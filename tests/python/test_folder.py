@@ -6,6 +6,7 @@ import os
 
 import numpy as np
 import pytest
+
 from labial.corpus import read_corpus
 from labial.corpus.folder import HEADER, read_frames
 from labial.errors import DataError, LabialError

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from labial.corpus import read_corpus
 from labial.corpus.iemocap import align_head, read_iemocap
 from labial.errors import DataError

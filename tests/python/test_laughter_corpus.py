@@ -6,6 +6,7 @@ from collections import defaultdict
 
 import numpy as np
 import pytest
+
 from labial.corpus import read_corpus
 from labial.corpus.laughter import generate
 from labial.errors import DataError

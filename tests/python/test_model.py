@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from labial.errors import ModelError
 from labial.model import load, save
 from models import random_model

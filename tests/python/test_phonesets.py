@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from labial.phonesets import ARPABET, LAUGHTER, PHONE_SETS, SPEECH, VOWELS, candidates_for, normalise, substitute_for
 
 

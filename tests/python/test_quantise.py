@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+
 from labial.errors import ModelError
 from labial.fixed import PULL_MAX, WEIGHT_MIN, WEIGHT_SUM_MAX, WEIGHTS, gain, weight_code, weight_value, z_cost
 from labial.loss import measure

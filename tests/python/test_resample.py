@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from labial.corpus import Episode, Segment, resample
 from labial.errors import LabialError
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from labial.corpus.timings import (
     phoneme_segments,
     read_flite,

@@ -7,6 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
+
 from labial.reference.tables import Equation
 from labial.reference.trajectory import join, solve
 from labial.reference.units import Piece

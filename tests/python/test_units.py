@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from labial.reference.stream import frame_counts
 from labial.reference.units import CUT_OVERLAP, OVERLAP, Piece, pieces, whole
 from models import random_model, streams

@@ -1,0 +1,36 @@
+# labial_target(<target>) sets how every target of Labial is compiled. Options stay on the targets, so that a program
+# that includes Labial keeps its own.
+
+set(LABIAL_WARNINGS
+    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wundef -Wcast-qual -Wdouble-promotion)
+set(LABIAL_C_WARNINGS -Wstrict-prototypes -Wmissing-prototypes)
+
+# Undefined behaviour ends the test that meets it instead of being reported and passed over.
+set(LABIAL_SANITIZERS -fsanitize=address,undefined,alignment -fno-sanitize-recover=all -fno-omit-frame-pointer)
+
+if(LABIAL_INSTRUMENT STREQUAL "sanitize")
+  set(LABIAL_INSTRUMENT_OPTIONS ${LABIAL_SANITIZERS})
+elseif(LABIAL_INSTRUMENT STREQUAL "fuzz")
+  set(LABIAL_INSTRUMENT_OPTIONS -fsanitize=fuzzer-no-link ${LABIAL_SANITIZERS})
+elseif(LABIAL_INSTRUMENT MATCHES "^(none|memcheck)$")
+  set(LABIAL_INSTRUMENT_OPTIONS "")
+else()
+  message(FATAL_ERROR "LABIAL_INSTRUMENT is none, sanitize, memcheck or fuzz, not \"${LABIAL_INSTRUMENT}\".")
+endif()
+
+function(labial_target target)
+  set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
+  if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
+    target_compile_options(${target} PRIVATE
+      ${LABIAL_WARNINGS} ${LABIAL_C_WARNINGS} $<$<BOOL:${LABIAL_WERROR}>:-Werror>)
+  endif()
+  target_compile_options(${target} PRIVATE ${LABIAL_INSTRUMENT_OPTIONS})
+  target_link_options(${target} PRIVATE ${LABIAL_INSTRUMENT_OPTIONS})
+endfunction()
+
+# One section per function and table, so that the linker drops what a program does not use.
+function(labial_sections target)
+  if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
+    target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
+  endif()
+endfunction()
