@@ -68,6 +68,20 @@ class Utterance:
         wanted = set(words)
         return np.array([word in wanted for word in self.words], dtype=bool)[self.timeline.segment_at]
 
+    def longest_word(self, silence: int, words: Optional[Iterable[str]] = None) -> Optional[Tuple[int, int]]:
+        """First and last segment of the word with the most phonemes, the first of equals, among `words` if given."""
+        wanted = None if words is None else set(words)
+        runs: List[List[int]] = []
+        for index, word in enumerate(self.words):
+            if word is None or self.timeline.phoneme[index] == silence or (wanted is not None and word not in wanted):
+                continue
+            if runs and runs[-1][-1] == index - 1 and self.words[index - 1] == word:
+                runs[-1].append(index)
+            else:
+                runs.append([index])
+        longest = max(runs, key=len, default=None)
+        return (longest[0], longest[-1]) if longest else None
+
 
 def timeline(phonemes: Iterable[int], milliseconds: Iterable[int], fps: int) -> Timeline:
     """The timeline of a stream of phoneme numbers and durations."""

@@ -25,22 +25,12 @@ def _drawn(example: Example) -> List[str]:
 
 
 def _word(example: Example) -> Tuple[int, int, str]:
-    """First frame, end frame and name of the word with the most phonemes; the whole utterance if no word is known."""
-    given, words = example.utterance.timeline, example.utterance.words
-    silence = PHONE_SETS[example.kind].silence
-    labels = [PHONE_SETS[example.kind].phonemes[p] for p in given.phoneme]
-    runs: List[List[int]] = []
-    for index, word in enumerate(words):
-        if word is None or labels[index] == silence:
-            continue
-        if runs and words[runs[-1][-1]] == word and runs[-1][-1] == index - 1:
-            runs[-1].append(index)
-        else:
-            runs.append([index])
-    if not runs:
+    """First frame, end frame and name of the word that is shown; the whole utterance where no word is known."""
+    given = example.utterance.timeline
+    if example.word is None:
         return 0, given.frames, ""
-    chosen = max(runs, key=len)
-    return int(given.start[chosen[0]]), int(given.start[chosen[-1]] + given.length[chosen[-1]]), str(words[chosen[0]])
+    first, last = example.word
+    return int(given.start[first]), int(given.start[last] + given.length[last]), str(example.utterance.words[first])
 
 
 def _label_phonemes(axes: pyplot.Axes, example: Example, begin: int, end: int, fps: int) -> None:
@@ -91,6 +81,7 @@ def trajectories(example: Example, fps: int, folder: Path) -> str:
             axes.plot(time, example.motion[name][:, k], linewidth=1, label=title(name))
         axes.set_ylabel(channel, fontsize=8)
     _label_phonemes(every[0], example, 0, total, fps)
+    figure.align_ylabels(every)
     every[-1].set_xlabel(f"seconds, {example.utterance.episode.name}; FAP units")
     every[0].legend(fontsize=7, loc="upper right")
     return _finish(figure, folder / "trajectories.png")

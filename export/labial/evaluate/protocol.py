@@ -45,6 +45,7 @@ class Example:
 
     kind: str
     utterance: Utterance
+    word: Optional[Tuple[int, int]]  #: first and last segment of the longest word that is judged
     steps: np.ndarray
     motion: Dict[str, np.ndarray]
 
@@ -70,6 +71,12 @@ def _processor_seconds() -> float:
     return spent.user + spent.system + spent.children_user + spent.children_system
 
 
+def _longest_word(test: Sequence[Utterance], silence: int, split: Split) -> int:
+    """The utterance with the longest word that is judged, the first of equals."""
+    words = [item.longest_word(silence, split.words) for item in test]
+    return int(np.argmax([word[1] - word[0] + 1 if word else 0 for word in words]))
+
+
 def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell: Callable = _say_nothing) -> Outcome:
     """Fits and measures all methods on one split. `tell` is called after each method."""
     phone_set = PHONE_SETS[options.kind]
@@ -81,6 +88,7 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
     test, kept = [item for item, _ in judged], [mask for _, mask in judged]
     judge = Judge(test, kept, training.scale, phone_set, options.fps)
     measures = {HUMAN: judge.measure([item.human for item in test])}
+    shown = _longest_word(test, training.silence, split)
     motion: Dict[str, np.ndarray] = {}
     seconds: Dict[str, float] = {}
     for method in select(options.methods):
@@ -88,11 +96,13 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
         made = predict_all(method.fit(training), [item.timeline for item in test])
         measures[method.name] = judge.measure(made)
         seconds[method.name] = _processor_seconds() - begun
-        motion[method.name] = made[0]
+        motion[method.name] = made[shown]
         tell()
     example = None
     if split.number == 0:
-        example = Example(options.kind, test[0], steps.fit(training).predict(test[0].timeline), motion)
+        item = test[shown]
+        word = item.longest_word(training.silence, split.words)
+        example = Example(options.kind, item, word, steps.fit(training).predict(item.timeline), motion)
     return Outcome(split, judge.frames, measures, seconds, example)
 
 

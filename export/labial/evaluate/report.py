@@ -37,6 +37,15 @@ TABLE_3: Columns = [(f"{what} {name}", f"{what}/{name}") for what in ("correlati
                     for name in JUDGED_NAMES]  # fmt: skip
 
 
+_NOTE_2 = """\
+Correlation and amplitude (standard deviation over the human's): mean over open_jaw, raise_b_midlip_o,
+stretch_l_cornerlip_o and push_t_lip, each over all judged frames. Closure: share of p, b, m whose least openness
+within the segment and 40 ms around it is below the 20th percentile of the training part's speech frames; firm closure:
+below the median of the human's own least openness in the training part's p, b, m. Jitter: RMS third difference over
+the human's. Seam: |second difference| where units join over that elsewhere, of the means and of the largest values;
+methods without units, and the human, are measured at the same frames."""
+
+
 @dataclass(frozen=True)
 class Cell:
     """A measure over the splits."""
@@ -98,15 +107,6 @@ def _heading(outcomes: Sequence[Outcome], options: Options) -> str:
     splits = f"{len(outcomes)} split{'s' if len(outcomes) > 1 else ''}"
     return (f"{splits} (seed {options.seed}), {part}; {frames} frames judged per split, silence excluded, "
             f"{options.fps} frames per second. Mean (standard deviation) over the splits.")
-
-
-_NOTE_2 = """\
-Correlation and amplitude (standard deviation over the human's): mean over open_jaw, raise_b_midlip_o,
-stretch_l_cornerlip_o and push_t_lip, each over all judged frames. Closure: share of p, b, m whose least openness
-within the segment and 40 ms around it is below the 20th percentile of the training part's speech frames; firm closure:
-below the median of the human's own least openness in the training part's p, b, m. Jitter: RMS third difference over
-the human's. Seam: |second difference| where units join over that elsewhere, of the means and of the largest values;
-methods without units, and the human, are measured at the same frames."""
 
 
 def markdown(outcomes: Sequence[Outcome], options: Options, plots: Sequence[str] = ()) -> str:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import List, Sequence, Tuple
+from typing import Callable, List, Sequence, Tuple
 
 import numpy as np
 from scipy.optimize import minimize
@@ -81,22 +81,24 @@ def _rate_index(around: Near, phoneme_class: np.ndarray) -> np.ndarray:
     return 2 * phoneme_class[around.phoneme] + (around.distance > 0)
 
 
-def fit_channel(
-    around: Near, motion: np.ndarray, start: np.ndarray, phoneme_class: np.ndarray, exponent: float, prior: float
-) -> Parameters:
-    """Fits one channel's motion (T,); `start` (P,) are the phonemes' means, FAP, where the targets begin."""
-    scale = max(float(motion.std()), 1e-9)
-    wanted, centre = motion / scale, start / scale
+def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
+    return Parameters(x[:phonemes], x[phonemes : 2 * phonemes], x[2 * phonemes :].reshape(-1, 2))
+
+
+def objective(
+    around: Near, wanted: np.ndarray, centre: np.ndarray, phoneme_class: np.ndarray, exponent: float, prior: float
+) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
+    """The function to be minimised, which returns its value and gradient at a vector of parameters, and where to begin.
+
+    `wanted` (T,) is one channel's motion, `centre` (P,) the phonemes' means, where the targets begin.
+    """
     power = np.abs(around.distance) ** exponent
     rate_at = _rate_index(around, phoneme_class)
-    phonemes, rates = len(start), 2 * (int(phoneme_class.max()) + 1)
+    phonemes, rates = len(centre), 2 * (int(phoneme_class.max()) + 1)
     flat_phoneme, flat_rate = around.phoneme.ravel(), rate_at.ravel()
 
-    def unpack(x: np.ndarray) -> Parameters:
-        return Parameters(x[:phonemes], x[phonemes : 2 * phonemes], x[2 * phonemes :].reshape(-1, 2))
-
     def loss(x: np.ndarray) -> Tuple[float, np.ndarray]:
-        parameters = unpack(x)
+        parameters = _unpack(x, phonemes)
         share, decay = _shares(around, power, parameters, rate_at)
         target = parameters.target[around.phoneme]
         found = (share * target).sum(axis=1)
@@ -113,9 +115,17 @@ def fit_channel(
         away = ((parameters.target - centre) ** 2).sum() + (x[phonemes:] ** 2).sum()
         return 0.5 * float((residual**2).sum() + prior * away) / len(wanted), gradient / len(wanted)
 
-    begin = np.concatenate([centre, np.zeros(phonemes + rates)])
-    x = minimize(loss, begin, jac=True, method="L-BFGS-B", options={"maxiter": ITERATIONS}).x
-    found = unpack(x)
+    return loss, np.concatenate([centre, np.zeros(phonemes + rates)])
+
+
+def fit_channel(
+    around: Near, motion: np.ndarray, start: np.ndarray, phoneme_class: np.ndarray, exponent: float, prior: float
+) -> Parameters:
+    """Fits one channel's motion (T,); `start` (P,) are the phonemes' means. Both FAP."""
+    scale = max(float(motion.std()), 1e-9)
+    loss, begin = objective(around, motion / scale, start / scale, phoneme_class, exponent, prior)
+    found = minimize(loss, begin, jac=True, method="L-BFGS-B", options={"maxiter": ITERATIONS}).x
+    found = _unpack(found, len(start))
     return Parameters(found.target * scale, found.strength, found.rate)
 
 

@@ -1,0 +1,121 @@
+"""Timelines and splits of an evaluation; also the corpora, made up by a known law, of the other evaluation tests."""
+
+from __future__ import annotations
+
+from typing import Callable, List, Sequence
+
+import numpy as np
+import pytest
+from labial.corpus import Episode, Segment
+from labial.errors import LabialError
+from labial.evaluate.material import Timeline, Utterance, timeline, utterance, utterances
+from labial.evaluate.splits import make_splits
+from labial.evaluate.training import Training
+from labial.phonesets import SPEECH
+
+FPS = 50
+LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
+WORDS = ("alpha", "beta", "gamma")
+
+
+def planted(law: Callable[[Timeline], np.ndarray], count: int, noise: float = 0.0, seed: int = 0,
+            labels: Sequence[str] = LABELS) -> List[Episode]:
+    """Episodes of 20 phonemes between silences whose motion (T, 13) is `law` of the timeline, plus noise, FAP."""
+    episodes = []
+    for number in range(count):
+        rng = np.random.default_rng([seed, number])
+        names = ["SIL", *rng.choice(labels, 20), "SIL"]
+        milliseconds = [200, *(20 * rng.integers(3, 9, 20)), 200]
+        ends = np.cumsum(milliseconds) / 1000.0
+        given = timeline([SPEECH.phonemes.index(name) for name in names], milliseconds, FPS)
+        motion = law(given) + rng.normal(0, noise, (given.frames, 13)) * (noise > 0)
+        times = (np.arange(given.frames) + 0.5) / FPS
+        words = [None, *(WORDS[(number + n // 5) % 3] if number % 2 else "delta" for n in range(20)), None]
+        segments = tuple(Segment(end - ms / 1000.0, end, name, word=word)
+                         for end, ms, name, word in zip(ends, milliseconds, names, words))
+        episodes.append(Episode(f"e{number:03}", times, motion, segments))
+    return episodes
+
+
+def training(law: Callable[[Timeline], np.ndarray], count: int = 30, noise: float = 1.0) -> Training:
+    return Training(utterances(planted(law, count, noise), SPEECH, FPS), SPEECH, FPS, seed=0)
+
+
+def unseen(law: Callable[[Timeline], np.ndarray], count: int = 4) -> List:
+    return utterances(planted(law, count, seed=99), SPEECH, FPS)
+
+
+def shape_of_phoneme() -> np.ndarray:
+    """(P, 13) FAP: a shape for every phoneme."""
+    return np.random.default_rng(5).normal(0, 150, (len(SPEECH.phonemes), 13))
+
+
+def ramp(given: Timeline) -> np.ndarray:
+    """Channel k rises by k + 1 FAP per frame."""
+    return np.arange(given.frames)[:, None] * np.arange(1, 14)[None, :]
+
+
+def test_the_timeline_is_what_the_library_is_told() -> None:
+    # Catches human frames that are judged against a timeline shifted or stretched by rounding.
+    motion = np.arange(60.0)[:, None] * np.ones(13)
+    segments = (Segment(0.1, 0.1334, "SIL"), Segment(0.1334, 0.1442, "P"), Segment(0.1442, 1.0004, "AA"))
+    episode = Episode("odd", 0.1 + (np.arange(60) + 0.5) / 50, motion, segments)
+    item = utterance(episode, SPEECH, 50)
+    assert item.timeline.milliseconds.tolist() == [33, 11, 856]
+    assert item.timeline.length.tolist() == [2, 0, 43] and item.timeline.frames == 45 == len(item.human)
+    assert item.timeline.held.tolist() == [0, 2]
+    np.testing.assert_allclose(item.human[:, 4], np.arange(45), atol=1e-9)
+
+
+def test_human_frames_are_those_of_the_planted_law() -> None:
+    # Catches resampling or alignment that is off by half a frame.
+    for item in unseen(ramp):
+        np.testing.assert_allclose(item.human, ramp(item.timeline), atol=1e-6)
+
+
+def test_words_select_frames() -> None:
+    item = utterances(planted(ramp, 2), SPEECH, FPS)[1]
+    expected = np.repeat([word == "beta" for word in item.words], item.timeline.length)
+    assert np.array_equal(item.in_words(["beta"]), expected) and expected.any()
+    assert not item.in_words(["delta"]).any()
+
+
+def test_the_longest_word_is_one_run_of_segments() -> None:
+    # Catches a word that occurs twice taken for one, and words that are not judged.
+    item = utterances(planted(ramp, 2), SPEECH, FPS)[1]
+    words = ("a", "a", "b", "a", "a", "a", "c", None, "c", *(None,) * 13)
+    marked = Utterance(item.episode, item.timeline, words, item.human)
+    assert marked.longest_word(silence=0) == (3, 5)
+    assert marked.longest_word(silence=0, words=["c", "b"]) == (2, 2)
+    assert marked.longest_word(silence=0, words=["d"]) is None
+
+
+def test_splits_are_disjoint_and_do_not_depend_on_their_number() -> None:
+    # Catches test episodes that are trained on, and a split 0 that changes when more are asked for.
+    corpus = utterances(planted(ramp, 21), SPEECH, FPS)
+    many = make_splits(corpus, 6, seed=3)
+    assert make_splits(corpus, 2, seed=3) == many[:2]
+    assert len({split.training for split in many}) == 6
+    for split in many:
+        assert sorted(split.training + split.test) == list(range(21)) and len(split.training) == 17
+    assert make_splits(corpus, 1, seed=4)[0] != many[0]
+
+
+def test_held_out_words_leave_the_training_part() -> None:
+    # Catches a word that is trained on and judged as unseen.
+    corpus = utterances(planted(ramp, 20), SPEECH, FPS)
+    for split in make_splits(corpus, 3, seed=0, held_out=["beta", "gamma"]):
+        assert split.words == ("beta", "gamma") and len(split.training) == 8
+        assert not any(set(corpus[i].words) & {"beta", "gamma"} for i in split.training)
+        assert all(set(corpus[i].words) & {"beta", "gamma"} for i in split.test)
+    with pytest.raises(LabialError, match="omega"):
+        make_splits(corpus, 1, 0, ["beta", "omega"])
+    with pytest.raises(LabialError, match="nothing is left"):
+        make_splits(corpus, 1, 0, ["beta", "delta"])
+
+
+def test_unknown_labels_are_told() -> None:
+    episode = planted(ramp, 1)[0]
+    strange = Episode("odd", episode.times, episode.frames, (Segment(0.0, 1.0, "QQ"),))
+    with pytest.raises(LabialError, match="odd: labels QQ"):
+        utterance(strange, SPEECH, FPS)
