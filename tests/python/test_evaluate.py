@@ -102,7 +102,8 @@ def test_a_failing_split_is_told_and_ends_the_run(corpus, monkeypatch) -> None:
     broken = protocol.Options(splits=2, kind="speech", methods="mean,nonsense")
     with pytest.raises(LabialError, match="nonsense"):
         protocol.evaluate(corpus, broken, jobs=2, progress=False)
-    monkeypatch.setattr(protocol, "make_splits", lambda *_: [Split(0, (0, 1), (2,)), Split(1, (0, 1), ())])
+    enough = tuple(range(17))
+    monkeypatch.setattr(protocol, "make_splits", lambda *_: [Split(0, enough, (17,)), Split(1, enough, ())])
     for jobs in (1, 2):
         with pytest.raises(LabialError, match="split 1: no frame to judge"):
             protocol.evaluate(corpus, protocol.Options(methods="mean"), jobs=jobs, progress=False)
@@ -119,3 +120,5 @@ def test_selection_of_methods() -> None:
 def test_a_measure_that_no_split_has_is_a_dash(corpus) -> None:
     outcomes = protocol.evaluate(corpus, protocol.Options(splits=1, methods="mean"), progress=False)
     assert str(cell(outcomes, "mean", "seam/mean")) == "-" and str(Cell(0.1234, 0.001)) == "0.1234 (0.0010)"
+    one = cell(outcomes, "mean", "diff/mean")  # a deviation of 0 would say that splits agree
+    assert str(one) == f"{one.mean:.4f}"

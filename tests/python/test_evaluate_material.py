@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Callable, List, Sequence
 
 import numpy as np
@@ -10,7 +11,7 @@ from labial.corpus import Episode, Segment
 from labial.errors import LabialError
 from labial.evaluate.material import Timeline, Utterance, timeline, utterance, utterances
 from labial.evaluate.splits import make_splits
-from labial.evaluate.training import Training
+from labial.evaluate.training import Training, choose, validation_error
 from labial.phonesets import SPEECH
 
 FPS = 50
@@ -37,12 +38,13 @@ def planted(law: Callable[[Timeline], np.ndarray], count: int, noise: float = 0.
     return episodes
 
 
-def training(law: Callable[[Timeline], np.ndarray], count: int = 30, noise: float = 1.0) -> Training:
-    return Training(utterances(planted(law, count, noise), SPEECH, FPS), SPEECH, FPS, seed=0)
+def training(law: Callable[[Timeline], np.ndarray], count: int = 30, noise: float = 1.0,
+             labels: Sequence[str] = LABELS) -> Training:
+    return Training(utterances(planted(law, count, noise, labels=labels), SPEECH, FPS), SPEECH, FPS, seed=0)
 
 
-def unseen(law: Callable[[Timeline], np.ndarray], count: int = 4) -> List:
-    return utterances(planted(law, count, seed=99), SPEECH, FPS)
+def unseen(law: Callable[[Timeline], np.ndarray], count: int = 4, labels: Sequence[str] = LABELS) -> List:
+    return utterances(planted(law, count, seed=99, labels=labels), SPEECH, FPS)
 
 
 def shape_of_phoneme() -> np.ndarray:
@@ -58,10 +60,10 @@ def ramp(given: Timeline) -> np.ndarray:
 def test_the_timeline_is_what_the_library_is_told() -> None:
     # Catches human frames that are judged against a timeline shifted or stretched by rounding.
     motion = np.arange(60.0)[:, None] * np.ones(13)
-    segments = (Segment(0.1, 0.1334, "SIL"), Segment(0.1334, 0.1442, "P"), Segment(0.1442, 1.0004, "AA"))
+    segments = (Segment(0.1, 0.1337, "SIL"), Segment(0.1337, 0.1442, "P"), Segment(0.1442, 1.0004, "AA"))
     episode = Episode("odd", 0.1 + (np.arange(60) + 0.5) / 50, motion, segments)
     item = utterance(episode, SPEECH, 50)
-    assert item.timeline.milliseconds.tolist() == [33, 11, 856]
+    assert item.timeline.milliseconds.tolist() == [34, 10, 856]
     assert item.timeline.length.tolist() == [2, 0, 43] and item.timeline.frames == 45 == len(item.human)
     assert item.timeline.held.tolist() == [0, 2]
     np.testing.assert_allclose(item.human[:, 4], np.arange(45), atol=1e-9)
@@ -119,3 +121,36 @@ def test_unknown_labels_are_told() -> None:
     strange = Episode("odd", episode.times, episode.frames, (Segment(0.0, 1.0, "QQ"),))
     with pytest.raises(LabialError, match="odd: labels QQ"):
         utterance(strange, SPEECH, FPS)
+
+
+def test_inner_validation_stays_inside_the_training_part() -> None:
+    # Catches settings that are chosen on what the final fit is judged by, or on what the inner fit has seen.
+    part = training(ramp, 20)
+    fold, = part.folds
+    assert len(fold.training.utterances) == 16 and not fold.words
+    assert sorted(item.episode.name for item in (*fold.training.utterances, *fold.held_out)) == [
+        item.episode.name for item in part.utterances]  # fmt: skip
+
+
+def test_inner_validation_holds_out_words_where_unseen_words_are_judged() -> None:
+    # Catches settings that suit known words alone, error on frames of words that were fitted, silence as a word.
+    named = [replace(e, segments=tuple(replace(s, word="<s>" if s.label == "SIL" else f"w{n}" if i < 9 else "common")
+                                       for i, s in enumerate(e.segments))) for n, e in enumerate(planted(ramp, 20))]
+    part = Training(utterances(named, SPEECH, FPS), SPEECH, FPS, seed=0, unseen_words=True)
+    words = [word for fold in part.folds for word in fold.words]
+    assert [len(fold.words) for fold in part.folds] == [6, 6, 6] and len(set(words)) == 18
+    assert not {"common", "<s>"} & set(words)
+    for fold in part.folds:
+        assert not any(set(fold.words) & set(item.words) for item in fold.training.utterances)
+        assert all(set(fold.words) & set(item.words) for item in fold.held_out) and len(fold.held_out) == 6
+
+    def wrong_in_common(given: Timeline) -> np.ndarray:
+        return ramp(given) + 99.0 * (given.segment_at >= 9)[:, None]
+
+    assert validation_error(part.scale, part.folds[0], wrong_in_common) == pytest.approx(0, abs=1e-9)
+    assert validation_error(part.scale, part.folds[0], lambda given: ramp(given) + 5.0) > 1e-3
+
+
+def test_the_setting_of_least_error_over_all_folds_is_chosen() -> None:
+    part = training(ramp, 20)
+    assert choose(part, [40.0, -3.0, 2.0, 7.0], lambda _: lambda off: lambda given: ramp(given) + off) == 2.0

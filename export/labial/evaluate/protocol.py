@@ -80,7 +80,8 @@ def _longest_word(test: Sequence[Utterance], silence: int, split: Split) -> int:
 def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell: Callable = _say_nothing) -> Outcome:
     """Fits and measures all methods on one split. `tell` is called after each method."""
     phone_set = PHONE_SETS[options.kind]
-    training = Training([corpus[i] for i in split.training], phone_set, options.fps, options.seed + split.number)
+    learnt = [corpus[i] for i in split.training]
+    training = Training(learnt, phone_set, options.fps, options.seed + split.number, unseen_words=bool(split.words))
     masks = judged_frames([corpus[i] for i in split.test], phone_set, split.words or ())
     judged = [(corpus[i], mask) for i, mask in zip(split.test, masks) if mask.any()]
     if not judged:

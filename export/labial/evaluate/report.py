@@ -51,13 +51,14 @@ class Cell:
     """A measure over the splits."""
 
     mean: float
-    deviation: float  #: of the sample; 0 for one split
+    deviation: float  #: of the sample; NaN for one split
 
     def __str__(self) -> str:
         if np.isnan(self.mean):
             return "-"
         digits = 3 if abs(self.mean) >= 0.9995 else 4
-        return f"{self.mean:.{digits}f} ({self.deviation:.{digits}f})"
+        text = f"{self.mean:.{digits}f}"
+        return text if np.isnan(self.deviation) else f"{text} ({self.deviation:.{digits}f})"
 
 
 def title(method: str) -> str:
@@ -76,7 +77,7 @@ def cell(outcomes: Sequence[Outcome], method: str, measure: str) -> Cell:
     values = values[~np.isnan(values)]
     if not len(values):
         return Cell(float("nan"), float("nan"))
-    return Cell(float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else 0.0)
+    return Cell(float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else float("nan"))
 
 
 def classes_of(outcomes: Sequence[Outcome]) -> List[str]:

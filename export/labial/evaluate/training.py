@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import contextlib
 import io
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Callable, Dict, List, Protocol, Sequence, Tuple, TypeVar
+from typing import Callable, Dict, List, Protocol, Sequence, Set, Tuple, TypeVar
 
 import numpy as np
 
 from labial.evaluate.material import Timeline, Utterance
-from labial.evaluate.measures import Scale, mean_difference, measure_scale, silence_of
+from labial.evaluate.measures import Scale, judged_frames, mean_difference, measure_scale, silence_of
 from labial.model import Model
 from labial.phonesets import PhoneSet
 from labial.train import train
 
 #: Share of the training part that inner validation fits on; the rest chooses the settings.
 INNER_SHARE = 0.8
+
+#: Where unseen words are judged, inner validation holds out words as well, several times, for few words say little:
+#: each time until so many episodes hold one of them. Words of more episodes than COMMON_SHARE are left alone, for they
+#: would leave too little to fit on.
+WORD_FOLDS = 3
+WORD_SHARE = 0.3
+COMMON_SHARE = 0.15
 
 Setting = TypeVar("Setting")
 
@@ -29,9 +37,16 @@ class Predictor(Protocol):
 
 
 class Training:
-    """A training part: utterances, and models that are trained on them when first asked for."""
+    """A training part: utterances, and models that are trained on them when first asked for.
 
-    def __init__(self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int) -> None:
+    `unseen_words` says that the fitted methods will be judged on words that the part does not hold, so that settings
+    are to be chosen on such words too.
+    """
+
+    def __init__(
+        self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int, unseen_words: bool = False
+    ) -> None:
+        self.unseen_words = unseen_words
         self.utterances = list(utterances)
         self.phone_set = phone_set
         self.fps = fps
@@ -50,13 +65,40 @@ class Training:
         return measure_scale(self.utterances, self.phone_set, self.fps)
 
     @cached_property
-    def inner(self) -> Tuple[Training, List[Utterance]]:
-        """A part to fit on and utterances to choose settings by, both from this part alone."""
+    def folds(self) -> List[Fold]:
+        """Inner validation, from this part alone: one random fold, or WORD_FOLDS of unseen words."""
+        by_word = [self._without_words(words) for words in self._word_draws()]
+        return by_word or [self._random_fold()]
+
+    def _random_fold(self) -> Fold:
         order = np.random.default_rng([self.seed, 1]).permutation(len(self.utterances))
         count = min(max(round(INNER_SHARE * len(order)), 1), max(len(order) - 1, 1))
         fit = [self.utterances[index] for index in sorted(order[:count])]
         rest = [self.utterances[index] for index in sorted(order[count:])]
-        return Training(fit, self.phone_set, self.fps, self.seed), rest or fit
+        return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest or fit, ())
+
+    def _word_draws(self) -> List[Tuple[str, ...]]:
+        """The words of each fold, random ones, none in two folds; empty unless unseen words are to be judged."""
+        if not self.unseen_words:
+            return []
+        holds = [_spoken_words(item, self.silence) for item in self.utterances]
+        known = sorted(set().union(*holds))
+        rare = [word for word in known if sum(word in held for held in holds) <= COMMON_SHARE * len(holds)]
+        left = [rare[index] for index in np.random.default_rng([self.seed, 2]).permutation(len(rare))]
+        draws: List[Tuple[str, ...]] = []
+        chosen: List[str] = []
+        while left and len(draws) < WORD_FOLDS:
+            chosen.append(left.pop())
+            if not left or sum(not held.isdisjoint(chosen) for held in holds) >= WORD_SHARE * len(holds):
+                draws.append(tuple(sorted(chosen)))
+                chosen = []
+        return draws
+
+    def _without_words(self, words: Tuple[str, ...]) -> Fold:
+        with_word = [not set(words).isdisjoint(item.words) for item in self.utterances]
+        fit = [item for item, held in zip(self.utterances, with_word) if not held]
+        rest = [item for item, held in zip(self.utterances, with_word) if held]
+        return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest, words)
 
     def model(self, method: str) -> Model:
         """The model of `method` ("paper" or "labial") trained on this part; its reports of back-offs are dropped."""
@@ -80,18 +122,42 @@ class Training:
         return self._derived[key]  # type: ignore[return-value]
 
 
-def validation_error(training: Training, utterances: Sequence[Utterance], predict: Callable) -> float:
-    """Mean diff over the four labial parameters outside silence: the figure that methods are judged and tuned by.
+@dataclass(frozen=True)
+class Fold:
+    """A part to fit on, and utterances to choose settings by, of which only `words` count if there are any."""
+
+    training: Training
+    held_out: List[Utterance]
+    words: Tuple[str, ...]
+
+
+def _spoken_words(item: Utterance, silence: int) -> Set[str]:
+    spoken = zip(item.words, item.timeline.phoneme)
+    return {word for word, phoneme in spoken if word is not None and phoneme != silence}
+
+
+def validation_error(scale: Scale, fold: Fold, predict: Callable[[Timeline], np.ndarray]) -> float:
+    """Mean diff over the four labial parameters, the figure that methods are judged by, on a fold's held-out frames.
 
     `predict` takes a timeline and returns (T, 13) FAP.
     """
-    masks = [item.timeline.phoneme_at != training.silence for item in utterances]
-    human = np.concatenate([item.human[mask] for item, mask in zip(utterances, masks)])
-    motion = np.concatenate([predict(item.timeline)[mask] for item, mask in zip(utterances, masks)])
-    return float(mean_difference(training.scale, human, motion).mean())
+    masks = judged_frames(fold.held_out, fold.training.phone_set, fold.words)
+    human = np.concatenate([item.human[mask] for item, mask in zip(fold.held_out, masks)])
+    motion = np.concatenate([predict(item.timeline)[mask] for item, mask in zip(fold.held_out, masks)])
+    return float(mean_difference(scale, human, motion).mean())
 
 
-def best(settings: Sequence[Setting], error: Callable[[Setting], float]) -> Setting:
-    """The setting of least error, the first of equals."""
-    errors = [error(setting) for setting in settings]
-    return settings[int(np.argmin(errors))]
+def choose(
+    training: Training,
+    settings: Sequence[Setting],
+    prepare: Callable[[Training], Callable[[Setting], Callable[[Timeline], np.ndarray]]],
+) -> Setting:
+    """The setting of least error over the folds of inner validation, the first of equals.
+
+    `prepare` takes the part to fit on and returns what makes a prediction function of a setting.
+    """
+    error = np.zeros(len(settings))
+    for fold in training.folds:
+        predict_with = prepare(fold.training)
+        error += [validation_error(training.scale, fold, predict_with(setting)) for setting in settings]
+    return settings[int(np.argmin(error))]

@@ -36,7 +36,7 @@ class Scales:
     delta: float = 0.04
     acceleration: float = 0.04
     anchor: float = 1.0
-    phoneme: float = 0.3  #: of the components' precisions
+    phoneme: float = 0.0  #: of the components' precisions; floors hold closures better, and for less
 
 
 @dataclass(frozen=True)

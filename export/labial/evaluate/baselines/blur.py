@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Callable
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from labial.evaluate.baselines import steps
 from labial.evaluate.material import Timeline
-from labial.evaluate.training import Training, best, validation_error
+from labial.evaluate.training import Training, choose
 
 #: Standard deviations that are tried, seconds.
 WIDTHS = tuple(round(0.005 * n, 3) for n in range(17))
@@ -34,7 +35,9 @@ def _smooth(frames: np.ndarray, deviation: float) -> np.ndarray:
 
 def fit(training: Training) -> Blur:
     """Chooses the width on the inner validation part, with shapes from the rest."""
-    inner, held_out = training.inner
-    rough = steps.fit(inner)
-    width = best(WIDTHS, lambda tried: validation_error(training, held_out, Blur(rough, tried, training.fps).predict))
-    return Blur(steps.fit(training), width, training.fps)
+
+    def prepare(part: Training) -> Callable:
+        rough = steps.fit(part)
+        return lambda width: Blur(rough, width, training.fps).predict
+
+    return Blur(steps.fit(training), choose(training, WIDTHS, prepare), training.fps)

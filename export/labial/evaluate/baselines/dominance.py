@@ -19,7 +19,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from labial.evaluate.material import Timeline, Utterance
-from labial.evaluate.training import Training, best, validation_error
+from labial.evaluate.training import Training, choose
 from labial.faps import CHANNELS
 
 #: Segments to each side of a frame's own that are heard.
@@ -184,11 +184,10 @@ def _fit(
 
 def fit(training: Training) -> Dominance:
     """Chooses exponent and priors on the inner validation part, then fits all channels on the whole."""
-    inner, held_out = training.inner
-    few = inner.utterances[:TUNING_UTTERANCES]
 
-    def error(setting: Tuple[float, float]) -> float:
-        return validation_error(training, held_out, _fit(few, training, *setting, TUNING_CHANNELS).predict)
+    def prepare(part: Training) -> Callable:
+        few = part.utterances[:TUNING_UTTERANCES]
+        return lambda setting: _fit(few, training, *setting, TUNING_CHANNELS).predict
 
-    exponent, prior = best(list(itertools.product(EXPONENTS, PRIORS)), error)
+    exponent, prior = choose(training, list(itertools.product(EXPONENTS, PRIORS)), prepare)
     return _fit(training.utterances, training, exponent, prior, range(CHANNELS))

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Dict, List, Sequence, Tuple
+from typing import Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
 
 from labial.evaluate.baselines.alignment import align, deal, even
 from labial.evaluate.material import Timeline, Utterance
-from labial.evaluate.training import Training, best, validation_error
+from labial.evaluate.training import Training, choose
 from labial.faps import CHANNELS
 from labial.phonesets import PhoneSet
 from labial.reference.tables import Equation
@@ -159,9 +159,8 @@ def _fit(utterances: Sequence[Utterance], training: Training, states: int, stren
 
 def fit(training: Training) -> Synthesis:
     """Chooses the settings on the inner validation part, then fits on the whole."""
-    inner, held_out = training.inner
 
-    def error(setting: Tuple[int, float]) -> float:
-        return validation_error(training, held_out, _fit(inner.utterances, training, *setting).predict)
+    def prepare(part: Training) -> Callable:
+        return lambda setting: _fit(part.utterances, training, *setting).predict
 
-    return _fit(training.utterances, training, *best(list(itertools.product(STATES, STRENGTHS)), error))
+    return _fit(training.utterances, training, *choose(training, list(itertools.product(STATES, STRENGTHS)), prepare))

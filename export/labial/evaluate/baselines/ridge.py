@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Sequence
+from typing import Callable, Dict, Sequence
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_matrix, diags, vstack
 
 from labial.evaluate.material import Timeline, Utterance
-from labial.evaluate.training import Training, best, validation_error
+from labial.evaluate.training import Training, choose
 
 #: Weight of a frame of silence, which is not judged: enough to keep the mouth at rest in pauses.
 SILENCE_WEIGHT = 0.1
@@ -81,15 +81,23 @@ def fit(
     """
     frames = [item.human[item.timeline.phoneme_at != training.silence] for item in training.utterances]
     base = np.concatenate(frames).mean(axis=0)
-    inner, held_out = training.inner
-    rough = make_design(inner)
-    equations = normal(rough, inner.utterances, base, training.silence)
-    rows = {id(item.timeline): rough(item.timeline) for item in held_out}
 
-    def error(penalty: np.ndarray) -> float:
-        weights = solve(equations, penalty)
-        return validation_error(training, held_out, lambda timeline: base + rows[id(timeline)] @ weights)
+    def prepare(part: Training) -> Callable:
+        rough = make_design(part)
+        equations = normal(rough, part.utterances, base, training.silence)
+        known: Dict[int, Rows] = {}  # features of the utterances that every penalty is tried on
 
-    penalty = best(penalties, error)
+        def rows(timeline: Timeline) -> Rows:
+            if id(timeline) not in known:
+                known[id(timeline)] = rough(timeline)
+            return known[id(timeline)]
+
+        def predict_with(penalty: np.ndarray) -> Callable:
+            weights = solve(equations, penalty)
+            return lambda timeline: base + rows(timeline) @ weights
+
+        return predict_with
+
+    penalty = choose(training, penalties, prepare)
     design = make_design(training)
     return Linear(design, base, solve(normal(design, training.utterances, base, training.silence), penalty))
