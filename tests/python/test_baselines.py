@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
+from threadpoolctl import threadpool_limits
+
 from labial.evaluate.baselines import blur, dominance, hmm, mean, regression, ridge, steps, window
 from labial.evaluate.baselines.alignment import align, deal, even
 from labial.evaluate.material import Timeline, timeline
 from labial.phonesets import SPEECH
-from scipy.ndimage import gaussian_filter1d
 from test_evaluate_material import FPS, LABELS, shape_of_phoneme, training, unseen
-from threadpoolctl import threadpool_limits
 
 
 @pytest.fixture(autouse=True)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
+
 from labial.cli import main
 from labial.corpus import Episode
 from labial.errors import LabialError
@@ -15,7 +17,6 @@ from labial.evaluate.methods import METHODS, select
 from labial.evaluate.report import Cell, cell
 from labial.evaluate.splits import Split
 from labial.frames import write_csv
-from scipy.ndimage import gaussian_filter1d
 from test_evaluate_material import planted, shape_of_phoneme
 
 QUICK = "mean,steps,blur,regression,hmm_synthesis"

@@ -7,6 +7,7 @@ from typing import Callable, List, Sequence
 
 import numpy as np
 import pytest
+
 from labial.corpus import Episode, Segment
 from labial.errors import LabialError
 from labial.evaluate.material import Timeline, Utterance, timeline, utterance, utterances

@@ -6,6 +6,7 @@ from typing import List, Tuple
 
 import numpy as np
 import pytest
+
 from labial.evaluate.material import Utterance, timeline
 from labial.evaluate.measures import Judge, judged_frames, measure_scale
 from labial.evaluate.trajectories import amplitude, correlation, differences, joins, labial_parameters
