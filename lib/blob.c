@@ -2,7 +2,7 @@
 
 #include "labial/labial.h"
 
-#define HEADER_SIZE 28u
+#define HEADER_SIZE 32u
 #define CHECKED_FROM 12u /* first byte that the checksum covers */
 
 enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_PRECISIONS = 4 };
@@ -88,6 +88,8 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     model->slopes = NULL;
     model->precisions = NULL;
     model->kernels = NULL;
+    model->pair_keys = NULL;
+    model->pairs = NULL;
     model->floors = NULL;
     if (optional & HAS_CONTEXTS)
         model->contexts = (const uint8_t *)table(reader, components, 2u * model->class_count);
@@ -99,6 +101,10 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     if (model->kernel_taps)
         model->kernels = (const int8_t *)table(
             reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
+    if (model->pair_count) {
+        model->pair_keys = (const uint16_t *)table(reader, model->pair_count, 2u);
+        model->pairs = (const int8_t *)table(reader, (uint32_t)model->pair_count * LABIAL_CHANNELS, 1u);
+    }
     if (model->floor_count)
         model->floors = (const int16_t *)table(reader, (uint32_t)model->floor_count * LABIAL_CHANNELS, 2u);
     for (k = 0; k < LABIAL_CHANNELS; k++)
@@ -148,6 +154,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     model->kernel_stride = header[24];
     model->kernel_behind = header[25];
     model->floor_count = header[27];
+    model->pair_count = u16(header + 28);
     reader.data = header;
     reader.size = size;
     reader.at = HEADER_SIZE;

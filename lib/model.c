@@ -103,7 +103,8 @@ int labial_model_check(const labial_model_t *model)
     if (model->format != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
     if (!model->phonemes || !model->components || !model->shapes || !model->channels ||
-        (model->kernel_taps && !model->kernels) || (model->floor_count && !model->floors))
+        (model->kernel_taps && !model->kernels) || (model->floor_count && !model->floors) ||
+        (model->pair_count && (!model->pair_keys || !model->pairs)))
         return LABIAL_ERROR_NULL;
     if (model->frames_per_second == 0 || model->frames_per_second > 250u || model->component_count == 0 ||
         model->phoneme_count == 0 || model->phoneme_count > LABIAL_PHONEMES_MAX || model->class_count == 0 ||
@@ -121,6 +122,9 @@ int labial_model_check(const labial_model_t *model)
         if (!channel->emissions || !channel->states || !channel->rows || !channel->edges)
             return LABIAL_ERROR_NULL;
     }
+    for (i = 1; i < model->pair_count; i++)
+        if (model->pair_keys[i] <= model->pair_keys[i - 1u])
+            return LABIAL_ERROR_MODEL;
     for (i = 0; i < (size_t)model->floor_count * LABIAL_CHANNELS; i++)
         if (model->floors[i] > LABIAL_POSITION_MAX || model->floors[i] < LABIAL_NO_FLOOR)
             return LABIAL_ERROR_MODEL;

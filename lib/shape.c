@@ -96,6 +96,32 @@ unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme_numbe
     return phoneme->first_component + best;
 }
 
+/* Steps of kernel_scale as positions. */
+static int32_t scaled(const labial_model_t *model, unsigned k, int32_t steps)
+{
+    return (steps * (int32_t)model->channels[k].kernel_scale + 128) >> 8;
+}
+
+void labial_shape_add_pair(const labial_model_t *model, unsigned phoneme, unsigned neighbour, int next,
+                           int16_t shape[LABIAL_CHANNELS])
+{
+    const unsigned key = phoneme << 8 | (next ? 128u : 0u) | neighbour;
+    unsigned low = 0, high = model->pair_count, k;
+    while (low < high) {
+        const unsigned middle = low + (high - low) / 2u;
+        if (model->pair_keys[middle] < key)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    if (low == model->pair_count || model->pair_keys[low] != key)
+        return;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const int32_t added = scaled(model, k, model->pairs[(size_t)low * LABIAL_CHANNELS + k]);
+        shape[k] = (int16_t)labial_clamp(shape[k] + added, LABIAL_POSITION_MAX);
+    }
+}
+
 void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL_CHANNELS], const uint8_t *labels,
                          int16_t target[LABIAL_CHANNELS])
 {
@@ -111,8 +137,7 @@ void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL
             sum[k] += kernel[k];
     }
     for (k = 0; k < LABIAL_CHANNELS; k++) {
-        const int32_t added = (sum[k] * (int32_t)model->channels[k].kernel_scale + 128) >> 8;
-        target[k] = (int16_t)labial_clamp(shape[k] + added, LABIAL_POSITION_MAX);
+        target[k] = (int16_t)labial_clamp(shape[k] + scaled(model, k, sum[k]), LABIAL_POSITION_MAX);
     }
     if (floor) {
         const int16_t *least = model->floors + (floor - 1u) * LABIAL_CHANNELS;

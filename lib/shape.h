@@ -15,6 +15,11 @@
 unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous_class,
                              unsigned next_class, int16_t shape[LABIAL_CHANNELS]);
 
+/* Adds to the shape of `phoneme` what its previous neighbour, or with `next` its next one, adds; nothing for pairs that
+ * the model does not know. */
+void labial_shape_add_pair(const labial_model_t *model, unsigned phoneme, unsigned neighbour, int next,
+                           int16_t shape[LABIAL_CHANNELS]);
+
 /*
  * The target of one frame: the phoneme's shape and what the temporal kernels of its neighbours add, but not below the
  * phoneme's floor. `labels` points to the frame's phoneme in an array that reaches as far to both sides as the kernels

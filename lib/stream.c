@@ -242,15 +242,12 @@ static int find_piece(labial_t *stream)
     return LABIAL_OK;
 }
 
-/* The viseme class of segment `i` as the piece's model sees it; silence outside the stream. */
-static unsigned class_of(const labial_t *stream, unsigned i)
+/* The phoneme of segment `i` as the piece's model sees it; silence outside the stream. */
+static unsigned phoneme_of(const labial_t *stream, unsigned i)
 {
     const unsigned slot = stream->piece.slot;
-    const labial_model_t *model = stream->models[slot];
-    const unsigned phoneme = i < stream->queue_count
-                                 ? labial_units_phoneme(stream, labial_units_segment(stream, i), slot)
-                                 : model->silence;
-    return model->phonemes[phoneme].viseme_class;
+    return i < stream->queue_count ? labial_units_phoneme(stream, labial_units_segment(stream, i), slot)
+                                   : stream->models[slot]->silence;
 }
 
 /* Selects the shape of the next segment, which is held until that segment ends. */
@@ -259,9 +256,13 @@ static void select_shape(labial_t *stream)
     const unsigned i = stream->segment++;
     const labial_segment_t *segment = labial_units_segment(stream, i);
     const labial_model_t *model = stream->models[stream->piece.slot];
-    stream->component = (uint16_t)labial_shape_select(
-        model, labial_units_phoneme(stream, segment, stream->piece.slot), segment->ms,
-        class_of(stream, i > 0 ? i - 1u : LABIAL_QUEUE), class_of(stream, i + 1u), stream->shape);
+    const unsigned phoneme = phoneme_of(stream, i), next = phoneme_of(stream, i + 1u),
+                   previous = phoneme_of(stream, i > 0 ? i - 1u : LABIAL_QUEUE);
+    stream->component = (uint16_t)labial_shape_select(model, phoneme, segment->ms,
+                                                      model->phonemes[previous].viseme_class,
+                                                      model->phonemes[next].viseme_class, stream->shape);
+    labial_shape_add_pair(model, phoneme, previous, 0, stream->shape);
+    labial_shape_add_pair(model, phoneme, next, 1, stream->shape);
     stream->share = (uint16_t)(segment->frames > 65536u ? 0u : segment->frames > 1u ? 65536u / segment->frames : 65535u);
     stream->segment_end += segment->frames;
 }

@@ -26,8 +26,9 @@ def mean_pose(model: Model) -> np.ndarray:
 def widened(model: Model, gain: Union[float, np.ndarray]) -> Model:
     """The model with its targets moved away from the mean pose by a factor, one for all or one per channel (13,).
 
-    Both terms of a target are linear, so that the factor goes into the tables: shape' = c + g (shape - c), slope' and
-    kernel' are g times theirs. Floors, which say where lips meet, stay; the search and equation 3 follow the targets.
+    All terms of a target are linear, so that the factor goes into the tables: shape' = c + g (shape - c), slopes,
+    kernels and pairs are g times theirs. Floors, which say where lips meet, stay; the search and equation 3 follow the
+    targets.
     """
     factor = np.broadcast_to(np.asarray(gain, dtype=np.float64), (CHANNELS,))
     centre = mean_pose(model)
@@ -36,4 +37,5 @@ def widened(model: Model, gain: Union[float, np.ndarray]) -> Model:
         shape=centre + (model.shape - centre) * factor,
         slope=model.slope * factor,
         kernel=model.kernel * factor,
+        pair_shape=model.pair_shape * factor,
     )

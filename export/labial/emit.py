@@ -60,10 +60,11 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
         "shapes": CHANNELS * components,
         **{name: 0 if table is None else int(table.size) for name, table in optional.items()},
         "kernels": int(model.kernels.size),
+        "pairs": int(model.pairs.size) + 2 * len(model.pair_keys),
         "floors": 2 * CHANNELS * (len(model.floors) - 1),
         "states": CHANNELS * states * 16,
         "transitions": 2 * int(model.rows.size) + 2 * sum(len(edges) for edges in model.edges),
-        "descriptors": 24 * CHANNELS + 56,
+        "descriptors": 24 * CHANNELS + 68,
     }
 
 
@@ -147,6 +148,8 @@ def source(model: ExportedModel) -> str:
     optional = (("contexts", "uint8_t", model.contexts), ("shapes", "int8_t", model.shapes),
                 ("slopes", "int8_t", model.slopes), ("precisions", "uint8_t", model.precisions),
                 ("kernels", "int8_t", model.kernels if model.kernels.size else None),
+                ("pair_keys", "uint16_t", model.pair_keys if len(model.pair_keys) else None),
+                ("pairs", "int8_t", model.pairs if len(model.pair_keys) else None),
                 ("floors", "int16_t", model.floors[1:] if len(model.floors) > 1 else None))
     for name, kind, table in optional:
         if table is not None:
@@ -183,6 +186,7 @@ const labial_model_t {model.name} = {{
     {model.kernel_stride}, /* kernel_stride */
     {model.kernel_behind}, /* kernel_behind */
     {len(model.floors) - 1}, /* floor_count */
+    {len(model.pair_keys)}, /* pair_count */
     phonemes,
     components,
     {names["contexts"]}, /* contexts */
@@ -190,6 +194,8 @@ const labial_model_t {model.name} = {{
     {names["slopes"]}, /* slopes */
     {names["precisions"]}, /* precisions */
     {names["kernels"]}, /* kernels */
+    {names["pair_keys"]}, /* pair_keys */
+    {names["pairs"]}, /* pairs */
     {names["floors"]}, /* floors */
     channels
 }};
@@ -243,6 +249,8 @@ def blob(model: ExportedModel) -> bytes:
     table(model.slopes, "i1")
     table(model.precisions, "u1")
     table(model.kernels, "i1")
+    table(model.pair_keys, "<u2")
+    table(model.pairs, "i1")
     table(model.floors[1:], "<i2")
     for k in range(CHANNELS):
         add(struct.pack("<hHHH", model.centre[k], model.shape_scale[k], model.slope_scale[k], model.kernel_scale[k]))
@@ -253,9 +261,9 @@ def blob(model: ExportedModel) -> bytes:
         table(model.rows[k], "<u2")
         table(model.edges[k], "<u2")
     body = struct.pack(
-        "<HHHBBBBBBBBBB", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,
+        "<HHHBBBBBBBBBBHH", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,
         model.silence, int(model.soft), model.kernels.shape[1], model.kernel_stride, model.kernel_behind, optional,
-        len(model.floors) - 1,
+        len(model.floors) - 1, len(model.pair_keys), 0,
     ) + b"".join(parts)
     return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body
 

@@ -59,6 +59,8 @@ class Model:
     log_next: np.ndarray  #: (N, V) log P(class of the next phoneme | c), or (N, 0) without context
     kernel: np.ndarray  #: (P, L, 13) FAP that a phoneme at a tap's lag adds to the target; L = 0 without kernels
     kernel_lag: np.ndarray  #: (L,) int64, frames from the target to the phoneme (negative: before), evenly spaced
+    pair_key: np.ndarray  #: (R, 3) int64: phoneme; 0 for its previous, 1 for its next neighbour; the neighbour
+    pair_shape: np.ndarray  #: (R, 13) FAP that such a neighbour adds to the phoneme's shape
     floor: np.ndarray  #: (P, 13) FAP that the target does not fall below in the phoneme; -inf where none
     decode_mean: np.ndarray  #: (13, Q) static mean that the Viterbi search sees, FAP
     decode_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
@@ -91,6 +93,7 @@ def check(model: Model) -> None:
     n = int(np.sum(model.component_count))
     q = np.shape(model.log_initial)[-1]
     taps = len(model.kernel_lag)
+    pairs = len(model.pair_key)
     context = np.shape(model.log_previous)[-1]
     _expect(model.kind in KINDS, f"kind is {model.kind!r}, not one of {', '.join(KINDS)}")
     _expect(model.method in METHODS, f"method is {model.method!r}, not one of {', '.join(METHODS)}")
@@ -112,6 +115,8 @@ def check(model: Model) -> None:
         "log_next": (n, context),
         "kernel": (p, taps, CHANNELS),
         "kernel_lag": (taps,),
+        "pair_key": (pairs, 3),
+        "pair_shape": (pairs, CHANNELS),
         "floor": (p, CHANNELS),
         "decode_mean": (CHANNELS, q),
         "decode_variance": (CHANNELS, q),
@@ -130,6 +135,9 @@ def check(model: Model) -> None:
             _expect(not np.isnan(value).any() and (value < 1e-9).all(), f"{name} holds NaN or values above 0")
         else:
             _expect(bool(np.isfinite(value).all()), f"{name} holds NaN or infinities")
+    key = np.asarray(model.pair_key)
+    _expect(bool(((key >= 0) & (key < [p, 2, p])).all()), "a pair names a phoneme or a side that does not exist")
+    _expect(len(np.unique(key, axis=0)) == pairs, "a pair is there twice")
     _expect((model.component_count >= 1).all(), "a phoneme has no mixture component")
     _expect(((model.phoneme_class >= 0) & (model.phoneme_class < v)).all(), "a phoneme's viseme class does not exist")
     for name in ("duration_variance", "decode_variance", "state_precision"):

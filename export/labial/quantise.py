@@ -65,12 +65,14 @@ class ExportedModel:
     kernels: np.ndarray  #: (P, L, 13)
     kernel_stride: int
     kernel_behind: int
+    pair_keys: np.ndarray  #: (R,) ascending
+    pairs: np.ndarray  #: (R, 13)
     floor: np.ndarray  #: (P,) row of `floors`
     floors: np.ndarray  #: (1 + F, 13); row 0, which the C tables leave out, is NO_FLOOR throughout
     centre: np.ndarray  #: (13,)
     shape_scale: np.ndarray  #: (13,)
     slope_scale: np.ndarray  #: (13,)
-    kernel_scale: np.ndarray  #: (13,)
+    kernel_scale: np.ndarray  #: (13,) of kernels and pairs
     emission_mean: np.ndarray  #: (13, Q)
     emission_gain: np.ndarray  #: (13, Q)
     emission_cost: np.ndarray  #: (13, Q)
@@ -103,7 +105,11 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     shapes, shape_scale = _steps(model.shape - centre / POSITION_SCALE, 32767, "shapes")
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
     slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
-    kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
+    curves = np.concatenate([model.kernel.reshape(-1, CHANNELS), model.pair_shape])
+    curves, kernel_scale = _steps(curves, 65535, "kernels and pairs")
+    kernels, pairs = np.split(curves, [len(curves) - len(model.pair_shape)])
+    pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
+    order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
     rows, edges = _transitions(model, predecessors)
     weights, anchors, precisions = _weights(model)
@@ -131,9 +137,11 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         shapes=shapes[kept],
         slopes=slopes[kept] if model.slope.any() else None,
         precisions=precisions[kept] if model.precision.any() else None,
-        kernels=kernels,
+        kernels=kernels.reshape(model.kernel.shape),
         kernel_stride=int(lags[1] - lags[0]) if len(lags) > 1 else 1,
         kernel_behind=_taps_behind(lags),
+        pair_keys=pair_keys[order],
+        pairs=pairs[order],
         floor=floor,
         floors=floors,
         centre=centre,

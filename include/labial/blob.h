@@ -12,9 +12,10 @@
  *                soft, kernel_taps, kernel_stride, kernel_behind (uint8)
  *   byte 26      which optional tables follow: 1 contexts, 2 slopes, 4 precisions
  *   byte 27      floor_count (uint8)
+ *   bytes 28-31  pair_count (uint16), 0
  *   then the tables of labial_model_t in their order, each padded with zeros to a multiple of four bytes: phonemes,
  *   components, contexts, shapes, slopes, precisions, kernels,
- *   floors; and for each channel centre (int16), shape_scale,
+ *   pair_keys, pairs, floors; and for each channel centre (int16), shape_scale,
  *   slope_scale, kernel_scale (uint16), then emissions, states, rows, edges
  */
 #ifndef LABIAL_BLOB_H

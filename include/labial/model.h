@@ -79,7 +79,7 @@ typedef struct {
     int16_t centre;        /* Q4 FAP: added to every position on output */
     uint16_t shape_scale;  /* positions per step of `shapes`, Q8; at most 32767 */
     uint16_t slope_scale;  /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
-    uint16_t kernel_scale; /* positions per step of `kernels`, Q8 */
+    uint16_t kernel_scale; /* positions per step of `kernels` and `pairs`, Q8 */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
     const uint16_t *rows;               /* state_count + 1 */
@@ -100,6 +100,7 @@ typedef struct {
     uint8_t kernel_stride;      /* frames from tap to tap */
     uint8_t kernel_behind;      /* taps that lie before the frame: tap i is at (i - kernel_behind) * kernel_stride */
     uint8_t floor_count;        /* F: rows of `floors`, 0 .. 255 */
+    uint16_t pair_count;        /* R: rows of `pairs` */
     const labial_phoneme_t *phonemes;     /* P */
     const labial_component_t *components; /* N */
     const uint8_t *contexts;   /* N x 2 x V, cost of the previous and of the next phoneme's class; optional */
@@ -107,6 +108,9 @@ typedef struct {
     const int8_t *slopes;      /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
     const uint8_t *precisions; /* N x 13, weight with which the phoneme ties its frames to the target; optional */
     const int8_t *kernels;     /* P x L x 13, in steps of kernel_scale; null when L is 0 */
+    const uint16_t *pair_keys; /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one; null
+                                * when R is 0 */
+    const int8_t *pairs;       /* R x 13, what such a neighbour adds to the phoneme's shape, in steps of kernel_scale */
     const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below: how p, b, m close the
                                 * lips whatever their neighbours do; LABIAL_NO_FLOOR where none; null when F is 0 */
     const labial_channel_t *channels; /* 13 */

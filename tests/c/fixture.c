@@ -164,6 +164,14 @@ static void enrich(fixture_model_t *f)
     f->model.slopes = f->slopes;
     f->model.precisions = f->precisions;
     f->model.kernels = f->kernels;
+    f->model.pair_count = FIXTURE_PAIRS;
+    f->model.pair_keys = f->pair_keys;
+    f->model.pairs = f->pairs;
+    for (i = 0; i < FIXTURE_PAIRS; i++) /* every phoneme, both sides; every second neighbour */
+        f->pair_keys[i] = (uint16_t)(i / (2 * FIXTURE_PAIR_SIDE) << 8 | (i / FIXTURE_PAIR_SIDE % 2) * 128 |
+                                     i % FIXTURE_PAIR_SIDE * 2);
+    for (i = 0; i < FIXTURE_PAIRS * LABIAL_CHANNELS; i++)
+        f->pairs[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
     f->model.floor_count = FIXTURE_FLOORS;
     f->model.floors = f->floors;
     f->phonemes[FIXTURE_P].floor = 1;

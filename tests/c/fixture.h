@@ -28,6 +28,8 @@ uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit 
 #define FIXTURE_CLASSES 4
 #define FIXTURE_TAPS 7
 #define FIXTURE_FLOORS 2
+#define FIXTURE_PAIR_SIDE 3 /* known neighbours of each phoneme, to either side */
+#define FIXTURE_PAIRS (6 * 2 * FIXTURE_PAIR_SIDE)
 
 /* A model with the tables that it points to. Must not be moved: fixture_*() are called on the place it stays in. */
 typedef struct {
@@ -40,6 +42,8 @@ typedef struct {
     int8_t slopes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
     uint8_t precisions[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
     int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
+    uint16_t pair_keys[FIXTURE_PAIRS];
+    int8_t pairs[FIXTURE_PAIRS * LABIAL_CHANNELS];
     int16_t floors[FIXTURE_FLOORS * LABIAL_CHANNELS];
     labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
@@ -61,7 +65,7 @@ enum { FIXTURE_HA, FIXTURE_NASAL, FIXTURE_LAUGH_SIL, FIXTURE_FRICATIVE, FIXTURE_
  * every channel has a state whose mean is exactly that component's shape. */
 void fixture_plain(fixture_model_t *fixture);
 
-/* The same phonemes with contexts, slopes, precisions, anchors, kernels, floors and soft selection. */
+/* The same phonemes with contexts, slopes, precisions, anchors, kernels, pairs, floors and soft selection. */
 void fixture_rich(fixture_model_t *fixture);
 
 /* Other phonemes, other states, the same frame rate. */

@@ -96,6 +96,8 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     put(&w, model->kernel_behind, 1);
     put(&w, (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u) | (model->precisions ? 4u : 0u), 1);
     put(&w, model->floor_count, 1);
+    put(&w, model->pair_count, 2);
+    put(&w, 0, 2);
     for (i = 0; i < model->phoneme_count; i++) {
         put(&w, model->phonemes[i].first_component, 2);
         put(&w, model->phonemes[i].component_count, 1);
@@ -119,6 +121,11 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     put_bytes(&w, model->precisions, n * LABIAL_CHANNELS);
     pad(&w);
     put_bytes(&w, model->kernels, (size_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS);
+    pad(&w);
+    for (i = 0; i < model->pair_count; i++)
+        put(&w, model->pair_keys[i], 2);
+    pad(&w);
+    put_bytes(&w, model->pairs, (size_t)model->pair_count * LABIAL_CHANNELS);
     pad(&w);
     for (i = 0; i < (unsigned)model->floor_count * LABIAL_CHANNELS; i++)
         put(&w, (uint16_t)model->floors[i], 2);

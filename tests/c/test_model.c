@@ -180,6 +180,18 @@ static void refuses_floors_out_of_range(void **state)
     REFUSED(uint8_t, f.model.floor_count, FIXTURE_FLOORS - 1); /* the last phoneme's row lies outside */
 }
 
+/* Would catch keys that the binary search cannot find. */
+static void refuses_pairs_out_of_order(void **state)
+{
+    (void)state;
+    REFUSED(uint16_t, f.pair_keys[1], f.pair_keys[0]);
+    REFUSED(uint16_t, f.pair_keys[FIXTURE_PAIRS - 1], 0);
+    REFUSED(uint16_t, f.pair_keys[0], 65535);
+    ACCEPTED(uint16_t, f.pair_keys[FIXTURE_PAIRS - 1], 65535);
+    TRY(const uint16_t *, f.model.pair_keys, NULL, LABIAL_ERROR_NULL);
+    TRY(const int8_t *, f.model.pairs, NULL, LABIAL_ERROR_NULL);
+}
+
 static void refuses_scales_out_of_range(void **state)
 {
     unsigned c;
@@ -361,6 +373,7 @@ int main(void)
         cmocka_unit_test_setup(refuses_bad_transitions, setup),
         cmocka_unit_test_setup(refuses_positions_out_of_range, setup),
         cmocka_unit_test_setup(refuses_floors_out_of_range, setup),
+        cmocka_unit_test_setup(refuses_pairs_out_of_order, setup),
         cmocka_unit_test_setup(refuses_scales_out_of_range, setup),
         cmocka_unit_test_setup(refuses_weights_beyond_the_largest_sum, setup),
         cmocka_unit_test_setup(refuses_precisions_beyond_the_largest_sum, setup),

@@ -243,6 +243,46 @@ static void targets_are_shapes_kernels_and_floors(void **state)
     assert_true(raised > 500); /* floors were met */
 }
 
+/* Every known pair adds its own row, every other nothing: would catch a search that misses the first, the last or the
+ * middle row, a side or a phoneme taken for another, a missing limit. */
+static void pairs_add_their_row_and_others_nothing(void **state)
+{
+    fixture_random_t random = {35};
+    unsigned phoneme_number, neighbour, k, found = 0;
+    int next;
+    (void)state;
+    fixture_rich(&f);
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        f.channels[k].kernel_scale = (uint16_t)(fixture_random(&random) >> (16 + k));
+    for (phoneme_number = 0; phoneme_number < 128; phoneme_number++) {
+        for (neighbour = 0; neighbour < 128; neighbour++) {
+            for (next = 0; next < 2; next++) {
+                int16_t before[LABIAL_CHANNELS], shape[LABIAL_CHANNELS];
+                const int8_t *row = NULL;
+                unsigned i;
+                for (i = 0; i < FIXTURE_PAIRS; i++)
+                    if (f.pair_keys[i] == phoneme_number * 256u + (unsigned)next * 128u + neighbour)
+                        row = f.pairs + i * LABIAL_CHANNELS;
+                found += row != NULL;
+                for (k = 0; k < LABIAL_CHANNELS; k++)
+                    shape[k] = before[k] =
+                        (int16_t)((int)fixture_below(&random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
+                labial_shape_add_pair(&f.model, phoneme_number, neighbour, next, shape);
+                for (k = 0; k < LABIAL_CHANNELS; k++) {
+                    double wanted = before[k] + (row ? row[k] * f.channels[k].kernel_scale / 256.0 : 0.0);
+                    wanted = wanted > LABIAL_POSITION_MAX    ? LABIAL_POSITION_MAX
+                             : wanted < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX
+                                                             : wanted;
+                    if (fabs(shape[k] - wanted) > 0.51)
+                        fail_msg("phoneme %u, neighbour %u, channel %u: %d, not %g", phoneme_number, neighbour, k,
+                                 shape[k], wanted);
+                }
+            }
+        }
+    }
+    assert_int_equal(found, FIXTURE_PAIRS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -250,6 +290,7 @@ int main(void)
         cmocka_unit_test(context_has_a_direction),
         cmocka_unit_test(extremes_stay_within_the_range),
         cmocka_unit_test(targets_are_shapes_kernels_and_floors),
+        cmocka_unit_test(pairs_add_their_row_and_others_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,6 +99,8 @@ static void decode(const labial_piece_t *piece, uint32_t at, unsigned model, con
             i++;
         component[t] = (uint16_t)labial_shape_select(m, seen(i, model), (uint16_t)held[i].ms, class_of(i - 1, model),
                                                      class_of(i + 1, model), shape);
+        labial_shape_add_pair(m, seen(i, model), seen(i - 1, model), 0, shape);
+        labial_shape_add_pair(m, seen(i, model), seen(i + 1, model), 1, shape);
         share[t] = (uint16_t)(held[i].frames == 1 ? 65535 : 65536 / held[i].frames);
         labial_shape_target(m, shape, labels + LABIAL_REACH + t, out[t]);
     }

@@ -52,6 +52,10 @@ def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: i
         log_next=log_share((count, classes)) if own else np.zeros((count, 0)),
         kernel=rng.normal(0, 0.05, (phonemes, len(taps), CHANNELS)) * reach,
         kernel_lag=taps,
+        pair_key=np.array([[p, side, n] for p in range(phonemes) for side in (0, 1) for n in range(phonemes)
+                           if (p + n + side) % 3 == 0 and own], dtype=np.int64).reshape(-1, 3),
+        pair_shape=rng.normal(0, 0.1, (sum((p + n + side) % 3 == 0 and own for p in range(phonemes)
+                                           for side in (0, 1) for n in range(phonemes)), CHANNELS)) * reach,
         floor=np.where(rng.random((phonemes, CHANNELS)) < (0.15 if own else 0.0), 0.3 * reach, -np.inf),
         decode_mean=mean,
         decode_variance=variance,

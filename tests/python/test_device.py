@@ -23,6 +23,7 @@ def test_library_follows_the_reference(method: str, seed: int) -> None:
         rng = np.random.default_rng(0)
         asked.append([(int(rng.integers(9)), int(rng.integers(20, 150))) for _ in range(2000)])
     tables = ExportedTables(exported)
+    differences = []
     with NativeModel(exported) as native:
         for stream, found in zip(asked, native.synthesise(asked)):
             expected = synthesise(tables, stream)
@@ -30,7 +31,8 @@ def test_library_follows_the_reference(method: str, seed: int) -> None:
             difference = found - np.floor(expected + 0.5)
             assert np.abs(difference).max(initial=0) <= 1
             assert np.abs(found - expected).max(initial=0) <= 0.6
-            assert np.sqrt(np.mean(difference**2)) <= 0.25 if difference.size > 1000 else True
+            differences.append(difference)
+    assert np.sqrt(np.mean(np.concatenate(differences) ** 2)) <= 0.25  # over all: a held pose may lie on a half
 
 
 def test_narrow_products_give_the_same_bits() -> None:

@@ -25,12 +25,11 @@ def targets(tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int]
     """The moving target of an utterance; phonemes of no frames leave no trace, silence is before and after."""
     held = [i for i, count in enumerate(frames) if count]
     seen = [tables.silence] + [phonemes[i] for i in held] + [tables.silence]
-    classes = tables.viseme_class[seen]
     shapes = np.zeros((len(held), CHANNELS), dtype=tables.dtype)
     components = np.zeros(len(held), dtype=np.int64)
     for j, i in enumerate(held):
         shapes[j], components[j] = tables.select(
-            phonemes[i], min(milliseconds[i], 65535), int(classes[j]), int(classes[j + 2])
+            phonemes[i], min(milliseconds[i], 65535), seen[j], seen[j + 2]
         )
     counts = np.array([frames[i] for i in held], dtype=np.int64)
     index = np.repeat(np.arange(len(held)), counts)

@@ -47,22 +47,29 @@ class FloatTables:
         self.initial = -np.asarray(model.log_initial)
         self.transition = -np.asarray(model.log_transition)
         self._first = model.first_component()
+        self._pair = {tuple(key): row for row, key in enumerate(np.asarray(model.pair_key).tolist())}
 
     def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> Tuple[np.ndarray, int]:
-        """(13,) shape of a phoneme of this duration between these viseme classes, and its best component."""
+        """(13,) shape of a phoneme of this duration between these neighbours, and its best component."""
         model = self.model
         own = slice(self._first[phoneme], self._first[phoneme + 1])
         deviation = milliseconds / 1000.0 - model.duration_mean[own]
         variance = model.duration_variance[own]
         score = model.log_weight[own] - 0.5 * (np.log(2 * np.pi * variance) + deviation**2 / variance)
         if model.log_previous.shape[1]:
-            score = score + model.log_previous[own, previous] + model.log_next[own, following]
+            before, after = self.viseme_class[previous], self.viseme_class[following]
+            score = score + model.log_previous[own, before] + model.log_next[own, after]
         best = int(np.argmax(score))
         share = np.exp(score - score[best]) if model.soft else (np.arange(len(score)) == best).astype(np.float64)
         share = share / share.sum()
         limit = SLOPE_LIMIT * np.sqrt(variance)
         shapes = model.shape[own] + model.slope[own] * np.clip(deviation, -limit, limit)[:, None]
-        return share @ shapes, int(self._first[phoneme]) + best
+        shape = share @ shapes
+        for side, neighbour in enumerate((previous, following)):
+            row = self._pair.get((phoneme, side, neighbour))
+            if row is not None:
+                shape = shape + model.pair_shape[row]
+        return shape, int(self._first[phoneme]) + best
 
     def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """(T, 13) targets: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to them, but not
@@ -118,7 +125,8 @@ class ExportedTables:
         z = np.minimum((np.abs(distance) * model.duration_gain[own]) >> 12, DURATION_Z_MAX)
         cost = model.cost[own] + z_cost(z)
         if model.contexts is not None:
-            cost = cost + model.contexts[own, 0, previous] + model.contexts[own, 1, following]
+            before, after = self.viseme_class[previous], self.viseme_class[following]
+            cost = cost + model.contexts[own, 0, before] + model.contexts[own, 1, after]
         best = int(np.argmin(cost))
         share = np.zeros(len(cost), dtype=np.int64)
         if model.soft:
@@ -129,7 +137,13 @@ class ExportedTables:
         position = rounded_shift(((share @ model.shapes[own]) >> 4) * model.shape_scale, 16)
         if model.slopes is not None:
             position = position + rounded_shift(((deviation @ model.slopes[own]) >> 4) * model.slope_scale, 16)
-        return np.clip(position, -POSITION_MAX, POSITION_MAX), first + best
+        position = np.clip(position, -POSITION_MAX, POSITION_MAX)
+        for key in (phoneme * 256 + previous, phoneme * 256 + 128 + following):
+            row = int(np.searchsorted(model.pair_keys, key))
+            if row < len(model.pair_keys) and model.pair_keys[row] == key:
+                added = rounded_shift(model.pairs[row] * model.kernel_scale, 8)
+                position = np.clip(position + added, -POSITION_MAX, POSITION_MAX)
+        return position, first + best
 
     def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.targets`, in positions."""

@@ -1,7 +1,8 @@
 """Closures: how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v.
 
 A sum of learned curves cannot promise contact: an open vowel on either side pulls the lips of a /b/ apart. So the
-target in such a phoneme does not fall below a *floor*, which is what speakers do when they close firmly.
+target in such a phoneme does not fall below a *floor*, which is what speakers do when they close firmly. And in no
+phoneme does it fall below what people hardly ever do: protrusion ends at lips at rest, which a sum does not know.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from typing import Sequence as SequenceOf
 
 import numpy as np
 
-from labial.faps import CHANNELS, FAP_NUMBERS
+from labial.faps import FAP_NUMBERS
 from labial.phonesets import PhoneSet
 from labial.train.sequences import Sequence
 
@@ -21,16 +22,20 @@ CONTACTS = {"bilabial": (51, 52, 55, 56, 57, 58), "labiodental": (52, 57, 58)}
 #: Contact is looked for this far outside the segment too, seconds: alignments err by about so much.
 MARGIN = 0.04
 
+#: The percentile of all human frames that no target falls below.
+LEAST = 1.0
+
 #: The share of a class's occurrences, those that close most, whose mean pose is the floor.
 FIRMEST = 0.5
 
 
 def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> np.ndarray:
-    """(P, 13) FAP: the pose of firm contact in the channels that make it, -inf elsewhere and for other phonemes.
+    """(P, 13) FAP: the pose of firm contact in the phonemes and channels that make it, elsewhere the LEAST percentile.
 
     The pose is the mean over the FIRMEST occurrences of the phoneme's class, each at its frame of closest contact.
     """
-    result = np.full((len(phone_set.phonemes), CHANNELS), -np.inf)
+    least = np.percentile(np.concatenate([item.frames for item in material]), LEAST, axis=0)
+    result = np.tile(least, (len(phone_set.phonemes), 1))
     classes = np.array(phone_set.phoneme_class)
     margin = round(MARGIN * fps)
     for name, faps in CONTACTS.items():

@@ -3,10 +3,12 @@
 The target of a frame is the shape of its phoneme plus one tap of the kernel of the phoneme at each of L lags:
 
     x(t) = sum over components c of p_c (shape_c + slope_c (d - mu_c))
+         + pair[phoneme, previous phoneme] + pair[phoneme, next phoneme]
          + sum over taps i of kernel[phoneme(t + lag_i), i]
 
-The shares p_c come from the context-aware mixtures; shapes, slopes and kernels are then fitted jointly to the human
-motion by ridge regression, for a shape that was taken at the apex without regard to kernels says the same twice.
+The shares p_c come from the context-aware mixtures; shapes, slopes, pairs and kernels are then fitted jointly to the
+human motion by ridge regression, for a shape that was taken at the apex without regard to kernels says the same twice.
+Pairs are kept for what occurs often enough; all others are left to the classes and the kernels.
 
 A phoneme's kernel is its viseme class's kernel plus a residual of its own, with penalties 1 : RESIDUAL_PENALTY on their
 squares. Summed over both parts that is one Gaussian prior on the phonemes' kernels, with covariance M M' + I /
@@ -18,6 +20,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from typing import Sequence as SequenceOf
+from typing import Tuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -34,6 +37,9 @@ SPACING = 0.04
 #: But never farther than the device's memory of phonemes, in frames.
 REACH_FRAMES = 20
 
+#: Occurrences from which on a phoneme beside a certain neighbour has a shape of its own.
+PAIR_COUNT = 20
+
 
 @dataclass(frozen=True)
 class Penalties:
@@ -45,6 +51,7 @@ class Penalties:
     smoothness: float = 0.5  #: correlation of neighbouring taps
     shape: float = 30.0  #: of a component's shape
     slope: float = 30.0  #: of a component's slope per standard deviation of its duration
+    pair: float = 10.0  #: of what a neighbour adds to a phoneme's shape
     silence: float = 0.1  #: weight of a frame of silence
 
 
@@ -80,10 +87,34 @@ def kernel_prior(phoneme_class: np.ndarray, taps: int, penalties: Penalties) -> 
     return np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(penalties.smoothness**distance))
 
 
+def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
+    """The previous and the next phoneme, (S,) each, of the phonemes (S,) of one utterance."""
+    padded = np.concatenate([[silence], phoneme, [silence]])
+    return padded[:-2], padded[2:]
+
+
+def pair_codes(material: SequenceOf[Sequence], phonemes: int, silence: int) -> np.ndarray:
+    """(occurrences, 2): each phoneme with its previous and with its next neighbour, as one number each,
+    (2 phoneme + side) P + neighbour."""
+    codes = []
+    for item in material:
+        before, after = neighbours(item.phoneme, silence)
+        own = 2 * item.phoneme * phonemes
+        codes.append(np.stack([own + before, own + phonemes + after], axis=1))
+    return np.concatenate(codes)
+
+
 def _design(
-    material: SequenceOf[Sequence], choice: Choice, deviation: np.ndarray, phonemes: int, lag: np.ndarray, silence: int
+    material: SequenceOf[Sequence],
+    choice: Choice,
+    deviation: np.ndarray,
+    phonemes: int,
+    lag: np.ndarray,
+    silence: int,
+    pairs: np.ndarray,
 ) -> csr_matrix:
-    """(T, P L + 2 N) of all frames: one-hot taps, shares of the components, and those times (d - mu_c) / sigma_c.
+    """(T, P L + 2 N + R) of all frames: one-hot taps, shares of the components, those times (d - mu_c) / sigma_c, and
+    which of the `pairs` (R,), codes, the phoneme and its neighbours are.
 
     `deviation` is (N,), sigma_c in seconds.
     """
@@ -103,7 +134,12 @@ def _design(
     segment = np.repeat(np.arange(occurrences), lengths)
     share = per_component(choice.share)[segment]
     slope = per_component(choice.share * choice.offset / deviation[choice.component])[segment]
-    return hstack([onehot, share, slope]).tocsr()
+    codes = pair_codes(material, phonemes, silence)
+    at = np.minimum(np.searchsorted(pairs, codes), max(len(pairs) - 1, 0))
+    known = pairs[at] == codes if len(pairs) else np.zeros(codes.shape, dtype=bool)
+    occurrence, _ = np.nonzero(known)
+    beside = csr_matrix((np.ones(len(occurrence)), (occurrence, at[known])), shape=(occurrences, len(pairs)))[segment]
+    return hstack([onehot, share, slope, beside]).tocsr()
 
 
 @dataclass(frozen=True)
@@ -113,6 +149,18 @@ class Kernels:
     kernel: np.ndarray  #: (P, L, 13) FAP
     lag: np.ndarray  #: (L,) int64 frames
     tables: ShapeTables  #: with shapes and slopes fitted jointly
+    pair_key: np.ndarray  #: (R, 3) int64: phoneme, side, neighbour
+    pair_shape: np.ndarray  #: (R, 13) FAP
+
+    def pairs_at(self, item: Sequence, silence: int) -> np.ndarray:
+        """(S, 13) FAP: what the neighbours of each phoneme of an utterance add to its shape."""
+        rows = {tuple(key): row for row, key in enumerate(self.pair_key.tolist())}
+        added = np.zeros((len(item.phoneme), self.pair_shape.shape[1]))
+        for side, others in enumerate(neighbours(item.phoneme, silence)):
+            for i, key in enumerate(zip(item.phoneme.tolist(), [side] * len(others), others.tolist())):
+                if key in rows:
+                    added[i] += self.pair_shape[rows[key]]
+        return added
 
 
 def fit_kernels(
@@ -132,7 +180,9 @@ def fit_kernels(
     lag = lags(fps)
     phonemes, taps = len(phoneme_class), len(lag)
     deviation = np.sqrt(tables.duration_variance)
-    design = _design(material, choice, deviation, phonemes, lag, silence)
+    code, count = np.unique(pair_codes(material, phonemes, silence), return_counts=True)
+    pairs = code[count >= PAIR_COUNT]
+    design = _design(material, choice, deviation, phonemes, lag, silence, pairs)
     phoneme_at = np.concatenate([item.phoneme_at() for item in material])
     weight = np.where(phoneme_at == silence, penalties.silence, 1.0) * 50.0 / fps
     motion = np.concatenate([item.frames for item in material])
@@ -143,16 +193,18 @@ def fit_kernels(
     kernels = slice(0, phonemes * taps)
     normal[kernels, kernels] += penalties.kernel * kernel_prior(phoneme_class, taps, penalties)
     components = len(deviation)
-    ridge = np.repeat([penalties.shape, penalties.slope], components)
+    ridge = np.repeat([penalties.shape, penalties.slope, penalties.pair], [components, components, len(pairs)])
     index = np.arange(phonemes * taps, len(normal))
     normal[index, index] += ridge
     solution = cho_solve(cho_factor(normal), weighted @ (motion - base))
 
-    shape, slope = np.split(solution[phonemes * taps :], 2)
+    shape, slope, pair = np.split(solution[phonemes * taps :], [components, 2 * components])
     fitted = Kernels(
         kernel=solution[kernels].reshape(phonemes, taps, motion.shape[1]),
         lag=lag,
         tables=replace(tables, shape=base + shape, slope=slope / deviation[:, None]),
+        pair_key=np.stack([pairs // (2 * phonemes), pairs // phonemes % 2, pairs % phonemes], axis=1),
+        pair_shape=pair,
     )
     return substitute(fitted, stand_in)
 
@@ -163,4 +215,4 @@ def substitute(fitted: Kernels, stand_in: SequenceOf[int]) -> Kernels:
     first = np.concatenate([[0], np.cumsum(fitted.tables.component_count)])
     own = np.concatenate([np.arange(first[other], first[other + 1]) for other in owner])
     tables = replace(fitted.tables, shape=fitted.tables.shape[own], slope=fitted.tables.slope[own])
-    return Kernels(fitted.kernel[owner], fitted.lag, tables)
+    return replace(fitted, kernel=fitted.kernel[owner], tables=tables)

@@ -18,7 +18,7 @@ from labial.train.closures import floors
 from labial.train.codebook import Codebook, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
-from labial.train.kernels import Penalties, add_kernels, fit_kernels
+from labial.train.kernels import Kernels, Penalties, add_kernels, fit_kernels
 from labial.train.selection import Choice, choose, shapes
 from labial.train.sequences import Occurrences, Sequence, occurrences, sequences
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
@@ -83,23 +83,16 @@ def _unit_starts(item: Sequence, boundary: np.ndarray) -> np.ndarray:
 
 
 def _targets(
-    choice: Choice,
-    tables: ShapeTables,
-    material: SequenceOf[Sequence],
-    kernel: np.ndarray,
-    lag: np.ndarray,
-    silence: int,
-    floor: np.ndarray,
+    choice: Choice, fitted: Kernels, material: SequenceOf[Sequence], silence: int, floor: np.ndarray
 ) -> List[np.ndarray]:
     """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
-    selected = np.split(shapes(tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
-    return [
-        np.maximum(
-            add_kernels(np.repeat(shape, item.length, axis=0), item.phoneme_at(), kernel, lag, silence),
-            floor[item.phoneme_at()],
-        )
-        for shape, item in zip(selected, material)
-    ]
+    selected = np.split(shapes(fitted.tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
+    result = []
+    for shape, item in zip(selected, material):
+        held = np.repeat(shape + fitted.pairs_at(item, silence), item.length, axis=0)
+        moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
+        result.append(np.maximum(moving, floor[item.phoneme_at()]))
+    return result
 
 
 def _check(
@@ -174,11 +167,13 @@ def train(
         motion = [([item.frames[:, c] for item in material], starts, codebook) for c in range(CHANNELS)]
         states = codebook_tables(workers.run("codebooks", _channel, motion))
         kernel, lag = np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64)
+        pair_key, pair_shape = np.zeros((0, 3), dtype=np.int64), np.zeros((0, CHANNELS))
         if extended:
             choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
             fitted = fit_kernels(material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties)
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
-            targets = _targets(choice, tables, material, kernel, lag, silence, floor)
+            pair_key, pair_shape = fitted.pair_key, fitted.pair_shape
+            targets = _targets(choice, fitted, material, silence, floor)
             paths = workers.run("matched states", _decode, [(target, states) for target in targets])
             states = match_states(states, paths, targets, [item.frames for item in material], scales)
 
@@ -219,6 +214,8 @@ def train(
         log_next=tables.log_next,
         kernel=kernel,
         kernel_lag=lag,
+        pair_key=pair_key,
+        pair_shape=pair_shape,
         floor=floor,
         decode_mean=states.decode_mean,
         decode_variance=states.decode_variance,
