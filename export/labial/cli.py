@@ -6,10 +6,13 @@ import argparse
 import os
 import sys
 import warnings
-from typing import List, Optional
+from typing import TYPE_CHECKING, List, Optional
 
 from labial import __version__
 from labial.errors import LabialError
+
+if TYPE_CHECKING:
+    from labial.model import Model
 
 
 def _positive(text: str) -> int:
@@ -35,6 +38,8 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument("--fps", type=_positive, default=50, help="frames per second (50)")
     train.add_argument("--codebook", type=_positive, default=50, help="states per channel (50)")
     train.add_argument("--components", type=_positive, default=5, help="mixture components per phoneme (5)")
+    train.add_argument("--look-ahead", type=int, default=360, metavar="MS",
+                       help="how far the kernels reach into what follows, 0 .. 360 ms (360); less is less latency")
     train.add_argument("--seed", type=int, default=0)
     train.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, help="processes; the result is the same")
     train.add_argument("--attribution", default="", help="what whoever passes the model on must say; kept in the model")
@@ -53,14 +58,14 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("--name", required=True, help="of the C symbol and the files")
     export.add_argument("-o", "--output", required=True, metavar="DIR")
     export.add_argument("--blob", action="store_true", help="write NAME.lbm for labial_model_load() too")
-    _add_predecessors(export)
+    _add_export_options(export)
     export.set_defaults(run=_export)
 
     check = commands.add_parser("check", help="compare the C library with the float64 reference")
     check.add_argument("model", metavar="MODEL.npz")
     check.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
     check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
-    _add_predecessors(check)
+    _add_export_options(check)
     check.set_defaults(run=_check)
 
     evaluate = commands.add_parser("evaluate", help="compare all methods with the human's motion on held-out episodes")
@@ -85,9 +90,11 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-def _add_predecessors(command: argparse.ArgumentParser) -> None:
+def _add_export_options(command: argparse.ArgumentParser) -> None:
     from labial.quantise import DEFAULT_PREDECESSORS
 
+    command.add_argument("--amplitude", type=float, default=1.0, metavar="FACTOR",
+                         help="widen (over 1) or calm (below 1) the motion about its mean; 1 is the least error (1)")
     command.add_argument("--predecessors", type=_positive, default=DEFAULT_PREDECESSORS,
                          help=f"transitions kept into each state ({DEFAULT_PREDECESSORS})")
 
@@ -102,7 +109,8 @@ def _train(options: argparse.Namespace) -> int:
 
     model = train(read_corpus(options.corpus, options.kind), kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
-                  progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution)
+                  progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution,
+                  look_ahead=options.look_ahead / 1000.0)
     save(model, options.output)
     print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
           f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")
@@ -126,6 +134,14 @@ def _synth(options: argparse.Namespace) -> int:
     return 0
 
 
+def _widened(model: Model, factor: float) -> Model:
+    from labial.amplitude import widened
+
+    if not 0.0 <= factor <= 4.0:
+        raise LabialError(f"amplitude {factor} is not within 0 .. 4")
+    return model if factor == 1.0 else widened(model, factor)
+
+
 def _export(options: argparse.Namespace) -> int:
     from labial import emit, report
     from labial.loss import measure
@@ -134,7 +150,7 @@ def _export(options: argparse.Namespace) -> int:
     from labial.quantise import quantise
 
     emit.check_name(options.name)
-    model = load(options.model)
+    model = _widened(load(options.model), options.amplitude)
     exported = quantise(model, options.name, predecessors=options.predecessors)
     loss = measure(model, exported, drawn_streams(model))
     for path in emit.write(exported, options.output, binary=options.blob):
@@ -150,7 +166,7 @@ def _check(options: argparse.Namespace) -> int:
     from labial.phones import read_stream
     from labial.quantise import quantise
 
-    model = load(options.model)
+    model = _widened(load(options.model), options.amplitude)
     exported = quantise(model, "checked_model", predecessors=options.predecessors)
     comparison = compare(model, exported, [read_stream(path, model) for path in options.phones], options.library)
     print(comparison.table())

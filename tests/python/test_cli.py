@@ -76,3 +76,15 @@ def test_errors_are_one_line(
     assert main(arguments) == 1
     error = capsys.readouterr().err
     assert error.startswith("labial: ") and message in error and error.count("\n") == 1
+
+
+def test_amplitude_widens_what_is_exported(given: Path) -> None:
+    """Calmed to nothing the target stands still, so that kernels and slopes vanish from the tables."""
+    for factor, moves in (("1", True), ("0", False)):
+        out = given / f"out{factor}"
+        assert main(["export", str(given / "model.npz"), "--name", "m", "-o", str(out), "--amplitude", factor]) == 0
+        text = (out / "m.c").read_text()
+        kernels = text[text.index("kernels[") :]
+        steps = [int(word) for word in kernels[kernels.index("{") + 1 : kernels.index("}")].replace(",", " ").split()]
+        assert any(steps) == moves
+    assert main(["export", str(given / "model.npz"), "--name", "m", "-o", str(given), "--amplitude", "-1"]) == 1

@@ -72,6 +72,8 @@ def test_lags_and_taps_by_hand():
     # not silence.
     np.testing.assert_array_equal(lags(50), np.arange(-18, 19, 2))
     np.testing.assert_array_equal(lags(25), np.arange(-9, 10))
+    np.testing.assert_array_equal(lags(50, 0.1), np.arange(-18, 5, 2))
+    assert lags(50, 0.0)[-1] == 0
     np.testing.assert_array_equal(lags(100), np.arange(-20, 21, 4))  # the device sees 20 frames to each side
     for fps in range(1, 251):
         assert 1 <= len(lags(fps)) <= 32 and -20 <= lags(fps)[0] == -lags(fps)[-1]

@@ -55,12 +55,12 @@ class Penalties:
     silence: float = 0.1  #: weight of a frame of silence
 
 
-def lags(fps: int) -> np.ndarray:
-    """(L,) int64 frames: evenly spaced taps out to REACH seconds (at most REACH_FRAMES) to both sides, the middle one
-    at 0."""
+def lags(fps: int, look_ahead: float = REACH) -> np.ndarray:
+    """(L,) int64 frames: evenly spaced taps, one of them at 0, from REACH seconds before the frame to `look_ahead`
+    seconds after it; at most REACH_FRAMES to either side."""
     spacing = max(1, round(SPACING * fps))
-    side = min(round(REACH * fps), REACH_FRAMES) // spacing
-    return np.arange(-side, side + 1, dtype=np.int64) * spacing
+    behind, ahead = (min(round(reach * fps), REACH_FRAMES) // spacing for reach in (REACH, look_ahead))
+    return np.arange(-behind, ahead + 1, dtype=np.int64) * spacing
 
 
 def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int) -> np.ndarray:
@@ -172,12 +172,14 @@ def fit_kernels(
     silence: int,
     fps: int,
     penalties: Penalties,
+    look_ahead: float = REACH,
 ) -> Kernels:
     """Fits kernels, shapes and slopes to the human motion of `material`; `choice` are its occurrences' components.
 
-    `phoneme_class` is (P,), `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself.
+    `phoneme_class` is (P,), `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is
+    in seconds.
     """
-    lag = lags(fps)
+    lag = lags(fps, look_ahead)
     phonemes, taps = len(phoneme_class), len(lag)
     deviation = np.sqrt(tables.duration_variance)
     code, count = np.unique(pair_codes(material, phonemes, silence), return_counts=True)

@@ -18,7 +18,7 @@ from labial.train.closures import floors
 from labial.train.codebook import Codebook, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
-from labial.train.kernels import Kernels, Penalties, add_kernels, fit_kernels
+from labial.train.kernels import REACH, Kernels, Penalties, add_kernels, fit_kernels
 from labial.train.selection import Choice, choose, shapes
 from labial.train.sequences import Occurrences, Sequence, occurrences, sequences
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
@@ -134,6 +134,7 @@ def train(
     jobs: int = 2,
     progress: bool = True,
     attribution: str = "",
+    look_ahead: float = REACH,
     penalties: Penalties = Penalties(),  # noqa: B008 - immutable
     scales: Scales = Scales(),  # noqa: B008 - immutable
 ) -> Model:
@@ -141,11 +142,14 @@ def train(
 
     `method` is "paper", the published one, or "labial": context-aware mixtures (section 2), temporal kernels, matched
     states and anchors on top. `codebook` is Q, the states of each channel, `components` C of each phoneme's mixture.
+    `look_ahead` is how far the temporal kernels reach into what follows, seconds; less makes a stream's frames earlier.
     `attribution` is kept in the model for whoever passes it on. The same arguments give the same model, whatever
     `jobs`, the number of processes, is. Back-offs are printed; the corpus's counts and all options are kept in the
     model.
     """
     _check(corpus, kind, method, fps, codebook, components, jobs)
+    if not 0.0 <= look_ahead <= REACH:
+        raise LabialError(f"look-ahead is {look_ahead} s, not within 0 .. {REACH}")
     phone_set = PHONE_SETS[kind]
     phonemes, classes = len(phone_set.phonemes), len(phone_set.classes)
     silence = phone_set.phonemes.index(phone_set.silence)
@@ -170,7 +174,9 @@ def train(
         pair_key, pair_shape = np.zeros((0, 3), dtype=np.int64), np.zeros((0, CHANNELS))
         if extended:
             choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
-            fitted = fit_kernels(material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties)
+            fitted = fit_kernels(
+                material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties, look_ahead
+            )
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
             pair_key, pair_shape = fitted.pair_key, fitted.pair_shape
             targets = _targets(choice, fitted, material, silence, floor)
@@ -192,7 +198,7 @@ def train(
         "pooled": dict(plan.pooled),
     }
     if extended:
-        training.update(penalties=asdict(penalties), scales=asdict(scales))
+        training.update(penalties=asdict(penalties), scales=asdict(scales), look_ahead=look_ahead)
     model = Model(
         kind=kind,
         method=method,
