@@ -6,7 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from labial.train.kernels import Penalties, add_kernels, fit_kernels, lags, tapped
+from labial.train.kernels import (
+    PAIR_COUNT,
+    Penalties,
+    add_kernels,
+    fit_kernels,
+    lags,
+    neighbours,
+    pair_codes,
+    tapped,
+)
 from labial.train.selection import Choice, shapes
 from labial.train.sequences import Sequence
 from labial.train.shapes import ShapeTables
@@ -140,3 +149,28 @@ def test_a_substituted_phoneme_moves_as_its_substitute():
     np.testing.assert_array_equal(fitted.tables.shape[5], fitted.tables.shape[1])
     np.testing.assert_array_equal(fitted.tables.slope[5], fitted.tables.slope[1])
     assert np.abs(fitted.tables.shape[4] - fitted.tables.shape[1]).max() > 1
+
+
+def test_pairs_are_recovered_and_rare_ones_left_out():
+    # Catches sides or neighbours taken for each other, and rows for pairs that are too rare to be believed.
+    rng = np.random.default_rng(11)
+    truth = {(1, 0, 2): 40.0, (1, 1, 3): -30.0}
+    material = []
+    for count in [40] * 30:
+        item = episode(rng, count)
+        frames = item.frames.copy()
+        before, after = neighbours(item.phoneme, 0)
+        for i, start in enumerate(np.cumsum(item.length) - item.length):
+            own = int(item.phoneme[i])
+            value = truth.get((own, 0, int(before[i])), 0.0) + truth.get((own, 1, int(after[i])), 0.0)
+            frames[start : start + item.length[i]] = value
+        material.append(replace(item, frames=frames))
+    stiff = Penalties(kernel=1e6)
+    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, stiff)
+    row = {tuple(key): value for key, value in zip(fitted.pair_key.tolist(), fitted.pair_shape[:, 0])}
+    for key, value in truth.items():
+        others = [row[other] for other in row if other[:2] == key[:2] and other != key]
+        assert abs(row[key] - np.mean(others) - value) < 0.15 * abs(value)
+        assert np.ptp(others) < 0.15 * abs(value)
+    codes, counts = np.unique(pair_codes(material, PHONEMES, 0), return_counts=True)
+    assert len(row) == int((counts >= PAIR_COUNT).sum()) < len(codes)

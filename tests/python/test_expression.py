@@ -1,0 +1,79 @@
+"""Closures and amplitude: what keeps averaged lips from mumbling."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from labial.amplitude import mean_pose, widened
+from labial.faps import CHANNELS, FAP_NUMBERS
+from labial.phonesets import LAUGHTER, SPEECH
+from labial.reference.shape import targets
+from labial.reference.stream import synthesise
+from labial.reference.tables import FloatTables
+from labial.train.closures import floors
+from labial.train.expression import AMPLITUDE, restored
+from labial.train.sequences import Sequence
+from labial.train.workers import Workers
+from models import random_model
+
+
+def sequence(phonemes: list, frames: np.ndarray, length: int) -> Sequence:
+    count = len(phonemes)
+    return Sequence(
+        name="made up",
+        phoneme=np.array(phonemes),
+        duration=np.full(count, length / 50),
+        length=np.full(count, length),
+        apex=np.arange(count) * length,
+        frames=frames,
+    )
+
+
+def test_floors_are_the_pose_of_the_firmer_closures() -> None:
+    """B closes firmly (to 40) half of the time and hardly (to -60) otherwise; vowels hang at -300, nothing ever below."""
+    b, vowel = SPEECH.phonemes.index("B"), SPEECH.phonemes.index("AA")
+    lower = FAP_NUMBERS.index(52)
+    frames = np.full((200, CHANNELS), -300.0)
+    for i in range(10):  # vowels and closures of ten frames each in turn; contact in the middle of the closure
+        frames[20 * i + 15, lower] = 40.0 if i % 2 else -60.0
+    found = floors([sequence([vowel, b] * 10, frames, 10)], SPEECH, 50)
+    assert found[b, lower] == 40.0
+    assert np.array_equal(found[b], found[SPEECH.phonemes.index("P")])
+    assert (found[vowel] == -300.0).all() and found[b, FAP_NUMBERS.index(3)] == -300.0
+
+
+def test_laughter_has_no_contact() -> None:
+    """Its classes make none; a floor above the least would hold its lips together."""
+    motion = np.random.default_rng(0).normal(0, 50, (100, CHANNELS))
+    found = floors([sequence([0, 3, 5, 7, 9], motion, 20)], LAUGHTER, 50)
+    assert (found == np.percentile(motion, 1, axis=0)).all()
+
+
+def test_widening_scales_targets_about_the_mean_pose() -> None:
+    """Every term of the target has to be scaled; one that is forgotten bends the motion instead of widening it."""
+    model = dataclasses.replace(random_model(4), floor=np.full((9, CHANNELS), -np.inf))
+    gain = np.linspace(0.5, 2.0, CHANNELS)
+    asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
+    before = targets(FloatTables(model), *asked).position
+    after = targets(FloatTables(widened(model, gain)), *asked).position
+    centre = mean_pose(model)
+    assert np.allclose(after, centre + (before - centre) * gain)
+    assert np.ptp(before, axis=0).min() > 1
+
+
+def test_amplitude_is_brought_to_its_goal() -> None:
+    """The human here moves 1.4 times as far as the model: every channel must end at AMPLITUDE of that, within 2 %."""
+    model = dataclasses.replace(random_model(5), floor=np.full((9, CHANNELS), -np.inf))
+    rng = np.random.default_rng(5)
+    material = []
+    for _ in range(4):
+        phonemes = rng.integers(1, 9, 30).tolist()
+        motion = synthesise(FloatTables(model), [(p, 120) for p in phonemes])
+        material.append(sequence(phonemes, 1.4 * motion, 6))
+    with Workers(1, False) as workers:
+        wide = restored(model, material, workers)
+    found = np.concatenate([synthesise(FloatTables(wide), [(int(p), 120) for p in item.phoneme]) for item in material])
+    human = np.concatenate([item.frames for item in material])
+    assert np.abs(found.std(axis=0) / human.std(axis=0) - AMPLITUDE).max() < 0.06
