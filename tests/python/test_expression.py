@@ -32,7 +32,7 @@ def sequence(phonemes: list, frames: np.ndarray, length: int) -> Sequence:
 
 
 def test_floors_are_the_pose_of_the_firmer_closures() -> None:
-    """B closes firmly (to 40) half of the time and hardly (to -60) otherwise; vowels hang at -300, nothing ever below."""
+    """B closes firmly (to 40) half of the time, hardly (to -60) otherwise; vowels hang at -300, nothing below."""
     b, vowel = SPEECH.phonemes.index("B"), SPEECH.phonemes.index("AA")
     lower = FAP_NUMBERS.index(52)
     frames = np.full((200, CHANNELS), -300.0)
