@@ -22,6 +22,7 @@ from labial.evaluate.methods import predict_all, select
 from labial.evaluate.splits import Split, make_splits
 from labial.evaluate.training import Training
 from labial.phonesets import PHONE_SETS
+from labial.train.workers import usable_jobs
 
 #: The human's own motion goes through the same measures under this name.
 HUMAN = "human"
@@ -128,6 +129,7 @@ def evaluate(
     corpus = utterances(episodes, PHONE_SETS[options.kind], options.fps)
     splits = make_splits(corpus, options.splits, options.seed, options.held_out)
     total = len(splits) * len(select(options.methods))
+    jobs = usable_jobs(jobs)
     with tqdm(total=total, desc="methods", disable=not progress, leave=False) as bar:
         if jobs == 1:
             with threadpool_limits(1):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import warnings
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from typing import Callable, Iterable, List, Optional, Sequence, TypeVar
@@ -11,6 +13,17 @@ from tqdm import tqdm
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
+
+
+def usable_jobs(jobs: int) -> int:
+    """`jobs`; or 1, with a warning, where the system refuses what processes need to talk to each other (shared memory)."""
+    if jobs > 1:
+        try:
+            multiprocessing.Lock()
+        except OSError as error:
+            warnings.warn(f"working in one process, since the system refuses more: {error}", stacklevel=2)
+            return 1
+    return jobs
 
 
 def _alone(function: Callable[[Task], Result], task: Task) -> Result:
@@ -24,6 +37,7 @@ class Workers:
 
     def __init__(self, jobs: int, progress: bool) -> None:
         """`jobs` is the number of processes; `progress` shows a bar for each piece of work."""
+        jobs = usable_jobs(jobs)
         self._pool: Optional[ProcessPoolExecutor] = ProcessPoolExecutor(jobs) if jobs > 1 else None
         self._progress = progress
 
