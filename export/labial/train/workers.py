@@ -16,7 +16,7 @@ Result = TypeVar("Result")
 
 
 def usable_jobs(jobs: int) -> int:
-    """`jobs`; or 1, with a warning, where the system refuses what processes need to talk to each other (shared memory)."""
+    """`jobs`; or 1, with a warning, where the system refuses the shared memory that processes need."""
     if jobs > 1:
         try:
             multiprocessing.Lock()
