@@ -9,17 +9,14 @@ from labial.faps import FAP_NAMES
 from labial.fixed import WEIGHT_MIN, weight_value
 from labial.loss import Loss
 from labial.model import Model
-from labial.quantise import ExportedModel
+from labial.quantise import LIMITS, ExportedModel
 from labial.reference.units import WINDOW
-
-#: Reach of the kernels that the library's workspace provides for, frames (LABIAL_REACH).
-_REACH = 20
 
 
 def workspace_bytes(states: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
     decoding = (8 * states + WINDOW * max(states, 12) + 3) // 4 * 4
-    return decoding + WINDOW * (2 * 13 + 4) + (WINDOW * 2 + 2 * _REACH + 3) // 4 * 4
+    return decoding + WINDOW * (2 * 13 + 4) + (WINDOW * 2 + 2 * LIMITS["reach"] + 3) // 4 * 4
 
 
 def memory(exported: ExportedModel) -> str:

@@ -12,12 +12,11 @@ from labial.train.kernels import (
     add_kernels,
     fit_kernels,
     lags,
-    neighbours,
     pair_codes,
     tapped,
 )
 from labial.train.selection import Choice, shapes
-from labial.train.sequences import Sequence
+from labial.train.sequences import Sequence, neighbours
 from labial.train.shapes import ShapeTables
 
 CLASS = np.array([0, 1, 1, 2, 2, 2])  # phoneme 0 is silence, phoneme 5 never occurs

@@ -20,14 +20,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from typing import Sequence as SequenceOf
-from typing import Tuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_matrix, diags, hstack
 
+from labial.quantise import LIMITS
 from labial.train.selection import Choice
-from labial.train.sequences import Sequence
+from labial.train.sequences import Sequence, neighbours
 from labial.train.shapes import ShapeTables
 
 #: The taps reach this far to each side and are this far apart, in seconds.
@@ -35,7 +35,7 @@ REACH = 0.36
 SPACING = 0.04
 
 #: But never farther than the device's memory of phonemes, in frames.
-REACH_FRAMES = 20
+REACH_FRAMES = LIMITS["reach"]
 
 #: Occurrences from which on a phoneme beside a certain neighbour has a shape of its own.
 PAIR_COUNT = 20
@@ -85,12 +85,6 @@ def kernel_prior(phoneme_class: np.ndarray, taps: int, penalties: Penalties) -> 
     between_phonemes = member + np.eye(len(phoneme_class)) / penalties.residual
     distance = np.abs(np.subtract.outer(np.arange(taps), np.arange(taps)))
     return np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(penalties.smoothness**distance))
-
-
-def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
-    """The previous and the next phoneme, (S,) each, of the phonemes (S,) of one utterance."""
-    padded = np.concatenate([[silence], phoneme, [silence]])
-    return padded[:-2], padded[2:]
 
 
 def pair_codes(material: SequenceOf[Sequence], phonemes: int, silence: int) -> np.ndarray:

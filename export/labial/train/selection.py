@@ -8,10 +8,8 @@ from typing import Tuple
 import numpy as np
 from scipy.special import logsumexp
 
+from labial.reference.tables import SLOPE_LIMIT
 from labial.train.shapes import ShapeTables
-
-#: The conditional mean follows the duration to this many standard deviations of its component.
-DURATION_REACH = 3.0
 
 
 def scores(
@@ -41,7 +39,7 @@ class Choice:
 
     component: np.ndarray  #: (S, K) int64
     share: np.ndarray  #: (S, K), sums to 1; 0 beyond a phoneme's own components
-    offset: np.ndarray  #: (S, K) seconds from the component's mean duration, at most DURATION_REACH deviations
+    offset: np.ndarray  #: (S, K) seconds from the component's mean duration, at most SLOPE_LIMIT deviations
 
 
 def choose(
@@ -58,7 +56,7 @@ def choose(
     share = np.exp(score - logsumexp(score, axis=1, keepdims=True))
     if not soft:
         share = np.eye(score.shape[1])[score.argmax(axis=1)]
-    reach = DURATION_REACH * np.sqrt(tables.duration_variance[component])
+    reach = SLOPE_LIMIT * np.sqrt(tables.duration_variance[component])
     offset = np.clip(duration[:, None] - tables.duration_mean[component], -reach, reach)
     return Choice(component, share, offset)
 

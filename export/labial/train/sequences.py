@@ -77,17 +77,23 @@ class Occurrences:
         return np.concatenate([self.apex_shape, self.duration[:, None]], axis=1)
 
 
-def neighbours(phoneme: np.ndarray, phoneme_class: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
-    """Viseme classes of the phonemes before and after each of (S,) phonemes; silence lies beyond both ends."""
-    classes = phoneme_class[np.concatenate([[silence], phoneme, [silence]])]
-    return classes[:-2], classes[2:]
+def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
+    """The phonemes before and after each of (S,) phonemes; silence lies beyond both ends."""
+    padded = np.concatenate([[silence], phoneme, [silence]])
+    return padded[:-2], padded[2:]
+
+
+def neighbour_classes(phoneme: np.ndarray, phoneme_class: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
+    """Viseme classes of the phonemes before and after each of (S,) phonemes."""
+    before, after = neighbours(phoneme, silence)
+    return phoneme_class[before], phoneme_class[after]
 
 
 def occurrences(material: List[Sequence], phone_set: PhoneSet) -> Occurrences:
     """Gathers the phoneme occurrences of `material` in order."""
     silence = phone_set.phonemes.index(phone_set.silence)
     phoneme_class = np.asarray(phone_set.phoneme_class, dtype=np.int64)
-    around = [neighbours(item.phoneme, phoneme_class, silence) for item in material]
+    around = [neighbour_classes(item.phoneme, phoneme_class, silence) for item in material]
     return Occurrences(
         sequence=np.repeat(np.arange(len(material)), [len(item.phoneme) for item in material]),
         phoneme=np.concatenate([item.phoneme for item in material]),

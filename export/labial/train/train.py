@@ -14,6 +14,7 @@ from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.model import KINDS, METHODS, Model
 from labial.phonesets import PHONE_SETS, PhoneSet
+from labial.quantise import LIMITS
 from labial.train.closures import floors
 from labial.train.codebook import Codebook, train_channel
 from labial.train.context import fit_context
@@ -104,8 +105,8 @@ def _check(
         raise LabialError(f"method is {method!r}, not one of {', '.join(METHODS)}")
     for name, value, most in (
         ("fps", fps, 250),
-        ("codebook", codebook, 64),
-        ("components", components, 8),
+        ("codebook", codebook, LIMITS["states"]),
+        ("components", components, LIMITS["components"]),
         ("jobs", jobs, 1024),
     ):
         if not 1 <= value <= most:

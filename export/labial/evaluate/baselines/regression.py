@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix, hstack
 from labial.evaluate.baselines import ridge
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
-from labial.train.sequences import neighbours
+from labial.train.sequences import neighbour_classes
 
 #: Penalties that are tried, frames.
 PENALTIES = (0.1, 1.0, 10.0, 100.0)
@@ -33,7 +33,7 @@ def _design(training: Training) -> ridge.Design:
         held = timeline.held
         length = timeline.length[held]
         phoneme = timeline.phoneme[held]
-        before, after = (np.repeat(item, length) for item in neighbours(phoneme, phoneme_class, silence))
+        before, after = (np.repeat(item, length) for item in neighbour_classes(phoneme, phoneme_class, silence))
         position = (np.arange(timeline.frames) + 0.5 - np.repeat(timeline.start[held], length)) / np.repeat(
             length, length
         )

@@ -14,7 +14,7 @@ from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
 from labial.train.context import fit_context
 from labial.train.selection import choose, shapes
-from labial.train.sequences import neighbours, occurrences, sequences
+from labial.train.sequences import neighbour_classes, occurrences, sequences
 from labial.train.shapes import Mixture, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
 
 #: Components of each phoneme's mixture (C of equation 1).
@@ -34,7 +34,7 @@ class Steps:
         """(H, 13) FAP: the shape of every segment that has frames."""
         phoneme = timeline.phoneme[timeline.held]
         seconds = timeline.milliseconds[timeline.held] / 1000.0
-        before, after = neighbours(phoneme, self.phoneme_class, self.silence)
+        before, after = neighbour_classes(phoneme, self.phoneme_class, self.silence)
         return shapes(self.tables, choose(self.tables, phoneme, seconds, before, after, soft=self.soft))
 
     def predict(self, timeline: Timeline) -> np.ndarray:
