@@ -5,7 +5,7 @@
 #define HEADER_SIZE 32u
 #define CHECKED_FROM 12u /* first byte that the checksum covers */
 
-enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_PRECISIONS = 4 };
+enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2 };
 
 typedef char labial_tables_are_packed[sizeof(labial_phoneme_t) == 6 && sizeof(labial_component_t) == 6 &&
                                               sizeof(labial_emission_t) == 6 && sizeof(labial_state_t) == 10
@@ -62,20 +62,19 @@ static const void *table(reader_t *reader, uint32_t count, uint32_t size)
     return start;
 }
 
-static void read_channel(reader_t *reader, uint32_t states, labial_channel_t *channel)
+static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessors, labial_channel_t *channel)
 {
-    const uint8_t *scales = (const uint8_t *)table(reader, 4u, 2u);
+    const uint8_t *scales = (const uint8_t *)table(reader, 6u, 2u);
     if (!scales)
         return;
     channel->centre = (int16_t)u16(scales);
     channel->shape_scale = u16(scales + 2);
     channel->slope_scale = u16(scales + 4);
     channel->kernel_scale = u16(scales + 6);
+    channel->pair_scale = u16(scales + 8);
     channel->emissions = (const labial_emission_t *)table(reader, states, sizeof(labial_emission_t));
     channel->states = (const labial_state_t *)table(reader, states, sizeof(labial_state_t));
-    channel->rows = (const uint16_t *)table(reader, states + 1u, 2u);
-    if (!reader->damaged)
-        channel->edges = (const uint16_t *)table(reader, channel->rows[states], 2u);
+    channel->edges = (const uint16_t *)table(reader, states * predecessors, 2u);
 }
 
 static void read_tables(reader_t *reader, unsigned optional, labial_model_t *model, labial_channel_t *channels)
@@ -86,7 +85,6 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     model->components = (const labial_component_t *)table(reader, components, sizeof(labial_component_t));
     model->contexts = NULL;
     model->slopes = NULL;
-    model->precisions = NULL;
     model->kernels = NULL;
     model->pair_keys = NULL;
     model->pairs = NULL;
@@ -96,8 +94,6 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     model->shapes = (const int8_t *)table(reader, shape, 1u);
     if (optional & HAS_SLOPES)
         model->slopes = (const int8_t *)table(reader, shape, 1u);
-    if (optional & HAS_PRECISIONS)
-        model->precisions = (const uint8_t *)table(reader, shape, 1u);
     if (model->kernel_taps)
         model->kernels = (const int8_t *)table(
             reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
@@ -108,19 +104,8 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     if (model->floor_count)
         model->floors = (const int16_t *)table(reader, (uint32_t)model->floor_count * LABIAL_CHANNELS, 2u);
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        read_channel(reader, model->state_count, &channels[k]);
+        read_channel(reader, model->state_count, model->predecessors, &channels[k]);
     model->channels = channels;
-}
-
-/* labial_model_check() trusts that rows[i] index into the edges; the rows must ascend to the count that was read. */
-static int rows_ascend(const labial_model_t *model)
-{
-    unsigned k, q;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        for (q = 0; q < model->state_count; q++)
-            if (model->channels[k].rows[q] > model->channels[k].rows[q + 1u])
-                return 0;
-    return 1;
 }
 
 int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
@@ -148,19 +133,21 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     model->phoneme_count = header[18];
     model->class_count = header[19];
     model->state_count = header[20];
-    model->silence = header[21];
-    model->soft = header[22];
-    model->kernel_taps = header[23];
-    model->kernel_stride = header[24];
-    model->kernel_behind = header[25];
-    model->floor_count = header[27];
-    model->pair_count = u16(header + 28);
+    model->predecessors = header[21];
+    model->search_stride = header[22];
+    model->silence = header[23];
+    model->soft = header[24];
+    model->kernel_taps = header[25];
+    model->kernel_stride = header[26];
+    model->kernel_behind = header[27];
+    model->floor_count = header[29];
+    model->pair_count = u16(header + 30);
     reader.data = header;
     reader.size = size;
     reader.at = HEADER_SIZE;
     reader.damaged = 0;
-    read_tables(&reader, header[26], model, blob->channels);
-    if (reader.damaged || reader.at != size || !rows_ascend(model))
+    read_tables(&reader, header[28], model, blob->channels);
+    if (reader.damaged || reader.at != size)
         return LABIAL_ERROR_MODEL;
     return labial_model_check(model);
 }

@@ -32,26 +32,19 @@ static inline int32_t labial_sub(int32_t a, int32_t b)
     return (int32_t)((uint32_t)a - (uint32_t)b);
 }
 
-/* a * b / 2^shift, rounded to the nearest (halves up), modulo 2^32. 16 <= shift <= 31. */
+/* a * b / 2^shift, rounded down, modulo 2^32. 16 <= shift <= 31. */
 static inline int32_t labial_mulshift(int32_t a, int32_t b, unsigned shift)
 {
 #if LABIAL_NARROW_MULTIPLY
-    /* a = ah * 2^16 + al with al unsigned, likewise b; the product's halves are put together with carries. */
-    const uint32_t al = (uint32_t)a & 0xffffu, bl = (uint32_t)b & 0xffffu;
+    /* a = ah * 2^16 + al with al unsigned, likewise b. No sum overflows: 32767 * 65535 + 65535 < 2^31. */
+    const int32_t al = (int32_t)((uint32_t)a & 0xffffu), bl = (int32_t)((uint32_t)b & 0xffffu);
     const int32_t ah = a >> 16, bh = b >> 16;
-    const uint32_t low = al * bl;
-    const int32_t cross_a = ah * (int32_t)bl, cross_b = (int32_t)al * bh;
-    uint32_t bottom = low + ((uint32_t)cross_a << 16);
-    uint32_t top = (uint32_t)(ah * bh) + (uint32_t)(cross_a >> 16) + (uint32_t)(cross_b >> 16);
-    uint32_t sum;
-    top += bottom < low;
-    sum = bottom + ((uint32_t)cross_b << 16);
-    top += sum < bottom;
-    bottom = sum + (1u << (shift - 1u));
-    top += bottom < sum;
-    return (int32_t)((top << (32u - shift)) | (bottom >> shift));
+    const int32_t cross_a = ah * bl + (int32_t)(((uint32_t)al * (uint32_t)bl) >> 16);
+    const int32_t cross_b = al * bh + (int32_t)((uint32_t)cross_a & 0xffffu);
+    const int32_t high = ah * bh + (cross_a >> 16) + (cross_b >> 16);
+    return (int32_t)(((uint32_t)high << (32u - shift)) | (((uint32_t)cross_b & 0xffffu) >> (shift - 16u)));
 #else
-    return (int32_t)(uint32_t)(uint64_t)(((int64_t)a * b + ((int64_t)1 << (shift - 1u))) >> shift);
+    return (int32_t)(uint32_t)(uint64_t)(((int64_t)a * b) >> shift);
 #endif
 }
 
@@ -81,6 +74,14 @@ static inline uint32_t labial_z(uint32_t distance, uint16_t gain, uint32_t limit
 static inline uint32_t labial_z_cost(uint32_t z)
 {
     return (z * z) >> 7;
+}
+
+/* How far a transition has gone at `step` of `steps`, 65535 at most, Q14: 3 s^2 - 2 s^3, which starts and ends without a
+ * jolt. */
+static inline int32_t labial_ease(unsigned step, unsigned steps)
+{
+    const uint32_t s = ((uint32_t)step << 14) / steps;
+    return (int32_t)(((s * s >> 14) * ((3u << 14) - 2u * s)) >> 14);
 }
 
 /* value, not beyond +-limit. */

@@ -27,18 +27,16 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* weight * |mean|, no more than fits. */
+/* weight * |mean|, about LABIAL_PULL_MAX at most. */
 static uint32_t pull(uint32_t weight, int32_t mean)
 {
     const uint32_t distance = (uint32_t)(mean < 0 ? -mean : mean);
-    return distance && weight > LABIAL_PULL_MAX / distance ? LABIAL_PULL_MAX : weight * distance;
+    return (weight >> 4) * distance > LABIAL_PULL_MAX >> 4 ? LABIAL_PULL_MAX : weight * distance;
 }
 
-/*
- * Every position is in range, every frame is held, and neither a diagonal element nor a right-hand side of equation 3
- * can exceed its limit. `tie` is the largest precision of a phoneme.
- */
-static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel, uint32_t tie)
+/* Every position is in range, every frame is held, and neither a diagonal element nor a right-hand side of equation 3
+ * can exceed its limit. */
+static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel)
 {
     uint32_t held = 0, delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
     unsigned q, i;
@@ -56,7 +54,6 @@ static int states_are_sound(const labial_model_t *model, const labial_channel_t 
         delta_pull = larger(delta_pull, pull(labial_weight(state->weight[1]), state->mean[1]));
         delta2_pull = larger(delta2_pull, pull(labial_weight(state->weight[2]), state->mean[2]));
     }
-    held += tie;
     return held + 2u * delta + 6u * delta2 <= LABIAL_WEIGHT_SUM_MAX && delta_pull <= LABIAL_PULL_MAX / 4 &&
            delta2_pull <= LABIAL_PULL_MAX / 4 && held <= LABIAL_PULL_MAX / LABIAL_POSITION_MAX &&
            held * LABIAL_POSITION_MAX <= LABIAL_PULL_MAX - (4u * delta_pull + 4u * delta2_pull > LABIAL_PULL_MAX
@@ -66,32 +63,19 @@ static int states_are_sound(const labial_model_t *model, const labial_channel_t 
 
 static int transitions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
 {
-    unsigned q, i;
-    if (channel->rows[0] != 0)
-        return 0;
-    for (q = 0; q < model->state_count; q++) {
-        if (channel->rows[q + 1u] <= channel->rows[q])
+    unsigned i;
+    for (i = 0; i < (unsigned)model->state_count * model->predecessors; i++)
+        if ((channel->edges[i] & 3u) || (channel->edges[i] & 0xffu) >= 4u * model->state_count)
             return 0;
-        for (i = channel->rows[q]; i < channel->rows[q + 1u]; i++)
-            if ((channel->edges[i] & 0xffu) >= model->state_count)
-                return 0;
-    }
     return 1;
 }
 
 static int channel_is_sound(const labial_model_t *model, unsigned k)
 {
     const labial_channel_t *channel = &model->channels[k];
-    uint32_t tie = 0;
-    size_t c;
     if (!is_position(channel->centre) || channel->shape_scale > 32767u || channel->slope_scale > 16383u)
         return 0;
-    for (c = 0; model->precisions && c < model->component_count; c++) {
-        const uint32_t weight = labial_weight(model->precisions[c * LABIAL_CHANNELS + k]);
-        tie = weight > tie ? weight : tie;
-    }
-    return states_are_sound(model, channel, tie) &&
-           transitions_are_sound(model, channel);
+    return states_are_sound(model, channel) && transitions_are_sound(model, channel);
 }
 
 int labial_model_check(const labial_model_t *model)
@@ -109,7 +93,9 @@ int labial_model_check(const labial_model_t *model)
     if (model->frames_per_second == 0 || model->frames_per_second > 250u || model->component_count == 0 ||
         model->phoneme_count == 0 || model->phoneme_count > LABIAL_PHONEMES_MAX || model->class_count == 0 ||
         model->class_count > LABIAL_CLASSES_MAX || model->state_count == 0 ||
-        model->state_count > LABIAL_STATES_MAX || model->silence >= model->phoneme_count || model->soft > 1)
+        model->state_count > LABIAL_STATES_MAX || model->predecessors == 0 ||
+        model->predecessors > LABIAL_STATES_MAX || model->search_stride == 0 ||
+        model->search_stride > LABIAL_SEARCH_STRIDE_MAX || model->silence >= model->phoneme_count || model->soft > 1)
         return LABIAL_ERROR_MODEL;
     if (model->kernel_taps) {
         if (model->kernel_taps > LABIAL_KERNEL_TAPS_MAX || model->kernel_behind >= model->kernel_taps ||
@@ -119,7 +105,7 @@ int labial_model_check(const labial_model_t *model)
     }
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];
-        if (!channel->emissions || !channel->states || !channel->rows || !channel->edges)
+        if (!channel->emissions || !channel->states || !channel->edges)
             return LABIAL_ERROR_NULL;
     }
     for (i = 1; i < model->pair_count; i++)

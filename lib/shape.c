@@ -51,8 +51,8 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
     return best;
 }
 
-unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme_number, uint16_t ms,
-                             unsigned previous_class, unsigned next_class, int16_t shape[LABIAL_CHANNELS])
+void labial_shape_select(const labial_model_t *model, unsigned phoneme_number, uint16_t ms,
+                         unsigned previous_class, unsigned next_class, int16_t shape[LABIAL_CHANNELS])
 {
     const labial_phoneme_t *phoneme = &model->phonemes[phoneme_number];
     const unsigned count = phoneme->component_count;
@@ -93,13 +93,12 @@ unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme_numbe
         change = ((change >> 4) * channel->slope_scale + 32768) >> 16;
         shape[k] = (int16_t)labial_clamp(mean + change, LABIAL_POSITION_MAX);
     }
-    return phoneme->first_component + best;
 }
 
-/* Steps of kernel_scale as positions. */
-static int32_t scaled(const labial_model_t *model, unsigned k, int32_t steps)
+/* Steps of a scale as positions. */
+static int32_t scaled(int32_t steps, uint16_t scale)
 {
-    return (steps * (int32_t)model->channels[k].kernel_scale + 128) >> 8;
+    return (steps * (int32_t)scale + 128) >> 8;
 }
 
 void labial_shape_add_pair(const labial_model_t *model, unsigned phoneme, unsigned neighbour, int next,
@@ -117,7 +116,7 @@ void labial_shape_add_pair(const labial_model_t *model, unsigned phoneme, unsign
     if (low == model->pair_count || model->pair_keys[low] != key)
         return;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
-        const int32_t added = scaled(model, k, model->pairs[(size_t)low * LABIAL_CHANNELS + k]);
+        const int32_t added = scaled(model->pairs[(size_t)low * LABIAL_CHANNELS + k], model->channels[k].pair_scale);
         shape[k] = (int16_t)labial_clamp(shape[k] + added, LABIAL_POSITION_MAX);
     }
 }
@@ -137,7 +136,7 @@ void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL
             sum[k] += kernel[k];
     }
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        target[k] = (int16_t)labial_clamp(shape[k] + scaled(model, k, sum[k]), LABIAL_POSITION_MAX);
+        target[k] = (int16_t)labial_clamp(shape[k] + scaled(sum[k], model->channels[k].kernel_scale), LABIAL_POSITION_MAX);
     if (floor) {
         const int16_t *least = model->floors + (floor - 1u) * LABIAL_CHANNELS;
         for (k = 0; k < LABIAL_CHANNELS; k++)

@@ -9,11 +9,9 @@
 /*
  * Shape selection (paper, eq. 2; section 2 of the method for context and soft selection): the positions of `phoneme`
  * lasting `ms` milliseconds between phonemes of the given viseme classes.
- *
- * Returns the index of the best component, whose precisions are the phoneme's.
  */
-unsigned labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous_class,
-                             unsigned next_class, int16_t shape[LABIAL_CHANNELS]);
+void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous_class,
+                         unsigned next_class, int16_t shape[LABIAL_CHANNELS]);
 
 /* Adds to the shape of `phoneme` what its previous neighbour, or with `next` its next one, adds; nothing for pairs that
  * the model does not know. */

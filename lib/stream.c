@@ -3,19 +3,22 @@
  * out and play the frames.
  *
  * Why ticks of equal work suffice: a piece delivers at least half of the frames that it decodes (what it shares with its
- * successor, it does not share with its predecessor), so the work of two decoded frames per tick keeps up on average;
- * and half a window of ready frames bridges the time in which the longest piece is decoded.
+ * successor, it does not share with its predecessor), so the work of two of its frames per tick keeps up; and half a
+ * window of ready frames bridges the time in which the longest piece is decoded. Most pieces deliver more, and their work
+ * is spread over as many ticks as leave half a window ready.
  */
 #include <string.h>
 
+#include "fixed.h"
 #include "units.h"
 #include "work.h"
 
 #define MAGIC 0x4c41424cu /* "LABL" */
 
 typedef char labial_limits_are_sound[LABIAL_WINDOW >= 4 && LABIAL_WINDOW <= 1000 &&
-                                             2 * LABIAL_OVERLAP <= LABIAL_WINDOW && LABIAL_CUT_OVERLAP >= 1 &&
-                                             LABIAL_CUT_OVERLAP <= LABIAL_OVERLAP && LABIAL_REACH >= 0 &&
+                                             LABIAL_OVERLAP >= 1 &&
+                                             2 * LABIAL_OVERLAP <= LABIAL_WINDOW && LABIAL_PIECE >= 1 &&
+                                             LABIAL_PIECE <= LABIAL_WINDOW && LABIAL_REACH >= 0 &&
                                              LABIAL_REACH <= 250 && 2 * LABIAL_READY >= LABIAL_WINDOW &&
                                              LABIAL_PREROLL >= 1 && LABIAL_PREROLL <= LABIAL_READY &&
                                              LABIAL_MODELS >= 1 && LABIAL_MODELS <= 255
@@ -24,12 +27,13 @@ typedef char labial_limits_are_sound[LABIAL_WINDOW >= 4 && LABIAL_WINDOW <= 1000
 
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
-    return model ? LABIAL_WORKSPACE_SIZE(model->state_count) : 0;
+    return model ? LABIAL_WORKSPACE_SIZE(model->state_count, model->search_stride) : 0;
 }
 
-static int is_live(const labial_t *stream)
+/* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
+static int status(const labial_t *stream)
 {
-    return stream->magic == MAGIC;
+    return !stream ? LABIAL_ERROR_NULL : stream->magic != MAGIC ? LABIAL_ERROR_STATE : LABIAL_OK;
 }
 
 /* ---- Input ------------------------------------------------------------------------------------------------------- */
@@ -41,6 +45,7 @@ static void forget_input(labial_t *stream)
     stream->remainder = 500; /* so that frames are those of the rounded sum */
     stream->stage = LABIAL_STAGE_FIND;
     stream->ready_head = stream->ready_count = stream->held_count = 0;
+    stream->pace = 1; /* so that the first piece is looked for */
     stream->overspent = 0;
     stream->begun = stream->rolling = 0;
     stream->ended = 0;
@@ -51,15 +56,13 @@ static void forget_input(labial_t *stream)
 int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, size_t size, labial_frame_fn callback,
                 void *user)
 {
-    int result;
     if (!stream)
         return LABIAL_ERROR_NULL;
     stream->magic = 0;
     if (!model || !workspace || !callback)
         return LABIAL_ERROR_NULL;
-    result = labial_model_check(model);
-    if (result != LABIAL_OK)
-        return result;
+    if (model->format != LABIAL_MODEL_FORMAT)
+        return LABIAL_ERROR_VERSION;
     if (((uintptr_t)workspace & 3u) || size < labial_workspace_size(model))
         return LABIAL_ERROR_WORKSPACE;
     memset(stream, 0, sizeof *stream);
@@ -86,14 +89,15 @@ static int is_waited_for(const labial_t *stream, unsigned slot)
 int labial_use(labial_t *stream, const labial_model_t *model)
 {
     unsigned slot, chosen = LABIAL_MODELS;
-    int result;
-    if (!stream || !model)
-        return LABIAL_ERROR_NULL;
-    if (!is_live(stream) || stream->ended)
-        return LABIAL_ERROR_STATE;
-    result = labial_model_check(model);
+    const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
+    if (!model)
+        return LABIAL_ERROR_NULL;
+    if (stream->ended)
+        return LABIAL_ERROR_STATE;
+    if (model->format != LABIAL_MODEL_FORMAT)
+        return LABIAL_ERROR_VERSION;
     if (model->frames_per_second != stream->models[stream->slot]->frames_per_second)
         return LABIAL_ERROR_RATE;
     if (stream->workspace_size < labial_workspace_size(model))
@@ -117,9 +121,10 @@ int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
 {
     labial_segment_t segment;
     uint32_t thousandths;
-    if (!stream)
-        return LABIAL_ERROR_NULL;
-    if (!is_live(stream) || stream->ended)
+    const int result = status(stream);
+    if (result != LABIAL_OK)
+        return result;
+    if (stream->ended)
         return LABIAL_ERROR_STATE;
     if (phoneme >= stream->models[stream->slot]->phoneme_count)
         return LABIAL_ERROR_PHONEME;
@@ -141,27 +146,23 @@ int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
 
 unsigned labial_room(const labial_t *stream)
 {
-    return stream && is_live(stream) && !stream->ended ? LABIAL_QUEUE - (unsigned)stream->queue_count : 0;
+    return status(stream) == LABIAL_OK && !stream->ended ? LABIAL_QUEUE - (unsigned)stream->queue_count : 0;
 }
 
 int labial_end(labial_t *stream)
 {
-    if (!stream)
-        return LABIAL_ERROR_NULL;
-    if (!is_live(stream))
-        return LABIAL_ERROR_STATE;
-    stream->ended = 1;
-    return LABIAL_OK;
+    const int result = status(stream);
+    if (result == LABIAL_OK)
+        stream->ended = 1;
+    return result;
 }
 
 int labial_work(labial_t *stream)
 {
     unsigned spent = 0;
-    int result;
-    if (!stream)
-        return LABIAL_ERROR_NULL;
-    if (!is_live(stream))
-        return LABIAL_ERROR_STATE;
+    int result = status(stream);
+    if (result != LABIAL_OK)
+        return result;
     if (stream->ease_length)
         return LABIAL_WAITING;
     result = labial_work_step(stream, &spent);
@@ -190,17 +191,21 @@ static void deliver_ready(labial_t *stream)
     deliver(stream, stream->pose);
 }
 
-/* One frame from `pose` to the neutral face along 3 s^2 - 2 s^3, which starts and ends without a jolt. */
-static void deliver_eased(labial_t *stream)
+/* The face at the present step of the way from `pose` to the neutral one. */
+static void eased(const labial_t *stream, int16_t faps[LABIAL_CHANNELS])
 {
-    const uint32_t s = ((uint32_t)++stream->ease_step << 10) / stream->ease_length;
-    const int32_t gone = (int32_t)((s * s * (3072u - 2u * s)) >> 20); /* Q10 */
-    const int last = stream->ease_step == stream->ease_length;
-    int16_t faps[LABIAL_CHANNELS];
+    const int32_t left = 16384 - labial_ease(stream->ease_step, stream->ease_length);
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        faps[k] = (int16_t)((stream->pose[k] * (1024 - gone) + 512) >> 10);
-    if (last) {
+        faps[k] = (int16_t)((stream->pose[k] * left + 8192) >> 14);
+}
+
+static void deliver_eased(labial_t *stream)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    stream->ease_step++;
+    eased(stream, faps);
+    if (stream->ease_step == stream->ease_length) {
         stream->ease_length = 0;
         memset(stream->pose, 0, sizeof stream->pose);
     }
@@ -210,18 +215,16 @@ static void deliver_eased(labial_t *stream)
 int labial_tick(labial_t *stream)
 {
     unsigned spent;
-    int result = LABIAL_OK;
-    if (!stream)
-        return LABIAL_ERROR_NULL;
-    if (!is_live(stream))
-        return LABIAL_ERROR_STATE;
+    int result = status(stream);
+    if (result != LABIAL_OK)
+        return result;
     if (stream->ease_length) {
         deliver_eased(stream);
         return LABIAL_OK;
     }
-    for (spent = stream->overspent; spent < LABIAL_COST_PIECE && result == LABIAL_OK;)
+    for (spent = stream->overspent; spent < stream->pace && result == LABIAL_OK;)
         result = labial_work_step(stream, &spent);
-    stream->overspent = (uint16_t)(spent > LABIAL_COST_PIECE ? spent - LABIAL_COST_PIECE : 0u);
+    stream->overspent = (uint16_t)(spent > stream->pace ? spent - stream->pace : 0u);
 
     if (stream->ready_count >= LABIAL_PREROLL || (stream->ready_count && result != LABIAL_OK))
         stream->rolling = 1;
@@ -240,13 +243,14 @@ int labial_tick(labial_t *stream)
 int labial_cancel(labial_t *stream, uint32_t milliseconds)
 {
     uint32_t frames;
-    if (!stream)
-        return LABIAL_ERROR_NULL;
-    if (!is_live(stream))
-        return LABIAL_ERROR_STATE;
+    const int result = status(stream);
+    if (result != LABIAL_OK)
+        return result;
     if (milliseconds > LABIAL_DURATION_MAX)
         milliseconds = LABIAL_DURATION_MAX;
     frames = (milliseconds * stream->models[stream->slot]->frames_per_second + 999u) / 1000u;
+    if (stream->ease_length) /* cancelled again on the way */
+        eased(stream, stream->pose);
     forget_input(stream);
     stream->ended = 1;
     stream->ease_length = (uint16_t)(frames < 1u ? 1u : frames < 1000u ? frames : 1000u);
@@ -255,9 +259,10 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds)
 
 int labial_restart(labial_t *stream)
 {
-    if (!stream)
-        return LABIAL_ERROR_NULL;
-    if (!is_live(stream) || !stream->ended || stream->pending || stream->ease_length)
+    const int result = status(stream);
+    if (result != LABIAL_OK)
+        return result;
+    if (!stream->ended || stream->pending || stream->ease_length)
         return LABIAL_ERROR_STATE;
     forget_input(stream);
     stream->resumed = stream->frame > 0;
@@ -267,7 +272,7 @@ int labial_restart(labial_t *stream)
 labial_latency_t labial_latency(const labial_t *stream)
 {
     labial_latency_t latency = { 0, 0, 0, 0 };
-    if (stream && is_live(stream)) {
+    if (status(stream) == LABIAL_OK) {
         const uint32_t rate = stream->models[stream->slot]->frames_per_second;
         latency.frames = stream->pending;
         latency.milliseconds = stream->pending / rate * 1000u + (stream->pending % rate * 1000u + rate / 2u) / rate;

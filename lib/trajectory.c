@@ -17,40 +17,10 @@
  */
 #include "trajectory.h"
 
-#include <stddef.h>
-
 #include "fixed.h"
 
-/* One row each of W: what the state of a frame asks for. */
-typedef struct {
-    int32_t static_weight, static_pull; /* weight and weight * mean */
-    int32_t delta_weight, delta_pull;   /* a quarter of delta's precision; half of precision * mean */
-    int32_t delta2_weight, delta2_pull;
-} row_t;
-
-static void read_row(const labial_channel_t *channel, const labial_ties_t *ties, const uint8_t *path, unsigned length,
-                     const int16_t *positions, unsigned t, row_t *row)
-{
-    const labial_state_t *state = &channel->states[path[t]];
-    const int32_t held = (int32_t)labial_weight(state->weight[0]);
-    int32_t anchor = (int32_t)labial_weight(state->anchor);
-    if (ties->precisions) {
-        const uint32_t precision = labial_weight(ties->precisions[(uint32_t)ties->component[t] * LABIAL_CHANNELS]);
-        anchor += (int32_t)((precision * ties->share[t] + 32768u) >> 16);
-    }
-    row->static_weight = held + anchor;
-    row->static_pull = held * state->mean[0] + anchor * positions[(size_t)t * LABIAL_CHANNELS];
-    if (t > 0 && t + 1u < length) {
-        row->delta_weight = (int32_t)labial_weight(state->weight[1]);
-        row->delta_pull = row->delta_weight * 2 * state->mean[1];
-        row->delta2_weight = (int32_t)labial_weight(state->weight[2]);
-        row->delta2_pull = row->delta2_weight * state->mean[2];
-    } else {
-        row->delta_weight = row->delta_pull = row->delta2_weight = row->delta2_pull = 0;
-    }
-}
-
-/* 2^60 / d for 2^30 <= d < 2^31, to about 29 bits: a table of eight bits and two Newton steps x += x (1 - d x). */
+/* 2^60 / d for 2^30 <= d < 2^31, to about 29 bits: a table of eight bits and two Newton steps x += x (1 - d x), the first
+ * of which needs no more than 16 bits of d. */
 static int32_t reciprocal(int32_t d)
 {
     static const uint8_t table[64] = {
@@ -60,8 +30,9 @@ static int32_t reciprocal(int32_t d)
         132, 131, 130, 129
     };
     const int32_t one = (int32_t)1 << 30;
-    int32_t x = (int32_t)table[((uint32_t)d >> 24) & 63u] << 22;
-    x += labial_mulshift(x, one - labial_mulshift(d, x, 30), 30);
+    const int32_t rough = table[((uint32_t)d >> 24) & 63u];
+    const int32_t short_d = (int32_t)(((uint32_t)d + 0x8000u) >> 16);
+    int32_t x = (rough << 22) + rough * (((int32_t)1 << 22) - short_d * rough);
     x += labial_mulshift(x, one - labial_mulshift(d, x, 30), 30);
     return x;
 }
@@ -74,6 +45,10 @@ static int headroom(int32_t d)
         d <<= 8;
         shift = 8;
     }
+    if (d < (int32_t)1 << 26) {
+        d <<= 4;
+        shift += 4;
+    }
     while (d < (int32_t)1 << 30) {
         d <<= 1;
         shift++;
@@ -81,80 +56,98 @@ static int headroom(int32_t d)
     return shift;
 }
 
-void labial_trajectory_solve(const labial_channel_t *channel, const labial_ties_t *ties, const uint8_t *path,
-                             unsigned length, int16_t *positions, int32_t *scratch)
+/* Takes up frame t - 1, to which no later row adds anything but c, its second off-diagonal element. */
+static void factor(labial_solver_t *solver, int32_t c, int32_t *factors)
 {
-    row_t rows[3] = { { 0, 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0, 0 } };
-    row_t *before = &rows[0], *here = &rows[1], *after = &rows[2];
-    int32_t e1 = 0, c1 = 0, c2 = 0;           /* e_(t-1), c_(t-1), c_(t-2) */
-    int32_t lambda1 = 0, kappa1 = 0, kappa2 = 0; /* lambda_(t-1), kappa_(t-1), kappa_(t-2) */
-    int32_t z1 = 0, z2 = 0, m1 = 0, m2 = 0;
-    int32_t *out = scratch;
-    unsigned t;
+    const int32_t a = solver->a1 * (1 << 12), b = solver->b1 * (1 << 12);
+    const int32_t lambda = solver->lambda, kappa = solver->kappa2, z1 = solver->z1;
+    const int32_t e = labial_sub(b, labial_mulshift(solver->kappa1, solver->e, 28));
+    const int32_t z = labial_sub(solver->r1,
+                                 labial_add(labial_mulshift(lambda, z1, 28), labial_mulshift(kappa, solver->z2, 28)));
+    int32_t d = labial_sub(a, labial_add(labial_mulshift(lambda, solver->e, 28), labial_mulshift(kappa, solver->c2, 28)));
+    int32_t inverse, held;
+    int shift;
 
-    read_row(channel, ties, path, length, positions, 0, here);
-    for (t = 0; t < length; t++) {
-        int32_t a, b, c, d, e, r, z, inverse;
-        int shift;
-        row_t *spare;
+    if (d < (int32_t)1 << 12) /* not with a model that was checked; it keeps what follows defined */
+        d = (int32_t)1 << 12;
+    held = labial_clamp(e, d < (int32_t)1 << 27 ? 8 * d - 1 : INT32_MAX);
+    shift = headroom(d);
+    inverse = reciprocal(d << shift);
+    c *= 1 << 12;
+    solver->kappa2 = solver->kappa1;
+    solver->lambda = factors[0] = labial_scale(labial_mulshift(held, inverse, 30), shift - 2);
+    solver->kappa1 = factors[1] = labial_scale(labial_mulshift(c, inverse, 30), shift - 2);
+    factors[2] = labial_scale(labial_mulshift(z, inverse, 30), shift - 10);
+    solver->e = held;
+    solver->c2 = solver->c1;
+    solver->c1 = c;
+    solver->z2 = z1;
+    solver->z1 = z;
+}
 
-        if (t + 1u < length)
-            read_row(channel, ties, path, length, positions, t + 1u, after);
-        else
-            after->static_weight = after->static_pull = after->delta_weight = after->delta_pull =
-                after->delta2_weight = after->delta2_pull = 0;
-        a = here->static_weight + before->delta_weight + after->delta_weight + before->delta2_weight +
-            4 * here->delta2_weight + after->delta2_weight;
-        b = -2 * (here->delta2_weight + after->delta2_weight);
-        c = after->delta2_weight - after->delta_weight;
-        r = labial_add(here->static_pull, labial_sub(before->delta_pull, after->delta_pull));
-        r = labial_add(r, labial_add(labial_sub(before->delta2_pull, 2 * here->delta2_pull), after->delta2_pull));
-
-        a *= 1 << 12;
-        c *= 1 << 12;
-        e = labial_sub(b * (1 << 12), labial_mulshift(kappa1, e1, 28));
-        d = labial_sub(a, labial_add(labial_mulshift(lambda1, e1, 28), labial_mulshift(kappa2, c2, 28)));
-        if (d < (int32_t)1 << 12) /* not with a model that was checked; it keeps what follows defined */
-            d = (int32_t)1 << 12;
-        e = labial_clamp(e, d < (int32_t)1 << 27 ? 8 * d - 1 : INT32_MAX);
-        z = labial_sub(r, labial_add(labial_mulshift(lambda1, z1, 28), labial_mulshift(kappa2, z2, 28)));
-
-        shift = headroom(d);
-        inverse = reciprocal(d << shift);
-        kappa2 = kappa1;
-        lambda1 = labial_scale(labial_mulshift(e, inverse, 30), shift - 2);
-        kappa1 = labial_scale(labial_mulshift(c, inverse, 30), shift - 2);
-        out[0] = lambda1;
-        out[1] = kappa1;
-        out[2] = labial_scale(labial_mulshift(z, inverse, 30), shift - 10);
-        out += 3;
-
-        z2 = z1;
-        z1 = z;
-        e1 = e;
-        c2 = c1;
-        c1 = c;
-        spare = before;
-        before = here;
-        here = after;
-        after = spare;
+/* Takes up row t. */
+static void take_row(labial_solver_t *solver, const labial_channel_t *channel, const uint8_t *path, unsigned length,
+                     const int16_t *positions, unsigned t, int32_t *factors)
+{
+    int32_t held = 0, pull = 0;        /* static row and anchor: weight, and weight times mean */
+    int32_t delta = 0, delta_pull = 0; /* a quarter of delta's precision; half of precision times mean */
+    int32_t delta2 = 0, delta2_pull = 0;
+    if (t < length) {
+        const labial_state_t *state = &channel->states[path[t]];
+        const int32_t anchor = (int32_t)labial_weight(state->anchor);
+        held = (int32_t)labial_weight(state->weight[0]);
+        pull = held * state->mean[0] + anchor * positions[t * LABIAL_CHANNELS];
+        held += anchor;
+        if (t > 0 && t + 1u < length) {
+            delta = (int32_t)labial_weight(state->weight[1]);
+            delta_pull = delta * 2 * state->mean[1];
+            delta2 = (int32_t)labial_weight(state->weight[2]);
+            delta2_pull = delta2 * state->mean[2];
+        }
     }
+    if (t > 0) {
+        solver->a1 += delta + delta2;
+        solver->b1 -= 2 * delta2;
+        solver->r1 = labial_add(solver->r1, labial_sub(delta2_pull, delta_pull));
+        factor(solver, delta2 - delta, factors + (t - 1u) * LABIAL_FACTORS);
+    }
+    solver->a1 = solver->a0 + held + 4 * delta2;
+    solver->b1 = -2 * delta2;
+    solver->r1 = labial_add(solver->r0, labial_sub(pull, 2 * delta2_pull));
+    solver->a0 = delta + delta2;
+    solver->r0 = delta_pull + delta2_pull;
+}
 
-    for (t = length; t-- > 0;) {
+void labial_trajectory_forward(labial_solver_t *solver, const labial_channel_t *channel, const uint8_t *path,
+                               unsigned length, const int16_t *positions, unsigned t, unsigned end, int32_t *factors)
+{
+    for (; t < end; t++)
+        take_row(solver, channel, path, length, positions, t, factors);
+}
+
+void labial_trajectory_backward(labial_solver_t *solver, const int32_t *factors, unsigned t, unsigned end,
+                                int16_t *positions)
+{
+    int32_t m1 = solver->m1, m2 = solver->m2;
+    factors += t * LABIAL_FACTORS;
+    positions += t * LABIAL_CHANNELS;
+    for (; t > end; t--) {
         int32_t m;
-        out -= 3;
-        m = labial_sub(out[2], labial_add(labial_mulshift(out[0], m1, 28), labial_mulshift(out[1], m2, 28)));
+        factors -= LABIAL_FACTORS;
+        positions -= LABIAL_CHANNELS;
+        m = labial_sub(factors[2], labial_add(labial_mulshift(factors[0], m1, 28), labial_mulshift(factors[1], m2, 28)));
         m2 = m1;
         m1 = m;
-        positions[(size_t)t * LABIAL_CHANNELS] =
-            (int16_t)labial_clamp(labial_add(m, 128) >> 8, LABIAL_POSITION_MAX);
+        *positions = (int16_t)labial_clamp(labial_add(m, 128) >> 8, LABIAL_POSITION_MAX);
     }
+    solver->m1 = m1;
+    solver->m2 = m2;
 }
 
 void labial_trajectory_fade(int16_t held[LABIAL_CHANNELS], const int16_t fresh[LABIAL_CHANNELS], unsigned step,
                             unsigned steps)
 {
-    const int32_t share = (int32_t)((step << 14) / steps); /* Q14 */
+    const int32_t share = labial_ease(step, steps);
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
         held[k] = (int16_t)(held[k] + (((fresh[k] - held[k]) * share + 8192) >> 14));

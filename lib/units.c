@@ -61,7 +61,7 @@ unsigned labial_units_first(const labial_t *stream, const labial_piece_t *piece,
 int labial_units_next(labial_t *stream, labial_piece_t *piece)
 {
     const uint32_t begin = stream->next_begin, limit = begin + LABIAL_WINDOW;
-    uint32_t start, end = 0, next = 0, last_end;
+    uint32_t start, end = 0, next = 0, last_end = 0;
     unsigned first, i, slot;
 
     if (begin == stream->queue_frames)
@@ -72,6 +72,7 @@ int labial_units_next(labial_t *stream, labial_piece_t *piece)
 
     for (i = first;; i++) {
         const labial_segment_t *segment;
+        uint32_t stop;
         if (i == stream->queue_count) { /* the stream's last phoneme ends the last unit */
             if (!stream->ended)
                 return LABIAL_WAITING;
@@ -79,33 +80,35 @@ int labial_units_next(labial_t *stream, labial_piece_t *piece)
             break;
         }
         segment = labial_units_segment(stream, i);
-        last_end = start + segment->frames;
-        if (start == limit || (segment->slot == slot && last_end > limit)) { /* longer than the window: cut */
-            if (start == limit)
-                last_end = start;
-            end = limit;
-            next = end - LABIAL_CUT_OVERLAP;
+        stop = start + segment->frames;
+        if (start == limit || (segment->slot == slot && stop > limit)) { /* the window is full */
+            if (end == 0) { /* with a unit that is longer: cut */
+                last_end = start == limit ? start : stop;
+                end = limit;
+                next = end - LABIAL_OVERLAP;
+            }
             break;
         }
         if (segment->slot != slot) { /* the model changes: run on into the other's phonemes */
             const uint32_t room = limit - start;
-            const uint32_t most = room < LABIAL_CUT_OVERLAP ? room : LABIAL_CUT_OVERLAP;
+            const uint32_t most = room < LABIAL_OVERLAP ? room : LABIAL_OVERLAP;
             const uint32_t overlap = run_of_model(stream, i, most);
             if (overlap < most && start + overlap == stream->queue_frames && !stream->ended)
                 return LABIAL_WAITING;
             end = start + overlap;
             next = start;
-            while (last_end < end)
+            for (last_end = stop; last_end < end;)
                 last_end += labial_units_segment(stream, ++i)->frames;
             break;
         }
         if (i > first && stream->models[slot]->phonemes[segment->phoneme].boundary &&
-            start >= begin + stream->next_fade_in && i + 1u < stream->queue_count) {
-            end = last_end;
+            start >= begin + stream->next_fade_in && i + 1u < stream->queue_count) { /* the end of a unit */
+            end = last_end = stop;
             next = end - (segment->frames < LABIAL_OVERLAP ? segment->frames : LABIAL_OVERLAP);
-            break;
+            if (end - begin >= LABIAL_PIECE)
+                break;
         }
-        start = last_end;
+        start = stop;
     }
     if (!is_known(stream, slot, end, last_end))
         return LABIAL_WAITING;

@@ -10,8 +10,8 @@
  *                           [ b    iy ]
  *                               [ iy     m ] ...
  *
- * A unit longer than the window is cut into chained pieces that share LABIAL_CUT_OVERLAP frames. Where the model
- * changes, the earlier model's last piece runs on into the other's phonemes, and the later one's first piece begins
+ * Units are decoded together until a piece has LABIAL_PIECE frames. A unit longer than the window is cut into chained
+ * pieces that share LABIAL_OVERLAP frames. Where the model changes, the earlier model's last piece runs on into the other's phonemes, and the later one's first piece begins
  * with them. No frame ever belongs to more than two pieces.
  */
 #ifndef LABIAL_UNITS_H

@@ -10,29 +10,29 @@
 /* The workspace's parts, in the order that LABIAL_WORKSPACE_SIZE counts them. */
 typedef struct {
     uint32_t *scores[2];
-    uint8_t *back;   /* Viterbi */
-    int32_t *solver; /* the same memory, trajectory */
+    uint8_t *back;           /* Viterbi */
+    labial_solver_t *solver; /* the same memory, trajectory */
+    int32_t *factors;
     int16_t *positions;
-    uint16_t *component, *share;
     uint8_t *path, *labels;
 } workspace_t;
+
+typedef char labial_solver_fits[sizeof(labial_solver_t) == 60 ? 1 : -1]; /* LABIAL_SOLVER_SIZE_ */
 
 static void lay_out(const labial_t *stream, workspace_t *workspace)
 {
     /* Scores and back-pointers are laid out for the piece's own model, which may have fewer states than the workspace
      * has room for; what follows them is counted from the end. */
-    const unsigned states = stream->models[stream->piece.slot]->state_count;
+    const unsigned row = stream->models[stream->piece.slot]->state_count + 1u;
     uint8_t *tail = stream->workspace + stream->workspace_size;
     workspace->scores[0] = (uint32_t *)(void *)stream->workspace;
-    workspace->scores[1] = workspace->scores[0] + states;
-    workspace->solver = (int32_t *)(void *)(workspace->scores[1] + states);
-    workspace->back = (uint8_t *)workspace->solver;
+    workspace->scores[1] = workspace->scores[0] + row;
+    workspace->back = (uint8_t *)(workspace->scores[1] + row);
+    workspace->solver = (labial_solver_t *)(void *)stream->workspace;
+    workspace->factors = (int32_t *)(workspace->solver + 1);
     tail -= (LABIAL_WINDOW * 2u + 2u * LABIAL_REACH + 3u) / 4u * 4u;
     workspace->path = tail;
     workspace->labels = tail + LABIAL_WINDOW;
-    tail -= LABIAL_WINDOW * 4u;
-    workspace->component = (uint16_t *)(void *)tail;
-    workspace->share = workspace->component + LABIAL_WINDOW;
     workspace->positions = (int16_t *)(void *)(tail - LABIAL_WINDOW * LABIAL_CHANNELS * 2u);
 }
 
@@ -40,6 +40,25 @@ int16_t *labial_work_frame(labial_t *stream, unsigned i)
 {
     i += stream->ready_head;
     return stream->ready[i < LABIAL_READY + LABIAL_OVERLAP ? i : i - (LABIAL_READY + LABIAL_OVERLAP)];
+}
+
+/*
+ * How much work ticks do on the piece that was found: that of 1.4 of its frames, or as much more as leaves half
+ * a window ready when it is done, which is what the longest next one may take; never more than that of two, which is always
+ * in time, since a piece delivers at least half of its frames.
+ */
+static uint16_t pace_of(const labial_t *stream)
+{
+    const labial_piece_t *piece = &stream->piece;
+    const unsigned frames = piece->length, stride = stream->models[piece->slot]->search_stride;
+    const unsigned channel = (frames + stride - 1u) / stride * LABIAL_COST_SEARCH +
+                             (frames / LABIAL_SOLVE_ROWS + frames / LABIAL_SOLVE_FRAMES + 2u) * LABIAL_COST_SOLVE;
+    const unsigned all = frames * (LABIAL_COST_TARGET + LABIAL_COST_JOIN) + LABIAL_CHANNELS * channel;
+    const unsigned left = stream->ready_count + frames - piece->fade_out;
+    unsigned ticks = 5u * frames / 7u;
+    if (stream->rolling && left < ticks + LABIAL_WINDOW / 2)
+        ticks = left > (frames + LABIAL_WINDOW) / 2u ? left - LABIAL_WINDOW / 2 : frames / 2u;
+    return (uint16_t)(all / (ticks ? ticks : 1u) + 1u);
 }
 
 static int find_piece(labial_t *stream)
@@ -52,7 +71,7 @@ static int find_piece(labial_t *stream)
         return result;
     if (stream->resumed) { /* the pose that was held takes the place of an earlier piece */
         const unsigned own = (unsigned)piece->length - piece->fade_out;
-        piece->fade_in = (uint16_t)(own < LABIAL_CUT_OVERLAP ? own : LABIAL_CUT_OVERLAP);
+        piece->fade_in = (uint16_t)(own < LABIAL_OVERLAP ? own : LABIAL_OVERLAP);
         for (i = 0; i < piece->fade_in; i++)
             for (k = 0; k < LABIAL_CHANNELS; k++)
                 labial_work_frame(stream, i)[k] = (int16_t)(stream->pose[k] * 16);
@@ -60,6 +79,7 @@ static int find_piece(labial_t *stream)
         stream->resumed = 0;
     }
     lay_out(stream, &workspace);
+    stream->pace = pace_of(stream);
     labial_units_labels(stream, piece, workspace.labels);
     stream->segment = (uint16_t)labial_units_first(stream, piece, &stream->segment_end);
     stream->step = 0;
@@ -83,12 +103,10 @@ static void select_shape(labial_t *stream)
     const labial_model_t *model = stream->models[stream->piece.slot];
     const unsigned phoneme = phoneme_of(stream, i), next = phoneme_of(stream, i + 1u),
                    previous = phoneme_of(stream, i > 0 ? i - 1u : LABIAL_QUEUE);
-    stream->component = (uint16_t)labial_shape_select(model, phoneme, segment->ms,
-                                                      model->phonemes[previous].viseme_class,
-                                                      model->phonemes[next].viseme_class, stream->shape);
+    labial_shape_select(model, phoneme, segment->ms, model->phonemes[previous].viseme_class,
+                        model->phonemes[next].viseme_class, stream->shape);
     labial_shape_add_pair(model, phoneme, previous, 0, stream->shape);
     labial_shape_add_pair(model, phoneme, next, 1, stream->shape);
-    stream->share = (uint16_t)(segment->frames > 65536u ? 0u : segment->frames > 1u ? 65536u / segment->frames : 65535u);
     stream->segment_end += segment->frames;
 }
 
@@ -100,8 +118,6 @@ static void set_target(labial_t *stream, const workspace_t *workspace)
         select_shape(stream);
     labial_shape_target(model, stream->shape, workspace->labels + LABIAL_REACH + t,
                         workspace->positions + (size_t)t * LABIAL_CHANNELS);
-    workspace->component[t] = stream->component;
-    workspace->share[t] = stream->share;
     if (++stream->step == stream->piece.length) {
         labial_units_trim(stream);
         stream->stage = LABIAL_STAGE_SEARCH;
@@ -114,31 +130,42 @@ static void search(labial_t *stream, const workspace_t *workspace)
 {
     const labial_model_t *model = stream->models[stream->piece.slot];
     const labial_channel_t *channel = &model->channels[stream->channel];
-    const unsigned t = stream->step, states = model->state_count;
-    const int32_t position = workspace->positions[(size_t)t * LABIAL_CHANNELS + stream->channel];
-    if (t == 0)
-        labial_viterbi_start(channel, states, position, workspace->scores[0]);
+    const unsigned last = stream->piece.length - 1u, stride = model->search_stride, step = stream->step++;
+    const unsigned begin = step * stride, middle = begin + stride / 2u;
+    const int32_t position =
+        workspace->positions[(size_t)(middle < last ? middle : last) * LABIAL_CHANNELS + stream->channel];
+    if (step == 0)
+        labial_viterbi_start(model, channel, position, workspace->scores[0]);
     else
-        labial_viterbi_step(channel, states, position, workspace->scores[(t - 1u) & 1u], workspace->scores[t & 1u],
-                            workspace->back + (size_t)(t - 1u) * states);
-    if (++stream->step == stream->piece.length) {
-        labial_viterbi_path(states, stream->piece.length, workspace->scores[t & 1u], workspace->back,
-                            workspace->path);
+        labial_viterbi_step(model, channel, position, workspace->scores[(step - 1u) & 1u], workspace->scores[step & 1u],
+                            workspace->back + (size_t)(step - 1u) * model->state_count);
+    if (begin + stride > last) {
+        labial_viterbi_path(model, last + 1u, workspace->scores[step & 1u], workspace->back, workspace->path);
+        memset(workspace->solver, 0, sizeof *workspace->solver);
+        stream->step = 0;
         stream->stage = LABIAL_STAGE_SOLVE;
     }
 }
 
 static void solve(labial_t *stream, const workspace_t *workspace)
 {
-    const labial_model_t *model = stream->models[stream->piece.slot];
-    labial_ties_t ties;
-    ties.precisions = model->precisions ? model->precisions + stream->channel : NULL;
-    ties.component = workspace->component;
-    ties.share = workspace->share;
-    labial_trajectory_solve(&model->channels[stream->channel], &ties, workspace->path, stream->piece.length,
-                            workspace->positions + stream->channel, workspace->solver);
-    stream->step = 0;
-    stream->stage = ++stream->channel == LABIAL_CHANNELS ? LABIAL_STAGE_JOIN : LABIAL_STAGE_SEARCH;
+    /* Steps 0 .. length are rows forwards, those after them frames backwards, from the last. */
+    const unsigned length = stream->piece.length, step = stream->step, rows = length + 1u, all = rows + length;
+    int16_t *positions = workspace->positions + stream->channel;
+    unsigned end;
+    if (step < rows) {
+        end = step + LABIAL_SOLVE_ROWS < rows ? step + LABIAL_SOLVE_ROWS : rows;
+        labial_trajectory_forward(workspace->solver, &stream->models[stream->piece.slot]->channels[stream->channel],
+                                  workspace->path, length, positions, step, end, workspace->factors);
+    } else {
+        end = step + LABIAL_SOLVE_FRAMES < all ? step + LABIAL_SOLVE_FRAMES : all;
+        labial_trajectory_backward(workspace->solver, workspace->factors, all - step, all - end, positions);
+    }
+    stream->step = (uint16_t)end;
+    if (end == all) {
+        stream->step = 0;
+        stream->stage = ++stream->channel == LABIAL_CHANNELS ? LABIAL_STAGE_JOIN : LABIAL_STAGE_SEARCH;
+    }
 }
 
 /* Puts one frame behind those that are ready, unless there is no room; returns whether it did. */
@@ -173,9 +200,10 @@ static int join(labial_t *stream, const workspace_t *workspace)
 int labial_work_step(labial_t *stream, unsigned *spent)
 {
     workspace_t workspace;
-    if (stream->stage == LABIAL_STAGE_FIND) {
-        *spent += LABIAL_COST_FIND;
-        return find_piece(stream);
+    if (stream->stage == LABIAL_STAGE_FIND) { /* which ends a tick's work, so that each tick is that of one piece */
+        const int result = find_piece(stream);
+        *spent = stream->pace;
+        return result;
     }
     lay_out(stream, &workspace);
     switch (stream->stage) {
@@ -188,7 +216,7 @@ int labial_work_step(labial_t *stream, unsigned *spent)
         search(stream, &workspace);
         break;
     case LABIAL_STAGE_SOLVE:
-        *spent += LABIAL_COST_SOLVE(stream->piece.length);
+        *spent += LABIAL_COST_SOLVE;
         solve(stream, &workspace);
         break;
     default:

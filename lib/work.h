@@ -12,22 +12,19 @@
 /* Stages of a piece. */
 enum { LABIAL_STAGE_FIND, LABIAL_STAGE_TARGET, LABIAL_STAGE_SEARCH, LABIAL_STAGE_SOLVE, LABIAL_STAGE_JOIN };
 
-/* What a step of each stage takes, in quarters of a Viterbi step of 50 states: estimates for a small core. How even the
- * ticks are depends on their proportions, what they compute does not. */
-#define LABIAL_COST_FIND 1u
-#define LABIAL_COST_TARGET 3u
-#define LABIAL_COST_SEARCH 4u
-#define LABIAL_COST_SOLVE(frames) (1u + (frames) / 2u)
+/* Rows forwards and frames backwards that one step of the solution takes. */
+#define LABIAL_SOLVE_ROWS 4u
+#define LABIAL_SOLVE_FRAMES 16u
+
+/* What a step of each stage takes, in some 350 instructions of a Cortex-M0 with a model of 50 states. How even the ticks
+ * are depends on their proportions, what they compute does not. */
+#define LABIAL_COST_TARGET 10u
+#define LABIAL_COST_SEARCH 12u
+#define LABIAL_COST_SOLVE 7u
 #define LABIAL_COST_JOIN 1u
 
-/* What the shortest pieces take, two frames of which one is delivered. */
-#define LABIAL_COST_PIECE                                                                                   \
-    (LABIAL_COST_FIND +                                                                                     \
-     2u * (LABIAL_COST_TARGET + LABIAL_CHANNELS * LABIAL_COST_SEARCH + LABIAL_COST_JOIN) +                  \
-     LABIAL_CHANNELS * LABIAL_COST_SOLVE(2u))
-
 /*
- * Does one step and adds its cost to `spent`.
+ * Does one step and adds its cost to `spent`; a step that finds a piece uses up what is left.
  *
  * Returns LABIAL_OK; LABIAL_WAITING when it needs phonemes, or room in the ring; LABIAL_DONE.
  */

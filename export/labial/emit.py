@@ -53,8 +53,8 @@ def phoneme_constants(model: ExportedModel) -> List[str]:
 
 def table_bytes(model: ExportedModel) -> Dict[str, int]:
     """Flash bytes of each group of tables on a 32-bit target, without names."""
-    components, states = len(model.cost), model.rows.shape[1] - 1
-    optional = {"contexts": model.contexts, "slopes": model.slopes, "precisions": model.precisions}
+    components, states = len(model.cost), model.edges.shape[1]
+    optional = {"contexts": model.contexts, "slopes": model.slopes}
     return {
         "phonemes": 6 * len(model.phonemes) + 6 * components,
         "shapes": CHANNELS * components,
@@ -63,8 +63,8 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
         "pairs": int(model.pairs.size) + 2 * len(model.pair_keys),
         "floors": 2 * CHANNELS * (len(model.floors) - 1),
         "states": CHANNELS * states * 16,
-        "transitions": 2 * int(model.rows.size) + 2 * sum(len(edges) for edges in model.edges),
-        "descriptors": 24 * CHANNELS + 68,
+        "transitions": 2 * int(model.edges.size),
+        "descriptors": 24 * CHANNELS + 64,
     }
 
 
@@ -113,8 +113,8 @@ extern "C" {{
 
 #define {upper}_FPS {model.fps}
 #define {upper}_PHONEMES {len(model.phonemes)}
-#define {upper}_STATES {model.rows.shape[1] - 1}
-#define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({upper}_STATES)
+#define {upper}_STATES {model.edges.shape[1]}
+#define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({upper}_STATES, {model.search_stride})
 
 /* Phoneme numbers. */
 enum {{
@@ -146,7 +146,7 @@ def source(model: ExportedModel) -> str:
         f"{{ {cost}, {mean}, {width} }}"
         for cost, mean, width in zip(model.cost, model.duration_mean, model.duration_gain))))
     optional = (("contexts", "uint8_t", model.contexts), ("shapes", "int8_t", model.shapes),
-                ("slopes", "int8_t", model.slopes), ("precisions", "uint8_t", model.precisions),
+                ("slopes", "int8_t", model.slopes),
                 ("kernels", "int8_t", model.kernels if model.kernels.size else None),
                 ("pair_keys", "uint16_t", model.pair_keys if len(model.pair_keys) else None),
                 ("pairs", "int8_t", model.pairs if len(model.pair_keys) else None),
@@ -164,11 +164,11 @@ def source(model: ExportedModel) -> str:
             "{ { " + ", ".join(map(str, mean)) + " }, { " + ", ".join(map(str, weight)) + f" }}, {anchor} }}"
             for mean, weight, anchor in zip(
                 model.state_mean[k].tolist(), model.state_weight[k].tolist(), model.state_anchor[k]))))
-        parts.append(_table(f"uint16_t rows_{k}", model.rows[k]))
         parts.append(_table(f"uint16_t edges_{k}", model.edges[k]))
     channels = ",\n".join(
         f"    {{ {model.centre[k]}, {model.shape_scale[k]}, {model.slope_scale[k]}, {model.kernel_scale[k]}, "
-        f"emissions_{k}, states_{k}, rows_{k}, edges_{k} }}"
+        f"{model.pair_scale[k]}, "
+        f"emissions_{k}, states_{k}, edges_{k} }}"
         for k in range(CHANNELS))
     parts.append(f"\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {{\n{channels}\n}};\n")
     names = {name: name if table is not None else "NULL" for name, _, table in optional}
@@ -179,7 +179,9 @@ const labial_model_t {model.name} = {{
     {len(model.cost)}, /* component_count */
     {len(model.phonemes)}, /* phoneme_count */
     {len(model.classes)}, /* class_count */
-    {model.rows.shape[1] - 1}, /* state_count */
+    {model.edges.shape[1]}, /* state_count */
+    {model.edges.shape[2]}, /* predecessors */
+    {model.search_stride}, /* search_stride */
     {model.silence}, /* silence */
     {int(model.soft)}, /* soft */
     {model.kernels.shape[1]}, /* kernel_taps */
@@ -192,7 +194,6 @@ const labial_model_t {model.name} = {{
     {names["contexts"]}, /* contexts */
     shapes,
     {names["slopes"]}, /* slopes */
-    {names["precisions"]}, /* precisions */
     {names["kernels"]}, /* kernels */
     {names["pair_keys"]}, /* pair_keys */
     {names["pairs"]}, /* pairs */
@@ -230,8 +231,8 @@ const labial_names_t {model.name}_names = {{ {len(model.aliases)}, {len(model.ph
 
 def blob(model: ExportedModel) -> bytes:
     """NAME.lbm: the binary form that ``labial_model_load`` reads (``include/labial/blob.h``)."""
-    states = model.rows.shape[1] - 1
-    optional = (model.contexts is not None) | (model.slopes is not None) << 1 | (model.precisions is not None) << 2
+    states, predecessors = model.edges.shape[1:]
+    optional = (model.contexts is not None) | (model.slopes is not None) << 1
     parts: List[bytes] = []
 
     def add(data: bytes) -> None:
@@ -247,23 +248,22 @@ def blob(model: ExportedModel) -> bytes:
     table(model.contexts, "u1")
     table(model.shapes, "i1")
     table(model.slopes, "i1")
-    table(model.precisions, "u1")
     table(model.kernels, "i1")
     table(model.pair_keys, "<u2")
     table(model.pairs, "i1")
     table(model.floors[1:], "<i2")
     for k in range(CHANNELS):
-        add(struct.pack("<hHHH", model.centre[k], model.shape_scale[k], model.slope_scale[k], model.kernel_scale[k]))
+        add(struct.pack("<hHHHHH", model.centre[k], model.shape_scale[k], model.slope_scale[k], model.kernel_scale[k],
+                        model.pair_scale[k], 0))
         add(b"".join(struct.pack("<hHBB", *row) for row in zip(
             model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k])))
         add(b"".join(struct.pack("<hhhBBBB", *mean, *weight, anchor) for mean, weight, anchor in zip(
             model.state_mean[k], model.state_weight[k], model.state_anchor[k])))
-        table(model.rows[k], "<u2")
         table(model.edges[k], "<u2")
     body = struct.pack(
-        "<HHHBBBBBBBBBBHH", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,
-        model.silence, int(model.soft), model.kernels.shape[1], model.kernel_stride, model.kernel_behind, optional,
-        len(model.floors) - 1, len(model.pair_keys), 0,
+        "<HHHBBBBBBBBBBBBH", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,
+        predecessors, model.search_stride, model.silence, int(model.soft), model.kernels.shape[1], model.kernel_stride,
+        model.kernel_behind, optional, len(model.floors) - 1, len(model.pair_keys),
     ) + b"".join(parts)
     return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body
 

@@ -22,6 +22,11 @@ PULL_MAX = 2**30 - 1
 DURATION_Z_MAX = 65535
 EMISSION_Z_MAX = 1023
 
+#: States whose emission costs this much more than the least are passed over by the search, and entered at the highest
+#: cost of a transition.
+BEAM = 96
+LEAP = 255
+
 #: Numbers that the 256 codes of the minifloat weight stand for.
 WEIGHTS = np.array([m if e == 0 else (16 + m) << (e - 1) for e in range(16) for m in range(16)], dtype=np.int64)
 

@@ -8,6 +8,7 @@ from typing import List, Sequence
 import numpy as np
 
 from labial.faps import CHANNELS
+from labial.fixed import COST_SCALE, LEAP
 from labial.model import Model
 from labial.phones import Stream
 from labial.quantise import ExportedModel
@@ -15,14 +16,14 @@ from labial.reference import units
 from labial.reference.shape import targets
 from labial.reference.stream import frame_counts, synthesise
 from labial.reference.tables import ExportedTables, FloatTables
-from labial.reference.viterbi import path_cost, viterbi
+from labial.reference.viterbi import looked_at, path_cost, viterbi
 
 
 @dataclass(frozen=True)
 class Loss:
     """Per channel, (13,): `rms` and `largest` difference between the motions of the float and the exported tables, FAP;
     `extent`, the 1 to 99 percentile range that `rms` is held against, FAP; `path`, nats of likelihood that the exported
-    tables' state paths lose per unit."""
+    tables' state paths lose per piece."""
 
     rms: np.ndarray
     largest: np.ndarray
@@ -60,17 +61,18 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
 
 
 def _path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
-    """(units, 13) nats by which the exported tables' path is less likely than the best, under the float tables."""
+    """(pieces, 13) nats by which the exported tables' path is less likely than the best, under the float tables."""
     numbers, durations = [p for p, _ in stream], [ms for _, ms in stream]
     frames = frame_counts(durations, ideal.fps)
-    wanted = targets(ideal, numbers, durations, frames).position
-    given = targets(tables, numbers, durations, frames).position
+    wanted = targets(ideal, numbers, durations, frames)
+    given = targets(tables, numbers, durations, frames)
+    transition = np.minimum(ideal.transition, LEAP / COST_SCALE)  # the library enters any state at that cost
     lost: List[np.ndarray] = []
     for piece in units.pieces(frames, [bool(ideal.boundary[p]) for p in numbers]):
         span = slice(piece.begin, piece.end)
-        emission = ideal.emission(wanted[span])
-        terms = (emission, ideal.transition, ideal.initial)
+        seen = looked_at(piece.end - piece.begin, ideal.stride)
+        terms = (ideal.emission(wanted[span][seen]), transition, ideal.initial)
         best = path_cost(viterbi(*terms), *terms)
-        taken = path_cost(viterbi(tables.emission(given[span]), tables.transition, tables.initial), *terms)
+        taken = path_cost(tables.search(given[span])[:: ideal.stride], *terms)
         lost.append(taken - best)
     return np.array(lost).reshape(-1, CHANNELS)

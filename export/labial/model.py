@@ -20,7 +20,7 @@ from labial.errors import ModelError
 from labial.faps import CHANNELS
 
 #: Version of the .npz layout.
-FORMAT = 1
+FORMAT = 2
 
 #: Methods a model may be trained with.
 METHODS = ("paper", "labial")
@@ -29,8 +29,8 @@ METHODS = ("paper", "labial")
 KINDS = ("speech", "laughter")
 
 _TEXT = (
-    "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "aliases", "substitutes", "attribution",
-    "training",
+    "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
+    "attribution", "training",
 )  # fmt: skip
 
 
@@ -46,6 +46,7 @@ class Model:
     classes: Tuple[str, ...]  #: V names of viseme classes
     silence: str  #: the label that stands before and after an utterance
     soft: bool  #: shapes are the mixture's conditional mean, not its best component's
+    search_stride: int  #: frames from one state of a path to the next
     phoneme_class: np.ndarray  #: (P,) int64, index into `classes`
     boundary: np.ndarray  #: (P,) bool, units begin and end here
     component_count: np.ndarray  #: (P,) int64, sums to N; components are stored phoneme by phoneme
@@ -54,7 +55,6 @@ class Model:
     duration_variance: np.ndarray  #: (N,) seconds squared
     shape: np.ndarray  #: (N, 13) mean shape at duration_mean, FAP
     slope: np.ndarray  #: (N, 13) FAP per second of duration beyond the mean; zero in the published method
-    precision: np.ndarray  #: (N, 13) that ties the phoneme's frames to the target, 1/FAP^2; 0 in the published method
     log_previous: np.ndarray  #: (N, V) log P(class of the previous phoneme | c), or (N, 0) without context
     log_next: np.ndarray  #: (N, V) log P(class of the next phoneme | c), or (N, 0) without context
     kernel: np.ndarray  #: (P, L, 13) FAP that a phoneme at a tap's lag adds to the target; L = 0 without kernels
@@ -98,6 +98,8 @@ def check(model: Model) -> None:
     _expect(model.kind in KINDS, f"kind is {model.kind!r}, not one of {', '.join(KINDS)}")
     _expect(model.method in METHODS, f"method is {model.method!r}, not one of {', '.join(METHODS)}")
     _expect(isinstance(model.fps, int) and 1 <= model.fps <= 250, "fps is not a whole number from 1 to 250")
+    _expect(isinstance(model.search_stride, int) and 1 <= model.search_stride <= 8,
+            "search_stride is not a whole number from 1 to 8")
     _expect(p > 0 and len(set(model.phonemes)) == p, "phoneme labels are missing or not unique")
     _expect(model.silence in model.phonemes, f"the silence phoneme {model.silence!r} is not a phoneme")
     _expect(context in (0, v), f"context tables have {context} classes, the model {v}")
@@ -110,7 +112,6 @@ def check(model: Model) -> None:
         "duration_variance": (n,),
         "shape": (n, CHANNELS),
         "slope": (n, CHANNELS),
-        "precision": (n, CHANNELS),
         "log_previous": (n, context),
         "log_next": (n, context),
         "kernel": (p, taps, CHANNELS),
@@ -142,8 +143,7 @@ def check(model: Model) -> None:
     _expect(((model.phoneme_class >= 0) & (model.phoneme_class < v)).all(), "a phoneme's viseme class does not exist")
     for name in ("duration_variance", "decode_variance", "state_precision"):
         _expect((getattr(model, name) > 0).all(), f"{name} must be positive")
-    for name in ("precision", "state_anchor"):
-        _expect((getattr(model, name) >= 0).all(), f"{name} must not be negative")
+    _expect((model.state_anchor >= 0).all(), "state_anchor must not be negative")
     _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
     _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
     if taps > 1:

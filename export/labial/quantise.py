@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, Optional, Tuple
 
 import numpy as np
 
@@ -24,13 +24,16 @@ from labial.fixed import (
 from labial.model import Model
 
 #: Version of the tables' meaning.
-FORMAT = 1
+FORMAT = 2
 
 #: The library's limits.
-LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20}
+LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
 
 #: Predecessors that are kept for each state by default.
-DEFAULT_PREDECESSORS = 10
+DEFAULT_PREDECESSORS = 8
+
+#: Steps after which the states of a chain are taken to be as frequent as in the long run.
+STATIONARY_STEPS = 2000
 
 #: Each phoneme's duration deviates at least so much, seconds, that the gain fits its 16 bits.
 _DURATION_DEVIATION_MIN = 0.003
@@ -38,8 +41,8 @@ _DURATION_DEVIATION_MIN = 0.003
 
 @dataclass(frozen=True)
 class ExportedModel:
-    """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, L taps; all arrays int64 that
-    fit the C types; `contexts`, `slopes`, `precisions` are None where the model has no use for them."""
+    """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, K predecessors, L taps; all
+    arrays int64 that fit the C types; `contexts` and `slopes` are None where the model has no use for them."""
 
     name: str
     kind: str
@@ -61,7 +64,6 @@ class ExportedModel:
     contexts: Optional[np.ndarray]  #: (N, 2, V)
     shapes: np.ndarray  #: (N, 13)
     slopes: Optional[np.ndarray]  #: (N, 13)
-    precisions: Optional[np.ndarray]  #: (N, 13)
     kernels: np.ndarray  #: (P, L, 13)
     kernel_stride: int
     kernel_behind: int
@@ -72,7 +74,8 @@ class ExportedModel:
     centre: np.ndarray  #: (13,)
     shape_scale: np.ndarray  #: (13,)
     slope_scale: np.ndarray  #: (13,)
-    kernel_scale: np.ndarray  #: (13,) of kernels and pairs
+    kernel_scale: np.ndarray  #: (13,)
+    pair_scale: np.ndarray  #: (13,)
     emission_mean: np.ndarray  #: (13, Q)
     emission_gain: np.ndarray  #: (13, Q)
     emission_cost: np.ndarray  #: (13, Q)
@@ -80,16 +83,15 @@ class ExportedModel:
     state_mean: np.ndarray  #: (13, Q, 3)
     state_weight: np.ndarray  #: (13, Q, 3) codes
     state_anchor: np.ndarray  #: (13, Q) codes
-    rows: np.ndarray  #: (13, Q + 1)
-    edges: Tuple[np.ndarray, ...]  #: 13 of (E,), predecessor | cost << 8
+    search_stride: int
+    edges: np.ndarray  #: (13, Q, K), 4 * predecessor | cost << 8
 
     def dense_transitions(self) -> np.ndarray:
         """(13, Q, Q) costs [from, to], inf where there is no edge."""
-        states = self.rows.shape[1] - 1
+        states = self.edges.shape[1]
         dense = np.full((CHANNELS, states, states), np.inf)
-        for k in range(CHANNELS):
-            to = np.repeat(np.arange(states), np.diff(self.rows[k]))
-            dense[k, self.edges[k] & 255, to] = self.edges[k] >> 8
+        channel, to, _ = np.indices(self.edges.shape)
+        np.minimum.at(dense, (channel, (self.edges & 255) >> 2, to), self.edges >> 8)
         return dense
 
 
@@ -105,14 +107,12 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     shapes, shape_scale = _steps(model.shape - centre / POSITION_SCALE, 32767, "shapes")
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
     slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
-    curves = np.concatenate([model.kernel.reshape(-1, CHANNELS), model.pair_shape])
-    curves, kernel_scale = _steps(curves, 65535, "kernels and pairs")
-    kernels, pairs = np.split(curves, [len(curves) - len(model.pair_shape)])
+    kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
+    pairs, pair_scale = _steps(model.pair_shape, 65535, "pairs")
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
-    rows, edges = _transitions(model, predecessors)
-    weights, anchors, precisions = _weights(model)
+    weights, anchors = _weights(model)
     aliases = {**model.aliases, **{label: label for label in model.phonemes}}
     return ExportedModel(
         name=name,
@@ -136,8 +136,7 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         contexts=_contexts(model, kept),
         shapes=shapes[kept],
         slopes=slopes[kept] if model.slope.any() else None,
-        precisions=precisions[kept] if model.precision.any() else None,
-        kernels=kernels.reshape(model.kernel.shape),
+        kernels=kernels,
         kernel_stride=int(lags[1] - lags[0]) if len(lags) > 1 else 1,
         kernel_behind=_taps_behind(lags),
         pair_keys=pair_keys[order],
@@ -148,6 +147,7 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         shape_scale=shape_scale,
         slope_scale=slope_scale,
         kernel_scale=kernel_scale,
+        pair_scale=pair_scale,
         emission_mean=_positions(model.decode_mean - centre[:, None] / POSITION_SCALE, "decode_mean"),
         emission_gain=gain(np.sqrt(model.decode_variance) * POSITION_SCALE),
         emission_cost=_costs(-0.5 * np.log(model.decode_variance), 255),
@@ -157,8 +157,8 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         ),
         state_weight=weights,
         state_anchor=anchors,
-        rows=rows,
-        edges=edges,
+        search_stride=model.search_stride,
+        edges=_transitions(model, predecessors),
     )
 
 
@@ -169,6 +169,7 @@ def _check_limits(model: Model) -> None:
         "components": int(np.max(model.component_count)),
         "states": model.log_initial.shape[1],
         "taps": len(model.kernel_lag),
+        "stride": model.search_stride,
         "reach": int(np.abs(model.kernel_lag).max()) if len(model.kernel_lag) else 0,
     }
     for what, count in counts.items():
@@ -251,7 +252,7 @@ def _contexts(model: Model, kept: np.ndarray) -> Optional[np.ndarray]:
 def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
     """First component (P,) of each phoneme among those that are kept (N',): substitutes share their model's."""
     tables = (model.log_weight, model.duration_mean, model.duration_variance, model.shape, model.slope,
-              model.precision, model.log_previous, model.log_next)
+              model.log_previous, model.log_next)
     known: Dict[bytes, int] = {}
     first, kept = [], []
     bounds = model.first_component()
@@ -264,55 +265,62 @@ def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
     return np.array(first, dtype=np.int64), np.array(kept, dtype=np.int64)
 
 
-def _transitions(model: Model, predecessors: int) -> Tuple[np.ndarray, Tuple[np.ndarray, ...]]:
-    """Rows and edges: for each state the likeliest predecessors, itself among them, in ascending order."""
+def _transitions(model: Model, predecessors: int) -> np.ndarray:
+    """Edges (13, Q, K): for each state the predecessors that it is entered from most often, itself among them, in
+    ascending order."""
     states = model.log_initial.shape[1]
-    rows: List[List[int]] = []
-    edges: List[np.ndarray] = []
+    kept_count = min(predecessors, states)
+    edges = np.zeros((CHANNELS, states, kept_count), dtype=np.int64)
     for k in range(CHANNELS):
         cost = np.minimum(np.rint(-COST_SCALE * model.log_transition[k]), 1e9)
-        row, packed = [0], []
+        usage = _stationary(model.log_transition[k])[:, None] * np.exp(model.log_transition[k])
         for q in range(states):
-            order = np.argsort(cost[:, q], kind="stable")
-            kept = [int(p) for p in order[:predecessors] if cost[p, q] <= 255 or p == q]
+            order = np.argsort(-usage[:, q], kind="stable")
+            kept = [int(p) for p in order[:kept_count] if cost[p, q] <= 255 or p == q]
             if q not in kept:
-                kept = kept[: predecessors - 1] + [q]
-            packed += [p | int(min(cost[p, q], 255)) << 8 for p in sorted(kept)]
-            row.append(len(packed))
-        rows.append(row)
-        edges.append(np.array(packed, dtype=np.int64))
-    return np.array(rows, dtype=np.int64), tuple(edges)
+                kept = kept[: kept_count - 1] + [q]
+            kept += [kept[-1]] * (kept_count - len(kept))
+            edges[k, q] = [4 * p | int(min(cost[p, q], 255)) << 8 for p in sorted(kept)]
+    return edges
 
 
-def _weights(model: Model) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Codes of the states' weights (13, Q, 3) and anchors (13, Q), and of the components' precisions (N, 13).
+def _stationary(log_transition: np.ndarray) -> np.ndarray:
+    """(Q,) how often a chain of these transitions (Q, Q) is in each state, in the long run."""
+    share = np.full(len(log_transition), 1.0 / len(log_transition))
+    step = np.exp(log_transition)
+    for _ in range(STATIONARY_STEPS):
+        share = 0.5 * (share + share @ step)  # half a step, so that chains which alternate settle too
+        share /= share.sum()
+    return share
+
+
+def _weights(model: Model) -> Tuple[np.ndarray, np.ndarray]:
+    """Codes of the states' weights (13, Q, 3) and anchors (13, Q).
 
     Each channel's precisions are scaled as high as equation 3's bounds let them; what would then hold a frame by less
     than WEIGHT_MIN is raised to it.
     """
     weights = np.zeros(model.state_precision.shape, dtype=np.int64)
     anchors = np.zeros(model.state_anchor.shape, dtype=np.int64)
-    ties = np.zeros(model.precision.shape, dtype=np.int64)
     for k in range(CHANNELS):
         precision = model.state_precision[k] * np.array([1.0, 0.25, 1.0])
         mean = np.abs(np.rint(model.state_mean[k] * POSITION_SCALE))
-        scale = 1.0 / _fill(precision, model.state_anchor[k], model.precision[:, k], mean)
+        scale = 1.0 / _fill(precision, model.state_anchor[k], mean)
         while True:
             weights[k] = weight_code(precision * scale)
             anchors[k] = weight_code(model.state_anchor[k] * scale)
-            ties[:, k] = weight_code(model.precision[:, k] * scale)
             short = weight_value(weights[k, :, 0]) + weight_value(anchors[k]) < WEIGHT_MIN
             weights[k, short, 0] = weight_code(np.array(WEIGHT_MIN))
-            if _fill(weight_value(weights[k]), weight_value(anchors[k]), weight_value(ties[:, k]), mean) <= 1.0:
+            if _fill(weight_value(weights[k]), weight_value(anchors[k]), mean) <= 1.0:
                 break
             scale *= 0.99
-    return weights, anchors, ties
+    return weights, anchors
 
 
-def _fill(weights: np.ndarray, anchors: np.ndarray, ties: np.ndarray, mean: np.ndarray) -> float:
-    """How much of equation 3's bounds a channel's weights (Q, 3), anchors (Q,) and ties (N,) use, the larger of two
-    shares; `mean` (Q, 3) in positions."""
-    held = (weights[:, 0] + anchors).max() + ties.max()
+def _fill(weights: np.ndarray, anchors: np.ndarray, mean: np.ndarray) -> float:
+    """How much of equation 3's bounds a channel's weights (Q, 3) and anchors (Q,) use, the larger of two shares;
+    `mean` (Q, 3) in positions."""
+    held = (weights[:, 0] + anchors).max()
     diagonal = held + 2 * weights[:, 1].max() + 6 * weights[:, 2].max()
     pull = held * POSITION_MAX + 4 * (weights * mean)[:, 1].max() + 4 * (weights * mean)[:, 2].max()
     return max(float(diagonal) / WEIGHT_SUM_MAX, float(pull) / PULL_MAX)

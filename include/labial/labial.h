@@ -38,19 +38,21 @@ extern "C" {
 
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
 
-/* Frames that one unit is decoded in; a longer unit is cut and chained. Costs 26 + states + 6 bytes of workspace each. */
+/* Most frames that are decoded at once; a longer unit is cut and chained. Costs 28 + states / stride bytes of workspace
+ * each. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 40
 #endif
 
-/* Most frames over which two units are cross-faded; half of the window at most. */
-#ifndef LABIAL_OVERLAP
-#define LABIAL_OVERLAP 16
+/* Short units are decoded together until they have so many frames, or no further one fits the window. More gives fewer
+ * joins and less work, less is less latency; 1 decodes every unit by itself. LABIAL_WINDOW at most. */
+#ifndef LABIAL_PIECE
+#define LABIAL_PIECE 16
 #endif
 
-/* Frames over which the pieces of a cut unit, and two models, are cross-faded; LABIAL_OVERLAP at most. */
-#ifndef LABIAL_CUT_OVERLAP
-#define LABIAL_CUT_OVERLAP 8
+/* Most frames over which two pieces, or two models, are cross-faded; half of the window at most. */
+#ifndef LABIAL_OVERLAP
+#define LABIAL_OVERLAP 8
 #endif
 
 /* Farthest tap of a model's kernels, in frames, to either side. Costs 18 bytes each. */
@@ -60,7 +62,7 @@ extern "C" {
 
 /* Frames that are held ready at most; half of the window at least. Costs 26 bytes each. */
 #ifndef LABIAL_READY
-#define LABIAL_READY 32
+#define LABIAL_READY 30
 #endif
 
 /* Frames that are ready before the first is delivered, unless input is short. Half of the window and no less is enough
@@ -77,7 +79,7 @@ extern "C" {
 
 /* Phonemes that can be held. So many that a window of one-frame phonemes, what the kernels reach beyond it and the
  * neighbours that give context always fit; no sequence of pushes can stall the stream. */
-#define LABIAL_QUEUE (LABIAL_WINDOW + 2 * LABIAL_REACH + LABIAL_CUT_OVERLAP + 4)
+#define LABIAL_QUEUE (LABIAL_WINDOW + 2 * LABIAL_REACH + LABIAL_OVERLAP + 4)
 
 /* Longest duration of one phoneme, milliseconds: one hour. */
 #define LABIAL_DURATION_MAX 3600000u
@@ -128,7 +130,7 @@ typedef struct {
     uint8_t slot;     /* model it belongs to */
 } labial_segment_t;
 
-/* Part of the input that is decoded at once: a unit, or a piece of one that was cut. Private. */
+/* Part of the input that is decoded at once: a unit, several, or part of one that was cut. Private. */
 typedef struct {
     uint32_t begin;    /* first frame, counted from the start of the queue's oldest segment */
     uint16_t length;   /* frames, 1 .. LABIAL_WINDOW */
@@ -137,67 +139,68 @@ typedef struct {
     uint8_t slot;      /* model it is decoded with */
 } labial_piece_t;
 
-/* The stream's state. Its members are private; it is declared here so that it can be allocated statically. */
+/* The stream's state. Its members are private; it is declared here so that it can be allocated statically. Small members
+ * come first, where small instructions reach them. */
 typedef struct {
-    uint32_t magic; /* set while the stream is initialised */
-    const labial_model_t *models[LABIAL_MODELS];
-    labial_frame_fn callback;
-    void *user;
-    uint8_t *workspace;
-    uint32_t workspace_size;
-
-    /* units: the queue of phonemes, with those still needed as context in front */
-    labial_segment_t queue[LABIAL_QUEUE];
-    uint32_t queue_frames; /* of all segments held */
-    uint32_t next_begin;   /* first frame of the next piece, counted from the start of the oldest segment */
-    uint16_t next_fade_in; /* frames it shares with the piece before */
-    uint16_t queue_head;
-    uint16_t queue_count;
-    uint16_t remainder; /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
-    uint8_t slot;       /* model of the next push */
-    uint8_t ended;      /* no more phonemes will come */
-
-    /* the piece being decoded, and where the work on it stands */
-    labial_piece_t piece;
-    uint32_t segment_end; /* target: end of the segment whose shape is held */
-    uint16_t segment;     /* target: next segment, counted from the oldest */
-    uint16_t step;        /* frame within the stage */
-    uint16_t component;   /* target: best component of the held shape */
-    uint16_t share;       /* target: 1/frames of the segment, Q16 */
-    int16_t shape[LABIAL_CHANNELS]; /* target: the held shape, positions */
-    uint8_t stage;
-    uint8_t channel;
-    uint16_t overspent; /* work that earlier ticks did beyond their share */
-
-    /* frames that are solved, Q4 FAP: `ready_count` that can be played, then `held_count` that the next piece fades
-     * into */
-    int16_t ready[LABIAL_READY + LABIAL_OVERLAP][LABIAL_CHANNELS];
-    uint16_t ready_head;
-    uint16_t ready_count;
-    uint16_t held_count;
-
-    /* playing */
-    int16_t pose[LABIAL_CHANNELS]; /* FAPs of the frame delivered last, from which easing starts */
-    uint32_t frame;                /* number of the next frame */
-    uint32_t pending;              /* frames pushed and not yet delivered */
-    uint16_t ease_length;          /* frames of easing back to neutral; 0 when the stream does not ease */
-    uint16_t ease_step;
+    uint32_t magic;  /* set while the stream is initialised */
+    uint8_t slot;    /* model of the next push */
+    uint8_t ended;   /* no more phonemes will come */
+    uint8_t stage;   /* of the work on the piece */
+    uint8_t channel; /* and where it stands */
     uint8_t begun;   /* a frame was delivered since the stream was initialised or taken up again */
     uint8_t rolling; /* enough frames were ready; cleared when they run out */
     uint8_t resumed; /* the first piece fades in from `pose` */
+
+    labial_piece_t piece; /* being decoded */
+    uint16_t step;        /* within the stage */
+    uint16_t segment;     /* target: next segment, counted from the oldest */
+    uint16_t pace;        /* work that each tick does on the piece */
+    uint16_t overspent;   /* work that earlier ticks did beyond their share */
+
+    uint16_t queue_head;
+    uint16_t queue_count;
+    uint16_t next_fade_in; /* frames that the next piece shares with the one before */
+    uint16_t remainder;    /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
+
+    uint16_t ready_head;
+    uint16_t ready_count; /* frames that can be played */
+    uint16_t held_count;  /* frames behind them that the next piece fades into */
+    uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
+    uint16_t ease_step;
+
+    uint32_t queue_frames; /* of all segments held */
+    uint32_t next_begin;   /* first frame of the next piece, counted from the start of the oldest segment */
+    uint32_t segment_end;  /* target: end of the segment whose shape is held */
+    uint32_t frame;        /* number of the next frame */
+    uint32_t pending;      /* frames pushed and not yet delivered */
+
+    uint32_t workspace_size;
+    uint8_t *workspace;
+    const labial_model_t *models[LABIAL_MODELS];
+    labial_frame_fn callback;
+    void *user;
+
+    int16_t shape[LABIAL_CHANNELS]; /* target: the held shape, positions */
+    int16_t pose[LABIAL_CHANNELS];  /* FAPs of the frame delivered last, from which easing starts */
+    labial_segment_t queue[LABIAL_QUEUE]; /* phonemes, with those still needed as context in front */
+    int16_t ready[LABIAL_READY + LABIAL_OVERLAP][LABIAL_CHANNELS]; /* frames that are solved, Q4 FAP */
 } labial_t;
 
 /*
- * Bytes of workspace for models of up to `states` codebook entries, a multiple of four; a constant expression when
- * `states` is one. It holds, in this order: two rows of Viterbi scores; the back-pointers, whose memory the trajectory
- * solver uses in its turn; per frame of the window the trajectory, the component and its share; the state path; the
- * phonemes of the window and of what the kernels reach.
+ * Bytes of workspace for models of up to `states` codebook entries of which one is searched every `stride` frames, a
+ * multiple of four; a constant expression when both are. It holds, in this order: two rows of Viterbi scores and the
+ * back-pointers, whose memory the trajectory solver uses in its turn; for each frame of the window the target, which
+ * becomes the trajectory; the state path; the phonemes of the window and of what the kernels reach.
  */
-#define LABIAL_WORKSPACE_SIZE(states)                                                                 \
-    (((8u * (uint32_t)(states)) +                                                                     \
-      (uint32_t)LABIAL_WINDOW * ((uint32_t)(states) > 12u ? (uint32_t)(states) : 12u) + 3u) / 4u * 4u + \
-     (uint32_t)LABIAL_WINDOW * (2u * LABIAL_CHANNELS + 4u) +                                          \
+#define LABIAL_WORKSPACE_SIZE(states, stride)                                                              \
+    ((LABIAL_SEARCH_SIZE_(states, stride) > LABIAL_SOLVER_SIZE_ ? LABIAL_SEARCH_SIZE_(states, stride)      \
+                                                                : LABIAL_SOLVER_SIZE_) +                   \
+     (uint32_t)LABIAL_WINDOW * 2u * LABIAL_CHANNELS +                                                      \
      ((uint32_t)LABIAL_WINDOW * 2u + 2u * (uint32_t)LABIAL_REACH + 3u) / 4u * 4u)
+#define LABIAL_SEARCH_SIZE_(states, stride)                                                                \
+    (8u * ((uint32_t)(states) + 1u) +                                                                      \
+     (((uint32_t)LABIAL_WINDOW - 1u) / (uint32_t)(stride) * (uint32_t)(states) + 3u) / 4u * 4u)
+#define LABIAL_SOLVER_SIZE_ (60u + 12u * (uint32_t)LABIAL_WINDOW)
 
 /* The same for a given model; 0 for a null pointer. */
 uint32_t labial_workspace_size(const labial_model_t *model);
@@ -208,19 +211,20 @@ uint32_t labial_workspace_size(const labial_model_t *model);
  * `workspace` is aligned to four bytes and has at least labial_workspace_size() bytes of the largest model that the
  * stream will use; it belongs to the stream until it is initialised anew or no longer used.
  *
- * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_WORKSPACE, or what labial_model_check() says. After an error the
- * stream is unusable until it is initialised successfully.
+ * The model is trusted: one that was compiled in, or that labial_model_load() or labial_model_check() accepted.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_WORKSPACE. After an error the stream is
+ * unusable until it is initialised successfully.
  */
 int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, size_t workspace_size,
                 labial_frame_fn callback, void *user);
 
 /*
  * Makes the next pushes phonemes of `model`, speech or laughter; where the stream passes from one model to the other,
- * both are decoded for LABIAL_CUT_OVERLAP frames, each taking the other's phonemes for silence, and cross-faded.
+ * both are decoded for LABIAL_OVERLAP frames, each taking the other's phonemes for silence, and cross-faded.
  *
- * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_RATE,
- * LABIAL_ERROR_WORKSPACE (the model has more states than the workspace holds), LABIAL_ERROR_MODELS, or what
- * labial_model_check() says.
+ * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
+ * LABIAL_ERROR_RATE, LABIAL_ERROR_WORKSPACE (it is too small for the model) or LABIAL_ERROR_MODELS.
  */
 int labial_use(labial_t *stream, const labial_model_t *model);
 
@@ -244,9 +248,9 @@ unsigned labial_room(const labial_t *stream);
 int labial_end(labial_t *stream);
 
 /*
- * Call once per frame period. Does a bounded share of the work on the frames to come - that of decoding two frames,
- * the most that a frame can cost on average - and delivers the next frame when there is one. While phonemes are pushed
- * early enough, no frame is late; after a shortage LABIAL_PREROLL frames are gathered again.
+ * Call once per frame period. Does a bounded share of the work on the frames to come - that of decoding two frames at
+ * most, and mostly less - and delivers the next frame when there is one. While phonemes are pushed early enough, no frame
+ * is late; after a shortage LABIAL_PREROLL frames are gathered again.
  *
  * Returns LABIAL_OK when the callback was called, once; LABIAL_WAITING, LABIAL_STARVED, LABIAL_BUSY or LABIAL_DONE when
  * there was nothing to deliver; LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.

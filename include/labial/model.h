@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* Version of the tables' meaning. A generated model of another version does not compile, a binary one is refused. */
-#define LABIAL_MODEL_FORMAT 1
+#define LABIAL_MODEL_FORMAT 2
 
 /* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
 #define LABIAL_CHANNELS 13
@@ -35,6 +35,7 @@ extern "C" {
 #define LABIAL_PHONEME_COMPONENTS_MAX 8  /* mixture components of one phoneme */
 #define LABIAL_STATES_MAX 64             /* codebook entries of one channel */
 #define LABIAL_KERNEL_TAPS_MAX 32        /* taps of one temporal kernel */
+#define LABIAL_SEARCH_STRIDE_MAX 8       /* frames that share a state */
 #define LABIAL_NO_FLOOR (-16384)         /* in `floors`: below every position */
 #define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
 #define LABIAL_WEIGHT_SUM_MAX 262143     /* the largest diagonal element that equation 3 may have */
@@ -72,18 +73,18 @@ typedef struct {
     uint8_t anchor;    /* precision that ties the frame to its target; 0 in the published method */
 } labial_state_t;
 
-/* One channel's scales and its hidden Markov model. Transitions are lists of predecessors: those of state q are
- * edges[rows[q]] .. edges[rows[q + 1] - 1], each the predecessor in the low and the transition's cost in the high
- * byte. Every state has at least one. */
+/* One channel's scales and its hidden Markov model. Each state has as many possible predecessors as the model says, in
+ * ascending order, repeated where there are fewer: four times the predecessor in the low byte of an edge, the
+ * transition's cost in the high one. */
 typedef struct {
     int16_t centre;        /* Q4 FAP: added to every position on output */
     uint16_t shape_scale;  /* positions per step of `shapes`, Q8; at most 32767 */
     uint16_t slope_scale;  /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
-    uint16_t kernel_scale; /* positions per step of `kernels` and `pairs`, Q8 */
+    uint16_t kernel_scale; /* positions per step of `kernels`, Q8 */
+    uint16_t pair_scale;   /* positions per step of `pairs`, Q8 */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
-    const uint16_t *rows;               /* state_count + 1 */
-    const uint16_t *edges;              /* rows[state_count] */
+    const uint16_t *edges;              /* state_count x predecessors */
 } labial_channel_t;
 
 /* A model. Arrays are row-major in the order given; those marked optional may be null. */
@@ -94,6 +95,9 @@ typedef struct {
     uint8_t phoneme_count;      /* P: 1 .. LABIAL_PHONEMES_MAX */
     uint8_t class_count;        /* V: 1 .. LABIAL_CLASSES_MAX */
     uint8_t state_count;        /* Q: 1 .. LABIAL_STATES_MAX */
+    uint8_t predecessors;       /* K: 1 .. LABIAL_STATES_MAX */
+    uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the targets of the middle one,
+                                 * or the later of two, are what the search sees */
     uint8_t silence;            /* the phoneme that stands before, after and for what is another model's */
     uint8_t soft;               /* 1: shapes are the mixture's mean; 0: those of its best component (equation 2) */
     uint8_t kernel_taps;        /* L: 0 .. LABIAL_KERNEL_TAPS_MAX; 0 without temporal kernels */
@@ -106,11 +110,10 @@ typedef struct {
     const uint8_t *contexts;   /* N x 2 x V, cost of the previous and of the next phoneme's class; optional */
     const int8_t *shapes;      /* N x 13, mean shape in steps of shape_scale */
     const int8_t *slopes;      /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
-    const uint8_t *precisions; /* N x 13, weight with which the phoneme ties its frames to the target; optional */
     const int8_t *kernels;     /* P x L x 13, in steps of kernel_scale; null when L is 0 */
     const uint16_t *pair_keys; /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one; null
                                 * when R is 0 */
-    const int8_t *pairs;       /* R x 13, what such a neighbour adds to the phoneme's shape, in steps of kernel_scale */
+    const int8_t *pairs;       /* R x 13, what such a neighbour adds to the phoneme's shape, in steps of pair_scale */
     const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below: how p, b, m close the
                                 * lips whatever their neighbours do; LABIAL_NO_FLOOR where none; null when F is 0 */
     const labial_channel_t *channels; /* 13 */

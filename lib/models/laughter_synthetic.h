@@ -9,7 +9,7 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-#if LABIAL_MODEL_FORMAT != 1
+#if LABIAL_MODEL_FORMAT != 2
 #error "laughter_synthetic was exported for another version of Labial: run labial export again."
 #endif
 
@@ -20,7 +20,7 @@ extern "C" {
 #define LAUGHTER_SYNTHETIC_FPS 50
 #define LAUGHTER_SYNTHETIC_PHONEMES 12
 #define LAUGHTER_SYNTHETIC_STATES 50
-#define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(LAUGHTER_SYNTHETIC_STATES)
+#define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(LAUGHTER_SYNTHETIC_STATES, 3)
 
 /* Phoneme numbers. */
 enum {
@@ -38,7 +38,7 @@ enum {
     LAUGHTER_SYNTHETIC_A = 11
 };
 
-/* The model, 31414 bytes on a 32-bit target. */
+/* The model, 27322 bytes on a 32-bit target. */
 extern const labial_model_t laughter_synthetic;
 
 /* Its labels and aliases; linked only when used. */

@@ -8,7 +8,7 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-#if LABIAL_MODEL_FORMAT != 1
+#if LABIAL_MODEL_FORMAT != 2
 #error "speech_en was exported for another version of Labial: run labial export again."
 #endif
 
@@ -19,7 +19,7 @@ extern "C" {
 #define SPEECH_EN_FPS 50
 #define SPEECH_EN_PHONEMES 40
 #define SPEECH_EN_STATES 50
-#define SPEECH_EN_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(SPEECH_EN_STATES)
+#define SPEECH_EN_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(SPEECH_EN_STATES, 3)
 
 /* Phoneme numbers. */
 enum {
@@ -65,7 +65,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 49604 bytes on a 32-bit target. */
+/* The model, 43164 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

@@ -73,7 +73,7 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     """Tables of another version must not be linked by accident."""
     emit.write(quantise(random_model(2), "some_model"), tmp_path)
     header = tmp_path / "some_model.h"
-    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 1", "LABIAL_MODEL_FORMAT != 2"))
+    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 2", "LABIAL_MODEL_FORMAT != 3"))
     done = subprocess.run([compiler(), "-std=c99", f"-I{library_root() / 'include'}", "-fsyntax-only",
                            str(tmp_path / "some_model.c")], capture_output=True, text=True)
     assert done.returncode != 0 and "run labial export again" in done.stderr
@@ -96,7 +96,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 }
 int main(int argc, char **argv)
 {
-    static uint32_t data[65536], workspace[LABIAL_WORKSPACE_SIZE(64) / 4];
+    static uint32_t data[65536], workspace[LABIAL_WORKSPACE_SIZE(64, 1) / 4];
     static labial_t stream;
     labial_blob_t blob;
     unsigned phoneme, ms;
@@ -138,7 +138,7 @@ int main(void)
 }
 """)
     done = subprocess.run([str(build(tmp_path, "main.c", "some_model.c"))], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == [str(workspace_bytes(12)), str(workspace_bytes(12)), "16", "6"]
+    assert done.stdout.split() == [str(workspace_bytes(12, 2)), str(workspace_bytes(12, 2)), "16", "6"]
 
 
 def test_compiler_errors_are_reported(tmp_path: Path) -> None:

@@ -56,8 +56,8 @@ def test_widening_scales_targets_about_the_mean_pose() -> None:
     model = dataclasses.replace(random_model(4), floor=np.full((9, CHANNELS), -np.inf))
     gain = np.linspace(0.5, 2.0, CHANNELS)
     asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
-    before = targets(FloatTables(model), *asked).position
-    after = targets(FloatTables(widened(model, gain)), *asked).position
+    before = targets(FloatTables(model), *asked)
+    after = targets(FloatTables(widened(model, gain)), *asked)
     centre = mean_pose(model)
     assert np.allclose(after, centre + (before - centre) * gain)
     assert np.ptp(before, axis=0).min() > 1

@@ -36,8 +36,7 @@ def test_equation_3_stays_within_the_solvers_bounds(method: str) -> None:
     """Beyond them the library's 32-bit numbers overflow."""
     exported = quantise(random_model(3, method), "model")
     weight, anchor = weight_value(exported.state_weight), weight_value(exported.state_anchor)
-    tie = weight_value(exported.precisions).max(axis=0) if exported.precisions is not None else np.zeros(13)
-    held = (weight[..., 0] + anchor).max(axis=1) + tie
+    held = (weight[..., 0] + anchor).max(axis=1)
     pulls = (weight * np.abs(exported.state_mean)).max(axis=1)
     assert ((weight[..., 0] + anchor) >= WEIGHT_MIN).all()
     assert (held + 2 * weight[..., 1].max(axis=1) + 6 * weight[..., 2].max(axis=1) <= WEIGHT_SUM_MAX).all()
@@ -49,7 +48,8 @@ def test_every_table_fits_its_c_type() -> None:
     exported = quantise(random_model(4), "model")
     ranges = {
         "cost": (0, 65535), "duration_mean": (0, 65535), "duration_gain": (1, 65535), "contexts": (0, 255),
-        "slopes": (-127, 127), "precisions": (0, 255), "kernels": (-127, 127), "slope_scale": (0, 16383),
+        "slopes": (-127, 127), "pairs": (-127, 127), "pair_scale": (0, 65535),
+        "kernels": (-127, 127), "slope_scale": (0, 16383),
         "kernel_scale": (0, 65535), "centre": (-16383, 16383), "emission_mean": (-16383, 16383),
         "emission_gain": (1, 65535), "emission_cost": (0, 255), "initial": (0, 255), "state_mean": (-16383, 16383),
         "state_weight": (0, 255), "state_anchor": (0, 255), "shapes": (-127, 127), "shape_scale": (0, 32767),
@@ -63,7 +63,7 @@ def test_substitutes_share_components() -> None:
     """Phonemes that stand in for each other must not cost flash twice."""
     model = random_model(5)
     arrays = {}
-    tables = "log_weight duration_mean duration_variance shape slope precision log_previous log_next"
+    tables = "log_weight duration_mean duration_variance shape slope log_previous log_next"
     for name in tables.split():
         array = getattr(model, name).copy()
         array[3:6] = array[0:3]
@@ -76,10 +76,30 @@ def test_substitutes_share_components() -> None:
 def test_keeps_the_asked_number_of_predecessors_and_always_the_state_itself() -> None:
     """Without its own state as predecessor a state could not be held."""
     exported = quantise(random_model(6), "model", predecessors=4)
-    for k in range(13):
-        for q in range(12):
-            row = exported.edges[k][exported.rows[k][q] : exported.rows[k][q + 1]]
-            assert 1 <= len(row) <= 4 and q in (row & 255) and (np.diff(row & 255) > 0).all()
+    assert exported.edges.shape == (13, 12, 4) and not (exported.edges & 3).any()
+    predecessor = (exported.edges & 255) >> 2
+    assert (predecessor == np.arange(12)[:, None]).any(axis=2).all() and (np.diff(predecessor) > 0).all()
+
+
+def test_fewer_predecessors_than_asked_for_are_repeated() -> None:
+    """The library reads the same number for every state: what stands there must be a transition that exists."""
+    model = random_model(6)
+    rare = np.where(np.eye(12, dtype=bool) | np.eye(12, k=1, dtype=bool), model.log_transition, -np.inf)
+    exported = quantise(dataclasses.replace(model, log_transition=rare), "model", predecessors=4)
+    dense = exported.dense_transitions()
+    assert (np.isfinite(dense) == np.isfinite(rare)).all()
+    np.testing.assert_array_equal(exported.edges[:, 0, 1:], np.repeat(exported.edges[:, 0, :1], 3, axis=1))
+
+
+def test_keeps_the_predecessors_that_are_used_most() -> None:
+    """A likely transition from a state that never occurs is worth less than an unlikely one from where the chain is."""
+    model = random_model(6, states=3)
+    step = np.array([[0.98, 0.0, 0.02], [0.0, 0.1, 0.9], [0.5, 0.001, 0.499]])
+    step /= step.sum(axis=1, keepdims=True)
+    with np.errstate(divide="ignore"):
+        logs = np.broadcast_to(np.log(step), (13, 3, 3))
+    exported = quantise(dataclasses.replace(model, log_transition=logs), "model", predecessors=2)
+    np.testing.assert_array_equal((exported.edges[0, 2] & 255) >> 2, [0, 2])
 
 
 def test_quantisation_loss_is_small_where_paths_agree() -> None:

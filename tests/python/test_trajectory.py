@@ -69,8 +69,8 @@ def test_anchor_pulls_to_the_target() -> None:
     assert np.allclose(solve(strong), item.target, atol=1e-3)
 
 
-def test_join_crosses_shared_frames_linearly() -> None:
-    """Frames of one piece are its own; shared ones move from the old to the new in equal steps."""
+def test_join_crosses_shared_frames_smoothly() -> None:
+    """Frames of one piece are its own; shared ones go from the old to the new along 3 s^2 - 2 s^3."""
     pieces = [Piece(0, 6, 0, 3), Piece(3, 9, 3, 0)]
     joined = join(pieces, [np.zeros((6, 1)), np.full((6, 1), 4.0)])
-    assert joined[:, 0].tolist() == [0, 0, 0, 1, 2, 3, 4, 4, 4]
+    assert joined[:, 0].tolist() == [0, 0, 0, 0.625, 2, 3.375, 4, 4, 4]

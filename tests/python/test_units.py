@@ -6,13 +6,31 @@ import numpy as np
 import pytest
 
 from labial.reference.stream import frame_counts
-from labial.reference.units import CUT_OVERLAP, OVERLAP, Piece, pieces, whole
+from labial.reference.units import OVERLAP, PIECE, Piece, pieces, whole
 from models import random_model, streams
 
 
 def test_units_run_from_boundary_to_boundary_inclusive() -> None:
     """V-C-V: each vowel belongs to the unit that it ends and to the one that it begins."""
-    assert pieces([4, 3, 5, 2, 6], [True, False, True, False, True]) == [Piece(0, 12, 0, 5), Piece(7, 20, 5, 0)]
+    assert pieces([4, 9, 5, 2, 6], [True, False, True, False, True]) == [Piece(0, 18, 0, 5), Piece(13, 26, 5, 0)]
+
+
+def test_short_units_are_decoded_together() -> None:
+    """A piece ends with the first unit that gives it PIECE frames; every unit by itself would join twice as often."""
+    assert PIECE == 16
+    found = pieces([4, 3, 4, 3, 4, 3, 5, 20], [True, False] * 4)
+    assert found == [Piece(0, 18, 0, 4), Piece(14, 46, 4, 0)]
+
+
+def test_a_piece_ends_with_the_last_unit_that_fits() -> None:
+    """Eleven frames are few, but with the next unit it would be more than the window, and that one would be cut."""
+    found = pieces([4, 3, 4, 35, 5], [True, False, True, False, True])
+    assert found[0] == Piece(0, 11, 0, 4) and found[1].begin == 7
+
+
+def test_all_that_is_left_is_one_piece() -> None:
+    """The end of the stream ends the piece, not a short unit before it."""
+    assert pieces([4, 3, 4, 3, 2], [True, False, True, False, False]) == [Piece(0, 16, 0, 0)]
 
 
 def test_consonant_clusters_stay_in_one_unit() -> None:
@@ -26,7 +44,7 @@ def test_first_and_last_phoneme_are_boundaries() -> None:
 
 
 def test_a_long_pause_is_cut_into_chained_pieces() -> None:
-    """Nothing is dropped: the pieces cover the pause and share CUT_OVERLAP frames."""
+    """Nothing is dropped: the pieces cover the pause and share OVERLAP frames."""
     found = pieces([100], [False])
     assert found == [Piece(0, 40, 0, 8), Piece(32, 72, 8, 8), Piece(64, 100, 8, 0)]
 
@@ -55,7 +73,7 @@ def test_pieces_cover_every_frame_once_or_twice(seed: int) -> None:
             assert 0 < after.end - after.begin <= 40
             assert after.fade_in + after.fade_out <= after.end - after.begin
             assert after.fade_in == (before.end - after.begin if before else 0)
-            assert after.fade_in == (before.fade_out if before else 0) <= max(OVERLAP, CUT_OVERLAP)
+            assert after.fade_in == (before.fade_out if before else 0) <= OVERLAP
         assert cover.size == 0 or (cover.min() >= 1 and cover.max() <= 2)
 
 

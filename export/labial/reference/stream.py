@@ -12,7 +12,6 @@ from labial.reference import units
 from labial.reference.shape import targets
 from labial.reference.tables import Tables
 from labial.reference.trajectory import join, solve
-from labial.reference.viterbi import viterbi
 
 #: Longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
@@ -33,7 +32,7 @@ def synthesise(tables: Tables, phonemes: Sequence[Tuple[int, int]], *, whole: bo
                window: int = units.WINDOW) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
 
-    Decodes unit by unit, as the library does, or with `whole` the utterance at once.
+    Decodes piece by piece, as the library does, or with `whole` the utterance at once.
     """
     for number, milliseconds in phonemes:
         if not 0 <= number < len(tables.phonemes):
@@ -50,8 +49,7 @@ def synthesise(tables: Tables, phonemes: Sequence[Tuple[int, int]], *, whole: bo
     target = targets(tables, numbers, durations, frames)
     motion = []
     for piece in cut:
-        span = slice(piece.begin, piece.end)
-        positions = target.position[span]
-        path = viterbi(tables.emission(positions), tables.transition, tables.initial)
-        motion.append(solve(tables.equation(path, positions, target.component[span], target.frames[span])))
+        positions = target[piece.begin : piece.end]
+        path = tables.search(positions)
+        motion.append(solve(tables.equation(path, positions)))
     return join(cut, motion)

@@ -7,14 +7,15 @@ centre with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap` a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Tuple, Union
+from typing import Union
 
 import numpy as np
 
 from labial.faps import CHANNELS
-from labial.fixed import DURATION_Z_MAX, EMISSION_Z_MAX, POSITION_MAX, rounded_shift, weight_value, z_cost
+from labial.fixed import BEAM, DURATION_Z_MAX, EMISSION_Z_MAX, LEAP, POSITION_MAX, rounded_shift, weight_value, z_cost
 from labial.model import Model
 from labial.quantise import ExportedModel
+from labial.reference.viterbi import decode
 
 #: Durations farther than this many standard deviations from a component's mean change its shape no more.
 SLOPE_LIMIT = 3.0
@@ -44,13 +45,14 @@ class FloatTables:
         self.boundary = np.asarray(model.boundary, dtype=bool)
         self.viseme_class = np.asarray(model.phoneme_class)
         self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
+        self.stride = model.search_stride
         self.initial = -np.asarray(model.log_initial)
         self.transition = -np.asarray(model.log_transition)
         self._first = model.first_component()
         self._pair = {tuple(key): row for row, key in enumerate(np.asarray(model.pair_key).tolist())}
 
-    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> Tuple[np.ndarray, int]:
-        """(13,) shape of a phoneme of this duration between these neighbours, and its best component."""
+    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
+        """(13,) shape of a phoneme of this duration between these neighbours."""
         model = self.model
         own = slice(self._first[phoneme], self._first[phoneme + 1])
         deviation = milliseconds / 1000.0 - model.duration_mean[own]
@@ -69,7 +71,7 @@ class FloatTables:
             row = self._pair.get((phoneme, side, neighbour))
             if row is not None:
                 shape = shape + model.pair_shape[row]
-        return shape, int(self._first[phoneme]) + best
+        return shape
 
     def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """(T, 13) targets: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to them, but not
@@ -83,13 +85,17 @@ class FloatTables:
         distance = targets[:, :, None] - self.model.decode_mean
         return 0.5 * (distance**2 / variance + np.log(variance))
 
-    def equation(self, path: np.ndarray, targets: np.ndarray, components: np.ndarray, frames: np.ndarray) -> Equation:
-        """Equation 3's terms for `path` (T, 13); `components` and `frames` (T,) are those of each frame's phoneme."""
+    def search(self, targets: np.ndarray) -> np.ndarray:
+        """(T, 13) int64: the state path for targets (T, 13)."""
+        return decode(self.emission, targets, self.transition, self.initial, self.stride)
+
+    def equation(self, path: np.ndarray, targets: np.ndarray) -> Equation:
+        """Equation 3's terms for `path` (T, 13)."""
         channel = np.arange(CHANNELS)
         return Equation(
             weight=self.model.state_precision[channel, path],
             mean=self.model.state_mean[channel, path],
-            anchor=self.model.state_anchor[channel, path] + self.model.precision[components] / frames[:, None],
+            anchor=self.model.state_anchor[channel, path],
             target=targets,
         )
 
@@ -113,10 +119,11 @@ class ExportedTables:
         self.viseme_class = exported.viseme_class
         taps = exported.kernels.shape[1]
         self.lags = (np.arange(taps) - exported.kernel_behind) * exported.kernel_stride
+        self.stride = exported.search_stride
         self.initial = exported.initial.astype(np.float64)
         self.transition = exported.dense_transitions()
 
-    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> Tuple[np.ndarray, int]:
+    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
         """As :meth:`FloatTables.select`, in positions."""
         model = self.exported
         first = int(model.first_component[phoneme])
@@ -141,9 +148,9 @@ class ExportedTables:
         for key in (phoneme * 256 + previous, phoneme * 256 + 128 + following):
             row = int(np.searchsorted(model.pair_keys, key))
             if row < len(model.pair_keys) and model.pair_keys[row] == key:
-                added = rounded_shift(model.pairs[row] * model.kernel_scale, 8)
+                added = rounded_shift(model.pairs[row] * model.pair_scale, 8)
                 position = np.clip(position + added, -POSITION_MAX, POSITION_MAX)
-        return position, first + best
+        return position
 
     def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.targets`, in positions."""
@@ -160,20 +167,20 @@ class ExportedTables:
         z = np.minimum((distance * model.emission_gain) >> 12, EMISSION_Z_MAX)
         return (z_cost(z) + model.emission_cost).astype(np.float64)
 
-    def equation(self, path: np.ndarray, targets: np.ndarray, components: np.ndarray, frames: np.ndarray) -> Equation:
+    def search(self, targets: np.ndarray) -> np.ndarray:
+        """As :meth:`FloatTables.search`; states far from the target are passed over."""
+        return decode(self.emission, targets, self.transition, self.initial, self.stride, beam=BEAM, leap=LEAP)
+
+    def equation(self, path: np.ndarray, targets: np.ndarray) -> Equation:
         """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""
         model = self.exported
         channel = np.arange(CHANNELS)
         weight = weight_value(model.state_weight[channel, path]).astype(np.float64)
         weight[..., 1] *= 4.0  # the tables hold a quarter of delta's precision
-        anchor = weight_value(model.state_anchor[channel, path])
-        if model.precisions is not None:
-            share = np.where(frames > 65536, 0, np.minimum(65536 // np.maximum(frames, 1), 65535))
-            anchor = anchor + rounded_shift(weight_value(model.precisions[components]) * share[:, None], 16)
         return Equation(
             weight=weight,
             mean=model.state_mean[channel, path] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
-            anchor=anchor.astype(np.float64),
+            anchor=weight_value(model.state_anchor[channel, path]).astype(np.float64),
             target=self.to_fap(targets),
         )
 

@@ -61,12 +61,14 @@ def _solve_pentadiagonal(diagonal: np.ndarray, first: np.ndarray, second: np.nda
 
 
 def join(pieces: Sequence[Piece], trajectories: Sequence[np.ndarray]) -> np.ndarray:
-    """(T, 13): the pieces' trajectories laid end to end, cross-faded linearly over the frames that two share."""
+    """(T, 13): the pieces' trajectories laid end to end, cross-faded along 3 s^2 - 2 s^3 where two
+    share frames."""
     total = pieces[-1].end if pieces else 0
     result = np.zeros((total, trajectories[0].shape[1] if trajectories else 0))
     for piece, motion in zip(pieces, trajectories):
         fade = piece.fade_in
-        share = (np.arange(1, fade + 1) / (fade + 1))[:, None]
+        s = (np.arange(1, fade + 1) / (fade + 1))[:, None]
+        share = s * s * (3.0 - 2.0 * s)
         shared = slice(piece.begin, piece.begin + fade)
         result[shared] += (motion[:fade] - result[shared]) * share
         result[piece.begin + fade : piece.end] = motion[fade:]

@@ -7,8 +7,8 @@ from typing import List, Sequence
 
 #: The library's default limits (``include/labial/labial.h``), frames.
 WINDOW = 40
-OVERLAP = 16
-CUT_OVERLAP = 8
+PIECE = 16
+OVERLAP = 8
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,12 @@ def whole(frames: Sequence[int]) -> List[Piece]:
 
 
 def pieces(frames: Sequence[int], boundary: Sequence[bool], window: int = WINDOW) -> List[Piece]:
-    """Cuts phonemes of the given frames into units, from one boundary phoneme to the next inclusive.
+    """Cuts phonemes of the given frames into pieces.
 
-    Neighbours share the boundary phoneme, its last OVERLAP frames if it is longer. What does not fit `window` is cut,
-    and the parts share CUT_OVERLAP frames. Phonemes of no frames are left out. The last phoneme always ends a unit.
+    A unit is what lies from one boundary phoneme to the next inclusive; a piece holds as many units as it takes to
+    have PIECE frames, or as fit the `window`. Neighbours share the boundary phoneme, its last OVERLAP frames if it is
+    longer. A unit that does not fit the window is cut, and the parts share OVERLAP frames. Phonemes of no frames are
+    left out. The last phoneme always ends a unit.
     """
     spans = []
     start = 0
@@ -44,13 +46,15 @@ def pieces(frames: Sequence[int], boundary: Sequence[bool], window: int = WINDOW
     begin = fade_in = 0
     while begin < start:
         limit = begin + window
-        end, fade_out = start, 0
-        if start > limit:
-            end, fade_out = limit, CUT_OVERLAP
+        end, fade_out = limit, OVERLAP
         for from_frame, to_frame, is_boundary in spans[:-1]:
             if is_boundary and from_frame >= begin + fade_in and from_frame > begin and to_frame <= limit:
                 end, fade_out = to_frame, min(to_frame - from_frame, OVERLAP)
-                break
+                if end - begin >= PIECE:
+                    break
+        else:
+            if start <= limit:
+                end, fade_out = start, 0
         result.append(Piece(begin, end, fade_in, fade_out))
         if not fade_out:
             break

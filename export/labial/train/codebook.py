@@ -116,11 +116,12 @@ class Codebook:
     log_initial: np.ndarray  #: (Q,)
 
 
-def transitions(paths: SequenceOf[np.ndarray], size: int) -> np.ndarray:
-    """(Q, Q) log-probabilities [from, to] from the counts of state paths; see NEIGHBOUR_COUNT for the smoothing."""
+def transitions(paths: SequenceOf[np.ndarray], size: int, stride: int = 1) -> np.ndarray:
+    """(Q, Q) log-probabilities [from, to] of going from the state of a frame to that `stride` frames later, from the
+    counts of state paths; see NEIGHBOUR_COUNT for the smoothing."""
     counts = np.zeros((size, size))
     for path in paths:
-        np.add.at(counts, (path[:-1], path[1:]), 1)
+        np.add.at(counts, (path[:-stride], path[stride:]), 1)
     counts += NEIGHBOUR_COUNT * (np.abs(np.subtract.outer(np.arange(size), np.arange(size))) <= 1)
     with np.errstate(divide="ignore"):
         return np.log(counts / counts.sum(axis=1, keepdims=True))
@@ -135,11 +136,13 @@ def initials(paths: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size
     return np.log(counts / counts.sum())
 
 
-def train_channel(motion: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size: int) -> Codebook:
+def train_channel(
+    motion: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size: int, stride: int = 1
+) -> Codebook:
     """The codebook of one channel.
 
     `motion` holds the channel's human motion (T,) of every sequence in FAP, `starts` the frames at which boundary
-    phonemes, and so units, begin.
+    phonemes, and so units, begin; `stride` is how many frames a transition spans.
     """
     rows = [features(item) for item in motion]
     points = np.concatenate(rows)
@@ -160,6 +163,6 @@ def train_channel(motion: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray]
         mean=mean[order],
         variance=variance[order],
         count=count[order],
-        log_transition=transitions(paths, size),
+        log_transition=transitions(paths, size, stride),
         log_initial=initials(paths, starts, size),
     )

@@ -32,6 +32,9 @@ from labial.train.shapes import ShapeTables
 
 #: The taps reach this far to each side and are this far apart, in seconds.
 REACH = 0.36
+
+#: How far they reach into what follows by default, seconds; see DESIGN.md for what more would buy.
+LOOK_AHEAD = 0.12
 SPACING = 0.04
 
 #: But never farther than the device's memory of phonemes, in frames.
@@ -55,7 +58,7 @@ class Penalties:
     silence: float = 0.1  #: weight of a frame of silence
 
 
-def lags(fps: int, look_ahead: float = REACH) -> np.ndarray:
+def lags(fps: int, look_ahead: float = LOOK_AHEAD) -> np.ndarray:
     """(L,) int64 frames: evenly spaced taps, one of them at 0, from REACH seconds before the frame to `look_ahead`
     seconds after it; at most REACH_FRAMES to either side."""
     spacing = max(1, round(SPACING * fps))
@@ -166,7 +169,7 @@ def fit_kernels(
     silence: int,
     fps: int,
     penalties: Penalties,
-    look_ahead: float = REACH,
+    look_ahead: float = LOOK_AHEAD,
 ) -> Kernels:
     """Fits kernels, shapes and slopes to the human motion of `material`; `choice` are its occurrences' components.
 

@@ -123,7 +123,6 @@ class ShapeTables:
     duration_variance: np.ndarray  #: (N,) seconds squared
     shape: np.ndarray  #: (N, 13) FAP
     slope: np.ndarray  #: (N, 13) FAP per second
-    precision: np.ndarray  #: (N, 13) 1 / FAP^2
     log_previous: np.ndarray  #: (N, V) or (N, 0)
     log_next: np.ndarray  #: (N, V) or (N, 0)
 
@@ -131,9 +130,8 @@ class ShapeTables:
 def shape_tables(mixtures: List[Mixture], *, conditional: bool) -> ShapeTables:
     """Tables of the mixtures of P phonemes.
 
-    `conditional` gives each component its regression of the shape on the duration: slope = cov(m, d) / var(d), and
-    the precision that is left, 1 / (var(m) - cov(m, d)^2 / var(d)). Without it the shape is mu_c^(m) alone, as in
-    equation 2, and both are zero.
+    `conditional` gives each component its regression of the shape on the duration, slope = cov(m, d) / var(d). Without
+    it the shape is mu_c^(m) alone, as in equation 2.
     """
 
     def joined(name: str) -> np.ndarray:
@@ -142,16 +140,13 @@ def shape_tables(mixtures: List[Mixture], *, conditional: bool) -> ShapeTables:
     mean, covariance = joined("mean"), joined("covariance")
     variance = covariance[:, DURATION, DURATION]
     slope = covariance[:, :CHANNELS, DURATION] / variance[:, None]
-    left = np.diagonal(covariance, axis1=1, axis2=2)[:, :CHANNELS] - slope**2 * variance[:, None]
-    zero = np.zeros_like(slope)
     return ShapeTables(
         component_count=np.array([len(mixture.weight) for mixture in mixtures], dtype=np.int64),
         log_weight=np.log(np.maximum(joined("weight"), 1e-12)),
         duration_mean=mean[:, DURATION].copy(),
         duration_variance=variance.copy(),
         shape=mean[:, :CHANNELS].copy(),
-        slope=slope if conditional else zero,
-        precision=1.0 / left if conditional else zero,
+        slope=slope if conditional else np.zeros_like(slope),
         log_previous=joined("log_previous"),
         log_next=joined("log_next"),
     )

@@ -3,7 +3,8 @@
 The codebook's variances describe human motion inside a cell. What the run-time decodes is a state path for a target,
 which is another thing: it rests and jumps where the mouth glides. So the training set is decoded from its own targets,
 and each state's three means and variances are taken from the human frames that fell under it. The same frames say how
-far the human motion strays from the target: the inverse of that variance is the anchor.
+far the human motion strays from the target: the inverse of that variance is the anchor. Transitions are counted on
+the decoded paths too: smooth targets take far fewer of them than people do, so that an exporter can keep few.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from typing import Tuple
 import numpy as np
 
 from labial.faps import CHANNELS
-from labial.reference.viterbi import viterbi
-from labial.train.codebook import VARIANCE_FLOOR, Codebook, features
+from labial.reference import viterbi
+from labial.train.codebook import VARIANCE_FLOOR, Codebook, features, transitions
 
 #: A state's statistics are joined with those of its codebook cell (means) and of all states (variances), which
 #: count as this many frames.
@@ -27,16 +28,19 @@ PRIOR_FRAMES = 20.0
 DYNAMIC_RANGE = 2000.0
 
 
+#: Frames that share a state of the decoded path. Targets move slowly enough that more states change nothing.
+SEARCH_STRIDE = 3
+
+
 @dataclass(frozen=True)
 class Scales:
     """What the inverse variances are multiplied by to become precisions. Static, delta and delta-delta features repeat
     each other and the anchor, so that their evidence must not be counted in full; chosen on held-out episodes."""
 
     static: float = 0.2
-    delta: float = 0.04
+    delta: float = 0.01
     acceleration: float = 0.04
     anchor: float = 1.0
-    phoneme: float = 0.0  #: of the components' precisions; floors hold closures better, and for less
 
 
 @dataclass(frozen=True)
@@ -50,9 +54,10 @@ class StateTables:
     state_anchor: np.ndarray  #: (13, Q)
     log_transition: np.ndarray  #: (13, Q, Q)
     log_initial: np.ndarray  #: (13, Q)
+    stride: int  #: frames from one state of a path to the next
 
 
-def codebook_tables(codebooks: SequenceOf[Codebook]) -> StateTables:
+def codebook_tables(codebooks: SequenceOf[Codebook], stride: int) -> StateTables:
     """The paper's tables: every state as its codebook cell is, no anchors."""
     mean = np.stack([book.mean for book in codebooks])
     variance = np.stack([book.variance for book in codebooks])
@@ -64,6 +69,7 @@ def codebook_tables(codebooks: SequenceOf[Codebook]) -> StateTables:
         state_anchor=np.zeros(mean.shape[:2]),
         log_transition=np.stack([book.log_transition for book in codebooks]),
         log_initial=np.stack([book.log_initial for book in codebooks]),
+        stride=stride,
     )
 
 
@@ -75,7 +81,9 @@ def emission_costs(target: np.ndarray, tables: StateTables) -> np.ndarray:
 
 def decode(target: np.ndarray, tables: StateTables) -> np.ndarray:
     """(T, 13) int64: the state path of every channel for a target (T, 13), over the whole utterance."""
-    return viterbi(emission_costs(target, tables), -tables.log_transition, -tables.log_initial)
+    return viterbi.decode(
+        lambda seen: emission_costs(seen, tables), target, -tables.log_transition, -tables.log_initial, tables.stride
+    )
 
 
 def _state_moments(values: np.ndarray, path: np.ndarray, prior_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -95,8 +103,8 @@ def match_states(
     human: SequenceOf[np.ndarray],
     scales: Scales,
 ) -> StateTables:
-    """The tables with means, precisions and anchors re-estimated on decoded paths (T, 13) of targets and human motion
-    (T, 13) in FAP. The tables that decode stay as they are."""
+    """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, 13) of targets and
+    human motion (T, 13) in FAP. What the search sees of a target stays as it is."""
     path, target, motion = (np.concatenate(items) for items in (paths, targets, human))
     size = tables.decode_mean.shape[1]
     mean = np.empty((CHANNELS, size, 3))
@@ -121,8 +129,11 @@ def match_states(
         state_mean=mean,
         state_precision=precision,
         state_anchor=anchor,
-        log_transition=tables.log_transition,
+        log_transition=np.stack(
+            [transitions([item[:: tables.stride, channel] for item in paths], size) for channel in range(CHANNELS)]
+        ),
         log_initial=tables.log_initial,
+        stride=tables.stride,
     )
 
 
@@ -140,7 +151,3 @@ def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, 
     limited = precision * np.stack([hold_share, moving_share, moving_share], axis=-1)
     return limited, anchor * hold_share
 
-
-def hold_limit(tables: StateTables) -> np.ndarray:
-    """(13,) the largest precision that a phoneme may add to a frame's static + anchor; see :func:`limit_range`."""
-    return DYNAMIC_RANGE / 2 * (tables.state_precision[..., 0] + tables.state_anchor).min(axis=1)

@@ -19,11 +19,11 @@ from labial.train.closures import floors
 from labial.train.codebook import Codebook, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
-from labial.train.kernels import REACH, Kernels, Penalties, add_kernels, fit_kernels
+from labial.train.kernels import LOOK_AHEAD, REACH, Kernels, Penalties, add_kernels, fit_kernels
 from labial.train.selection import Choice, choose, shapes
 from labial.train.sequences import Occurrences, Sequence, occurrences, sequences
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
-from labial.train.states import Scales, StateTables, codebook_tables, decode, hold_limit, match_states
+from labial.train.states import SEARCH_STRIDE, Scales, StateTables, codebook_tables, decode, match_states
 from labial.train.workers import Workers
 
 
@@ -67,7 +67,7 @@ def _tables(plan: Plan, fitted: List[Mixture], conditional: bool) -> ShapeTables
     return shape_tables([mixtures[other] for other in plan.stand_in], conditional=conditional)
 
 
-def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int]) -> Codebook:
+def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int]) -> Codebook:
     return train_channel(*task)
 
 
@@ -135,7 +135,8 @@ def train(
     jobs: int = 2,
     progress: bool = True,
     attribution: str = "",
-    look_ahead: float = REACH,
+    look_ahead: float = LOOK_AHEAD,
+    search_stride: int = SEARCH_STRIDE,
     penalties: Penalties = Penalties(),  # noqa: B008 - immutable
     scales: Scales = Scales(),  # noqa: B008 - immutable
 ) -> Model:
@@ -144,6 +145,7 @@ def train(
     `method` is "paper", the published one, or "labial": context-aware mixtures (section 2), temporal kernels, matched
     states and anchors on top. `codebook` is Q, the states of each channel, `components` C of each phoneme's mixture.
     `look_ahead` is how far the temporal kernels reach into what follows, seconds; less makes a stream's frames earlier.
+    `search_stride` is how many frames share a state of the decoded path. The published method has neither.
     `attribution` is kept in the model for whoever passes it on. The same arguments give the same model, whatever
     `jobs`, the number of processes, is. Back-offs are printed; the corpus's counts and all options are kept in the
     model.
@@ -151,12 +153,15 @@ def train(
     _check(corpus, kind, method, fps, codebook, components, jobs)
     if not 0.0 <= look_ahead <= REACH:
         raise LabialError(f"look-ahead is {look_ahead} s, not within 0 .. {REACH}")
+    if not 1 <= search_stride <= LIMITS["stride"]:
+        raise LabialError(f"search stride is {search_stride}, not within 1 .. {LIMITS['stride']}")
     phone_set = PHONE_SETS[kind]
     phonemes, classes = len(phone_set.phonemes), len(phone_set.classes)
     silence = phone_set.phonemes.index(phone_set.silence)
     phoneme_class = np.array(phone_set.phoneme_class, dtype=np.int64)
     boundary = np.array(phone_set.boundary, dtype=bool)
     extended = method == "labial"
+    stride = search_stride if extended else 1
 
     material = sequences(corpus, phone_set, fps)
     items = occurrences(material, phone_set)
@@ -169,8 +174,8 @@ def train(
         tasks = _mixture_tasks(items, plan, classes if extended else 0, components, seed)
         tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), extended)
         starts = [_unit_starts(item, boundary) for item in material]
-        motion = [([item.frames[:, c] for item in material], starts, codebook) for c in range(CHANNELS)]
-        states = codebook_tables(workers.run("codebooks", _channel, motion))
+        motion = [([item.frames[:, c] for item in material], starts, codebook, stride) for c in range(CHANNELS)]
+        states = codebook_tables(workers.run("codebooks", _channel, motion), stride)
         kernel, lag = np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64)
         pair_key, pair_shape = np.zeros((0, 3), dtype=np.int64), np.zeros((0, CHANNELS))
         if extended:
@@ -184,7 +189,6 @@ def train(
             paths = workers.run("matched states", _decode, [(target, states) for target in targets])
             states = match_states(states, paths, targets, [item.frames for item in material], scales)
 
-    precision = np.minimum(tables.precision * scales.phoneme, hold_limit(states)) if extended else tables.precision
     everything = np.concatenate([item.frames for item in material])
     voiced = np.concatenate([item.phoneme_at() != silence for item in material])
     training: Dict[str, object] = {
@@ -208,6 +212,7 @@ def train(
         classes=phone_set.classes,
         silence=phone_set.silence,
         soft=extended,
+        search_stride=stride,
         phoneme_class=phoneme_class,
         boundary=boundary,
         component_count=tables.component_count,
@@ -216,7 +221,6 @@ def train(
         duration_variance=tables.duration_variance,
         shape=tables.shape,
         slope=tables.slope,
-        precision=precision,
         log_previous=tables.log_previous,
         log_next=tables.log_next,
         kernel=kernel,
