@@ -1,9 +1,10 @@
 /*
- * labial-bench-mlpg labial|hts|compare|sptk N - equation 3 of N units of 13 channels, for callgrind and massif:
+ * labial-bench-mlpg labial|hts|compare|sptk|about N - equation 3 of N units of 13 channels, for callgrind and massif:
  *
  *   labial    by the library
  *   hts       by hts_engine's HTS_PStreamSet_create(), which takes the same means and variances as public structures
  *   compare   by both, and says how far apart they are
+ *   about     by nobody: says whether hts_engine is built in
  *   sptk      by nobody: writes means and precisions, float32, as SPTK's `mlpg -i 1` reads them from a file
  *
  * The anchors of Labial's equation 3 are a second static row; others know only one, so the two are merged into one with
@@ -176,6 +177,14 @@ int main(int argc, char **argv)
     static bench_unit_t unit[LABIAL_CHANNELS];
     const long count = argc == 3 ? atol(argv[2]) : 0;
     if (count > 0) {
+        if (strcmp(argv[1], "about") == 0) {
+#ifdef BENCH_HTS
+            puts("hts_engine: yes");
+#else
+            puts("hts_engine: no");
+#endif
+            return 0;
+        }
         fill(unit);
         if (strcmp(argv[1], "labial") == 0) {
             labial_solve(unit, (unsigned long)count);
@@ -192,7 +201,7 @@ int main(int argc, char **argv)
             return compare(unit);
 #endif
     }
-    fputs("usage: labial-bench-mlpg labial|hts|compare|sptk N\n"
+    fputs("usage: labial-bench-mlpg labial|hts|compare|sptk|about N\n"
           "hts and compare where it was built with hts_engine\n", stderr);
     return 2;
 }

@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "labial/labial.h"
 #include "trajectory.h"
 
 #define HOLD 4u /* frames that a state lasts */
@@ -25,7 +26,12 @@ void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k
 
 void bench_unit_solve(bench_unit_t *unit, const labial_model_t *model, unsigned k)
 {
-    static int32_t scratch[BENCH_UNIT_SCRATCH / sizeof(int32_t)];
+    bench_solve(model, k, unit->path, BENCH_UNIT, &unit->targets[0][k]);
+}
+
+void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, unsigned length, int16_t *positions)
+{
+    static int32_t scratch[3 * LABIAL_WINDOW];
     const labial_ties_t ties = { NULL, NULL, NULL };
-    labial_trajectory_solve(&model->channels[k], &ties, unit->path, BENCH_UNIT, &unit->targets[0][k], scratch);
+    labial_trajectory_solve(&model->channels[k], &ties, path, length, positions, scratch);
 }

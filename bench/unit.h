@@ -18,10 +18,11 @@ typedef struct {
  * one state's mean to the next. */
 void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k);
 
-/* The library's solution of channel k, which takes the targets' place. This is the one place that calls the solver. */
+/* The library's solution of channel k, which takes the targets' place. */
 void bench_unit_solve(bench_unit_t *unit, const labial_model_t *model, unsigned k);
 
-/* Bytes that the solver needs beside the path and the targets. */
-#define BENCH_UNIT_SCRATCH (BENCH_UNIT * 3u * (unsigned)sizeof(int32_t))
+/* The same for a unit of up to LABIAL_WINDOW frames from elsewhere; `positions` holds a target every LABIAL_CHANNELS. All
+ * that measures the solver calls it here. Components' own precisions, which the bundled models do without, are not used. */
+void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, unsigned length, int16_t *positions);
 
 #endif

@@ -14,6 +14,9 @@ from measure.core import Bench, LeftOut, run, tool, version
 #: Seconds of input that each image synthesises.
 SECONDS = 20
 
+#: Bytes that the images' callback may take of the stack.
+_CALLBACK_STACK = 32
+
 #: Frames per second that the share of a processor is reckoned at.
 RATE = 50
 
@@ -102,14 +105,22 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
         add("pushing", round(found["push_instructions"] / found["frames"]), "instructions/frame")
         add("labial_init()", found["init_instructions"], "instructions")
         add("stack, painted", found["stack"], "bytes")
+        _check_stack(bench, board, found["stack"])
     command = images["bench_mlpg"]
     found = printed(command)
     bench.add(board.preset, "MLPG", round(found["instructions"] / found["frames"], 1), "instructions/frame and channel",
               command, tool_version)
 
 
-def profile(bench: Bench) -> Tuple[List[Tuple[str, float, float]], List[str]]:
-    """Instructions and calls per frame of every function in the speech run on Cortex-M0, most first, and the command.
+def _check_stack(bench: Bench, board: Board, painted: int) -> None:
+    """RuntimeError where a run took more stack than the call graph allows; the callback, a leaf, is not in that."""
+    bound = bench.value(board.preset, "stack -O2: every function")
+    if bound is not None and painted > bound + _CALLBACK_STACK:
+        raise RuntimeError(f"{board.core}: {painted} bytes of stack were used, the call graph allows {bound}")
+
+
+def profile(bench: Bench) -> List[Tuple[str, float, float]]:
+    """Instructions and calls per frame of every function in the speech run on Cortex-M0, most first.
 
     QEMU counts by a plugin (bench/plugin.c), which is compiled here; LeftOut where it cannot be.
     """
@@ -121,8 +132,13 @@ def profile(bench: Bench) -> Tuple[List[Tuple[str, float, float]], List[str]]:
     folder = bench.build / board.preset / "bench"
     plugin, histogram = folder / "plugin.so", folder / "bench_speech.histogram"
     run([host, "-O2", "-std=c99", "-shared", "-fPIC", bench.source / "bench" / "plugin.c", "-o", plugin])
-    command = [image[0], "-plugin", f"file={plugin},arg={histogram}", *image[1:]]
-    frames = printed(command)["frames"]
+    command = [image[0], "-plugin", f"file={plugin},out={histogram}", *image[1:]]
+    try:
+        frames = printed(command)["frames"]
+    except RuntimeError as error:
+        if "plugin" not in str(error).split("\n", 1)[1]:
+            raise
+        raise LeftOut(f"The profile by function is left out, this {board.emulator} takes no plugins.") from None
     symbols = _symbols(board, image[-1])
     total: Dict[str, float] = {}
     calls: Dict[str, float] = {}
@@ -133,7 +149,7 @@ def profile(bench: Bench) -> Tuple[List[Tuple[str, float, float]], List[str]]:
         if address == begin:
             calls[name] = count / frames
     own = [(name, value, calls.get(name, 0.0)) for name, value in total.items() if value >= 0.5]
-    return sorted(own, key=lambda row: -row[1]), [str(part) for part in command]
+    return sorted(own, key=lambda row: -row[1])
 
 
 def _symbols(board: Board, image: str) -> List[Tuple[int, str]]:
@@ -141,6 +157,6 @@ def _symbols(board: Board, image: str) -> List[Tuple[int, str]]:
     found: Dict[int, str] = {}
     for line in run([f"{board.prefix}nm", Path(image)]).stdout.decode().splitlines():
         parts = line.split()
-        if len(parts) == 3 and parts[1] in "tTwW" and not parts[2].startswith("$"):
+        if len(parts) == 3 and parts[1] in "tTwW" and not parts[2].startswith(("$", ".")):
             found.setdefault(int(parts[0], 16) & ~1, parts[2])
     return sorted(found.items())

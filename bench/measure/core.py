@@ -28,8 +28,13 @@ class Figure:
 
     @property
     def timed(self) -> bool:
-        """Whether it depends on the machine and its load, and is therefore never checked."""
+        """Whether it depends on the machine and its load."""
         return self.unit in ("frames/s", "times real time")
+
+    @property
+    def checked(self) -> bool:
+        """Whether a baseline holds it: timings and what is measured on somebody's corpus are not for every machine."""
+        return not self.timed and "corpus" not in self.figure
 
     def as_json(self) -> Dict[str, Union[str, float]]:
         """The object in bench.json."""
@@ -52,7 +57,10 @@ class Bench:
 
     def shown(self, command: Sequence[Union[str, Path]]) -> str:
         """A command as a user would type it in the source folder."""
-        return " ".join(_quoted(str(part).replace(f"{self.source}/", "")) for part in command)
+        parts = [str(part).replace(f"{self.source}/", "") for part in command]
+        if parts[0].startswith("/"):
+            parts[0] = Path(parts[0]).name
+        return " ".join(map(_quoted, parts))
 
     def value(self, target: str, figure: str) -> Optional[float]:
         """A figure measured before, or None."""
@@ -63,7 +71,7 @@ class Bench:
 
 
 def _quoted(part: str) -> str:
-    return part if part in ("&&", "|", "<", ">") else shlex.quote(part)
+    return part if part in ("&&", "|", "<", ">", "#") or "*" in part else shlex.quote(part)
 
 
 def tool(name: str, package: str, what: str) -> str:
@@ -77,7 +85,7 @@ def tool(name: str, package: str, what: str) -> str:
 def run(command: Sequence[Union[str, Path]], **options: object) -> subprocess.CompletedProcess:
     """Runs a command to its end; RuntimeError with its output when it fails."""
     parts = [str(part) for part in command]
-    done = subprocess.run(parts, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)  # type: ignore[call-overload]
+    done = subprocess.run(parts, capture_output=True, **options)  # type: ignore[call-overload]
     if done.returncode:
         output = done.stdout.decode(errors="replace") + done.stderr.decode(errors="replace")
         raise RuntimeError(f"{shlex.join(parts)} ended with {done.returncode}:\n{output}")
@@ -86,6 +94,10 @@ def run(command: Sequence[Union[str, Path]], **options: object) -> subprocess.Co
 
 def version(compiler: str) -> str:
     """A compiler and its version, as figures that depend on it name it."""
-    first = run([compiler, "--version"]).stdout.decode(errors="replace").splitlines()[0]
-    number = re.search(r"\d+\.\d+(\.\d+)?", first)
-    return f"{Path(compiler).name} {number.group(0) if number else first}"
+    text = run([compiler, "--version"]).stdout.decode(errors="replace")
+    first = text.splitlines()[0]
+    name = Path(compiler).name
+    if name in ("cc", "c99"):
+        name = "clang" if "clang" in first else "gcc" if "Free Software Foundation" in text else name
+    numbers = re.findall(r"\d+\.\d+\.\d+", first) # the last: packages put their own before it
+    return f"{name} {numbers[-1] if numbers else first}"

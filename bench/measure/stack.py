@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Dict, List, Set, Tuple
 
 from measure.boards import Board, compiler, cpu_flags
-from measure.code import LEVELS, OPTIONAL, compile_command
 from measure.core import Bench, run, version
+from measure.sizes import LEVELS, OPTIONAL, compile_command
 
 #: How a call through a pointer appears; the only one is the program's own callback, whose stack is not the library's.
 _INDIRECT = "__indirect_call"
@@ -58,8 +58,8 @@ class CallGraph:
 
 
 def add_archive(graph: CallGraph, board: Board, flags: List[str]) -> None:
-    """Adds what is still missing from the compiler's own library, which has no call graph, by its machine code: all that
-    a member of the archive ever pushes or subtracts from the stack pointer, taken together."""
+    """Adds what is still missing from the compiler's own library, which has no call graph, by its machine code: all
+    that a member of the archive ever pushes or subtracts from the stack pointer, taken together."""
     archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()
     member_of: Dict[str, str] = {}
     for line in run([f"{board.prefix}nm", "-A", "--defined-only", archive]).stdout.decode().splitlines():
