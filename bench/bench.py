@@ -12,9 +12,9 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import Callable, List, Tuple
+from typing import Callable, List
 
-from measure import baseline, boards, host, loss, mlpg, sizes, stack, table
+from measure import baseline, boards, host, loss, mlpg, profile, sizes, stack, table
 from measure.core import Bench, LeftOut
 
 
@@ -32,7 +32,7 @@ def _options() -> argparse.Namespace:
     return options
 
 
-def _measure(bench: Bench, compiler: str, corpus: str) -> List[Tuple[str, float, float]]:
+def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
     """Measures everything; returns the profile by function."""
 
     def attempt(measurement: Callable[..., object], *arguments: object) -> None:
@@ -54,9 +54,9 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[Tuple[str, float,
     attempt(mlpg.hts_engine)
     attempt(mlpg.sptk)
     attempt(loss.measure, corpus or None)
-    profile: List[Tuple[str, float, float]] = []
-    attempt(lambda given: profile.extend(boards.profile(given)))
-    return profile
+    rows: List[profile.Row] = []
+    attempt(profile.measure, rows)
+    return rows
 
 
 def _check(bench: Bench, path: Path, require_all: bool) -> bool:
@@ -84,10 +84,10 @@ def main() -> int:
         print(f"Written: {committed}")
         return 0
     bench = Bench(options.source, options.build)
-    profile = _measure(bench, options.compiler, options.corpus)
+    rows = _measure(bench, options.compiler, options.corpus)
     baseline.write(recorded, bench.figures)
     page = options.build / "bench.md"
-    page.write_text(table.markdown(bench, profile), encoding="utf-8")
+    page.write_text(table.markdown(bench, rows), encoding="utf-8")
     for sentence in bench.left_out:
         print(sentence)
     for name, limit, value, reached in table.goals(bench):

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, List
 
-from measure.core import Bench, LeftOut, run, tool, version
+from measure.core import Bench, run, tool, version
 
 #: Seconds of input that each image synthesises.
 SECONDS = 20
@@ -117,46 +115,3 @@ def _check_stack(bench: Bench, board: Board, painted: int) -> None:
     bound = bench.value(board.preset, "stack -O2: every function")
     if bound is not None and painted > bound + _CALLBACK_STACK:
         raise RuntimeError(f"{board.core}: {painted} bytes of stack were used, the call graph allows {bound}")
-
-
-def profile(bench: Bench) -> List[Tuple[str, float, float]]:
-    """Instructions and calls per frame of every function in the speech run on Cortex-M0, most first.
-
-    QEMU counts by a plugin (bench/plugin.c), which is compiled here; LeftOut where it cannot be.
-    """
-    board = BOARDS[0]
-    host = shutil.which("cc")
-    if not host:
-        raise LeftOut("The profile by function is left out, it needs a C compiler for the host.")
-    image = build(bench, board)["bench_speech"]
-    folder = bench.build / board.preset / "bench"
-    plugin, histogram = folder / "plugin.so", folder / "bench_speech.histogram"
-    run([host, "-O2", "-std=c99", "-shared", "-fPIC", bench.source / "bench" / "plugin.c", "-o", plugin])
-    command = [image[0], "-plugin", f"file={plugin},out={histogram}", *image[1:]]
-    try:
-        frames = printed(command)["frames"]
-    except RuntimeError as error:
-        if "plugin" not in str(error).split("\n", 1)[1]:
-            raise
-        raise LeftOut(f"The profile by function is left out, this {board.emulator} takes no plugins.") from None
-    symbols = _symbols(board, image[-1])
-    total: Dict[str, float] = {}
-    calls: Dict[str, float] = {}
-    for line in histogram.read_text(encoding="ascii").splitlines():
-        address, count = int(line.split()[0], 16), int(line.split()[1])
-        begin, name = max(symbol for symbol in symbols if symbol[0] <= address)
-        total[name] = total.get(name, 0.0) + count / frames
-        if address == begin:
-            calls[name] = count / frames
-    own = [(name, value, calls.get(name, 0.0)) for name, value in total.items() if value >= 0.5]
-    return sorted(own, key=lambda row: -row[1])
-
-
-def _symbols(board: Board, image: str) -> List[Tuple[int, str]]:
-    """Functions of an image by address; several names of one address are shown as the first."""
-    found: Dict[int, str] = {}
-    for line in run([f"{board.prefix}nm", Path(image)]).stdout.decode().splitlines():
-        parts = line.split()
-        if len(parts) == 3 and parts[1] in "tTwW" and not parts[2].startswith(("$", ".")):
-            found.setdefault(int(parts[0], 16) & ~1, parts[2])
-    return sorted(found.items())

@@ -39,7 +39,7 @@ def measure(bench: Bench, corpus: Optional[str]) -> None:
     for model, name in MODELS.items():
         trained = bench.source / "export" / "models" / f"{name}.npz"
         command: List[Union[str, os.PathLike]] = [
-            python, bench.source / "bench" / "measure" / "accuracy.py", trained, name,
+            python, bench.source / "bench" / "accuracy.py", trained, name,
             bench.build / "bench" / "labial-bench-solve", model,
         ]
         shown = ["PYTHONPATH=export", "python3", *map(str, command[1:])]

@@ -12,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
 
 from measure import baseline  # noqa: E402
 from measure.core import Figure  # noqa: E402
+from measure.profile import cycles  # noqa: E402
 from measure.stack import CallGraph, _machine_code  # noqa: E402
 
 MEAN = Figure("m0", "speech: mean", 1000.0, "instructions/frame", "run it", "gcc 12.2.1")
@@ -108,3 +109,14 @@ def test_calls_of_machine_code() -> None:
     # Catches a helper of a helper left out of the bound.
     listing = " 4:\tf7ff fffe \tbl\t0 <x>\n\t\t\t4: R_ARM_THM_CALL\t__aeabi_idiv0\n"
     assert _machine_code(listing)[1] == {"__aeabi_idiv0"}
+
+
+@pytest.mark.parametrize("mnemonic, operands, expected", [
+    ("adds", "r0, r1, r2", 1), ("muls", "r0, r1", 1), ("ldr", "r0, [pc, #8]", 2), ("strb", "r0, [r1, r2]", 2),
+    ("ldrsh", "r0, [r1, r2]", 2), ("push", "{r4, r5, lr}", 4), ("ldmia", "r0!, {r1, r2}", 3), ("pop", "{r4, pc}", 5),
+    ("bl", "0 <x>", 4), ("bx", "lr", 3), ("b.n", "0 <x>", 3), ("beq.n", "0 <x>", 1), ("bics", "r0, r1", 1),
+    ("mov", "pc, r1", 3),
+])
+def test_cycles_are_those_of_the_manual(mnemonic: str, operands: str, expected: int) -> None:
+    # Catches instructions that one pattern takes for another: bics for a branch, ldrsh for a word of data processing.
+    assert cycles(mnemonic, operands) == expected
