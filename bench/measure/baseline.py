@@ -31,23 +31,29 @@ def checked(figures: Sequence[Figure]) -> List[Figure]:
     return [figure for figure in figures if figure.checked]
 
 
+#: So many figures of a target are named when they were not measured; of more, their number is said.
+_NAMED = 4
+
+
 def compare(old: Sequence[Figure], new: Sequence[Figure]) -> Tuple[List[str], List[str]]:
     """A sentence for every figure that got worse by more than TOLERANCE, and one for every reason why figures of the
     baseline were not compared."""
     measured: Dict[Tuple[str, str], Figure] = {(figure.target, figure.figure): figure for figure in new}
-    worse, passed_over = [], []
+    worse: List[str] = []
+    passed_over: List[str] = []
+    missing: Dict[str, List[str]] = {}
     for before in checked(old):
         now = measured.get((before.target, before.figure))
         if not now:
-            sentence = f"Not compared: {before.target}, {before.figure} was not measured."
+            missing.setdefault(before.target, []).append(before.figure)
         elif now.tool != before.tool:
             sentence = f"Not compared: what {before.tool} was measured with, since this is {now.tool}."
-        else:
-            if now.value > before.value + abs(before.value) * TOLERANCE:
-                share = f" ({100.0 * (now.value / before.value - 1.0):+.1f} %)" if before.value else ""
-                worse.append(f"{before.target}, {before.figure}: {before.value:g} became {now.value:g} {now.unit}"
-                             f"{share}.")
-            continue
-        if sentence not in passed_over:
-            passed_over.append(sentence)
+            if sentence not in passed_over:
+                passed_over.append(sentence)
+        elif now.value > before.value + abs(before.value) * TOLERANCE:
+            share = f" ({100.0 * (now.value / before.value - 1.0):+.1f} %)" if before.value else ""
+            worse.append(f"{before.target}, {before.figure}: {before.value:g} became {now.value:g} {now.unit}{share}.")
+    for target, figures in missing.items():
+        what = ", ".join(figures) if len(figures) <= _NAMED else f"{len(figures)} figures"
+        passed_over.append(f"Not measured, and so not compared: {target}, {what}.")
     return worse, passed_over
