@@ -51,7 +51,7 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
     expected = np.concatenate([synthesise(ideal, stream) for stream in streams])
     found = np.concatenate([synthesise(tables, stream) for stream in streams])
     difference = found - expected
-    paths = np.concatenate([_path_loss(ideal, tables, stream) for stream in streams])
+    paths = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
     return Loss(
         rms=np.sqrt(np.mean(difference**2, axis=0)),
         largest=np.abs(difference).max(axis=0),
@@ -60,8 +60,8 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
     )
 
 
-def _path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
-    """(pieces, 13) nats by which the exported tables' path is less likely than the best, under the float tables."""
+def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
+    """(pieces, 13) nats by which the exported tables\' path is less likely than the best, under the float tables."""
     numbers, durations = [p for p, _ in stream], [ms for _, ms in stream]
     frames = frame_counts(durations, ideal.fps)
     wanted = targets(ideal, numbers, durations, frames)

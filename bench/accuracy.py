@@ -1,0 +1,132 @@
+"""What integers cost in each step: the solver against float64, the state paths against a dense float64 search.
+
+Runs as a program of its own, with numpy and the exporter on the path, and prints JSON:
+
+    accuracy.py MODEL.npz NAME SOLVER KIND [CORPUS]
+
+NAME is the bundled model's C name, SOLVER labial-bench-solve, KIND what it calls the model. The phoneme streams are
+those of the corpus's episodes, or drawn from the model.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Dict, List, Sequence
+
+import numpy as np
+
+from labial import emit
+from labial.corpus import read_corpus
+from labial.corpus.episode import Episode
+from labial.errors import LabialError
+from labial.faps import CHANNELS
+from labial.loss import path_loss
+from labial.model import Model, load
+from labial.phones import Stream, drawn_streams
+from labial.quantise import ExportedModel, quantise
+from labial.reference import units
+from labial.reference.shape import targets
+from labial.reference.stream import frame_counts
+from labial.reference.tables import ExportedTables, FloatTables
+from labial.reference.trajectory import solve
+from labial.reference.viterbi import viterbi
+
+#: Episodes of a corpus that are used, evenly spread over it.
+EPISODES = 60
+
+#: A unit of error in FAP units: 1/1024 of full scale, which is what positions can be: 1024 FAP units to either side
+#: (LABIAL_POSITION_MAX).
+UNIT = 1.0
+
+
+def stream_of(episode: Episode, model: Model) -> Stream:
+    """An episode's phonemes as a stream, boundaries rounded to milliseconds."""
+    bounds = [round(1000 * segment.end) for segment in episode.segments]
+    begins = [round(1000 * episode.segments[0].start), *bounds[:-1]]
+    return [(model.phonemes.index(segment.label), end - begin)
+            for segment, begin, end in zip(episode.segments, begins, bounds)]
+
+
+def corpus_streams(path: str, model: Model) -> List[Stream]:
+    """The streams of EPISODES episodes of a corpus."""
+    episodes = list(read_corpus(path, model.kind))
+    chosen = np.unique(np.linspace(0, len(episodes) - 1, min(EPISODES, len(episodes))).astype(int))
+    return [stream_of(episodes[i], model) for i in chosen]
+
+
+def check_bundled(exported: ExportedModel, root: Path) -> None:
+    """LabialError where the bundled C tables are not what the trained model exports to."""
+    with tempfile.TemporaryDirectory(prefix="labial-bench-") as folder:
+        emit.write(exported, Path(folder))
+        name = f"{exported.name}.c"
+        if (Path(folder) / name).read_bytes() != (root / "lib" / "models" / name).read_bytes():
+            raise LabialError(f"lib/models/{name}: not what the trained model exports to; run labial export")
+
+
+def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequence[Stream]) -> np.ndarray:
+    """(frames, 13) FAP: the library's solution less the float64 one, for the same tables, paths and targets, piece by
+    piece before joining."""
+    given, expected = [], []
+    for stream in streams:
+        numbers, durations = [p for p, _ in stream], [ms for _, ms in stream]
+        frames = frame_counts(durations, tables.fps)
+        wanted = targets(tables, numbers, durations, frames)
+        for piece in units.pieces(frames, [bool(tables.boundary[p]) for p in numbers]):
+            span = slice(piece.begin, piece.end)
+            positions = wanted.position[span]
+            path = viterbi(tables.emission(positions), tables.transition, tables.initial)
+            expected.append(solve(tables.equation(path, positions, wanted.component[span], wanted.frames[span])))
+            given.append(np.uint16(len(path)).tobytes())
+            for k in range(CHANNELS):
+                given.append(path[:, k].astype(np.uint8).tobytes() + positions[:, k].astype(np.int16).tobytes())
+    done = subprocess.run(list(solver), input=b"".join(given), stdout=subprocess.PIPE, check=True)
+    found = np.frombuffer(done.stdout, dtype=np.int16)
+    errors, begin = [], 0
+    for solution in expected:
+        size = solution.size
+        own = found[begin : begin + size].reshape(CHANNELS, -1).T
+        errors.append(tables.to_fap(own) - solution)
+        begin += size
+    if begin != len(found):
+        raise LabialError(f"{solver[0]}: {len(found)} positions, not {begin}")
+    return np.concatenate(errors)
+
+
+def measure(
+    model: Model, exported: ExportedModel, solver: Sequence[str], streams: Sequence[Stream]
+) -> Dict[str, float]:
+    """The figures by name."""
+    ideal, tables = FloatTables(model), ExportedTables(exported)
+    errors = solver_errors(tables, solver, streams)
+    lost = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
+    return {
+        "solver_largest": float(np.abs(errors).max() / UNIT),
+        "solver_rms": float(np.sqrt(np.mean(errors**2)) / UNIT),
+        "path_mean": float(lost.mean()),
+        "path_worst_channel": float(lost.mean(axis=0).max()),
+        "units": len(lost),
+        "frames": len(errors),
+    }
+
+
+def main(arguments: List[str]) -> int:
+    """Prints the figures as JSON; a status of 1 and a sentence for what cannot be used."""
+    path, name, solver, kind, *corpus = arguments
+    try:
+        model = load(path)
+        exported = quantise(model, name)
+        check_bundled(exported, Path(path).resolve().parents[2])
+        streams = corpus_streams(corpus[0], model) if corpus else drawn_streams(model)
+        print(json.dumps(measure(model, exported, [solver, kind], streams)))
+    except LabialError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,66 @@
+/*
+ * board.c - what a stream costs on a board: prints names and numbers, one pair a line.
+ *
+ * BENCH_MODEL is SPEECH or LAUGHTER, BENCH_SECONDS how much input is synthesised. What is counted, in instructions:
+ * labial_init() once; every call of labial_tick() from the first, before anything is ready, to the one that says
+ * LABIAL_DONE; the calls of labial_push(), labial_room() and labial_end() between ticks. The stack is that of all of
+ * these, with a callback that sums up the frame.
+ */
+#include "board.h"
+#include "inputs.h"
+
+static const bench_input_t input = BENCH_INPUT(BENCH_MODEL);
+
+static labial_t stream;
+static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX) / 4];
+
+static void report(const char *name, uint32_t number)
+{
+    board_print(name);
+    board_put(' ');
+    board_print_unsigned(number);
+    board_put('\n');
+}
+
+int main(void)
+{
+    uint32_t frames = 0, ticks = 0, sum = 0, pushed = 0;
+    uint32_t initial, ticking = 0, worst = 0, pushing = 0, deepest;
+    unsigned next = 0;
+    int result;
+
+    board_stack_paint();
+    board_count_start();
+    result = labial_init(&stream, input.model, workspace, sizeof workspace, bench_on_frame, &sum);
+    initial = board_count();
+    if (result != LABIAL_OK)
+        return 1;
+    do {
+        uint32_t taken;
+        board_count_start();
+        bench_feed(&stream, &input, &next, &pushed, BENCH_SECONDS * 1000u);
+        pushing += board_count();
+        board_count_start();
+        result = labial_tick(&stream);
+        taken = board_count();
+        if (taken == BOARD_COUNT_OVERFLOW || ticking > UINT32_MAX - taken)
+            return 2;
+        ticking += taken;
+        worst = taken > worst ? taken : worst;
+        ticks++;
+        frames += result == LABIAL_OK;
+    } while (result >= 0 && result != LABIAL_DONE);
+    deepest = board_stack_depth();
+    if (result != LABIAL_DONE)
+        return 3;
+
+    report("frames", frames);
+    report("ticks", ticks);
+    report("tick_instructions", ticking);
+    report("tick_worst", worst);
+    report("push_instructions", pushing);
+    report("init_instructions", initial);
+    report("stack", deepest);
+    report("checksum", sum);
+    return 0;
+}

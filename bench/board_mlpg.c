@@ -1,0 +1,26 @@
+/*
+ * board_mlpg.c - equation 3 alone: prints the instructions that a unit of each channel takes together, and the frames.
+ */
+#include "board.h"
+#include "speech_en.h"
+#include "unit.h"
+
+static bench_unit_t unit;
+
+int main(void)
+{
+    uint32_t instructions = 0;
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        bench_unit_fill(&unit, &speech_en, k);
+        board_count_start();
+        bench_unit_solve(&unit, &speech_en, k);
+        instructions += board_count();
+    }
+    board_print("instructions ");
+    board_print_unsigned(instructions);
+    board_print("\nframes ");
+    board_print_unsigned(LABIAL_CHANNELS * BENCH_UNIT);
+    board_put('\n');
+    return 0;
+}

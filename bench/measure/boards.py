@@ -1,0 +1,117 @@
+"""The emulated boards: their compilers, the figures that their images print."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from typing import Dict, List
+
+from measure.core import Bench, run, tool, version
+
+#: Seconds of input that each image synthesises.
+SECONDS = 20
+
+#: Bytes that the images' callback may take of the stack.
+_CALLBACK_STACK = 32
+
+#: Frames per second that the share of a processor is reckoned at.
+RATE = 50
+
+
+@dataclass(frozen=True)
+class Board:
+    """An emulated board; `preset` is also the name of its toolchain file. `clock` is what a chip with this core usually
+    runs at, in MHz, and `chip` which one is meant."""
+
+    preset: str
+    core: str
+    machine: str
+    prefix: str
+    package: str
+    emulator: str
+    emulator_package: str
+    clock: int
+    chip: str
+
+
+_ARM = ("arm-none-eabi-", "gcc-arm-none-eabi", "qemu-system-arm", "qemu-system-arm")
+_RISCV = ("riscv64-unknown-elf-", "gcc-riscv64-unknown-elf", "qemu-system-riscv32", "qemu-system-misc")
+
+BOARDS = (
+    Board("m0", "Cortex-M0", "microbit", *_ARM, 16, "nRF51822 of the micro:bit"),
+    Board("m3", "Cortex-M3", "mps2-an385", *_ARM, 72, "STM32F103"),
+    Board("m4", "Cortex-M4F", "mps2-an386", *_ARM, 64, "nRF52840"),
+    Board("m7", "Cortex-M7", "mps2-an500", *_ARM, 216, "STM32F746"),
+    Board("rv32", "RV32IMAC", "sifive_e", *_RISCV, 108, "GD32VF103"),
+)
+
+
+def compiler(board: Board) -> str:
+    """The board's compiler, or LeftOut."""
+    return tool(f"{board.prefix}gcc", board.package, f"{board.core} code size")
+
+
+def cpu_flags(bench: Bench, board: Board) -> List[str]:
+    """The compiler options that name the processor, from the board's toolchain file."""
+    path = bench.source / "boards" / "toolchains" / f"{board.preset}.cmake"
+    found = re.search(r'LABIAL_BOARD_CPU "([^"]+)"', path.read_text(encoding="utf-8"))
+    if not found:
+        raise RuntimeError(f"{path}: sets no LABIAL_BOARD_CPU")
+    return found.group(1).split()
+
+
+def build(bench: Bench, board: Board) -> Dict[str, List[str]]:
+    """Builds the board's images; the command that runs each, by its name."""
+    what = f"What runs on {board.core}"
+    tool(f"{board.prefix}gcc", board.package, what)
+    tool(board.emulator, board.emulator_package, what)
+    folder = bench.build / board.preset
+    toolchain = bench.source / "boards" / "toolchains" / f"{board.preset}.cmake"
+    run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={toolchain}", "-DCMAKE_BUILD_TYPE=Release",
+         "-DLABIAL_BUILD_BENCH=ON", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF",
+         f"-DLABIAL_BENCH_SECONDS={SECONDS}"])
+    run(["cmake", "--build", folder, "--parallel", "2"])
+    return json.loads((folder / "bench" / "images.json").read_text(encoding="utf-8"))
+
+
+def printed(command: List[str]) -> Dict[str, int]:
+    """What an image prints: lines of a name and a number."""
+    text = run(command).stdout.decode()
+    found = dict(re.findall(r"^(\w+) (\d+)$", text, re.MULTILINE))
+    return {name: int(number) for name, number in found.items()}
+
+
+def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
+    """Runs the images of `board`. `checksums`, by model, are those of the host's frames, which must come out again."""
+    images = build(bench, board)
+    tool_version = version(f"{board.prefix}gcc")
+    for model in ("speech", "laughter"):
+        command = images[f"bench_{model}"]
+        found = printed(command)
+        if model in checksums and found["checksum"] != checksums[model]:
+            raise RuntimeError(f"{bench.shown(command)}: its frames are not the host's")
+        mean = found["tick_instructions"] / found["frames"]
+
+        def add(figure: str, value: float, unit: str, model: str = model, command: List[str] = command) -> None:
+            bench.add(board.preset, f"{model}: {figure}", value, unit, command, tool_version)
+
+        add("mean", round(mean), "instructions/frame")
+        add("worst tick", found["tick_worst"], "instructions")
+        add("worst tick / mean", round(found["tick_worst"] / mean, 3), "ratio")
+        add("share of the core", round(100.0 * mean * RATE / (board.clock * 1e6), 2), "%")
+        add("pushing", round(found["push_instructions"] / found["frames"]), "instructions/frame")
+        add("labial_init()", found["init_instructions"], "instructions")
+        add("stack, painted", found["stack"], "bytes")
+        _check_stack(bench, board, found["stack"])
+    command = images["bench_mlpg"]
+    found = printed(command)
+    bench.add(board.preset, "MLPG", round(found["instructions"] / found["frames"], 1), "instructions/frame and channel",
+              command, tool_version)
+
+
+def _check_stack(bench: Bench, board: Board, painted: int) -> None:
+    """RuntimeError where a run took more stack than the call graph allows; the callback, a leaf, is not in that."""
+    bound = bench.value(board.preset, "stack -O2: every function")
+    if bound is not None and painted > bound + _CALLBACK_STACK:
+        raise RuntimeError(f"{board.core}: {painted} bytes of stack were used, the call graph allows {bound}")

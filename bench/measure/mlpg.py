@@ -1,0 +1,82 @@
+"""Equation 3 alone on the host, beside hts_engine and SPTK: instructions and memory for the same units."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+from typing import List, Union
+
+from measure.core import Bench, LeftOut, run, version
+from measure.host import collected, heap_peak, shown_callgrind
+
+#: Units of 40 frames and 13 channels that are solved; FEW and MANY tell SPTK's cost per frame from its start.
+UNITS, FEW, MANY = 20, 5, 25
+
+FRAMES = 40 * 13  #: of all channels of one unit
+
+UNIT = "instructions/frame and channel"
+
+
+def measure(bench: Bench, compiler: str) -> None:
+    """Labial's instructions and memory."""
+    program = bench.build / "bench" / "labial-bench-mlpg"
+    command = [program, "labial", str(UNITS)]
+    count = collected(command, "labial_trajectory_solve")
+    bench.add("host", "MLPG", round(count / (UNITS * FRAMES), 1), UNIT,
+              shown_callgrind(command, "labial_trajectory_solve"), version(compiler))
+    # By labial_trajectory_solve()'s contract: three int32 per frame, and the positions that it solves in place.
+    bench.add("host", "MLPG: memory of a unit", 40 * (3 * 4 + 13 * 2), "bytes",
+              ["lib/trajectory.h", "#", "3", "int32", "and", "13", "int16", "per", "frame"], "the interface")
+
+
+def _beside(bench: Bench, name: str, count: float, memory: int, command: List[Union[str, Path]], tool: str) -> None:
+    own, own_memory = bench.value("host", "MLPG"), bench.value("host", "MLPG: memory of a unit")
+    bench.add("host", f"MLPG by {name}", round(count, 1), UNIT, command, tool)
+    bench.add("host", f"MLPG by {name}: heap", memory, "bytes", command, tool)
+    if own and own_memory:
+        bench.add("host", f"MLPG by {name} / Labial", round(count / own, 2), "times Labial's instructions", command,
+                  tool)
+        bench.add("host", f"MLPG by {name} / Labial: memory", round(memory / own_memory, 1), "times Labial's bytes",
+                  command, tool)
+
+
+def hts_engine(bench: Bench) -> None:
+    """hts_engine's HTS_PStreamSet_create(), given the same equation unit by unit; its solution must be Labial's."""
+    program = bench.build / "bench" / "labial-bench-mlpg"
+    if b"hts_engine: yes" not in run([program, "about", "1"]).stdout:
+        raise LeftOut("The comparison with hts_engine is left out: install the Debian package libhtsengine-dev "
+                      "and configure again.")
+    run([program, "compare", "1"])
+    function = "HTS_PStreamSet_create"
+    command = [program, "hts", str(UNITS)]
+    count = collected(command, function) / (UNITS * FRAMES)
+    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
+        memory = heap_peak([program, "hts", "1"], Path(scratch))
+    _beside(bench, "hts_engine", count, memory, shown_callgrind(command, function), "hts_engine")
+
+
+def sptk_mlpg() -> List[str]:
+    """SPTK's mlpg, or LeftOut."""
+    for folder in ("/usr/libexec/sptk/bin", "/usr/lib/sptk/bin", "/usr/local/SPTK/bin"):
+        if (Path(folder) / "mlpg").is_file():
+            return [f"{folder}/mlpg"]
+    if shutil.which("mlpg"):
+        return [str(shutil.which("mlpg"))]
+    raise LeftOut("The comparison with SPTK is left out: install the Debian package sptk.")
+
+
+def sptk(bench: Bench) -> None:
+    """SPTK's program, given the same frames as one sequence: what each further frame costs, reading and writing
+    included, and the most memory that it holds."""
+    program = bench.build / "bench" / "labial-bench-mlpg"
+    mlpg = [*sptk_mlpg(), "-l", "13", "-i", "1", "-d", "-0.5", "0", "0.5", "-d", "1", "-2", "1"]
+    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
+        counts = {}
+        for units in (FEW, MANY):
+            path = Path(scratch) / f"{units}.f"
+            path.write_bytes(run([program, "sptk", str(units)]).stdout)
+            counts[units] = collected([*mlpg, path])
+        memory = heap_peak([*mlpg, Path(scratch) / f"{FEW}.f"], Path(scratch))
+    shown: List[Union[str, Path]] = [program, "sptk", str(MANY), "|", *shown_callgrind(mlpg, "")]
+    _beside(bench, "SPTK", (counts[MANY] - counts[FEW]) / ((MANY - FEW) * FRAMES), memory, shown, "SPTK")

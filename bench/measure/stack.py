@@ -1,0 +1,127 @@
+"""The most stack that a call of the library can take, from the compiler's frames and call graph."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from pathlib import Path
+from typing import Dict, List, Set, Tuple
+
+from measure.boards import Board, compiler, cpu_flags
+from measure.core import Bench, run, version
+from measure.sizes import LEVELS, OPTIONAL, compile_command
+
+#: How a call through a pointer appears; the only one is the program's own callback, whose stack is not the library's.
+_INDIRECT = "__indirect_call"
+
+_NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
+_EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+_FRAME = re.compile(r"(\d+) bytes \(([a-z,]+)\)")
+
+
+class CallGraph:
+    """Frames, bytes, and calls of every function that was added."""
+
+    def __init__(self) -> None:
+        self.frames: Dict[str, int] = {}
+        self.calls: Dict[str, Set[str]] = {}
+
+    def add_ci(self, text: str) -> None:
+        """Adds what -fcallgraph-info=su,da wrote; RuntimeError for a frame whose size is not fixed."""
+        for title, label in _NODE.findall(text):
+            frame = _FRAME.search(label)
+            if frame:
+                if frame.group(2) != "static":
+                    raise RuntimeError(f"{title}: its stack frame is {frame.group(2)}, not static")
+                self.frames[title] = int(frame.group(1))
+        for caller, callee in _EDGE.findall(text):
+            self.calls.setdefault(caller, set()).add(callee)
+
+    def missing(self) -> Set[str]:
+        """Functions that are called and whose frame is not known."""
+        called = set().union(*self.calls.values()) if self.calls else set()
+        return called - set(self.frames) - {_INDIRECT}
+
+    def deepest(self, function: str, above: Tuple[str, ...] = ()) -> Tuple[int, Tuple[str, ...]]:
+        """Bytes that a call of `function` takes at most, and the chain of calls that takes them. RuntimeError for
+        recursion and for a function whose frame is not known."""
+        if function in above:
+            raise RuntimeError(f"recursion: {' > '.join((*above, function))}")
+        if function not in self.frames:
+            raise RuntimeError(f"{function}: the size of its stack frame is not known")
+        most: Tuple[int, Tuple[str, ...]] = (0, ())
+        for callee in sorted(self.calls.get(function, set()) - {_INDIRECT}):
+            below = self.deepest(callee, (*above, function))
+            if below[0] > most[0]:
+                most = below
+        return self.frames[function] + most[0], (function, *most[1])
+
+
+def add_archive(graph: CallGraph, board: Board, flags: List[str]) -> None:
+    """Adds what is still missing from the compiler's own library, which has no call graph, by its machine code: all
+    that a member of the archive ever pushes or subtracts from the stack pointer, taken together."""
+    archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()
+    member_of: Dict[str, str] = {}
+    for line in run([f"{board.prefix}nm", "-A", "--defined-only", archive]).stdout.decode().splitlines():
+        place, _, name = line.rpartition(" ")
+        member_of.setdefault(name, place.split(":")[1])
+    todo = graph.missing()
+    listings = _listings(board, archive) if todo else {}
+    while todo:
+        name = todo.pop()
+        if name not in member_of:
+            raise RuntimeError(f"{name}: neither the library nor the compiler's own library has it")
+        member = member_of[name]
+        frame, called = _machine_code(listings[member])
+        graph.frames[name] = frame
+        graph.calls[name] = {other for other in called if member_of.get(other) != member}
+        todo |= {other for other in graph.calls[name] if other not in graph.frames}
+
+
+def _listings(board: Board, archive: str) -> Dict[str, str]:
+    text = run([f"{board.prefix}objdump", "-dr", archive]).stdout.decode(errors="replace")
+    parts = re.split(r"^(\S+):\s+file format .*$", text, flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2]))
+
+
+def _machine_code(listing: str) -> Tuple[int, Set[str]]:
+    frame = 0
+    for registers in re.findall(r"\b(?:push|stmdb\s+sp!,)\s*\{([^}]*)\}", listing):
+        for one in registers.split(","):
+            low, _, high = (part.strip("r ") for part in one.partition("-"))
+            frame += 4 * (int(high) - int(low) + 1 if high else 1)
+    frame += sum(int(number, 0) for number in re.findall(r"\bsub(?:\.w)?\s+(?:sp, )?sp, #(\d+)", listing))
+    frame += sum(int(number) for number in re.findall(r"\baddi\s+sp,sp,-(\d+)", listing))
+    return frame, set(re.findall(r"R_(?:ARM_THM_CALL|ARM_THM_JUMP24|RISCV_CALL(?:_PLT)?)\s+(\w+)", listing))
+
+
+def public_functions(bench: Bench) -> List[str]:
+    """The functions that labial.h declares."""
+    text = (bench.source / "include" / "labial" / "labial.h").read_text(encoding="utf-8")
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    return sorted(set(re.findall(r"^[a-z][\w \*]*?\b(labial_\w+)\([^;{]*\);", text, re.MULTILINE)))
+
+
+def measure(bench: Bench, board: Board) -> None:
+    """The deepest call of labial_tick() and of all functions of labial.h, at each level."""
+    tool_version = version(compiler(board))
+    for level in LEVELS:
+        graph = CallGraph()
+        command = [*compile_command(bench, board, level), "-fcallgraph-info=su,da"]
+        with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
+            # The board's memcpy and memset stand for those of whatever C library a program has.
+            for path in (*sorted((bench.source / "lib").glob("*.c")), bench.source / "boards" / "memory.c"):
+                if path.stem in OPTIONAL:
+                    continue
+                own = ["-fno-tree-loop-distribute-patterns"] if path.stem == "memory" else []
+                run([*command, *own, path, "-o", Path(scratch) / f"{path.stem}.o"])
+            for found in sorted(Path(scratch).glob("*.ci")):
+                graph.add_ci(found.read_text(encoding="utf-8"))
+        add_archive(graph, board, cpu_flags(bench, board))
+        functions = [name for name in public_functions(bench) if name in graph.frames]
+        shown = [*command, "lib/*.c"]
+        for figure, depth in (
+            (f"stack {level}: labial_tick()", graph.deepest("labial_tick")),
+            (f"stack {level}: every function", max(graph.deepest(name) for name in functions)),
+        ):
+            bench.add(board.preset, figure, depth[0], "bytes", [*shown, "#", " > ".join(depth[1])], tool_version)

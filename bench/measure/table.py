@@ -1,0 +1,214 @@
+"""bench.md: the figures as the tables that one looks for before choosing a processor."""
+
+from __future__ import annotations
+
+from typing import List, Optional, Sequence, Tuple
+
+from measure.boards import BOARDS, RATE, SECONDS
+from measure.core import Bench
+from measure.profile import Row
+from measure.sizes import LEVELS, OPTIONAL
+
+#: What is aimed at: what it is called, target, figure, the limit, and whether the limit is the least.
+GOALS = (
+    ("speech, Cortex-M0", "m0", "speech: mean", 60000, False),
+    ("worst tick / mean, speech, Cortex-M0", "m0", "speech: worst tick / mean", 1.5, False),
+    ("worst tick / mean, laughter, Cortex-M0", "m0", "laughter: worst tick / mean", 1.5, False),
+    ("speech, Cortex-M4F", "m4", "speech: mean", 50000, False),
+    ("speech, RV32IMAC", "rv32", "speech: mean", 70000, False),
+    ("MLPG, Cortex-M0", "m0", "MLPG", 600, False),
+    ("MLPG, Cortex-M4F", "m4", "MLPG", 160, False),
+    ("MLPG, x86-64", "host", "MLPG", 210, False),
+    ("MLPG error, largest, speech", "accuracy", "speech, *: MLPG error, largest", 0.1, False),
+    ("MLPG error, largest, laughter", "accuracy", "laughter, *: MLPG error, largest", 0.1, False),
+    ("code, Cortex-M0 -Os", "m0", "code -Os: total", 6144, False),
+    ("speech model", "m0", "speech: model", 48 * 1024, False),
+    ("laughter model", "m0", "laughter: model", 40 * 1024, False),
+    ("workspace and labial_t", "m0", "speech: workspace and labial_t", 6144, False),
+    ("stack, Cortex-M0 -Os", "m0", "stack -Os: every function", 512, False),
+    ("stack, Cortex-M0 -O2", "m0", "stack -O2: every function", 512, False),
+    (f"x86-64, times real time at {RATE} frames/s", "host", f"speech: speed at {RATE} frames/s", 200, True),
+)
+
+
+def _number(value: Optional[float]) -> str:
+    if value is None:
+        return ""
+    if value == int(value):
+        return f"{int(value):,}"
+    return f"{value:,.1f}" if abs(value) >= 100 else f"{value:.3g}"
+
+
+def _rows(head: Sequence[str], rows: Sequence[Sequence[str]]) -> List[str]:
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    return [*lines, *("| " + " | ".join(row) + " |" for row in rows), ""]
+
+
+def _by_board(bench: Bench, figures: Sequence[Tuple[str, str]], host: bool = False) -> List[str]:
+    """A row for each (label, figure) that is known anywhere, a column for each board."""
+    targets = [board.preset for board in BOARDS] + (["host"] if host else [])
+    rows = []
+    for label, figure in figures:
+        values = [bench.value(target, figure) for target in targets]
+        if any(value is not None for value in values):
+            rows.append([label, *map(_number, values)])
+    return _rows(["", *(board.core for board in BOARDS), *(["x86-64"] if host else [])], rows)
+
+
+def _cost(bench: Bench) -> List[str]:
+    rows = []
+    for model in ("speech", "laughter"):
+        rows += [(f"{model}: instructions per frame, mean", f"{model}: mean"),
+                 ("worst tick", f"{model}: worst tick"),
+                 ("worst tick / mean", f"{model}: worst tick / mean"),
+                 ("share of the core, %", f"{model}: share of the core"),
+                 ("cycles per frame, mean", f"{model}: cycles"),
+                 ("share of the core by cycles, %", f"{model}: share of the core by cycles"),
+                 ("pushing the phonemes of a frame", f"{model}: pushing"),
+                 ("`labial_init()`, once", f"{model}: labial_init()")]
+    clocks = "; ".join(f"{board.core} {board.clock} MHz ({board.chip})" for board in BOARDS)
+    return [
+        "## A frame of 13 channels", "",
+        f"Built with -O2; {SECONDS} s of a sentence, or of laughter, in a loop. The mean is that of all calls of "
+        "`labial_tick()` from the first, while nothing is ready yet, to the last, divided by the frames delivered; the "
+        f"worst tick is the worst of them all. Shares are reckoned at {RATE} frames/s and one instruction per cycle, "
+        "since QEMU counts no cycles. On Cortex-M0 every instruction takes a known number of them, so there they are "
+        "summed up: without wait states, a multiplication taking one, `labial_init()` and pushing included. Clocks: "
+        + clocks + ".", "",
+        *_by_board(bench, rows, host=True),
+    ]
+
+
+def _memory(bench: Bench) -> List[str]:
+    rows = [("code, -Os", "code -Os: total"), ("code, -O2", "code -O2: total")]
+    for model in ("speech", "laughter"):
+        rows += [(f"{model} model", f"{model}: model"), (f"{model} names, only if used", f"{model}: names")]
+    rows += [("`labial_t`", "labial_t")]
+    for model in ("speech", "laughter"):
+        rows += [(f"workspace, {model}", f"{model}: workspace")]
+    rows += [("workspace and `labial_t`, speech", "speech: workspace and labial_t"),
+             (".data and .bss of library and models", ".data and .bss of library and models")]
+    for level in LEVELS:
+        rows += [(f"stack, {level}: `labial_tick()`, at most", f"stack {level}: labial_tick()"),
+                 (f"stack, {level}: any function of labial.h, at most", f"stack {level}: every function")]
+    rows += [("stack, -O2: painted, speech, callback included", "speech: stack, painted"),
+             ("stack, -O2: painted, laughter, callback included", "laughter: stack, painted")]
+    optional = ", ".join(f"`{name}.c`" for name in OPTIONAL if bench.value("m0", f"code -Os: {name}.c") is not None)
+    return [
+        "## Bytes", "",
+        f"Code is .text with read-only data of all of `lib/*.c` except what is linked only when used: {optional}. It "
+        "does not hold what the compiler brings for division and what the C library brings for `memcpy` and `memset`; "
+        "stack does. The most that the stack can take comes from the compiler's frames and call graph and from the "
+        "machine code of its own functions; the program's callback is not in it.", "",
+        *_by_board(bench, rows),
+        "By file:", "",
+        *_files(bench),
+    ]
+
+
+def _files(bench: Bench) -> List[str]:
+    names = []
+    for figure in bench.figures:
+        if figure.figure.startswith("code ") and figure.figure.endswith(".c"):
+            name = figure.figure.split(": ")[1]
+            if name not in names:
+                names.append(name)
+    head, rows = [""], []
+    for board in BOARDS:
+        head += [f"{board.core} {level}" for level in LEVELS]
+    for name in [*names, "total"]:
+        row = [name if name.split(".")[0] not in OPTIONAL else f"({name})"]
+        for board in BOARDS:
+            row += [_number(bench.value(board.preset, f"code {level}: {name}")) for level in LEVELS]
+        rows.append(row)
+    return _rows(head, rows)
+
+
+def _mlpg(bench: Bench) -> List[str]:
+    lines = [
+        "## Equation 3 alone", "",
+        "Instructions per frame and channel: units of 40 frames of the speech model's states.", "",
+        *_by_board(bench, [("`labial_trajectory_solve()`", "MLPG")], host=True),
+    ]
+    rows = [["Labial", _number(bench.value("host", "MLPG")), "1",
+             _number(bench.value("host", "MLPG: memory of a unit")), "1"]]
+    for name in ("hts_engine", "SPTK"):
+        if bench.value("host", f"MLPG by {name}") is not None:
+            rows.append([name, *(_number(bench.value("host", f"MLPG by {name}{part}"))
+                                 for part in ("", " / Labial", ": heap", " / Labial: memory"))])
+    return [
+        *lines,
+        "On x86-64, by callgrind and massif. hts_engine: its `HTS_PStreamSet_create()`, which is handed the same means "
+        "and variances unit by unit as its public structures, in doubles, its allocations included; its solution is "
+        "Labial's to less than a tenth of a FAP unit. SPTK: its program `mlpg`, which recurses over the frames as "
+        "they arrive; the same frames as one sequence, what each further frame costs, reading and writing included. "
+        "Memory: Labial's scratch memory and positions of a unit, the others' heap at its peak.", "",
+        *_rows(["", "instructions per frame and channel", "times Labial's", "bytes", "times Labial's"], rows),
+    ]
+
+
+def _accuracy(bench: Bench) -> List[str]:
+    own = [figure for figure in bench.figures if figure.target == "accuracy"]
+    if not own:
+        return []
+    return [
+        "## What integers cost", "",
+        "MLPG: the library's solution, rounded to 1/16 FAP unit as it is, against float64 for the same tables, state "
+        "paths and targets. Full scale is what a position can be, 1,024 FAP units to either side, so that the unit of "
+        "error is one FAP unit. Paths: the likelihood, under the trained float64 model, that the exported tables' path "
+        "loses to the best path of a search over all transitions.", "",
+        *_rows(["", "", ""], [[figure.figure, f"{figure.value:.4f}", figure.unit] for figure in own]),
+    ]
+
+
+def _profile(profile: Sequence[Row]) -> List[str]:
+    total = sum(row.instructions for row in profile)
+    rows = [[f"`{row.function}`", f"{row.instructions:,.0f}", f"{100.0 * row.instructions / total:.1f} %",
+             f"{row.cycles:,.0f}", f"{row.calls:,.2f}", f"{row.instructions / row.calls:,.0f}" if row.calls else ""]
+            for row in profile if row.instructions >= 0.5]
+    return [
+        "## Where the instructions go on Cortex-M0", "",
+        "The speech run by function: pushing, ticks and `labial_init()`, without the image's own code. Functions that "
+        "the compiler inlined count in their callers.", "",
+        *_rows(["function", "instructions/frame", "share", "cycles/frame", "calls/frame", "instructions/call"], rows),
+    ]
+
+
+def _goal_value(bench: Bench, target: str, figure: str) -> Optional[float]:
+    begin, star, end = figure.partition("*")
+    for one in bench.figures:
+        if one.target == target and one.figure.startswith(begin) and one.figure.endswith(end):
+            if (star and one.checked) or one.figure == figure:
+                return one.value
+    return None
+
+
+def goals(bench: Bench) -> List[Tuple[str, float, float, bool]]:
+    """What is aimed at: name, limit, value and whether it is reached, for all that was measured."""
+    found = []
+    for name, target, figure, limit, least in GOALS:
+        value = _goal_value(bench, target, figure)
+        if value is not None:
+            found.append((name, float(limit), value, value >= limit if least else value <= limit))
+    return found
+
+
+def _goals(bench: Bench) -> List[str]:
+    rows = [[name, _number(limit), _number(value), "yes" if reached else "**no**"]
+            for name, limit, value, reached in goals(bench)]
+    return ["## Goals", "", *_rows(["", "goal", "measured", "reached"], rows)]
+
+
+def markdown(bench: Bench, profile: Sequence[Row]) -> str:
+    """The whole page."""
+    tools = sorted({figure.tool for figure in bench.figures if any(c.isdigit() for c in figure.tool)})
+    lines = ["# Figures", "", "Measured by `cmake --workflow --preset bench`; `bench.json` has the command of each.",
+             f"Tools: {', '.join(tools)}.", ""]
+    lines += [*_cost(bench), *_memory(bench), *_mlpg(bench), *_accuracy(bench)]
+    speeds = [[figure.figure, _number(figure.value), figure.unit] for figure in bench.figures if figure.timed]
+    lines += ["## Speed of the host, one core", "", *_rows(["", "", ""], speeds)] if speeds else []
+    lines += _profile(profile) if profile else []
+    lines += _goals(bench)
+    if bench.left_out:
+        lines += ["## Left out", "", *(f"- {sentence}" for sentence in bench.left_out), ""]
+    return "\n".join(lines)

@@ -1,0 +1,207 @@
+/*
+ * labial-bench-mlpg labial|hts|compare|sptk|about N - equation 3 of N units of 13 channels, for callgrind and massif:
+ *
+ *   labial    by the library
+ *   hts       by hts_engine's HTS_PStreamSet_create(), which takes the same means and variances as public structures
+ *   compare   by both, and says how far apart they are
+ *   about     by nobody: says whether hts_engine is built in
+ *   sptk      by nobody: writes means and precisions, float32, as SPTK's `mlpg -i 1` reads them from a file
+ *
+ * The anchors of Labial's equation 3 are a second static row; others know only one, so the two are merged into one with
+ * the sum of their precisions and the weighted mean. That is the same equation.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixed.h"
+#include "speech_en.h"
+#include "unit.h"
+
+#define WINDOWS 3 /* static, delta, delta-delta */
+
+static const labial_model_t *const model = &speech_en;
+
+/* Means, positions, and precisions of the rows of frame t, delta's precision in full. */
+static void rows(const bench_unit_t *unit, unsigned k, unsigned t, double mean[WINDOWS], double precision[WINDOWS])
+{
+    const labial_state_t *state = &model->channels[k].states[unit->path[t]];
+    const double held = labial_weight(state->weight[0]), anchor = labial_weight(state->anchor);
+    precision[0] = held + anchor;
+    mean[0] = (held * state->mean[0] + anchor * unit->targets[t][k]) / (held + anchor);
+    precision[1] = 4.0 * labial_weight(state->weight[1]);
+    mean[1] = state->mean[1];
+    precision[2] = labial_weight(state->weight[2]);
+    mean[2] = state->mean[2];
+}
+
+static void fill(bench_unit_t *unit)
+{
+    unsigned k;
+    bench_unit_t one;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        unsigned t;
+        bench_unit_fill(&one, model, k);
+        for (t = 0; t < BENCH_UNIT; t++) {
+            unit[k].path[t] = one.path[t];
+            unit[k].targets[t][k] = one.targets[t][k];
+        }
+    }
+}
+
+#ifdef BENCH_HTS
+#include <HTS_engine.h>
+
+/* Exported by the library, declared in a header that Debian does not install. */
+extern void HTS_PStreamSet_initialize(HTS_PStreamSet *set);
+extern HTS_Boolean HTS_PStreamSet_create(HTS_PStreamSet *set, HTS_SStreamSet *states, double *msd_threshold,
+                                         double *gv_weight);
+extern double HTS_PStreamSet_get_parameter(HTS_PStreamSet *set, size_t stream, size_t frame, size_t dimension);
+extern void HTS_PStreamSet_clear(HTS_PStreamSet *set);
+
+static double means[BENCH_UNIT][WINDOWS * LABIAL_CHANNELS], variances[BENCH_UNIT][WINDOWS * LABIAL_CHANNELS];
+
+/* Every frame is a state of its own, since the channels' states change apart. */
+static void hts_states(const bench_unit_t *unit)
+{
+    unsigned t, k, w;
+    for (t = 0; t < BENCH_UNIT; t++)
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            double mean[WINDOWS], precision[WINDOWS];
+            rows(&unit[k], k, t, mean, precision);
+            for (w = 0; w < WINDOWS; w++) {
+                means[t][w * LABIAL_CHANNELS + k] = mean[w];
+                variances[t][w * LABIAL_CHANNELS + k] = precision[w] > 0.0 ? 1.0 / precision[w] : 1e30;
+            }
+        }
+}
+
+/* Solves the unit `count` times; the last solution is left in `result`, positions, when that is not null. */
+static int hts_solve(const bench_unit_t *unit, unsigned long count, double (*result)[LABIAL_CHANNELS])
+{
+    static double still[1] = { 1.0 }, delta[3] = { -0.5, 0.0, 0.5 }, delta2[3] = { 1.0, -2.0, 1.0 };
+    double *centres[WINDOWS] = { still, delta + 1, delta2 + 1 }; /* the engine counts from the window's middle */
+    int left[WINDOWS] = { 0, -1, -1 }, right[WINDOWS] = { 0, 1, 1 };
+    double *mean_rows[BENCH_UNIT], *variance_rows[BENCH_UNIT];
+    size_t durations[BENCH_UNIT];
+    HTS_SStream stream;
+    HTS_SStreamSet states;
+    unsigned t, k;
+
+    hts_states(unit);
+    memset(&stream, 0, sizeof stream);
+    memset(&states, 0, sizeof states);
+    for (t = 0; t < BENCH_UNIT; t++) {
+        mean_rows[t] = means[t];
+        variance_rows[t] = variances[t];
+        durations[t] = 1;
+    }
+    stream.vector_length = LABIAL_CHANNELS;
+    stream.mean = mean_rows;
+    stream.vari = variance_rows;
+    stream.win_size = WINDOWS;
+    stream.win_l_width = left;
+    stream.win_r_width = right;
+    stream.win_coefficient = centres;
+    stream.win_max_width = 1;
+    states.sstream = &stream;
+    states.nstream = states.nstate = 1;
+    states.duration = durations;
+    states.total_state = states.total_frame = BENCH_UNIT;
+    while (count-- > 0) {
+        HTS_PStreamSet solved;
+        HTS_PStreamSet_initialize(&solved);
+        if (!HTS_PStreamSet_create(&solved, &states, NULL, NULL))
+            return 1;
+        if (result && count == 0)
+            for (t = 0; t < BENCH_UNIT; t++)
+                for (k = 0; k < LABIAL_CHANNELS; k++)
+                    result[t][k] = HTS_PStreamSet_get_parameter(&solved, 0, t, k);
+        HTS_PStreamSet_clear(&solved);
+    }
+    return 0;
+}
+
+static int compare(bench_unit_t *unit)
+{
+    static double expected[BENCH_UNIT][LABIAL_CHANNELS];
+    double largest = 0.0;
+    unsigned t, k;
+    if (hts_solve(unit, 1, expected))
+        return 1;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        bench_unit_solve(&unit[k], model, k);
+        for (t = 0; t < BENCH_UNIT; t++) {
+            const double difference = fabs(unit[k].targets[t][k] - expected[t][k]) / 16.0;
+            largest = difference > largest ? difference : largest;
+        }
+    }
+    printf("largest difference %.4f FAP units\n", largest);
+    return largest < 0.1 ? 0 : 1;
+}
+#endif
+
+/* Solves copies, so that every unit is the same work. */
+static void labial_solve(const bench_unit_t *unit, unsigned long count)
+{
+    static bench_unit_t copy;
+    unsigned k;
+    while (count-- > 0)
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            copy = unit[k];
+            bench_unit_solve(&copy, model, k);
+        }
+}
+
+static void sptk_write(const bench_unit_t *unit, unsigned long count)
+{
+    unsigned t, k, w;
+    while (count-- > 0)
+        for (t = 0; t < BENCH_UNIT; t++) {
+            float frame[2][WINDOWS][LABIAL_CHANNELS];
+            for (k = 0; k < LABIAL_CHANNELS; k++) {
+                double mean[WINDOWS], precision[WINDOWS];
+                rows(&unit[k], k, t, mean, precision);
+                for (w = 0; w < WINDOWS; w++) {
+                    frame[0][w][k] = (float)mean[w];
+                    frame[1][w][k] = (float)precision[w];
+                }
+            }
+            fwrite(frame, sizeof frame, 1, stdout);
+        }
+}
+
+int main(int argc, char **argv)
+{
+    static bench_unit_t unit[LABIAL_CHANNELS];
+    const long count = argc == 3 ? atol(argv[2]) : 0;
+    if (count > 0) {
+        if (strcmp(argv[1], "about") == 0) {
+#ifdef BENCH_HTS
+            puts("hts_engine: yes");
+#else
+            puts("hts_engine: no");
+#endif
+            return 0;
+        }
+        fill(unit);
+        if (strcmp(argv[1], "labial") == 0) {
+            labial_solve(unit, (unsigned long)count);
+            return 0;
+        }
+        if (strcmp(argv[1], "sptk") == 0) {
+            sptk_write(unit, (unsigned long)count);
+            return 0;
+        }
+#ifdef BENCH_HTS
+        if (strcmp(argv[1], "hts") == 0)
+            return hts_solve(unit, (unsigned long)count, NULL);
+        if (strcmp(argv[1], "compare") == 0)
+            return compare(unit);
+#endif
+    }
+    fputs("usage: labial-bench-mlpg labial|hts|compare|sptk|about N\n"
+          "hts and compare where it was built with hts_engine\n", stderr);
+    return 2;
+}

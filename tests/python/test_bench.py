@@ -1,0 +1,122 @@
+"""The measuring's own arithmetic: what a worse figure is, how deep a call graph is."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
+
+from measure import baseline  # noqa: E402
+from measure.core import Figure  # noqa: E402
+from measure.profile import cycles  # noqa: E402
+from measure.stack import CallGraph, _machine_code  # noqa: E402
+
+MEAN = Figure("m0", "speech: mean", 1000.0, "instructions/frame", "run it", "gcc 12.2.1")
+
+
+def changed(value: float, **other: str) -> Figure:
+    return dataclasses.replace(MEAN, value=value, **other)
+
+
+def test_worse_than_two_percent_fails_and_is_named() -> None:
+    # Catches a tolerance that is too wide, a comparison the wrong way round, a sentence without the numbers.
+    assert baseline.compare([MEAN], [changed(1020.0)]) == ([], [])
+    assert baseline.compare([MEAN], [changed(500.0)]) == ([], [])
+    (sentence,), passed_over = baseline.compare([MEAN], [changed(1021.0)])
+    assert all(part in sentence for part in ("m0", "speech: mean", "1000", "1021", "+2.1 %"))
+    assert passed_over == []
+
+
+def test_nothing_may_become_something() -> None:
+    # Catches a tolerance that is a share of zero, by which any .bss would pass or the comparison divide by it.
+    empty = Figure("m0", ".data and .bss", 0.0, "bytes", "size", "gcc 12.2.1")
+    assert baseline.compare([empty], [empty]) == ([], [])
+    assert len(baseline.compare([empty], [dataclasses.replace(empty, value=4.0)])[0]) == 1
+
+
+def test_timings_and_corpora_are_not_held() -> None:
+    # Catches a check that fails on a slower machine, or on one without somebody's corpus.
+    speed = changed(5.0, unit="frames/s")
+    loss = changed(5.0, target="accuracy", figure="speech, corpus: MLPG error, largest")
+    assert baseline.checked([MEAN, speed, loss]) == [MEAN]
+    assert baseline.compare([speed, loss], []) == ([], [])
+
+
+def test_other_tools_and_missing_figures_are_said() -> None:
+    # Catches a compiler's progress taken for the library's, and a figure that vanishes silently.
+    worse, passed_over = baseline.compare([MEAN], [changed(2000.0, tool="gcc 13.1.0")])
+    assert worse == [] and "gcc 12.2.1" in passed_over[0] and "gcc 13.1.0" in passed_over[0]
+    worse, passed_over = baseline.compare([MEAN], [])
+    assert worse == [] and "speech: mean" in passed_over[0]
+
+
+def test_baseline_survives_its_file(tmp_path: Path) -> None:
+    # Catches fields lost on the way, and a damaged file that ends in a traceback without its name.
+    path = tmp_path / "baseline.json"
+    baseline.write(path, [MEAN, changed(2.5)])
+    assert baseline.read(path) == [MEAN, changed(2.5)]
+    path.write_text('[{"target": "m0"}]')
+    with pytest.raises(ValueError, match="baseline.json"):
+        baseline.read(path)
+
+
+def node(name: str, size: int, kind: str = "static") -> str:
+    return f'node: {{ title: "{name}" label: "{name}\\nlib/x.c:1:1\\n{size} bytes ({kind})\\n0 dynamic objects" }}\n'
+
+
+def edge(caller: str, callee: str) -> str:
+    return f'edge: {{ sourcename: "{caller}" targetname: "{callee}" label: "lib/x.c:2:2" }}\n'
+
+
+def test_deepest_chain_of_calls() -> None:
+    # Catches a sum over all calls, the callee with the largest frame instead of the deepest, a callback counted in.
+    graph = CallGraph()
+    graph.add_ci(node("top", 8) + node("wide", 100) + node("a", 60) + node("b", 70))
+    graph.add_ci(edge("top", "wide") + edge("top", "a") + edge("a", "b") + edge("top", "__indirect_call"))
+    assert graph.missing() == set()
+    assert graph.deepest("top") == (138, ("top", "a", "b"))
+
+
+def test_what_has_no_bound_is_refused() -> None:
+    # Catches a bound that leaves out what it does not know.
+    graph = CallGraph()
+    graph.add_ci(node("top", 8) + node("again", 8) + edge("top", "unknown") + edge("again", "again"))
+    assert graph.missing() == {"unknown"}
+    with pytest.raises(RuntimeError, match="unknown"):
+        graph.deepest("top")
+    with pytest.raises(RuntimeError, match="recursion"):
+        graph.deepest("again")
+    with pytest.raises(RuntimeError, match="dynamic"):
+        graph.add_ci(node("alloca", 8, "dynamic"))
+
+
+@pytest.mark.parametrize("listing, expected", [
+    ("  0:\tb5f0 \tpush\t{r4, r5, r6, r7, lr}\n  2:\tb082 \tsub\tsp, #8\n", 28),
+    ("  0:\te92d 43f0 \tstmdb\tsp!, {r4-r9, lr}\n", 28),
+    ("  0:\t1141 \taddi\tsp,sp,-16\n  2:\t0141 \taddi\tsp,sp,16\n", 16),
+    ("  0:\t2200 \tmovs\tr2, #0\n", 0),
+])
+def test_frames_of_machine_code(listing: str, expected: int) -> None:
+    # Catches a register or a range of them that is not counted, and stack that is given back counted as taken.
+    assert _machine_code(listing)[0] == expected
+
+
+def test_calls_of_machine_code() -> None:
+    # Catches a helper of a helper left out of the bound.
+    listing = " 4:\tf7ff fffe \tbl\t0 <x>\n\t\t\t4: R_ARM_THM_CALL\t__aeabi_idiv0\n"
+    assert _machine_code(listing)[1] == {"__aeabi_idiv0"}
+
+
+@pytest.mark.parametrize("mnemonic, operands, expected", [
+    ("adds", "r0, r1, r2", 1), ("muls", "r0, r1", 1), ("ldr", "r0, [pc, #8]", 2), ("strb", "r0, [r1, r2]", 2),
+    ("ldrsh", "r0, [r1, r2]", 2), ("push", "{r4, r5, lr}", 4), ("ldmia", "r0!, {r1, r2}", 3), ("pop", "{r4, pc}", 5),
+    ("bl", "0 <x>", 4), ("bx", "lr", 3), ("b.n", "0 <x>", 3), ("beq.n", "0 <x>", 1), ("bics", "r0, r1", 1),
+    ("mov", "pc, r1", 3),
+])
+def test_cycles_are_those_of_the_manual(mnemonic: str, operands: str, expected: int) -> None:
+    # Catches instructions that one pattern takes for another: bics for a branch, ldrsh for a word of data processing.
+    assert cycles(mnemonic, operands) == expected
