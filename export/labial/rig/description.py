@@ -43,6 +43,7 @@ class Output:
     maximum: float
     invert: bool
     slew: float  #: units per frame; 0 for no limit
+    given_gain: bool  #: whether the description has a gain, not a value at full extent
 
 
 @dataclass(frozen=True)
@@ -205,7 +206,7 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
         raise table.error("slew", f"{slew:g} is not positive; leave it out for no limit")
     _check_values(table, unit, neutral=neutral, minimum=minimum, maximum=maximum,
                   **({"full": table.number("full")} if "full" in content else {}))
-    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew)
+    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content)
 
 
 def _check_values(table: _Table, unit: Unit, **values: float) -> None:

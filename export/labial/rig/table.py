@@ -64,7 +64,7 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
         values["neutral"] = min(max(values["neutral"], values["minimum"]), values["maximum"])
     found = _quantise(output.weights, output.gain * scale)
     if found is None:
-        raise fail("full" if output.gain * scale > 4095 else "from",
+        raise fail("from" if abs(output.gain * scale) < 4096 else "gain" if output.given_gain else "full",
                    "gain and weights are too large, or too far apart, to keep the motion within one unit")
     weights, gain = found
     return TableOutput(output.name, tuple(int(w) for w in weights), gain, values["neutral"], values["minimum"],
