@@ -1,0 +1,73 @@
+/*
+ * board.h - what a firmware image can ask of its board: text, an exit status, an instruction counter, stack depth.
+ *
+ *     cmake --workflow --preset m0      builds every image for a board and runs it under QEMU; also m3, m4, m7, rv32
+ *
+ * An image is a program with main(), made by the CMake function
+ *
+ *     labial_firmware(name main.c ...)                     then target_link_libraries(name PRIVATE labial::speech_en)
+ *     add_test(NAME name COMMAND name)                     runs it under QEMU; it passes when main returns 0
+ *
+ * Images are freestanding: no C library, no heap; <stdint.h>, <stddef.h> and the few functions of <string.h> that
+ * boards/include declares. RAM starts with the image's variables, the rest is stack: on m0 and rv32 there are 16 KB
+ * together, on m0 flash ends at 256 KB; the link fails where an image does not fit. The same calls exist on the host,
+ * where labial_firmware() makes an ordinary program; what the host cannot tell is said with each call.
+ *
+ * A processor fault ends the image with exit status 99, a stack that met the variables with 98.
+ */
+#ifndef BOARD_H
+#define BOARD_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The board's name: that of its preset, or "host". */
+extern const char board_name[];
+
+/* ---- Text, to QEMU's standard output --------------------------------------------------------------------------- */
+
+/* Lines are kept until they end or fill a buffer of 80 bytes; what is left is written when the image ends. */
+void board_put(char character);
+void board_print(const char *text);
+void board_print_unsigned(uint32_t number);
+void board_print_signed(int32_t number);
+void board_print_hex(uint32_t number); /* eight digits */
+
+/* Ends the image at once; main() returning a status does the same. */
+void board_exit(int status);
+
+/* ---- Instructions ------------------------------------------------------------------------------------------------ */
+
+/* The longest stretch that can be counted on every board; 0 on the host, which has no counter. */
+#define BOARD_COUNT_MAX 10000000u
+
+/* What board_count() says of a stretch that was too long. */
+#define BOARD_COUNT_OVERFLOW UINT32_MAX
+
+/*
+ * Instructions from the return of board_count_start() to the call of board_count(), without those of either; 0 on the
+ * host. QEMU runs with a fixed time per instruction, so that the board's own timers count instructions: exactly and
+ * repeatably, to the instruction. A real board counts clock ticks by the same registers.
+ */
+void board_count_start(void);
+uint32_t board_count(void);
+
+/* ---- Stack --------------------------------------------------------------------------------------------------------- */
+
+/* Fills the stack below its caller with a pattern; done once before main(). */
+void board_stack_paint(void);
+
+/* Bytes by which the stack grew below the caller of the last board_stack_paint(); 0 on the host, which cannot tell. */
+uint32_t board_stack_depth(void);
+
+/* Bytes of the stack that were never used since then; UINT32_MAX on the host. */
+uint32_t board_stack_left(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

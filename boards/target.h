@@ -1,0 +1,29 @@
+/*
+ * target.h - what target.c and the processor's own part ask of one another.
+ */
+#ifndef BOARD_TARGET_H
+#define BOARD_TARGET_H
+
+#include "board.h"
+
+/* Called by reset, with a stack and nothing else: variables, main(), exit. Does not return. */
+void board_start(void);
+
+/* Called on any processor fault. Does not return. */
+void board_fault(void);
+
+/* Measures what board_count_start() and board_count() take themselves. */
+void board_count_calibrate(void);
+
+static inline uint32_t *board_stack_pointer(void)
+{
+    uint32_t *pointer;
+#if defined(__arm__)
+    __asm__ volatile("mov %0, sp" : "=r"(pointer));
+#else
+    __asm__ volatile("mv %0, sp" : "=r"(pointer));
+#endif
+    return pointer;
+}
+
+#endif

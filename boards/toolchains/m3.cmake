@@ -1,0 +1,6 @@
+# Arm MPS2 with AN385: Cortex-M3.
+set(LABIAL_BOARD m3)
+set(LABIAL_BOARD_MACHINE mps2-an385)
+set(LABIAL_BOARD_CPU "-mcpu=cortex-m3 -mthumb")
+set(LABIAL_BOARD_LINK arm/mps2.ld)
+include("${CMAKE_CURRENT_LIST_DIR}/arm.cmake")

@@ -1,0 +1,170 @@
+#include "player.h"
+
+#include "laughter_synthetic.h"
+#include "speech_en.h"
+
+/* Ticks without a frame after which a stream counts as stuck: more than the longest piece takes. */
+#define PATIENCE 1000u
+
+const char *const conformance_feed_names[CONFORMANCE_FEEDS] = { "fill", "single", "hungry", "work" };
+
+typedef struct {
+    labial_t *stream;
+    labial_frame_fn sink;
+    void *user;
+    const char *complaint;
+    conformance_feed_t feed;
+    unsigned model;
+    uint32_t frames;    /* in all */
+    uint32_t take;      /* of them before the part that is played, which labial_restart() began */
+    uint32_t cancel_at; /* frames of the part after which it is cancelled, UINT32_MAX if it ends */
+    unsigned idle;      /* ticks since the last frame */
+    int last;           /* what the tick before returned */
+} player_t;
+
+static void complain(player_t *player, const char *what)
+{
+    if (!player->complaint)
+        player->complaint = what;
+}
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    player_t *player = (player_t *)user;
+    if (frame != player->frames)
+        complain(player, "a frame has the wrong number");
+    player->frames++;
+    player->sink(player->user, frame, faps);
+}
+
+static int is_cut(const player_t *player)
+{
+    return player->frames - player->take == player->cancel_at;
+}
+
+static void tick(player_t *player)
+{
+    const uint32_t before = player->frames;
+    const int result = labial_tick(player->stream);
+    if (result < 0)
+        complain(player, "a tick failed");
+    if (player->frames != before + (result == LABIAL_OK ? 1u : 0u))
+        complain(player, "a tick delivered other than what it said");
+    /* Playing began with frames in hand, and the queue was full or the end known ever since. */
+    if (result == LABIAL_BUSY && player->last == LABIAL_OK && player->feed != CONFORMANCE_HUNGRY &&
+        player->feed != CONFORMANCE_SINGLE)
+        complain(player, "a frame was late");
+    player->idle = result == LABIAL_OK ? 0 : player->idle + 1u;
+    if (player->idle > PATIENCE)
+        complain(player, "the stream stands still");
+    player->last = result;
+}
+
+/* Ticks before a push, as the feed demands, until there is room. */
+static void make_room(player_t *player)
+{
+    if (player->feed == CONFORMANCE_SINGLE)
+        tick(player);
+    if (player->feed == CONFORMANCE_HUNGRY)
+        do
+            tick(player);
+        while (!player->complaint && !is_cut(player) && player->last != LABIAL_WAITING &&
+               player->last != LABIAL_STARVED);
+    while (!player->complaint && !is_cut(player) && labial_room(player->stream) == 0) {
+        if (player->feed == CONFORMANCE_WORK)
+            while (labial_work(player->stream) == LABIAL_OK) {
+            }
+        tick(player);
+    }
+}
+
+static void push(player_t *player, const conformance_step_t *step)
+{
+    static const labial_model_t *const models[CONFORMANCE_MODELS] = { &speech_en, &laughter_synthetic };
+    if (step->model != player->model && labial_use(player->stream, models[step->model]) != LABIAL_OK)
+        complain(player, "a model is refused");
+    player->model = step->model;
+    if (labial_push(player->stream, step->value, step->milliseconds) != LABIAL_OK)
+        complain(player, "a phoneme is refused");
+}
+
+static void finish(player_t *player, const conformance_step_t *step)
+{
+    if (step->kind == CONFORMANCE_CANCEL) {
+        while (!player->complaint && !is_cut(player)) {
+            tick(player);
+            if (player->last == LABIAL_WAITING || player->last == LABIAL_STARVED)
+                complain(player, "the frame to cancel after needs phonemes that do not come");
+        }
+        if (labial_cancel(player->stream, step->milliseconds) != LABIAL_OK)
+            complain(player, "a cancel is refused");
+    } else if (labial_end(player->stream) != LABIAL_OK) {
+        complain(player, "an end is refused");
+    }
+    do {
+        if (player->feed == CONFORMANCE_WORK)
+            while (labial_work(player->stream) == LABIAL_OK) {
+            }
+        tick(player);
+    } while (!player->complaint && player->last != LABIAL_DONE);
+}
+
+/* After how many frames the part that begins with step `i` is cancelled. */
+static uint32_t cancelled_at(const conformance_stream_t *script, unsigned i)
+{
+    while (script->steps[i].kind == CONFORMANCE_PUSH)
+        i++;
+    return script->steps[i].kind == CONFORMANCE_CANCEL ? script->steps[i].value : UINT32_MAX;
+}
+
+const char *conformance_play(const conformance_stream_t *script, conformance_feed_t feed, labial_t *stream,
+                             void *workspace, size_t workspace_size, labial_frame_fn sink, void *user)
+{
+    player_t player = { 0 };
+    unsigned i;
+    player.stream = stream;
+    player.sink = sink;
+    player.user = user;
+    player.feed = feed;
+    player.last = LABIAL_WAITING;
+    player.model = CONFORMANCE_SPEECH;
+    player.cancel_at = cancelled_at(script, 0);
+    if (labial_init(stream, &speech_en, workspace, workspace_size, on_frame, &player) != LABIAL_OK)
+        return "labial_init() failed";
+
+    for (i = 0; i < script->step_count && !player.complaint; i++) {
+        const conformance_step_t *step = &script->steps[i];
+        if (step->kind == CONFORMANCE_PUSH) {
+            if (!is_cut(&player))
+                make_room(&player);
+            /* The phonemes after a cut are never heard of, those before the first frame are as far as there is room. */
+            if (!is_cut(&player) || (player.frames == player.take && labial_room(stream) > 0))
+                push(&player, step);
+            continue;
+        }
+        finish(&player, step);
+        if (i + 1u < script->step_count) {
+            if (labial_restart(stream) != LABIAL_OK)
+                complain(&player, "a restart is refused");
+            player.take = player.frames;
+            player.cancel_at = cancelled_at(script, i + 1u);
+            player.last = LABIAL_WAITING;
+        }
+    }
+    return player.complaint;
+}
+
+void conformance_digest(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    conformance_digest_t *digest = (conformance_digest_t *)user;
+    uint32_t crc = ~digest->crc;
+    unsigned i, bit;
+    (void)frame;
+    for (i = 0; i < 2u * LABIAL_CHANNELS; i++) {
+        crc ^= (uint32_t)(uint16_t)faps[i / 2u] >> (8u * (i % 2u)) & 0xffu;
+        for (bit = 0; bit < 8; bit++)
+            crc = crc >> 1 ^ (0xedb88320u & (0u - (crc & 1u)));
+    }
+    digest->crc = ~crc;
+    digest->frames++;
+}

@@ -1,0 +1,37 @@
+/*
+ * player.h - plays a conformance stream in one of several ways of feeding it, which must all give the same frames.
+ */
+#ifndef CONFORMANCE_PLAYER_H
+#define CONFORMANCE_PLAYER_H
+
+#include "vectors.h"
+
+typedef enum {
+    CONFORMANCE_FILL,   /* as many phonemes as there is room for before every tick */
+    CONFORMANCE_SINGLE, /* one phoneme before every tick */
+    CONFORMANCE_HUNGRY, /* one phoneme when a tick says that it waits for one: the stream starves throughout */
+    CONFORMANCE_WORK,   /* as FILL, and labial_work() between ticks until it has nothing to do */
+    CONFORMANCE_FEEDS
+} conformance_feed_t;
+
+/* Names of the feeds, for reports. */
+extern const char *const conformance_feed_names[CONFORMANCE_FEEDS];
+
+/*
+ * Plays a stream from labial_init() on; `sink` receives its frames. `workspace` has room for both bundled models.
+ *
+ * Returns null, or what the library did that it must not do: an error, frames that are misnumbered, more than one per
+ * tick, a frame that is late though phonemes were there, a stream that stands still.
+ */
+const char *conformance_play(const conformance_stream_t *script, conformance_feed_t feed, labial_t *stream,
+                             void *workspace, size_t workspace_size, labial_frame_fn sink, void *user);
+
+/* A labial_frame_fn that counts frames and keeps their CRC-32; `user` points to a conformance_digest_t set to zero. */
+typedef struct {
+    uint32_t crc;
+    uint32_t frames;
+} conformance_digest_t;
+
+void conformance_digest(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
+
+#endif

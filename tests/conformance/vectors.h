@@ -1,0 +1,34 @@
+/*
+ * vectors.h - phoneme streams and what their frames must be, bit for bit. vectors.c is made by regenerate.py from
+ * streams.txt, which says what each stream is for; frames.txt holds the frames themselves.
+ */
+#ifndef CONFORMANCE_VECTORS_H
+#define CONFORMANCE_VECTORS_H
+
+#include "labial/labial.h"
+
+enum { CONFORMANCE_SPEECH, CONFORMANCE_LAUGHTER, CONFORMANCE_MODELS };
+
+/* One step of a stream. */
+typedef struct {
+    uint8_t kind;
+    uint8_t model;         /* push: CONFORMANCE_SPEECH or CONFORMANCE_LAUGHTER */
+    uint16_t value;        /* push: the phoneme; cancel: how many frames come before it */
+    uint32_t milliseconds; /* push, cancel */
+} conformance_step_t;
+
+enum { CONFORMANCE_PUSH, CONFORMANCE_END, CONFORMANCE_CANCEL };
+
+/* A stream: its steps, of which the last ends or cancels it. */
+typedef struct {
+    const char *name;
+    const conformance_step_t *steps;
+    uint16_t step_count;
+    uint16_t frames; /* delivered in all */
+    uint32_t digest; /* CRC-32 (ISO 3309) of all frames, each 13 little-endian int16 */
+} conformance_stream_t;
+
+extern const conformance_stream_t conformance_streams[];
+extern const unsigned conformance_stream_count;
+
+#endif
