@@ -67,7 +67,8 @@ static void make_edge(void)
         GPIO_OUTCLR = pin;
         if (begun != ended)
             queue[ended % SERVOS_QUEUE].measured[servo] = (uint16_t)(was_high ? clock_by(1) - risen : 0u);
-        TIMER_CC(TIMER1, 1) = begin + SLOT;
+        if (servo + 1u < SERVOS_COUNT)
+            TIMER_CC(TIMER1, 1) = begin + SLOT;
     }
     edge++;
 }

@@ -70,6 +70,8 @@ def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
     expect(len(faces) == number["faces"] == total, f"{len(faces)} faces instead of {total}")
     expect([face[0] for face in faces] == list(range(len(faces))), "faces are missing or out of order")
     expect(len(lines) == len(faces) + 1, "there are other lines")
+    if faults:
+        return faults
     for column, (name, servo) in enumerate(servos.items(), start=1):
         pulses = [face[column] for face in faces]
         expect(servo["minimum"] <= min(pulses) and max(pulses) <= servo["maximum"], f"{name} leaves its limits")
@@ -77,7 +79,7 @@ def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
         steps = [abs(b - a) for a, b in zip(pulses, pulses[1:])]
         expect(max(steps) <= servo["slew"], f"{name} is faster than its slew limit")
         # The pins themselves: the handler read its timer where it saw them go high and low.
-        expect(all(abs(face[column + 3] - face[column]) <= 3 for face in faces), f"{name}'s pulses are not as asked for")
+        expect(all(abs(face[column + 3] - face[column]) <= 3 for face in faces), f"{name}'s pulses differ")
 
     def opening(frame: int) -> float:
         """Between the lips as the two servos put them, FAP units: the description's reaches are 560 and 90."""
