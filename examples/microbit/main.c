@@ -62,8 +62,9 @@ int main(void)
     labial_rig_rest(&face, pulses);
     servos_start(pulses);
     failed = speak();
-    trace_end();
-#if !defined(MICROBIT_TRACE)
+#if defined(MICROBIT_TRACE)
+    failed |= speak(); /* as if the button had been pressed */
+#else
     GPIO_PIN_CNF(MICROBIT_BUTTON_A) = 0;
     for (;;) {
         servos_wait();
@@ -71,5 +72,6 @@ int main(void)
             failed = speak();
     }
 #endif
+    trace_end();
     return failed;
 }

@@ -47,7 +47,9 @@ static void begin_period(void)
         for (servo = 0; servo < SERVOS_COUNT; servo++)
             lengths[servo] = queue[begun % SERVOS_QUEUE].lengths[servo];
         begun++;
-    } else if (playing && !ending) {
+    } else if (ending) {
+        playing = 0;
+    } else if (playing) {
         late++;
     }
     edge = 0;

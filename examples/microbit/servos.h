@@ -37,7 +37,7 @@ unsigned servos_room(void);
 void servos_push(const int32_t lengths[SERVOS_COUNT]);
 
 /* From the next period on one face per period is shown. The last one stays when there is none; this is late unless
- * servos_end() has said that no more will come. */
+ * servos_end() has said that no more will come, after which faces wait for servos_play() again. */
 void servos_play(void);
 void servos_end(void);
 
