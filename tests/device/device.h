@@ -1,0 +1,40 @@
+/*
+ * device.h - what the suites of the device tests share: the memory under test, and their entries.
+ */
+#ifndef DEVICE_H
+#define DEVICE_H
+
+#include "laughter_synthetic.h"
+#include "player.h"
+#include "speech_en.h"
+
+#define DEVICE_STATES \
+    (SPEECH_EN_STATES > LAUGHTER_SYNTHETIC_STATES ? SPEECH_EN_STATES : LAUGHTER_SYNTHETIC_STATES)
+#define DEVICE_WORKSPACE LABIAL_WORKSPACE_SIZE(DEVICE_STATES)
+
+/* The only stream and workspace of the tests, the latter exactly as large as is demanded, each between canaries. */
+#define DEVICE_CANARIES 4
+typedef struct {
+    uint32_t before[DEVICE_CANARIES];
+    labial_t stream;
+    uint32_t between[DEVICE_CANARIES];
+    uint32_t workspace[DEVICE_WORKSPACE / 4];
+    uint32_t after[DEVICE_CANARIES];
+} device_memory_t;
+
+extern device_memory_t device_memory;
+
+/* Fills everything with a pattern; says whether the canaries are as they were left by that. */
+void device_memory_fill(void);
+int device_memory_is_whole(void);
+
+/* The stream of vectors.c with that name; the test fails if there is none. */
+const conformance_stream_t *device_stream(const char *name);
+
+/* The suites, each in a file of its name. */
+void test_arithmetic(void);
+void test_memory(void);
+void test_ticks(void);
+void test_streams(void);
+
+#endif

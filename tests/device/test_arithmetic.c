@@ -1,0 +1,146 @@
+/*
+ * test_arithmetic.c - what the compiler and the processor make of lib/fixed.h and of the C that the library relies on.
+ */
+#include "device.h"
+
+#include <unity.h>
+
+#include "fixed.h"
+
+/* Exact results, from integers of any length: a * b / 2^shift, rounded to the nearest, halves up, modulo 2^32. */
+static const struct {
+    int32_t a, b;
+    unsigned shift;
+    int32_t result;
+} products[] = {
+    { 255, -1, 16, 0 },
+    { -3, -1, 16, 0 },
+    { 922121676, -2147483647, 16, -988137738 },
+    { -32768, -2147483647, 16, 1073741824 },
+    { -3, -1586449608, 16, 72622 },
+    { -224588375, 2147483647, 17, 1131038385 },
+    { -32768, 255, 17, -64 },
+    { 255, -1842911656, 17, -3585377 },
+    { -256, 32767, 17, -64 },
+    { 2, -1636341327, 17, -24969 },
+    { -2147483647, 1999744784, 23, -833556242 },
+    { 1946412080, -32768, 23, -7603172 },
+    { -1292809068, 351564607, 23, 1653247992 },
+    { -2039265503, -65537, 23, 15932005 },
+    { 1236683272, 314395342, 23, -895179148 },
+    { -2147483647, -65537, 24, 8388736 },
+    { 1431655765, 2, 24, 171 },
+    { -1833839630, -780166454, 24, -622971023 },
+    { 2147450880, -1804336357, 24, 976704382 },
+    { 295334609, -237592874, 24, 112545222 },
+    { 2, 65536, 30, 0 },
+    { -29652725, 1914012528, 30, -52857853 },
+    { 2147483647, 1490376253, 30, -1314214791 },
+    { INT32_MIN, -3, 30, 6 },
+    { 32767, 555512015, 30, 16952 },
+    { 1708957520, 1431655765, 31, 1139305013 },
+    { INT32_MIN, 65535, 31, -65535 },
+    { -776187175, 65535, 31, -23687 },
+    { -58123446, 2147483647, 31, -58123446 },
+    { 648200381, 255, 31, 77 },
+    { INT32_MIN, INT32_MIN, 31, INT32_MIN },
+    { 2147483647, 2147483647, 31, 2147483646 },
+    { INT32_MIN, 2147483647, 31, -2147483647 },
+    { 1, 1, 16, 0 },
+    { 1, 32768, 16, 1 },
+    { -1, 32768, 16, 0 },
+    { -1, 32769, 16, -1 },
+    { 65535, 65537, 16, 65536 },
+    { -65536, 65535, 16, -65535 },
+};
+
+/* Values that the compiler cannot compute with before the image runs. */
+static volatile int32_t given;
+
+static int32_t hide(int32_t value)
+{
+    given = value;
+    return given;
+}
+
+/* Would catch a lost carry between the parts of the 64-bit product, and a library routine for it that is wrong. */
+static void products_are_exact(void)
+{
+    unsigned i;
+    for (i = 0; i < sizeof products / sizeof products[0]; i++) {
+        const int32_t a = hide(products[i].a), b = hide(products[i].b);
+        TEST_ASSERT_EQUAL_HEX32((uint32_t)products[i].result, (uint32_t)labial_mulshift(a, b, products[i].shift));
+        TEST_ASSERT_EQUAL_HEX32((uint32_t)products[i].result, (uint32_t)labial_mulshift(b, a, products[i].shift));
+    }
+}
+
+/* Would catch the same for operands of every size; the expected product is made by division, not by shifts. */
+static void products_agree_with_division(void)
+{
+    uint32_t seed = 1;
+    unsigned i, shift;
+    for (shift = 16; shift <= 31; shift++)
+        for (i = 0; i < 100; i++) {
+            const int64_t unit = (int64_t)1 << shift;
+            int32_t a, b;
+            int64_t sum, quotient;
+            seed = seed * 1664525u + 1013904223u;
+            a = hide((int32_t)seed) >> (i % 31u);
+            seed = seed * 1664525u + 1013904223u;
+            b = hide((int32_t)seed) >> (i * 7u % 31u);
+            sum = (int64_t)a * b + unit / 2;
+            quotient = sum / unit;
+            if (sum % unit < 0)
+                quotient--;
+            TEST_ASSERT_EQUAL_HEX32((uint32_t)(quotient & 0xffffffff), (uint32_t)labial_mulshift(a, b, shift));
+        }
+}
+
+/* Would catch a compiler whose right shifts of negative numbers are not arithmetic, or round towards zero. */
+static void shifts_are_arithmetic(void)
+{
+    TEST_ASSERT_EQUAL_INT32(-1, hide(-1) >> 1);
+    TEST_ASSERT_EQUAL_INT32(-1, hide(-1) >> 31);
+    TEST_ASSERT_EQUAL_INT32(-3, hide(-5) >> 1);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN / 65536, hide(INT32_MIN) >> 16);
+    TEST_ASSERT_EQUAL_INT32(-80, labial_scale(hide(-5), 4));
+    TEST_ASSERT_EQUAL_INT32(3, labial_scale(hide(5), -1));
+    TEST_ASSERT_EQUAL_INT32(-2, labial_scale(hide(-5), -1)); /* halves up */
+    TEST_ASSERT_EQUAL_INT32(-3, labial_scale(hide(-11), -2));
+    TEST_ASSERT_EQUAL_INT32(0, labial_scale(hide(-1), -31));
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, labial_scale(hide(1), 31));
+}
+
+/* Would catch a compiler that takes sums beyond 32 bits for impossible. */
+static void sums_wrap(void)
+{
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, labial_add(hide(INT32_MAX), 1));
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX, labial_sub(hide(INT32_MIN), 1));
+    TEST_ASSERT_EQUAL_INT32(-8, labial_sub(hide(-5), 3));
+    TEST_ASSERT_EQUAL_INT32(127, labial_clamp(hide(INT32_MAX), 127));
+    TEST_ASSERT_EQUAL_INT32(-127, labial_clamp(hide(INT32_MIN), 127));
+    TEST_ASSERT_EQUAL_INT32(-126, labial_clamp(hide(-126), 127));
+}
+
+/* Would catch 16-bit promotions: products of uint16 that do not fit an int. */
+static void costs_are_unsigned(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, labial_weight((uint8_t)hide(0)));
+    TEST_ASSERT_EQUAL_UINT32(15, labial_weight((uint8_t)hide(15)));
+    TEST_ASSERT_EQUAL_UINT32(16, labial_weight((uint8_t)hide(16)));
+    TEST_ASSERT_EQUAL_UINT32(507904, labial_weight((uint8_t)hide(255)));
+    TEST_ASSERT_EQUAL_UINT32(65535, labial_z((uint32_t)hide(65535), (uint16_t)hide(65535), 65535));
+    TEST_ASSERT_EQUAL_UINT32(16384, labial_z((uint32_t)hide(32768), (uint16_t)hide(2048), 65535));
+    TEST_ASSERT_EQUAL_UINT32(33553408, labial_z_cost((uint32_t)hide(65535)));
+    TEST_ASSERT_EQUAL_UINT32(1, labial_z_cost((uint32_t)hide(12)));
+}
+
+void test_arithmetic(void)
+{
+    UnitySetTestFile(__FILE__);
+    RUN_TEST(shifts_are_arithmetic);
+    RUN_TEST(sums_wrap);
+    RUN_TEST(products_are_exact);
+    RUN_TEST(products_agree_with_division);
+    RUN_TEST(costs_are_unsigned);
+}

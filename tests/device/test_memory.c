@@ -1,0 +1,104 @@
+/*
+ * test_memory.c - the library keeps to the memory that it was given, wherever that lies, and to little of the stack.
+ */
+#include "device.h"
+
+#include <unity.h>
+
+#include "board.h"
+
+/* Stack that the deepest call of the library may take, with the player's and the callback's own; bytes. */
+#define STACK_LIMIT 1024u
+
+static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)user;
+    (void)frame;
+    (void)faps;
+}
+
+/* Would catch a workspace whose parts overlap or end elsewhere than LABIAL_WORKSPACE_SIZE says: canaries are checked
+ * after every test. The streams are those that fill the queue, the window and the ring. */
+static void fullest_streams_stay_inside(void)
+{
+    static const char *const names[] = { "queue", "long_vowel", "switch_in_long", "one_frame", "cancelled" };
+    unsigned i, feed;
+    for (i = 0; i < sizeof names / sizeof names[0]; i++)
+        for (feed = 0; feed < CONFORMANCE_FEEDS; feed++) {
+            const conformance_stream_t *script = device_stream(names[i]);
+            TEST_ASSERT_NULL(conformance_play(script, (conformance_feed_t)feed, &device_memory.stream,
+                                              device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+            TEST_ASSERT_TRUE_MESSAGE(device_memory_is_whole(), names[i]);
+        }
+}
+
+/* Would catch an access of eight bytes at once, which four-byte alignment does not allow on every processor. */
+static void alignment_to_four_bytes_is_enough(void)
+{
+    const conformance_stream_t *script = device_stream("sentence");
+    unsigned offset;
+    for (offset = 0; offset < 2; offset++) {
+        conformance_digest_t digest = { 0, 0 };
+        uint32_t *workspace = device_memory.workspace + (((uintptr_t)device_memory.workspace >> 2) + offset) % 2u;
+        /* The last word, one canary, is lent to the workspace where it begins a word later. */
+        const uint32_t lent = device_memory.after[0];
+        TEST_ASSERT_NULL(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, workspace, DEVICE_WORKSPACE,
+                                          conformance_digest, &digest));
+        device_memory.after[0] = lent;
+        TEST_ASSERT_EQUAL_HEX32(script->digest, digest.crc);
+    }
+}
+
+/* Would catch a check that lets the library read or write where it must not. */
+static void unfit_workspaces_are_refused(void)
+{
+    labial_t *stream = &device_memory.stream;
+    uint8_t *workspace = (uint8_t *)(void *)device_memory.workspace;
+    const uint32_t size = labial_workspace_size(&speech_en);
+    unsigned offset;
+    TEST_ASSERT_EQUAL_UINT32(SPEECH_EN_WORKSPACE_SIZE, size);
+    TEST_ASSERT_EQUAL_UINT32(LAUGHTER_SYNTHETIC_WORKSPACE_SIZE, labial_workspace_size(&laughter_synthetic));
+    for (offset = 1; offset < 4; offset++)
+        TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_WORKSPACE,
+                              labial_init(stream, &speech_en, workspace + offset, size, ignore, NULL));
+    TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_WORKSPACE, labial_init(stream, &speech_en, workspace, size - 1u, ignore, NULL));
+    TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_NULL, labial_init(stream, &speech_en, NULL, size, ignore, NULL));
+    TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_STATE, labial_tick(stream));
+    TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_init(stream, &speech_en, workspace, size, ignore, NULL));
+}
+
+/* Would catch tables that were damaged on their way to flash, and structures laid out otherwise than they were written. */
+static void models_are_sound(void)
+{
+    TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_model_check(&speech_en));
+    TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_model_check(&laughter_synthetic));
+}
+
+/* Would catch a buffer or a recursion that a small stack does not bear. */
+static void stack_is_small(void)
+{
+    const conformance_stream_t *script = device_stream("switch");
+    uint32_t depth;
+    if (board_stack_left() == UINT32_MAX) {
+        TEST_IGNORE_MESSAGE("this board cannot tell how deep the stack is");
+        return; /* what is ignored or fails does not end the function where Unity does without setjmp() */
+    }
+    board_stack_paint();
+    TEST_ASSERT_NULL(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, device_memory.workspace,
+                                      DEVICE_WORKSPACE, ignore, NULL));
+    depth = board_stack_depth();
+    board_print("stack: ");
+    board_print_unsigned(depth);
+    board_print(" bytes\n");
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(STACK_LIMIT, depth);
+}
+
+void test_memory(void)
+{
+    UnitySetTestFile(__FILE__);
+    RUN_TEST(models_are_sound);
+    RUN_TEST(unfit_workspaces_are_refused);
+    RUN_TEST(fullest_streams_stay_inside);
+    RUN_TEST(alignment_to_four_bytes_is_enough);
+    RUN_TEST(stack_is_small);
+}
