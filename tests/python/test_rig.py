@@ -185,7 +185,7 @@ def test_drawing_shows_every_output(tmp_path: Path) -> None:
     root = ET.fromstring((tmp_path / "a" / "head.svg").read_text())
     words = {"".join(item.itertext()).strip() for item in root.iter("{http://www.w3.org/2000/svg}text")}
     assert {"jaw", "upper_lip", "lower_lip", "corner_left", "corner_right"} <= words
-    assert {"mouth open", "lips rounded", "smile", "percent of the pose"} <= words
+    assert {"mouth open", "lips rounded", "smile", "lips closed", "percent of the pose"} <= words
     assert (tmp_path / "a" / "head.svg").read_bytes() == (tmp_path / "b" / "head.svg").read_bytes()
 
 

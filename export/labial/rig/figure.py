@@ -1,4 +1,4 @@
-"""Draws how each output moves from rest to three poses, so that a slip in a description is seen before it is built."""
+"""Draws how each output moves from rest to a few poses, so that a slip in a description is seen before it is built."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from labial.rig.gestures import POSES
 from labial.rig.table import convert, expected
 
 #: Shares of a pose that are drawn; a quarter beyond it, where limits show.
-_SHARES = np.linspace(0.0, 1.25, 126)
-_COLOURS = ("#1b6ca8", "#c8553d", "#3a7d44")
+_SHARES = np.linspace(0.0, 1.25, 51)
+_COLOURS = ("#1b6ca8", "#c8553d", "#3a7d44", "#8a4fa3")
 
 
 def draw(rig: Rig, path: Union[str, Path]) -> None:
@@ -50,5 +50,6 @@ def draw(rig: Rig, path: Union[str, Path]) -> None:
         for axes in every[:, 0]:
             axes.set_ylabel(rig.unit.text.split(" (")[0])
         figure.supxlabel("percent of the pose")
-        figure.legend(*every.flat[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, frameon=False)
+        figure.legend(*every.flat[0].get_legend_handles_labels(), loc="outside upper center", frameon=False,
+                      ncols=2 if columns == 1 else len(POSES))
         figure.savefig(path, format="svg", metadata={"Date": None})

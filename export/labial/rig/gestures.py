@@ -40,7 +40,8 @@ SOURCES: Mapping[str, Gesture] = {
     **GESTURES,
 }
 
-#: Faces to draw a rig with, FAP units: an open vowel, a rounded one, a smile that shows the teeth.
+#: Faces to draw a rig with, FAP units: an open vowel, a rounded one, a smile that shows the teeth, and lips pressed on
+#: each other over a jaw that is half open, which shows whether a face can close in p, b, m.
 POSES: Dict[str, np.ndarray] = {
     "mouth open": _weights(fap3=400, fap16=-240, fap52=-600, fap53=-15, fap54=-15, fap57=-490, fap58=-490, fap59=-120,
                            fap60=-120),
@@ -48,4 +49,6 @@ POSES: Dict[str, np.ndarray] = {
                              fap56=65, fap57=-210, fap58=-210, fap59=-150, fap60=-150),
     "smile": _weights(fap3=40, fap16=-35, fap17=-35, fap51=-50, fap52=-30, fap53=105, fap54=105, fap55=-65, fap56=-65,
                       fap59=130, fap60=130),
+    "lips closed": _weights(fap3=250, fap16=-130, fap51=85, fap52=-125, fap55=60, fap56=60, fap57=-105, fap58=-105,
+                            fap59=-50, fap60=-50),
 }
