@@ -55,6 +55,15 @@ void board_exit(int status);
 void board_count_start(void);
 uint32_t board_count(void);
 
+/* ---- Interrupts, on Arm boards alone --------------------------------------------------------------------------------- */
+
+/* Interrupts that have a vector. */
+#define BOARD_INTERRUPTS 32
+
+/* Called for every interrupt that the image enables, with its number below BOARD_INTERRUPTS: an image that uses
+ * interrupts defines it. Without a definition an interrupt is a processor fault. */
+void board_interrupt(unsigned number);
+
 /* ---- Stack --------------------------------------------------------------------------------------------------------- */
 
 /* Fills the stack below its caller with a pattern; done once before main(). */

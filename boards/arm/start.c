@@ -38,16 +38,33 @@ void board_reset(void)
     board_start();
 }
 
-/* What the processor reads at address 0: where the stack ends, then one handler per exception. No interrupt is used. */
+/* An interrupt that an image enables without defining board_interrupt() is a fault. */
+__attribute__((weak)) void board_interrupt(unsigned number)
+{
+    (void)number;
+    board_fault();
+}
+
+static void interrupt(void)
+{
+    uint32_t exception;
+    __asm__ volatile("mrs %0, ipsr" : "=r"(exception));
+    board_interrupt((unsigned)exception - 16u);
+}
+
+#define FOUR_INTERRUPTS interrupt, interrupt, interrupt, interrupt
+
+/* What the processor reads at address 0: where the stack ends, then one handler per exception and interrupt. */
 typedef struct {
     uint32_t *stack;
-    void (*handlers[15])(void);
+    void (*handlers[15 + BOARD_INTERRUPTS])(void);
 } vectors_t;
 
 __attribute__((section(".vectors"), used)) static const vectors_t vectors = {
     board_stack_end,
     { board_reset, board_fault, board_fault, board_fault, board_fault, board_fault, 0, 0, 0, 0, board_fault, board_fault,
-      0, board_fault, board_fault }
+      0, board_fault, board_fault, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS,
+      FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS }
 };
 
 __attribute__((noinline)) void board_count_start(void)

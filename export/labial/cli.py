@@ -1,4 +1,4 @@
-"""The command ``labial``: train, synth, export, check, evaluate, laughter-corpus."""
+"""The command ``labial``: train, synth, export, check, evaluate, laughter-corpus, rig."""
 
 from __future__ import annotations
 
@@ -89,6 +89,13 @@ def parser() -> argparse.ArgumentParser:
     laughter.add_argument("--episodes", type=_positive, default=200)
     laughter.add_argument("--seed", type=int, default=0)
     laughter.set_defaults(run=_laughter_corpus)
+
+    rig = commands.add_parser("rig", help="write a description of servos or blendshapes as a C table")
+    rig.add_argument("description", metavar="FACE.toml")
+    rig.add_argument("-o", "--output", required=True, metavar="DIR")
+    rig.add_argument("--name", help="of the C symbol and the files; the description's file name without it")
+    rig.add_argument("--no-figure", action="store_true", help="do not draw NAME.svg")
+    rig.set_defaults(run=_rig)
     return top
 
 
@@ -198,6 +205,14 @@ def _laughter_corpus(options: argparse.Namespace) -> int:
 
     generate(options.output, episodes=options.episodes, seed=options.seed)
     print(f"{options.output}: {options.episodes} synthetic episodes")
+    return 0
+
+
+def _rig(options: argparse.Namespace) -> int:
+    from labial.rig.command import run
+
+    for path in run(options.description, options.output, name=options.name, drawing=not options.no_figure):
+        print(path)
     return 0
 
 

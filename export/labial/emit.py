@@ -28,14 +28,14 @@ _C_KEYWORDS = frozenset(
 )
 
 
-def check_name(name: str) -> None:
-    """Raises ModelError unless `name` can be a global name in C and C++."""
+def check_name(name: str, what: str = "model") -> None:
+    """Raises ModelError unless `name` can be a global name in C and C++; `what` it would be the name of."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,47}", name) or "__" in name:
         raise ModelError(
-            f"{name!r} is no name for a model: letters, digits and single underscores, a letter first, at most 48"
+            f"{name!r} is no name for a {what}: letters, digits and single underscores, a letter first, at most 48"
         )
     if name in _C_KEYWORDS or keyword.iskeyword(name) or name.startswith("labial"):
-        raise ModelError(f"{name!r} is no name for a model: C, C++ or the library already uses it")
+        raise ModelError(f"{name!r} is no name for a {what}: C, C++ or the library already uses it")
 
 
 def phoneme_constants(model: ExportedModel) -> List[str]:

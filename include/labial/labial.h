@@ -102,13 +102,14 @@ extern "C" {
     X(LABIAL_ERROR_FULL, -8, "the queue is full; tick and push again")                                           \
     X(LABIAL_ERROR_RATE, -9, "the model's frame rate is not the stream's")                                       \
     X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still held")                         \
-    X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")
+    X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                \
+    X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")
 
 typedef enum {
 #define LABIAL_RESULT_VALUE(name, value, text) name = value,
     LABIAL_RESULTS(LABIAL_RESULT_VALUE)
 #undef LABIAL_RESULT_VALUE
-    LABIAL_RESULT_LAST_ = LABIAL_ERROR_NAME
+    LABIAL_RESULT_LAST_ = LABIAL_ERROR_RIG
 } labial_result_t;
 
 /* A sentence for any result, "unknown result" for other numbers. Linked only when used. */

@@ -18,6 +18,7 @@ static const int codes[] = {
     LABIAL_OK, LABIAL_WAITING, LABIAL_STARVED, LABIAL_BUSY, LABIAL_DONE, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION,
     LABIAL_ERROR_MODEL, LABIAL_ERROR_WORKSPACE, LABIAL_ERROR_STATE, LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION,
     LABIAL_ERROR_FULL, LABIAL_ERROR_RATE, LABIAL_ERROR_MODELS, LABIAL_ERROR_NAME,
+    LABIAL_ERROR_RIG,
 };
 
 #define CODES (sizeof codes / sizeof codes[0])
@@ -55,7 +56,7 @@ static void every_code_has_its_own_text(void **state)
 
 static void other_numbers_are_unknown(void **state)
 {
-    static const int others[] = {5, 6, 255, -12, -13, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1};
+    static const int others[] = {5, 6, 255, -13, -14, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1};
     unsigned i;
     (void)state;
     for (i = 0; i < sizeof others / sizeof others[0]; i++)

@@ -1,0 +1,43 @@
+/*
+ * arkit.h - what moves a face. Values are plain units. Written by labial rig 0.1.0; do not edit.
+ */
+#ifndef LABIAL_RIG_ARKIT_H
+#define LABIAL_RIG_ARKIT_H
+
+#include "labial/rig.h"
+
+#if LABIAL_RIG_FORMAT != 1
+#error "arkit was written for another version of Labial: run labial rig again."
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ARKIT_OUTPUTS 14
+
+/* Places of the outputs among the values. */
+enum {
+    ARKIT_JAWOPEN = 0,
+    ARKIT_MOUTHCLOSE = 1,
+    ARKIT_MOUTHFUNNEL = 2,
+    ARKIT_MOUTHPUCKER = 3,
+    ARKIT_MOUTHSTRETCHLEFT = 4,
+    ARKIT_MOUTHSTRETCHRIGHT = 5,
+    ARKIT_MOUTHSMILELEFT = 6,
+    ARKIT_MOUTHSMILERIGHT = 7,
+    ARKIT_MOUTHFROWNLEFT = 8,
+    ARKIT_MOUTHFROWNRIGHT = 9,
+    ARKIT_MOUTHUPPERUPLEFT = 10,
+    ARKIT_MOUTHUPPERUPRIGHT = 11,
+    ARKIT_MOUTHLOWERDOWNLEFT = 12,
+    ARKIT_MOUTHLOWERDOWNRIGHT = 13
+};
+
+extern const labial_rig_t arkit;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

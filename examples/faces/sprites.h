@@ -1,0 +1,33 @@
+/*
+ * sprites.h - what moves a face. Values are plain units. Written by labial rig 0.1.0; do not edit.
+ */
+#ifndef LABIAL_RIG_SPRITES_H
+#define LABIAL_RIG_SPRITES_H
+
+#include "labial/rig.h"
+
+#if LABIAL_RIG_FORMAT != 1
+#error "sprites was written for another version of Labial: run labial rig again."
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SPRITES_OUTPUTS 4
+
+/* Places of the outputs among the values. */
+enum {
+    SPRITES_OPENING = 0,
+    SPRITES_SMILE = 1,
+    SPRITES_ROUNDING = 2,
+    SPRITES_UPPER = 3
+};
+
+extern const labial_rig_t sprites;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

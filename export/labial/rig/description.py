@@ -1,0 +1,222 @@
+"""Reads a rig's description, a TOML file such as ``examples/faces/jaw.toml``; docs/servos.md explains its keys."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import os
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, Iterable, List, Mapping, Tuple, Union
+
+import numpy as np
+
+from labial.errors import DataError, LabialError
+from labial.faps import CHANNELS
+from labial.rig.gestures import SOURCES
+from labial.rig.units import UNITS, Unit, make_unit
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:  # pragma: no cover - the same parser under the name it had before it became a part of Python
+    import tomli as tomllib
+
+#: Pulses that a description may ask of a servo, microseconds: wider than any common servo's range, narrow enough for a
+#: slip of the finger to be noticed.
+PULSE_MIN, PULSE_MAX = 400.0, 2600.0
+
+_TOP_KEYS = ("unit", "frequency", "clock", "output")
+_OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum", "invert", "slew")
+
+
+@dataclass(frozen=True)
+class Output:
+    """One output, in the unit of the description: microseconds for servos."""
+
+    name: str
+    weights: np.ndarray  #: (13,) float64
+    gain: float  #: units per FAP unit
+    neutral: float
+    minimum: float
+    maximum: float
+    invert: bool
+    slew: float  #: units per frame; 0 for no limit
+    given_gain: bool  #: whether the description has a gain, not a value at full extent
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A description that was read and holds together."""
+
+    name: str
+    unit: Unit
+    outputs: Tuple[Output, ...]
+    path: str
+
+
+class _Table:
+    """A table of the file, with errors that name the file and the key."""
+
+    def __init__(self, path: str, prefix: str, content: Mapping[str, Any], known: Iterable[str]) -> None:
+        self.path, self.prefix, self.content = path, prefix, content
+        known = list(known)
+        for key in content:
+            if key not in known:
+                near = difflib.get_close_matches(key, known, n=1)
+                hint = f"; did you mean {near[0]}?" if near else f"; known are {', '.join(known)}"
+                raise self.error(key, f"unknown key{hint}")
+
+    def error(self, key: str, message: str) -> DataError:
+        return DataError(self.path, None, f"{self.prefix}{key}: {message}")
+
+    def number(self, key: str) -> float:
+        """A finite number; the key must be there."""
+        if key not in self.content:
+            raise self.error(key, "is missing")
+        return _number(self, key, self.content[key])
+
+
+def _number(table: _Table, key: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise table.error(key, f"{value!r} is not a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise table.error(key, f"{number} is not a finite number")
+    return number
+
+
+def read(path: Union[str, os.PathLike], name: str) -> Rig:
+    """The rig that the file describes, to be called `name`. Raises DataError naming the file and the line or key."""
+    where = os.fspath(path)
+    try:
+        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except UnicodeDecodeError as error:
+        raise DataError(where, None, f"not UTF-8 text: byte {error.start}") from None
+    except tomllib.TOMLDecodeError as error:
+        found = re.fullmatch(r"(.*?)(?: \(at line (\d+), column (\d+)\))?", str(error), re.DOTALL)
+        line = int(found[2]) if found and found[2] else None
+        column = f" (column {found[3]})" if found and found[3] else ""
+        raise DataError(where, line, f"not TOML: {found[1] if found else error}{column}") from None
+    except RecursionError:
+        raise DataError(where, None, "not TOML: nested too deeply") from None
+    top = _Table(where, "", content, _TOP_KEYS)
+    unit = _unit(top)
+    outputs = content.get("output")
+    if not isinstance(outputs, dict) or not outputs:
+        raise top.error("output", "at least one table [output.NAME] is needed")
+    return Rig(name, unit, tuple(_output(where, key, table, unit) for key, table in _named(top, outputs)), where)
+
+
+def _unit(top: _Table) -> Unit:
+    name = top.content.get("unit", "us")
+    if name not in UNITS:
+        raise top.error("unit", f"{name!r} is none of {', '.join(UNITS)}")
+    wanted = {"pca9685": "frequency", "counts": "clock"}.get(str(name))
+    for key in ("frequency", "clock"):
+        if key in top.content and key != wanted:
+            raise top.error(key, f"has no meaning for the unit {name}")
+    parameter = 50.0
+    if wanted == "clock" or (wanted and wanted in top.content):
+        parameter = top.number(wanted)
+    try:
+        return make_unit(str(name), parameter)
+    except LabialError as error:
+        raise top.error(wanted or "unit", str(error)) from None
+
+
+def _named(top: _Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mapping[str, Any]]]:
+    spelled: Dict[str, str] = {}
+    for name, table in outputs.items():
+        if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,31}", name):
+            raise top.error(f"output.{name}", "an output's name is letters, digits and underscores, a letter first, "
+                                              "at most 32")
+        if name.upper() in spelled:
+            raise top.error(f"output.{name}", f"is the same in capitals as output.{spelled[name.upper()]}")
+        if name.upper() in ("OUTPUTS", "PCA9685_PRESCALE"):
+            raise top.error(f"output.{name}", "this name is taken by the generated header")
+        if not isinstance(table, dict):
+            raise top.error(f"output.{name}", "is not a table")
+        spelled[name.upper()] = name
+    return list(outputs.items())  # type: ignore[arg-type]
+
+
+def _source(table: _Table) -> Tuple[np.ndarray, Union[float, None]]:
+    """The weights of ``from`` and, if it is one name, the reach that is usual for it."""
+    given = table.content.get("from")
+    if isinstance(given, str):
+        given, alone = {given: 1.0}, True
+    else:
+        alone = False
+    if not isinstance(given, dict) or not given:
+        raise table.error("from", "is the name of a gesture or a FAP, or a table { NAME = WEIGHT, ... }")
+    weights, reach = np.zeros(CHANNELS), None
+    for name, weight in given.items():
+        if name not in SOURCES:
+            near = difflib.get_close_matches(name, list(SOURCES), n=1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise table.error("from", f"no gesture or FAP is called {name!r}{hint}")
+        number = _number(table, f"from.{name}", weight)
+        if abs(number) > 1000:
+            raise table.error(f"from.{name}", f"{number:g} is not within -1000 .. 1000")
+        weights += number * SOURCES[name].weights
+        reach = SOURCES[name].reach if alone else None
+    if not weights.any():
+        raise table.error("from", "all weights are zero")
+    return weights, reach
+
+
+def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Output:
+    table = _Table(path, f"output.{name}.", content, _OUTPUT_KEYS)
+    weights, reach = _source(table)
+    neutral = table.number("neutral")
+    if ("full" in content) == ("gain" in content):
+        raise table.error("full", "either full (the value at full extent) or gain (units per FAP unit) is needed"
+                                  + (", not both" if "full" in content else ""))
+    invert = content.get("invert", False)
+    if not isinstance(invert, bool):
+        raise table.error("invert", f"{invert!r} is neither true nor false")
+    if "full" in content:
+        if invert:
+            raise table.error("invert", "goes with gain; with full, say where full lies instead")
+        full = table.number("full")
+        if full == neutral:
+            raise table.error("full", "is the same as neutral: the output would not move")
+        if "reach" in content:
+            reach = table.number("reach")
+        if reach is None:
+            raise table.error("reach", "is missing: how many FAP units is full? Only gestures know it by themselves")
+        if not reach > 0:
+            raise table.error("reach", f"{reach:g} is not positive")
+        gain, low, high = (full - neutral) / reach, min(neutral, full), max(neutral, full)
+        minimum = table.number("minimum") if "minimum" in content else low
+        maximum = table.number("maximum") if "maximum" in content else high
+    else:
+        if "reach" in content:
+            raise table.error("reach", "goes with full, not with gain")
+        gain, minimum, maximum = table.number("gain"), table.number("minimum"), table.number("maximum")
+        if gain == 0:
+            raise table.error("gain", "is zero: the output would not move")
+    slew = table.number("slew") if "slew" in content else 0.0
+    if slew < 0 or ("slew" in content and slew == 0):
+        raise table.error("slew", f"{slew:g} is not positive; leave it out for no limit")
+    _check_values(table, unit, neutral=neutral, minimum=minimum, maximum=maximum,
+                  **({"full": table.number("full")} if "full" in content else {}))
+    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content)
+
+
+def _check_values(table: _Table, unit: Unit, **values: float) -> None:
+    if values["minimum"] > values["maximum"]:
+        raise table.error("minimum", f"{values['minimum']:g} is above the maximum, {values['maximum']:g}")
+    if not unit.servo:
+        return
+    for key, value in values.items():
+        if not PULSE_MIN <= value <= PULSE_MAX:
+            raise table.error(key, f"{value:g} is not a servo's pulse, {PULSE_MIN:g} .. {PULSE_MAX:g} microseconds")
+    for key in ("neutral", "full"):
+        if key in values and not values["minimum"] <= values[key] <= values["maximum"]:
+            raise table.error(key, f"{values[key]:g} is not within {values['minimum']:g} .. {values['maximum']:g}")

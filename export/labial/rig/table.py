@@ -1,0 +1,181 @@
+"""A rig as the C table that ``labial/rig.h`` declares, and the float64 computation that the C library is held to."""
+
+from __future__ import annotations
+
+import math
+import os
+import textwrap
+from dataclasses import dataclass
+from pathlib import Path
+from typing import List, Optional, Tuple, Union
+
+import numpy as np
+
+from labial import __version__
+from labial.emit import check_name
+from labial.errors import DataError
+from labial.faps import FAP_NAMES
+from labial.rig.description import Output, Rig
+
+#: Version and limits of include/labial/rig.h.
+FORMAT = 1
+WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 65535, 268435455, 16777215
+
+#: FAPs up to which a table is kept within one unit of the description; faces stay well within.
+FAP_MAX = 1000.0
+
+
+@dataclass(frozen=True)
+class TableOutput:
+    """One output as integers, in units of the hardware."""
+
+    name: str
+    weights: Tuple[int, ...]  #: 13, Q12
+    gain: int  #: Q16
+    neutral: int
+    minimum: int
+    maximum: int
+    slew: int
+    invert: bool
+
+
+def convert(rig: Rig) -> List[TableOutput]:
+    """The rig's outputs as integers. Raises DataError naming the key of what the table cannot hold."""
+    return [_convert(rig, output) for output in rig.outputs]
+
+
+def _convert(rig: Rig, output: Output) -> TableOutput:
+    def fail(key: str, message: str) -> DataError:
+        return DataError(rig.path, None, f"output.{output.name}.{key}: {message}")
+
+    scale = rig.unit.scale
+    # Limits are rounded inwards: no servo goes beyond what its owner wrote.
+    values = {"neutral": math.floor(output.neutral * scale + 0.5), "minimum": math.ceil(output.minimum * scale - 1e-9),
+              "maximum": math.floor(output.maximum * scale + 1e-9),
+              "slew": max(math.floor(output.slew * scale + 0.5), 1) if output.slew else 0}
+    for key, value in values.items():
+        if abs(value) > VALUE_MAX:
+            raise fail(key, f"{value} {rig.unit.text} is beyond {VALUE_MAX}")
+        if rig.unit.limit is not None and key != "slew" and value > rig.unit.limit:
+            raise fail(key, f"{value} {rig.unit.text} is beyond {rig.unit.limit}")
+    if values["minimum"] > values["maximum"]:
+        raise fail("minimum", "no whole unit lies between minimum and maximum")
+    if rig.unit.servo:
+        values["neutral"] = min(max(values["neutral"], values["minimum"]), values["maximum"])
+    found = _quantise(output.weights, output.gain * scale)
+    if found is None:
+        raise fail("from" if abs(output.gain * scale) < 4096 else "gain" if output.given_gain else "full",
+                   "gain and weights are too large, or too far apart, to keep the motion within one unit")
+    weights, gain = found
+    return TableOutput(output.name, tuple(int(w) for w in weights), gain, values["neutral"], values["minimum"],
+                       values["maximum"], values["slew"], output.invert)
+
+
+def _quantise(weights: np.ndarray, gain: float) -> Optional[Tuple[np.ndarray, int]]:
+    """Q12 weights and Q16 gain whose product is nearest to what is asked, or None when nothing comes near.
+
+    Weights times a power of two and the gain divided by it are the same output. Of the pairs that fit, the plainest is
+    taken that errs by less than a twentieth unit for FAPs up to FAP_MAX, else the one that errs least.
+    """
+    best: Optional[Tuple[float, np.ndarray, int]] = None
+    for power in sorted(range(-12, 20), key=abs):
+        rounded = np.floor(weights * 2.0**power * 4096 + 0.5)
+        whole = math.floor(gain / 2.0**power * 65536 + 0.5)
+        if np.abs(rounded).sum() > WEIGHT_SUM_MAX or np.abs(rounded).max() > 32767 or abs(whole) > GAIN_MAX:
+            continue
+        error = float(np.abs(rounded / 4096 * (whole / 65536) - weights * gain).sum()) * FAP_MAX
+        if best is None or error < best[0]:
+            best = (error, rounded, whole)
+        if error < 0.05:
+            break
+    return None if best is None or best[0] > 0.49 else best[1:]
+
+
+def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray) -> np.ndarray:
+    """(T, N) float64 values for (T, 13) FAPs, in units of the hardware, neither rounded nor limited in speed.
+
+    Weights and gains are those of the description; neutral and limits are the table's whole units.
+    """
+    columns = []
+    for output, whole in zip(rig.outputs, table):
+        move = (frames @ output.weights) * (output.gain * rig.unit.scale)
+        columns.append(np.clip(whole.neutral + (-move if output.invert else move), whole.minimum, whole.maximum))
+    return np.stack(columns, axis=1)
+
+
+def _comment(rig: Rig, what: str) -> str:
+    text = f"{what}. Values are {rig.unit.text}. Written by labial rig {__version__}; do not edit."
+    return "/*\n" + textwrap.fill(text, width=114, initial_indent=" * ", subsequent_indent=" * ") + "\n */\n"
+
+
+def header(rig: Rig) -> str:
+    """NAME.h: the rig's symbol and the numbers of its outputs."""
+    upper = rig.name.upper()
+    constants = ",\n".join(f"    {upper}_{output.name.upper()} = {number}" for number, output in enumerate(rig.outputs))
+    prescale = "" if rig.unit.prescale is None else (
+        f"\n/* What the PCA9685's prescale register must hold for these ticks. */\n"
+        f"#define {upper}_PCA9685_PRESCALE {rig.unit.prescale}\n")
+    return f"""{_comment(rig, f"{rig.name}.h - what moves a face")}#ifndef LABIAL_RIG_{upper}_H
+#define LABIAL_RIG_{upper}_H
+
+#include "labial/rig.h"
+
+#if LABIAL_RIG_FORMAT != {FORMAT}
+#error "{rig.name} was written for another version of Labial: run labial rig again."
+#endif
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+#define {upper}_OUTPUTS {len(rig.outputs)}
+{prescale}
+/* Places of the outputs among the values. */
+enum {{
+{constants}
+}};
+
+extern const labial_rig_t {rig.name};
+
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+"""
+
+
+def _row(rig: Rig, output: Output, whole: TableOutput) -> str:
+    mixed = " ".join(f"{weight:+g} {FAP_NAMES[k]}" for k, weight in enumerate(output.weights) if weight)
+    rate = f", at most {whole.slew} per frame" if whole.slew else ""
+    note = f"{output.name}: {output.gain * rig.unit.scale:.6g} per FAP unit of ({mixed}){rate}"
+    lines = textwrap.fill(note, width=108, initial_indent="    /* ", subsequent_indent="     * ") + " */\n"
+    return (lines + f"    {{ {{ {', '.join(map(str, whole.weights))} }},\n"
+            f"      {int(whole.invert)}, 0, {whole.gain}, {whole.neutral}, {whole.minimum}, {whole.maximum}, "
+            f"{whole.slew} }}")
+
+
+def source(rig: Rig, table: List[TableOutput]) -> str:
+    """NAME.c: the table."""
+    rows = ",\n".join(_row(rig, output, whole) for output, whole in zip(rig.outputs, table))
+    return f"""{_comment(rig, f"{rig.name}.c - what moves a face")}#include "{rig.name}.h"
+
+/* weights, invert, reserved, gain, neutral, minimum, maximum, slew */
+static const labial_rig_output_t outputs[{len(table)}] = {{
+{rows}
+}};
+
+const labial_rig_t {rig.name} = {{ outputs, {len(table)} }};
+"""
+
+
+def write(rig: Rig, directory: Union[str, os.PathLike]) -> List[Path]:
+    """Writes NAME.h and NAME.c into `directory`; returns their paths. Nothing is written when the rig has errors."""
+    check_name(rig.name, "rig")
+    table = convert(rig)
+    folder = Path(directory)
+    folder.mkdir(parents=True, exist_ok=True)
+    files = {f"{rig.name}.h": header(rig), f"{rig.name}.c": source(rig, table)}
+    for name, text in files.items():
+        (folder / name).write_bytes(text.encode("ascii"))
+    return [folder / name for name in files]

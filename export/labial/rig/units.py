@@ -1,0 +1,49 @@
+"""Units of a rig's outputs. Servos are always described in microseconds; the tables hold what the hardware takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+from labial.errors import LabialError
+
+#: The PCA9685 divides its oscillator by its prescaler, and each period into 4096 ticks.
+_PCA9685_OSCILLATOR, _PCA9685_TICKS = 25e6, 4096
+_PCA9685_PRESCALE = (3, 255)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """What one microsecond (or one plain unit) of the description is in the tables."""
+
+    name: str
+    scale: float  #: table units per unit of the description
+    servo: bool  #: whether values are pulses
+    text: str  #: for comments
+    limit: Optional[int] = None  #: largest value that the hardware takes
+    prescale: Optional[int] = None  #: what the PCA9685's prescale register is set to
+
+
+UNITS = ("us", "quarter_us", "pca9685", "counts", "plain")
+
+
+def make_unit(name: str, parameter: float = 50.0) -> Unit:
+    """The unit `name`; `parameter` is the update frequency, Hz, of pca9685 or the timer clock, Hz, of counts."""
+    if name == "us":
+        return Unit(name, 1.0, True, "microseconds")
+    if name == "quarter_us":
+        return Unit(name, 4.0, True, "quarter microseconds (Maestro)", 16383)
+    if name == "pca9685":
+        low, high = (_PCA9685_OSCILLATOR / _PCA9685_TICKS / (prescale + 1) for prescale in reversed(_PCA9685_PRESCALE))
+        if not low <= parameter <= high:
+            raise LabialError(f"{parameter:g} is not within {low:.4g} .. {high:.4g} Hz")
+        # What counts is the period that the register can make, not the one asked for.
+        prescale = round(_PCA9685_OSCILLATOR / (_PCA9685_TICKS * parameter)) - 1
+        tick = (prescale + 1) / _PCA9685_OSCILLATOR * 1e6
+        return Unit(name, 1.0 / tick, True, f"ticks of {tick:.2f} us (PCA9685 with prescale register {prescale}, "
+                                            f"{1e6 / tick / _PCA9685_TICKS:.2f} Hz)", _PCA9685_TICKS - 1, prescale)
+    if name == "counts":
+        if not 1e4 <= parameter <= 1e9:
+            raise LabialError(f"{parameter:g} is not within 1e4 .. 1e9 Hz")
+        return Unit(name, parameter / 1e6, True, f"counts of a timer at {parameter:.15g} Hz")
+    return Unit(name, 1.0, False, "plain units")

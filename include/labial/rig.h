@@ -1,0 +1,122 @@
+/*
+ * labial/rig.h - from the 13 FAPs of a frame to what moves a face: servos, blendshapes, features of a drawn mouth.
+ *
+ *     static const labial_rig_output_t jaw = LABIAL_RIG_JAW(1400, 1900); // microseconds with the lips closed, wide open
+ *     static const labial_rig_t rig = { &jaw, 1 };
+ *     static int32_t values[1];
+ *
+ *     labial_rig_rest(&rig, values);        // once, before the first frame
+ *     labial_rig_apply(&rig, faps, values); // in the frame callback; then values[0] is the servo's pulse
+ *
+ * `labial rig face.toml -o DIR` writes such tables from a readable description; docs/servos.md leads from there to
+ * moving servos. For each output, with f the 13 FAPs:
+ *
+ *     move   = gain * (weights[0] * f[0] + ... + weights[12] * f[12])    rounded to the nearest, halves up
+ *     target = neutral + move, or neutral - move when inverted           within minimum .. maximum
+ *     value  = target, or as near to it as `slew` lets the last value come
+ *
+ * Values have whatever unit the table's author chose: microseconds of a servo's pulse, quarter microseconds (Maestro),
+ * ticks of a PWM chip (PCA9685), counts of a timer, thousandths of a blendshape.
+ *
+ * Integers only, no allocation, no state but the caller's `values`, the same bits on every target. A rig is constant,
+ * may be used for any number of faces at once, and is linked only when used.
+ *
+ * Trusted: rigs that labial_rig_check() has accepted, which it does with all that `labial rig` writes. Not trusted: the
+ * FAPs, of which every int16 is allowed, and what `values` holds. With a table that was not checked values may be
+ * nonsense and beyond the limits, but nothing except `values` is written and no behaviour is undefined.
+ */
+#ifndef LABIAL_RIG_H
+#define LABIAL_RIG_H
+
+#include <stdint.h>
+
+#include "labial/labial.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Version of the tables' meaning. Tables that `labial rig` wrote for another version do not compile. */
+#define LABIAL_RIG_FORMAT 1
+
+/* ---- Limits, which labial_rig_check() holds every table to. With them no sum or product overflows. --------------- */
+
+#define LABIAL_RIG_WEIGHT_SUM_MAX 65535 /* of the weights' absolute values in one output, Q12 */
+#define LABIAL_RIG_GAIN_MAX 268435455   /* largest absolute gain, Q16: just below 4,096 units per FAP unit */
+#define LABIAL_RIG_VALUE_MAX 16777215   /* largest absolute neutral, minimum, maximum and slew */
+
+/* ---- Tables ------------------------------------------------------------------------------------------------------ */
+
+/* A weight of one, Q12. */
+#define LABIAL_RIG_ONE 4096
+
+/* The gain by which an output moves `units` when its weighted FAPs sum up to `faps`: integer constants, `faps` not 0. */
+#define LABIAL_RIG_GAIN(units, faps) ((int32_t)((int64_t)(units)*65536 / (faps)))
+
+/* One output. 48 bytes. */
+typedef struct {
+    int16_t weights[LABIAL_CHANNELS]; /* Q12, in the order of labial_fap_numbers (labial/faps.h) */
+    uint8_t invert;                   /* 1 when the output moves the other way, else 0 */
+    uint8_t reserved;                 /* 0 */
+    int32_t gain;                     /* Q16: units per FAP unit; may be negative */
+    int32_t neutral;                  /* units: the value of the face at rest; may lie beyond the limits, which then
+                                       * hold: so an output stays at one end until the FAPs have gone some way */
+    int32_t minimum, maximum;         /* units: no value is ever beyond them, minimum <= maximum */
+    int32_t slew;                     /* units per frame that the value changes at most; 0 for no limit */
+} labial_rig_output_t;
+
+/* A rig: `count` outputs, 1 or more. */
+typedef struct {
+    const labial_rig_output_t *outputs;
+    uint16_t count;
+} labial_rig_t;
+
+/* FAP units between the lips, -(FAP 51 + FAP 52), that LABIAL_RIG_JAW() takes for wide open. */
+#define LABIAL_RIG_OPENING 600
+
+/*
+ * An output for a face whose jaw is all that moves: it follows the opening of the lips and not FAP 3, since the jaw of a
+ * talker is often open while the lips are closed (p, b, m). `closed` and `open` are integer constants in units of the
+ * output, either may be the larger.
+ */
+#define LABIAL_RIG_JAW(closed, open)                                                                               \
+    {                                                                                                              \
+        { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 0,                               \
+            LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open), \
+            (closed) < (open) ? (open) : (closed), 0                                                               \
+    }
+
+/* ---- Calls ------------------------------------------------------------------------------------------------------- */
+
+/*
+ * Whether a table keeps the limits above: at least one output, weights, gain, neutral, minimum, maximum and slew within
+ * their ranges, minimum <= maximum, slew >= 0, `invert` 0 or 1, `reserved` 0.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_RIG.
+ */
+int labial_rig_check(const labial_rig_t *rig);
+
+/*
+ * Sets each of the rig's `count` values to its output's neutral, within its limits.
+ *
+ * Returns LABIAL_OK or LABIAL_ERROR_NULL.
+ */
+int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
+
+/*
+ * Moves the rig's `count` values by one frame. `values` is the caller's, one array per face: it holds the frame before,
+ * from which outputs with a slew limit go on, and receives this one; a program that converts values keeps them elsewhere.
+ * What is beyond an output's limits in it counts as lying at the limit.
+ *
+ * Call it once per frame, for the slew limit counts in frames. Sums saturate nowhere within the limits of a checked
+ * table; a move beyond +-2^30 counts as +-2^30, which every limit is far below.
+ *
+ * Returns LABIAL_OK or LABIAL_ERROR_NULL.
+ */
+int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

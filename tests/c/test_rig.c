@@ -1,0 +1,407 @@
+/*
+ * test_rig.c - FAPs to outputs: each part of an output by hand, random rigs against a computation in double, and what
+ * must hold for every table and every FAP.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "labial/rig.h"
+
+#define FAP3 0
+#define FAP51 3
+#define FAP52 4
+
+/* An output that moves one unit per FAP unit of FAP 3, from 1500, within 1000 .. 2000. */
+static labial_rig_output_t plain(void)
+{
+    labial_rig_output_t output;
+    memset(&output, 0, sizeof output);
+    output.weights[FAP3] = LABIAL_RIG_ONE;
+    output.gain = LABIAL_RIG_GAIN(1, 1);
+    output.neutral = 1500;
+    output.minimum = 1000;
+    output.maximum = 2000;
+    return output;
+}
+
+/* The value of an output that stood at `last` when FAP 3 becomes `fap3`. */
+static int32_t moved(const labial_rig_output_t *output, int32_t last, int16_t fap3)
+{
+    const labial_rig_t rig = { output, 1 };
+    int16_t faps[LABIAL_CHANNELS] = { 0 };
+    int32_t value[2] = { last, -77 };
+    faps[FAP3] = fap3;
+    assert_int_equal(labial_rig_apply(&rig, faps, value), LABIAL_OK);
+    assert_int_equal(value[1], -77); /* nothing beyond the rig's outputs is written */
+    return value[0];
+}
+
+static uint32_t seed;
+
+/* Numbers of a linear congruential generator; the same on every machine. */
+static uint32_t chance(void)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return (seed >> 16) | ((seed * 69069u) & 0xffff0000u);
+}
+
+static int32_t between(int32_t low, int32_t high)
+{
+    return low + (int32_t)(chance() % ((uint32_t)(high - low) + 1u));
+}
+
+static void rest_is_neutral_within_limits(void **state)
+{
+    labial_rig_output_t outputs[3];
+    const labial_rig_t rig = { outputs, 3 };
+    int32_t values[4] = { 1, 2, 3, -77 };
+    (void)state;
+    outputs[0] = outputs[1] = outputs[2] = plain();
+    outputs[1].neutral = 900;
+    outputs[2].neutral = 2100;
+    assert_int_equal(labial_rig_rest(&rig, values), LABIAL_OK);
+    assert_int_equal(values[0], 1500);
+    assert_int_equal(values[1], 1000);
+    assert_int_equal(values[2], 2000);
+    assert_int_equal(values[3], -77);
+}
+
+/* Would catch a gain or a weight of another Q format, and a rounding that is not to the nearest. */
+static void gain_and_weights_multiply(void **state)
+{
+    labial_rig_output_t output = plain();
+    (void)state;
+    assert_int_equal(moved(&output, 1500, 100), 1600);
+    assert_int_equal(moved(&output, 1500, -100), 1400);
+    output.gain = LABIAL_RIG_GAIN(600, 400);
+    assert_int_equal(moved(&output, 1500, 100), 1650);
+    output.weights[FAP3] = -LABIAL_RIG_ONE / 2;
+    assert_int_equal(moved(&output, 1500, 100), 1425);
+    output.gain = LABIAL_RIG_GAIN(1, 10); /* 65536 / 10, cut to 6553: half of it is .04999 */
+    assert_int_equal(moved(&output, 1500, 90), 1496);  /* -4.49959 is nearer to -4 */
+    assert_int_equal(moved(&output, 1500, 91), 1495);  /* -4.54958 to -5 */
+    output.gain = LABIAL_RIG_GAIN(1, 4);
+    assert_int_equal(moved(&output, 1500, 4), 1500);   /* -0.5 goes up to 0 */
+    assert_int_equal(moved(&output, 1500, -4), 1501);  /* 0.5 goes up to 1 */
+}
+
+static void every_fap_has_its_weight(void **state)
+{
+    unsigned i, k;
+    (void)state;
+    for (i = 0; i < LABIAL_CHANNELS; i++) {
+        labial_rig_output_t output = plain();
+        const labial_rig_t rig = { &output, 1 };
+        output.weights[FAP3] = 0;
+        output.weights[i] = LABIAL_RIG_ONE;
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            int16_t faps[LABIAL_CHANNELS] = { 0 };
+            int32_t value = 1500;
+            faps[k] = 123;
+            labial_rig_apply(&rig, faps, &value);
+            assert_int_equal(value, i == k ? 1623 : 1500);
+        }
+    }
+}
+
+static void limits_hold_whatever_the_faps(void **state)
+{
+    labial_rig_output_t output = plain();
+    (void)state;
+    assert_int_equal(moved(&output, 1500, 500), 2000);
+    assert_int_equal(moved(&output, 1500, 501), 2000);
+    assert_int_equal(moved(&output, 1500, INT16_MAX), 2000);
+    assert_int_equal(moved(&output, 1500, -501), 1000);
+    assert_int_equal(moved(&output, 1500, INT16_MIN), 1000);
+    output.minimum = output.maximum = 1700; /* an output that is held */
+    assert_int_equal(moved(&output, 1500, 0), 1700);
+}
+
+/* A servo mounted the other way round moves from the same neutral to the other side. */
+static void inversion_mirrors_the_move(void **state)
+{
+    labial_rig_output_t output = plain();
+    (void)state;
+    output.invert = 1;
+    assert_int_equal(moved(&output, 1500, 100), 1400);
+    assert_int_equal(moved(&output, 1500, -100), 1600);
+    assert_int_equal(moved(&output, 1500, 0), 1500);
+    assert_int_equal(moved(&output, 1500, INT16_MIN), 2000);
+}
+
+static void neutral_beyond_a_limit_is_a_threshold(void **state)
+{
+    labial_rig_output_t output = plain();
+    (void)state;
+    output.neutral = 900;
+    assert_int_equal(moved(&output, 1000, 60), 1000);
+    assert_int_equal(moved(&output, 1000, 160), 1060);
+}
+
+static void slew_bounds_the_change_per_frame(void **state)
+{
+    labial_rig_output_t output = plain();
+    int32_t value = 1500;
+    int frames = 0;
+    (void)state;
+    output.slew = 70;
+    for (; value < 2000; frames++) {
+        const int32_t next = moved(&output, value, 1000);
+        assert_true(next - value <= 70 && (next - value == 70 || next == 2000));
+        value = next;
+    }
+    assert_int_equal(frames, 8); /* 500 units in steps of 70 */
+    assert_int_equal(moved(&output, 2000, -1000), 1930);
+    assert_int_equal(moved(&output, 1500, 70), 1570);
+    assert_int_equal(moved(&output, 1500, -70), 1430);
+    assert_int_equal(moved(&output, 1500, -71), 1430);
+    output.slew = 0;
+    assert_int_equal(moved(&output, 1000, 1000), 2000);
+}
+
+/* Values that were never set, or set by a fault, must neither drive a servo beyond its limits nor overflow. */
+static void last_value_is_not_trusted(void **state)
+{
+    labial_rig_output_t output = plain();
+    (void)state;
+    output.slew = 10;
+    assert_int_equal(moved(&output, INT32_MAX, 0), 1990);
+    assert_int_equal(moved(&output, INT32_MIN, 0), 1010);
+}
+
+static void jaw_macro_closes_and_opens(void **state)
+{
+    static const labial_rig_output_t up = LABIAL_RIG_JAW(1400, 1900), down = LABIAL_RIG_JAW(1900, 1400);
+    static const struct {
+        int16_t top, bottom;
+        int32_t up;
+    } poses[] = {
+        { 0, 0, 1400 },    { 90, -90, 1400 },   { 0, -600, 1900 }, { -100, -500, 1900 },
+        { 0, -300, 1650 }, { 90, -390, 1650 },  { 200, 0, 1400 },  { -32768, -32768, 1900 },
+    };
+    unsigned i;
+    (void)state;
+    for (i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+        const labial_rig_output_t both[2] = { up, down };
+        const labial_rig_t rig = { both, 2 };
+        int16_t faps[LABIAL_CHANNELS] = { 500, 1, 2, 0, 0, 3, 4, 5, 6, 7, 8, 9, 10 }; /* others must not matter */
+        int32_t values[2] = { 1400, 1900 };
+        faps[FAP51] = poses[i].top;
+        faps[FAP52] = poses[i].bottom;
+        assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+        labial_rig_apply(&rig, faps, values);
+        assert_in_range(values[0] - poses[i].up + 1, 0, 2);
+        assert_in_range(values[1] + values[0] - 3300 + 1, 0, 2);
+    }
+}
+
+/* A sound output with every number anywhere in its range, small moves as likely as ones that saturate. */
+static labial_rig_output_t any_sound_output(void)
+{
+    labial_rig_output_t output;
+    const unsigned gain_shift = chance() % 28u, value_shift = chance() % 16u;
+    int32_t left = LABIAL_RIG_WEIGHT_SUM_MAX, swap;
+    unsigned i, k = chance() % LABIAL_CHANNELS;
+    memset(&output, 0, sizeof output);
+    for (i = 0; i < LABIAL_CHANNELS; i++, k = (k + 1u) % LABIAL_CHANNELS) {
+        int32_t most = left < 32767 ? left : 32767;
+        if (chance() % 4u == 0)
+            most = most / 64;
+        output.weights[k] = (int16_t)between(-most, most);
+        left -= output.weights[k] < 0 ? -output.weights[k] : output.weights[k];
+    }
+    output.gain = between(-LABIAL_RIG_GAIN_MAX, LABIAL_RIG_GAIN_MAX) >> gain_shift;
+    output.neutral = between(-LABIAL_RIG_VALUE_MAX, LABIAL_RIG_VALUE_MAX) >> value_shift;
+    output.minimum = between(-LABIAL_RIG_VALUE_MAX, LABIAL_RIG_VALUE_MAX) >> value_shift;
+    output.maximum = between(-LABIAL_RIG_VALUE_MAX, LABIAL_RIG_VALUE_MAX) >> value_shift;
+    if (output.minimum > output.maximum) {
+        swap = output.minimum;
+        output.minimum = output.maximum;
+        output.maximum = swap;
+    }
+    output.slew = chance() % 2u ? 0 : between(0, LABIAL_RIG_VALUE_MAX) >> (chance() % 24u);
+    output.invert = (uint8_t)(chance() % 2u);
+    return output;
+}
+
+static int16_t any_fap(void)
+{
+    switch (chance() % 6u) {
+    case 0:
+        return INT16_MIN;
+    case 1:
+        return INT16_MAX;
+    case 2:
+        return (int16_t)between(INT16_MIN, INT16_MAX);
+    default:
+        return (int16_t)between(-600, 600);
+    }
+}
+
+static double limited(double value, double low, double high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+/* The header's equations in double precision. */
+static double expected(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], double last)
+{
+    double move = 0, value;
+    unsigned i;
+    for (i = 0; i < LABIAL_CHANNELS; i++)
+        move += (double)output->weights[i] / 4096.0 * faps[i];
+    move = floor(move * output->gain / 65536.0 + 0.5);
+    value = limited(output->neutral + (output->invert ? -move : move), output->minimum, output->maximum);
+    last = limited(last, output->minimum, output->maximum);
+    return output->slew > 0 ? limited(value, last - output->slew, last + output->slew) : value;
+}
+
+/* Would catch an overflow, a wrong rounding or a limit that is left, anywhere in the range of a checked table. All sums
+ * and products are exact in double: they are below 2^59 in steps of which at most 53 bits matter after rounding; where
+ * that rounding of the double itself could decide, one unit is allowed. */
+static void random_rigs_equal_double(void **state)
+{
+    unsigned round, frame, i, off = 0;
+    (void)state;
+    seed = 1;
+    for (round = 0; round < 4000; round++) {
+        const labial_rig_output_t output = any_sound_output();
+        const labial_rig_t rig = { &output, 1 };
+        int32_t value;
+        assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+        assert_int_equal(labial_rig_rest(&rig, &value), LABIAL_OK);
+        for (frame = 0; frame < 12; frame++) {
+            int16_t faps[LABIAL_CHANNELS];
+            const int32_t last = value;
+            double wanted;
+            for (i = 0; i < LABIAL_CHANNELS; i++)
+                faps[i] = any_fap();
+            wanted = expected(&output, faps, last);
+            labial_rig_apply(&rig, faps, &value);
+            if (fabs(wanted - value) > 1.0)
+                fail_msg("rig %u, frame %u: %ld instead of %.1f", round, frame, (long)value, wanted);
+            off += wanted < value || wanted > value;
+            assert_true(value >= output.minimum && value <= output.maximum);
+            if (output.slew > 0)
+                assert_true(value - last <= output.slew && last - value <= output.slew);
+        }
+    }
+    assert_true(off < 5); /* of 48,000 */
+}
+
+/* Tables and values of random bytes: whatever comes out, no sanitizer may object and nothing else is written. */
+static void unchecked_tables_stay_defined(void **state)
+{
+    unsigned round, i, sound = 0;
+    (void)state;
+    seed = 2;
+    for (round = 0; round < 20000; round++) {
+        labial_rig_output_t output;
+        const labial_rig_t rig = { &output, 1 };
+        uint8_t *bytes = (uint8_t *)&output;
+        int16_t faps[LABIAL_CHANNELS];
+        int32_t values[2];
+        for (i = 0; i < sizeof output; i++)
+            bytes[i] = (uint8_t)(chance() % 3u ? chance() : (chance() % 2u ? 0x80u : 0xffu));
+        for (i = 0; i < LABIAL_CHANNELS; i++)
+            faps[i] = any_fap();
+        values[0] = (int32_t)(chance() & 0x7fffffffu) - (int32_t)(chance() & 0x7fffffffu);
+        values[1] = -77;
+        sound += labial_rig_check(&rig) == LABIAL_OK;
+        assert_int_equal(labial_rig_apply(&rig, faps, values), LABIAL_OK);
+        assert_int_equal(labial_rig_rest(&rig, values), LABIAL_OK);
+        assert_int_equal(values[1], -77);
+    }
+    assert_int_equal(sound, 0);
+}
+
+static void check_names_every_fault(void **state)
+{
+    labial_rig_output_t good = plain(), bad[16];
+    unsigned i, count = 0;
+    (void)state;
+    for (i = 0; i < 16; i++)
+        bad[i] = good;
+    bad[count++].gain = LABIAL_RIG_GAIN_MAX + 1;
+    bad[count++].gain = INT32_MIN;
+    bad[count++].neutral = LABIAL_RIG_VALUE_MAX + 1;
+    bad[count++].neutral = INT32_MIN;
+    bad[count++].minimum = -LABIAL_RIG_VALUE_MAX - 1;
+    bad[count++].maximum = LABIAL_RIG_VALUE_MAX + 1;
+    bad[count++].minimum = 2001;
+    bad[count++].slew = -1;
+    bad[count++].slew = LABIAL_RIG_VALUE_MAX + 1;
+    bad[count++].invert = 2;
+    bad[count++].reserved = 1;
+    bad[count].weights[1] = 32767, bad[count].weights[2] = -32767; /* with 4096: above 65535 */
+    count++;
+    bad[count].weights[1] = INT16_MIN, bad[count].weights[2] = INT16_MIN;
+    count++;
+    for (i = 0; i < count; i++) {
+        /* Behind a sound output, so that a check of the first alone would show. */
+        const labial_rig_output_t outputs[2] = { good, bad[i] };
+        const labial_rig_t rig = { outputs, 2 }, first = { outputs, 1 };
+        assert_int_equal(labial_rig_check(&first), LABIAL_OK);
+        if (labial_rig_check(&rig) != LABIAL_ERROR_RIG)
+            fail_msg("fault %u was not found", i);
+    }
+}
+
+static void check_accepts_the_very_limits(void **state)
+{
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    (void)state;
+    output.weights[0] = 32767;
+    output.weights[7] = INT16_MIN; /* 65535 together */
+    output.gain = -LABIAL_RIG_GAIN_MAX;
+    output.neutral = -LABIAL_RIG_VALUE_MAX;
+    output.minimum = -LABIAL_RIG_VALUE_MAX;
+    output.maximum = output.slew = LABIAL_RIG_VALUE_MAX;
+    output.invert = 1;
+    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+    output.minimum = output.maximum;
+    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+}
+
+static void null_and_empty_are_refused(void **state)
+{
+    const labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 }, empty = { &output, 0 }, hollow = { NULL, 1 };
+    const int16_t faps[LABIAL_CHANNELS] = { 0 };
+    int32_t value = 5;
+    (void)state;
+    assert_int_equal(labial_rig_check(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_check(&hollow), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_check(&empty), LABIAL_ERROR_RIG);
+    assert_int_equal(labial_rig_rest(NULL, &value), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_rest(&hollow, &value), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_rest(&rig, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply(NULL, faps, &value), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply(&hollow, faps, &value), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply(&rig, NULL, &value), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply(&rig, faps, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply(&empty, faps, &value), LABIAL_OK);
+    assert_int_equal(value, 5);
+    assert_int_equal(sizeof output, 48);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rest_is_neutral_within_limits), cmocka_unit_test(gain_and_weights_multiply),
+        cmocka_unit_test(every_fap_has_its_weight), cmocka_unit_test(limits_hold_whatever_the_faps),
+        cmocka_unit_test(inversion_mirrors_the_move), cmocka_unit_test(neutral_beyond_a_limit_is_a_threshold),
+        cmocka_unit_test(slew_bounds_the_change_per_frame), cmocka_unit_test(last_value_is_not_trusted),
+        cmocka_unit_test(jaw_macro_closes_and_opens), cmocka_unit_test(random_rigs_equal_double),
+        cmocka_unit_test(unchecked_tables_stay_defined), cmocka_unit_test(check_names_every_fault),
+        cmocka_unit_test(check_accepts_the_very_limits), cmocka_unit_test(null_and_empty_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

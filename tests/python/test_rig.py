@@ -1,0 +1,337 @@
+"""``labial rig``: the generated C against a float64 rig, the drawing, the examples, and every error by file and key."""
+
+from __future__ import annotations
+
+import builtins
+import random
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from labial.cli import main
+from labial.errors import LabialError
+from labial.native import compiler, library_root
+from labial.rig import table
+from labial.rig.description import read
+from labial.rig.gestures import SOURCES
+from labial.rig.table import FAP_MAX, convert, expected
+
+FACES = library_root() / "examples" / "faces"
+EXAMPLES = sorted((library_root() / "examples").glob("*/*.toml"))
+
+STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
+          "-Wshadow", "-Werror"]  # fmt: skip
+
+JAW = '[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 1900\n'
+
+DRIVER = """
+#include <stdio.h>
+#include "@.h"
+int main(void)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    int32_t values[@_OUTPUTS_];
+    if (labial_rig_check(&@) != LABIAL_OK || @.count != @_OUTPUTS_) return 2;
+    while (fread(faps, sizeof faps[0], LABIAL_CHANNELS, stdin) == LABIAL_CHANNELS) {
+        labial_rig_rest(&@, values);
+        labial_rig_apply(&@, faps, values);
+        fwrite(values, sizeof values[0], @_OUTPUTS_, stdout);
+    }
+    return 0;
+}
+"""
+
+
+def native(folder: Path, name: str, frames: np.ndarray, *flags: str) -> np.ndarray:
+    """(T, N) values that the C library makes of the table NAME in `folder`, each frame from rest."""
+    root = library_root()
+    driver = DRIVER.replace("@_OUTPUTS_", f"{name.upper()}_OUTPUTS").replace("@", name)
+    (folder / "driver.c").write_text(driver)
+    program = folder / "driver"
+    subprocess.run([compiler(), *STRICT, *flags, f"-I{root / 'include'}", f"-I{folder}", str(folder / "driver.c"),
+                    str(folder / f"{name}.c"), str(root / "lib" / "rig.c"), "-o", str(program)], check=True)
+    done = subprocess.run([str(program)], input=frames.astype("<i2").tobytes(), capture_output=True, check=True)
+    return np.frombuffer(done.stdout, "<i4").reshape(len(frames), -1)
+
+
+def some_frames(seed: int) -> np.ndarray:
+    """(T, 13) whole FAPs: ordinary, wide and every channel at its ends."""
+    rng = np.random.default_rng(seed)
+    ends = int(FAP_MAX) * np.concatenate([np.eye(13), -np.eye(13), np.ones((1, 13)), np.zeros((1, 13))])
+    return np.concatenate([ends, rng.integers(-150, 151, (300, 13)), rng.integers(-1000, 1001, (300, 13))]).astype(int)
+
+
+def made_up(seed: int) -> str:
+    """A random description that is valid: all units, both ways to say how far, weights of all sizes."""
+    rng = random.Random(seed)
+    unit = rng.choice(["us", "quarter_us", "pca9685", "counts", "plain"])
+    lines = [f'unit = "{unit}"']
+    if unit == "pca9685":
+        lines.append(f"frequency = {rng.uniform(40, 330):.3f}")
+    if unit == "counts":
+        lines.append(f"clock = {rng.choice([31250, 1e6, 16e6])}")
+    for number in range(rng.randint(1, 6)):
+        low, high = sorted(round(rng.uniform(500, 2500), rng.choice([0, 3])) for _ in range(2))
+        high = max(high, low + 40)
+        names = rng.sample(sorted(SOURCES), rng.randint(1, 5))
+        mixed = ", ".join(f"{name} = {rng.uniform(-1.5, 1.5):.3f}" for name in names)
+        lines += [f"[output.o{number}]", f"from = {{ {mixed} }}",
+                  f"minimum = {low}", f"maximum = {high}", f"neutral = {rng.uniform(low, high):.2f}"]
+        if rng.random() < 0.5:
+            lines += [f"full = {rng.choice([low, high])}", f"reach = {rng.uniform(100, 900):.1f}"]
+        else:
+            lines += [f"gain = {rng.uniform(-3, 3):.4f}", f"invert = {rng.choice(['true', 'false'])}"]
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_generated_table_is_the_float_rig(tmp_path: Path, seed: int) -> None:
+    """Would catch a wrong Q format, unit, sign or channel: within one unit of a rig in float64, with either product."""
+    (tmp_path / "made.toml").write_text(made_up(seed))
+    rig = read(tmp_path / "made.toml", "made")
+    table.write(rig, tmp_path)
+    frames = some_frames(seed)
+    wanted = expected(rig, convert(rig), frames)
+    found = native(tmp_path, "made", frames, f"-DLABIAL_NARROW_MULTIPLY={seed % 2}")
+    assert found.shape == wanted.shape and np.abs(found - wanted).max() <= 1.0
+    for column, output in zip(found.T, rig.outputs):  # in microseconds, no servo leaves what its owner wrote
+        assert column.min() >= output.minimum * rig.unit.scale - 1e-6
+        assert column.max() <= output.maximum * rig.unit.scale + 1e-6
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=[path.stem for path in EXAMPLES])
+def test_examples_are_what_the_command_writes(tmp_path: Path, path: Path) -> None:
+    """A description that was changed without its table would show, and a table that misses the float rig."""
+    name = path.stem
+    assert main(["rig", str(path), "-o", str(tmp_path), "--no-figure"]) == 0
+    for suffix in (".c", ".h"):
+        assert (tmp_path / f"{name}{suffix}").read_bytes() == path.with_suffix(suffix).read_bytes()
+    # Each frame is compared from rest, where a slew limit would hold the table back.
+    (tmp_path / "copy.toml").write_text(
+        "\n".join(line for line in path.read_text().splitlines() if not line.startswith("slew")))
+    rig = read(tmp_path / "copy.toml", name)
+    table.write(rig, tmp_path)
+    frames = some_frames(1)
+    assert np.abs(native(tmp_path, name, frames) - expected(rig, convert(rig), frames)).max() <= 1.0
+
+
+def test_float_rig_by_hand(tmp_path: Path) -> None:
+    """The reference itself: two servos worked out on paper, in Maestro's units."""
+    (tmp_path / "hand.toml").write_text(
+        'unit = "quarter_us"\n[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 1900\n'
+        "[output.corner]\nfrom = { fap53 = 0.5, fap3 = 0.1 }\nneutral = 1500\ngain = 2\ninvert = true\n"
+        "minimum = 1300\nmaximum = 1600\n")
+    rig = read(tmp_path / "hand.toml", "hand")
+    frames = np.zeros((3, 13))
+    frames[1, [0, 3, 4, 5]] = 200, 60, -360, 40  # opening 300; 0.5 * 40 + 0.1 * 200 = 40
+    frames[2, [4, 5]] = -900, 1000
+    assert expected(rig, convert(rig), frames).tolist() == [[5600, 6000], [6600, 5680], [7600, 5200]]
+
+
+def test_generated_code_is_clean_cplusplus_too(tmp_path: Path) -> None:
+    """Firmware is often C++; the table's initialisers must not narrow."""
+    (tmp_path / "made.toml").write_text(made_up(3))
+    table.write(read(tmp_path / "made.toml", "made"), tmp_path)
+    done = subprocess.run([compiler(), "-x", "c++", "-std=c++11", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
+                           f"-I{library_root() / 'include'}", "-fsyntax-only", str(tmp_path / "made.c")],
+                          capture_output=True, text=True)
+    if "cc1plus" in done.stderr:
+        pytest.skip("no C++ compiler")
+    assert done.returncode == 0, done.stderr
+
+
+def test_another_format_does_not_compile(tmp_path: Path) -> None:
+    """Tables of another version must not be linked by accident."""
+    (tmp_path / "jaw.toml").write_text(JAW)
+    table.write(read(tmp_path / "jaw.toml", "jaw"), tmp_path)
+    header = tmp_path / "jaw.h"
+    header.write_text(header.read_text().replace("LABIAL_RIG_FORMAT != 1", "LABIAL_RIG_FORMAT != 2"))
+    done = subprocess.run([compiler(), f"-I{library_root() / 'include'}", "-fsyntax-only", str(tmp_path / "jaw.c")],
+                          capture_output=True, text=True)
+    assert done.returncode != 0 and "run labial rig again" in done.stderr
+
+
+def test_limits_are_the_librarys() -> None:
+    """The exporter refuses by numbers of its own, which must be those that labial_rig_check() uses."""
+    text = (library_root() / "include" / "labial" / "rig.h").read_text()
+    defined = dict(re.findall(r"^#define (LABIAL_RIG_\w+) (\d+)", text, re.MULTILINE))
+    assert int(defined["LABIAL_RIG_FORMAT"]) == table.FORMAT
+    assert int(defined["LABIAL_RIG_WEIGHT_SUM_MAX"]) == table.WEIGHT_SUM_MAX
+    assert int(defined["LABIAL_RIG_GAIN_MAX"]) == table.GAIN_MAX
+    assert int(defined["LABIAL_RIG_VALUE_MAX"]) == table.VALUE_MAX
+    assert float(defined["LABIAL_RIG_OPENING"]) == SOURCES["opening"].reach
+
+
+def test_pca9685_counts_in_ticks_of_its_prescaler(tmp_path: Path) -> None:
+    """At 50 Hz the register holds 121, a tick is 122 periods of 25 MHz: 4.88 us, and 1500 us are 307 of them."""
+    (tmp_path / "face.toml").write_text('unit = "pca9685"\n' + JAW.replace("1400", "1500").replace("1900", "2000"))
+    rig = read(tmp_path / "face.toml", "face")
+    assert "#define FACE_PCA9685_PRESCALE 121\n" in table.header(rig)
+    [jaw] = convert(rig)
+    # Limits are rounded inwards (1500 / 4.88 = 307.4, 2000 / 4.88 = 409.8), and the neutral follows them.
+    assert (jaw.neutral, jaw.minimum, jaw.maximum) == (308, 308, 409)
+
+
+def test_drawing_shows_every_output(tmp_path: Path) -> None:
+    """An SVG with a title per output and a legend, the same bytes every time."""
+    for folder in ("a", "b"):
+        assert main(["rig", str(FACES / "servos.toml"), "-o", str(tmp_path / folder), "--name", "head"]) == 0
+    assert sorted(path.name for path in (tmp_path / "a").iterdir()) == ["head.c", "head.h", "head.svg"]
+    root = ET.fromstring((tmp_path / "a" / "head.svg").read_text())
+    words = {"".join(item.itertext()).strip() for item in root.iter("{http://www.w3.org/2000/svg}text")}
+    assert {"jaw", "upper_lip", "lower_lip", "corner_left", "corner_right"} <= words
+    assert {"mouth open", "lips rounded", "smile", "lips closed", "percent of the pose"} <= words
+    assert (tmp_path / "a" / "head.svg").read_bytes() == (tmp_path / "b" / "head.svg").read_bytes()
+
+
+def test_without_matplotlib_the_way_out_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    """The tables need no drawing."""
+    real = builtins.__import__
+
+    def refuse(name: str, *rest: object, **named: object) -> object:
+        if name.split(".")[0] == "matplotlib":
+            raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
+        return real(name, *rest, **named)
+
+    monkeypatch.setattr(builtins, "__import__", refuse)
+    assert main(["rig", str(FACES / "jaw.toml"), "-o", str(tmp_path)]) == 1
+    assert "--no-figure" in capsys.readouterr().err
+    assert main(["rig", str(FACES / "jaw.toml"), "-o", str(tmp_path), "--no-figure"]) == 0
+
+
+GAIN = JAW.replace("full = 1900", "gain = 1\nminimum = 1000\nmaximum = 2000")
+PLAIN = 'unit = "plain"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "output: at least one table [output.NAME] is needed"),
+        ("output = 3", "output: at least one table"),
+        ("[output]", "output: at least one table"),
+        ("[output]\njaw = 3", "output.jaw: is not a table"),
+        ("[output.jaw\n", ":1: not TOML: "),
+        (JAW + "slew = = 2\n", ":5: not TOML: "),
+        (JAW + "neutral = 2\n", "not TOML: "),
+        ("outputs = 3\n" + JAW, "outputs: unknown key; did you mean output?"),
+        ("colour = 3\n" + JAW, "colour: unknown key; known are unit,"),
+        (JAW + "neutrall = 2\n", "output.jaw.neutrall: unknown key; did you mean neutral?"),
+        ('unit = "degrees"\n' + JAW, "unit: 'degrees' is none of us, quarter_us, pca9685, counts, plain"),
+        ("unit = 50\n" + JAW, "unit: 50 is none of"),
+        ("unit = []\n" + JAW, "unit: [] is none of"),
+        ("frequency = 50\n" + JAW, "frequency: has no meaning for the unit us"),
+        ('unit = "pca9685"\nfrequency = 5\n' + JAW, "frequency: 5 is not within 23.84 .. 1526 Hz"),
+        ('unit = "pca9685"\nfrequency = "x"\n' + JAW, "frequency: 'x' is not a number"),
+        ('unit = "pca9685"\nfrequency = 1000\n' + JAW, "output.jaw.neutral: 5833 ticks of 0.24 us"),
+        ('unit = "counts"\n' + JAW, "clock: is missing"),
+        ('unit = "counts"\nclock = 5\n' + JAW, "clock: 5 is not within"),
+        ('unit = "counts"\nclock = 1e9\n' + JAW.replace("1900", "1900.0"), None),
+        (JAW.replace("[output.jaw]", '[output."j w"]'), "output.j w: an output's name is letters"),
+        (JAW + JAW.replace("jaw", "Jaw"), "output.Jaw: is the same in capitals as output.jaw"),
+        (JAW.replace("[output.jaw]", "[output.outputs]"), "output.outputs: this name is taken"),
+        (JAW.replace('"opening"', '"openning"'), "no gesture or FAP is called 'openning'; did you mean opening?"),
+        (JAW.replace('"opening"', "7"), "output.jaw.from: is the name of a gesture"),
+        (JAW.replace('"opening"', "{}"), "output.jaw.from: is the name of a gesture"),
+        (JAW.replace('from = "opening"\n', ""), "output.jaw.from: is the name of a gesture"),
+        (JAW.replace('"opening"', "{ jaw = true }"), "output.jaw.from.jaw: True is not a number"),
+        (JAW.replace('"opening"', "{ jaw = 1e9 }"), "output.jaw.from.jaw: 1e+09 is not within -1000 .. 1000"),
+        (JAW.replace('"opening"', "{ jaw = 0 }"), "output.jaw.from: all weights are zero"),
+        (JAW.replace('"opening"', "{ jaw = 1 }"), "output.jaw.reach: is missing"),
+        (JAW.replace('"opening"', '"fap16"'), "output.jaw.reach: is missing"),
+        (JAW + "reach = 0\n", "output.jaw.reach: 0 is not positive"),
+        (JAW + "reach = nan\n", "output.jaw.reach: nan is not a finite number"),
+        (JAW.replace("neutral = 1400\n", ""), "output.jaw.neutral: is missing"),
+        (JAW.replace("1400", "[]"), "output.jaw.neutral: [] is not a number"),
+        (JAW.replace("1400", "inf"), "output.jaw.neutral: inf is not a finite number"),
+        (JAW.replace("1400", "9" * 400), "output.jaw.neutral: inf is not a finite number"),
+        (JAW.replace("1400", "150"), "output.jaw.neutral: 150 is not a servo's pulse, 400 .. 2600 microseconds"),
+        (JAW.replace("1900", "19000"), "output.jaw.maximum: 19000 is not a servo's pulse"),
+        (JAW.replace("1900", "1400"), "output.jaw.full: is the same as neutral"),
+        (JAW.replace("full = 1900\n", ""), "output.jaw.full: either full (the value at full extent) or gain"),
+        (JAW + "gain = 2\n", "FAP unit) is needed, not both"),
+        (JAW + "invert = true\n", "output.jaw.invert: goes with gain"),
+        (JAW + "invert = 1\n", "output.jaw.invert: 1 is neither true nor false"),
+        (JAW + "slew = -1\n", "output.jaw.slew: -1 is not positive"),
+        (JAW + "slew = 0\n", "output.jaw.slew: 0 is not positive; leave it out for no limit"),
+        (JAW + "minimum = 1950\n", "output.jaw.minimum: 1950 is above the maximum, 1900"),
+        (JAW + "minimum = 1500\n", "output.jaw.neutral: 1400 is not within 1500 .. 1900"),
+        (JAW + "maximum = 1800\n", "output.jaw.full: 1900 is not within 1400 .. 1800"),
+        (JAW.replace("full = 1900", "gain = 1"), "output.jaw.minimum: is missing"),
+        (GAIN.replace("gain = 1", "gain = 0"), "output.jaw.gain: is zero"),
+        (GAIN + "reach = 3\n", "output.jaw.reach: goes with full"),
+        (GAIN.replace("gain = 1", "gain = 99999"), "output.jaw.gain: gain and weights are too large"),
+        (PLAIN + JAW.replace("1900", "1e7"), "output.jaw.full: gain and weights are too large"),
+        (PLAIN + JAW.replace("1900", "1e9"), "output.jaw.maximum: 1000000000 plain units is beyond 16777215"),
+        (PLAIN + JAW.replace("1400", "0.2").replace("1900", "0.8"), "output.jaw.minimum: no whole unit lies between"),
+    ],
+)
+def test_errors_name_file_and_key(
+    tmp_path: Path, capsys: pytest.CaptureFixture, text: str, message: str
+) -> None:
+    """One line, no traceback, nothing written; a case without message is one that must pass."""
+    path = tmp_path / "face.toml"
+    path.write_text(text)
+    status = main(["rig", str(path), "-o", str(tmp_path / "out"), "--no-figure"])
+    error = capsys.readouterr().err
+    if message is None:
+        assert status == 0 and error == ""
+        return
+    assert status == 1 and error.startswith(f"labial: {path}:") and message in error and error.count("\n") == 1, error
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(("content", "message"), [(b"\xff\xfe", "not UTF-8 text"), (b"x = " + b"[" * 5000, "not TOML")])
+def test_what_is_no_text_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture, content: bytes, message: str
+) -> None:
+    """Binary files and nesting without end."""
+    (tmp_path / "face.toml").write_bytes(content)
+    assert main(["rig", str(tmp_path / "face.toml"), "-o", str(tmp_path), "--no-figure"]) == 1
+    assert f"face.toml: {message}" in capsys.readouterr().err or message == "not TOML"
+
+
+def test_names_that_c_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """A missing file, a file name that C cannot spell, and the way out of it."""
+    assert main(["rig", str(tmp_path / "none.toml"), "-o", str(tmp_path)]) == 1
+    assert "none.toml" in capsys.readouterr().err
+    (tmp_path / "my face.toml").write_text(JAW)
+    assert main(["rig", str(tmp_path / "my face.toml"), "-o", str(tmp_path), "--no-figure"]) == 1
+    assert "'my face' is no name for a rig" in capsys.readouterr().err
+    assert main(["rig", str(tmp_path / "my face.toml"), "-o", str(tmp_path), "--no-figure", "--name", "face"]) == 0
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_damaged_descriptions_are_refused_or_sound(tmp_path: Path, seed: int) -> None:
+    """Whatever a slip makes of a description, it is an error with the file's name or a table within the limits."""
+    rng = random.Random(seed)
+    text = rng.choice([made_up(seed), (FACES / "servos.toml").read_text(), JAW])
+    for _ in range(rng.randint(1, 4)):
+        at = rng.randrange(len(text))
+        text = text[:at] + rng.choice(["", "9", "-", "e9", '"', "\n", "=", "nan", "\x00", "é", "{", "1e308"]) + text[
+            at + rng.randint(0, 3):]
+    path = tmp_path / "face.toml"
+    path.write_text(text, encoding="utf-8")
+    try:
+        outputs = convert(read(path, "face"))
+    except LabialError as error:
+        assert str(path) in str(error)
+        return
+    for output in outputs:
+        assert sum(map(abs, output.weights)) <= table.WEIGHT_SUM_MAX and abs(output.gain) <= table.GAIN_MAX
+        assert max(map(abs, output.weights)) <= 32767
+        assert -table.VALUE_MAX <= output.minimum <= output.maximum <= table.VALUE_MAX
+        assert abs(output.neutral) <= table.VALUE_MAX and 0 <= output.slew <= table.VALUE_MAX
+
+
+def test_toml_parser_of_older_pythons_is_declared() -> None:
+    """Python below 3.11 has no tomllib: the package that takes its place must be asked for."""
+    project = (library_root() / "export" / "pyproject.toml").read_text()
+    assert "tomli>=1.1; python_version < \"3.11\"" in project
+    assert sys.version_info < (3, 11) or "tomllib" in sys.modules
