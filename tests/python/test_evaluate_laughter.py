@@ -58,6 +58,9 @@ def test_a_pulse_rises_over_what_lies_between_it_and_the_one_before() -> None:
     falling = item.human.copy()
     falling[:, BOTTOM] = np.arange(item.timeline.frames)  # closes all the time
     assert rises(item, falling, everything, LAUGHTER, FPS).tolist() == [0.0, 0.0]
+    opening = np.repeat([0.0, 100.0, 10.0, 20.0, 5.0], [5, 1, 1, 5, 5])
+    short = laugh(["silence", "a", "e", "silence"], [5, 2, 5, 5], opening)
+    assert rises(short, short.human, np.ones(17, dtype=bool), LAUGHTER, FPS).tolist() == [100.0, 10.0]
 
 
 def test_a_pulse_is_looked_for_two_frames_around_its_phoneme() -> None:
