@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Callable, List, Sequence
 
 import numpy as np
@@ -14,6 +14,8 @@ from labial.evaluate.material import Timeline, Utterance, timeline, utterance, u
 from labial.evaluate.splits import make_splits
 from labial.evaluate.training import Training, choose, validation_error
 from labial.phonesets import SPEECH
+from labial.train import train
+from labial.train.codebook import lbg
 
 FPS = 50
 LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
@@ -155,3 +157,18 @@ def test_inner_validation_holds_out_words_where_unseen_words_are_judged() -> Non
 def test_the_setting_of_least_error_over_all_folds_is_chosen() -> None:
     part = training(ramp, 20)
     assert choose(part, [40.0, -3.0, 2.0, 7.0], lambda _: lambda off: lambda given: ramp(given) + off) == 2.0
+
+
+def test_methods_share_the_cells_of_their_codebooks(monkeypatch) -> None:
+    # Catches a model that changes because another was trained before it, and cells that are computed twice.
+    calls = []
+    monkeypatch.setattr("labial.evaluate.training.lbg", lambda points, size: calls.append(size) or lbg(points, size))
+    part = training(ramp, 4)
+    shared = [part.model(method) for method in ("paper", "labial")]
+    assert len(calls) == 13
+    for model in shared:
+        alone = train([item.episode for item in part.utterances], kind="speech", method=model.method, jobs=1,
+                      progress=False)  # fmt: skip
+        for field in fields(model):
+            own, other = getattr(model, field.name), getattr(alone, field.name)
+            assert np.array_equal(own, other) if isinstance(own, np.ndarray) else own == other, field.name

@@ -80,6 +80,15 @@ def generate(out_dir: Union[str, os.PathLike], episodes: int = 200, seed: int = 
     _write(folder / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
 
 
+def is_synthetic(path: Union[str, os.PathLike]) -> bool:
+    """Whether the folder says of itself that :func:`generate` made it."""
+    try:
+        with open(Path(path) / "README.md", encoding="utf-8", errors="replace") as readme:
+            return readme.readline().strip() == _TITLE
+    except OSError:
+        return False
+
+
 def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
     """A bout's phonemes and its intensity, 0.35 to 1."""
     intensity = float(random.uniform(0.35, 1.0))
@@ -233,7 +242,10 @@ def _write(path: Path, text: str) -> None:
     path.write_bytes(text.encode("utf-8"))
 
 
-_README = """# Synthetic laughter
+#: First line of the README beside the episodes, by which the corpus is recognised.
+_TITLE = "# Synthetic laughter"
+
+_README = _TITLE + """
 
 Nobody laughed for this corpus: {episodes} bouts of laughter were computed by `labial.corpus.laughter` (seed {seed}).
 Timings follow published statistics of laughter; amplitudes of the motion are design choices. See that module for both.

@@ -3,4 +3,7 @@
     material  ->  splits  ->  methods (baselines/)  ->  measures  ->  report, plots
     timelines     who is       fit on the training       one number     Markdown, CSV,
     and motion    judged       part, predict the test    per method     PNG
+
+Laughter is judged by its pulses (``pulses.py``) where speech is by its closures. ``side_by_side.py`` draws what models
+make of one stream of phonemes, without human motion beside it.
 """

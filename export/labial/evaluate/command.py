@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Sequence
 
 from labial.corpus import read_corpus
+from labial.corpus.laughter import is_synthetic
 from labial.evaluate import plots, report
 from labial.evaluate.methods import select
 from labial.evaluate.protocol import Options, Outcome, evaluate
@@ -24,11 +26,13 @@ def processor_time(outcomes: Sequence[Outcome]) -> str:
 def run(corpus: str, output: str, options: Options, *, jobs: int, progress: bool) -> List[Path]:
     """Evaluates and writes the report into the folder `output`; returns what was written."""
     select(options.methods)  # before the corpus is read
+    options = replace(options, synthetic=is_synthetic(corpus))
     outcomes = evaluate(read_corpus(corpus, options.kind), options, jobs=jobs, progress=progress)
     folder = Path(output)
     folder.mkdir(parents=True, exist_ok=True)
-    drawn = plots.write(outcomes, options.fps, folder)
+    drawn = plots.write(outcomes, options, folder)
     written = report.write(outcomes, options, folder, drawn)
+    print(report.caption("Table 1", "diff", options))
     print(report.markdown_table(outcomes, report.methods_of(outcomes), report.TABLE_1))
     print(processor_time(outcomes))
     return [*written, *(folder / name for name in drawn)]

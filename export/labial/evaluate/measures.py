@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Sequence
+from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
 from labial.evaluate.material import Utterance
+from labial.evaluate.pulses import SEEN_PERCENTILE, has_pulses, rises
 from labial.evaluate.trajectories import (
     JUDGED,
     JUDGED_NAMES,
@@ -24,14 +25,14 @@ from labial.reference.units import pieces
 #: Lips count as closed below this percentile of the openness of all training frames but silence.
 CLOSED_PERCENTILE = 20.0
 
-#: And as firmly closed below this percentile of the human's least openness in the training part's p, b and m.
+#: And, in speech, as firmly closed below this percentile of the human's least openness in the training part's p, b, m.
 FIRM_PERCENTILE = 50.0
 
 #: A closure is looked for in its segment and this many seconds to both sides.
 CLOSURE_REACH = 0.04
 
-#: The viseme class whose phonemes close the lips; a phone set without it has no closure rates.
-CLOSED_CLASS = "bilabial"
+#: The viseme classes whose phonemes close the lips, of speech and of laughter; without them there are no closure rates.
+CLOSED_CLASSES = ("bilabial", "nose")
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,8 @@ class Scale:
 
     maximum: np.ndarray  #: (4,) largest absolute value of each labial parameter but in silence, FAP
     closed: float  #: openness below which lips count as closed, FAP
-    firm: float  #: and as firmly closed, FAP; NaN without bilabials
+    firm: float  #: and as firmly closed, FAP; NaN without phonemes that close the lips
+    pulse: float = float("nan")  #: rise of openness from which a pulse is seen, FAP; NaN in speech
 
 
 def silence_of(phone_set: PhoneSet) -> int:
@@ -48,15 +50,25 @@ def silence_of(phone_set: PhoneSet) -> int:
     return phone_set.phonemes.index(phone_set.silence)
 
 
-def _bilabials(phone_set: PhoneSet) -> np.ndarray:
+def _closing(phone_set: PhoneSet) -> np.ndarray:
     """(P,) bool: phonemes that close the lips."""
-    return np.array([phone_set.classes[c] == CLOSED_CLASS for c in phone_set.phoneme_class], dtype=bool)
+    return np.array([phone_set.classes[c] in CLOSED_CLASSES for c in phone_set.phoneme_class], dtype=bool)
+
+
+def groups(phone_set: PhoneSet) -> Tuple[str, Tuple[str, ...], np.ndarray]:
+    """What errors are told apart by: its name, the groups' names, and each phoneme's group (P,).
+
+    Viseme classes of speech; the phonemes themselves of laughter, which has few.
+    """
+    if phone_set.kind == "laughter":
+        return "phoneme", phone_set.phonemes, np.arange(len(phone_set.phonemes))
+    return "class", phone_set.classes, np.array(phone_set.phoneme_class)
 
 
 def least_openness(item: Utterance, frames: np.ndarray, mask: np.ndarray, phone_set: PhoneSet, fps: int) -> np.ndarray:
-    """(n,) FAP: the least openness of each p, b, m that has a judged frame, within CLOSURE_REACH of its segment."""
+    """(n,) FAP: the least openness within CLOSURE_REACH of each phoneme that closes the lips and has a judged frame."""
     openness = labial_parameters(frames)[:, 0]
-    reach, given, closing = round(CLOSURE_REACH * fps), item.timeline, _bilabials(phone_set)
+    reach, given, closing = round(CLOSURE_REACH * fps), item.timeline, _closing(phone_set)
     found = []
     for segment in given.held[closing[given.phoneme[given.held]]]:
         begin = int(given.start[segment])
@@ -74,10 +86,13 @@ def measure_scale(training: Sequence[Utterance], phone_set: PhoneSet, fps: int) 
     least = np.concatenate(
         [least_openness(item, item.human, mask, phone_set, fps) for item, mask in zip(training, masks)]
     )
+    risen = [rises(item, item.human, mask, phone_set, fps) for item, mask in zip(training, masks)]
+    pulses = np.concatenate(risen) if has_pulses(phone_set) else np.zeros(0)
     return Scale(
         maximum=np.maximum(np.abs(speech).max(axis=0), 1e-9),
         closed=float(np.percentile(speech[:, 0], CLOSED_PERCENTILE)),
         firm=float(np.percentile(least, FIRM_PERCENTILE)) if len(least) else float("nan"),
+        pulse=float(np.percentile(pulses, SEEN_PERCENTILE)) if len(pulses) else float("nan"),
     )
 
 
@@ -100,9 +115,11 @@ class Judge:
         """`masks`: per utterance (T,) bool, the frames that are judged."""
         self._test, self._masks, self._scale = list(test), list(masks), scale
         self._phone_set, self._fps = phone_set, fps
+        self._pulsing = has_pulses(phone_set)
         self._human = self._pooled([item.human for item in test])
-        self._class_at = np.concatenate(
-            [np.array(phone_set.phoneme_class)[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)]
+        self._grouping, self._groups, group_of = groups(phone_set)
+        self._group_at = np.concatenate(
+            [group_of[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)]
         )
         self._joins = [self._unit_joins(item) for item in test]
         self._human_jerk = self._jerk([item.human for item in test])
@@ -146,7 +163,7 @@ class Judge:
         }
 
     def _closure(self, motion: Sequence[np.ndarray]) -> np.ndarray:
-        """(2,) share of p, b, m whose lips close, and close firmly."""
+        """(2,) share of the phonemes that close the lips where they do, and do so firmly."""
         least = [
             least_openness(item, frames, mask, self._phone_set, self._fps)
             for item, frames, mask in zip(self._test, motion, self._masks)
@@ -156,6 +173,31 @@ class Judge:
             return np.full(2, np.nan)
         return np.array([(found < self._scale.closed).mean(), (found < self._scale.firm).mean()])
 
+    def _closures(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
+        closed, by_human = self._closure(motion), self._closure([item.human for item in self._test])
+        result: Dict[str, float] = {}
+        names = ("closure",) if self._pulsing else ("closure", "firm closure")  # laughter's closed lips rest, not press
+        for name, own, reference in zip(names, closed, by_human):
+            result[f"{name}/rate"] = float(own)
+            result[f"{name}/of human"] = float(own / reference) if reference > 0 else float("nan")
+        return result
+
+    def _rises(self, motion: Sequence[np.ndarray]) -> np.ndarray:
+        return np.concatenate(
+            [rises(item, frames, mask, self._phone_set, self._fps)
+             for item, frames, mask in zip(self._test, motion, self._masks)]
+        )  # fmt: skip
+
+    def _pulses(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
+        """Share of the pulses that are seen, that over the human's, and the mean rise over the human's."""
+        own, human = self._rises(motion), self._rises([item.human for item in self._test])
+        if not len(own):
+            return {}
+        seen, by_human = float((own > self._scale.pulse).mean()), float((human > self._scale.pulse).mean())
+        of_human = seen / by_human if by_human > 0 else float("nan")
+        height = float(own.mean() / human.mean()) if human.mean() > 1e-9 else float("nan")
+        return {"pulses/seen": seen, "pulses/of human": of_human, "pulses/height": height}
+
     def measure(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
         """All measures of a method's motion, one (T, 13) per utterance of the test part, by name."""
         found = self._pooled(motion)
@@ -164,16 +206,15 @@ class Judge:
         result = _named("diff", PARAMETERS, apart.mean(axis=0))
         result.update(_named("correlation", JUDGED_NAMES, correlation(human, judged)))
         result.update(_named("amplitude", JUDGED_NAMES, amplitude(human, judged)))
-        closed, by_human = self._closure(motion), self._closure([item.human for item in self._test])
-        for name, own, reference in zip(("closure", "firm closure"), closed, by_human):
-            result[f"{name}/rate"] = float(own)
-            result[f"{name}/of human"] = float(own / reference) if reference > 0 else float("nan")
+        result.update(self._closures(motion))
+        if self._pulsing:
+            result.update(self._pulses(motion))
         result["jitter"] = _mean_ratio(self._jerk(motion), self._human_jerk)
         result.update(self._seams(motion))
-        for index, name in enumerate(self._phone_set.classes):
-            own = self._class_at == index
+        for index, name in enumerate(self._groups):
+            own = self._group_at == index
             if own.any():
-                result[f"class/{name}"] = float(apart[own].mean())
+                result[f"{self._grouping}/{name}"] = float(apart[own].mean())
         return result
 
 

@@ -17,11 +17,12 @@ from labial.corpus.episode import Episode
 from labial.errors import LabialError
 from labial.evaluate.baselines import steps
 from labial.evaluate.material import Utterance, utterances
-from labial.evaluate.measures import Judge, judged_frames
+from labial.evaluate.measures import Judge, judged_frames, silence_of
 from labial.evaluate.methods import predict_all, select
+from labial.evaluate.pulses import has_pulses, longest_train
 from labial.evaluate.splits import Split, make_splits
 from labial.evaluate.training import Training
-from labial.phonesets import PHONE_SETS
+from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.train.workers import usable_jobs
 
 #: The human's own motion goes through the same measures under this name.
@@ -38,6 +39,7 @@ class Options:
     seed: int = 0
     fps: int = 50
     held_out: Tuple[str, ...] = ()
+    synthetic: bool = False  #: the motion was computed, not recorded; every table and plot says so
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Example:
 
     kind: str
     utterance: Utterance
-    word: Optional[Tuple[int, int]]  #: first and last segment of the longest word that is judged
+    stretch: Optional[Tuple[int, int]]  #: first and last segment that plots show: see :func:`_stretch`
     steps: np.ndarray
     motion: Dict[str, np.ndarray]
 
@@ -72,10 +74,17 @@ def _processor_seconds() -> float:
     return spent.user + spent.system + spent.children_user + spent.children_system
 
 
-def _longest_word(test: Sequence[Utterance], silence: int, split: Split) -> int:
-    """The utterance with the longest word that is judged, the first of equals."""
-    words = [item.longest_word(silence, split.words) for item in test]
-    return int(np.argmax([word[1] - word[0] + 1 if word else 0 for word in words]))
+def _stretch(item: Utterance, phone_set: PhoneSet, split: Split) -> Optional[Tuple[int, int]]:
+    """What plots show of an utterance: its longest word that is judged, or its longest train of pulses."""
+    if has_pulses(phone_set):
+        return longest_train(item, phone_set)
+    return item.longest_word(silence_of(phone_set), split.words)
+
+
+def _most_shown(test: Sequence[Utterance], phone_set: PhoneSet, split: Split) -> int:
+    """The utterance of which plots show most segments, the first of equals."""
+    shown = [_stretch(item, phone_set, split) or (0, -1) for item in test]
+    return int(np.argmax([last - first + 1 for first, last in shown]))
 
 
 def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell: Callable = _say_nothing) -> Outcome:
@@ -90,7 +99,7 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
     test, kept = [item for item, _ in judged], [mask for _, mask in judged]
     judge = Judge(test, kept, training.scale, phone_set, options.fps)
     measures = {HUMAN: judge.measure([item.human for item in test])}
-    shown = _longest_word(test, training.silence, split)
+    shown = _most_shown(test, phone_set, split)
     motion: Dict[str, np.ndarray] = {}
     seconds: Dict[str, float] = {}
     for method in select(options.methods):
@@ -103,8 +112,8 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
     example = None
     if split.number == 0:
         item = test[shown]
-        word = item.longest_word(training.silence, split.words)
-        example = Example(options.kind, item, word, steps.fit(training).predict(item.timeline), motion)
+        held = steps.fit(training).predict(item.timeline)
+        example = Example(options.kind, item, _stretch(item, phone_set, split), held, motion)
     return Outcome(split, judge.frames, measures, seconds, example)
 
 

@@ -9,9 +9,11 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
+from labial.evaluate.measures import groups
 from labial.evaluate.methods import METHODS
 from labial.evaluate.protocol import HUMAN, Options, Outcome
 from labial.evaluate.trajectories import JUDGED_NAMES, PARAMETERS
+from labial.phonesets import PHONE_SETS
 
 #: Column title and measure.
 Columns = Sequence[Tuple[str, str]]
@@ -19,31 +21,60 @@ Columns = Sequence[Tuple[str, str]]
 #: The paper's Table 1: diff per labial parameter.
 TABLE_1: Columns = [(name, f"diff/{name}") for name in (*PARAMETERS, "mean")]
 
-#: The other measures.
-TABLE_2: Columns = [
-    ("correlation", "correlation/mean"),
-    ("amplitude", "amplitude/mean"),
-    ("closure", "closure/rate"),
-    ("of human", "closure/of human"),
-    ("firm closure", "firm closure/rate"),
-    ("of human", "firm closure/of human"),
-    ("jitter", "jitter"),
-    ("seam, mean", "seam/mean"),
-    ("seam, largest", "seam/largest"),
-]
+#: What the other measures begin and end with, whatever the kind.
+_FIRST: Columns = (("correlation", "correlation/mean"), ("amplitude", "amplitude/mean"))
+_LAST: Columns = (("jitter", "jitter"), ("seam, mean", "seam/mean"), ("seam, largest", "seam/largest"))
+
+#: The other measures, by kind.
+TABLE_2: Dict[str, Columns] = {
+    "speech": [
+        *_FIRST,
+        ("closure", "closure/rate"),
+        ("of human", "closure/of human"),
+        ("firm closure", "firm closure/rate"),
+        ("of human", "firm closure/of human"),
+        *_LAST,
+    ],
+    "laughter": [
+        *_FIRST,
+        ("pulses seen", "pulses/seen"),
+        ("of original", "pulses/of human"),
+        ("rise of pulses", "pulses/height"),
+        ("closure in ne, nasal", "closure/rate"),
+        ("of original", "closure/of human"),
+        *_LAST,
+    ],
+}
 
 #: Correlation and amplitude, channel by channel.
 TABLE_3: Columns = [(f"{what} {name}", f"{what}/{name}") for what in ("correlation", "amplitude")
                     for name in JUDGED_NAMES]  # fmt: skip
 
 
-_NOTE_2 = """\
+_NOTE_2 = {
+    "speech": """\
 Correlation and amplitude (standard deviation over the human's): mean over open_jaw, raise_b_midlip_o,
 stretch_l_cornerlip_o and push_t_lip, each over all judged frames. Closure: share of p, b, m whose least openness
 within the segment and 40 ms around it is below the 20th percentile of the training part's speech frames; firm closure:
 below the median of the human's own least openness in the training part's p, b, m. Jitter: RMS third difference over
 the human's. Seam: |second difference| where units join over that elsewhere, of the means and of the largest values;
-methods without units, and the human, are measured at the same frames."""
+methods without units, and the human, are measured at the same frames.""",
+    "laughter": """\
+Correlation and amplitude (standard deviation over the original's): mean over open_jaw, raise_b_midlip_o,
+stretch_l_cornerlip_o and push_t_lip, each over all judged frames. Pulses: the rise of openness in a, e, o, ic and
+cackle, from the least since the vowel before to the greatest in the phoneme and 40 ms around it; one is seen when it
+rises further than the 20th percentile of the training part's; rise of pulses: their mean over the original's. Closure:
+share of ne and nasal, where air goes through the nose, whose least openness within the segment and 40 ms around it is
+below the 20th percentile of the training part's frames of laughing. Jitter: RMS third difference over the original's.
+Seam: |second difference| where units join over that elsewhere, of the means and of the largest values; methods without
+units, and the original, are measured at the same frames.""",
+}
+
+_SYNTHETIC = """\
+**Synthetic data.** Nobody laughed: `labial laughter-corpus` computed the motion that all methods are trained on and
+compared with, the "synthetic original". The timings of its phonemes follow published statistics of laughter, its
+amplitudes are design choices. So these tables say how well a method learns that program's motion from phonemes, and
+nothing about how human it looks."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +92,16 @@ class Cell:
         return text if np.isnan(self.deviation) else f"{text} ({self.deviation:.{digits}f})"
 
 
-def title(method: str) -> str:
-    """What tables call a method."""
+def title(method: str, synthetic: bool = False) -> str:
+    """What tables call a method, or what all are compared with."""
+    if method == HUMAN and synthetic:
+        return "synthetic original"
     return next((item.title for item in METHODS if item.name == method), method)
+
+
+def caption(table: str, what: str, options: Options) -> str:
+    """A table's heading; it says when the data are synthetic."""
+    return f"{table}, synthetic data: {what}" if options.synthetic else f"{table}: {what}"
 
 
 def methods_of(outcomes: Sequence[Outcome]) -> List[str]:
@@ -80,22 +118,26 @@ def cell(outcomes: Sequence[Outcome], method: str, measure: str) -> Cell:
     return Cell(float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else float("nan"))
 
 
-def classes_of(outcomes: Sequence[Outcome]) -> List[str]:
-    """Viseme classes that were judged in any split, in the order of the first that has them."""
-    return list(dict.fromkeys(name[6:] for item in outcomes for name in item.measures[HUMAN] if name[:6] == "class/"))
+def grouping(kind: str) -> str:
+    """What Table 4 tells apart: "class", viseme classes of speech, or "phoneme", those of laughter."""
+    return groups(PHONE_SETS[kind])[0]
 
 
-def table_4(outcomes: Sequence[Outcome]) -> Columns:
-    """Mean diff per phoneme class."""
-    return [(name, f"class/{name}") for name in classes_of(outcomes)]
+def table_4(outcomes: Sequence[Outcome], kind: str) -> Columns:
+    """Mean diff per phoneme class, or per phoneme: those that were judged in any split, as the first that has them."""
+    prefix = f"{grouping(kind)}/"
+    found = dict.fromkeys(name for item in outcomes for name in item.measures[HUMAN] if name.startswith(prefix))
+    return [(name[len(prefix):], name) for name in found]
 
 
-def markdown_table(outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns) -> str:
+def markdown_table(
+    outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns, synthetic: bool = False
+) -> str:
     """Methods down, measures across."""
     lines = ["| method | " + " | ".join(name for name, _ in columns) + " |", "|---" * (len(columns) + 1) + "|"]
     for method in methods:
         cells = [str(cell(outcomes, method, measure)) for _, measure in columns]
-        lines.append(f"| {title(method)} | " + " | ".join(cells) + " |")
+        lines.append(f"| {title(method, synthetic)} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
@@ -112,14 +154,21 @@ def _heading(outcomes: Sequence[Outcome], options: Options) -> str:
 
 def markdown(outcomes: Sequence[Outcome], options: Options, plots: Sequence[str] = ()) -> str:
     """The whole report."""
-    methods = methods_of(outcomes)
+    methods, synthetic = methods_of(outcomes), options.synthetic
+    apart = {"class": "phoneme class", "phoneme": "laughter phoneme"}[grouping(options.kind)]
+
+    def table(number: int, what: str, who: Sequence[str], columns: Columns, note: str = "") -> str:
+        head = f"## {caption(f'Table {number}', what, options)}"
+        return "\n\n".join(filter(None, [head, markdown_table(outcomes, who, columns, synthetic), note]))
+
     parts = [
-        f"# Evaluation: {options.kind}",
+        f"# Evaluation: {options.kind}" + (", synthetic data" if synthetic else ""),
+        *([_SYNTHETIC] if synthetic else []),
         _heading(outcomes, options),
-        "## Table 1: diff, |original - synthetic| / maximum\n\n" + markdown_table(outcomes, methods, TABLE_1),
-        "## Table 2: other measures\n\n" + markdown_table(outcomes, [HUMAN, *methods], TABLE_2) + "\n\n" + _NOTE_2,
-        "## Table 3: correlation and amplitude per channel\n\n" + markdown_table(outcomes, methods, TABLE_3),
-        "## Table 4: mean diff per phoneme class\n\n" + markdown_table(outcomes, methods, table_4(outcomes)),
+        table(1, "diff, |original - synthetic| / maximum", methods, TABLE_1),
+        table(2, "other measures", [HUMAN, *methods], TABLE_2[options.kind], _NOTE_2[options.kind]),
+        table(3, "correlation and amplitude per channel", methods, TABLE_3),
+        table(4, f"mean diff per {apart}", methods, table_4(outcomes, options.kind)),
     ]
     parts += [f"![{Path(name).stem.replace('_', ' ')}]({name})" for name in plots]
     return "\n\n".join(parts) + "\n"
@@ -132,31 +181,43 @@ def _write_csv(path: Path, header: Sequence[str], rows: Sequence[Sequence[object
         writer.writerows(rows)
 
 
-def _table_rows(outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns) -> List[List[object]]:
+def _key(name: str, options: Options) -> str:
+    """A method or a measure in the CSV files."""
+    return name.replace(HUMAN, "original") if options.synthetic else name
+
+
+def _table_rows(
+    outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns, options: Options
+) -> List[List[object]]:
     rows: List[List[object]] = []
     for method in methods:
         for _, measure in columns:
             value = cell(outcomes, method, measure)
-            rows.append([method, measure, f"{value.mean:.6g}", f"{value.deviation:.6g}"])
+            rows.append([_key(method, options), _key(measure, options), f"{value.mean:.6g}", f"{value.deviation:.6g}"])
     return rows
 
 
 def write(outcomes: Sequence[Outcome], options: Options, folder: Path, plots: Sequence[str] = ()) -> List[Path]:
-    """Writes report.md, table1.csv to table4.csv (means and deviations) and splits.csv (every measure, every split)."""
+    """Writes report.md, table1.csv to table4.csv (means and deviations) and splits.csv (every measure, every split).
+
+    The CSV files of synthetic data say so in their names.
+    """
     methods = methods_of(outcomes)
     written = [folder / "report.md"]
     written[0].write_text(markdown(outcomes, options, plots), encoding="utf-8")
     tables: Dict[str, Tuple[Sequence[str], Columns]] = {
         "table1": (methods, TABLE_1),
-        "table2": ([HUMAN, *methods], TABLE_2),
+        "table2": ([HUMAN, *methods], TABLE_2[options.kind]),
         "table3": (methods, TABLE_3),
-        "table4": (methods, table_4(outcomes)),
+        "table4": (methods, table_4(outcomes, options.kind)),
     }
+    suffix = "_synthetic.csv" if options.synthetic else ".csv"
     for name, (who, columns) in tables.items():
-        written.append(folder / f"{name}.csv")
-        _write_csv(written[-1], ("method", "measure", "mean", "deviation"), _table_rows(outcomes, who, columns))
-    written.append(folder / "splits.csv")
-    rows = [(item.split.number, method, measure, f"{value:.6g}") for item in outcomes
+        written.append(folder / f"{name}{suffix}")
+        rows = _table_rows(outcomes, who, columns, options)
+        _write_csv(written[-1], ("method", "measure", "mean", "deviation"), rows)
+    written.append(folder / f"splits{suffix}")
+    rows = [(item.split.number, _key(method, options), _key(measure, options), f"{value:.6g}") for item in outcomes
             for method, measures in item.measures.items() for measure, value in measures.items()]
     _write_csv(written[-1], ("split", "method", "measure", "value"), rows)
     return written

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import io
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +16,7 @@ from labial.evaluate.measures import Scale, judged_frames, mean_difference, meas
 from labial.model import Model
 from labial.phonesets import PhoneSet
 from labial.train import train
+from labial.train.codebook import lbg
 
 #: Share of the training part that inner validation fits on; the rest chooses the settings.
 INNER_SHARE = 0.8
@@ -53,6 +55,7 @@ class Training:
         self.seed = seed
         self._models: Dict[str, Model] = {}
         self._derived: Dict[object, object] = {}
+        self._cells: Dict[Tuple[int, bytes], Tuple[np.ndarray, np.ndarray, float]] = {}
 
     @property
     def silence(self) -> int:
@@ -100,6 +103,13 @@ class Training:
         rest = [item for item, held in zip(self.utterances, with_word) if held]
         return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest, words)
 
+    def _divide(self, points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
+        """What :func:`lbg` returns, made once for the same points: the methods' codebooks have the same cells."""
+        key = (size, hashlib.sha256(np.ascontiguousarray(points).tobytes()).digest())
+        if key not in self._cells:
+            self._cells[key] = lbg(points, size)
+        return self._cells[key]
+
     def model(self, method: str) -> Model:
         """The model of `method` ("paper" or "labial") trained on this part; its reports of back-offs are dropped."""
         if method not in self._models:
@@ -112,6 +122,7 @@ class Training:
                     seed=self.seed,
                     jobs=1,
                     progress=False,
+                    divide=self._divide,
                 )
         return self._models[method]
 

@@ -9,7 +9,7 @@ round splits the cells of largest distortion alone.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Tuple
+from typing import Callable, List, Tuple
 from typing import Sequence as SequenceOf
 
 import numpy as np
@@ -105,6 +105,10 @@ def lbg(points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
     return centres, cell, distortion
 
 
+#: What divides points into cells as :func:`lbg` does. Who trains on the same motion twice may give one that remembers.
+Division = Callable[[np.ndarray, int], Tuple[np.ndarray, np.ndarray, float]]
+
+
 @dataclass(frozen=True)
 class Codebook:
     """One channel's states in the order of their static means."""
@@ -137,7 +141,11 @@ def initials(paths: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size
 
 
 def train_channel(
-    motion: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size: int, stride: int = 1
+    motion: SequenceOf[np.ndarray],
+    starts: SequenceOf[np.ndarray],
+    size: int,
+    stride: int = 1,
+    divide: Division = lbg,
 ) -> Codebook:
     """The codebook of one channel.
 
@@ -148,7 +156,7 @@ def train_channel(
     points = np.concatenate(rows)
     overall = points.var(axis=0)
     scale = np.where(overall > 1e-12, np.sqrt(overall), 1.0)
-    _, cell, _ = lbg(points / scale, size)
+    _, cell, _ = divide(points / scale, size)
     count, mean, variance = _moments(points, cell, size)
     largest = int(count.argmax())  # stands in for cells that stay empty, where motion has fewer values than there are
     mean = np.where(count[:, None] > 0, mean, mean[largest])

@@ -16,7 +16,7 @@ from labial.model import KINDS, METHODS, Model
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.quantise import LIMITS
 from labial.train.closures import floors
-from labial.train.codebook import Codebook, train_channel
+from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
 from labial.train.kernels import LOOK_AHEAD, REACH, Kernels, Penalties, add_kernels, fit_kernels
@@ -67,7 +67,7 @@ def _tables(plan: Plan, fitted: List[Mixture], conditional: bool) -> ShapeTables
     return shape_tables([mixtures[other] for other in plan.stand_in], conditional=conditional)
 
 
-def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int]) -> Codebook:
+def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int, Division]) -> Codebook:
     return train_channel(*task)
 
 
@@ -139,6 +139,7 @@ def train(
     search_stride: int = SEARCH_STRIDE,
     penalties: Penalties = Penalties(),  # noqa: B008 - immutable
     scales: Scales = Scales(),  # noqa: B008 - immutable
+    divide: Division = lbg,
 ) -> Model:
     """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
 
@@ -146,6 +147,7 @@ def train(
     states and anchors on top. `codebook` is Q, the states of each channel, `components` C of each phoneme's mixture.
     `look_ahead` is how far the temporal kernels reach into what follows, seconds; less makes a stream's frames earlier.
     `search_stride` is how many frames share a state of the decoded path. The published method has neither.
+    `divide` makes the codebooks' cells; with more than one job it must be a module's own function.
     `attribution` is kept in the model for whoever passes it on. The same arguments give the same model, whatever
     `jobs`, the number of processes, is. Back-offs are printed; the corpus's counts and all options are kept in the
     model.
@@ -174,7 +176,9 @@ def train(
         tasks = _mixture_tasks(items, plan, classes if extended else 0, components, seed)
         tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), extended)
         starts = [_unit_starts(item, boundary) for item in material]
-        motion = [([item.frames[:, c] for item in material], starts, codebook, stride) for c in range(CHANNELS)]
+        motion = [
+            ([item.frames[:, c] for item in material], starts, codebook, stride, divide) for c in range(CHANNELS)
+        ]
         states = codebook_tables(workers.run("codebooks", _channel, motion), stride)
         kernel, lag = np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64)
         pair_key, pair_shape = np.zeros((0, 3), dtype=np.int64), np.zeros((0, CHANNELS))
