@@ -5,16 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import List, Sequence, Tuple
 
-import matplotlib
 import numpy as np
 
 from labial.evaluate.protocol import HUMAN, Example, Outcome
 from labial.evaluate.report import cell, classes_of, methods_of, title
 from labial.evaluate.trajectories import JUDGED, JUDGED_NAMES
 from labial.phonesets import PHONE_SETS
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from labial.see import drawing
+from labial.see.drawing import pyplot
+from labial.see.motion import Band, kind_of
 
 #: Methods whose curves are drawn where they were run; all of them would hide each other.
 DRAWN = ("hmm_synthesis", "paper", "labial")
@@ -33,20 +32,22 @@ def _word(example: Example) -> Tuple[int, int, str]:
     return int(given.start[first]), int(given.start[last] + given.length[last]), str(example.utterance.words[first])
 
 
-def _label_phonemes(axes: pyplot.Axes, example: Example, begin: int, end: int, fps: int) -> None:
+def _bands(example: Example, begin: int, end: int, fps: int) -> List[Band]:
+    """The phonemes from frame `begin` to frame `end`."""
     given = example.utterance.timeline
+    phones = PHONE_SETS[example.kind]
+    bands = []
     for segment in given.held:
         first, last = int(given.start[segment]), int(given.start[segment] + given.length[segment])
         if first >= begin and last <= end:
-            axes.axvline(first / fps, color="0.85", linewidth=0.6, zorder=0)
-            axes.text((first + last) / 2 / fps, 1.01, PHONE_SETS[example.kind].phonemes[given.phoneme[segment]],
-                      transform=axes.get_xaxis_transform(), ha="center", va="bottom", fontsize=7)
+            name = phones.phonemes[given.phoneme[segment]]
+            bands.append(Band(first / fps, last / fps, name, kind_of(name, phones)))
+    return bands
 
 
 def _finish(figure: pyplot.Figure, path: Path) -> str:
     figure.tight_layout()
-    figure.savefig(path, dpi=110, metadata={"Software": None})
-    pyplot.close(figure)
+    drawing.write(figure, path)
     return path.name
 
 
@@ -55,6 +56,7 @@ def step_stream(example: Example, fps: int, folder: Path) -> str:
     begin, end, word = _word(example)
     frames = slice(begin, end)
     time = (np.arange(begin, end) + 0.5) / fps
+    bands = _bands(example, begin, end, fps)
     figure, every = pyplot.subplots(2, 1, figsize=(8, 6), sharex=True)
     for axes, channel in zip(every, (0, 1)):
         k = JUDGED[channel]
@@ -64,7 +66,8 @@ def step_stream(example: Example, fps: int, folder: Path) -> str:
         for name in _drawn(example):
             axes.plot(time, example.motion[name][frames, k], label=title(name))
         axes.set_ylabel(f"{JUDGED_NAMES[channel]}, FAP units")
-        _label_phonemes(axes, example, begin, end, fps)
+        drawing.shade(axes, bands)
+        drawing.label(axes, bands)
     every[-1].set_xlabel(f"seconds, {example.utterance.episode.name}" + (f', "{word}"' if word else ""))
     every[0].legend(fontsize=7)
     return _finish(figure, folder / "steps_and_curve.png")
@@ -74,13 +77,15 @@ def trajectories(example: Example, fps: int, folder: Path) -> str:
     """The paper's figure 6: human and synthetic trajectories of an utterance."""
     total = example.utterance.timeline.frames
     time = (np.arange(total) + 0.5) / fps
+    bands = _bands(example, 0, total, fps)
     figure, every = pyplot.subplots(len(JUDGED), 1, figsize=(11, 9), sharex=True)
     for axes, k, channel in zip(every, JUDGED, JUDGED_NAMES):
         axes.plot(time, example.utterance.human[:, k], color="black", linewidth=1.5, label=HUMAN)
         for name in _drawn(example):
             axes.plot(time, example.motion[name][:, k], linewidth=1, label=title(name))
         axes.set_ylabel(channel, fontsize=8)
-    _label_phonemes(every[0], example, 0, total, fps)
+        drawing.shade(axes, bands)
+    drawing.label(every[0], bands)
     figure.align_ylabels(every)
     every[-1].set_xlabel(f"seconds, {example.utterance.episode.name}; FAP units")
     every[0].legend(fontsize=7, loc="upper right")
