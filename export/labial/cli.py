@@ -92,8 +92,8 @@ def parser() -> argparse.ArgumentParser:
     plot.add_argument("frames", metavar="FRAMES", nargs="+", help="frames files (.csv) or .fap; several are overlaid")
     plot.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
     plot.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
-    plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel each "
-                      "(fap3,opening,stretch,fap17)")
+    plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel "
+                      "each (fap3,opening,stretch,fap17)")
     plot.set_defaults(run=_plot)
 
     page = commands.add_parser("page", help="write a page that plays motion")
@@ -110,10 +110,10 @@ def parser() -> argparse.ArgumentParser:
     record.add_argument("-o", "--output", required=True, metavar="CORPUS", help="folder, new or empty")
     record.add_argument("--kind", choices=("speech", "laughter"), default="speech")
     record.add_argument("--fps", type=float, metavar="RATE", help="frames per second, where the files do not tell")
-    record.add_argument("--size", metavar="WIDTHxHEIGHT", help="of the video in pixels, where coordinates are shares of "
-                        "it and the files do not tell")
-    record.add_argument("--cutoff", type=float, default=10.0, metavar="HZ",
-                        help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (10)")
+    record.add_argument("--size", metavar="WIDTHxHEIGHT", help="of the video in pixels, where coordinates are shares "
+                        "of it and the files do not tell")
+    record.add_argument("--cutoff", type=float, default=12.0, metavar="HZ",
+                        help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
     record.set_defaults(run=_record)
     return top
 
@@ -232,9 +232,9 @@ def _plot(options: argparse.Namespace) -> int:
         from labial.see.plot import DEFAULT, plot
     except ModuleNotFoundError as error:
         raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
-    from labial.see.motion import read_bands, read_motion
+    from labial.see.motion import read_bands, read_motions
 
-    plot([read_motion(path) for path in options.frames], read_bands(options.phones), options.output,
+    plot(read_motions(options.frames), read_bands(options.phones), options.output,
          options.channels or DEFAULT)
     return 0
 

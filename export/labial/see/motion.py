@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import List, Optional, Sequence, Tuple, Union
 
@@ -22,8 +22,6 @@ PathLike = Union[str, os.PathLike]
 KINDS = ("vowel", "closed", "labiodental", "silence", "other")
 #: FAPs that MPEG-4 defines, each with an entry in the mask of a .fap file.
 _MASK = 68
-#: A frame may be this far from its place on an even grid, seconds: times in files are rounded to milliseconds.
-_ROUNDING = 0.0015
 
 
 @dataclass(frozen=True)
@@ -51,6 +49,14 @@ def read_motion(path: PathLike) -> Motion:
     if Path(path).suffix.lower() == ".fap":
         return Motion(name, *read_fap(path))
     return Motion(name, *read_frames(path))
+
+
+def read_motions(paths: Sequence[PathLike]) -> List[Motion]:
+    """Reads several files; where two have the same name, all are called by their paths."""
+    motions = [read_motion(path) for path in paths]
+    if len({motion.name for motion in motions}) < len(motions):
+        motions = [replace(motion, name=os.fspath(path)) for motion, path in zip(motions, paths)]
+    return motions
 
 
 def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
@@ -95,21 +101,6 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
                 held[number] = value
         frames[index] = held[list(FAP_NUMBERS)]
     return np.arange(count) / fps, frames
-
-
-def even(motion: Motion) -> Tuple[float, np.ndarray]:
-    """Frames per second and (N, 13) frames at even steps from the motion's first time, interpolated linearly where the
-    file's times are uneven. A single frame counts as 25 per second."""
-    if len(motion.times) < 2:
-        return 25.0, motion.frames
-    span, steps = float(motion.times[-1] - motion.times[0]), len(motion.times) - 1
-    grid = motion.times[0] + np.arange(steps + 1) * (span / steps)
-    if np.abs(grid - motion.times).max() <= _ROUNDING:
-        rate = steps / span
-        return (float(round(rate)) if abs(rate - round(rate)) < 0.002 * rate else rate), motion.frames
-    rate = 1.0 / float(np.median(np.diff(motion.times)))
-    grid = motion.times[0] + np.arange(math.floor(span * rate + 1e-6) + 1) / rate
-    return rate, np.stack([np.interp(grid, motion.times, channel) for channel in motion.frames.T], axis=1)
 
 
 def read_bands(path: Optional[PathLike]) -> List[Band]:

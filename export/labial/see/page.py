@@ -12,7 +12,8 @@ import numpy as np
 
 from labial.errors import DataError
 from labial.faps import FAP_COLUMNS
-from labial.see.motion import Band, Motion, even, laughs
+from labial.frames import even
+from labial.see.motion import Band, Motion, laughs
 
 PathLike = Union[str, os.PathLike]
 
@@ -26,7 +27,7 @@ def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None
 
     `audio` is a WAV file whose time 0 is that of the motion's file. Raises DataError, which names it, when it is none.
     """
-    fps, frames = even(motion)
+    fps, frames = even(motion.times, motion.frames)
     start = float(motion.times[0])
     data: Dict[str, Any] = {
         "title": title or motion.name,

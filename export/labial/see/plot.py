@@ -97,7 +97,7 @@ def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.P
             for index, motion in enumerate(motions):
                 axes.plot(motion.times, row.of(motion.frames), color=COLOURS[index % len(COLOURS)], linewidth=1.5,
                           linestyle="-" if index < len(COLOURS) else "--", label=motion.name, zorder=2)
-            axes.set_ylabel(f"{row.title}\n{row.unit}/1024", fontsize=7.5, rotation=0, ha="right", va="center", labelpad=6)
+            axes.set_ylabel(f"{row.title}\n{row.unit}/1024", fontsize=7.5, rotation=0, ha="right", va="center")
             axes.margins(y=0.1)
             axes.locator_params(axis="y", nbins=5)
         every[0, 0].set_xlim(first, last)
