@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import os
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Union
@@ -49,11 +50,13 @@ def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None
 
 def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> List[Dict[str, Any]]:
     """The bands in frames of the page, cut to the motion; what is shorter than a frame is left out."""
+    def frame(seconds: float) -> int:
+        return min(max(math.floor((seconds - start) * fps + 0.5 + 1e-6), 0), count)  # halves up, as the library does
+
     sounding = "laughter" if laughs(bands) else "speech"
     phonemes = []
     for band in bands:
-        first = min(max(round((band.start - start) * fps), 0), count)
-        last = min(max(round((band.end - start) * fps), 0), count)
+        first, last = frame(band.start), frame(band.end)
         if last > first:
             phonemes.append({"label": band.label, "start_frame": first, "frames": last - first,
                              "kind": "silence" if band.kind == "silence" else sounding})
