@@ -110,6 +110,11 @@ def _bars(outcomes: Sequence[Outcome], groups: Sequence[Tuple[str, str]], label:
 
 def write(outcomes: Sequence[Outcome], fps: int, folder: Path) -> List[str]:
     """Writes all plots; returns their file names."""
+    with pyplot.rc_context(drawing.STYLE):
+        return _write(outcomes, fps, folder)
+
+
+def _write(outcomes: Sequence[Outcome], fps: int, folder: Path) -> List[str]:
     names = []
     example = next((item.example for item in outcomes if item.example is not None), None)
     if example is not None:

@@ -9,13 +9,13 @@ Two channels lean on substitutes. FAP 17, the top lip's protrusion, is 400 times
 the trackers' depth of the top lip has the wrong sign; where no score was kept, it is estimated from the corners'
 narrowing. FAP 16, the bottom lip's, is the tracker's depth, which is weak; from landmarks without depth it is estimated
 from FAP 52. Both estimates were fitted on the 803 utterances of GRID's talker s1: FAP 17 with a correlation of .91 and
-an RMS error of 12 (standard deviation 30), FAP 16 with .91 and 46 (106).
+an RMS error of 12 (standard deviation 27), FAP 16 with .91 and 46 (106).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -149,7 +149,7 @@ def _axes(neutral: np.ndarray) -> np.ndarray:
     return np.stack([x, y] if len(x) == 2 else [x, y, np.cross(x, y)], axis=1)
 
 
-def _units(face: np.ndarray) -> dict:
+def _units(face: np.ndarray) -> Dict[str, float]:
     """MNS and MW of a neutral face in its own axes; refuses faces that none can have."""
     eyes = face[INDEX[263], _X] - face[INDEX[33], _X]
     mouth_line = (face[INDEX[13], _Y] + face[INDEX[14], _Y]) / 2
