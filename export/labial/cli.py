@@ -1,4 +1,4 @@
-"""The command ``labial``: train, synth, export, check, evaluate, laughter-corpus, rig."""
+"""The command ``labial``: train, synth, export, check, evaluate, laughter-corpus, rig, plot, page, record."""
 
 from __future__ import annotations
 
@@ -96,6 +96,34 @@ def parser() -> argparse.ArgumentParser:
     rig.add_argument("--name", help="of the C symbol and the files; the description's file name without it")
     rig.add_argument("--no-figure", action="store_true", help="do not draw NAME.svg")
     rig.set_defaults(run=_rig)
+
+    plot = commands.add_parser("plot", help="draw trajectories with their phonemes")
+    plot.add_argument("frames", metavar="FRAMES", nargs="+", help="frames files (.csv) or .fap; several are overlaid")
+    plot.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    plot.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
+    plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel "
+                      "each (fap3,opening,stretch,fap17)")
+    plot.set_defaults(run=_plot)
+
+    page = commands.add_parser("page", help="write a page that plays motion")
+    page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv) or .fap")
+    page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    page.add_argument("--audio", metavar="WAV", help="sound that is played in step")
+    page.add_argument("--title", help="the file's name without it")
+    page.add_argument("-o", "--output", required=True, metavar="OUT.html")
+    page.set_defaults(run=_page)
+
+    record = commands.add_parser("record", help="make a corpus of tracked video (face landmarks)")
+    record.add_argument("landmarks", metavar="LANDMARKS", nargs="+", help="one talker's .npz, .npy or .csv files, or "
+                        "folders of them, each with its phoneme timings (NAME.lab, .TextGrid, ...) beside it")
+    record.add_argument("-o", "--output", required=True, metavar="CORPUS", help="folder, new or empty")
+    record.add_argument("--kind", choices=("speech", "laughter"), default="speech")
+    record.add_argument("--fps", type=float, metavar="RATE", help="frames per second, where the files do not tell")
+    record.add_argument("--size", metavar="WIDTHxHEIGHT", help="of the video in pixels, where coordinates are shares "
+                        "of it and the files do not tell")
+    record.add_argument("--cutoff", type=float, default=12.0, metavar="HZ",
+                        help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
+    record.set_defaults(run=_record)
     return top
 
 
@@ -213,6 +241,41 @@ def _rig(options: argparse.Namespace) -> int:
 
     for path in run(options.description, options.output, name=options.name, drawing=not options.no_figure):
         print(path)
+    return 0
+
+
+def _plot(options: argparse.Namespace) -> int:
+    try:
+        from labial.see.plot import DEFAULT, plot
+    except ModuleNotFoundError as error:
+        raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
+    from labial.see.motion import read_bands, read_motions
+
+    plot(read_motions(options.frames), read_bands(options.phones), options.output,
+         options.channels or DEFAULT)
+    return 0
+
+
+def _page(options: argparse.Namespace) -> int:
+    from labial.see.motion import read_bands, read_motion
+    from labial.see.page import page
+
+    text = page(read_motion(options.frames), read_bands(options.phones), options.audio, options.title)
+    with open(options.output, "w", encoding="utf-8", newline="\n") as out:
+        out.write(text)
+    return 0
+
+
+def _record(options: argparse.Namespace) -> int:
+    try:
+        from labial.record.record import record
+    except ModuleNotFoundError as error:
+        raise LabialError(f"recording needs the package {error.name}: install labial[train]") from None
+    from labial.phonesets import PHONE_SETS
+    from labial.record.landmarks import Given, parse_size
+
+    size = parse_size(options.size) if options.size else None
+    print(record(options.landmarks, options.output, PHONE_SETS[options.kind], Given(options.fps, size), options.cutoff))
     return 0
 
 

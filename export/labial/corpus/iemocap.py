@@ -27,6 +27,7 @@ import numpy as np
 
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span
+from labial.corpus.pose import align_head
 from labial.corpus.timings import phoneme_segments, read_phseg
 from labial.errors import DataError
 from labial.faps import CHANNELS
@@ -113,30 +114,6 @@ def read_markers(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
         raise DataError(path, None, "fewer than two frames")
     table = np.array(rows)
     return table[:, 0] - table[0, 0], table[:, 1:].reshape(len(rows), len(_MARKERS), 3)
-
-
-def align_head(markers: np.ndarray, reference: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Rotates and shifts each frame of `markers` (T, M, 3) so that its head fits `reference` (M, 3) best.
-
-    Weighted least squares over the markers with `weights` (M,) above 0 (Kabsch); frames with fewer than three of them,
-    or with all on a line, become NaN altogether.
-    """
-    present = np.isfinite(markers).all(axis=2) & np.isfinite(reference).all(axis=1)  # (T, M)
-    weight = present * weights
-    usable = (present & (weights > 0)).sum(axis=1) >= 3
-    total = np.where(usable, weight.sum(axis=1), 1.0)[:, None]
-    points, target = np.where(present[..., None], markers, 0.0), np.where(np.isfinite(reference), reference, 0.0)
-    centre = np.einsum("tm,tmi->ti", weight, points) / total
-    target_centre = np.einsum("tm,mi->ti", weight, target) / total
-    a, b = points - centre[:, None], target[None] - target_centre[:, None]
-    u, s, vt = np.linalg.svd(np.einsum("tm,tmi,tmj->tij", weight, a, b))
-    usable &= s[:, 1] > 1e-6 * np.maximum(s[:, 0], 1e-12)
-    flip = np.ones_like(s)
-    flip[:, 2] = np.sign(np.linalg.det(u) * np.linalg.det(vt))
-    rotation = np.einsum("tij,tj,tjk->tik", u, flip, vt)  # row vectors: aligned = (m - centre) @ rotation
-    aligned = np.einsum("tmi,tij->tmj", markers - centre[:, None], rotation) + target_centre[:, None]
-    aligned[~usable] = np.nan
-    return aligned
 
 
 def bridge_gaps(times: np.ndarray, markers: np.ndarray) -> np.ndarray:

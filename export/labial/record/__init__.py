@@ -1,0 +1,1 @@
+"""A corpus of one's own: from faces tracked in video to FAPs."""

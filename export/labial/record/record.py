@@ -1,0 +1,126 @@
+"""``labial record``: landmark files and phoneme timings to a corpus folder."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from pathlib import Path
+from typing import Dict, List, Sequence, Tuple, Union
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from labial.corpus.episode import Episode, Segment
+from labial.corpus.folder import check_span
+from labial.corpus.timings import phoneme_segments, read_timings
+from labial.errors import DataError, LabialError
+from labial.frames import even, write_csv
+from labial.phonesets import PhoneSet
+from labial.record.landmarks import Given, read_landmarks
+from labial.record.mouth import Recording, faps, fill
+
+PathLike = Union[str, os.PathLike]
+
+_LANDMARKS = (".npz", ".npy", ".csv")
+_TIMINGS = (".lab", ".textgrid", ".phseg", ".pho", ".psdur")
+#: Slower recordings lose closures: half of GRID's /b/ last 70 ms or less, and the lips touch for a part of that.
+_SLOW = 24.0
+
+
+def record(sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float) -> str:
+    """Writes the corpus folder `output` from one talker's landmark files or folders of them; returns a summary.
+
+    Recordings in which the face is lost for too long are left out with a warning. Raises DataError for what is
+    malformed, before anything is written.
+    """
+    if not 0.0 <= cutoff <= 1000.0:
+        raise LabialError(f"a cutoff of {cutoff:g} Hz is not within 0 .. 1000")
+    folder = Path(output)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise DataError(folder, None, "not a folder that is new or empty")
+    recordings = [_read(path, phone_set, given) for path in _files(sources)]
+    kinds = {item.landmarks.points.shape[2] for item in recordings}
+    if len(kinds) > 1:
+        flat = next(item for item in recordings if item.landmarks.points.shape[2] == 2)
+        raise DataError(flat.landmarks.path, None, "no depth (z), which other recordings have")
+    finished: List[Tuple[Recording, np.ndarray, float]] = []
+    for item, values in zip(recordings, faps(recordings, phone_set.silence)):
+        try:
+            fps, frames = even(item.landmarks.times, fill(item.landmarks.times, values))
+        except ValueError as error:
+            warnings.warn(f"{item.landmarks.path}: left out: {error}", stacklevel=1)
+            continue
+        finished.append((item, _smooth(frames, fps, cutoff), fps))
+    if not finished:
+        raise LabialError("no recording can be used")
+    folder.mkdir(parents=True, exist_ok=True)
+    for item, frames, fps in finished:
+        name = item.landmarks.path.stem
+        with open(folder / f"{name}.csv", "w", encoding="ascii", newline="\n") as out:
+            write_csv(out, frames, fps, start=float(item.landmarks.times[0]))
+        with open(folder / f"{name}.lab", "w", encoding="utf-8", newline="\n") as out:
+            out.writelines(map(_line, item.segments))
+    seconds = sum(len(frames) / fps for _, frames, fps in finished)
+    left_out = len(recordings) - len(finished)
+    return (f"{folder}: {len(finished)} recordings, {int(seconds // 60)} min {seconds % 60:.0f} s"
+            + (f"; {left_out} left out" if left_out else ""))
+
+
+def _files(sources: Sequence[PathLike]) -> List[Path]:
+    """The landmark files, sorted by name; names are what episodes are called, so each may occur once."""
+    files: List[Path] = []
+    for source in map(Path, sources):
+        if source.is_dir():
+            found = [file for file in sorted(source.iterdir())
+                     if file.suffix.lower() in _LANDMARKS and file.is_file() and not file.name.startswith(".")]
+            if not found:
+                raise DataError(source, None, "no landmarks (.npz, .npy or .csv)")
+            files += found
+        else:
+            files.append(source)
+    seen: Dict[str, Path] = {}
+    for file in files:
+        if file.stem in seen:
+            raise DataError(file, None, f"there is also {seen[file.stem]}, and episodes are called by these names")
+        seen[file.stem] = file
+    return sorted(files, key=lambda file: file.stem)
+
+
+def _read(path: Path, phone_set: PhoneSet, given: Given) -> Recording:
+    landmarks = read_landmarks(path, given)
+    timings = _timings(path)
+    segments = phoneme_segments(timings, read_timings(timings), phone_set)
+    if not segments:
+        raise DataError(timings, None, "no phonemes")
+    check_span(timings, Episode(path.stem, landmarks.times, np.empty((len(landmarks.times), 0)), segments))
+    rate = 1.0 / float(np.median(np.diff(landmarks.times)))
+    if rate < _SLOW:
+        warnings.warn(f"{path}: {rate:.3g} frames per second are too few to see lips close", stacklevel=1)
+    return Recording(landmarks, segments)
+
+
+def _timings(path: Path) -> Path:
+    """The timings beside a landmark file."""
+    found = [file for file in sorted(path.parent.iterdir())
+             if file.stem == path.stem and file.suffix.lower() in _TIMINGS and file.is_file()]
+    if not found:
+        raise DataError(path, None, f"no phoneme timings beside it: {path.stem}.lab, .TextGrid, .phseg, .pho or .psdur")
+    if len(found) > 1:
+        raise DataError(found[1], None, f"there is also {found[0].name}; which of them to use is not clear")
+    return found[0]
+
+
+def _smooth(frames: np.ndarray, fps: float, cutoff: float) -> np.ndarray:
+    """Gaussian smoothing, without delay, that halves the power at `cutoff` Hz; 0 smooths nothing."""
+    if cutoff == 0.0 or len(frames) < 2:
+        return frames
+    sigma = np.sqrt(np.log(2.0)) / (2.0 * np.pi * cutoff)  # seconds
+    return gaussian_filter1d(frames, sigma * fps, axis=0, mode="nearest")
+
+
+def _line(segment: Segment) -> str:
+    text = f"{segment.start:.4f} {segment.end:.4f} {segment.label}"
+    if segment.apex is not None or segment.word is not None:
+        apex = (segment.start + segment.end) / 2 if segment.apex is None else segment.apex
+        text += f" {apex:.4f}" + (f" {segment.word}" if segment.word is not None else "")
+    return text + "\n"

@@ -1,0 +1,87 @@
+"""How Labial's plots look: colours, phonemes over and behind the curves, and how figures are written."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Iterable, Sequence, Union
+
+import matplotlib
+
+from labial.see.motion import KINDS, Band
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
+
+#: Colours of curves, told apart by people who see no difference of red and green too (Okabe and Ito).
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+#: Background, and what a legend calls it, of each kind of band. Plain consonants have none.
+BANDS = {
+    "vowel": ("#fdf0d2", "vowel"),
+    "closed": ("#f6c9c9", "p b m: lips closed"),
+    "labiodental": ("#d9cdf0", "f v: lip to teeth"),
+    "silence": ("#e4e7eb", "silence"),
+}
+assert set(BANDS) <= set(KINDS)
+
+#: Settings of a whole figure, for `pyplot.rc_context`.
+STYLE = {
+    "font.size": 8.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "0.55",
+    "axes.linewidth": 0.7,
+    "axes.labelcolor": "0.15",
+    "xtick.color": "0.35",
+    "ytick.color": "0.35",
+    "svg.hashsalt": "labial",
+    "svg.fonttype": "none",
+}
+
+
+def shade(axes: pyplot.Axes, bands: Iterable[Band]) -> None:
+    """Draws the bands behind the curves: a colour by kind, a thin line where each begins and ends."""
+    for band in bands:
+        if band.kind in BANDS:
+            axes.axvspan(band.start, band.end, color=BANDS[band.kind][0], linewidth=0, zorder=0)
+        for edge in (band.start, band.end):
+            axes.axvline(edge, color="0.82", linewidth=0.5, zorder=0.5)
+
+
+def label(axes: pyplot.Axes, bands: Sequence[Band], size: float = 7.0) -> None:
+    """Writes the bands' labels above the axes; short bands in a row climb in steps so that labels stay apart.
+
+    The axes must have their limits and their place in the figure.
+    """
+    points = axes.get_window_extent().width * 72.0 / axes.figure.dpi
+    left, right = axes.get_xlim()
+    taken = [-1e9, -1e9, -1e9]  # where the last label of each row ends, points
+    for band in bands:
+        middle = (band.start + band.end) / 2
+        if not left <= middle <= right:
+            continue
+        place = (middle - left) / (right - left) * points
+        half = 0.32 * size * max(len(band.label), 1)
+        row = next((number for number, end in enumerate(taken) if place - half >= end), None)
+        if row is None:
+            continue  # there is room for three rows; with more, zoom in
+        taken[row] = place + half + 1.5
+        axes.annotate(band.label, (middle, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(0, 3 + row * size * 1.15),
+                      textcoords="offset points", ha="center", va="bottom", fontsize=size,
+                      color="0.55" if band.kind == "silence" else "0.1",
+                      fontweight="bold" if band.kind in ("closed", "labiodental") else "normal")
+
+
+def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
+    """One entry of a legend for each kind of band that occurs."""
+    present = {band.kind for band in bands}
+    return [Patch(facecolor=colour, edgecolor="0.8", linewidth=0.5, label=name)
+            for kind, (colour, name) in BANDS.items() if kind in present]
+
+
+def write(figure: pyplot.Figure, path: Union[str, os.PathLike], dpi: int = 110) -> None:
+    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it."""
+    unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
+    figure.savefig(path, dpi=dpi, metadata=unstamped.get(Path(path).suffix.lower()))
+    pyplot.close(figure)

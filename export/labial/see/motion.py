@@ -1,0 +1,140 @@
+"""What is looked at: frames of any kind of motion file, and the phonemes that go with them as bands."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from labial.corpus.folder import read_frames
+from labial.corpus.timings import read_timings
+from labial.errors import DataError
+from labial.faps import CHANNELS, FAP_NUMBERS
+from labial.phonesets import LAUGHTER, SPEECH, VOWELS, PhoneSet
+
+PathLike = Union[str, os.PathLike]
+
+#: Kinds of bands: what a band's phoneme asks of the mouth, as far as the eye looks for it.
+KINDS = ("vowel", "closed", "labiodental", "silence", "other")
+#: FAPs that MPEG-4 defines, each with an entry in the mask of a .fap file.
+_MASK = 68
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The motion of one file."""
+
+    name: str  #: the file's name without its suffix
+    times: np.ndarray  #: (T,) seconds, strictly increasing
+    frames: np.ndarray  #: (T, 13) FAP units
+
+
+@dataclass(frozen=True)
+class Band:
+    """A phoneme from `start` to `end` (seconds), labelled as a phone set calls it, of one of `KINDS`."""
+
+    start: float
+    end: float
+    label: str
+    kind: str
+
+
+def read_motion(path: PathLike) -> Motion:
+    """Reads a frames file (CSV) or an MPEG-4 text file, which the suffix .fap tells. Raises DataError."""
+    name = Path(path).stem
+    if Path(path).suffix.lower() == ".fap":
+        return Motion(name, *read_fap(path))
+    return Motion(name, *read_frames(path))
+
+
+def read_motions(paths: Sequence[PathLike]) -> List[Motion]:
+    """Reads several files; where two have the same name, all are called by their paths."""
+    motions = [read_motion(path) for path in paths]
+    if len({motion.name for motion in motions}) < len(motions):
+        motions = [replace(motion, name=os.fspath(path)) for motion, path in zip(motions, paths)]
+    return motions
+
+
+def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
+    """Reads an MPEG-4 .fap text file: (T,) times in seconds and (T, 13) FAPs.
+
+    A header ``2.1 NAME FPS FRAMES``, then two lines per frame: a mask of zeros and ones, one per FAP (a 69th entry,
+    which some programs write, is ignored), and the frame's number with the values of the FAPs whose mask is one. A FAP
+    that a frame does not set keeps its value, 0 to begin with.
+    """
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeError) as error:
+        raise DataError(path, None, f"cannot be read: {error}") from None
+    rows = [(line, text.split()) for line, text in enumerate(lines, 1) if text.strip()]
+    head = rows[0][1] if rows else []
+    try:
+        fps, count = float(head[-2]), int(head[-1])
+        version = float(head[0])
+    except (IndexError, ValueError):
+        raise DataError(path, 1, "the header is not 'VERSION NAME FPS FRAMES'") from None
+    if len(head) < 4 or not math.isfinite(version) or not 0 < fps <= 1000 or count < 1:
+        raise DataError(path, 1, "the header is not 'VERSION NAME FPS FRAMES' with 1 or more frames")
+    if len(rows) != 1 + 2 * count:
+        raise DataError(path, rows[-1][0], f"{count} frames need {2 * count} lines after the header, "
+                        f"there are {len(rows) - 1}")
+    frames = np.zeros((count, CHANNELS))
+    held = np.zeros(_MASK + 1)
+    for index in range(count):
+        (mask_line, mask), (line, values) = rows[1 + 2 * index], rows[2 + 2 * index]
+        if len(mask) not in (_MASK, _MASK + 1) or set(mask) - {"0", "1"}:
+            raise DataError(path, mask_line, f"expected a mask of {_MASK} zeros and ones")
+        chosen = [number for number, bit in enumerate(mask, 1) if bit == "1"]
+        try:
+            numbers = [int(value) for value in values]
+        except ValueError as error:
+            raise DataError(path, line, f"not a whole number: {error}") from None
+        if len(numbers) != 1 + len(chosen):
+            raise DataError(path, line, f"expected the frame's number and {len(chosen)} values, as the mask says, "
+                            f"found {len(numbers)}")
+        for number, value in zip(chosen, numbers[1:]):
+            if number <= _MASK:
+                held[number] = value
+        frames[index] = held[list(FAP_NUMBERS)]
+    return np.arange(count) / fps, frames
+
+
+def read_bands(path: Optional[PathLike]) -> List[Band]:
+    """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
+
+    Labels are those of speech or of laughter, whichever knows more of them. A label that it does not know is no error,
+    for nothing but its band's colour depends on it: it stays as it is, of kind "other".
+    """
+    if path is None:
+        return []
+    segments = [segment for segment in read_timings(path) if segment.end > segment.start]
+    labels = [segment.label for segment in segments if segment.label]
+    known = [sum(phones.resolve(label) is not None for label in labels) for phones in (SPEECH, LAUGHTER)]
+    phones = LAUGHTER if known[1] > known[0] else SPEECH
+    return [Band(segment.start, segment.end, *_named(segment.label, phones)) for segment in segments]
+
+
+def laughs(bands: Sequence[Band]) -> bool:
+    """Whether the bands are those of a laugh, by the labels that they bear."""
+    return any(band.label in LAUGHTER.phonemes and band.label not in SPEECH.phonemes for band in bands)
+
+
+def kind_of(label: str, phones: PhoneSet) -> str:
+    """Which of `KINDS` a phoneme of `phones` is."""
+    if label == phones.silence:
+        return "silence"
+    if phones.kind == "speech":
+        if label in VOWELS.split():
+            return "vowel"
+        name = phones.classes[phones.phoneme_class[phones.phonemes.index(label)]]
+        return {"bilabial": "closed", "labiodental": "labiodental"}.get(name, "other")
+    return "vowel" if phones.boundary[phones.phonemes.index(label)] else "other"
+
+
+def _named(label: str, phones: PhoneSet) -> Tuple[str, str]:
+    name = phones.resolve(label) if label else phones.silence
+    return (label, "other") if name is None else (name, kind_of(name, phones))
