@@ -79,7 +79,8 @@ def _body(path: Path) -> str:
 
 
 def _banner(source: Source, name: str, what: str) -> str:
-    text = f"{name} - {what}; Labial {source.version}.\n\nWritten by packaging/pack.py from the files named below; do not edit.\n\n"
+    text = f"{name} - {what}; Labial {source.version}.\n\n"
+    text += "Written by packaging/pack.py from the files named below; do not edit.\n\n"
     text += source.license.read_text(encoding="utf-8").strip()
     return "/*\n" + "".join(f" * {line}".rstrip() + "\n" for line in text.split("\n")) + " */\n"
 

@@ -29,8 +29,8 @@ def properties(source: Source) -> str:
         "author": "Labial contributors",
         "maintainer": "Labial contributors",
         "sentence": "Moves lips: phonemes with their durations in, lip and jaw parameters per frame out.",
-        "paragraph": "13 MPEG-4 facial animation parameters per frame for robots, dolls and avatars, for speech and for "
-        "laughter, in integers and fixed memory. Needs about 60 kB of flash and 8 kB of RAM.",
+        "paragraph": "13 MPEG-4 facial animation parameters per frame for robots, dolls and avatars, for speech and "
+        "for laughter, in integers and fixed memory.",
         "category": "Device Control",
         "architectures": ",".join(ARCHITECTURES),
         "includes": "Labial.h," + ",".join(f"{model.name}.h" for model in source.models),

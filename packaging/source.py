@@ -80,7 +80,8 @@ class Source:
         self.public = sorted((ROOT / "include" / "labial").glob("*.h"))
         self.private = sorted((ROOT / "lib").glob("*.h"))
         self.sources = sorted((ROOT / "lib").glob("*.c"))
-        headers = [path for path in sorted(folder.glob("*.h")) if "extern const labial_model_t" in path.read_text("utf-8")]
+        mark = "extern const labial_model_t"
+        headers = [path for path in sorted(folder.glob("*.h")) if mark in path.read_text(encoding="utf-8")]
         if not headers:
             raise PackError(f"{folder}: holds no exported model")
         self.models = [Model(path) for path in headers]

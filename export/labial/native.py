@@ -60,7 +60,7 @@ int main(void)
 
 
 def library_root(given: Optional[str] = None) -> Path:
-    """The folder that holds ``include/labial`` and ``lib``: `given`, the source tree or what the package brings along."""
+    """The folder that holds ``include/labial`` and ``lib``: `given`, the source tree or what this package brings."""
     package = Path(__file__).resolve().parent
     roots = [Path(given)] if given else [package.parents[1], package / "library"]
     for root in roots:
