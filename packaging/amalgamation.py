@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 from typing import Dict, Iterable, Iterator, List, Set
 
-from source import PackError, Source
+from source import PackError, Source, write_text
 
 #: Comments, literals, numbers, identifiers and, one by one, all other characters.
 _TOKEN = re.compile(
@@ -160,4 +160,4 @@ def write(source: Source, folder: Path) -> None:
         files.update((path.name, model_text(path)) for path in model.files)
     files["LICENSE"] = source.license.read_text(encoding="utf-8")
     for name, text in files.items():
-        (folder / name).write_text(text, encoding="utf-8", newline="\n")
+        write_text(folder / name, text)

@@ -12,7 +12,7 @@ import zipfile
 from pathlib import Path
 from typing import List
 
-from source import ROOT, PackError, Source
+from source import ROOT, PackError, Source, write_text
 
 #: Cores that keep constant tables in flash and have the RAM. Not avr, megaavr and esp8266: they copy them into RAM.
 ARCHITECTURES = (
@@ -82,7 +82,7 @@ def write(source: Source, folder: Path) -> None:
         ("library.properties", properties(source)),
         ("keywords.txt", keywords(source)),
     ):
-        (folder / name).write_text(text, encoding="utf-8", newline="\n")
+        write_text(folder / name, text)
     for sketch in sorted((ROOT / "examples" / "arduino").glob("*/*.ino")):
         (folder / "examples" / sketch.parent.name).mkdir(parents=True)
         shutil.copyfile(sketch, folder / "examples" / sketch.parent.name / sketch.name)

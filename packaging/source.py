@@ -23,6 +23,11 @@ class PackError(Exception):
     """Something given cannot be packed; the text says what and where."""
 
 
+def write_text(path: Path, text: str) -> None:
+    """Writes a file with line feeds, whatever the system's own line ends are."""
+    path.write_bytes(text.encode("utf-8"))
+
+
 def _part(text: str, part: str) -> re.Match:
     found = re.search(rf"^#define LABIAL_VERSION_{part} (\d+)$", text, re.MULTILINE)
     if not found:
@@ -41,7 +46,7 @@ def _set(path: Path, pattern: str, value: str) -> None:
     found = re.search(pattern, text, re.MULTILINE)
     if not found:
         raise PackError(f"{path}: holds no version")
-    path.write_text(text[: found.start(1)] + value + text[found.end(1) :], encoding="utf-8", newline="\n")
+    write_text(path, text[: found.start(1)] + value + text[found.end(1) :])
 
 
 def set_version(number: str) -> List[Path]:

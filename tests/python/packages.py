@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import Dict, List, Optional
 
@@ -71,8 +73,14 @@ def pack(*arguments: object, root: Path = SOURCE, status: int = 0) -> str:
                status=status)
 
 
-def expected_frames(folder: Path) -> str:
+@functools.lru_cache(maxsize=None)
+def expected_frames() -> str:
     """What PROGRAM prints when it is compiled with the source tree's files, without any package."""
+    with tempfile.TemporaryDirectory(prefix="labial-") as folder:
+        return _frames(Path(folder))
+
+
+def _frames(folder: Path) -> str:
     (folder / "expected.c").write_text(PROGRAM)
     sources = [*sorted((SOURCE / "lib").glob("*.c")), *sorted((SOURCE / "lib" / "models").glob("speech_en*.c"))]
     run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}", folder / "expected.c", *sources,

@@ -159,7 +159,7 @@ def test_good_page_passes(tmp_path: Path, objects: List[Path]) -> None:
     ("```c\nint labial_no(void);\nint main(void) { return labial_no(); }\n```\n", "labial_no"),
     ("```cpp\n// A.ino\nvoid setup() { Serial.prin(1); }\n```\n", "prin"),
     ("```python\nassert False\n```\n", "AssertionError"),
-    ("```python\n# a.py\nx = (\n```\n", "never closed"),
+    ("```python\n# a.py\nx = = 1\n```\n", "(a.py, line 2)"),
     ("```cmake\nproject(x)\n```\n", "CMakeLists.txt"),
     ("```cmake\n# CMakeLists.txt\nproject(x)\n```\n", "no sh block"),
     ("```toml\nx = \n```\n", "page.md:2"),

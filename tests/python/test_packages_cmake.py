@@ -49,7 +49,7 @@ def build(folder: Path, lists: str, *options: str) -> str:
 def test_find_package(installed: Path, tmp_path: Path) -> None:
     """The target brings headers, the library below the model and the limit that the library was built with."""
     find = f"find_package(labial {labial.__version__} REQUIRED COMPONENTS speech_en laughter_synthetic)\n"
-    assert build(tmp_path, HEAD + find + LINK, f"-DCMAKE_PREFIX_PATH={installed}") == expected_frames(tmp_path)
+    assert build(tmp_path, HEAD + find + LINK, f"-DCMAKE_PREFIX_PATH={installed}") == expected_frames()
     (tmp_path / "main.c").write_text('#include "speech_en.h"\nint main(void) { return LABIAL_READY != 33; }\n')
     run(CMAKE, "--build", tmp_path / "build")
     run(tmp_path / "build" / "program")
@@ -74,7 +74,7 @@ def test_pkg_config(installed: Path, tmp_path: Path) -> None:
     assert "-DLABIAL_READY=33" in flags
     (tmp_path / "main.c").write_text(PROGRAM)
     run(CC, tmp_path / "main.c", *flags, "-o", tmp_path / "program")
-    assert run(tmp_path / "program") == expected_frames(tmp_path)
+    assert run(tmp_path / "program") == expected_frames()
     assert run("pkg-config", "--modversion", "labial", env=env).count(".") == 2
 
 
@@ -87,7 +87,7 @@ def test_inside_another_project(tmp_path: Path, way: str) -> None:
     (bare / "CMakeLists.txt").write_text(HEAD + "include(FetchContent)\nFetchContent_Declare(none SOURCE_DIR .)\n")
     run(CMAKE, "-S", bare, "-B", bare / "build")
     frames = build(tmp_path, lists.format(INSIDE[way]), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
-    assert frames == expected_frames(tmp_path)
+    assert frames == expected_frames()
 
     def cache(folder: Path) -> dict:
         lines = (folder / "build" / "CMakeCache.txt").read_text().splitlines()
