@@ -73,7 +73,7 @@ def pack(*arguments: object, root: Path = SOURCE, status: int = 0) -> str:
                status=status)
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def expected_frames() -> str:
     """What PROGRAM prints when it is compiled with the source tree's files, without any package."""
     with tempfile.TemporaryDirectory(prefix="labial-") as folder:
