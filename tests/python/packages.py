@@ -15,7 +15,7 @@ from typing import Dict, List, Optional
 SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
 CMAKE = os.environ.get("LABIAL_CMAKE") or shutil.which("cmake") or ""
 CC = os.environ.get("LABIAL_CC") or "cc"
-CXX = os.environ.get("LABIAL_CXX") or shutil.which("g++") or shutil.which("c++") or ""
+CXX = next(filter(None, map(shutil.which, (os.environ.get("LABIAL_CXX") or "g++", "g++", "clang++", "c++"))), "")
 
 #: Says a word with the bundled model and prints its frames' jaw; needs the library, the model and its names.
 PROGRAM = """\

@@ -143,7 +143,8 @@ class Runner:
         for name, arguments in (("labial", " -m labial"), ("python3", ""), ("python", "")):
             (wrappers / name).write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
             (wrappers / name).chmod(0o755)
-        path = os.pathsep.join([str(wrappers), os.environ.get("LABIAL_PROGRAMS", ""), os.environ.get("PATH", "")])
+        folders = [str(wrappers), os.environ.get("LABIAL_PROGRAMS", ""), os.environ.get("PATH", "")]
+        path = os.pathsep.join(folder for folder in folders if folder)
         return {**os.environ, "PATH": path, "LABIAL": str(SOURCE), "PYTHONPATH": str(SOURCE / "export"),
                 "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1", "HOME": str(self._folder)}
 
