@@ -60,11 +60,14 @@ int main(void)
 
 
 def library_root(given: Optional[str] = None) -> Path:
-    """The folder that holds ``include/labial`` and ``lib``: `given`, or the one that this package lies in."""
-    root = Path(given) if given else Path(__file__).resolve().parents[2]
-    if not (root / "include" / "labial" / "labial.h").is_file() or not (root / "lib" / "stream.c").is_file():
-        raise LabialError(f"{root}: not the Labial library, no include/labial/labial.h; name its folder by --library")
-    return root
+    """The folder that holds ``include/labial`` and ``lib``: `given`, the source tree or what this package brings."""
+    package = Path(__file__).resolve().parent
+    roots = [Path(given)] if given else [package.parents[1], package / "library"]
+    for root in roots:
+        if (root / "include" / "labial" / "labial.h").is_file() and (root / "lib" / "stream.c").is_file():
+            return root
+    where = " and ".join(str(root) for root in roots)
+    raise LabialError(f"{where}: not the Labial library, no include/labial/labial.h; name its folder by --library")
 
 
 def compiler() -> str:

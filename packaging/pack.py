@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Lays Labial out for other build systems, with nothing but Python 3.9.
+
+    pack.py amalgamation -o DIR    labial.h, labial.c and the models, to drop into any project
+    pack.py arduino -o DIR         a library for the Arduino IDE; --zip for "Add .ZIP Library"
+    pack.py platformio -o DIR      what a PlatformIO project needs in its lib/ folder
+    pack.py esp-idf -o DIR         what an ESP-IDF project needs in its components/ folder
+    pack.py zephyr -o DIR          a Zephyr module
+    pack.py version [X.Y.Z]        prints the version, or sets it in every file that holds it
+
+PlatformIO, ESP-IDF and Zephyr can also use the source tree as it is. ``--models FOLDER`` takes models that ``labial
+export`` wrote instead of the bundled ones.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import List, Optional
+
+import amalgamation
+import arduino
+import trees
+from source import PackError, Source, set_version, version
+
+
+def _empty_folder(path: Path) -> Path:
+    """`path` as a folder to write to; whatever lies there is the user's and stays."""
+    if path.exists() and (not path.is_dir() or any(path.iterdir())):
+        raise PackError(f"{path}: exists and is not an empty folder")
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def _pack(options: argparse.Namespace) -> None:
+    source = Source(Path(options.models) if options.models else None)
+    folder = _empty_folder(Path(options.output))
+    if options.kind == "amalgamation":
+        amalgamation.write(source, folder)
+    elif options.kind == "arduino":
+        arduino.write(source, folder)
+        if options.zip:
+            print(arduino.archive(source, folder))
+    else:
+        trees.write(source, folder, options.kind)
+    print(folder)
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
+    parser = argparse.ArgumentParser(prog="pack.py", description="Lays Labial out for other build systems.")
+    kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND")
+    for kind, text in (
+        ("amalgamation", "two files and the models"),
+        ("arduino", "library for the Arduino IDE"),
+        ("platformio", "folder for lib/ of a PlatformIO project"),
+        ("esp-idf", "folder for components/ of an ESP-IDF project"),
+        ("zephyr", "Zephyr module"),
+    ):
+        command = kinds.add_parser(kind, help=text)
+        command.add_argument("-o", "--output", required=True, metavar="DIR", help="new or empty folder")
+        command.add_argument("--models", metavar="FOLDER", help="exported models instead of the bundled ones")
+        if kind == "arduino":
+            command.add_argument("--zip", action="store_true", help="also write DIR.zip")
+    command = kinds.add_parser("version", help="print or set the version")
+    command.add_argument("number", nargs="?", metavar="X.Y.Z")
+    options = parser.parse_args(arguments)
+    try:
+        if options.kind != "version":
+            _pack(options)
+        elif options.number:
+            for path in set_version(options.number):
+                print(path)
+        else:
+            print(version())
+    except PackError as error:
+        print(f"pack.py: {error}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"pack.py: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,92 @@
+"""The source tree as packages see it: its version, its files and the models."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Dict, List, Optional
+
+#: The folder of the source tree.
+ROOT = Path(__file__).resolve().parents[1]
+
+#: Where the version is written, as one pattern per file whose group is the number; the public header holds the parts.
+VERSIONS: Dict[str, str] = {
+    "export/labial/__init__.py": r'^__version__ = "([^"]*)"$',
+    "idf_component.yml": r'^version: "([^"]*)"$',
+    "library.json": r'^  "version": "([^"]*)",$',
+}
+_HEADER = "include/labial/labial.h"
+_PARTS = ("MAJOR", "MINOR", "PATCH")
+
+
+class PackError(Exception):
+    """Something given cannot be packed; the text says what and where."""
+
+
+def write_text(path: Path, text: str) -> None:
+    """Writes a file with line feeds, whatever the system's own line ends are."""
+    path.write_bytes(text.encode("utf-8"))
+
+
+def _part(text: str, part: str) -> re.Match:
+    found = re.search(rf"^#define LABIAL_VERSION_{part} (\d+)$", text, re.MULTILINE)
+    if not found:
+        raise PackError(f"{_HEADER}: does not define LABIAL_VERSION_{part}")
+    return found
+
+
+def version() -> str:
+    """The version that the public header holds, ``X.Y.Z``; every other file follows it."""
+    text = (ROOT / _HEADER).read_text(encoding="utf-8")
+    return ".".join(_part(text, part)[1] for part in _PARTS)
+
+
+def _set(path: Path, pattern: str, value: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    found = re.search(pattern, text, re.MULTILINE)
+    if not found:
+        raise PackError(f"{path}: holds no version")
+    write_text(path, text[: found.start(1)] + value + text[found.end(1) :])
+
+
+def set_version(number: str) -> List[Path]:
+    """Writes the version into every file that holds it and returns their paths."""
+    if not re.fullmatch(r"(0|[1-9]\d*)(\.(0|[1-9]\d*)){2}", number):
+        raise PackError(f"{number}: a version is three numbers, X.Y.Z")
+    for part, value in zip(_PARTS, number.split(".")):
+        _set(ROOT / _HEADER, rf"^#define LABIAL_VERSION_{part} (\d+)$", value)
+    for name, pattern in VERSIONS.items():
+        _set(ROOT / name, pattern, number)
+    return [ROOT / name for name in (_HEADER, *VERSIONS)]
+
+
+class Model:
+    """One model as ``labial export`` writes it: NAME.h, NAME.c and NAME_names.c."""
+
+    def __init__(self, header: Path) -> None:
+        self.name = header.stem
+        self.files = [header, header.with_suffix(".c"), header.with_name(f"{header.stem}_names.c")]
+        for path in self.files:
+            if not path.is_file():
+                raise PackError(f"{path}: no such file, beside {header.name}; export the model again")
+
+
+class Source:
+    """The files of the library, in a fixed order, and the models to go with them.
+
+    Args:
+        models: folder of exported models; the bundled ones without it.
+    """
+
+    def __init__(self, models: Optional[Path] = None) -> None:
+        folder = models if models else ROOT / "lib" / "models"
+        self.version = version()
+        self.license = ROOT / "LICENSE"
+        self.public = sorted((ROOT / "include" / "labial").glob("*.h"))
+        self.private = sorted((ROOT / "lib").glob("*.h"))
+        self.sources = sorted((ROOT / "lib").glob("*.c"))
+        mark = "extern const labial_model_t"
+        headers = [path for path in sorted(folder.glob("*.h")) if mark in path.read_text(encoding="utf-8")]
+        if not headers:
+            raise PackError(f"{folder}: holds no exported model")
+        self.models = [Model(path) for path in headers]

@@ -1,0 +1,90 @@
+"""What the tests of the packages share: commands run on the source tree, a small program, the house's warnings."""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Dict, List, Optional
+
+SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
+CMAKE = os.environ.get("LABIAL_CMAKE") or shutil.which("cmake") or ""
+CC = os.environ.get("LABIAL_CC") or "cc"
+CXX = next(filter(None, map(shutil.which, (os.environ.get("LABIAL_CXX") or "g++", "g++", "clang++", "c++"))), "")
+
+#: Says a word with the bundled model and prints its frames' jaw; needs the library, the model and its names.
+PROGRAM = """\
+#include <stdio.h>
+#include "speech_en.h"
+
+static labial_t stream;
+static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)user;
+    printf("%u %d\\n", (unsigned)frame, faps[0]);
+}
+
+int main(void)
+{
+    const int phoneme = labial_find(&speech_en_names, "AA", 2);
+    labial_init(&stream, &speech_en, workspace, sizeof workspace, on_frame, NULL);
+    labial_push(&stream, SPEECH_EN_M, 100);
+    labial_push(&stream, (unsigned)phoneme, 300);
+    labial_end(&stream);
+    while (labial_tick(&stream) != LABIAL_DONE)
+        continue;
+    return 0;
+}
+"""
+
+
+def warnings(language: str) -> List[str]:
+    """The compiler options of cmake/LabialTarget.cmake for "c" or "c++", as errors."""
+    text = (SOURCE / "cmake" / "LabialTarget.cmake").read_text(encoding="utf-8")
+    names = ["LABIAL_WARNINGS"] + (["LABIAL_C_WARNINGS"] if language == "c" else [])
+    found: List[str] = []
+    for name in names:
+        match = re.search(rf"^set\({name}\s+([^)]*)\)", text, re.MULTILINE)
+        assert match, f"{name} is not in LabialTarget.cmake"
+        found += match[1].split()
+    assert "-Wconversion" in found
+    return [*found, "-Werror"]
+
+
+def run(*command: object, cwd: Optional[Path] = None, env: Optional[Dict[str, str]] = None, status: int = 0,
+        text: str = "") -> str:
+    """Runs a command that must end with `status`; its standard output."""
+    done = subprocess.run([str(part) for part in command], cwd=cwd, capture_output=True, text=True, input=text,
+                          timeout=300, check=False, env={**os.environ, **(env or {})})
+    assert done.returncode == status, f"{command}: {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout if status == 0 else done.stdout + done.stderr
+
+
+def pack(*arguments: object, root: Path = SOURCE, status: int = 0) -> str:
+    """Runs packaging/pack.py of the tree `root`."""
+    return run(sys.executable, root / "packaging" / "pack.py", *arguments, env={"PYTHONDONTWRITEBYTECODE": "1"},
+               status=status)
+
+
+@functools.cache
+def expected_frames() -> str:
+    """What PROGRAM prints when it is compiled with the source tree's files, without any package."""
+    with tempfile.TemporaryDirectory(prefix="labial-") as folder:
+        return _frames(Path(folder))
+
+
+def _frames(folder: Path) -> str:
+    (folder / "expected.c").write_text(PROGRAM)
+    sources = [*sorted((SOURCE / "lib").glob("*.c")), *sorted((SOURCE / "lib" / "models").glob("speech_en*.c"))]
+    run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}", folder / "expected.c", *sources,
+        "-o", folder / "expected")
+    frames = run(folder / "expected")
+    assert len(frames.splitlines()) == 20  # 400 ms
+    return frames

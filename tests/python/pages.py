@@ -1,0 +1,256 @@
+"""Runs what a page of the documentation tells its reader to do.
+
+A page is Markdown. Its code lies in fences with one of these labels; the blocks of a page are taken in order, in one
+folder that is the page's own:
+
+- ``sh``: run by ``sh -eu``, with labial, labial-say and the other programs on PATH and $LABIAL naming the source tree;
+- ``c``, ``cpp``: compiled with warnings as errors; what has a main() is linked with the library, the bundled models and
+  the page's other files of the same language; .ino files get the stub of Arduino.h;
+- ``python``: run, or only compiled when it has a name;
+- ``cmake``: a CMakeLists.txt, which an ``sh`` block below it hands to cmake;
+- ``toml``, ``ini``, ``json``, ``yaml``: parsed;
+- ``text``: what programs print, drawings; no commands.
+
+A block whose first line is a comment that begins with a file's name is saved under that name before anything else;
+``sh`` blocks excepted. Fences without a label and indented code are errors of the page, so that nothing escapes.
+"""
+
+from __future__ import annotations
+
+import configparser
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, List, Mapping, Optional, Sequence
+
+from packages import CC, CXX, SOURCE
+
+LABELS = ("sh", "c", "cpp", "python", "cmake", "toml", "ini", "json", "yaml", "text")
+
+#: Tools that a page may use and a machine may lack, and what installs each.
+TOOLS: Dict[str, str] = {
+    "arm-none-eabi-gcc": "the Debian package gcc-arm-none-eabi",
+    "arm-none-eabi-g++": "the Debian package libstdc++-arm-none-eabi-newlib",
+    "cmake": "the Debian package cmake",
+    "flite": "the Debian package flite",
+    "g++": "the Debian package g++",
+    "labial-bench": "a build with LABIAL_BUILD_EXAMPLES",
+    "labial-demo": "a build with LABIAL_BUILD_EXAMPLES",
+    "labial-say": "a build with LABIAL_BUILD_EXAMPLES",
+    "pkg-config": "the Debian package pkgconf",
+    "qemu-system-arm": "the Debian package qemu-system-arm",
+    "valgrind": "the Debian package valgrind",
+}
+
+#: Commands that are never run: they fetch toolchains or frameworks when they are first used, or need a board.
+EXTERNAL = ("arduino-cli", "idf.py", "pio", "west")
+
+_FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,})\s*(.*)$")
+_NAME = re.compile(r"^(?:#|//|/\*|;)\s*((?:[\w.-]+/)*[\w-]+\.[A-Za-z]{1,6})(?=[\s,:]|$)")
+_MAIN = re.compile(r"^int main\(", re.MULTILINE)
+_COMMAND = re.compile(r"^\s*(?:\$ |sudo |(?:labial(?:-\w+)?|cmake|ctest|pip|pio|west|idf\.py|arduino-cli|cc|gcc|git) )")
+
+
+class PageError(Exception):
+    """A page that breaks the conventions or tells something that does not work; the text names file and line."""
+
+
+class MissingTool(Exception):
+    """A page needs something that this machine does not have."""
+
+
+@dataclass
+class Block:
+    """One fenced block: its label, its first line's number in the page and its text; `name` when it names a file."""
+
+    label: str
+    line: int
+    text: str
+    name: Optional[str] = None
+
+
+def parse(page: Path) -> List[Block]:
+    """The fenced blocks of a page; raises PageError for code that no test would see."""
+    blocks: List[Block] = []
+    opened: Optional[re.Match] = None
+    lines: List[str] = []
+    blank = True
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        fence = _FENCE.match(line)
+        if opened is not None:
+            if fence and fence[2].startswith(opened[2]) and not fence[3]:
+                blocks.append(_block(page, opened[3].strip(), number - len(lines), lines))
+                opened = None
+                blank = True
+            else:
+                indent = len(line) - len(line.lstrip(" "))
+                lines.append(line[min(len(opened[1]), indent) :])
+        elif fence:
+            opened, lines = fence, []
+        else:
+            if blank and re.match(r"(?: {4}|\t)\s*\S", line):
+                raise PageError(f"{page}:{number}: an indented code block; fence it with a label")
+            blank = not line.strip()
+    if opened is not None:
+        raise PageError(f"{page}: a fence is never closed")
+    return blocks
+
+
+def _block(page: Path, label: str, line: int, lines: Sequence[str]) -> Block:
+    if label not in LABELS:
+        raise PageError(f'{page}:{line - 1}: a fence with the label "{label}"; known are {", ".join(LABELS)}')
+    block = Block(label, line, "\n".join(lines) + "\n")
+    match = _NAME.match(lines[0]) if lines and label not in ("sh", "text") else None
+    if match:
+        block.name = match[1]
+        if ".." in Path(match[1]).parts:
+            raise PageError(f"{page}:{line}: {match[1]} lies outside of the page's folder")
+    for offset, text in enumerate(lines):
+        if label == "text" and _COMMAND.match(text):
+            raise PageError(f"{page}:{line + offset}: a command in a text block, where nobody would run it")
+    return block
+
+
+def command(line: str) -> str:
+    """A line of a shell script without the comment that ends it."""
+    return re.sub(r"\s+#.*$", "", line)
+
+
+class Runner:
+    """Does what the blocks of one page say.
+
+    Args:
+        page: the page.
+        folder: its folder, which exists.
+        objects: compiled library and bundled models, to link programs with.
+        not_run: commands, whole lines of ``sh`` blocks, that are passed over.
+    """
+
+    def __init__(self, page: Path, folder: Path, objects: Sequence[Path], not_run: Sequence[str] = ()) -> None:
+        self._page = page
+        self._folder = folder
+        self._objects = [str(path) for path in objects]
+        self._not_run = set(not_run)
+        self._env = self._environment(folder.with_name(folder.name + "-bin"))
+
+    def _environment(self, wrappers: Path) -> Mapping[str, str]:
+        wrappers.mkdir()
+        for name, arguments in (("labial", " -m labial"), ("python3", ""), ("python", "")):
+            (wrappers / name).write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
+            (wrappers / name).chmod(0o755)
+        folders = [str(wrappers), os.environ.get("LABIAL_PROGRAMS", ""), os.environ.get("PATH", "")]
+        path = os.pathsep.join(folder for folder in folders if folder)
+        return {**os.environ, "PATH": path, "LABIAL": str(SOURCE), "PYTHONPATH": str(SOURCE / "export"),
+                "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1", "HOME": str(self._folder)}
+
+    def run(self) -> int:
+        """Runs every block; the number of commands, programs and files that were checked."""
+        blocks = parse(self._page)
+        for i, block in enumerate(blocks):
+            if block.name:
+                path = self._folder / block.name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(block.text, encoding="utf-8")
+            try:
+                getattr(self, f"_{block.label}")(block, blocks[i + 1 :])
+            except PageError as error:
+                raise PageError(f"{self._page}:{block.line}: {error}") from None
+        return sum(block.label != "text" for block in blocks)
+
+    def _call(self, command: Sequence[str], text: Optional[str] = None) -> None:
+        try:
+            done = subprocess.run(list(command), cwd=self._folder, env=dict(self._env), timeout=300, check=False,
+                                  input=text, stdin=None if text else subprocess.DEVNULL, capture_output=True,
+                                  encoding="utf-8", errors="replace")
+        except subprocess.TimeoutExpired:
+            raise PageError("not done after 300 s") from None
+        if done.returncode:
+            raise PageError(f"status {done.returncode}\n{text or ' '.join(command)}\n{done.stdout}{done.stderr}")
+
+    def _sh(self, block: Block, later: Sequence[Block]) -> None:
+        lines = [":" if self._is_passed_over(line) else line for line in block.text.splitlines()]
+        script = "\n".join(lines) + "\n"
+        for tool in re.findall(r"[\w./+-]+", script):
+            if tool in TOOLS and not shutil.which(tool, path=self._env["PATH"]):
+                raise MissingTool(f"{self._page.name}:{block.line} needs {tool}: {TOOLS[tool]}")
+        self._call(["sh", "-eu", "-c", script])
+
+    def _is_passed_over(self, line: str) -> bool:
+        words = line.split()
+        return command(line) in self._not_run or bool(words) and words[0] in EXTERNAL
+
+    def _compile(self, block: Block, compiler: List[str], suffix: str) -> None:
+        name = block.name or f"block-{block.line}{suffix}"
+        path = self._folder / name
+        path.write_text(block.text, encoding="utf-8")
+        options = ["-Wall", "-Wextra", "-Werror", "-I.", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}"]
+        target = str(path.with_name(path.name + ".out"))
+        self._call([*compiler, *options, "-c", name, "-o", target])
+        if _MAIN.search(block.text):
+            others = [other for other in sorted(self._folder.glob(f"*{suffix}"))
+                      if other != path and not _MAIN.search(other.read_text(encoding="utf-8"))]
+            tail = ["-x", "none"] if "-x" in compiler else []
+            self._call([*compiler, *options, name, *(str(other) for other in others), *tail, *self._objects, "-lm",
+                        "-o", target])
+        if not block.name:
+            path.unlink()
+
+    def _c(self, block: Block, later: Sequence[Block]) -> None:
+        if block.name and block.name.endswith(".h"):
+            return  # compiled where it is included
+        self._compile(block, [CC, "-std=c99"], ".c")
+
+    def _cpp(self, block: Block, later: Sequence[Block]) -> None:
+        if not CXX:
+            raise MissingTool(f"{self._page.name}:{block.line} needs a C++ compiler: {TOOLS['g++']}")
+        stub = SOURCE / "tests" / "packages" / "arduino_stub"
+        sketch = [f"-I{stub}", "-include", "Arduino.h"] if block.name and block.name.endswith(".ino") else []
+        self._compile(block, [CXX, "-std=gnu++11", *sketch, "-x", "c++"], ".cpp")
+
+    def _python(self, block: Block, later: Sequence[Block]) -> None:
+        try:
+            compile(block.text, block.name or "block", "exec")
+        except SyntaxError as error:
+            raise PageError(str(error)) from None
+        if not block.name:
+            self._call([sys.executable, "-"], block.text)
+
+    def _cmake(self, block: Block, later: Sequence[Block]) -> None:
+        if not block.name or Path(block.name).name != "CMakeLists.txt":
+            raise PageError('a cmake block begins with "# CMakeLists.txt" or "# FOLDER/CMakeLists.txt"')
+        if not any(other.label == "sh" and re.search(r"\bcmake\b", other.text) for other in later):
+            raise PageError("no sh block below it runs cmake")
+
+    def _toml(self, block: Block, later: Sequence[Block]) -> None:
+        try:
+            import tomllib
+        except ModuleNotFoundError:  # Python before 3.11
+            import tomli as tomllib
+        self._parsed(tomllib.loads, block.text, tomllib.TOMLDecodeError)
+
+    def _ini(self, block: Block, later: Sequence[Block]) -> None:
+        text = block.text if re.search(r"^\[", block.text, re.MULTILINE) else "[all]\n" + block.text
+        self._parsed(configparser.ConfigParser(interpolation=None).read_string, text, configparser.Error)
+
+    def _json(self, block: Block, later: Sequence[Block]) -> None:
+        self._parsed(json.loads, block.text, ValueError)
+
+    def _yaml(self, block: Block, later: Sequence[Block]) -> None:
+        import yaml
+
+        self._parsed(yaml.safe_load, block.text, yaml.YAMLError)
+
+    def _text(self, block: Block, later: Sequence[Block]) -> None:
+        pass
+
+    @staticmethod
+    def _parsed(parse_text: object, text: str, error: type) -> None:
+        try:
+            parse_text(text)  # type: ignore[operator]
+        except error as what:
+            raise PageError(str(what)) from None

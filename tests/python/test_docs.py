@@ -1,0 +1,189 @@
+"""README.md and every page of docs/ do what they say; pages.py has the conventions that make them checkable."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Dict, List
+
+import numpy as np
+import pytest
+
+from labial.faps import FAP_COLUMNS
+from packages import CC, SOURCE, run
+from pages import EXTERNAL, Block, MissingTool, PageError, Runner, command, parse
+
+PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
+
+#: Lines of pages that are not run, and why.
+NOT_RUN: Dict[str, Dict[str, str]] = {
+    "README.md": {
+        "cmake --workflow --preset test": "this test is a part of it",
+        "pip install './export[train,evaluate]'": "fetches; test_packages_cmake.py installs the exporter without",
+        "labial evaluate CORPUS --splits 20 -o report/": "takes too long; test_evaluate.py runs it on less",
+    },
+}
+
+
+@pytest.fixture(scope="session")
+def objects(tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
+    """The library and the bundled models, compiled."""
+    folder = tmp_path_factory.mktemp("objects")
+    sources = [*(SOURCE / "lib").glob("*.c"), *(SOURCE / "lib" / "models").glob("*.c")]
+    run(CC, "-std=c99", "-O1", f"-I{SOURCE / 'include'}", "-c", *sources, cwd=folder)
+    return sorted(folder.glob("*.o"))
+
+
+def prepare(page: Path, folder: Path) -> None:
+    """What a page expects to find: README.md the source tree and what its reader brings, other pages nothing."""
+    if page.name != "README.md":
+        folder.mkdir()
+        return
+    unwanted = shutil.ignore_patterns("build", ".git", "__pycache__", "*.egg-info", ".venv")
+    shutil.copytree(SOURCE, folder, ignore=unwanted)
+    write_corpus(folder / "CORPUS")
+    shutil.copyfile(folder / "CORPUS" / "a0.lab", folder / "phones.lab")
+
+
+def write_corpus(folder: Path) -> None:
+    """A small speech corpus in Labial's own format: every phoneme has a pose, joined by easing."""
+    rng = np.random.default_rng(1)
+    labels = ["SIL", "M", "AA", "B", "IY", "F", "EH", "S", "UW"]
+    poses = rng.normal(0.0, 120.0, (len(labels), len(FAP_COLUMNS)))
+    folder.mkdir()
+    for utterance in range(12):
+        phones = [0, *rng.integers(1, len(labels), 30), 0]
+        frames = rng.integers(3, 12, len(phones))
+        ends = np.cumsum(frames) / 50
+        rows = [f"{e - f / 50:.2f} {e:.2f} {labels[p]}" for p, f, e in zip(phones, frames, ends)]
+        (folder / f"a{utterance}.lab").write_text("\n".join(rows) + "\n")
+        motion = np.repeat(poses[phones], frames, axis=0)
+        window = np.hanning(9)[1:-1] / np.hanning(9).sum()
+        motion = np.stack([np.convolve(np.pad(x, 3, "edge"), window, "valid") for x in motion.T], axis=1)
+        motion += rng.normal(0.0, 4.0, motion.shape)
+        lines = [",".join(("time", *FAP_COLUMNS))]
+        lines += [",".join([f"{t / 50:.2f}", *(f"{x:.1f}" for x in row)]) for t, row in enumerate(motion)]
+        (folder / f"a{utterance}.csv").write_text("\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_page_works(page: Path, tmp_path: Path, objects: List[Path]) -> None:
+    """A command with a wrong option, a program that does not compile, a step that was forgotten."""
+    folder = tmp_path / "page"
+    prepare(page, folder)
+    try:
+        checked = Runner(page, folder, objects, list(NOT_RUN.get(page.name, {}))).run()
+    except MissingTool as missing:
+        pytest.skip(str(missing))
+    except PageError as error:
+        pytest.fail(str(error), pytrace=False)
+    if page.name == "README.md":
+        assert checked >= 5
+
+
+def test_passed_over_lines_are_there() -> None:
+    """What is not run is on the page as it stands in the list."""
+    for name, lines in NOT_RUN.items():
+        text = (SOURCE / name).read_text(encoding="utf-8").splitlines()
+        assert set(lines) <= {command(line) for line in text}, name
+
+
+# ---- The checks themselves -----------------------------------------------------------------------------------------
+
+
+def check(tmp_path: Path, text: str, objects: List[Path]) -> int:
+    page = tmp_path / "page.md"
+    page.write_text(text)
+    (tmp_path / "page").mkdir()
+    return Runner(page, tmp_path / "page", objects).run()
+
+
+GOOD = """\
+Text.
+
+```c
+/* shape.c - part of main.c's program */
+int shape(void);
+int shape(void) { return 3; }
+```
+
+```c
+/* main.c */
+#include "labial/labial.h"
+int shape(void);
+int main(void) { return labial_result_text(shape()) == 0; }
+```
+
+- A list:
+  ```sh
+  test -f main.c && test -f shape.c && test -d "$LABIAL/lib"
+  labial --version > version.txt
+  ```
+
+```python
+assert open("version.txt").read().startswith("labial ")
+open("done", "w").close()
+```
+
+```sh
+test -f done
+pio run
+```
+
+```toml
+# a/face.toml
+x = 1
+```
+
+```ini
+CONFIG_LABIAL=y
+```
+"""
+
+
+def test_good_page_passes(tmp_path: Path, objects: List[Path]) -> None:
+    assert check(tmp_path, GOOD, objects) == 7
+    assert (tmp_path / "page" / "a" / "face.toml").read_text().startswith("# a/face.toml")
+    assert "pio" in EXTERNAL
+
+
+@pytest.mark.parametrize(("text", "complaint"), [
+    ("```\nx\n```\n", "page.md:1"),
+    ("```bash\nx\n```\n", 'label "bash"'),
+    ("Text:\n\n    labial train x\n", "page.md:3: an indented code block"),
+    ("```sh\ntrue\n", "never closed"),
+    ("```text\nlabial train x\n```\n", "page.md:2: a command in a text block"),
+    ("\n```sh\ntrue\nfalse\ntrue\n```\n", "page.md:3: status 1"),
+    ("```sh\necho $UNKNOWN\n```\n", "page.md:2: status 2"),
+    ("```c\nint x(void) { int y; return 0; }\n```\n", "unused variable"),
+    ("```c\nint labial_no(void);\nint main(void) { return labial_no(); }\n```\n", "labial_no"),
+    ("```cpp\n// A.ino\nvoid setup() { Serial.prin(1); }\n```\n", "prin"),
+    ("```python\nassert False\n```\n", "AssertionError"),
+    ("```python\n# a.py\nx = = 1\n```\n", "(a.py, line 2)"),
+    ("```cmake\nproject(x)\n```\n", "CMakeLists.txt"),
+    ("```cmake\n# CMakeLists.txt\nproject(x)\n```\n", "no sh block"),
+    ("```toml\nx = \n```\n", "page.md:2"),
+    ("```json\n{,}\n```\n", "page.md:2"),
+    ("```yaml\na: [\n```\n", "page.md:2"),
+    ("```ini\n[a\n```\n", "page.md:2"),
+    ("```toml\n# ../x.toml\n```\n", "outside"),
+])  # fmt: skip
+def test_bad_page_fails(tmp_path: Path, objects: List[Path], text: str, complaint: str) -> None:
+    with pytest.raises(PageError, match=".*") as raised:
+        check(tmp_path, text, objects)
+    assert complaint in str(raised.value)
+
+
+def test_missing_tool_is_told(tmp_path: Path, objects: List[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda *_, **__: None)
+    with pytest.raises(MissingTool, match="flite"):
+        check(tmp_path, "```sh\nflite --help | cat\n```\n", objects)
+
+
+def test_names_of_blocks(tmp_path: Path) -> None:
+    """Only a comment that begins with a file's name names the block."""
+    page = tmp_path / "page.md"
+    page.write_text("```c\n/* a/b-c.c, and more */\n```\n```toml\n# no a.name\n```\n```sh\n# x.sh\n```\n"
+                    "```c\n/* Uses main.c. */\n```\n```cpp\n// Talk.ino: speaks\n```\n")
+    names: List[Block] = parse(page)
+    assert [block.name for block in names] == ["a/b-c.c", None, None, None, "Talk.ino"]

@@ -1,0 +1,258 @@
+"""What packaging/pack.py lays out, and the manifests that ESP-IDF, PlatformIO and Zephyr read from the source tree."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import zipfile
+from pathlib import Path
+from typing import Dict, List
+
+import pytest
+
+import labial
+from packages import CC, CMAKE, CXX, PROGRAM, SOURCE, expected_frames, pack, run, warnings
+
+STUB = SOURCE / "tests" / "packages" / "arduino_stub"
+SKETCHES = sorted(path.parent.name for path in (SOURCE / "examples" / "arduino").glob("*/*.ino"))
+
+
+def bundled() -> List[str]:
+    """The models that the CMake build bundles."""
+    text = (SOURCE / "lib" / "models" / "CMakeLists.txt").read_text(encoding="utf-8")
+    match = re.search(r"set\(LABIAL_BUNDLED_MODELS ([^)]*)\)", text)
+    assert match
+    return match[1].split()
+
+
+def header_version(root: Path) -> str:
+    text = (root / "include" / "labial" / "labial.h").read_text(encoding="utf-8")
+    return ".".join(re.findall(r"^#define LABIAL_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)$", text, re.MULTILINE))
+
+
+def manifest_versions(root: Path) -> Dict[str, str]:
+    """The version in each file that holds one, each read in its own way."""
+    component = (root / "idf_component.yml").read_text(encoding="utf-8")
+    python = (root / "export" / "labial" / "__init__.py").read_text(encoding="utf-8")
+    return {
+        "library.json": json.loads((root / "library.json").read_text(encoding="utf-8"))["version"],
+        "idf_component.yml": re.findall(r'^version: "(.*)"$', component, re.MULTILINE)[0],
+        "__init__.py": re.findall(r'^__version__ = "(.*)"$', python, re.MULTILINE)[0],
+        "pack.py": pack("version", root=root).strip(),
+    }
+
+
+def test_every_manifest_has_the_headers_version() -> None:
+    """A release with a forgotten file would be announced under two numbers."""
+    version = header_version(SOURCE)
+    assert re.fullmatch(r"\d+\.\d+\.\d+", version)
+    assert set(manifest_versions(SOURCE).values()) == {version}
+    assert labial.__version__ == version
+    project = (SOURCE / "export" / "pyproject.toml").read_text(encoding="utf-8")
+    assert 'dynamic = ["version"]' in project and 'attr = "labial.__version__"' in project
+    assert re.search(rf"^## {re.escape(version)}\b", (SOURCE / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)
+
+
+def test_version_is_set_everywhere(tmp_path: Path) -> None:
+    for name in ("include", "packaging", "export/labial/__init__.py", "library.json", "idf_component.yml"):
+        target = tmp_path / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        (shutil.copytree if (SOURCE / name).is_dir() else shutil.copyfile)(SOURCE / name, target)
+    assert len(pack("version", "12.3.45", root=tmp_path).splitlines()) == 4
+    assert header_version(tmp_path) == "12.3.45"
+    assert set(manifest_versions(tmp_path).values()) == {"12.3.45"}
+    before = (tmp_path / "library.json").read_bytes()
+    assert "X.Y.Z" in pack("version", "1.2", root=tmp_path, status=1)
+    assert (tmp_path / "library.json").read_bytes() == before
+
+
+def test_build_lists_every_source() -> None:
+    """The packages take all of lib/; the CMake build names its files, and one forgotten there would be missing."""
+    text = (SOURCE / "lib" / "CMakeLists.txt").read_text(encoding="utf-8")
+    match = re.search(r"add_library\(labial STATIC\s+([^)]*)\)", text)
+    assert match
+    assert sorted(match[1].split()) == sorted(path.name for path in (SOURCE / "lib").glob("*.c"))
+    assert bundled() and sorted(bundled()) == sorted(path.stem for path in (SOURCE / "lib" / "models").glob("*.h"))
+
+
+# ---- Amalgamation --------------------------------------------------------------------------------------------------
+
+
+def test_amalgamation_is_clean_c_and_cxx(tmp_path: Path) -> None:
+    """No warning in either language, nothing global but what labial.h declares, nothing else of Labial needed."""
+    folder = tmp_path / "two"
+    pack("amalgamation", "-o", folder)
+    files = {path.name for path in folder.iterdir()}
+    assert {"labial.c", "labial.h", "LICENSE"} <= files
+    for path in folder.glob("*.[ch]"):
+        for name in re.findall(r'^#include "(.*)"', path.read_text(encoding="utf-8"), re.MULTILINE):
+            assert name in files and (path.name != "labial.c" or name == "labial.h")
+    (folder / "main.c").write_text(PROGRAM)
+    sources = ["labial.c", "speech_en.c", "speech_en_names.c", "main.c"]
+    run(CC, "-std=c99", "-O2", *warnings("c"), *sources, "-o", "program", cwd=folder)
+    assert run(folder / "program") == expected_frames()
+    if CXX:
+        run(CXX, "-std=c++11", "-O2", *warnings("c++"), "-x", "c++", *sources, "-o", "program", cwd=folder)
+        assert run(folder / "program") == expected_frames()
+    if shutil.which("nm"):
+        run(CC, "-std=c99", "-c", "labial.c", cwd=folder)
+        names = re.findall(r" [A-TV-Z] (\w+)$", run("nm", "labial.o", cwd=folder), re.MULTILINE)
+        header = (folder / "labial.h").read_text(encoding="utf-8")
+        assert len(names) > 10
+        assert [name for name in names if not re.search(rf"\b{name}\b", header)] == []
+
+
+def test_amalgamation_takes_exported_models(tmp_path: Path) -> None:
+    """A folder that ``labial export`` wrote to replaces the bundled models, an empty one is refused."""
+    own = tmp_path / "own"
+    own.mkdir()
+    for path in (SOURCE / "lib" / "models").glob("laughter_synthetic*"):
+        shutil.copyfile(path, own / path.name)
+    pack("amalgamation", "--models", own, "-o", tmp_path / "two")
+    assert not list((tmp_path / "two").glob("speech_en*")) and len(list((tmp_path / "two").glob("laughter*"))) == 3
+    assert "not an empty folder" in pack("amalgamation", "-o", tmp_path / "two", status=1)
+    (own / "laughter_synthetic_names.c").unlink()
+    assert "laughter_synthetic_names.c" in pack("arduino", "--models", own, "-o", tmp_path / "a", status=1)
+    (tmp_path / "none").mkdir()
+    assert "holds no exported model" in pack("zephyr", "--models", tmp_path / "none", "-o", tmp_path / "z", status=1)
+
+
+# ---- Arduino -------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def arduino(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("arduino") / "Labial"
+    pack("arduino", "--zip", "-o", folder)
+    return folder
+
+
+def arduino_files(arduino: Path, sketch: str) -> List[Path]:
+    return [arduino / "examples" / sketch / f"{sketch}.ino", *sorted((arduino / "src").rglob("*.c"))]
+
+
+def arduino_options(arduino: Path) -> List[str]:
+    return ["-std=gnu++11", "-Os", *warnings("c++"), f"-I{arduino / 'src'}", f"-I{STUB}", "-include", "Arduino.h"]
+
+
+def test_arduino_layout(arduino: Path) -> None:
+    """What the IDE reads, and that the archive holds the same files in one folder."""
+    lines = (arduino / "library.properties").read_text(encoding="utf-8").splitlines()
+    properties = dict(line.split("=", 1) for line in lines)
+    assert properties["version"] == header_version(SOURCE) and properties["name"] == "Labial"
+    for key in ("author", "maintainer", "sentence", "paragraph", "category", "architectures", "includes"):
+        assert properties[key]
+    for header in properties["includes"].split(","):
+        assert (arduino / "src" / header).is_file()
+    assert len(SKETCHES) >= 2 and sorted(path.name for path in (arduino / "examples").iterdir()) == SKETCHES
+    rows = [line.split("\t") for line in (arduino / "keywords.txt").read_text(encoding="utf-8").splitlines()]
+    assert {"labial_tick": "KEYWORD2", "labial_t": "KEYWORD1", "LABIAL_DONE": "LITERAL1"}.items() <= dict(rows).items()
+    with zipfile.ZipFile(arduino.with_name("Labial.zip")) as archive:
+        packed = {name: archive.read(name) for name in archive.namelist()}
+    assert packed == {f"Labial/{path.relative_to(arduino).as_posix()}": path.read_bytes()
+                      for path in arduino.rglob("*") if path.is_file()}
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_arduino_sketches_run(arduino: Path, tmp_path: Path) -> None:
+    """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
+    for sketch in SKETCHES:
+        run(CXX, *arduino_options(arduino), "-x", "c++", *arduino_files(arduino, sketch), STUB / "host.cpp",
+            "-o", tmp_path / sketch)
+    lines = run(tmp_path / "PlotFace", 5000).splitlines()
+    assert 150 < len(lines) < 250
+    jaws = [int(re.fullmatch(r"jaw:(-?\d+),upper_lip:(-?\d+),lower_lip:(-?\d+)", line)[1]) for line in lines]
+    assert max(jaws) - min(jaws) > 100
+    out = run(tmp_path / "JawServo", 9000, text="HH 70 AH 60 L 80 OW 250\nm 80 zz AA 300\n").splitlines()
+    angles = [int(line[6:]) for line in out if line.startswith("servo ")]
+    assert len(angles) == 1 + 23 + 19 and 80 <= min(angles) < 90 < max(angles) <= 110
+    assert [line for line in out if not line.startswith("servo ")] == ["no phoneme of this name is known"]
+
+
+@pytest.mark.skipif(not shutil.which("arm-none-eabi-g++"),
+                    reason="no arm-none-eabi-g++: install gcc-arm-none-eabi and libstdc++-arm-none-eabi-newlib")
+@pytest.mark.parametrize("sketch", SKETCHES)
+def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path, sketch: str) -> None:
+    """Every file as C++ for a Cortex-M0+, at the level of warnings that the library holds itself to."""
+    run("arm-none-eabi-g++", "-mcpu=cortex-m0plus", "-mthumb", "-fno-exceptions", *arduino_options(arduino), "-x",
+        "c++", "-c", *arduino_files(arduino, sketch), cwd=tmp_path)
+    assert len(list(tmp_path.glob("*.o"))) == len(arduino_files(arduino, sketch))
+
+
+# ---- PlatformIO, ESP-IDF, Zephyr: the tree as they see it ----------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=["source", "packed"])
+def tree(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> object:
+    """The source tree itself, and the parts of it that pack.py lays out."""
+
+    def of(kind: str) -> Path:
+        if request.param == "source":
+            return SOURCE
+        folder = tmp_path_factory.mktemp(kind) / "labial"
+        pack(kind, "-o", folder)
+        return folder
+
+    return of
+
+
+def test_platformio(tree: object, tmp_path: Path) -> None:
+    """What library.json names builds, in the way in which PlatformIO reads it: all sources below srcDir, the flags."""
+    folder = tree("platformio")
+    build = json.loads((folder / "library.json").read_text(encoding="utf-8"))["build"]
+    (tmp_path / "main.c").write_text(PROGRAM)
+    sources = sorted((folder / build["srcDir"]).rglob("*.c"))
+    run(CC, *build["flags"], "-I", build["includeDir"], *sources, tmp_path / "main.c", "-o", tmp_path / "program",
+        cwd=folder)
+    assert run(tmp_path / "program") == expected_frames()
+
+
+#: Stand-ins for the build functions of ESP-IDF and Zephyr: a static library with the given sources and folders.
+ESP_IDF = """\
+function(idf_component_register)
+  cmake_parse_arguments(x "" "" "SRCS;INCLUDE_DIRS" ${ARGN})
+  add_library(component STATIC ${x_SRCS})
+  target_include_directories(component PUBLIC ${x_INCLUDE_DIRS})
+endfunction()
+set(ESP_PLATFORM 1)
+"""
+ZEPHYR = """\
+set(CONFIG_LABIAL y)
+set(CONFIG_LABIAL_SPEECH_EN y)
+macro(zephyr_library_named name)
+  add_library(component STATIC)
+endmacro()
+macro(zephyr_library_sources)
+  target_sources(component PRIVATE ${ARGN})
+endmacro()
+macro(zephyr_include_directories)
+  target_include_directories(component PUBLIC ${ARGN})
+endmacro()
+"""
+
+
+@pytest.mark.skipif(not CMAKE, reason="no cmake")
+@pytest.mark.parametrize(("kind", "functions", "below"), [("esp-idf", ESP_IDF, ""), ("zephyr", ZEPHYR, "zephyr")])
+def test_component_builds(tree: object, tmp_path: Path, kind: str, functions: str, below: str) -> None:
+    """The component's CMakeLists.txt names files that exist and suffice; Zephyr takes the models asked for."""
+    (tmp_path / "CMakeLists.txt").write_text(
+        f"cmake_minimum_required(VERSION 3.20)\nproject(check C)\n{functions}"
+        f'add_subdirectory("{(tree(kind) / below).as_posix()}" component)\n'
+        "add_executable(program main.c)\ntarget_link_libraries(program component)\n"
+        "get_target_property(sources component SOURCES)\n"
+        'file(WRITE "${CMAKE_BINARY_DIR}/sources" "${sources}")\n')
+    (tmp_path / "main.c").write_text(PROGRAM)
+    run(CMAKE, "-S", tmp_path, "-B", tmp_path / "build")
+    run(CMAKE, "--build", tmp_path / "build")
+    assert run(tmp_path / "build" / "program") == expected_frames()
+    assert ("laughter" in (tmp_path / "build" / "sources").read_text()) == (kind == "esp-idf")
+
+
+def test_zephyr_module_offers_every_model() -> None:
+    """A model without an option could never be linked; module.yml names what exists."""
+    options = re.findall(r"^config (\w+)$", (SOURCE / "zephyr" / "Kconfig").read_text(encoding="utf-8"), re.MULTILINE)
+    assert sorted(options) == sorted(f"LABIAL_{model.upper()}" for model in bundled())
+    module = (SOURCE / "zephyr" / "module.yml").read_text(encoding="utf-8")
+    assert (SOURCE / re.findall(r"^  cmake: (.*)$", module, re.MULTILINE)[0] / "CMakeLists.txt").is_file()
+    assert (SOURCE / re.findall(r"^  kconfig: (.*)$", module, re.MULTILINE)[0]).is_file()
