@@ -9,7 +9,7 @@ import numpy as np
 
 from labial.corpus.timings import phoneme_segments, read_timings
 from labial.model import Model
-from labial.phonesets import PhoneSet
+from labial.phonesets import PhoneSet, aliases_for
 
 #: A phoneme stream: (phoneme number, milliseconds) pairs.
 Stream = List[Tuple[int, int]]
@@ -24,7 +24,7 @@ def phone_set(model: Model) -> PhoneSet:
         phoneme_class=tuple(int(c) for c in model.phoneme_class),
         boundary=tuple(bool(b) for b in model.boundary),
         silence=model.silence,
-        aliases=model.aliases,
+        aliases=aliases_for(model.kind, model.phonemes, model.aliases),
     )
 
 
