@@ -32,9 +32,9 @@ def read_stream(path: Union[str, os.PathLike], model: Model) -> Stream:
     """Reads phoneme timings of any format that corpora come in; gaps are silence.
 
     Boundaries are rounded to milliseconds, so that rounding never adds up. Raises DataError, which names the file and
-    the line, for what is malformed and for labels that the model does not know.
+    the line, for what is malformed; labels that the model does not know are the nearest, with one warning each.
     """
-    segments = phoneme_segments(path, read_timings(path), phone_set(model))
+    segments = phoneme_segments(path, read_timings(path), phone_set(model), strict=False)
     bounds = [round(1000 * segment.end) for segment in segments]
     begins = [0, *bounds[:-1]]
     return [(model.phonemes.index(segment.label), end - begin) for segment, begin, end in zip(segments, begins, bounds)]

@@ -46,8 +46,8 @@ def test_library_and_exporter_laugh_alike(library: ctypes.CDLL) -> None:
 
 
 def test_statistics_are_those_of_the_corpus() -> None:
-    """Catches a grammar that drifted from the corpus: at half intensity phonemes have its medians and, within a quarter,
-    its frequencies; pulses follow each other every 210 ms; most of a laugh is silence or breath."""
+    """Catches a grammar that drifted from the corpus: at half intensity phonemes have its medians and, within a
+    quarter, its frequencies; pulses follow each other every 210 ms; most of a laugh is silence or breath."""
     rng = np.random.Generator(np.random.PCG64(3))
     corpus = [item for _ in range(150) for item in laughter._bout(rng)[0][1:-1]]
     # Intensities of the corpus are 0.35 to 1, 0.675 in the mean; the number of trains, not their making, depends on it.

@@ -109,7 +109,7 @@ def test_lab_with_three_to_five_columns(tmp_path):
 @pytest.mark.parametrize("text, line, words", [
     ("0 0.1\n", 1, "columns"), ("0 .1 A\n.1 .2 B .15 w x\n", 2, "columns"), ("0 .1 A\n.1 x B\n", 2, "finite"),
     ("0 nan A\n", 1, "finite"), ("0 inf A\n", 1, "finite"), ("0 .1 A\n.2 .15 B\n", 2, "before its start"),
-    ("0 .2 A\n.1 .3 B\n", 2, "before the end"), ("0 .1 A .3\n", 1, "apex"), ("0 3700000 sil\n", 1, "seconds"),
+    ("0 .2 A\n.1 .3 B\n", 2, "before the end"), ("0 .1 A .3\n", 1, "apex"), ("0.0 3700000 sil\n", 1, "seconds"),
     ("0 .1 A -\n", 1, "apex"), ("\n\n", None, "no segments"),
 ])  # fmt: skip
 def test_malformed_lab_names_the_line(tmp_path, text, line, words):
