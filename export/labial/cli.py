@@ -53,7 +53,7 @@ def parser() -> argparse.ArgumentParser:
                        help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur")
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
-                       help="FAPs as a table, MPEG-4 text, or ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
+                       help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
     synth.add_argument("--whole", action="store_true", help="decode the whole utterance at once, not unit by unit")
     synth.set_defaults(run=_synth)
 

@@ -136,7 +136,7 @@ _SPEECH_ALIASES = {
     "SIL": "sil pau PAU brth BRTH sp SP spn SPN nsn NSN ssil SSIL h# H# # epi <sil> <SIL> <s> </s> <eps> _ __ "
     + " ".join(f"{plus}{name}{plus}" for name in _FILLERS for plus in ("+", "++"))
     + " [NOISE] [COUGH] [SMACK] [SPEECH] [LAUGHTER] [BREATH]",
-    "AA": "ɑ A A: aa: a# ɑɹ ɑ̃", "AE": "æ a {", "AH": "ax AX ax-h AX-H +UH+ ++UH++ +UM+ ++UM++ ə ʌ ɐ ɘ @ @2 @5 6 ɤ",
+    "AA": "ɑ A A: aa: a# ɑɹ ɑ̃", "AE": "æ a {", "AH": "ax AX ax-h AX-H +UH+ ++UH++ +UM+ ++UM++ ə ʌ ɐ ɘ @ @2 @5 6 ɤ ə-",
     "AO": "ɔ ɒ Q O O: 0 O2 oː o: oɹ ɔɹ õ", "AW": "aʊ æʊ aʊə aU aU@", "AY": "aɪ aj ɑɪ aɪə aɪɚ aɪɜ aI aI@ aI3 AI",
     "EH": "ɛ e E e@ eə ɛə E2 ɛɹ eɹ ẽ", "ER": "axr AXR ɜ ɝ ɚ ə˞ ɜ˞ ɜɹ əɹ 3 3: @` 3` r= @r", "EY": "eɪ ej eI EI",
     "IH": "ix IX ɪ ɨ ᵻ I I2 I# ɪə I@ ɪɹ 1 ĩ", "IY": "i iː i: i3 iə i@ i@3", "OW": "oʊ əʊ əw o oU @U ɐʊ",

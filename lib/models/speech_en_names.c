@@ -5,7 +5,7 @@
  */
 #include "speech_en.h"
 
-static const labial_name_t entries[366] = {
+static const labial_name_t entries[367] = {
     { "#", 0 },
     { "&", 34 },
     { "++BREATH++", 0 },
@@ -310,6 +310,7 @@ static const labial_name_t entries[366] = {
     { "\311\226", 9 },
     { "\311\230", 3 },
     { "\311\231", 3 },
+    { "\311\231-", 3 },
     { "\311\231l", 21 },
     { "\311\231w", 25 },
     { "\311\231\311\271", 12 },
@@ -379,4 +380,4 @@ static const char *const labels[40] = {
     "JH", "K", "L", "M", "N", "NG", "OW", "OY", "P", "R", "S", "SH", "T", "TH", "UH", "UW", "V", "W", "Y", "Z", "ZH"
 };
 
-const labial_names_t speech_en_names = { 366, 40, entries, labels };
+const labial_names_t speech_en_names = { 367, 40, entries, labels };

@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import List, Tuple
 
 import pytest
-from test_say import motion, pytestmark, say
 
 from labial.corpus.timings import phoneme_segments, read_timings
 from labial.phonesets import SPEECH
+from test_say import motion, pytestmark, say
 
 __all__ = ["pytestmark"]
 
 SEEDS = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2])) / "tests/fuzz/seeds/fuzz_timings"
 #: The same sentence in every format.
-SENTENCE = ["sentence.psdur", "sentence.lab", "sentence.pho", "sentence.realised_durations", "sentence.phseg", "htk.lab",
-            "hts.lab", "aligned.TextGrid", "short.TextGrid", "utf16.TextGrid", "points.TextGrid"]  # fmt: skip
+SENTENCE = ["sentence.psdur", "sentence.lab", "sentence.pho", "sentence.realised_durations", "sentence.phseg",
+            "htk.lab", "hts.lab", "aligned.TextGrid", "short.TextGrid", "utf16.TextGrid", "points.TextGrid"]  # fmt: skip
 FORMATS = {".psdur": "flite", ".pho": "pho", ".realised_durations": "mary", ".phseg": "phseg", ".TextGrid": "textgrid"}
 PHRASE = [("SIL", 220), ("M", 70), ("AY", 150), ("B", 90), ("EY", 200), ("B", 80), ("IY", 90), ("SIL", 220)]
 
@@ -77,7 +77,8 @@ def test_a_tier_is_taken_by_name() -> None:
 
 
 @pytest.mark.parametrize(("name", "old", "new", "line", "told"), [
-    ("htk.lab", "2900000", "2900000.5", 2, "100 ns"), ("htk.lab", "2900000 4400000", "4400000 2900000", 3, "before its"),
+    ("htk.lab", "2900000", "2900000.5", 2, "100 ns"),
+    ("htk.lab", "2900000 4400000", "4400000 2900000", 3, "before its"),
     ("htk.lab", "2200000 2900000 m", "2100000 2900000 m", 2, "0.210000"), ("htk.lab", " m -123.4", "", 2, "2 fields"),
     ("sentence.realised_durations", "125 m", "125", 3, "2 fields"),
     ("sentence.realised_durations", "0.29 125", "0.29 x", 3, "'x'"),
@@ -173,7 +174,8 @@ def test_laughs_of_one_stream_differ() -> None:
 
 @pytest.mark.parametrize(("text", "told"), [
     ("pau:0.1 <laugh> \n", "form"), ("pau:0.1 <laugh 1 0.5\n", "'>'"), ("pau:0.1 <laugh 1 2>\n", "0 to 1"),
-    ("pau:0.1 <laugh x 0.5>\n", "'x'"), ("pau:0.1 <laugh 1 2 3 4>\n", "expected"), ("_ 10\n<laugh:1.5> 100\n", "0 to 1"),
+    ("pau:0.1 <laugh x 0.5>\n", "'x'"), ("pau:0.1 <laugh 1 2 3 4>\n", "expected"),
+    ("_ 10\n<laugh:1.5> 100\n", "0 to 1"),
     ("_ 10\n<laugh:> 100\n", "intensity"), ("pau:0.1 <laugh 4000>\n", "hour"), ("<laugh >\n", "laugh"),
     ("0.0 0.1 sil\n<laugh 99999999>\n", "99999999"),
 ])  # fmt: skip
