@@ -21,6 +21,7 @@ from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.model import save
 from models import random_model
 
+SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
 SAY = os.environ.get("LABIAL_SAY", "")
 needs_say = pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")
 SENTENCE = "pau:0.220 m:0.290 ay:0.440 b:0.530 ey:0.730 b:0.810 iy:0.900 pau:1.120\n<laugh 1.5 1.0>\nuw:0.3 pau:0.4\n"
@@ -159,3 +160,18 @@ def test_long_motion_has_good_timecodes() -> None:
     done = subprocess.run([SAY, "--to", "livelink"], input=text.encode(), capture_output=True, timeout=60, check=True)
     times, _ = read_live_link(done.stdout.decode())
     assert times[-1] > 60 and times == pytest.approx(np.arange(len(times)) / 50)
+
+
+if (SOURCE / "examples/faces/arkit.toml").exists():
+
+    def test_blendshapes_are_those_of_the_rig() -> None:
+        """Catches labial-say and the example of an ARKit rig moving the same face in two ways."""
+        from labial.rig.description import read
+
+        outputs = {output.name: output for output in read(SOURCE / "examples/faces/arkit.toml", "arkit").outputs}
+        faps = np.random.default_rng(1).uniform(-600, 600, (500, len(FAP_NUMBERS)))
+        assert set(outputs) == set(ARKIT)
+        for name, weights in zip(ARKIT, arkit(faps).T):
+            output = outputs[name]
+            expected = (output.neutral + output.gain * (faps @ output.weights)) / 1000
+            assert weights == pytest.approx(np.clip(expected, 0, 1), abs=0.003), name

@@ -17,7 +17,7 @@ __all__ = ["pytestmark"]
 SEEDS = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2])) / "tests/fuzz/seeds/fuzz_timings"
 #: The same sentence in every format.
 SENTENCE = ["sentence.psdur", "sentence.lab", "sentence.pho", "sentence.realised_durations", "sentence.phseg",
-            "htk.lab", "hts.lab", "aligned.TextGrid", "short.TextGrid", "utf16.TextGrid", "points.TextGrid"]  # fmt: skip
+            "htk.lab", "hts.lab", "aligned.TextGrid", "short.TextGrid", "utf16.TextGrid", "points.TextGrid"]
 FORMATS = {".psdur": "flite", ".pho": "pho", ".realised_durations": "mary", ".phseg": "phseg", ".TextGrid": "textgrid"}
 PHRASE = [("SIL", 220), ("M", 70), ("AY", 150), ("B", 90), ("EY", 200), ("B", 80), ("IY", 90), ("SIL", 220)]
 
