@@ -7,32 +7,18 @@
 /* Labels are compared without their marks up to this many bytes; no alias of a phone set is longer. */
 #define LABEL_MAX 32
 
-/* Compares the `length` bytes at `name` with a terminated string, as strcmp would. */
-static int compare(const char *name, size_t length, const char *entry)
-{
-    size_t i;
-    for (i = 0; i < length; i++) {
-        const unsigned char a = (unsigned char)name[i], b = (unsigned char)entry[i];
-        if (b == 0 || a > b)
-            return 1;
-        if (a < b)
-            return -1;
-    }
-    return entry[length] ? -1 : 0;
-}
-
 static int find_exactly(const labial_names_t *names, const char *name, size_t length)
 {
-    unsigned low = 0, high = names->count;
-    while (low < high) {
-        const unsigned middle = low + (high - low) / 2u;
-        const int order = compare(name, length, names->entries[middle].name);
-        if (order == 0)
-            return names->entries[middle].phoneme;
-        if (order < 0)
-            high = middle;
-        else
-            low = middle + 1u;
+    const uint8_t *entry = names->entries;
+    const uint8_t *const end = entry + names->size;
+    size_t i;
+    for (; end - entry >= 2; entry += 2 + entry[1]) {
+        if (entry[1] != length)
+            continue;
+        for (i = 0; i < length && entry[2 + i] == (uint8_t)name[i]; i++)
+            ;
+        if (i == length)
+            return entry[0];
     }
     return LABIAL_ERROR_NAME;
 }

@@ -12,18 +12,16 @@
 extern "C" {
 #endif
 
-/* A label or alias, UTF-8, and the phoneme it means. */
+/*
+ * The names of one model. Labels and aliases stand one behind the other, without pointers, which would take more room
+ * than they do: for each the phoneme's number, the bytes of the name, and the name in UTF-8. A look-up reads them all,
+ * 2 KB for English, which is little beside the work of one frame.
+ */
 typedef struct {
-    const char *name;
-    uint8_t phoneme;
-} labial_name_t;
-
-/* The names of one model. */
-typedef struct {
-    uint16_t count;               /* of `entries` */
-    uint8_t phoneme_count;        /* of `labels` */
-    const labial_name_t *entries; /* labels and aliases, ascending by the bytes of their names, without duplicates */
-    const char *const *labels;    /* the label of each phoneme number */
+    uint16_t size;             /* of `entries`, bytes */
+    uint8_t phoneme_count;     /* of `labels` */
+    const uint8_t *entries;    /* labels and aliases, no name twice */
+    const char *const *labels; /* the label of each phoneme number */
 } labial_names_t;
 
 /*
