@@ -133,20 +133,22 @@ _FILLERS = "BREATHING BREATH LAUGHTER GARBAGE LIPSMACK SMACK NOISE COUGH NSN SPN
 
 #: Aliases beside ARPABET's own spellings. ARPABET-like: flite, Sphinx, TIMIT. Then IPA, then X-SAMPA and espeak.
 _SPEECH_ALIASES = {
-    "SIL": "sil pau PAU brth BRTH sp SP spn SPN nsn NSN ssil SSIL h# H# # epi <sil> <SIL> <s> </s> <eps> _ __ "
+    "SIL": "sil pau PAU brth BRTH sp SP spn SPN nsn NSN ssil SSIL h# H# # epi <sil> <SIL> <s> </s> <eps> _ __ _! "
     + " ".join(f"{plus}{name}{plus}" for name in _FILLERS for plus in ("+", "++"))
     + " [NOISE] [COUGH] [SMACK] [SPEECH] [LAUGHTER] [BREATH]",
-    "AA": "ɑ A A: aa: a# ɑɹ ɑ̃", "AE": "æ a {", "AH": "ax AX ax-h AX-H +UH+ ++UH++ +UM+ ++UM++ ə ʌ ɐ ɘ @ @2 @5 6 ɤ ə-",
-    "AO": "ɔ ɒ Q O O: 0 O2 oː o: oɹ ɔɹ õ", "AW": "aʊ æʊ aʊə aU aU@", "AY": "aɪ aj ɑɪ aɪə aɪɚ aɪɜ aI aI@ aI3 AI",
+    "AA": "ɑ A A: aa: a# ɑɹ ɑ̃", "AE": "æ a {",
+    "AH": "ax AX ax-h AX-H +UH+ ++UH++ +UM+ ++UM++ ə ʌ ɐ ɘ @ @2 @5 6 ɤ ə- @-",
+    "AO": "ɔ ɒ Q O O: 0 O2 oː o: oɹ ɔɹ õ", "AW": "aʊ æʊ aʊə aU aU@ ʌʊ", "AY": "aɪ aj ɑɪ aɪə aɪɚ aɪɜ aI aI@ aI3 AI",
     "EH": "ɛ e E e@ eə ɛə E2 ɛɹ eɹ ẽ", "ER": "axr AXR ɜ ɝ ɚ ə˞ ɜ˞ ɜɹ əɹ 3 3: @` 3` r= @r", "EY": "eɪ ej eI EI",
     "IH": "ix IX ɪ ɨ ᵻ I I2 I# ɪə I@ ɪɹ 1 ĩ", "IY": "i iː i: i3 iə i@ i@3", "OW": "oʊ əʊ əw o oU @U ɐʊ",
-    "OY": "ɔɪ ɔj OI",
+    "OY": "ɔɪ ɔj OI oI",
     "UH": "ʊ ʊə ɵ U U@ ʊɹ ʏ 7 8", "UW": "ux UX u ʉ u: y: ø œ ũ 2 9 &",
     "B": "bcl BCL BD bd β", "P": "pcl PCL PD pd", "M": "em EM", "F": "ɸ", "V": "ʋ ɱ",
-    "D": "dcl DCL DD dd dx DX nx NX ɾ ɖ 4", "T": "tcl TCL TD td ʈ", "N": "en EN ɲ ɳ J", "L": "el EL ɫ ɬ ɭ ʎ əl @L @l 5",
+    "D": "dcl DCL DD dd dx DX nx NX ɾ ɖ 4 d[", "T": "tcl TCL TD td ʈ t# t[",
+    "N": "en EN ɲ ɳ J J^ n^ n-", "L": "el EL ɫ ɬ ɭ ʎ əl @L @l 5 l^",
     "TH": "θ", "DH": "ð", "S": "TS ts", "Z": "dz DZ", "SH": "ʃ ɕ ʂ", "ZH": "ʒ ʑ ʐ", "CH": "tʃ ʧ tS tɕ",
     "JH": "dʒ ʤ dZ dʑ", "K": "kcl KCL KD kd c x", "G": "gcl GCL GD gd ɡ ɟ ɣ", "NG": "eng ENG ŋ",
-    "HH": "hv HV h H ɦ q ʔ ç ç χ ħ ʕ ? C X", "R": "ɹ ɻ r\\ ʁ ɾ̃ ʀ", "W": "ʍ ɥ", "Y": "j ʝ",
+    "HH": "hv HV h H ɦ q ʔ ç ç χ ħ ʕ ? C X", "R": "ɹ ɻ r\\ ʁ ɾ̃ ʀ R2", "W": "ʍ ɥ", "Y": "j ʝ",
 }  # fmt: skip
 
 

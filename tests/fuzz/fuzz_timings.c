@@ -3,13 +3,15 @@
  *
  * Beyond what AddressSanitizer sees: labels are short texts, durations are within their limit and add up to the time
  * that the parser has come to, laughs have an intensity in range, an error has a message and a line, and a sink that
- * stops the parser is the last that is called.
+ * stops the parser is the last that is called. Labels are looked up in the names of the speech model.
  */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "labial/labial.h"
+#include "speech_en.h"
 #include "timings.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -28,6 +30,22 @@ typedef struct {
     const timings_t *timings;
 } watch_t;
 
+/* A label as every phone set reads it, without the NUL behind it. */
+static void look_up(const char *label, size_t length)
+{
+    char *copy = (char *)malloc(length);
+    int found, nearest;
+    REQUIRE(copy);
+    memcpy(copy, label, length);
+    found = labial_find(&speech_en_names, copy, length);
+    REQUIRE(found == LABIAL_ERROR_NAME || (found >= 0 && found < SPEECH_EN_PHONEMES));
+    nearest = labial_find_nearest(&speech_en_names, copy, length, SPEECH_EN_SIL);
+    REQUIRE(nearest >= 0 && nearest < SPEECH_EN_PHONEMES && (found < 0 || nearest == found));
+    found = labial_find_sampa(&speech_en_names, copy, length);
+    REQUIRE(found == LABIAL_ERROR_NAME || (found >= 0 && found < SPEECH_EN_PHONEMES));
+    free(copy);
+}
+
 static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
 {
     watch_t *watch = (watch_t *)user;
@@ -44,6 +62,7 @@ static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
         for (i = 0; phoneme->label[i]; i++)
             REQUIRE((unsigned char)phoneme->label[i] >= 0x20 && phoneme->label[i] != 0x7f);
         REQUIRE(i > 0 && i <= TIMINGS_LABEL_MAX);
+        look_up(phoneme->label, i);
     }
     return watch->phonemes == watch->stop_at ? STOPPED : 0;
 }
