@@ -16,6 +16,9 @@ int timings_malformed(timings_t *t, const char *format, ...)
     va_start(arguments, format);
     (void)vsnprintf(t->message, sizeof t->message, format, arguments);
     va_end(arguments);
+    for (char *c = t->message; *c; c++) /* texts of a TextGrid may contain line ends; a message is one line */
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = ' ';
     return TIMINGS_MALFORMED;
 }
 

@@ -85,7 +85,8 @@ static void parse(const uint8_t *data, size_t size, timings_format_t format, con
     REQUIRE(result == 0 || result == TIMINGS_MALFORMED || (stop_at && result == STOPPED));
     REQUIRE(timings->line >= 1 && timings->line <= size + 1);
     if (result == TIMINGS_MALFORMED)
-        REQUIRE(timings->message[0] != '\0' && memchr(timings->message, 0, sizeof timings->message));
+        REQUIRE(timings->message[0] != '\0' && memchr(timings->message, 0, sizeof timings->message) &&
+                !strpbrk(timings->message, "\r\n"));
     REQUIRE(watch.milliseconds == (timings->end + 500u) / 1000u);
     REQUIRE(timings->end <= TIMINGS_TIME_MAX);
     timings_free(timings);

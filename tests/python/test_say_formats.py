@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import random
+import warnings
 from pathlib import Path
 from typing import List, Tuple
 
 import pytest
 
 from labial.corpus.timings import phoneme_segments, read_timings
+from labial.errors import DataError
 from labial.phonesets import SPEECH
 from test_say import motion, pytestmark, say
 
@@ -183,3 +186,30 @@ def test_malformed_laughs_are_named(text: str, told: str) -> None:
     """Catches a slip in a laugh that is read as something else."""
     done = say(text)
     assert done.returncode == 1 and told in done.stderr.decode()
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in SEEDS.iterdir()))
+def test_damaged_files_are_data_errors(name: str, tmp_path: Path) -> None:
+    """Catches damage that reaches the user of the exporter as another error than one with the file's name, and that
+    labial-say takes otherwise than as motion or an error with its line."""
+    data = (SEEDS / name).read_bytes()
+    rng = random.Random(name)
+    for number in range(40):
+        damaged = bytearray(data)
+        for _ in range(rng.randint(1, 3)):
+            at = rng.randrange(len(damaged))
+            patch = rng.choices(b'0123456789.:- \n"<>#;aZ\xc9\x00', k=rng.randint(0, 3))
+            damaged[at : at + rng.randint(0, 6)] = bytes(patch)
+        path = tmp_path / name
+        path.write_bytes(damaged)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                phoneme_segments(path, read_timings(path), SPEECH, strict=False)
+            except DataError as error:
+                assert str(error).startswith(str(path))
+        if number < 8:
+            done = say(bytes(damaged))
+            assert done.returncode in (0, 1)
+            if done.returncode == 1:
+                assert done.stderr.splitlines()[-1].startswith(b"labial-say: line ")
