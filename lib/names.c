@@ -1,64 +1,187 @@
 #include "labial/names.h"
 
+#include <string.h>
+
 #include "labial/labial.h"
 
-/* Compares the `length` bytes at `name` with a terminated string, as strcmp would. */
-static int compare(const char *name, size_t length, const char *entry)
-{
-    size_t i;
-    for (i = 0; i < length; i++) {
-        const unsigned char a = (unsigned char)name[i], b = (unsigned char)entry[i];
-        if (b == 0 || a > b)
-            return 1;
-        if (a < b)
-            return -1;
-    }
-    return entry[length] ? -1 : 0;
-}
+/* Labels are compared without their marks up to this many bytes; no alias of a phone set is longer. */
+#define LABEL_MAX 32
 
 static int find_exactly(const labial_names_t *names, const char *name, size_t length)
 {
-    unsigned low = 0, high = names->count;
-    while (low < high) {
-        const unsigned middle = low + (high - low) / 2u;
-        const int order = compare(name, length, names->entries[middle].name);
-        if (order == 0)
-            return names->entries[middle].phoneme;
-        if (order < 0)
-            high = middle;
-        else
-            low = middle + 1u;
+    const uint8_t *entry = names->entries;
+    const uint8_t *const end = entry + names->size;
+    size_t i;
+    for (; end - entry >= 2; entry += 2 + entry[1]) {
+        if (entry[1] != length)
+            continue;
+        for (i = 0; i < length && entry[2 + i] == (uint8_t)name[i]; i++)
+            ;
+        if (i == length)
+            return entry[0];
     }
     return LABIAL_ERROR_NAME;
 }
 
-/* Whether two bytes are one of the IPA's stress marks, U+02C8 and U+02CC. */
-static int is_stress_mark(const char *at)
+/* ---- Marks, the same as in export/labial/labels.py ------------------------------------------------------------- */
+
+static int is_one_of(char c, const char *set)
 {
-    return at[0] == '\xcb' && (at[1] == '\x88' || at[1] == '\x8c');
+    for (; *set; set++)
+        if (*set == c)
+            return 1;
+    return 0;
 }
 
-/* Whether two bytes are one of the IPA's length marks, U+02D0 and U+02D1. */
-static int is_length_mark(const char *at)
+static int is_blank(char c)
 {
-    return at[0] == '\xcb' && (at[1] == '\x90' || at[1] == '\x91');
+    return is_one_of(c, " \t\r\n");
 }
+
+static int is_letter(char c)
+{
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+
+/* Bytes of the mark at `at`, where `left` bytes are left: Praat's backslash sequences, combining marks but for the
+ * cedilla, signs of length and of secondary articulation. 0 when it is none. */
+static size_t mark_length(const char *at, size_t left)
+{
+    if (at[0] == '\\' && left > 2u) {
+        if (is_one_of(at[1], "|0OT-+:~NUDn3cv'`^") && is_one_of(at[2], "v^()"))
+            return 3;
+        if (is_one_of(at[1], ":.") && at[2] == 'f')
+            return 3;
+        if (at[1] == '\'' && is_one_of(at[2], "12"))
+            return 3;
+    }
+    if (left > 1u) {
+        const unsigned a = (unsigned char)at[0], b = (unsigned char)at[1];
+        if (a == 0xccu && b >= 0x80u && b <= 0xbfu && b != 0xa7u) /* U+0300 .. U+033F, U+0327 is the cedilla */
+            return 2;
+        if (a == 0xcdu && b >= 0x80u && b <= 0xafu) /* U+0340 .. U+036F */
+            return 2;
+        if (a == 0xcbu && is_one_of(at[1], "\x90\x91\xa0\xa1\xa4")) /* U+02D0 U+02D1 U+02E0 U+02E1 U+02E4 */
+            return 2;
+        if (a == 0xcau && is_one_of(at[1], "\xb0\xb2\xb7")) /* U+02B0 U+02B2 U+02B7 */
+            return 2;
+        if (left > 2u && a == 0xe2u && b == 0x81u && at[2] == '\xbf') /* U+207F */
+            return 3;
+    }
+    return 0;
+}
+
+/* Bytes of the mark before a symbol at `at`: U+02C8, U+02CC and ASCII's stress marks. */
+static size_t leading_length(const char *at, size_t left)
+{
+    if (left > 1u && at[0] == '\xcb' && is_one_of(at[1], "\x88\x8c"))
+        return 2;
+    return left > 0u && is_one_of(at[0], "'\",%") ? 1u : 0u;
+}
+
+/* Bytes of X-SAMPA's and Kaldi's marks at the end of the `length` bytes at `text`; what is left is not empty. */
+static size_t trailing_length(const char *text, size_t length)
+{
+    char last;
+    if (length < 2u)
+        return 0;
+    last = text[length - 1u];
+    if (length > 2u && text[length - 2u] == '_' && text[length - 3u] != ' ' &&
+        (is_letter(last) || (last >= '0' && last <= '9') || is_one_of(last, "=~^")))
+        return 2;
+    return is_one_of(last, ":=~;") && text[length - 2u] != ' ' ? 1u : 0u;
+}
+
+/* Writes `name` without its marks to `text`. Returns its length, or 0 when it is empty or too long. */
+static size_t normalise(const char *name, size_t length, char text[LABEL_MAX])
+{
+    size_t count = 0, skip, i;
+    for (; length > 0u && is_blank(name[0]); length--)
+        name++;
+    while (length > 0u && is_blank(name[length - 1u]))
+        length--;
+    for (i = 0; i < length;) {
+        skip = mark_length(name + i, length - i);
+        if (skip == 0u && count == 0u)
+            skip = leading_length(name + i, length - i);
+        if (skip == 0u) {
+            if (count == LABEL_MAX)
+                return 0;
+            text[count++] = name[i];
+            skip = 1;
+        }
+        i += skip;
+    }
+    while ((skip = trailing_length(text, count)) != 0u)
+        count -= skip;
+    if (count > 2u && text[count - 1u] >= '0' && text[count - 1u] <= '2' && is_letter(text[count - 2u]) &&
+        is_letter(text[count - 3u]))
+        count--;
+    if (count == 0u && length <= LABEL_MAX) { /* marks alone are a label of their own */
+        memcpy(text, name, length);
+        count = length;
+    }
+    return count;
+}
+
+/* ---- Looking up ------------------------------------------------------------------------------------------------ */
 
 int labial_find(const labial_names_t *names, const char *name, size_t length)
 {
+    char text[LABEL_MAX];
     int phoneme;
     if (!names || !name || !names->entries)
         return LABIAL_ERROR_NULL;
     phoneme = find_exactly(names, name, length);
-    if (phoneme >= 0)
+    if (phoneme < 0)
+        phoneme = find_exactly(names, text, normalise(name, length, text));
+    return phoneme;
+}
+
+int labial_find_sampa(const labial_names_t *names, const char *name, size_t length)
+{
+    /* X-SAMPA's letter and the IPA's two bytes: eng, esh, theta, eth, ezh, turned v, turned h, small capital y, barred
+     * u (which stands for y: both are rounded). */
+    static const char other[][4] = {"N\xc5\x8b", "S\xca\x83", "T\xce\xb8", "D\xc3\xb0", "Z\xca\x92",
+                                    "V\xca\x8c", "H\xc9\xa5", "Y\xca\x8f", "y\xca\x89"};
+    char text[LABEL_MAX];
+    unsigned i;
+    if (!names || !name || !names->entries)
+        return LABIAL_ERROR_NULL;
+    if (normalise(name, length, text) == 1u)
+        for (i = 0; i < sizeof other / sizeof other[0]; i++)
+            if (other[i][0] == text[0])
+                return find_exactly(names, other[i] + 1, 2);
+    return labial_find(names, name, length);
+}
+
+/* Whether a label is set in brackets or between signs, as noises are. */
+static int is_bracketed(const char *text, size_t length)
+{
+    static const char pairs[][2] = {{'<', '>'}, {'[', ']'}, {'(', ')'}, {'{', '}'}, {'+', '+'}, {'*', '*'}, {'#', '#'}};
+    unsigned i;
+    for (i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
+        if (length > 1u && text[0] == pairs[i][0] && text[length - 1u] == pairs[i][1])
+            return 1;
+    return 0;
+}
+
+int labial_find_nearest(const labial_names_t *names, const char *name, size_t length, unsigned silence)
+{
+    char text[LABEL_MAX];
+    size_t start, end;
+    int phoneme = labial_find(names, name, length);
+    if (phoneme >= 0 || phoneme == LABIAL_ERROR_NULL)
         return phoneme;
-    while (length > 2u && is_stress_mark(name)) {
-        name += 2;
-        length -= 2u;
-    }
-    while (length > 2u && is_length_mark(name + length - 2u))
-        length -= 2u;
-    if (length > 1u && name[length - 1u] >= '0' && name[length - 1u] <= '2')
-        length--;
-    return find_exactly(names, name, length);
+    if (is_bracketed(name, length))
+        return (int)silence;
+    length = normalise(name, length < LABEL_MAX ? length : LABEL_MAX, text);
+    for (start = 0; start < length; start++)
+        for (end = length; end > start; end--) {
+            phoneme = find_exactly(names, text + start, end - start);
+            if (phoneme >= 0)
+                return phoneme;
+        }
+    phoneme = find_exactly(names, "\xc9\x99", 2); /* schwa */
+    return phoneme >= 0 ? phoneme : (int)silence;
 }

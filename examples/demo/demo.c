@@ -68,6 +68,10 @@ static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
 {
     demo_t *demo = user;
     int number = demo->model->silence;
+    if (phoneme->laugh >= 0) {
+        fprintf(stderr, "labial-demo: %s: line %lu: a laugh is a file of its own here\n", demo->path, demo->timings.line);
+        return -1;
+    }
     if (phoneme->label)
         number = labial_find(demo->names, phoneme->label, strlen(phoneme->label));
     if (number < 0) {
@@ -115,13 +119,14 @@ static int say_file(demo_t *demo, const char *path, const labial_model_t *model,
         fprintf(stderr, "labial-demo: %s: %s\n", path, labial_result_text(result));
     } else {
         int byte;
-        timings_init(&demo->timings, TIMINGS_AUTO, on_phoneme, demo);
+        timings_init(&demo->timings, TIMINGS_AUTO, NULL, on_phoneme, demo);
         while (result == 0 && (byte = getc(in)) != EOF)
             result = timings_put(&demo->timings, (unsigned char)byte);
         if (result == 0)
             result = timings_end(&demo->timings);
         if (result == TIMINGS_MALFORMED)
             fprintf(stderr, "labial-demo: %s: line %lu: %s\n", path, demo->timings.line, demo->timings.message);
+        timings_free(&demo->timings);
     }
     if (ferror(in)) {
         fprintf(stderr, "labial-demo: %s: cannot read\n", path);

@@ -1,5 +1,5 @@
 /*
- * frames.c - the two text forms of a frame.
+ * frames.c - the text forms of a frame.
  */
 #include "frames.h"
 
@@ -7,17 +7,61 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "arkit.h"
+
 /* FAPs of MPEG-4, each with an entry in the mask of a fap file. */
 #define FAP_COUNT 68
 
-static void write_csv_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void write_time(const frames_t *frames)
 {
     const uint64_t fps = frames->frames_per_second;
     const uint64_t milliseconds = ((uint64_t)frames->count * 1000u + fps / 2u) / fps;
     fprintf(frames->out, "%" PRIu64 ".%03u", milliseconds / 1000u, (unsigned)(milliseconds % 1000u));
+}
+
+static void write_csv_frame(const frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+{
+    write_time(frames);
     for (int i = 0; i < LABIAL_CHANNELS; i++)
         fprintf(frames->out, ",%d", faps[i]);
     putc('\n', frames->out);
+}
+
+/* A weight in thousandths, as a number from 0 to 1. */
+static void write_weight(FILE *out, int weight)
+{
+    fprintf(out, "%d.%03d", weight / 1000, weight % 1000);
+}
+
+static void write_livelink_frame(const frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+{
+    const uint32_t seconds = frames->count / frames->frames_per_second;
+    int weights[ARKIT_SHAPES];
+    arkit_weights(faps, weights);
+    fprintf(frames->out, "%02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 ".000,%d", seconds / 3600u,
+            seconds / 60u % 60u, seconds % 60u, frames->count % frames->frames_per_second, ARKIT_COLUMNS);
+    for (int c = 0, next = 0; c < ARKIT_COLUMNS; c++) {
+        const int moves = next < ARKIT_SHAPES && arkit_is_column(&arkit_shapes[next], arkit_columns[c]);
+        putc(',', frames->out);
+        write_weight(frames->out, moves ? weights[next] : 0);
+        next += moves;
+    }
+    putc('\n', frames->out);
+}
+
+static void write_jsonl_frame(const frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+{
+    int weights[ARKIT_SHAPES];
+    arkit_weights(faps, weights);
+    fprintf(frames->out, "{\"frame\":%" PRIu32 ",\"time\":", frames->count);
+    write_time(frames);
+    for (int i = 0; i < LABIAL_CHANNELS; i++)
+        fprintf(frames->out, "%s\"fap%d\":%d", i == 0 ? ",\"faps\":{" : ",", labial_fap_numbers[i], faps[i]);
+    for (int i = 0; i < ARKIT_SHAPES; i++) {
+        fprintf(frames->out, "%s\"%s\":", i == 0 ? "},\"arkit\":{" : ",", arkit_shapes[i].name);
+        write_weight(frames->out, weights[i]);
+    }
+    fputs("}}\n", frames->out);
 }
 
 static void write_fap_frame(FILE *out, uint32_t number, const int16_t faps[LABIAL_CHANNELS])
@@ -52,6 +96,15 @@ static void keep_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
     memcpy(frames->kept[frames->count], faps, sizeof *frames->kept);
 }
 
+int frames_format_of(const char *name)
+{
+    static const char *const names[] = {"csv", "fap", "livelink", "jsonl"}; /* in the order of frames_format_t */
+    for (int i = 0; i < (int)(sizeof names / sizeof names[0]); i++)
+        if (strcmp(names[i], name) == 0)
+            return i;
+    return -1;
+}
+
 void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char *name, unsigned frames_per_second)
 {
     memset(frames, 0, sizeof *frames);
@@ -64,6 +117,11 @@ void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char
         for (int i = 0; i < LABIAL_CHANNELS; i++)
             fprintf(out, ",fap%d", labial_fap_numbers[i]);
         putc('\n', out);
+    } else if (format == FRAMES_LIVELINK) {
+        fputs("Timecode,BlendShapeCount", out);
+        for (int i = 0; i < ARKIT_COLUMNS; i++)
+            fprintf(out, ",%s", arkit_columns[i]);
+        putc('\n', out);
     }
 }
 
@@ -71,10 +129,12 @@ void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
     if (frames->failed)
         return;
-    if (frames->format == FRAMES_CSV)
-        write_csv_frame(frames, faps);
-    else
-        keep_frame(frames, faps);
+    switch (frames->format) {
+    case FRAMES_CSV: write_csv_frame(frames, faps); break;
+    case FRAMES_FAP: keep_frame(frames, faps); break;
+    case FRAMES_LIVELINK: write_livelink_frame(frames, faps); break;
+    case FRAMES_JSONL: write_jsonl_frame(frames, faps); break;
+    }
     if (!frames->failed)
         frames->count++;
 }

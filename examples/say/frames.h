@@ -1,11 +1,15 @@
 /*
  * frames.h - frames written as text.
  *
- *   csv  a header `time,fap3,fap16,...`, then a line per frame, written as it comes: seconds with three decimals and
- *        the 13 channels in FAP units.
- *   fap  MPEG-4 text: a header `2.1 NAME FPS NFRAMES`, then two lines per frame: a mask of 68 zeros and ones, and the
- *        frame's number followed by the value of each FAP whose mask is one, here the 23 of inner and outer lips. The
- *        header needs the number of frames, so they are kept in memory and written by frames_finish().
+ *   csv       a header `time,fap3,fap16,...`, then a line per frame, written as it comes: seconds with three decimals
+ *             and the 13 channels in FAP units.
+ *   fap       MPEG-4 text: a header `2.1 NAME FPS NFRAMES`, then two lines per frame: a mask of 68 zeros and ones, and
+ *             the frame's number followed by the value of each FAP whose mask is one, here the 23 of inner and outer
+ *             lips. The header needs the number of frames, so they are kept in memory and written by frames_finish().
+ *   livelink  what Epic's Live Link Face records: `Timecode,BlendShapeCount,` and 61 columns, ARKit's blendshapes from 0
+ *             to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
+ *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
+ *             lips and jaw move, from 0 to 1.
  */
 #ifndef LABIAL_EXAMPLE_FRAMES_H
 #define LABIAL_EXAMPLE_FRAMES_H
@@ -16,7 +20,7 @@
 
 #include "labial/faps.h"
 
-typedef enum { FRAMES_CSV, FRAMES_FAP } frames_format_t;
+typedef enum { FRAMES_CSV, FRAMES_FAP, FRAMES_LIVELINK, FRAMES_JSONL } frames_format_t;
 
 /* A writer. Private. */
 typedef struct {
@@ -29,6 +33,9 @@ typedef struct {
     int16_t (*kept)[LABIAL_CHANNELS]; /* fap: `count` frames in room for `room`, owned */
     size_t room;
 } frames_t;
+
+/* The format that `name` names, csv, fap, livelink or jsonl; -1 when it names none. */
+int frames_format_of(const char *name);
 
 /* Prepares a writer and writes what precedes the first frame. `name` is the animation's in a fap file and must stay
  * valid. frames_finish() releases what the writer owns. */

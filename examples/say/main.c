@@ -3,50 +3,35 @@
  *
  *     flite -t "My baby may be happy." -psdur -o none | labial-say > motion.csv
  */
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "frames.h"
-#include "labial/labial.h"
-#include "labial/names.h"
-#include "laughter_synthetic.h"
-#include "speech_en.h"
+#include "mouth.h"
 #include "timings.h"
 
 /* Exit statuses. */
 #define EXIT_INPUT 1
 #define EXIT_USAGE 2
 
-#define WORKSPACE_SIZE                                                                                      \
-    (SPEECH_EN_WORKSPACE_SIZE > LAUGHTER_SYNTHETIC_WORKSPACE_SIZE ? SPEECH_EN_WORKSPACE_SIZE                \
-                                                                  : LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
-
-typedef struct {
-    const char *name;
-    const labial_model_t *model;
-    const labial_names_t *names;
-} voice_t;
-
-static const voice_t voices[] = {
-    {"speech_en", &speech_en, &speech_en_names},
-    {"laughter_synthetic", &laughter_synthetic, &laughter_synthetic_names},
-};
+/* How labels are to be read: as the format says, or as one of the two. */
+enum { LABELS_OF_FORMAT, LABELS_ARPABET, LABELS_SAMPA };
 
 typedef struct {
     timings_format_t from;
     frames_format_t to;
-    const voice_t *voice;
+    const mouth_voice_t *voice;
+    const char *tier;
+    int labels;
 } options_t;
 
-/* What runs between the two ends of the pipe. The stream is the caller's memory, as the library never allocates. */
 typedef struct {
-    const voice_t *voice;
-    labial_t stream;
-    uint32_t workspace[(WORKSPACE_SIZE + 3u) / 4u];
+    mouth_t mouth;
     timings_t timings;
-    frames_t frames;
+    int labels;
 } say_t;
+
+/* In the order of timings_format_t. */
+static const char *const format_names[] = {"auto", "flite", "lab", "htk", "pho", "mary", "phseg", "textgrid"};
 
 static const char usage_text[] =
     "usage: labial-say [--from FORMAT] [--to FORMAT] [--model MODEL] < timings > motion\n"
@@ -56,13 +41,26 @@ static const char usage_text[] =
     "\n"
     "  --from flite    `flite -psdur`: label:end ..., seconds; every line starts again from 0\n"
     "         lab      start end label [apex [word]], a line each, seconds; gaps are silence\n"
+    "         htk      start end label, a line each, units of 100 ns; also HTS's labels with context, a^b-c+d=e\n"
     "         pho      MBROLA: label milliseconds [position pitch]..., a line each; ; comment, _ silence\n"
+    "         mary     MaryTTS REALISED_DURATIONS: a line of #, then end number label, a line each, seconds\n"
+    "         phseg    CMU Sphinx: SFrm EFrm SegAScr Phone, frames of 10 ms\n"
+    "         textgrid Praat or Montreal Forced Aligner; the tier of phones is found by its name\n"
     "                  (default: told from the first line)\n"
+    "  --tier NAME     the tier of a TextGrid\n"
+    "  --labels SET    arpabet or sampa: what N S T D Z V mean (default: sampa in pho and mary). IPA, ARPABET,\n"
+    "                  X-SAMPA and espeak's labels are known; others move as the nearest, with one warning each\n"
     "  --to csv        time,fap3,fap16,...: seconds and 13 FAPs per frame (default)\n"
     "       fap        MPEG-4 text, 23 FAPs; its header holds the number of frames, so it is written at the end\n"
+    "       livelink   Live Link Face CSV: ARKit's blendshapes, 0 to 1\n"
+    "       jsonl      a JSON object per frame: FAPs and ARKit's blendshapes of the mouth\n"
     "  --model MODEL   speech_en (default) or laughter_synthetic\n"
     "  --help          print this and exit\n"
     "  --version       print the version and exit\n"
+    "\n"
+    "Laughs: `<laugh SECONDS [INTENSITY]>` on a line of its own, or between flite's phonemes, is laughed there, and\n"
+    "what follows comes later by as much. The label `<laugh>` or `<laugh:INTENSITY>` in the place of a phoneme's is\n"
+    "laughed for the time that the row gives it. Intensity is 0 to 1; it is 0.5 when left out.\n"
     "\n"
     "Exit status: 0 success, 1 malformed input or failure to write, 2 wrong usage.\n";
 
@@ -88,87 +86,61 @@ static int wrong_usage(const char *problem, const char *value)
     return EXIT_USAGE;
 }
 
+static int read_from(options_t *options, const char *value)
+{
+    for (size_t f = 0; f < sizeof format_names / sizeof format_names[0]; f++)
+        if (strcmp(value, format_names[f]) == 0) {
+            options->from = (timings_format_t)f;
+            return 0;
+        }
+    return wrong_usage("--from is flite, lab, htk, pho, mary, phseg or textgrid, not", value);
+}
+
 static int read_options(int argc, char **argv, options_t *options)
 {
     for (int i = 1; i < argc; i++) {
         const char *value;
+        int result = 0;
         if ((value = option_value("--from", argc, argv, &i)) != NULL) {
-            if (strcmp(value, "flite") == 0)
-                options->from = TIMINGS_FLITE;
-            else if (strcmp(value, "lab") == 0)
-                options->from = TIMINGS_LAB;
-            else if (strcmp(value, "pho") == 0)
-                options->from = TIMINGS_PHO;
-            else
-                return wrong_usage("--from is flite, lab or pho, not", value);
+            result = read_from(options, value);
         } else if ((value = option_value("--to", argc, argv, &i)) != NULL) {
-            if (strcmp(value, "csv") == 0)
-                options->to = FRAMES_CSV;
-            else if (strcmp(value, "fap") == 0)
-                options->to = FRAMES_FAP;
+            const int format = frames_format_of(value);
+            if (format < 0)
+                result = wrong_usage("--to is csv, fap, livelink or jsonl, not", value);
             else
-                return wrong_usage("--to is csv or fap, not", value);
+                options->to = (frames_format_t)format;
+        } else if ((value = option_value("--tier", argc, argv, &i)) != NULL) {
+            options->tier = value;
+            if (*value == '\0')
+                result = wrong_usage("--tier is the name of a tier, not", value);
+        } else if ((value = option_value("--labels", argc, argv, &i)) != NULL) {
+            options->labels = strcmp(value, "sampa") == 0 ? LABELS_SAMPA : LABELS_ARPABET;
+            if (options->labels == LABELS_ARPABET && strcmp(value, "arpabet") != 0)
+                result = wrong_usage("--labels is arpabet or sampa, not", value);
         } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
-            options->voice = NULL;
-            for (size_t v = 0; v < sizeof voices / sizeof voices[0]; v++)
-                if (strcmp(value, voices[v].name) == 0)
-                    options->voice = &voices[v];
-            if (!options->voice)
-                return wrong_usage("--model is speech_en or laughter_synthetic, not", value);
+            options->voice = strcmp(value, mouth_speech.name) == 0 ? &mouth_speech : &mouth_laughter;
+            if (options->voice == &mouth_laughter && strcmp(value, mouth_laughter.name) != 0)
+                result = wrong_usage("--model is speech_en or laughter_synthetic, not", value);
         } else {
-            return wrong_usage("unknown argument", argv[i]);
+            result = wrong_usage("unknown argument", argv[i]);
         }
+        if (result != 0)
+            return result;
     }
     return 0;
 }
 
 /* ---- The pipe -------------------------------------------------------------------------------------------------- */
 
-static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
-{
-    say_t *say = user;
-    (void)frame;
-    frames_put(&say->frames, faps);
-}
-
-/* Takes every frame that what was pushed so far allows. There is no clock to follow here, so a frame that is still
- * being computed is asked for again at once. Returns why there are no more, or an error. */
-static int drain(say_t *say)
-{
-    int result;
-    do {
-        result = labial_tick(&say->stream);
-    } while (result == LABIAL_OK || result == LABIAL_BUSY);
-    return result;
-}
-
-/* Passes a phoneme from the text to the stream, and what frames it completes on to the output: the next byte may be
- * long in coming. */
 static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
 {
     say_t *say = user;
-    int number = say->voice->model->silence;
-    if (phoneme->label)
-        number = labial_find(say->voice->names, phoneme->label, strlen(phoneme->label));
-    if (number < 0) {
-        fprintf(stderr, "labial-say: line %lu: %s has no phoneme '%s'\n", say->timings.line, say->voice->name,
-                phoneme->label);
-        return -1;
-    }
-    int result = labial_room(&say->stream) > 0 ? LABIAL_OK : drain(say);
-    if (result >= 0)
-        result = labial_push(&say->stream, (unsigned)number, phoneme->milliseconds);
-    if (result >= 0)
-        result = drain(say);
-    if (result < 0) {
-        fprintf(stderr, "labial-say: line %lu: %s\n", say->timings.line, labial_result_text(result));
-        return -1;
-    }
-    if (frames_flush(&say->frames) != 0) {
-        fprintf(stderr, "labial-say: cannot write the motion\n");
-        return -1;
-    }
-    return 0;
+    char where[48];
+    (void)snprintf(where, sizeof where, "line %lu: ", say->timings.line);
+    if (phoneme->laugh >= 0)
+        return mouth_laugh(&say->mouth, where, phoneme->milliseconds, (unsigned)phoneme->laugh);
+    const int sampa = say->labels == LABELS_OF_FORMAT ? phoneme->sampa : say->labels == LABELS_SAMPA;
+    return mouth_say(&say->mouth, where, phoneme->label, sampa, phoneme->milliseconds);
 }
 
 /* Reads standard input to its end. Returns 0, or -1 after the error was printed. */
@@ -191,28 +163,16 @@ static int read_timings(say_t *say)
 
 static int run(say_t *say, const options_t *options)
 {
-    say->voice = options->voice;
-    int result = labial_init(&say->stream, options->voice->model, say->workspace, sizeof say->workspace, on_frame, say);
-    if (result < 0) {
-        fprintf(stderr, "labial-say: %s: %s\n", options->voice->name, labial_result_text(result));
+    if (mouth_init(&say->mouth, "labial-say", options->voice, stdout, options->to) != 0)
         return EXIT_INPUT;
-    }
-    timings_init(&say->timings, options->from, on_phoneme, say);
-    frames_init(&say->frames, stdout, options->to, options->voice->name, options->voice->model->frames_per_second);
-
+    say->labels = options->labels;
+    timings_init(&say->timings, options->from, options->tier, on_phoneme, say);
     const int complete = read_timings(say) == 0;
-    if (complete) {
-        labial_end(&say->stream);
-        result = drain(say);
-        if (result < 0)
-            fprintf(stderr, "labial-say: %s\n", labial_result_text(result));
-    }
-    if (frames_finish(&say->frames, complete) != 0) {
-        if (complete)
-            fprintf(stderr, "labial-say: cannot write the motion\n");
-        return EXIT_INPUT;
-    }
-    return complete && result >= 0 ? 0 : EXIT_INPUT;
+    timings_free(&say->timings);
+    if (complete)
+        return mouth_end(&say->mouth) == 0 ? 0 : EXIT_INPUT;
+    mouth_drop(&say->mouth);
+    return EXIT_INPUT;
 }
 
 int main(int argc, char **argv)
@@ -225,7 +185,7 @@ int main(int argc, char **argv)
         printf("labial-say %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
         return 0;
     }
-    options_t options = {TIMINGS_AUTO, FRAMES_CSV, &voices[0]};
+    options_t options = {TIMINGS_AUTO, FRAMES_CSV, &mouth_speech, NULL, LABELS_OF_FORMAT};
     const int result = read_options(argc, argv, &options);
     if (result != 0)
         return result;

@@ -1,266 +1,181 @@
 /*
- * timings.c - bytes to fields, fields to phonemes.
- *
- * timings_put() cuts the text into fields and lines; end_field() and end_line() give them their meaning, flite's at
- * the end of a field, that of the other two formats at the end of a line.
+ * timings.c - bytes to characters of UTF-8, characters to fields and lines.
  */
 #include "timings.h"
 
-#include <stdarg.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-static int malformed(timings_t *t, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(t->message, sizeof t->message, format, arguments);
-    va_end(arguments);
-    return TIMINGS_MALFORMED;
-}
+#include "timings_private.h"
 
-/* ---- Numbers --------------------------------------------------------------------------------------------------- */
+/* What the first bytes told. UTF-16 is how Praat writes labels that are not ASCII. */
+enum { ENCODING_UNKNOWN, ENCODING_UTF8, ENCODING_UTF16_LE, ENCODING_UTF16_BE };
 
-static int is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
-/*
- * Reads `digits[.digits]` as an integer number of 1/10^places, rounding what lies beyond. Decimal digits are exact
- * where strtod() is not, and know neither signs, exponents nor nan. Returns 0 when `text` is anything else, or the
- * number exceeds `maximum`.
- */
-static int read_decimal(const char *text, unsigned places, uint64_t maximum, uint64_t *value)
-{
-    uint64_t sum = 0;
-    unsigned digits = 0;
-    for (; is_digit(*text); text++, digits++) {
-        sum = sum * 10u + (uint64_t)(*text - '0');
-        if (sum > maximum)
-            return 0;
-    }
-    unsigned taken = 0;
-    uint64_t carry = 0;
-    if (*text == '.') {
-        for (text++; is_digit(*text); text++, digits++) {
-            if (taken < places) {
-                sum = sum * 10u + (uint64_t)(*text - '0');
-                taken++;
-            } else if (taken == places) {
-                carry = *text >= '5';
-                taken++;
-            }
-        }
-    }
-    if (digits == 0 || *text != '\0')
-        return 0;
-    for (; taken < places; taken++)
-        sum *= 10u;
-    *value = sum + carry;
-    return *value <= maximum;
-}
-
-static int read_seconds(const char *text, uint64_t *microseconds)
-{
-    return read_decimal(text, 6, TIMINGS_TIME_MAX, microseconds);
-}
-
-static int read_milliseconds(const char *text, uint64_t *microseconds)
-{
-    return read_decimal(text, 3, TIMINGS_TIME_MAX, microseconds);
-}
-
-/* A pitch point's position or frequency; they do not matter here beyond being numbers. */
-static int is_number(const char *text)
-{
-    uint64_t ignored;
-    return read_seconds(*text == '-' || *text == '+' ? text + 1 : text, &ignored);
-}
-
-/* ---- Phonemes -------------------------------------------------------------------------------------------------- */
-
-/* Hands on a phoneme that runs from where the latest ended to `end`, microseconds. */
-static int emit(timings_t *t, const char *label, uint64_t end)
-{
-    const uint64_t milliseconds = (end + 500u) / 1000u - (t->end + 500u) / 1000u;
-    if (milliseconds > TIMINGS_DURATION_MAX)
-        return malformed(t, "'%s' is longer than an hour", label ? label : "silence");
-    t->end = end;
-    const timings_phoneme_t phoneme = {label, (uint32_t)milliseconds};
-    return t->sink(t->user, &phoneme);
-}
-
-/* `label:end`. The last colon divides, since X-SAMPA labels may contain one. */
-static int flite_token(timings_t *t, char *token)
-{
-    char *colon = strrchr(token, ':');
-    if (!colon || colon == token || colon[1] == '\0')
-        return malformed(t, "'%s' is not of the form label:seconds", token);
-    uint64_t end;
-    if (!read_seconds(colon + 1, &end))
-        return malformed(t, "'%s' does not end with a time from 0 to 1000000 seconds", token);
-    end += t->line_start;
-    if (end > TIMINGS_TIME_MAX)
-        return malformed(t, "'%s' is later than 1000000 seconds", token);
-    if (end < t->end)
-        return malformed(t, "'%s' ends before the phoneme before it does", token);
-    *colon = '\0';
-    return emit(t, token, end);
-}
-
-static int lab_line(timings_t *t)
-{
-    char (*f)[TIMINGS_FIELD_MAX + 1] = t->fields;
-    uint64_t start, end;
-    if (t->count < 3)
-        return malformed(t, "expected `start end label`, found %u field%s", t->count, t->count == 1 ? "" : "s");
-    if (!read_seconds(f[0], &start))
-        return malformed(t, "the start '%s' is not a time from 0 to 1000000 seconds", f[0]);
-    if (!read_seconds(f[1], &end))
-        return malformed(t, "the end '%s' is not a time from 0 to 1000000 seconds", f[1]);
-    if (end < start)
-        return malformed(t, "'%s' ends at %s, before its start at %s", f[2], f[1], f[0]);
-    if (start < t->end)
-        return malformed(t, "'%s' starts at %s, before the phoneme before it ends", f[2], f[0]);
-    if (start > t->end) {
-        const int result = emit(t, NULL, start);
-        if (result != 0)
-            return result;
-    }
-    return emit(t, f[2], end);
-}
-
-static int pho_line(timings_t *t)
-{
-    char (*f)[TIMINGS_FIELD_MAX + 1] = t->fields;
-    if (t->count == 1 && strcmp(f[0], "#") == 0)
-        return 0;
-    if (t->count < 2)
-        return malformed(t, "'%s' has no duration", f[0]);
-    uint64_t duration;
-    if (!read_milliseconds(f[1], &duration))
-        return malformed(t, "'%s' is not a duration from 0 to 1000000000 milliseconds", f[1]);
-    if (t->count % 2 != 0)
-        return malformed(t, "the last pitch point lacks its frequency");
-    if (t->end + duration > TIMINGS_TIME_MAX)
-        return malformed(t, "'%s' ends later than 1000000 seconds", f[0]);
-    return emit(t, strcmp(f[0], "_") == 0 || strcmp(f[0], "_:") == 0 ? NULL : f[0], t->end + duration);
-}
-
-/* ---- Fields and lines ------------------------------------------------------------------------------------------ */
-
-/*
- * Tells the format from the fields of the first line so far. A colon within the first field is flite's, a decimal point
- * in a number there is a time of lab. A first field of digits alone may also be an MBROLA phoneme (French has `2` and
- * `9`): then lab is what has a label in the third field. Otherwise it is a phoneme, and the second field must be its
- * duration.
- */
-static int tell_format(timings_t *t, int line_ends)
-{
-    uint64_t ignored;
-    const char *colon = strrchr(t->fields[0], ':');
-    const int number = read_seconds(t->fields[0], &ignored);
-    if (colon && colon != t->fields[0] && colon[1] != '\0')
-        t->format = TIMINGS_FLITE;
-    else if (number && strchr(t->fields[0], '.'))
-        t->format = TIMINGS_LAB;
-    else if (t->count == 3 && number)
-        t->format = is_number(t->fields[2]) ? TIMINGS_PHO : TIMINGS_LAB;
-    else if (t->count >= 2 && !number && read_milliseconds(t->fields[1], &ignored))
-        t->format = TIMINGS_PHO;
-    else if (t->count >= 2 && !number)
-        return malformed(t, "this is not flite's, lab or pho timings");
-    else if (line_ends && number)
-        t->format = TIMINGS_PHO;
-    else if (line_ends && strcmp(t->fields[0], "#") != 0)
-        return malformed(t, "this is not flite's, lab or pho timings");
-    return 0;
-}
-
-static int end_field(timings_t *t)
-{
-    char *field = t->fields[t->count < 3 ? t->count : 3];
-    if (t->length == 0)
-        return 0;
-    field[t->length] = '\0';
-    t->length = 0;
-    t->count++;
-    if (t->format == TIMINGS_AUTO) {
-        const int result = tell_format(t, 0);
-        if (result != 0)
-            return result;
-    }
-    uint64_t apex;
-    if (t->format == TIMINGS_FLITE) {
-        t->count = 0;
-        return flite_token(t, field);
-    }
-    if (t->format == TIMINGS_LAB && t->count == 4 && !read_seconds(field, &apex))
-        return malformed(t, "the apex '%s' is not a time from 0 to 1000000 seconds", field);
-    if (t->format == TIMINGS_LAB && t->count > 5)
-        return malformed(t, "a line has five fields at most: start, end, label, apex, word");
-    if (t->format == TIMINGS_PHO && t->count > 2 && !is_number(field))
-        return malformed(t, "'%s' is not part of a pitch point", field);
-    return 0;
-}
-
-static int end_line(timings_t *t)
-{
-    int result = 0;
-    if (t->count > 0 && t->format == TIMINGS_AUTO)
-        result = tell_format(t, 1);
-    if (result == 0 && t->count > 0 && t->format == TIMINGS_LAB)
-        result = lab_line(t);
-    if (result == 0 && t->count > 0 && t->format == TIMINGS_PHO)
-        result = pho_line(t);
-    t->line_start = t->end;
-    t->count = 0;
-    t->comment = 0;
-    return result;
-}
-
-/* ---- The parser ------------------------------------------------------------------------------------------------ */
-
-void timings_init(timings_t *timings, timings_format_t format, timings_sink_t sink, void *user)
+void timings_init(timings_t *timings, timings_format_t format, const char *tier, timings_sink_t sink, void *user)
 {
     memset(timings, 0, sizeof *timings);
     timings->line = 1;
     timings->format = format;
+    timings->tier = tier;
     timings->sink = sink;
     timings->user = user;
 }
 
-int timings_put(timings_t *t, unsigned char byte)
+void timings_free(timings_t *t)
+{
+    free(t->grid.kept);
+    t->grid.kept = NULL;
+    t->grid.kept_size = 0;
+    t->grid.kept_room = 0;
+}
+
+/* ---- Characters to fields and lines ---------------------------------------------------------------------------- */
+
+/* Passes the first field, by which the format was told, and what stood behind it on to the other parser. */
+static int continue_as_textgrid(timings_t *t, unsigned char byte)
+{
+    field_t first;
+    int result = 0;
+    memcpy(first, t->fields[0], sizeof first);
+    t->count = 0;
+    for (const char *c = first; result == 0 && *c; c++)
+        result = timings_textgrid_put(t, (unsigned char)*c);
+    return result == 0 ? timings_textgrid_put(t, byte) : result;
+}
+
+static int put_character(timings_t *t, unsigned char byte)
 {
     int result = 0;
+    if (t->format == TIMINGS_TEXTGRID)
+        return timings_textgrid_put(t, byte);
     if (byte == '\n') {
-        result = end_field(t);
+        result = timings_end_field(t);
+        if (result == 0 && t->format == TIMINGS_TEXTGRID)
+            return continue_as_textgrid(t, byte);
         if (result == 0)
-            result = end_line(t);
+            result = timings_end_line(t);
         if (result == 0)
             t->line++;
         return result;
     }
     if (t->comment && byte != '\0')
         return 0;
-    if (byte == ' ' || byte == '\t' || byte == '\r')
-        return end_field(t);
+    if (byte == ' ' || byte == '\t' || byte == '\r') {
+        result = timings_end_field(t);
+        return result == 0 && t->format == TIMINGS_TEXTGRID ? continue_as_textgrid(t, byte) : result;
+    }
     if (byte < 0x20 || byte == 0x7f)
-        return malformed(t, "byte 0x%02x is not text", (unsigned)byte);
+        return timings_malformed(t, "byte 0x%02x is not text", (unsigned)byte);
     if (byte == ';' && t->length == 0 && (t->format == TIMINGS_PHO || (t->format == TIMINGS_AUTO && t->count == 0))) {
         t->format = TIMINGS_PHO;
         t->comment = 1;
         return 0;
     }
     if (t->length == TIMINGS_FIELD_MAX)
-        return malformed(t, "a field is longer than %d bytes", TIMINGS_FIELD_MAX);
-    t->fields[t->count < 3 ? t->count : 3][t->length++] = (char)byte;
+        return timings_malformed(t, "a field is longer than %d bytes", TIMINGS_FIELD_MAX);
+    t->fields[t->count < 4 ? t->count : 4][t->length++] = (char)byte;
     return 0;
 }
 
-int timings_end(timings_t *timings)
+/* ---- Bytes to characters --------------------------------------------------------------------------------------- */
+
+static int put_code_point(timings_t *t, uint32_t c)
 {
-    const int result = end_field(timings);
-    return result != 0 ? result : end_line(timings);
+    unsigned char bytes[4];
+    unsigned count;
+    if (c < 0x80u) {
+        bytes[0] = (unsigned char)c;
+        count = 1;
+    } else if (c < 0x800u) {
+        bytes[0] = (unsigned char)(0xc0u | c >> 6);
+        count = 2;
+    } else if (c < 0x10000u) {
+        bytes[0] = (unsigned char)(0xe0u | c >> 12);
+        count = 3;
+    } else {
+        bytes[0] = (unsigned char)(0xf0u | c >> 18);
+        count = 4;
+    }
+    for (unsigned i = 1; i < count; i++)
+        bytes[i] = (unsigned char)(0x80u | (c >> 6 * (count - 1u - i) & 0x3fu));
+    int result = 0;
+    for (unsigned i = 0; result == 0 && i < count; i++)
+        result = put_character(t, bytes[i]);
+    return result;
+}
+
+/* pending[0]: the first byte of a unit; pending[1]: the first unit of a pair, 0 without. */
+static int put_utf16(timings_t *t, unsigned char byte)
+{
+    if (t->pending_count == 0) {
+        t->pending[0] = byte;
+        t->pending_count = 1;
+        return 0;
+    }
+    t->pending_count = 0;
+    const unsigned first = t->pending[0];
+    const unsigned unit = t->encoding == ENCODING_UTF16_LE ? (unsigned)byte << 8 | first : first << 8 | byte;
+    const unsigned high = t->pending[1];
+    const int is_low = unit >= 0xdc00u && unit <= 0xdfffu;
+    if ((high != 0) != is_low)
+        return timings_malformed(t, "half a UTF-16 pair");
+    if (unit >= 0xd800u && unit <= 0xdbffu) {
+        t->pending[1] = unit;
+        return 0;
+    }
+    t->pending[1] = 0;
+    return put_code_point(t, high ? 0x10000u + ((high - 0xd800u) << 10) + (unit - 0xdc00u) : unit);
+}
+
+/* Passes on the bytes that were held back to see whether they are a byte order mark. */
+static int put_pending(timings_t *t)
+{
+    int result = 0;
+    const unsigned count = t->pending_count;
+    t->pending_count = 0;
+    t->encoding = ENCODING_UTF8;
+    for (unsigned i = 0; result == 0 && i < count; i++)
+        result = put_character(t, (unsigned char)t->pending[i]);
+    return result;
+}
+
+int timings_put(timings_t *t, unsigned char byte)
+{
+    if (t->encoding == ENCODING_UTF8)
+        return put_character(t, byte);
+    if (t->encoding != ENCODING_UNKNOWN)
+        return put_utf16(t, byte);
+    t->pending[t->pending_count++] = byte;
+    const unsigned a = t->pending[0], b = t->pending[1];
+    if (t->pending_count == 1)
+        return a == 0xffu || a == 0xfeu || a == 0xefu ? 0 : put_pending(t);
+    if (t->pending_count == 2 && a != 0xefu) {
+        if ((a ^ b) != 0x01u)
+            return put_pending(t);
+        t->encoding = a == 0xffu ? ENCODING_UTF16_LE : ENCODING_UTF16_BE;
+        t->pending[1] = 0;
+        t->pending_count = 0;
+        return 0;
+    }
+    if (t->pending_count == 2)
+        return b == 0xbbu ? 0 : put_pending(t);
+    if (byte != 0xbfu)
+        return put_pending(t);
+    t->encoding = ENCODING_UTF8;
+    t->pending_count = 0;
+    return 0;
+}
+
+int timings_end(timings_t *t)
+{
+    int result = 0;
+    if (t->encoding == ENCODING_UNKNOWN)
+        result = put_pending(t);
+    else if (t->encoding != ENCODING_UTF8 && (t->pending_count != 0 || t->pending[1] != 0))
+        return timings_malformed(t, "the text ends within a character of UTF-16");
+    if (result == 0 && t->format != TIMINGS_TEXTGRID)
+        result = timings_end_field(t);
+    if (result == 0 && t->format == TIMINGS_TEXTGRID)
+        return t->count > 0 ? timings_malformed(t, "the TextGrid ends within its header") : timings_textgrid_end(t);
+    return result != 0 ? result : timings_end_line(t);
 }

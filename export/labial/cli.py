@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 import warnings
+from pathlib import Path
 from typing import TYPE_CHECKING, List, Optional
 
 from labial import __version__
@@ -50,8 +51,11 @@ def parser() -> argparse.ArgumentParser:
 
     synth = commands.add_parser("synth", help="synthesise frames with the float64 reference")
     synth.add_argument("model", metavar="MODEL.npz")
-    synth.add_argument("phones", metavar="PHONES", help="phoneme timings: .lab, .TextGrid, .phseg, .pho, flite -psdur")
-    synth.add_argument("-o", "--output", metavar="FRAMES.csv", help="standard output without it")
+    synth.add_argument("phones", metavar="PHONES",
+                       help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur")
+    synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
+    synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
+                       help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
     synth.add_argument("--whole", action="store_true", help="decode the whole utterance at once, not unit by unit")
     synth.set_defaults(run=_synth)
 
@@ -155,7 +159,7 @@ def _train(options: argparse.Namespace) -> int:
 
 
 def _synth(options: argparse.Namespace) -> int:
-    from labial.frames import write_csv
+    from labial.animation import WRITERS
     from labial.model import load
     from labial.phones import read_stream
     from labial.reference.stream import synthesise
@@ -163,11 +167,12 @@ def _synth(options: argparse.Namespace) -> int:
 
     model = load(options.model)
     frames = synthesise(FloatTables(model), read_stream(options.phones, model), whole=options.whole)
+    name = Path(options.model).stem
     if options.output:
         with open(options.output, "w", encoding="ascii", newline="\n") as out:
-            write_csv(out, frames, model.fps)
+            WRITERS[options.to](out, frames, model.fps, name)
     else:
-        write_csv(sys.stdout, frames, model.fps)
+        WRITERS[options.to](sys.stdout, frames, model.fps, name)
     return 0
 
 

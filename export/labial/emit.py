@@ -210,14 +210,31 @@ def _string(text: str) -> str:
         chr(b) if 32 <= b < 127 and b not in (34, 92, 63) else f"\\{b:03o}" for b in text.encode()) + '"'
 
 
+def _packed(name: str, phoneme: int) -> str:
+    """An entry of the names: the phoneme, the name's length and its bytes."""
+    data = name.encode()
+    spelled = [f"'{chr(b)}'" if 32 < b < 127 and b not in (39, 92) else str(b) for b in data]
+    return ", ".join([str(phoneme), str(len(data)), *spelled])
+
+
+def names_bytes(model: ExportedModel) -> int:
+    """Flash bytes of the names on a 32-bit target."""
+    labels = sum(4 + len(label.encode()) + 1 for label in model.phonemes)
+    return sum(2 + len(name.encode()) for name, _ in model.aliases) + labels + 12
+
+
 def names_source(model: ExportedModel) -> str:
-    """NAME_names.c: labels and aliases in the order of their bytes."""
-    entries = "\n".join(f"    {{ {_string(text)}, {number} }}," for text, number in model.aliases).rstrip(",")
+    """NAME_names.c: labels and aliases in the order of their bytes. Raises ModelError when there are too many."""
+    size = sum(2 + len(name.encode()) for name, _ in model.aliases)
+    if size > 65535 or any(len(name.encode()) > 255 for name, _ in model.aliases):
+        raise ModelError("names are longer than 255 bytes, or 65,535 together")
+    entries = "\n".join(f"    {_packed(text, number)}," for text, number in model.aliases).rstrip(",")
     labels = textwrap.fill(", ".join(_string(label) for label in model.phonemes), width=118, initial_indent="    ",
                            subsequent_indent="    ")
     return f"""{_comment(model, f"{model.name}_names.c - names of the phonemes of the")}#include "{model.name}.h"
 
-static const labial_name_t entries[{len(model.aliases)}] = {{
+/* Phoneme, bytes of the name, name. */
+static const uint8_t entries[{size}] = {{
 {entries}
 }};
 
@@ -225,8 +242,9 @@ static const char *const labels[{len(model.phonemes)}] = {{
 {labels}
 }};
 
-const labial_names_t {model.name}_names = {{ {len(model.aliases)}, {len(model.phonemes)}, entries, labels }};
+const labial_names_t {model.name}_names = {{ {size}, {len(model.phonemes)}, entries, labels }};
 """
+
 
 
 def blob(model: ExportedModel) -> bytes:

@@ -9,7 +9,7 @@ import numpy as np
 
 from labial.corpus.timings import phoneme_segments, read_timings
 from labial.model import Model
-from labial.phonesets import PhoneSet
+from labial.phonesets import PhoneSet, aliases_for
 
 #: A phoneme stream: (phoneme number, milliseconds) pairs.
 Stream = List[Tuple[int, int]]
@@ -24,7 +24,7 @@ def phone_set(model: Model) -> PhoneSet:
         phoneme_class=tuple(int(c) for c in model.phoneme_class),
         boundary=tuple(bool(b) for b in model.boundary),
         silence=model.silence,
-        aliases=model.aliases,
+        aliases=aliases_for(model.kind, model.phonemes, model.aliases),
     )
 
 
@@ -32,9 +32,9 @@ def read_stream(path: Union[str, os.PathLike], model: Model) -> Stream:
     """Reads phoneme timings of any format that corpora come in; gaps are silence.
 
     Boundaries are rounded to milliseconds, so that rounding never adds up. Raises DataError, which names the file and
-    the line, for what is malformed and for labels that the model does not know.
+    the line, for what is malformed; labels that the model does not know are the nearest, with one warning each.
     """
-    segments = phoneme_segments(path, read_timings(path), phone_set(model))
+    segments = phoneme_segments(path, read_timings(path), phone_set(model), strict=False)
     bounds = [round(1000 * segment.end) for segment in segments]
     begins = [0, *bounds[:-1]]
     return [(model.phonemes.index(segment.label), end - begin) for segment, begin, end in zip(segments, begins, bounds)]

@@ -2,7 +2,7 @@ r"""Phone sets: what a model's phonemes are, how they look, where units begin, a
 
 A *phoneme* is a label of a model's inventory, an *alias* a label of some front end or corpus that stands for one.
 Aliases are case-sensitive, since phone sets differ by case (X-SAMPA ``@U``, ``tS``). Where one label means different
-sounds in two sets, ARPABET wins: ``N S T D Z V`` are never read as X-SAMPA.
+sounds in two sets, ARPABET wins: ``N S T D Z V`` are read as X-SAMPA only where the format says that they are.
 
 Viseme classes of speech group what lips and jaw do, not what the tongue does: so /k g ng/ go with /hh/, which leave the
 lips to their neighbours, /w/ with the close rounded vowels, and /r/ with /er/. Diphthongs go with the part that
@@ -11,10 +11,13 @@ opens or rounds most.
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from dataclasses import dataclass
-from typing import Collection, Dict, List, Optional, Tuple
+from typing import Collection, Dict, List, Optional, Sequence, Tuple
+
+from labial.labels import find, nearest, normalise
+
+__all__ = ["ARPABET", "LAUGHTER", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet", "aliases_for", "candidates_for",
+           "normalise", "substitute_for"]
 
 
 @dataclass(frozen=True)
@@ -29,36 +32,26 @@ class PhoneSet:
     silence: str
     aliases: Dict[str, str]  #: other label -> phoneme
 
-    def resolve(self, label: str) -> Optional[str]:
-        """The phoneme that `label` means, or None: as it stands, else without stress, length and other marks."""
-        for name in (label, normalise(label)):
-            if name in self.phonemes:
-                return name
-            if name in self.aliases:
-                return self.aliases[name]
-        return None
+    def names(self) -> Dict[str, str]:
+        """Every label that has a meaning, and that meaning."""
+        return {**self.aliases, **{label: label for label in self.phonemes}}
+
+    def resolve(self, label: str, sampa: bool = False) -> Optional[str]:
+        """The phoneme that `label` means, or None: as it stands, else without stress, length and other marks. With
+        `sampa`, ``N S T D Z V`` and a few others are read as X-SAMPA."""
+        return find(self.names(), label, sampa)
+
+    def nearest(self, label: str) -> str:
+        """A phoneme for any label, the one it means or looks most like."""
+        return nearest(self.names(), label, self.silence)
 
 
-#: Marks before a symbol: primary and secondary stress in IPA, X-SAMPA and espeak.
-_LEADING = "\u02c8\u02cc'\",%"
-#: Marks after a symbol: length, half length; aspiration, palatalised, labialised, velarised, pharyngealised, releases.
-_MODIFIERS = "\u02d0\u02d1\u02b0\u02b2\u02b7\u02e0\u02e4\u207f\u02e1\u031a"
-_STRESS_DIGIT = re.compile(r"(?<=[A-Za-z]{2})[012]$")
-#: Diacritics, length and stress as Praat's backslash sequences. ``\h^`` is not one: it is a consonant.
-_PRAAT_MARK = re.compile(r"\\[|0OT\-+:~NUDn3cv'`^][v^()]|\\[:.]f|\\'[12]")
-
-
-def normalise(label: str) -> str:
-    """`label` without stress digits (0-2 after two letters or more), stress and length signs, ties and diacritics.
-
-    A label that consists of marks alone is returned as it is.
-    """
-    text = _PRAAT_MARK.sub("", label.strip())
-    letters = unicodedata.normalize("NFD", text)
-    text = "".join(c for c in letters if not unicodedata.combining(c) and c not in _MODIFIERS)
-    text = text.lstrip(_LEADING)
-    text = text.rstrip(":") or text
-    return _STRESS_DIGIT.sub("", text) or label.strip()
+def aliases_for(kind: str, phonemes: Sequence[str], own: Dict[str, str]) -> Dict[str, str]:
+    """The aliases of a model's phonemes: those of its kind's phone set, and `own`, which come first. A model thus knows
+    labels that became known after its training."""
+    built_in = PHONE_SETS[kind].aliases if kind in PHONE_SETS else {}
+    known = {alias: label for alias, label in built_in.items() if label in phonemes and alias not in phonemes}
+    return {**known, **own}
 
 
 def substitute_for(label: str, available: Collection[str]) -> str:
@@ -140,19 +133,22 @@ _FILLERS = "BREATHING BREATH LAUGHTER GARBAGE LIPSMACK SMACK NOISE COUGH NSN SPN
 
 #: Aliases beside ARPABET's own spellings. ARPABET-like: flite, Sphinx, TIMIT. Then IPA, then X-SAMPA and espeak.
 _SPEECH_ALIASES = {
-    "SIL": "sil pau PAU brth BRTH sp SP spn SPN nsn NSN ssil SSIL h# H# # epi <sil> <SIL> <s> </s> <eps> _ __ "
+    "SIL": "sil pau PAU brth BRTH sp SP spn SPN nsn NSN ssil SSIL h# H# # epi <sil> <SIL> <s> </s> <eps> _ __ _! "
     + " ".join(f"{plus}{name}{plus}" for name in _FILLERS for plus in ("+", "++"))
     + " [NOISE] [COUGH] [SMACK] [SPEECH] [LAUGHTER] [BREATH]",
-    "AA": "ɑ A A: aa: a#", "AE": "æ a {", "AH": "ax AX ax-h AX-H +UH+ ++UH++ +UM+ ++UM++ ə ʌ ɐ ɘ @ @2 @5",
-    "AO": "ɔ ɒ Q O O: 0 O2 oː o:", "AW": "aʊ æʊ aʊə aU aU@", "AY": "aɪ aj ɑɪ aɪə aI aI@ aI3",
-    "EH": "ɛ e E e@ eə ɛə E2", "ER": "axr AXR ɜ ɝ ɚ ə˞ ɜ˞ 3 3: @` 3`", "EY": "eɪ ej eI",
-    "IH": "ix IX ɪ ɨ ᵻ I I2 I# ɪə I@", "IY": "i iː i: i3 iə i@ i@3", "OW": "oʊ əʊ əw o oU @U", "OY": "ɔɪ ɔj OI",
-    "UH": "ʊ ʊə ɵ U U@", "UW": "ux UX u ʉ u: y: ø œ",
+    "AA": "ɑ A A: aa: a# ɑɹ ɑ̃", "AE": "æ a {",
+    "AH": "ax AX ax-h AX-H +UH+ ++UH++ +UM+ ++UM++ ə ʌ ɐ ɘ @ @2 @5 6 ɤ ə- @-",
+    "AO": "ɔ ɒ Q O O: 0 O2 oː o: oɹ ɔɹ õ", "AW": "aʊ æʊ aʊə aU aU@ ʌʊ", "AY": "aɪ aj ɑɪ aɪə aɪɚ aɪɜ aI aI@ aI3 AI",
+    "EH": "ɛ e E e@ eə ɛə E2 ɛɹ eɹ ẽ", "ER": "axr AXR ɜ ɝ ɚ ə˞ ɜ˞ ɜɹ əɹ 3 3: @` 3` r= @r", "EY": "eɪ ej eI EI",
+    "IH": "ix IX ɪ ɨ ᵻ I I2 I# ɪə I@ ɪɹ 1 ĩ", "IY": "i iː i: i3 iə i@ i@3", "OW": "oʊ əʊ əw o oU @U ɐʊ",
+    "OY": "ɔɪ ɔj OI oI",
+    "UH": "ʊ ʊə ɵ U U@ ʊɹ ʏ 7 8", "UW": "ux UX u ʉ u: y: ø œ ũ 2 9 &",
     "B": "bcl BCL BD bd β", "P": "pcl PCL PD pd", "M": "em EM", "F": "ɸ", "V": "ʋ ɱ",
-    "D": "dcl DCL DD dd dx DX nx NX ɾ ɖ", "T": "tcl TCL TD td ʈ", "N": "en EN ɲ ɳ", "L": "el EL ɫ ɬ ɭ ʎ @L",
+    "D": "dcl DCL DD dd dx DX nx NX ɾ ɖ 4 d[", "T": "tcl TCL TD td ʈ t# t[",
+    "N": "en EN ɲ ɳ J J^ n^ n-", "L": "el EL ɫ ɬ ɭ ʎ əl @L @l 5 l^",
     "TH": "θ", "DH": "ð", "S": "TS ts", "Z": "dz DZ", "SH": "ʃ ɕ ʂ", "ZH": "ʒ ʑ ʐ", "CH": "tʃ ʧ tS tɕ",
     "JH": "dʒ ʤ dZ dʑ", "K": "kcl KCL KD kd c x", "G": "gcl GCL GD gd ɡ ɟ ɣ", "NG": "eng ENG ŋ",
-    "HH": "hv HV h ɦ q ʔ ç χ ħ", "R": "ɹ ɻ r\\ ʁ", "W": "ʍ ɥ", "Y": "j ʝ",
+    "HH": "hv HV h H ɦ q ʔ ç ç χ ħ ʕ ? C X", "R": "ɹ ɻ r\\ ʁ ɾ̃ ʀ R2", "W": "ʍ ɥ", "Y": "j ʝ",
 }  # fmt: skip
 
 

@@ -21,7 +21,9 @@ from labial.fixed import (
     weight_code,
     weight_value,
 )
+from labial.labels import without_redundant
 from labial.model import Model
+from labial.phonesets import aliases_for
 
 #: Version of the tables' meaning.
 FORMAT = 2
@@ -50,7 +52,7 @@ class ExportedModel:
     attribution: str
     fps: int
     phonemes: Tuple[str, ...]
-    aliases: Tuple[Tuple[str, int], ...]  #: every label and alias with its phoneme number
+    aliases: Tuple[Tuple[str, int], ...]  #: labels and aliases with phoneme numbers, but for those that lose marks only
     silence: int
     soft: bool
     first_component: np.ndarray  #: (P,)
@@ -113,7 +115,8 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
     weights, anchors = _weights(model)
-    aliases = {**model.aliases, **{label: label for label in model.phonemes}}
+    aliases = aliases_for(model.kind, model.phonemes, model.aliases)
+    names = without_redundant({**aliases, **{label: label for label in model.phonemes}})
     return ExportedModel(
         name=name,
         kind=model.kind,
@@ -121,7 +124,7 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         attribution=model.attribution,
         fps=model.fps,
         phonemes=model.phonemes,
-        aliases=tuple(sorted(((text, model.phonemes.index(label)) for text, label in aliases.items()),
+        aliases=tuple(sorted(((text, model.phonemes.index(label)) for text, label in names.items()),
                              key=lambda item: item[0].encode())),
         silence=model.phonemes.index(model.silence),
         soft=model.soft,

@@ -22,10 +22,9 @@ def workspace_bytes(states: int, stride: int) -> int:
 def memory(exported: ExportedModel) -> str:
     """Flash by group of tables, and RAM."""
     tables = emit.table_bytes(exported)
-    names = sum(len(text.encode()) + 1 + 8 for text, _ in exported.aliases) + 4 * len(exported.phonemes) + 12
     lines = [f"{'flash, ' + name:<32}{size:>8} bytes" for name, size in tables.items()]
     lines.append(f"{'flash, model':<32}{sum(tables.values()):>8} bytes")
-    lines.append(f"{'flash, names, if used':<32}{names:>8} bytes")
+    lines.append(f"{'flash, names, if used':<32}{emit.names_bytes(exported):>8} bytes")
     lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.edges.shape[1], exported.search_stride):>8} bytes")
     return "\n".join(lines)
 

@@ -13,8 +13,11 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-/* Ascending by bytes. "AA1" is a name of its own here, other than "AA" with a stress digit. */
-static const labial_name_t entries[] = {
+/* "AA1" is a name of its own here, other than "AA" with a stress digit. */
+static const struct {
+    const char *name;
+    uint8_t phoneme;
+} entries[] = {
     {"A", 9},        {"AA", 1},   {"AA1", 2},       {"AE", 3}, {"B", 4}, {"_:", 8}, {"a", 5},
     {"a\xca\x8a", 6}, {"sil", 0}, {"\xc9\x91", 1}, /* a + upsilon; alpha */
     {"\xca\x83", 7},                                /* esh, the last entry */
@@ -22,8 +25,48 @@ static const labial_name_t entries[] = {
 
 static const char *const labels[] = {"sil", "AA", "AA1", "AE", "B", "a", "a\xca\x8a", "\xca\x83", "_:", "A"};
 
-static const labial_names_t names = {sizeof entries / sizeof entries[0], sizeof labels / sizeof labels[0], entries,
-                                     labels};
+#define COUNT (sizeof entries / sizeof entries[0])
+
+static labial_names_t names = {0, sizeof labels / sizeof labels[0], NULL, labels};
+
+/* Packs the first `count` names at the very end of a heap block. */
+static uint8_t *pack(labial_names_t *packed, unsigned count)
+{
+    uint8_t *bytes = NULL;
+    size_t size = 0;
+    unsigned pass, i;
+    for (pass = 0; pass < 2; pass++) {
+        size_t at = 0;
+        for (i = 0; i < count; i++) {
+            const size_t length = strlen(entries[i].name);
+            if (pass > 0) {
+                bytes[at] = entries[i].phoneme;
+                bytes[at + 1] = (uint8_t)length;
+                memcpy(bytes + at + 2, entries[i].name, length);
+            }
+            at += 2 + length;
+        }
+        size = at;
+        if (pass == 0)
+            bytes = (uint8_t *)malloc(size);
+        assert_non_null(bytes);
+    }
+    packed->entries = bytes;
+    packed->size = (uint16_t)size;
+    return bytes;
+}
+
+static int set_up(void **state)
+{
+    *state = pack(&names, COUNT);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    free(*state);
+    return 0;
+}
 
 /* Looks `name` up at the very end of a heap block: a sanitizer sees every byte read beyond it. */
 static int find(const char *name)
@@ -38,12 +81,12 @@ static int find(const char *name)
     return result;
 }
 
-/* Would catch an off-by-one of the search at either end of the table. */
+/* Would catch an entry that is passed over, the last one above all. */
 static void every_entry_is_found(void **state)
 {
     unsigned i;
     (void)state;
-    for (i = 0; i < names.count; i++)
+    for (i = 0; i < COUNT; i++)
         assert_int_equal(find(entries[i].name), entries[i].phoneme);
 }
 
@@ -77,12 +120,13 @@ static void empty_names_are_refused(void **state)
 
 static void null_is_an_error(void **state)
 {
+    static const uint8_t nothing[1] = {0};
     labial_names_t none;
     (void)state;
     memset(&none, 0, sizeof none);
     assert_int_equal(labial_find(NULL, "AA", 2), LABIAL_ERROR_NULL);
     assert_int_equal(labial_find(&names, NULL, 2), LABIAL_ERROR_NULL);
-    none.entries = entries;
+    none.entries = nothing;
     assert_int_equal(labial_find(&none, "AA", 2), LABIAL_ERROR_NAME); /* an empty table */
 }
 
@@ -92,8 +136,8 @@ static void stress_digits_are_dropped(void **state)
     assert_int_equal(find("AA0"), 1);
     assert_int_equal(find("AA2"), 1);
     assert_int_equal(find("AE1"), 3);
-    assert_int_equal(find("A1"), 9);
-    assert_int_equal(find("B0"), 4);
+    assert_int_equal(find("A1"), LABIAL_ERROR_NAME); /* a digit behind one letter tells symbols of X-SAMPA apart */
+    assert_int_equal(find("B0"), LABIAL_ERROR_NAME);
 }
 
 /* Would catch stripping before looking: names that end in a digit or a colon are names first. */
@@ -132,21 +176,88 @@ static void marks_alone_are_unknown(void **state)
     assert_int_equal(find("\xcb" "AA"), LABIAL_ERROR_NAME);
 }
 
+/* Would catch a mark that is dropped at the wrong end, and letters that are taken for marks. */
+static void other_marks_are_dropped(void **state)
+{
+    (void)state;
+    assert_int_equal(find("'AA"), 1);
+    assert_int_equal(find("%,\"B"), 4);
+    assert_int_equal(find("a:"), 5);
+    assert_int_equal(find("a~"), 5);
+    assert_int_equal(find("B_h"), 4);
+    assert_int_equal(find("AE1_E"), 3);
+    assert_int_equal(find("B="), 4);
+    assert_int_equal(find("a\xcc\x83"), 5);         /* combining tilde */
+    assert_int_equal(find("B\xca\xb0"), 4);         /* aspirated */
+    assert_int_equal(find("a\xcd\xa1\xca\x8a"), 6); /* tied: a, double breve, upsilon */
+    assert_int_equal(find("a\\~^"), 5);
+    assert_int_equal(find("\\'1" "a\\:f"), 5);
+    assert_int_equal(find(" AA\r"), 1);
+    assert_int_equal(find("a\xcc\xa7"), LABIAL_ERROR_NAME); /* the cedilla makes another letter */
+    assert_int_equal(find("a'"), LABIAL_ERROR_NAME);
+    assert_int_equal(find("a\\"), LABIAL_ERROR_NAME);
+    assert_int_equal(find(":"), LABIAL_ERROR_NAME);
+    assert_int_equal(find("_h"), LABIAL_ERROR_NAME);
+}
+
+static int find_sampa(const char *name)
+{
+    return labial_find_sampa(&names, name, strlen(name));
+}
+
+/* Would catch X-SAMPA's letters read as ARPABET, in front of marks too, and ARPABET's labels lost. */
+static void sampa_has_its_own_letters(void **state)
+{
+    (void)state;
+    assert_int_equal(find_sampa("S"), 7);
+    assert_int_equal(find_sampa("'S:"), 7);
+    assert_int_equal(find_sampa("T"), LABIAL_ERROR_NAME); /* theta is not in this table */
+    assert_int_equal(find_sampa("AE1"), 3);
+    assert_int_equal(find_sampa(""), LABIAL_ERROR_NAME);
+    assert_int_equal(labial_find_sampa(NULL, "S", 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_find_sampa(&names, NULL, 1), LABIAL_ERROR_NULL);
+}
+
+static int find_nearest(const char *name)
+{
+    return labial_find_nearest(&names, name, strlen(name), 77);
+}
+
+/* Would catch a label that stops the caller, a short beginning taken for a long one, and noise that moves the lips. */
+static void every_label_has_a_nearest_phoneme(void **state)
+{
+    char longer[300];
+    (void)state;
+    assert_int_equal(find_nearest("AA1"), 2);
+    assert_int_equal(find_nearest("AAX"), 1);
+    assert_int_equal(find_nearest("Ax"), 9);
+    assert_int_equal(find_nearest("?!B"), 4);
+    assert_int_equal(find_nearest("<B>"), 77);
+    assert_int_equal(find_nearest("[a]"), 77);
+    assert_int_equal(find_nearest("+AA+"), 77);
+    assert_int_equal(find_nearest("zz"), 77); /* this table has no neutral vowel */
+    assert_int_equal(find_nearest(""), 77);
+    memset(longer, 'B', sizeof longer);
+    assert_int_equal(labial_find_nearest(&names, longer, sizeof longer, 77), 4);
+    assert_int_equal(labial_find_nearest(NULL, "B", 1, 77), LABIAL_ERROR_NULL);
+}
+
 /* Would catch a search that only works at one size of the table. */
 static void tables_of_every_size(void **state)
 {
     labial_names_t part = names;
     unsigned count, i;
     (void)state;
-    for (count = 1; count <= names.count; count++) {
-        part.count = (uint16_t)count;
-        for (i = 0; i < names.count; i++) {
+    for (count = 1; count <= COUNT; count++) {
+        uint8_t *bytes = pack(&part, count);
+        for (i = 0; i < COUNT; i++) {
             const int got = labial_find(&part, entries[i].name, strlen(entries[i].name));
             if (i < count)
                 assert_int_equal(got, entries[i].phoneme);
             else if (got != (i == 2 && count == 2 ? 1 : LABIAL_ERROR_NAME)) /* without its entry, "AA1" is "AA" stressed */
                 fail_msg("entry %u is found beyond a table of %u", i, count);
         }
+        free(bytes);
     }
 }
 
@@ -157,7 +268,9 @@ int main(void)
         cmocka_unit_test(unknown_names_are_refused), cmocka_unit_test(empty_names_are_refused),
         cmocka_unit_test(null_is_an_error), cmocka_unit_test(stress_digits_are_dropped),
         cmocka_unit_test(a_name_as_it_stands_comes_first), cmocka_unit_test(ipa_marks_are_dropped),
+        cmocka_unit_test(other_marks_are_dropped), cmocka_unit_test(sampa_has_its_own_letters),
+        cmocka_unit_test(every_label_has_a_nearest_phoneme),
         cmocka_unit_test(marks_alone_are_unknown), cmocka_unit_test(tables_of_every_size),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

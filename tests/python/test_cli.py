@@ -58,7 +58,7 @@ def test_check_compares_with_both_references(given: Path, capsys: pytest.Capture
         (["synth", "missing.npz", "phones.lab"], "missing.npz: no such file"),
         (["synth", "phones.lab", "phones.lab"], "phones.lab: not a labial model"),
         (["synth", "model.npz", "missing.lab"], "missing.lab"),
-        (["synth", "model.npz", "unknown.lab"], "unknown.lab:2:"),
+        (["synth", "model.npz", "overlap.lab"], "overlap.lab:2:"),
         (["synth", "model.npz", "backwards.lab"], "backwards.lab:1:"),
         (["export", "model.npz", "--name", "int", "-o", "out"], "no name for a model"),
         (["train", "nowhere", "-o", "x.npz"], "nowhere"),
@@ -71,7 +71,7 @@ def test_errors_are_one_line(
 ) -> None:
     """Files and lines are named; no traceback."""
     monkeypatch.chdir(given)
-    (given / "unknown.lab").write_text("0 0.1 SIL\n0.1 0.2 QQ\n")
+    (given / "overlap.lab").write_text("0 0.1 SIL\n0.05 0.2 SIL\n")
     (given / "backwards.lab").write_text("0.3 0.1 SIL\n")
     assert main(arguments) == 1
     error = capsys.readouterr().err

@@ -7,7 +7,9 @@ import pytest
 from labial.corpus.timings import (
     phoneme_segments,
     read_flite,
+    read_htk,
     read_lab,
+    read_mary,
     read_pho,
     read_phseg,
     read_textgrid,
@@ -109,7 +111,7 @@ def test_lab_with_three_to_five_columns(tmp_path):
 @pytest.mark.parametrize("text, line, words", [
     ("0 0.1\n", 1, "columns"), ("0 .1 A\n.1 .2 B .15 w x\n", 2, "columns"), ("0 .1 A\n.1 x B\n", 2, "finite"),
     ("0 nan A\n", 1, "finite"), ("0 inf A\n", 1, "finite"), ("0 .1 A\n.2 .15 B\n", 2, "before its start"),
-    ("0 .2 A\n.1 .3 B\n", 2, "before the end"), ("0 .1 A .3\n", 1, "apex"), ("0 3700000 sil\n", 1, "seconds"),
+    ("0 .2 A\n.1 .3 B\n", 2, "before the end"), ("0 .1 A .3\n", 1, "apex"), ("0.0 3700000 sil\n", 1, "seconds"),
     ("0 .1 A -\n", 1, "apex"), ("\n\n", None, "no segments"),
 ])  # fmt: skip
 def test_malformed_lab_names_the_line(tmp_path, text, line, words):
@@ -202,3 +204,48 @@ def test_unknown_labels_are_named_with_their_place(tmp_path):
     fails(lambda p: phoneme_segments(p, read_lab(p), SPEECH), path, 2, "'XX'")
     grid = put(tmp_path, "a.TextGrid", LONG.replace('"B"', '"XX"'))
     fails(lambda p: phoneme_segments(p, read_textgrid(p), SPEECH), grid, None, "interval 2")
+    with pytest.warns(UserWarning) as caught:
+        segments = phoneme_segments(path, [*read_lab(path), *read_lab(put(tmp_path, "b.lab", "0.2 0.3 XX\n"))], SPEECH,
+                                    strict=False)
+    assert [s.label for s in segments] == ["HH", "HH", "HH"] and len(caught) == 1
+    assert f"{path}:2: " in str(caught[0].message) and "'XX'" in str(caught[0].message)
+
+
+def test_htk_labels_with_and_without_context(tmp_path):
+    """Catches the unit of 100 ns, a phoneme cut at the wrong signs, and HTK's .lab taken for seconds."""
+    text = ("0 2200000 x^x-pau+m=ay@1_2/A:0_0/C:1+0+2\n2200000 2900000 pau-m+ay\n2900000 4400000 ay+b -12.5\n"
+            "4400000 5000000 m-b\n5000000 6000000 +BREATH+\n6000000 6500000 h#\n")
+    expected = [(0, 0.22, "pau"), (0.22, 0.29, "m"), (0.29, 0.44, "ay"), (0.44, 0.5, "b"), (0.5, 0.6, "+BREATH+"),
+                (0.6, 0.65, "h#")]
+    path = put(tmp_path, "a.lab", text)
+    assert rows(read_htk(path)) == rows(read_lab(path)) == rows(read_timings(path)) == expected
+    assert rows(read_timings(put(tmp_path, "a.txt", text))) == expected
+    assert rows(read_lab(put(tmp_path, "b.lab", "0 1 sil\n1 2 b\n"))) == [(0, 1, "sil"), (1, 2, "b")]
+
+
+@pytest.mark.parametrize("text, line, words", [
+    ("0 2200000\n", 1, "2 columns"), ("0 10.5 sil\n", 1, "100 ns"), ("0 40000 a\n20000 50000 b\n", 2, "before the end"),
+    ("20000 10000 a\n", 1, "before its start"), ("", None, "no segments"),
+])  # fmt: skip
+def test_malformed_htk_names_the_line(tmp_path, text, line, words):
+    """Catches a slip in HTK's labels that passes."""
+    fails(read_htk, put(tmp_path, "a.lab", text), line, words)
+
+
+def test_mary_times_are_ends_and_labels_x_sampa(tmp_path):
+    """Catches durations read as starts, a comment read as data, and MARY's S read as ARPABET's."""
+    text = "#\n0.1 125 _\n0.25 125 S\n# more\n0.4 125 V\n0.5 125 N\n"
+    for name in ("a.realised_durations", "a.txt"):
+        path = put(tmp_path, name, text)
+        assert rows(read_timings(path)) == rows(read_mary(path)) == [
+            (0, 0.1, "_"), (0.1, 0.25, "S"), (0.25, 0.4, "V"), (0.4, 0.5, "N")]
+        assert [s.label for s in phoneme_segments(path, read_mary(path), SPEECH)] == ["SIL", "SH", "AH", "NG"]
+    fails(read_mary, put(tmp_path, "b.txt", "#\n0.1 125\n"), 2, "2 columns")
+    fails(read_mary, put(tmp_path, "b.txt", "#\n0.2 125 a\n0.1 125 b\n"), 3, "before its start")
+    fails(read_mary, put(tmp_path, "b.txt", "#\n0.2 x a\n"), 2, "'x'")
+
+
+def test_mbrola_labels_are_x_sampa(tmp_path):
+    """Catches MBROLA's N read as ARPABET's, and its flush mark read as a phoneme."""
+    path = put(tmp_path, "a.pho", "_ 50\nT 50\nI 50\nN 50\n#\n")
+    assert [s.label for s in phoneme_segments(path, read_pho(path), SPEECH)] == ["SIL", "TH", "IH", "NG"]

@@ -10,9 +10,10 @@ from __future__ import annotations
 import math
 import os
 import re
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
@@ -26,6 +27,10 @@ TOLERANCE = 0.001
 LONGEST = 86400.0
 #: Frames per second of CMU Sphinx alignments.
 PHSEG_RATE = 100.0
+#: HTK's units per second.
+_HTK_RATE = 1e7
+#: No phoneme is longer, in seconds: a file whose first one would be is in HTK's units.
+_LONGEST_PHONEME = 3600
 #: An interval tier's class, name, two times and count, in either form of a TextGrid.
 _TIER_SIZE = re.compile(
     r'"IntervalTier"\s+(?:name\s*=\s*)?"(?:[^"]|"")*"\s+'
@@ -39,18 +44,53 @@ class SourceSegment(Segment):
     """A segment with the line it was read from; None in a TextGrid, whose intervals are numbered instead."""
 
     line: Optional[int] = None
+    sampa: bool = False  #: the format's labels are X-SAMPA
 
 
 def read_lab(path: PathLike) -> List[SourceSegment]:
-    """Reads lines of ``start end label [apex [word]]``, seconds."""
+    """Reads lines of ``start end label [apex [word]]``, seconds; or HTK's labels, which are called .lab, too."""
     segments = []
-    for line, fields in _rows(path):
+    rows = _rows(path)
+    if rows and _is_htk(rows[0][1]):
+        return read_htk(path)
+    for line, fields in rows:
         if not 3 <= len(fields) <= 5:
             raise DataError(path, line, f"expected 'start end label [apex [word]]', found {len(fields)} columns")
         apex = _number(path, line, fields[3], "apex") if len(fields) > 3 else None
         word = fields[4] if len(fields) > 4 else None
         start, end = _number(path, line, fields[0], "start"), _number(path, line, fields[1], "end")
         segments.append(SourceSegment(start, end, fields[2], apex, word, line))
+    return _checked(path, segments)
+
+
+def read_htk(path: PathLike) -> List[SourceSegment]:
+    """Reads lines of ``start end label ...`` in whole units of 100 ns, as HTK and HTS write them.
+
+    Of a label with context, ``a^b-c+d=e@...``, the phoneme is what stands between - and +.
+    """
+    segments = []
+    for line, fields in _rows(path):
+        if len(fields) < 3:
+            raise DataError(path, line, f"expected 'start end label', found {len(fields)} columns")
+        if not (fields[0].isdigit() and fields[1].isdigit()):
+            raise DataError(path, line, f"times {fields[0]!r} and {fields[1]!r} are not whole numbers of 100 ns")
+        start, end = int(fields[0]) / _HTK_RATE, int(fields[1]) / _HTK_RATE
+        segments.append(SourceSegment(start, end, _centre(fields[2]), line=line))
+    return _checked(path, segments)
+
+
+def read_mary(path: PathLike) -> List[SourceSegment]:
+    """Reads MaryTTS's REALISED_DURATIONS: lines of ``end number label``, seconds; lines that start with # are not
+    read."""
+    segments: List[SourceSegment] = []
+    for line, fields in _rows(path):
+        if fields[0].startswith("#"):
+            continue
+        if len(fields) != 3:
+            raise DataError(path, line, f"expected 'end number label', found {len(fields)} columns")
+        _number(path, line, fields[1], "second field")
+        start = segments[-1].end if segments else 0.0
+        segments.append(SourceSegment(start, _number(path, line, fields[0], "end"), fields[2], line=line, sampa=True))
     return _checked(path, segments)
 
 
@@ -102,12 +142,14 @@ def read_pho(path: PathLike) -> List[SourceSegment]:
     segments: List[SourceSegment] = []
     elapsed = 0.0
     for line, fields in _rows(path, comment=";"):
+        if fields == ["#"]:  # MBROLA's flush mark
+            continue
         if len(fields) < 2:
             raise DataError(path, line, "expected 'phoneme milliseconds [position pitch]...'")
         duration, *_pitch = [_number(path, line, text, "value") for text in fields[1:]]
         if duration < 0:
             raise DataError(path, line, f"the duration {fields[1]} is negative")
-        segments.append(SourceSegment(elapsed / 1000, (elapsed + duration) / 1000, fields[0], line=line))
+        segments.append(SourceSegment(elapsed / 1000, (elapsed + duration) / 1000, fields[0], line=line, sampa=True))
         elapsed += duration
     return _checked(path, segments)
 
@@ -160,7 +202,8 @@ def read_textgrid_tiers(path: PathLike) -> Dict[str, List[SourceSegment]]:
 
 
 def read_timings(path: PathLike) -> List[SourceSegment]:
-    """Reads timings in the format that the suffix tells (.lab .TextGrid .phseg .pho .psdur), else the content."""
+    """Reads timings in the format that the suffix tells (.lab .TextGrid .phseg .pho .psdur .realised_durations), else
+    the content."""
     suffix = Path(path).suffix.lower()
     if suffix in _READERS:
         return _READERS[suffix](path)
@@ -172,25 +215,39 @@ def read_timings(path: PathLike) -> List[SourceSegment]:
         return read_phseg(path)
     if first and all(re.fullmatch(r".+:\d+(\.\d*)?", item) for item in first):
         return read_flite(path)
+    if first and first[0].startswith("#"):
+        return read_mary(path)
     if len(first) >= 3 and _is_number(first[0]) and _is_number(first[1]):
         return read_lab(path)
     if len(first) >= 2 and _is_number(first[1]):
         return read_pho(path)
-    raise DataError(path, None, "no known format of phoneme timings (.lab, .TextGrid, .phseg, .pho, flite -psdur)")
+    raise DataError(path, None, "no known format of phoneme timings (.lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, "
+                    "flite -psdur)")
 
 
-def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet) -> Tuple[Segment, ...]:
+def phoneme_segments(
+    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True
+) -> Tuple[Segment, ...]:
     """Maps labels to `phone_set` and joins the segments without gaps from time 0; `path` is for the error message.
 
     An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment.
+    Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
+    phoneme, with one warning each.
     """
     result: List[Segment] = []
+    unknown: Set[str] = set()
     previous = min(0.0, segments[0].start) if segments else 0.0
     for number, item in enumerate(segments, 1):
-        label = phone_set.resolve(item.label) if item.label else phone_set.silence
+        label = phone_set.resolve(item.label, item.sampa) if item.label else phone_set.silence
         if label is None:
             where = f"interval {number}: " if item.line is None else ""
-            raise DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}")
+            problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}")
+            if strict:
+                raise problem
+            label = phone_set.nearest(item.label)
+            if item.label not in unknown:
+                warnings.warn(f"{problem}; it moves as {label}", stacklevel=2)
+                unknown.add(item.label)
         if item.start - previous > TOLERANCE:
             result.append(Segment(previous, item.start, phone_set.silence))
             previous = item.start
@@ -203,6 +260,7 @@ def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_se
 
 _READERS: Dict[str, Callable[[PathLike], List[SourceSegment]]] = {
     ".lab": read_lab, ".textgrid": read_textgrid, ".phseg": read_phseg, ".pho": read_pho, ".psdur": read_flite,
+    ".realised_durations": read_mary,
 }  # fmt: skip
 
 
@@ -226,6 +284,20 @@ def _rows(path: PathLike, comment: str = "") -> List[Tuple[int, List[str]]]:
         if fields:
             rows.append((line, fields))
     return rows
+
+
+def _is_htk(fields: Sequence[str]) -> bool:
+    return len(fields) >= 3 and fields[0].isdigit() and fields[1].isdigit() and int(fields[1]) > _LONGEST_PHONEME
+
+
+def _centre(label: str) -> str:
+    """The phoneme of a label with context; the name of a noise starts with +."""
+    if label[0] in "+-<":
+        return label
+    begin = label.find("-", max(label.find("^"), 0))
+    if 0 <= begin < len(label) - 1:
+        label = label[begin + 1 :]
+    return label[0] + label[1:].split("+")[0]
 
 
 def _is_number(text: str) -> bool:

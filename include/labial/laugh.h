@@ -1,0 +1,81 @@
+/*
+ * labial/laugh.h - laughs of a wanted length, for programs that have no timings of laughter.
+ *
+ * The generator yields phonemes of laughter with their durations, one at a time, to be pushed onto a stream whose model
+ * is one of laughter (labial_use()):
+ *
+ *     labial_laugh_t laugh;
+ *     unsigned phoneme;
+ *     uint32_t milliseconds;
+ *     labial_laugh_begin(&laugh, 1800, LABIAL_LAUGH_FULL / 2, seed);
+ *     while (labial_laugh_next(&laugh, &phoneme, &milliseconds) == LABIAL_OK)
+ *         labial_push(&stream, phoneme, milliseconds);        // while labial_room() > 0
+ *
+ * Its statistics are those of the synthetic laughter corpus: pulses 210 ms apart in trains of three, more or less, with
+ * inhalations between the trains. The same length, intensity and seed give the same laugh on every machine; there is
+ * no state but the caller's structure.
+ */
+#ifndef LABIAL_LAUGH_H
+#define LABIAL_LAUGH_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The highest intensity. Half of it laughs as the corpus does; more makes trains longer, pauses shorter and vowels more
+ * open, less has more pulses hummed with closed lips. How far the mouth moves is not the generator's concern. */
+#define LABIAL_LAUGH_FULL 256u
+
+/* The phonemes of every laughter model that the exporter writes, in the order of their numbers. */
+enum {
+    LABIAL_LAUGH_SILENCE,
+    LABIAL_LAUGH_NE, /* air through the nose, mostly drawn in */
+    LABIAL_LAUGH_CLICK,
+    LABIAL_LAUGH_NASAL,
+    LABIAL_LAUGH_PLOSIVE,
+    LABIAL_LAUGH_FRICATIVE,
+    LABIAL_LAUGH_IC,
+    LABIAL_LAUGH_E,
+    LABIAL_LAUGH_O,
+    LABIAL_LAUGH_GRUNT,
+    LABIAL_LAUGH_CACKLE,
+    LABIAL_LAUGH_A,
+    LABIAL_LAUGH_PHONEMES
+};
+
+/* A laugh under way. The caller's memory; private; may be moved or copied between calls. */
+typedef struct {
+    uint32_t left;         /* milliseconds to come */
+    uint32_t tail;         /* of them, the rest at the end */
+    uint32_t random;       /* state of the random numbers, never 0 */
+    uint16_t intensity;    /* 0 .. LABIAL_LAUGH_FULL */
+    uint16_t durations[6]; /* pieces that are decided, milliseconds */
+    uint8_t phonemes[6];
+    uint8_t first, count; /* of these, the next one and how many there are */
+    uint8_t pulses;       /* to come in the current train */
+    uint8_t kind, vowel;  /* of these pulses */
+} labial_laugh_t;
+
+/*
+ * Begins a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts as
+ * that). Every `seed` gives another laugh. Below about half a second it is a single breath or pulse.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_DURATION.
+ */
+int labial_laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
+
+/*
+ * The next phoneme and its duration, at least 20 ms unless the whole laugh is shorter; together they last exactly as
+ * long as was asked for.
+ *
+ * Returns LABIAL_OK, LABIAL_DONE after the last one (nothing is written), or LABIAL_ERROR_NULL.
+ */
+int labial_laugh_next(labial_laugh_t *laugh, unsigned *phoneme, uint32_t *milliseconds);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

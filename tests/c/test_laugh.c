@@ -1,0 +1,209 @@
+/*
+ * test_laugh.c - laughs of a wanted length: exact totals, no state but the caller's, phonemes that the model has.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <string.h>
+
+#include "labial/labial.h"
+#include "labial/laugh.h"
+#include "laughter_synthetic.h"
+
+typedef struct {
+    uint32_t total, shortest, longest;
+    unsigned pieces, vowels, spoken; /* vowels: pulses with an open mouth; spoken: milliseconds of them */
+    uint32_t per_phoneme[LABIAL_LAUGH_PHONEMES];
+} sum_t;
+
+static int is_open(unsigned phoneme)
+{
+    return phoneme == LABIAL_LAUGH_A || phoneme == LABIAL_LAUGH_E || phoneme == LABIAL_LAUGH_O ||
+           phoneme == LABIAL_LAUGH_IC || phoneme == LABIAL_LAUGH_CACKLE;
+}
+
+static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
+{
+    labial_laugh_t laugh, moved;
+    sum_t sum;
+    unsigned phoneme;
+    uint32_t ms;
+    memset(&sum, 0, sizeof sum);
+    sum.shortest = UINT32_MAX;
+    memset(&laugh, 0xee, sizeof laugh);
+    assert_int_equal(labial_laugh_begin(&laugh, length, intensity, seed), LABIAL_OK);
+    for (;;) {
+        int result;
+        moved = laugh;
+        memset(&laugh, 0xdd, sizeof laugh);
+        result = labial_laugh_next(&moved, &phoneme, &ms);
+        laugh = moved;
+        if (result != LABIAL_OK) {
+            assert_int_equal(result, LABIAL_DONE);
+            break;
+        }
+        assert_true(phoneme < LABIAL_LAUGH_PHONEMES);
+        assert_true(++sum.pieces <= length / 20u + 1u);
+        sum.total += ms;
+        sum.per_phoneme[phoneme]++;
+        sum.shortest = ms < sum.shortest ? ms : sum.shortest;
+        sum.longest = ms > sum.longest ? ms : sum.longest;
+        if (is_open(phoneme)) {
+            sum.vowels++;
+            sum.spoken += ms;
+        }
+    }
+    assert_int_equal(labial_laugh_next(&laugh, &phoneme, &ms), LABIAL_DONE);
+    return sum;
+}
+
+/* Would catch a piece that is lost, counted twice or cut to nothing at the end, at any length. */
+static void totals_are_exact(void **state)
+{
+    uint32_t length, seed;
+    unsigned intensity;
+    (void)state;
+    for (length = 0; length < 6000; length += length < 700 ? 1 : 37)
+        for (seed = 0; seed < 4; seed++)
+            for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity += 64) {
+                const sum_t sum = sum_of(length, intensity, seed * 77u);
+                assert_int_equal(sum.total, length);
+                assert_true(sum.pieces == 0 || sum.shortest >= (length < 20 ? length : 20));
+            }
+    assert_int_equal(sum_of(LABIAL_DURATION_MAX, 128, 5).total, LABIAL_DURATION_MAX);
+}
+
+/* Would catch pieces longer than any of the statistics, such as one that fills what is left. */
+static void no_piece_fills_the_rest(void **state)
+{
+    uint32_t seed;
+    (void)state;
+    for (seed = 0; seed < 300; seed++) {
+        assert_true(sum_of(20000, 128, seed).longest <= 920);
+        assert_true(sum_of(1800, 128, seed).longest <= 920);
+        assert_true(sum_of(1800, 128, seed).pieces >= 5);
+    }
+}
+
+/* Would catch a seed that is not used, or used up to a few bits only. */
+static void seeds_give_different_laughs(void **state)
+{
+    labial_laugh_t a, b;
+    unsigned bit, same = 0;
+    (void)state;
+    for (bit = 0; bit < 32; bit++) {
+        unsigned phoneme_a, phoneme_b, i;
+        uint32_t ms_a, ms_b;
+        int equal = 1;
+        assert_int_equal(labial_laugh_begin(&a, 5000, 128, 0), LABIAL_OK);
+        assert_int_equal(labial_laugh_begin(&b, 5000, 128, (uint32_t)1 << bit), LABIAL_OK);
+        for (i = 0; i < 12; i++) {
+            assert_int_equal(labial_laugh_next(&a, &phoneme_a, &ms_a), LABIAL_OK);
+            assert_int_equal(labial_laugh_next(&b, &phoneme_b, &ms_b), LABIAL_OK);
+            equal = equal && phoneme_a == phoneme_b && ms_a == ms_b;
+        }
+        same += (unsigned)equal;
+    }
+    assert_int_equal(same, 0);
+    /* The seed whose state would be 0 laughs, too. */
+    assert_true(sum_of(5000, 128, 2342946167u).vowels > 3);
+}
+
+/* Would catch an intensity that changes nothing, or the wrong way. */
+static void intensity_opens_the_mouth(void **state)
+{
+    uint32_t seed, open[3] = {0, 0, 0}, hummed[3] = {0, 0, 0}, a[3] = {0, 0, 0};
+    unsigned i;
+    (void)state;
+    for (i = 0; i < 3; i++)
+        for (seed = 0; seed < 200; seed++) {
+            const sum_t sum = sum_of(5000, i * 128, seed);
+            open[i] += sum.spoken;
+            hummed[i] += sum.per_phoneme[LABIAL_LAUGH_NASAL];
+            a[i] += sum.per_phoneme[LABIAL_LAUGH_A];
+        }
+    assert_true(open[0] * 5u < open[1] * 4u && open[1] * 8u < open[2] * 7u);
+    assert_true(hummed[0] > hummed[1] && hummed[1] > hummed[2]);
+    assert_true(a[0] < a[1] && a[1] < a[2]);
+    for (seed = 0; seed < 20; seed++) {
+        const sum_t full = sum_of(5000, LABIAL_LAUGH_FULL, seed), more = sum_of(5000, 100000, seed);
+        assert_memory_equal(&full, &more, sizeof full);
+    }
+}
+
+static void errors(void **state)
+{
+    labial_laugh_t laugh;
+    unsigned phoneme = 99;
+    uint32_t ms = 99;
+    (void)state;
+    assert_int_equal(labial_laugh_begin(NULL, 100, 1, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_laugh_begin(&laugh, LABIAL_DURATION_MAX + 1u, 1, 1), LABIAL_ERROR_DURATION);
+    assert_int_equal(labial_laugh_begin(&laugh, 0, 1, 1), LABIAL_OK);
+    assert_int_equal(labial_laugh_next(&laugh, &phoneme, &ms), LABIAL_DONE);
+    assert_true(phoneme == 99 && ms == 99);
+    assert_int_equal(labial_laugh_begin(&laugh, 100, 1, 1), LABIAL_OK);
+    assert_int_equal(labial_laugh_next(NULL, &phoneme, &ms), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_laugh_next(&laugh, NULL, &ms), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_laugh_next(&laugh, &phoneme, NULL), LABIAL_ERROR_NULL);
+}
+
+static void count_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    int *widest = (int *)user;
+    (void)frame;
+    if (faps[0] > *widest)
+        *widest = faps[0];
+}
+
+/* Would catch phoneme numbers that are not the bundled model's, and a laugh that the stream refuses. */
+static void the_bundled_model_laughs(void **state)
+{
+    static labial_t stream;
+    static uint32_t workspace[LAUGHTER_SYNTHETIC_WORKSPACE_SIZE / 4];
+    labial_laugh_t laugh;
+    unsigned phoneme;
+    uint32_t ms, frames = 0;
+    int widest = 0, result;
+    (void)state;
+    assert_int_equal(LABIAL_LAUGH_PHONEMES, LAUGHTER_SYNTHETIC_PHONEMES);
+    assert_int_equal(LABIAL_LAUGH_SILENCE, LAUGHTER_SYNTHETIC_SILENCE);
+    assert_int_equal(LABIAL_LAUGH_NE, LAUGHTER_SYNTHETIC_NE);
+    assert_int_equal(LABIAL_LAUGH_CLICK, LAUGHTER_SYNTHETIC_CLICK);
+    assert_int_equal(LABIAL_LAUGH_NASAL, LAUGHTER_SYNTHETIC_NASAL);
+    assert_int_equal(LABIAL_LAUGH_PLOSIVE, LAUGHTER_SYNTHETIC_PLOSIVE);
+    assert_int_equal(LABIAL_LAUGH_FRICATIVE, LAUGHTER_SYNTHETIC_FRICATIVE);
+    assert_int_equal(LABIAL_LAUGH_IC, LAUGHTER_SYNTHETIC_IC);
+    assert_int_equal(LABIAL_LAUGH_E, LAUGHTER_SYNTHETIC_E);
+    assert_int_equal(LABIAL_LAUGH_O, LAUGHTER_SYNTHETIC_O);
+    assert_int_equal(LABIAL_LAUGH_GRUNT, LAUGHTER_SYNTHETIC_GRUNT);
+    assert_int_equal(LABIAL_LAUGH_CACKLE, LAUGHTER_SYNTHETIC_CACKLE);
+    assert_int_equal(LABIAL_LAUGH_A, LAUGHTER_SYNTHETIC_A);
+    assert_int_equal(labial_init(&stream, &laughter_synthetic, workspace, sizeof workspace, count_frame, &widest), 0);
+    assert_int_equal(labial_laugh_begin(&laugh, 3000, LABIAL_LAUGH_FULL, 1), LABIAL_OK);
+    while (labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK) {
+        while (labial_room(&stream) == 0)
+            frames += labial_tick(&stream) == LABIAL_OK;
+        assert_int_equal(labial_push(&stream, phoneme, ms), LABIAL_OK);
+    }
+    assert_int_equal(labial_end(&stream), LABIAL_OK);
+    while ((result = labial_tick(&stream)) != LABIAL_DONE) {
+        assert_true(result >= 0);
+        frames += result == LABIAL_OK;
+    }
+    assert_int_equal(frames, 3u * LAUGHTER_SYNTHETIC_FPS);
+    assert_true(widest > 60); /* FAP units; at rest it is about 0 */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(totals_are_exact),          cmocka_unit_test(no_piece_fills_the_rest),
+        cmocka_unit_test(seeds_give_different_laughs), cmocka_unit_test(intensity_opens_the_mouth),
+        cmocka_unit_test(errors),                    cmocka_unit_test(the_bundled_model_laughs),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,177 @@
+"""Animation files, from labial-say and from labial synth, read back by readers that know nothing of either writer."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import random
+import re
+import subprocess
+from pathlib import Path
+from typing import Dict, List, Tuple
+
+import numpy as np
+import pytest
+
+from labial.animation import ARKIT, LIVE_LINK, WRITERS, arkit
+from labial.cli import main
+from labial.faps import FAP_COLUMNS, FAP_NUMBERS
+from labial.model import save
+from models import random_model
+
+SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
+SAY = os.environ.get("LABIAL_SAY", "")
+needs_say = pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")
+SENTENCE = "pau:0.220 m:0.290 ay:0.440 b:0.530 ey:0.730 b:0.810 iy:0.900 pau:1.120\n<laugh 1.5 1.0>\nuw:0.3 pau:0.4\n"
+
+#: ARKit's blendshapes, as Apple lists them.
+APPLE = """browDownLeft browDownRight browInnerUp browOuterUpLeft browOuterUpRight cheekPuff cheekSquintLeft
+cheekSquintRight eyeBlinkLeft eyeBlinkRight eyeLookDownLeft eyeLookDownRight eyeLookInLeft eyeLookInRight eyeLookOutLeft
+eyeLookOutRight eyeLookUpLeft eyeLookUpRight eyeSquintLeft eyeSquintRight eyeWideLeft eyeWideRight jawForward jawLeft
+jawOpen jawRight mouthClose mouthDimpleLeft mouthDimpleRight mouthFrownLeft mouthFrownRight mouthFunnel mouthLeft
+mouthLowerDownLeft mouthLowerDownRight mouthPressLeft mouthPressRight mouthPucker mouthRight mouthRollLower
+mouthRollUpper mouthShrugLower mouthShrugUpper mouthSmileLeft mouthSmileRight mouthStretchLeft mouthStretchRight
+mouthUpperUpLeft mouthUpperUpRight noseSneerLeft noseSneerRight tongueOut""".split()
+
+
+def read_fap(text: str) -> Tuple[str, int, List[Dict[int, int]]]:
+    """A strict reader of MPEG-4 text: name, rate and the FAPs of each frame; asserts where the format is not kept."""
+    assert text.endswith("\n") and "\r" not in text
+    lines = text.split("\n")[:-1]
+    version, name, rate, count = re.fullmatch(r"(\S+) (\S+) (\d+) (\d+)", lines[0]).groups()
+    assert version == "2.1" and len(lines) == 1 + 2 * int(count)
+    frames = []
+    for number in range(int(count)):
+        mask, values = lines[1 + 2 * number], lines[2 + 2 * number]
+        assert re.fullmatch(r"[01]( [01]){67}", mask)
+        assert re.fullmatch(r"\d+( -?\d+)*", values)
+        first, *rest = map(int, values.split(" "))
+        assert first == number and len(rest) == mask.count("1")
+        present = [fap for fap, bit in enumerate(mask.split(" "), 1) if bit == "1"]
+        frames.append(dict(zip(present, rest)))
+    return name, int(rate), frames
+
+
+def read_live_link(text: str) -> Tuple[List[float], List[Dict[str, float]]]:
+    """Seconds at 50 frames per second, and the columns of each row; asserts where the format is not kept."""
+    rows = list(csv.reader(io.StringIO(text), strict=True))
+    assert rows[0][:2] == ["Timecode", "BlendShapeCount"] and len(rows[0]) == 63
+    names = rows[0][2:]
+    assert {name[0].lower() + name[1:] for name in names[:52]} == set(APPLE)
+    turns = ("Yaw", "Pitch", "Roll")
+    assert names[52:] == [f"{part}{turn}" for part in ("Head", "LeftEye", "RightEye") for turn in turns]
+    times, frames = [], []
+    for row in rows[1:]:
+        hours, minutes, seconds, frame, part = map(int, re.fullmatch(
+            r"(\d\d):(\d\d):(\d\d):(\d\d)\.(\d\d\d)", row[0]).groups())
+        assert row[1] == "61" and len(row) == 63 and frame < 50
+        times.append(hours * 3600 + minutes * 60 + seconds + (frame + part / 1000) / 50)
+        frames.append(dict(zip(names, map(float, row[2:]))))
+        assert all(0.0 <= value <= 1.0 for value in frames[-1].values())
+    return times, frames
+
+
+def read_csv(text: str) -> np.ndarray:
+    """(T, 13) FAPs of a table."""
+    rows = list(csv.DictReader(io.StringIO(text), strict=True))
+    return np.array([[float(row[name]) for name in FAP_COLUMNS] for row in rows]).reshape(-1, len(FAP_COLUMNS))
+
+
+def check_all(texts: Dict[str, str], tolerance: float) -> None:
+    """Asserts that the four files of one motion say the same."""
+    faps = read_csv(texts["csv"])
+    assert len(faps) > 20 and np.ptp(faps, axis=0).min() > 0
+    _, rate, frames = read_fap(texts["fap"])
+    assert rate == 50 and len(frames) == len(faps)
+    times, shapes = read_live_link(texts["livelink"])
+    assert times == pytest.approx(np.arange(len(faps)) / 50)
+    objects = [json.loads(line) for line in texts["jsonl"].splitlines()]
+    assert len(objects) == len(shapes) == len(faps)
+    weights = arkit(faps)
+    for t, frame in enumerate(faps):
+        assert frames[t] == pytest.approx({**{fap: frames[t][fap + 47] for fap in range(4, 14)},
+                                           **dict(zip(FAP_NUMBERS, frame))}, abs=0.5 + tolerance)
+        expected = dict(zip(ARKIT, weights[t]))
+        moved = {name[0].lower() + name[1:]: value for name, value in shapes[t].items() if value != 0}
+        assert set(moved) <= set(ARKIT)
+        assert {name: moved.get(name, 0.0) for name in ARKIT} == pytest.approx(expected, abs=0.0006 + tolerance / 100)
+        assert objects[t]["frame"] == t and objects[t]["time"] == pytest.approx(t / 50)
+        assert objects[t]["faps"] == pytest.approx(dict(zip(FAP_COLUMNS, frame)), abs=tolerance)
+        assert objects[t]["arkit"] == pytest.approx(expected, abs=0.0006 + tolerance / 100)
+
+
+@needs_say
+def test_files_of_labial_say() -> None:
+    """Catches a format that its readers refuse, and a blendshape that C and Python weigh differently."""
+    texts = {}
+    for name in WRITERS:
+        done = subprocess.run([SAY, "--to", name], input=SENTENCE.encode(), capture_output=True, timeout=60, check=True)
+        texts[name] = done.stdout.decode("ascii")
+    check_all(texts, 0.0)
+
+
+def test_files_of_labial_synth(tmp_path: Path) -> None:
+    """Catches a format of the exporter that its readers refuse."""
+    model = tmp_path / "a model.npz"
+    save(random_model(3), model)
+    (tmp_path / "a.lab").write_text("0 0.2 SIL\n0.2 0.5 P1\n0.5 0.8 P2\n0.8 1.2 P4\n")
+    texts = {}
+    for name in WRITERS:
+        out = tmp_path / f"out.{name}"
+        assert main(["synth", str(model), str(tmp_path / "a.lab"), "-o", str(out), "--to", name]) == 0
+        texts[name] = out.read_text(encoding="ascii")
+    check_all(texts, 0.011)
+
+
+def test_blendshapes_of_a_face() -> None:
+    """Catches a blendshape that moves with the wrong part of the face or the wrong way: each gesture, in FAP units, and
+    what it must and must not move."""
+    rest = dict.fromkeys(FAP_NUMBERS, 0.0)
+    gestures = {
+        "jaw": ({3: 400, 52: -400, 57: -400, 58: -400}, {"jawOpen"}, {"mouthClose", "mouthPucker"}),
+        "closed": ({3: 400}, {"jawOpen", "mouthClose"}, {"mouthLowerDownLeft"}),
+        "round": ({17: 150, 16: 150, 53: -150, 54: -150}, {"mouthPucker"}, {"jawOpen", "mouthSmileLeft", "mouthClose"}),
+        "smile": ({53: 150, 54: 150, 59: 150, 60: 150}, {"mouthSmileLeft", "mouthSmileRight"},
+                  {"mouthFrownLeft", "mouthPucker", "jawOpen"}),
+        "left": ({53: 150, 59: 150}, {"mouthSmileLeft"}, {"mouthSmileRight", "mouthStretchRight"}),
+        "sad": ({59: -150, 60: -150}, {"mouthFrownLeft", "mouthFrownRight"}, {"mouthSmileLeft"}),
+        "teeth": ({51: -100, 55: -100, 56: -100}, {"mouthUpperUpLeft", "mouthUpperUpRight"}, {"jawOpen"}),
+    }  # fmt: skip
+    assert not arkit(np.array([list(rest.values())])).any()
+    for name, (faps, moved, still) in gestures.items():
+        weights = dict(zip(ARKIT, arkit(np.array([list({**rest, **faps}.values())]))[0]))
+        assert all(weights[shape] > 0.25 for shape in moved), (name, weights)
+        assert all(weights[shape] == 0.0 for shape in still), (name, weights)
+
+
+def test_columns_are_apples() -> None:
+    """Catches a blendshape that ARKit does not know, and a row that is not in Live Link's order."""
+    assert set(ARKIT) <= set(APPLE) and len(LIVE_LINK) == 61
+    order = [LIVE_LINK.index(name[0].upper() + name[1:]) for name in ARKIT]
+    assert order == sorted(order)
+
+
+@needs_say
+def test_long_motion_has_good_timecodes() -> None:
+    """Catches seconds that run past 59, and frames past the rate."""
+    text = "".join(f"aa {random.Random(i).randint(300, 900)}\nb 100\n" for i in range(120))
+    done = subprocess.run([SAY, "--to", "livelink"], input=text.encode(), capture_output=True, timeout=60, check=True)
+    times, _ = read_live_link(done.stdout.decode())
+    assert times[-1] > 60 and times == pytest.approx(np.arange(len(times)) / 50)
+
+
+if (SOURCE / "examples/faces/arkit.toml").exists():
+
+    def test_blendshapes_are_those_of_the_rig() -> None:
+        """Catches labial-say and the example of an ARKit rig moving the same face in two ways."""
+        from labial.rig.description import read
+
+        outputs = {output.name: output for output in read(SOURCE / "examples/faces/arkit.toml", "arkit").outputs}
+        faps = np.random.default_rng(1).uniform(-600, 600, (500, len(FAP_NUMBERS)))
+        assert set(outputs) == set(ARKIT)
+        for name, weights in zip(ARKIT, arkit(faps).T):
+            output = outputs[name]
+            expected = (output.neutral + output.gain * (faps @ output.weights)) / 1000
+            assert weights == pytest.approx(np.clip(expected, 0, 1), abs=0.003), name
