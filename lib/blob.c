@@ -123,6 +123,8 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
         return LABIAL_ERROR_MODEL;
     if (u16(header + 12) != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
+    if (header[28] > (HAS_CONTEXTS | HAS_SLOPES))
+        return LABIAL_ERROR_MODEL;
     if (u32(header + 8) != checksum(header + CHECKED_FROM, size - CHECKED_FROM))
         return LABIAL_ERROR_MODEL;
 

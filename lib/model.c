@@ -94,7 +94,7 @@ int labial_model_check(const labial_model_t *model)
         model->phoneme_count == 0 || model->phoneme_count > LABIAL_PHONEMES_MAX || model->class_count == 0 ||
         model->class_count > LABIAL_CLASSES_MAX || model->state_count == 0 ||
         model->state_count > LABIAL_STATES_MAX || model->predecessors == 0 ||
-        model->predecessors > LABIAL_STATES_MAX || model->search_stride == 0 ||
+        model->predecessors % 4u != 0 || model->predecessors > LABIAL_STATES_MAX || model->search_stride == 0 ||
         model->search_stride > LABIAL_SEARCH_STRIDE_MAX || model->silence >= model->phoneme_count || model->soft > 1)
         return LABIAL_ERROR_MODEL;
     if (model->kernel_taps) {

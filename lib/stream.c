@@ -224,7 +224,7 @@ int labial_tick(labial_t *stream)
     }
     for (spent = stream->overspent; spent < stream->pace && result == LABIAL_OK;)
         result = labial_work_step(stream, &spent);
-    stream->overspent = (uint16_t)(spent > stream->pace ? spent - stream->pace : 0u);
+    stream->overspent = (uint16_t)(result == LABIAL_OK && spent > stream->pace ? spent - stream->pace : 0u);
 
     if (stream->ready_count >= LABIAL_PREROLL || (stream->ready_count && result != LABIAL_OK))
         stream->rolling = 1;

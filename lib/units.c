@@ -21,6 +21,11 @@ void labial_units_push(labial_t *stream, const labial_segment_t *segment)
     stream->queue_frames += segment->frames;
 }
 
+static uint32_t least(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
 /* Frames from segment `i` on that belong to one model, as far as they are known and not more than `most`. */
 static uint32_t run_of_model(const labial_t *stream, unsigned i, uint32_t most)
 {
@@ -32,7 +37,7 @@ static uint32_t run_of_model(const labial_t *stream, unsigned i, uint32_t most)
             return frames;
         frames += segment->frames;
     }
-    return frames < most ? frames : most;
+    return least(frames, most);
 }
 
 /* Whether everything is known that the piece from `begin` to `end` depends on: the phonemes within its model's reach,
@@ -90,8 +95,7 @@ int labial_units_next(labial_t *stream, labial_piece_t *piece)
             break;
         }
         if (segment->slot != slot) { /* the model changes: run on into the other's phonemes */
-            const uint32_t room = limit - start;
-            const uint32_t most = room < LABIAL_OVERLAP ? room : LABIAL_OVERLAP;
+            const uint32_t most = least(least(limit - start, start - begin), LABIAL_OVERLAP);
             const uint32_t overlap = run_of_model(stream, i, most);
             if (overlap < most && start + overlap == stream->queue_frames && !stream->ended)
                 return LABIAL_WAITING;
@@ -104,7 +108,7 @@ int labial_units_next(labial_t *stream, labial_piece_t *piece)
         if (i > first && stream->models[slot]->phonemes[segment->phoneme].boundary &&
             start >= begin + stream->next_fade_in && i + 1u < stream->queue_count) { /* the end of a unit */
             end = last_end = stop;
-            next = end - (segment->frames < LABIAL_OVERLAP ? segment->frames : LABIAL_OVERLAP);
+            next = end - least(least(segment->frames, (end - begin) / 2u), LABIAL_OVERLAP);
             if (end - begin >= LABIAL_PIECE)
                 break;
         }

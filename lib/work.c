@@ -43,9 +43,9 @@ int16_t *labial_work_frame(labial_t *stream, unsigned i)
 }
 
 /*
- * How much work ticks do on the piece that was found: that of 1.4 of its frames, or as much more as leaves half
- * a window ready when it is done, which is what the longest next one may take; never more than that of two, which is always
- * in time, since a piece delivers at least half of its frames.
+ * How much work ticks do on the piece that was found: that of 1.4 of its frames, or as much more as leaves half a window
+ * ready when it is done, which is what the longest next one may take. Never more than that of two, which is always in
+ * time, since a piece delivers at least half of its frames.
  */
 static uint16_t pace_of(const labial_t *stream)
 {
@@ -54,10 +54,15 @@ static uint16_t pace_of(const labial_t *stream)
     const unsigned channel = (frames + stride - 1u) / stride * LABIAL_COST_SEARCH +
                              (frames / LABIAL_SOLVE_ROWS + frames / LABIAL_SOLVE_FRAMES + 2u) * LABIAL_COST_SOLVE;
     const unsigned all = frames * (LABIAL_COST_TARGET + LABIAL_COST_JOIN) + LABIAL_CHANNELS * channel;
-    const unsigned left = stream->ready_count + frames - piece->fade_out;
     unsigned ticks = 5u * frames / 7u;
-    if (stream->rolling && left < ticks + LABIAL_WINDOW / 2)
-        ticks = left > (frames + LABIAL_WINDOW) / 2u ? left - LABIAL_WINDOW / 2 : frames / 2u;
+    if (stream->rolling || stream->ready_count >= LABIAL_PREROLL) {
+        const unsigned ready = stream->ready_count, delivered = frames - piece->fade_out;
+        unsigned most = ready; /* ticks that there are frames for, and that leave half a window */
+        if (delivered < LABIAL_WINDOW / 2)
+            most = ready + delivered > LABIAL_WINDOW / 2 ? ready + delivered - LABIAL_WINDOW / 2 : 0u;
+        if (ticks > most)
+            ticks = most > frames / 2u ? most : frames / 2u;
+    }
     return (uint16_t)(all / (ticks ? ticks : 1u) + 1u);
 }
 

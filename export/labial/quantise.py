@@ -270,10 +270,10 @@ def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
 
 def _transitions(model: Model, predecessors: int) -> np.ndarray:
     """Edges (13, Q, K): for each state the predecessors that it is entered from most often, itself among them, in
-    ascending order."""
+    ascending order. K is a multiple of four; where there are fewer the last one is repeated."""
     states = model.log_initial.shape[1]
     kept_count = min(predecessors, states)
-    edges = np.zeros((CHANNELS, states, kept_count), dtype=np.int64)
+    edges = np.zeros((CHANNELS, states, -(-kept_count // 4) * 4), dtype=np.int64)
     for k in range(CHANNELS):
         cost = np.minimum(np.rint(-COST_SCALE * model.log_transition[k]), 1e9)
         usage = _stationary(model.log_transition[k])[:, None] * np.exp(model.log_transition[k])
@@ -282,8 +282,8 @@ def _transitions(model: Model, predecessors: int) -> np.ndarray:
             kept = [int(p) for p in order[:kept_count] if cost[p, q] <= 255 or p == q]
             if q not in kept:
                 kept = kept[: kept_count - 1] + [q]
-            kept += [kept[-1]] * (kept_count - len(kept))
-            edges[k, q] = [4 * p | int(min(cost[p, q], 255)) << 8 for p in sorted(kept)]
+            kept = sorted(kept) + [max(kept)] * (edges.shape[2] - len(kept))
+            edges[k, q] = [4 * p | int(min(cost[p, q], 255)) << 8 for p in kept]
     return edges
 
 

@@ -95,7 +95,7 @@ typedef struct {
     uint8_t phoneme_count;      /* P: 1 .. LABIAL_PHONEMES_MAX */
     uint8_t class_count;        /* V: 1 .. LABIAL_CLASSES_MAX */
     uint8_t state_count;        /* Q: 1 .. LABIAL_STATES_MAX */
-    uint8_t predecessors;       /* K: 1 .. LABIAL_STATES_MAX */
+    uint8_t predecessors;       /* K: a multiple of four, 4 .. LABIAL_STATES_MAX */
     uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the targets of the middle one,
                                  * or the later of two, are what the search sees */
     uint8_t silence;            /* the phoneme that stands before, after and for what is another model's */

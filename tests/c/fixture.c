@@ -64,20 +64,24 @@ int32_t fixture_target(unsigned phoneme, unsigned channel)
     return position_of_steps(shape_steps(phoneme, 0, channel)) + centre_of(channel);
 }
 
-/* Every state with itself, its neighbours and, within eight states, every other as predecessors. */
-static void connect(fixture_model_t *f, unsigned c, unsigned count, int ring)
+/* Every state is entered from itself and from those up to `reach` away, 1 or 3; those at the ends have fewer. */
+static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned reach)
 {
-    unsigned q, p, n = 0;
+    const unsigned predecessors = 2 * reach + 2; /* a multiple of four: one at least is repeated */
+    unsigned q, p;
     for (q = 0; q < count; q++) {
-        f->rows[c][q] = (uint16_t)n;
+        uint16_t *edges = f->edges[c] + q * predecessors;
+        unsigned n = 0;
         for (p = 0; p < count; p++) {
             const unsigned away = p > q ? p - q : q - p;
             const unsigned cost = away == 0 ? 4 : away == 1 ? 60 : 90;
-            if (away <= 1 || (!ring && away < 4))
-                f->edges[c][n++] = (uint16_t)(p | cost << 8);
+            if (away <= reach)
+                edges[n++] = (uint16_t)(4 * p | cost << 8);
         }
+        for (; n < predecessors; n++)
+            edges[n] = edges[n - 1];
     }
-    f->rows[c][count] = (uint16_t)n;
+    f->model.predecessors = (uint8_t)predecessors;
 }
 
 /* gain = 2^18 / (sigma * sqrt 2) */
@@ -87,7 +91,7 @@ static uint16_t gain_of(double sigma)
 }
 
 /* Tables that all fixtures share; `count` phonemes of two components each. */
-static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned silence, int ring)
+static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned silence, unsigned reach)
 {
     unsigned p, k, c, q;
     memset(f, 0, sizeof *f);
@@ -97,6 +101,7 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
     f->model.phoneme_count = (uint8_t)count;
     f->model.class_count = FIXTURE_CLASSES;
     f->model.state_count = (uint8_t)states;
+    f->model.search_stride = 1;
     f->model.silence = (uint8_t)silence;
     f->model.phonemes = f->phonemes;
     f->model.components = f->components;
@@ -121,9 +126,9 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
         channel->shape_scale = SHAPE_SCALE;
         channel->slope_scale = 256;
         channel->kernel_scale = 256;
+        channel->pair_scale = 256;
         channel->emissions = f->emissions[c];
         channel->states = f->states[c];
-        channel->rows = f->rows[c];
         channel->edges = f->edges[c];
         for (q = 0; q < states; q++) {
             labial_emission_t *emission = &f->emissions[c][q];
@@ -139,13 +144,13 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
             state->weight[1] = fixture_weight_code(90);
             state->weight[2] = fixture_weight_code(200);
         }
-        connect(f, c, states, ring);
+        connect(f, c, states, reach);
     }
 }
 
-static void make_speech(fixture_model_t *f, unsigned states, int ring)
+static void make_speech(fixture_model_t *f, unsigned states)
 {
-    build(f, FIXTURE_SPEECH_COUNT, states, FIXTURE_SIL, ring);
+    build(f, FIXTURE_SPEECH_COUNT, states, FIXTURE_SIL, FIXTURE_PREDECESSORS / 2 - 1);
     f->phonemes[FIXTURE_A].boundary = 1;
     f->phonemes[FIXTURE_O].boundary = 1;
     f->phonemes[FIXTURE_P].boundary = 1;
@@ -157,12 +162,12 @@ static void enrich(fixture_model_t *f)
     unsigned i, c, q;
     fixture_random_t random = {7};
     f->model.soft = 1;
+    f->model.search_stride = 2;
     f->model.kernel_taps = FIXTURE_TAPS;
     f->model.kernel_stride = 3;
     f->model.kernel_behind = 4;
     f->model.contexts = f->contexts;
     f->model.slopes = f->slopes;
-    f->model.precisions = f->precisions;
     f->model.kernels = f->kernels;
     f->model.pair_count = FIXTURE_PAIRS;
     f->model.pair_keys = f->pair_keys;
@@ -182,13 +187,12 @@ static void enrich(fixture_model_t *f)
         f->contexts[i] = (uint8_t)fixture_below(&random, 90);
     for (i = 0; i < sizeof f->slopes; i++)
         f->slopes[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
-    for (i = 0; i < sizeof f->precisions; i++)
-        f->precisions[i] = fixture_weight_code((double)fixture_below(&random, 600));
     for (i = 0; i < sizeof f->kernels; i++)
         f->kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
         f->channels[c].kernel_scale = 512; /* 100 steps: 12.5 FAP units */
+        f->channels[c].pair_scale = 1280;  /* 40 steps: 12.5 FAP units */
         for (q = 0; q < f->model.state_count; q++) {
             labial_state_t *state = &f->states[c][q];
             f->emissions[c][q].gain = gain_of(400.0 + 40.0 * (double)(q % 3));
@@ -203,19 +207,20 @@ static void enrich(fixture_model_t *f)
 
 void fixture_plain(fixture_model_t *fixture)
 {
-    make_speech(fixture, FIXTURE_SPEECH_STATES, 0);
+    make_speech(fixture, FIXTURE_SPEECH_STATES);
 }
 
 void fixture_rich(fixture_model_t *fixture)
 {
-    make_speech(fixture, FIXTURE_SPEECH_STATES, 0);
+    make_speech(fixture, FIXTURE_SPEECH_STATES);
     enrich(fixture);
 }
 
 void fixture_slow(fixture_model_t *fixture)
 {
-    make_speech(fixture, LABIAL_STATES_MAX, 0);
+    make_speech(fixture, LABIAL_STATES_MAX);
     enrich(fixture);
+    fixture->model.search_stride = 3;
     fixture->model.kernel_taps = 5;
     fixture->model.kernel_stride = LABIAL_REACH / 2;
     fixture->model.kernel_behind = 2;

@@ -28,6 +28,7 @@ uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit 
 #define FIXTURE_CLASSES 4
 #define FIXTURE_TAPS 7
 #define FIXTURE_FLOORS 2
+#define FIXTURE_PREDECESSORS 8 /* of each state, at most */
 #define FIXTURE_PAIR_SIDE 3 /* known neighbours of each phoneme, to either side */
 #define FIXTURE_PAIRS (6 * 2 * FIXTURE_PAIR_SIDE)
 
@@ -40,15 +41,13 @@ typedef struct {
     uint8_t contexts[FIXTURE_COMPONENTS * 2 * FIXTURE_CLASSES];
     int8_t shapes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
     int8_t slopes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
-    uint8_t precisions[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
     int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
     uint16_t pair_keys[FIXTURE_PAIRS];
     int8_t pairs[FIXTURE_PAIRS * LABIAL_CHANNELS];
     int16_t floors[FIXTURE_FLOORS * LABIAL_CHANNELS];
     labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
-    uint16_t rows[LABIAL_CHANNELS][LABIAL_STATES_MAX + 1];
-    uint16_t edges[LABIAL_CHANNELS][LABIAL_STATES_MAX * 8];
+    uint16_t edges[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];
 } fixture_model_t;
 
 /* Phonemes of the two speech fixtures. */
@@ -61,17 +60,19 @@ enum { FIXTURE_HA, FIXTURE_NASAL, FIXTURE_LAUGH_SIL, FIXTURE_FRICATIVE, FIXTURE_
 #define FIXTURE_LAUGH_STATES 5
 #define FIXTURE_RATE 50
 
-/* The published method alone: no optional table, hard selection. The first component of every phoneme lasts 100 ms and
- * every channel has a state whose mean is exactly that component's shape. */
+/* The published method alone: no optional table, hard selection, a state for every frame. The first component of every
+ * phoneme lasts 100 ms and every channel has a state whose mean is exactly that component's shape. */
 void fixture_plain(fixture_model_t *fixture);
 
-/* The same phonemes with contexts, slopes, precisions, anchors, kernels, pairs, floors and soft selection. */
+/* The same phonemes with contexts, slopes, anchors, kernels, pairs, floors and soft selection; two frames share a
+ * state. */
 void fixture_rich(fixture_model_t *fixture);
 
-/* Other phonemes, other states, the same frame rate. */
+/* Other phonemes, other states, fewer predecessors, a state for every frame; the same frame rate. */
 void fixture_laughter(fixture_model_t *fixture);
 
-/* The rich model with LABIAL_STATES_MAX states and kernels that reach as far as they may, to both sides. */
+/* The rich model with LABIAL_STATES_MAX states, of which three frames share one, and kernels that reach as far as they
+ * may, to both sides. */
 void fixture_slow(fixture_model_t *fixture);
 
 /* Shape of the first component of a speech phoneme on one channel, Q4 FAP, `centre` included. */

@@ -43,13 +43,15 @@ static void pad(writer_t *w)
         put(w, 0, 1);
 }
 
-static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned states)
+static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned states, unsigned predecessors)
 {
     unsigned q, i;
     put(w, (uint16_t)channel->centre, 2);
     put(w, channel->shape_scale, 2);
     put(w, channel->slope_scale, 2);
     put(w, channel->kernel_scale, 2);
+    put(w, channel->pair_scale, 2);
+    put(w, 0, 2);
     for (q = 0; q < states; q++) {
         put(w, (uint16_t)channel->emissions[q].mean, 2);
         put(w, channel->emissions[q].gain, 2);
@@ -64,10 +66,7 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
         put(w, channel->states[q].anchor, 1);
     }
     pad(w);
-    for (q = 0; q <= states; q++)
-        put(w, channel->rows[q], 2);
-    pad(w);
-    for (i = 0; i < channel->rows[states]; i++)
+    for (i = 0; i < states * predecessors; i++)
         put(w, channel->edges[i], 2);
     pad(w);
 }
@@ -89,15 +88,16 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     put(&w, model->phoneme_count, 1);
     put(&w, model->class_count, 1);
     put(&w, model->state_count, 1);
+    put(&w, model->predecessors, 1);
+    put(&w, model->search_stride, 1);
     put(&w, model->silence, 1);
     put(&w, model->soft, 1);
     put(&w, model->kernel_taps, 1);
     put(&w, model->kernel_stride, 1);
     put(&w, model->kernel_behind, 1);
-    put(&w, (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u) | (model->precisions ? 4u : 0u), 1);
+    put(&w, (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u), 1);
     put(&w, model->floor_count, 1);
     put(&w, model->pair_count, 2);
-    put(&w, 0, 2);
     for (i = 0; i < model->phoneme_count; i++) {
         put(&w, model->phonemes[i].first_component, 2);
         put(&w, model->phonemes[i].component_count, 1);
@@ -118,8 +118,6 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     pad(&w);
     put_bytes(&w, model->slopes, n * LABIAL_CHANNELS);
     pad(&w);
-    put_bytes(&w, model->precisions, n * LABIAL_CHANNELS);
-    pad(&w);
     put_bytes(&w, model->kernels, (size_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS);
     pad(&w);
     for (i = 0; i < model->pair_count; i++)
@@ -131,7 +129,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
         put(&w, (uint16_t)model->floors[i], 2);
     pad(&w);
     for (i = 0; i < LABIAL_CHANNELS; i++)
-        put_channel(&w, &model->channels[i], model->state_count);
+        put_channel(&w, &model->channels[i], model->state_count, model->predecessors);
     if (w.size <= room)
         fixture_seal(out, w.size);
     return w.size;

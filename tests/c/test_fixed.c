@@ -23,6 +23,7 @@
 #define labial_weight narrow_weight
 #define labial_z narrow_z
 #define labial_z_cost narrow_z_cost
+#define labial_ease narrow_ease
 #define labial_clamp narrow_clamp
 #include "fixed.h"
 #undef labial_add
@@ -32,6 +33,7 @@
 #undef labial_weight
 #undef labial_z
 #undef labial_z_cost
+#undef labial_ease
 #undef labial_clamp
 
 static const int32_t corners[] = {0,      1,       -1,        2,          -2,         3,         255,       -256,
@@ -40,10 +42,10 @@ static const int32_t corners[] = {0,      1,       -1,        2,          -2,   
 
 #define CORNERS (sizeof corners / sizeof corners[0])
 
-/* floor((a b + 2^(shift - 1)) / 2^shift) modulo 2^32, by division. */
-static uint32_t wanted_product(int32_t a, int32_t b, unsigned shift)
+/* floor((a b + offset) / 2^shift) modulo 2^32, by division. */
+static uint32_t wanted_product(int32_t a, int32_t b, int64_t offset, unsigned shift)
 {
-    const int64_t unit = (int64_t)1 << shift, sum = (int64_t)a * b + unit / 2;
+    const int64_t unit = (int64_t)1 << shift, sum = (int64_t)a * b + offset;
     int64_t quotient = sum / unit;
     if (sum % unit < 0)
         quotient--;
@@ -52,7 +54,7 @@ static uint32_t wanted_product(int32_t a, int32_t b, unsigned shift)
 
 static void check_product(int32_t a, int32_t b, unsigned shift)
 {
-    const uint32_t wanted = wanted_product(a, b, shift);
+    const uint32_t wanted = wanted_product(a, b, 0, shift);
     if ((uint32_t)labial_mulshift(a, b, shift) != wanted)
         fail_msg("wide: %d * %d >> %u is %d", a, b, shift, labial_mulshift(a, b, shift));
     if ((uint32_t)narrow_mulshift(a, b, shift) != wanted)
@@ -100,7 +102,8 @@ static void scaling_rounds_to_the_nearest(void **state)
     for (i = 0; i < 10000; i++) {
         const int32_t x = (int32_t)fixture_random(&random) >> 1;
         for (down = 1; down < 25; down++)
-            assert_int_equal((uint32_t)labial_scale(x, -down), wanted_product(x, 1, (unsigned)down));
+            assert_int_equal((uint32_t)labial_scale(x, -down),
+                             wanted_product(x, 1, (int64_t)1 << (down - 1), (unsigned)down));
     }
 }
 
@@ -141,6 +144,28 @@ static void gaussian_costs_follow_their_formula(void **state)
     assert_in_range(labial_z_cost(labial_z(100, (uint16_t)(262144.0 / 141.421356 + 0.5), 1023)), 15, 16);
 }
 
+/* 3 s^2 - 2 s^3 in Q14, of an s that is rounded down as its square and the result are: would catch a jolt, a turn, an
+ * end that is not reached, and an overflow with the longest easing there is (1,000 frames), the shortest, or what is
+ * said to be the most. */
+static void easing_follows_its_curve(void **state)
+{
+    unsigned steps, step;
+    (void)state;
+    for (steps = 1; steps <= 65535; steps = steps < 1000 ? steps + 1 : steps < 1002 ? 65535 : 65536) {
+        int32_t last = 0;
+        assert_int_equal(labial_ease(0, steps), 0);
+        assert_int_equal(labial_ease(steps, steps), 16384);
+        for (step = 1; step <= steps; step++) {
+            const double s = (double)step / steps, wanted = 16384.0 * s * s * (3.0 - 2.0 * s);
+            const int32_t gone = labial_ease(step, steps);
+            /* 1.5 for s, 3 for its square, 1 for the result */
+            if ((double)gone > wanted + 1e-6 || (double)gone < wanted - 5.5 || (steps <= 1000 && gone < last))
+                fail_msg("step %u of %u: %d after %d, not %g", step, steps, gone, last, wanted);
+            last = gone;
+        }
+    }
+}
+
 static void clamping(void **state)
 {
     (void)state;
@@ -156,7 +181,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(products_are_rounded_alike_and_exactly), cmocka_unit_test(sums_wrap),
         cmocka_unit_test(scaling_rounds_to_the_nearest),          cmocka_unit_test(weights_are_minifloats),
-        cmocka_unit_test(gaussian_costs_follow_their_formula),    cmocka_unit_test(clamping),
+        cmocka_unit_test(gaussian_costs_follow_their_formula),    cmocka_unit_test(easing_follows_its_curve),
+        cmocka_unit_test(clamping),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,7 +64,6 @@ static void refuses_null(void **state)
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         TRY(const labial_emission_t *, f.channels[c].emissions, NULL, LABIAL_ERROR_NULL);
         TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
-        TRY(const uint16_t *, f.channels[c].rows, NULL, LABIAL_ERROR_NULL);
         TRY(const uint16_t *, f.channels[c].edges, NULL, LABIAL_ERROR_NULL);
     }
 }
@@ -75,7 +74,6 @@ static void optional_tables_may_be_null(void **state)
     (void)state;
     ACCEPTED(const uint8_t *, f.model.contexts, NULL);
     ACCEPTED(const int8_t *, f.model.slopes, NULL);
-    ACCEPTED(const uint8_t *, f.model.precisions, NULL);
     f.model.kernel_taps = 0;
     ACCEPTED(const int8_t *, f.model.kernels, NULL);
     f.model.floor_count = 0;
@@ -94,6 +92,7 @@ static void refuses_other_versions(void **state)
 
 static void refuses_counts_out_of_range(void **state)
 {
+    unsigned i;
     (void)state;
     REFUSED(uint16_t, f.model.frames_per_second, 0);
     REFUSED(uint16_t, f.model.frames_per_second, 251);
@@ -105,6 +104,18 @@ static void refuses_counts_out_of_range(void **state)
     REFUSED(uint8_t, f.model.class_count, LABIAL_CLASSES_MAX + 1);
     REFUSED(uint8_t, f.model.state_count, 0);
     REFUSED(uint8_t, f.model.state_count, LABIAL_STATES_MAX + 1);
+    REFUSED(uint8_t, f.model.predecessors, 0);
+    for (i = 1; i < 8; i++)
+        if (i != 4)
+            REFUSED(uint8_t, f.model.predecessors, (uint8_t)i); /* they are read in fours */
+    REFUSED(uint8_t, f.model.predecessors, LABIAL_STATES_MAX + 4);
+    REFUSED(uint8_t, f.model.predecessors, 255);
+    ACCEPTED(uint8_t, f.model.predecessors, 4); /* the same edges, read as other states' */
+    REFUSED(uint8_t, f.model.search_stride, 0);
+    REFUSED(uint8_t, f.model.search_stride, LABIAL_SEARCH_STRIDE_MAX + 1);
+    REFUSED(uint8_t, f.model.search_stride, 255);
+    ACCEPTED(uint8_t, f.model.search_stride, 1);
+    ACCEPTED(uint8_t, f.model.search_stride, LABIAL_SEARCH_STRIDE_MAX);
     REFUSED(uint16_t, f.model.component_count, 0);
     REFUSED(uint8_t, f.model.silence, FIXTURE_SPEECH_COUNT);
     REFUSED(uint8_t, f.model.silence, 255);
@@ -135,18 +146,43 @@ static void refuses_bad_phonemes(void **state)
     REFUSED(uint16_t, f.model.component_count, 2 * FIXTURE_SPEECH_COUNT - 1);
 }
 
+/* The low byte of an edge is an offset into the row of scores: would catch one that is not a score's, or is that of a
+ * state which the model does not have, in any of the edges. Costs may be any. */
 static void refuses_bad_transitions(void **state)
 {
-    unsigned c;
+    const unsigned last = FIXTURE_SPEECH_STATES - 1;
+    unsigned c, i;
     (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
-        REFUSED(uint16_t, f.rows[c][3], f.rows[c][2]);     /* state 2 without a predecessor */
-        REFUSED(uint16_t, f.rows[c][3], f.rows[c][2] - 1); /* descending */
-        REFUSED(uint16_t, f.rows[c][FIXTURE_SPEECH_STATES], f.rows[c][FIXTURE_SPEECH_STATES - 1]);
-        REFUSED(uint16_t, f.edges[c][0], FIXTURE_SPEECH_STATES);
-        REFUSED(uint16_t, f.edges[c][f.rows[c][FIXTURE_SPEECH_STATES] - 1], 0x0aff);
-        ACCEPTED(uint16_t, f.edges[c][0], 0xff00 | (FIXTURE_SPEECH_STATES - 1));
+        for (i = 0; i < FIXTURE_SPEECH_STATES * FIXTURE_PREDECESSORS; i++) {
+            REFUSED(uint16_t, f.edges[c][i], 4 * (last + 1)); /* where the best of all is kept */
+            REFUSED(uint16_t, f.edges[c][i], 0x0a00 | 0xfc);
+            REFUSED(uint16_t, f.edges[c][i], 0x0a01);
+            REFUSED(uint16_t, f.edges[c][i], 0x0a02);
+            REFUSED(uint16_t, f.edges[c][i], 0x0a00 | (4 * last + 3));
+            ACCEPTED(uint16_t, f.edges[c][i], 4 * last);
+            ACCEPTED(uint16_t, f.edges[c][i], 0xff00 | 4 * last);
+            ACCEPTED(uint16_t, f.edges[c][i], 0xff00);
+        }
     }
+}
+
+/* Would catch a limit on edges that is narrower than the largest model, whose last state is at 4 * 63. */
+static void accepts_edges_of_the_largest_model(void **state)
+{
+    static uint16_t edges[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+    unsigned i, c;
+    (void)state;
+    fixture_slow(&f);
+    for (i = 0; i < LABIAL_STATES_MAX * LABIAL_STATES_MAX; i++)
+        edges[i] = (uint16_t)(0x0700 | 4 * (i % LABIAL_STATES_MAX));
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        f.channels[c].edges = edges;
+    f.model.predecessors = LABIAL_STATES_MAX;
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    REFUSED(uint16_t, edges[LABIAL_STATES_MAX * LABIAL_STATES_MAX - 1], 0x07fd);
+    REFUSED(uint16_t, edges[LABIAL_STATES_MAX * LABIAL_STATES_MAX - 1], 0x07ff);
+    REFUSED(uint8_t, f.model.state_count, LABIAL_STATES_MAX - 1);
 }
 
 static void refuses_positions_out_of_range(void **state)
@@ -203,6 +239,8 @@ static void refuses_scales_out_of_range(void **state)
         REFUSED(uint16_t, f.channels[c].slope_scale, 16384);
         REFUSED(uint16_t, f.channels[c].slope_scale, 65535);
         ACCEPTED(uint16_t, f.channels[c].slope_scale, 16383);
+        ACCEPTED(uint16_t, f.channels[c].kernel_scale, 65535);
+        ACCEPTED(uint16_t, f.channels[c].pair_scale, 65535);
     }
 }
 
@@ -220,8 +258,8 @@ static uint8_t not_above(double value)
     return (uint8_t)(above(value) - 1);
 }
 
-/* The diagonal of equation 3 is, at most, static + 2 * (delta / 4) + 6 * delta-delta + anchor + precision; what pulls a
- * frame, that many times a position. */
+/* The diagonal of equation 3 is, at most, static + 2 * (delta / 4) + 6 * delta-delta + anchor; what pulls a frame, that
+ * many times a position. */
 static void refuses_weights_beyond_the_largest_sum(void **state)
 {
     const double sum = LABIAL_WEIGHT_SUM_MAX, pull = (double)LABIAL_PULL_MAX / LABIAL_POSITION_MAX;
@@ -250,24 +288,6 @@ static void refuses_weights_beyond_the_largest_sum(void **state)
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
 }
 
-/* Would catch a check that forgets what a phoneme's own precision adds to the diagonal. */
-static void refuses_precisions_beyond_the_largest_sum(void **state)
-{
-    const double sum = LABIAL_WEIGHT_SUM_MAX, pull = (double)LABIAL_PULL_MAX / LABIAL_POSITION_MAX;
-    const double least = sum < pull ? sum : pull;
-    const unsigned last = 2 * FIXTURE_SPEECH_COUNT * LABIAL_CHANNELS - 1;
-    (void)state;
-    memset(f.precisions, 0, sizeof f.precisions);
-    REFUSED(uint8_t, f.precisions[0], above(sum));
-    REFUSED(uint8_t, f.precisions[last], above(sum));
-    REFUSED(uint8_t, f.precisions[last], 0xff);
-    ACCEPTED(uint8_t, f.precisions[last], not_above(least / 2));
-    f.states[12][3].weight[0] = not_above(least / 2);
-    f.states[12][3].anchor = 0;
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
-    REFUSED(uint8_t, f.precisions[last], above(least / 2 + 2000)); /* one channel's last component */
-}
-
 /* A right-hand side is 2 * weight * mean of delta from either neighbour, and 4 times that of delta-delta. */
 static void refuses_pulls_beyond_the_largest(void **state)
 {
@@ -293,7 +313,6 @@ static void refuses_states_that_nothing_holds(void **state)
 {
     unsigned c;
     (void)state;
-    memset(f.precisions, 0x40, sizeof f.precisions); /* a phoneme's precision may be spread thin, so it does not count */
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         s->anchor = 0;
@@ -348,7 +367,6 @@ static void accepts_the_largest_counts(void **state)
     f.model.shapes = shapes;
     f.model.contexts = NULL;
     f.model.slopes = NULL;
-    f.model.precisions = NULL;
     f.model.kernel_taps = 0;
     f.model.kernels = NULL;
     f.model.floor_count = 0;
@@ -371,12 +389,12 @@ int main(void)
         cmocka_unit_test_setup(refuses_counts_out_of_range, setup),
         cmocka_unit_test_setup(refuses_bad_phonemes, setup),
         cmocka_unit_test_setup(refuses_bad_transitions, setup),
+        cmocka_unit_test_setup(accepts_edges_of_the_largest_model, setup),
         cmocka_unit_test_setup(refuses_positions_out_of_range, setup),
         cmocka_unit_test_setup(refuses_floors_out_of_range, setup),
         cmocka_unit_test_setup(refuses_pairs_out_of_order, setup),
         cmocka_unit_test_setup(refuses_scales_out_of_range, setup),
         cmocka_unit_test_setup(refuses_weights_beyond_the_largest_sum, setup),
-        cmocka_unit_test_setup(refuses_precisions_beyond_the_largest_sum, setup),
         cmocka_unit_test_setup(refuses_pulls_beyond_the_largest, setup),
         cmocka_unit_test_setup(refuses_states_that_nothing_holds, setup),
         cmocka_unit_test_setup(refuses_kernels_beyond_their_reach, setup),

@@ -227,6 +227,31 @@ static void no_frame_is_late_while_the_queue_is_full(void **state)
     }
 }
 
+/* Pieces that deliver only half of what they decode, one after the other for minutes, at every stride: would catch a
+ * share of work that is a little too small, and so takes long to show. */
+static void no_frame_is_late_in_a_long_run_of_short_vowels(void **state)
+{
+    const labial_model_t *model = &rich.model;
+    const uint8_t own = rich.model.search_stride;
+    unsigned stride, k, n;
+    (void)state;
+    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
+        fixture_host_t host;
+        rich.model.search_stride = (uint8_t)stride;
+        assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+        for (k = n = 0; k < 20000; k++) {
+            while (labial_room(host.stream) > 0)
+                assert_int_equal(labial_push(host.stream, FIXTURE_A + n++ % 2, LABIAL_OVERLAP * 1000 / FIXTURE_RATE),
+                                 LABIAL_OK);
+            if (fixture_tick(&host) != LABIAL_OK && host.recorder.count > 0)
+                fail_msg("stride %u: frame %zu is late", stride, host.recorder.count);
+        }
+        assert_null(host.complaint);
+        fixture_close(&host);
+    }
+    rich.model.search_stride = own;
+}
+
 /* Would catch a stream that never recovers when its ticks are few, or whose work has no bound. */
 static void every_stall_is_short(void **state)
 {
@@ -315,6 +340,7 @@ int main(void)
         cmocka_unit_test(a_stream_without_phonemes_is_done_at_once),
         cmocka_unit_test(starving_is_neither_waiting_nor_done),
         cmocka_unit_test(no_frame_is_late_while_the_queue_is_full),
+        cmocka_unit_test(no_frame_is_late_in_a_long_run_of_short_vowels),
         cmocka_unit_test(every_stall_is_short),
         cmocka_unit_test(a_held_phoneme_settles_to_its_shape),
         cmocka_unit_test(motion_stays_within_the_states_range),

@@ -195,7 +195,7 @@ static void a_stream_is_taken_up_where_it_stopped(void **state)
         const int pose = host.recorder.frames[first - 1][c];
         const int apart = abs(fresh.recorder.frames[0][c] - pose);
         far += apart > 60;
-        for (i = first; i < first + LABIAL_CUT_OVERLAP; i++) {
+        for (i = first; i < first + LABIAL_OVERLAP; i++) {
             const int step = abs(host.recorder.frames[i][c] - host.recorder.frames[i - 1][c]);
             const int own = i == first ? 0 : abs(fresh.recorder.frames[i - first][c] -
                                                  fresh.recorder.frames[i - first - 1][c]);
@@ -203,7 +203,7 @@ static void a_stream_is_taken_up_where_it_stopped(void **state)
                 fail_msg("channel %u, frame %zu: a step of %d where %d are to be bridged", c, i - first, step, apart);
         }
         /* After the cross-fade the motion is that of a fresh stream. */
-        for (i = LABIAL_CUT_OVERLAP; i < 90; i++)
+        for (i = LABIAL_OVERLAP; i < 90; i++)
             assert_int_equal(host.recorder.frames[first + i][c], fresh.recorder.frames[i][c]);
     }
     assert_true(far >= 3); /* else there was nothing to jump */

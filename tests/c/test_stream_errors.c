@@ -14,7 +14,7 @@
 
 #define COUNT 60
 
-static fixture_model_t plain, rich, slow, laugh, other_rate, broken, third;
+static fixture_model_t plain, rich, slow, laugh, other_rate, older, third;
 static fixture_phoneme_t input[COUNT];
 
 static int setup(void **state)
@@ -27,8 +27,8 @@ static int setup(void **state)
     fixture_laughter(&third);
     fixture_plain(&other_rate);
     other_rate.model.frames_per_second = 25;
-    fixture_plain(&broken);
-    broken.phonemes[2].component_count = 0;
+    fixture_plain(&older);
+    older.model.format = LABIAL_MODEL_FORMAT - 1;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 2);
     return 0;
 }
@@ -48,7 +48,7 @@ static void commit_errors(labial_t *stream, int ended)
     }
     assert_int_equal(labial_use(stream, &other_rate.model), LABIAL_ERROR_RATE);
     assert_int_equal(labial_use(stream, &slow.model), LABIAL_ERROR_WORKSPACE);
-    assert_int_equal(labial_use(stream, &broken.model), LABIAL_ERROR_MODEL);
+    assert_int_equal(labial_use(stream, &older.model), LABIAL_ERROR_VERSION);
     if (labial_room(stream) > 0) {
         assert_int_equal(labial_push(stream, FIXTURE_SPEECH_COUNT, 100), LABIAL_ERROR_PHONEME);
         assert_int_equal(labial_push(stream, 255, 100), LABIAL_ERROR_PHONEME);
@@ -170,11 +170,24 @@ static void null_streams_are_refused(void **state)
     assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0 && latency.ready == 0);
 }
 
+/* The slow model on the workspace that it needs at its own stride. */
+static int init_at_another_stride(labial_t *stream, fixture_recorder_t *recorder)
+{
+    static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX, 3) / 4];
+    int result;
+    assert_int_equal(labial_init(stream, &slow.model, workspace, sizeof workspace, fixture_record, recorder),
+                     LABIAL_OK);
+    slow.model.search_stride = 1;
+    result = labial_init(stream, &slow.model, workspace, sizeof workspace, fixture_record, recorder);
+    slow.model.search_stride = 3;
+    return result;
+}
+
 /* Would catch a failed labial_init() that leaves an earlier stream half alive. */
 static void a_failed_init_makes_the_stream_unusable(void **state)
 {
     const uint32_t size = labial_workspace_size(&plain.model);
-    uint32_t *workspace = (uint32_t *)malloc(size);
+    uint32_t *workspace = (uint32_t *)malloc(size + 4u); /* room enough for the misaligned ones */
     labial_t *stream = (labial_t *)malloc(sizeof *stream);
     uint8_t *bytes = (uint8_t *)workspace;
     fixture_recorder_t recorder;
@@ -182,7 +195,7 @@ static void a_failed_init_makes_the_stream_unusable(void **state)
     (void)state;
     assert_true(workspace && stream);
     memset(&recorder, 0, sizeof recorder);
-    for (i = 0; i < 9; i++) {
+    for (i = 0; i < 10; i++) {
         int got = 1, wanted = 1;
         assert_int_equal(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_OK);
         assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_OK);
@@ -207,21 +220,25 @@ static void a_failed_init_makes_the_stream_unusable(void **state)
             wanted = LABIAL_ERROR_WORKSPACE;
             got = labial_init(stream, &plain.model, workspace, 0, fixture_record, &recorder);
             break;
-        case 5: /* the workspace suits 8 states, not 64 */
+        case 5: /* the workspace suits 8 states of a frame each, not 64 of three */
             wanted = LABIAL_ERROR_WORKSPACE;
             got = labial_init(stream, &slow.model, workspace, size, fixture_record, &recorder);
             break;
         case 6: /* misaligned */
             wanted = LABIAL_ERROR_WORKSPACE;
-            got = labial_init(stream, &laugh.model, bytes + 1, size - 4, fixture_record, &recorder);
+            got = labial_init(stream, &laugh.model, bytes + 1, size, fixture_record, &recorder);
             break;
         case 7:
             wanted = LABIAL_ERROR_WORKSPACE;
-            got = labial_init(stream, &laugh.model, bytes + 2, size - 4, fixture_record, &recorder);
+            got = labial_init(stream, &laugh.model, bytes + 2, size, fixture_record, &recorder);
+            break;
+        case 8: /* enough for a stride of three, not of one */
+            wanted = LABIAL_ERROR_WORKSPACE;
+            got = init_at_another_stride(stream, &recorder);
             break;
         default:
-            wanted = LABIAL_ERROR_MODEL;
-            got = labial_init(stream, &broken.model, workspace, size, fixture_record, &recorder);
+            wanted = LABIAL_ERROR_VERSION;
+            got = labial_init(stream, &older.model, workspace, size, fixture_record, &recorder);
             break;
         }
         if (got != wanted)
@@ -237,36 +254,48 @@ static void a_failed_init_makes_the_stream_unusable(void **state)
 /* Would catch a formula that differs between the macro and the function; the tests' workspaces are exactly this large. */
 static void workspace_sizes_agree(void **state)
 {
-    static uint32_t constant[LABIAL_WORKSPACE_SIZE(FIXTURE_SPEECH_STATES) / 4];
-    unsigned q;
+    static uint32_t constant[LABIAL_WORKSPACE_SIZE(FIXTURE_SPEECH_STATES, 1) / 4];
+    unsigned q, stride;
     (void)state;
     assert_int_equal(sizeof constant, labial_workspace_size(&plain.model));
     for (q = 1; q <= LABIAL_STATES_MAX; q++) {
-        slow.model.state_count = (uint8_t)q;
-        assert_int_equal(labial_workspace_size(&slow.model), LABIAL_WORKSPACE_SIZE(q));
-        assert_int_equal(labial_workspace_size(&slow.model) % 4, 0);
+        for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
+            slow.model.state_count = (uint8_t)q;
+            slow.model.search_stride = (uint8_t)stride;
+            assert_int_equal(labial_workspace_size(&slow.model), LABIAL_WORKSPACE_SIZE(q, stride));
+            assert_int_equal(labial_workspace_size(&slow.model) % 4, 0);
+        }
     }
+    /* An expression for an argument is one value. */
+    assert_int_equal(LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX - 4, 1 + 1), LABIAL_WORKSPACE_SIZE(60, 2));
+    fixture_slow(&slow);
     assert_int_equal(labial_workspace_size(NULL), 0);
 }
 
 /* Would catch writes beside the workspace where no sanitizer looks, on a target for instance; also when the workspace is
- * larger than need be, where parts may be counted from its end, or of an odd size. */
+ * larger than need be, where parts may be counted from its end, or of an odd size; at every stride. */
 static void memory_beside_the_workspace_is_untouched(void **state)
 {
     enum { GUARD = 64, EXTRA = 9 };
-    static uint32_t memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX) / 4 + EXTRA + GUARD];
+    static uint32_t memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX, 1) / 4 + EXTRA + GUARD];
     uint8_t *const bytes = (uint8_t *)memory;
-    unsigned extra, i, k;
+    unsigned extra, i, k, round;
     (void)state;
-    for (extra = 0; extra < 4 * EXTRA; extra += 3) {
+    for (round = 0; round < 24; round++) {
         labial_t stream;
         fixture_recorder_t recorder;
-        const labial_model_t *model = extra % 2 ? &slow.model : &rich.model;
-        const uint32_t size = LABIAL_WORKSPACE_SIZE(extra % 2 ? LABIAL_STATES_MAX : FIXTURE_SPEECH_STATES) + extra;
+        const unsigned stride = 1 + round / 2 % LABIAL_SEARCH_STRIDE_MAX;
+        fixture_model_t *const model = round % 2 ? &slow : &rich;
+        uint32_t size;
+        extra = round * 3 % (4 * EXTRA);
         fixture_slow(&slow);
+        fixture_rich(&rich);
+        model->model.search_stride = (uint8_t)stride;
+        size = LABIAL_WORKSPACE_SIZE(round % 2 ? LABIAL_STATES_MAX : FIXTURE_SPEECH_STATES, stride) + extra;
         memset(&recorder, 0, sizeof recorder);
         memset(memory, 0xc3, sizeof memory);
-        assert_int_equal(labial_init(&stream, model, memory + GUARD, size, fixture_record, &recorder), LABIAL_OK);
+        assert_int_equal(labial_init(&stream, &model->model, memory + GUARD, size, fixture_record, &recorder),
+                         LABIAL_OK);
         for (i = 0; i < COUNT && labial_room(&stream) > 0; i++)
             assert_int_equal(labial_push(&stream, input[i].phoneme, input[i].ms), LABIAL_OK);
         assert_int_equal(labial_end(&stream), LABIAL_OK);
@@ -278,6 +307,8 @@ static void memory_beside_the_workspace_is_untouched(void **state)
                 fail_msg("byte %ld of a workspace of %u", (long)k - GUARD * 4, size);
         free(recorder.frames);
     }
+    fixture_slow(&slow);
+    fixture_rich(&rich);
 }
 
 /* More models than LABIAL_MODELS: refused while phonemes of all others wait, accepted once ticks have used them up. */

@@ -3,7 +3,7 @@
  * trajectories and cross-fades, each of which has a suite of its own.
  *
  * Would catch what those suites cannot see: a neighbour's class taken from the wrong phoneme, a part of the workspace
- * laid over another, a precision spread over the wrong length, a channel's centre forgotten.
+ * laid over another, a state searched for the target of the wrong frame, a channel's centre forgotten.
  */
 #include <stdarg.h>
 #include <stddef.h>
@@ -85,36 +85,40 @@ static unsigned class_of(long i, unsigned model)
 static void decode(const labial_piece_t *piece, uint32_t at, unsigned model, const uint8_t *labels,
                    int16_t out[][LABIAL_CHANNELS])
 {
-    static uint32_t scores[2][LABIAL_STATES_MAX];
+    static uint32_t scores[2][LABIAL_STATES_MAX + 1];
     static uint8_t back[LABIAL_WINDOW * LABIAL_STATES_MAX], path[LABIAL_WINDOW];
-    static uint16_t component[LABIAL_WINDOW], share[LABIAL_WINDOW];
-    static int32_t scratch[3 * LABIAL_WINDOW];
+    static int32_t factors[LABIAL_FACTORS * LABIAL_WINDOW];
     const labial_model_t *m = models[model];
-    labial_ties_t ties;
+    const unsigned stride = m->search_stride, steps = (piece->length + stride - 1) / stride;
+    labial_solver_t solver;
     unsigned t, c;
     long i = 0;
     for (t = 0; t < piece->length; t++) {
         int16_t shape[LABIAL_CHANNELS];
         while (held[i].begin + held[i].frames <= at + t)
             i++;
-        component[t] = (uint16_t)labial_shape_select(m, seen(i, model), (uint16_t)held[i].ms, class_of(i - 1, model),
-                                                     class_of(i + 1, model), shape);
+        labial_shape_select(m, seen(i, model), (uint16_t)held[i].ms, class_of(i - 1, model), class_of(i + 1, model),
+                            shape);
         labial_shape_add_pair(m, seen(i, model), seen(i - 1, model), 0, shape);
         labial_shape_add_pair(m, seen(i, model), seen(i + 1, model), 1, shape);
-        share[t] = (uint16_t)(held[i].frames == 1 ? 65535 : 65536 / held[i].frames);
         labial_shape_target(m, shape, labels + LABIAL_REACH + t, out[t]);
     }
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         const labial_channel_t *channel = &m->channels[c];
-        labial_viterbi_start(channel, m->state_count, out[0][c], scores[0]);
-        for (t = 1; t < piece->length; t++)
-            labial_viterbi_step(channel, m->state_count, out[t][c], scores[(t - 1) % 2], scores[t % 2],
-                                back + (t - 1) * m->state_count);
-        labial_viterbi_path(m->state_count, piece->length, scores[(piece->length - 1) % 2], back, path);
-        ties.precisions = m->precisions ? m->precisions + c : NULL;
-        ties.component = component;
-        ties.share = share;
-        labial_trajectory_solve(channel, &ties, path, piece->length, &out[0][c], scratch);
+        for (t = 0; t < steps; t++) {
+            /* of the frames that share a state, the middle one or the later of two; or the piece's last, if sooner */
+            const unsigned middle = t * stride + stride / 2;
+            const int16_t target = out[middle < piece->length ? middle : piece->length - 1u][c];
+            if (t == 0)
+                labial_viterbi_start(m, channel, target, scores[0]);
+            else
+                labial_viterbi_step(m, channel, target, scores[(t - 1) % 2], scores[t % 2],
+                                    back + (t - 1) * m->state_count);
+        }
+        labial_viterbi_path(m, piece->length, scores[(steps - 1) % 2], back, path);
+        memset(&solver, 0, sizeof solver);
+        labial_trajectory_forward(&solver, channel, path, piece->length, &out[0][c], 0, piece->length + 1u, factors);
+        labial_trajectory_backward(&solver, factors, piece->length, 0, &out[0][c]);
         for (t = 0; t < piece->length; t++)
             out[t][c] = (int16_t)(out[t][c] + channel->centre);
     }
@@ -123,7 +127,7 @@ static void decode(const labial_piece_t *piece, uint32_t at, unsigned model, con
 /* All pieces of the input, decoded and cross-faded. */
 static void decode_all(void)
 {
-    static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX) / 4];
+    static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX, 1) / 4];
     static uint8_t labels[LABIAL_WINDOW + 2 * LABIAL_REACH];
     static int16_t out[LABIAL_WINDOW][LABIAL_CHANNELS];
     static labial_t walker;
@@ -195,16 +199,35 @@ static void one_model_is_the_sum_of_its_steps(void **state)
     }
 }
 
+/* Every stride there is, of few and of many states: would catch a workspace that is laid out for another. */
+static void every_stride_is_the_sum_of_its_steps(void **state)
+{
+    unsigned stride;
+    (void)state;
+    models[1] = &laugh.model;
+    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
+        fixture_model_t *const f = stride % 2 ? &rich : &slow;
+        const uint8_t own = f->model.search_stride;
+        f->model.search_stride = (uint8_t)stride;
+        models[0] = &f->model;
+        fixture_stream(input, COUNT, FIXTURE_RANDOM, stride);
+        compare("strides", stride);
+        fixture_stream(input, COUNT, FIXTURE_ONE_FRAME, stride);
+        compare("strides", stride);
+        f->model.search_stride = own;
+    }
+}
+
 static void two_models_are_the_sum_of_their_steps(void **state)
 {
     fixture_random_t random = {41};
     uint32_t seed;
     unsigned i;
     (void)state;
-    models[0] = &rich.model;
     models[1] = &laugh.model;
     for (seed = 0; seed < 10; seed++) {
         uint8_t model = 0;
+        models[0] = seed % 4 == 3 ? &slow.model : &rich.model; /* strides 2 or 3, and 1 */
         fixture_stream(input, COUNT, seed % 3 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, seed);
         for (i = 0; i < COUNT; i++) {
             if (fixture_below(&random, 2 + seed) == 0)
@@ -220,6 +243,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_model_is_the_sum_of_its_steps),
+        cmocka_unit_test(every_stride_is_the_sum_of_its_steps),
         cmocka_unit_test(two_models_are_the_sum_of_their_steps),
     };
     return cmocka_run_group_tests(tests, setup, NULL);

@@ -49,7 +49,7 @@ def pieces(frames: Sequence[int], boundary: Sequence[bool], window: int = WINDOW
         end, fade_out = limit, OVERLAP
         for from_frame, to_frame, is_boundary in spans[:-1]:
             if is_boundary and from_frame >= begin + fade_in and from_frame > begin and to_frame <= limit:
-                end, fade_out = to_frame, min(to_frame - from_frame, OVERLAP)
+                end, fade_out = to_frame, min(to_frame - from_frame, (to_frame - begin) // 2, OVERLAP)
                 if end - begin >= PIECE:
                     break
         else:
