@@ -48,14 +48,6 @@ static inline int32_t labial_mulshift(int32_t a, int32_t b, unsigned shift)
 #endif
 }
 
-/* x * 2^up, modulo 2^32; rounded (halves up) where `up` is negative. -31 <= up <= 31. */
-static inline int32_t labial_scale(int32_t x, int up)
-{
-    if (up >= 0)
-        return (int32_t)((uint32_t)x << up);
-    return labial_add(x, (int32_t)(1u << (-up - 1))) >> -up;
-}
-
 /* The number that an 8-bit minifloat weight stands for, 0 .. 507904. */
 static inline uint32_t labial_weight(uint8_t code)
 {

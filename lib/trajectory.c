@@ -37,15 +37,18 @@ static int32_t reciprocal(int32_t d)
     return x;
 }
 
-/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^12 <= d < 2^31. */
-static int headroom(int32_t d)
+/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^15 <= d < 2^31. */
+static unsigned headroom(int32_t d)
 {
-    int shift = 0;
-    if (d < (int32_t)1 << 22) {
+#if defined(__GNUC__) && (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
+    return (unsigned)__builtin_clz((unsigned)d) - 1u;
+#else
+    unsigned shift = 0;
+    if (d < (int32_t)1 << 23) {
         d <<= 8;
         shift = 8;
     }
-    if (d < (int32_t)1 << 26) {
+    if (d < (int32_t)1 << 27) {
         d <<= 4;
         shift += 4;
     }
@@ -54,30 +57,32 @@ static int headroom(int32_t d)
         shift++;
     }
     return shift;
+#endif
 }
 
-/* Takes up frame t - 1, to which no later row adds anything but c, its second off-diagonal element. */
+/* Takes up frame t - 1, to which no later row adds anything but c, its second off-diagonal element. Products are rounded
+ * down; the ones that are added make up for what two of them lose on average. */
 static void factor(labial_solver_t *solver, int32_t c, int32_t *factors)
 {
     const int32_t a = solver->a1 * (1 << 12), b = solver->b1 * (1 << 12);
     const int32_t lambda = solver->lambda, kappa = solver->kappa2, z1 = solver->z1;
     const int32_t e = labial_sub(b, labial_mulshift(solver->kappa1, solver->e, 28));
     const int32_t z = labial_sub(solver->r1,
-                                 labial_add(labial_mulshift(lambda, z1, 28), labial_mulshift(kappa, solver->z2, 28)));
-    int32_t d = labial_sub(a, labial_add(labial_mulshift(lambda, solver->e, 28), labial_mulshift(kappa, solver->c2, 28)));
+                                 labial_add(labial_mulshift(lambda, z1, 28), labial_mulshift(kappa, solver->z2, 28) + 1));
+    int32_t d = labial_sub(a, labial_add(labial_mulshift(lambda, solver->e, 28), labial_mulshift(kappa, solver->c2, 28) + 1));
     int32_t inverse, held;
-    int shift;
+    unsigned shift;
 
-    if (d < (int32_t)1 << 12) /* not with a model that was checked; it keeps what follows defined */
-        d = (int32_t)1 << 12;
+    /* Not needed with a model that was checked; it keeps what follows defined. */
+    d = d < LABIAL_WEIGHT_MIN << 12 ? LABIAL_WEIGHT_MIN << 12 : d < 1 << 30 ? d : (1 << 30) - 1;
     held = labial_clamp(e, d < (int32_t)1 << 27 ? 8 * d - 1 : INT32_MAX);
-    shift = headroom(d);
-    inverse = reciprocal(d << shift);
+    shift = headroom(d); /* 1 .. 15 */
+    inverse = reciprocal((int32_t)((uint32_t)d << shift));
     c *= 1 << 12;
     solver->kappa2 = solver->kappa1;
-    solver->lambda = factors[0] = labial_scale(labial_mulshift(held, inverse, 30), shift - 2);
-    solver->kappa1 = factors[1] = labial_scale(labial_mulshift(c, inverse, 30), shift - 2);
-    factors[2] = labial_scale(labial_mulshift(z, inverse, 30), shift - 10);
+    solver->lambda = factors[0] = labial_mulshift(held, inverse, 32u - shift);
+    solver->kappa1 = factors[1] = labial_mulshift(c, inverse, 32u - shift);
+    factors[2] = shift < 9u ? labial_mulshift(z, inverse, 31) >> (9u - shift) : labial_mulshift(z, inverse, 40u - shift);
     solver->e = held;
     solver->c2 = solver->c1;
     solver->c1 = c;

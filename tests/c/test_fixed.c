@@ -19,7 +19,6 @@
 #define labial_add narrow_add
 #define labial_sub narrow_sub
 #define labial_mulshift narrow_mulshift
-#define labial_scale narrow_scale
 #define labial_weight narrow_weight
 #define labial_z narrow_z
 #define labial_z_cost narrow_z_cost
@@ -29,7 +28,6 @@
 #undef labial_add
 #undef labial_sub
 #undef labial_mulshift
-#undef labial_scale
 #undef labial_weight
 #undef labial_z
 #undef labial_z_cost
@@ -86,25 +84,6 @@ static void sums_wrap(void **state)
     assert_int_equal(labial_sub(INT32_MIN, 1), 2147483647);
     assert_int_equal(labial_add(-5, 3), -2);
     assert_int_equal(labial_sub(-5, 3), -8);
-}
-
-/* Would catch rounding towards zero, which pulls motion towards neutral. */
-static void scaling_rounds_to_the_nearest(void **state)
-{
-    fixture_random_t random = {2};
-    unsigned i;
-    int down;
-    (void)state;
-    assert_int_equal(labial_scale(5, 0), 5);
-    assert_int_equal(labial_scale(-5, 4), -80);
-    assert_int_equal(labial_scale(5, -1), 3);
-    assert_int_equal(labial_scale(-5, -1), -2); /* halves up */
-    for (i = 0; i < 10000; i++) {
-        const int32_t x = (int32_t)fixture_random(&random) >> 1;
-        for (down = 1; down < 25; down++)
-            assert_int_equal((uint32_t)labial_scale(x, -down),
-                             wanted_product(x, 1, (int64_t)1 << (down - 1), (unsigned)down));
-    }
 }
 
 static void weights_are_minifloats(void **state)
@@ -180,7 +159,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(products_are_rounded_alike_and_exactly), cmocka_unit_test(sums_wrap),
-        cmocka_unit_test(scaling_rounds_to_the_nearest),          cmocka_unit_test(weights_are_minifloats),
+        cmocka_unit_test(weights_are_minifloats),
         cmocka_unit_test(gaussian_costs_follow_their_formula),    cmocka_unit_test(easing_follows_its_curve),
         cmocka_unit_test(clamping),
     };
