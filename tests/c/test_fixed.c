@@ -159,6 +159,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(products_are_rounded_alike_and_exactly), cmocka_unit_test(sums_wrap),
+        cmocka_unit_test(weights_are_minifloats),
         cmocka_unit_test(gaussian_costs_follow_their_formula),    cmocka_unit_test(easing_follows_its_curve),
         cmocka_unit_test(clamping),
     };
