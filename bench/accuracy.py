@@ -33,7 +33,6 @@ from labial.reference.shape import targets
 from labial.reference.stream import frame_counts
 from labial.reference.tables import ExportedTables, FloatTables
 from labial.reference.trajectory import solve
-from labial.reference.viterbi import viterbi
 
 #: Episodes of a corpus that are used, evenly spread over it.
 EPISODES = 60
@@ -77,9 +76,9 @@ def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequen
         wanted = targets(tables, numbers, durations, frames)
         for piece in units.pieces(frames, [bool(tables.boundary[p]) for p in numbers]):
             span = slice(piece.begin, piece.end)
-            positions = wanted.position[span]
-            path = viterbi(tables.emission(positions), tables.transition, tables.initial)
-            expected.append(solve(tables.equation(path, positions, wanted.component[span], wanted.frames[span])))
+            positions = wanted[span]
+            path = tables.search(positions)
+            expected.append(solve(tables.equation(path, positions)))
             given.append(np.uint16(len(path)).tobytes())
             for k in range(CHANNELS):
                 given.append(path[:, k].astype(np.uint8).tobytes() + positions[:, k].astype(np.int16).tobytes())
@@ -96,6 +95,13 @@ def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequen
     return np.concatenate(errors)
 
 
+def units_in(frames: Sequence[int], boundary: Sequence[bool]) -> int:
+    """Units of a stream: from one boundary phoneme to the next inclusive, the first and the last one being what there
+    is; phonemes of no frames do not count."""
+    held = [is_boundary for count, is_boundary in zip(frames, boundary) if count]
+    return 1 + sum(held[1:-1]) if held else 0
+
+
 def measure(
     model: Model, exported: ExportedModel, solver: Sequence[str], streams: Sequence[Stream]
 ) -> Dict[str, float]:
@@ -103,13 +109,18 @@ def measure(
     ideal, tables = FloatTables(model), ExportedTables(exported)
     errors = solver_errors(tables, solver, streams)
     lost = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
+    total, frames, unit_count = lost.mean(axis=1).sum(), 0, 0
+    for stream in streams:
+        counts = frame_counts([ms for _, ms in stream], tables.fps)
+        frames += sum(counts)
+        unit_count += units_in(counts, [bool(tables.boundary[p]) for p, _ in stream])
     return {
         "solver_largest": float(np.abs(errors).max() / UNIT),
         "solver_rms": float(np.sqrt(np.mean(errors**2)) / UNIT),
-        "path_mean": float(lost.mean()),
+        "path_piece": float(lost.mean()),
         "path_worst_channel": float(lost.mean(axis=0).max()),
-        "units": len(lost),
-        "frames": len(errors),
+        "path_unit": float(total / unit_count),
+        "path_frames": float(100.0 * total / frames),
     }
 
 

@@ -5,8 +5,7 @@
  *   in    frames, uint16; for every channel `frames` states, uint8, and `frames` targets, int16, positions
  *   out   for every channel `frames` positions, int16
  *
- * in the machine's byte order. Models that tie their components' frames by precisions of their own are refused: the
- * bundled ones do not.
+ * in the machine's byte order.
  */
 #include <stdio.h>
 #include <string.h>
@@ -47,10 +46,6 @@ int main(int argc, char **argv)
     if (!model) {
         fputs("usage: labial-bench-solve speech|laughter\n", stderr);
         return 2;
-    }
-    if (model->precisions) {
-        fputs("labial-bench-solve: the model's components have precisions of their own\n", stderr);
-        return 1;
     }
     while (fread(&frames, sizeof frames, 1, stdin) == 1) {
         unsigned k;

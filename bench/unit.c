@@ -1,7 +1,5 @@
 #include "unit.h"
 
-#include <stddef.h>
-
 #include "labial/labial.h"
 #include "trajectory.h"
 
@@ -31,7 +29,9 @@ void bench_unit_solve(bench_unit_t *unit, const labial_model_t *model, unsigned 
 
 void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, unsigned length, int16_t *positions)
 {
-    static int32_t scratch[3 * LABIAL_WINDOW];
-    const labial_ties_t ties = { NULL, NULL, NULL };
-    labial_trajectory_solve(&model->channels[k], &ties, path, length, positions, scratch);
+    static int32_t factors[LABIAL_FACTORS * LABIAL_WINDOW];
+    static const labial_solver_t zero;
+    labial_solver_t solver = zero;
+    labial_trajectory_forward(&solver, &model->channels[k], path, length, positions, 0, length + 1u, factors);
+    labial_trajectory_backward(&solver, factors, length, 0, positions);
 }

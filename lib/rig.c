@@ -41,7 +41,9 @@ static int32_t target(const labial_rig_output_t *output, const int16_t faps[LABI
     unsigned i;
     for (i = 0; i < LABIAL_CHANNELS; i++)
         mix = labial_add(mix, (int32_t)output->weights[i] * faps[i]);
-    move = labial_clamp(labial_mulshift(mix, output->gain, 28), MOVE_MAX);
+    /* The product's bit below the point rounds it to the nearest, halves up. */
+    move = labial_add(labial_mulshift(mix, output->gain, 28), labial_mulshift(mix, output->gain, 27) & 1);
+    move = labial_clamp(move, MOVE_MAX);
     return limited(output, labial_add(output->neutral, output->invert ? -move : move));
 }
 

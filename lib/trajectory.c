@@ -60,16 +60,20 @@ static unsigned headroom(int32_t d)
 #endif
 }
 
-/* Takes up frame t - 1, to which no later row adds anything but c, its second off-diagonal element. Products are rounded
- * down; the ones that are added make up for what two of them lose on average. */
+/* a x + b y with a and b in Q28. The one makes up for what two products that are rounded down lose on average. */
+static int32_t two_products(int32_t a, int32_t x, int32_t b, int32_t y)
+{
+    return labial_add(labial_add(labial_mulshift(a, x, 28), labial_mulshift(b, y, 28)), 1);
+}
+
+/* Takes up frame t - 1, to which no later row adds anything but c, its second off-diagonal element. */
 static void factor(labial_solver_t *solver, int32_t c, int32_t *factors)
 {
     const int32_t a = solver->a1 * (1 << 12), b = solver->b1 * (1 << 12);
     const int32_t lambda = solver->lambda, kappa = solver->kappa2, z1 = solver->z1;
     const int32_t e = labial_sub(b, labial_mulshift(solver->kappa1, solver->e, 28));
-    const int32_t z = labial_sub(solver->r1,
-                                 labial_add(labial_mulshift(lambda, z1, 28), labial_mulshift(kappa, solver->z2, 28) + 1));
-    int32_t d = labial_sub(a, labial_add(labial_mulshift(lambda, solver->e, 28), labial_mulshift(kappa, solver->c2, 28) + 1));
+    const int32_t z = labial_sub(solver->r1, two_products(lambda, z1, kappa, solver->z2));
+    int32_t d = labial_sub(a, two_products(lambda, solver->e, kappa, solver->c2));
     int32_t inverse, held;
     unsigned shift;
 
@@ -140,7 +144,7 @@ void labial_trajectory_backward(labial_solver_t *solver, const int32_t *factors,
         int32_t m;
         factors -= LABIAL_FACTORS;
         positions -= LABIAL_CHANNELS;
-        m = labial_sub(factors[2], labial_add(labial_mulshift(factors[0], m1, 28), labial_mulshift(factors[1], m2, 28)));
+        m = labial_sub(factors[2], two_products(factors[0], m1, factors[1], m2));
         m2 = m1;
         m1 = m;
         *positions = (int16_t)labial_clamp(labial_add(m, 128) >> 8, LABIAL_POSITION_MAX);

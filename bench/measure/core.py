@@ -32,9 +32,15 @@ class Figure:
         return self.unit in ("frames/s", "times real time")
 
     @property
+    def versus_others(self) -> bool:
+        """Whether it is a ratio of what another program takes to what Labial takes."""
+        return self.unit.startswith("times Labial's ")
+
+    @property
     def checked(self) -> bool:
-        """Whether a baseline holds it: timings and what is measured on somebody's corpus are not for every machine."""
-        return not self.timed and "corpus" not in self.figure
+        """Whether a baseline holds it: timings and what is measured on somebody's corpus are not for every machine, and
+        of ratios to what others need, which :attr:`versus_others` tells, more is better."""
+        return not self.timed and not self.versus_others and "corpus" not in self.figure
 
     def as_json(self) -> Dict[str, Union[str, float]]:
         """The object in bench.json."""
@@ -52,12 +58,12 @@ class Bench:
 
     def add(self, target: str, figure: str, value: float, unit: str, command: Sequence[Union[str, Path]],
             tool: str) -> None:
-        """Keeps a figure; paths in its command are shown relative to the source folder."""
+        """Keeps a figure with its command, as :meth:`shown` shows it."""
         self.figures.append(Figure(target, figure, value, unit, self.shown(command), tool))
 
     def shown(self, command: Sequence[Union[str, Path]]) -> str:
-        """A command as a user would type it in the source folder."""
-        parts = [str(part).replace(f"{self.source}/", "") for part in command]
+        """A command as a user would type it in the source folder after the preset `bench`."""
+        parts = [str(part).replace(f"{self.build}/", "build/bench/").replace(f"{self.source}/", "") for part in command]
         if parts[0].startswith("/"):
             parts[0] = Path(parts[0]).name
         return " ".join(map(_quoted, parts))

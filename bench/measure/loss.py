@@ -15,8 +15,10 @@ from measure.sizes import MODELS
 FIGURES = (
     ("MLPG error, largest", "solver_largest", "1/1024 of full scale"),
     ("MLPG error, RMS", "solver_rms", "1/1024 of full scale"),
-    ("likelihood lost by paths, mean", "path_mean", "nats/unit and channel"),
-    ("likelihood lost by paths, worst channel", "path_worst_channel", "nats/unit"),
+    ("likelihood lost by paths, per piece", "path_piece", "nats/piece and channel"),
+    ("likelihood lost by paths, per piece, worst channel", "path_worst_channel", "nats/piece"),
+    ("likelihood lost by paths, per unit", "path_unit", "nats/unit and channel"),
+    ("likelihood lost by paths, per 100 frames", "path_frames", "nats/100 frames and channel"),
 )
 
 

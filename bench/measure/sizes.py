@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from pathlib import Path
 from typing import Dict, List
@@ -9,8 +10,9 @@ from typing import Dict, List
 from measure.boards import Board, compiler, cpu_flags
 from measure.core import Bench, run, version
 
-#: Files of lib/ that a program with compiled-in models does not link unless it uses them; the total leaves them out.
-OPTIONAL = ("blob", "faps", "names", "result", "rig")
+#: Files of lib/ that play compiled-in models. A program links the others only when it calls them, or for models from
+#: outside (model.c, the check, and blob.c).
+CORE = ("stream", "work", "units", "shape", "viterbi", "trajectory")
 
 LEVELS = ("-Os", "-O2")
 
@@ -31,25 +33,29 @@ def sections(size: str, path: Path) -> Dict[str, int]:
 
 
 def measure(bench: Bench, board: Board) -> None:
-    """Code of every file at each level, their total, tables, RAM."""
+    """Code of every file at each level, of those that play, of all, of the compiler's helpers; tables, RAM."""
     size = f"{board.prefix}size"
     tool_version = version(compiler(board))
     with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
         out = Path(scratch) / "out.o"
         variables = 0
         for level in LEVELS:
-            total = 0
+            text: Dict[str, int] = {}
             command = compile_command(bench, board, level)
             for path in sorted((bench.source / "lib").glob("*.c")):
-                run([*command, path, "-o", out])
-                found = sections(size, out)
+                run([*command, path, "-o", Path(scratch) / f"{path.stem}.o"])
+                found = sections(size, Path(scratch) / f"{path.stem}.o")
                 variables += found["data"] + found["bss"]
-                if path.stem not in OPTIONAL:
-                    total += found["text"]
+                text[path.stem] = found["text"]
                 bench.add(board.preset, f"code {level}: {path.name}", found["text"], "bytes",
                           [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
-            bench.add(board.preset, f"code {level}: total", total, "bytes",
-                      [*command, "lib/*.c", "&&", size, "*.o"], tool_version)
+            shown = [*command, "lib/*.c", "&&", size, "*.o"]
+            bench.add(board.preset, f"code {level}: total", sum(text[stem] for stem in CORE), "bytes",
+                      [*shown, "#", *(f"{stem}.o" for stem in CORE)], tool_version)
+            bench.add(board.preset, f"code {level}: all of lib", sum(text.values()), "bytes", shown, tool_version)
+            objects = [Path(scratch) / f"{stem}.o" for stem in CORE]
+            bench.add(board.preset, f"code {level}: compiler's helpers", _helpers(bench, board, objects), "bytes",
+                      [*shown, "#", "members", "of", "libgcc.a", "that", "these", "link"], tool_version)
         command = compile_command(bench, board, "-Os")
         for model, stem in MODELS.items():
             for figure, name in ((f"{model}: model", f"{stem}.c"), (f"{model}: names", f"{stem}_names.c")):
@@ -62,6 +68,21 @@ def measure(bench: Bench, board: Board) -> None:
         bench.add(board.preset, ".data and .bss of library and models", variables, "bytes",
                   [*command, "lib/*.c", "lib/models/*.c", "&&", size, "*.o"], tool_version)
         _ram(bench, board, command, Path(scratch), tool_version)
+
+
+def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
+    """Bytes of what `objects` link from the compiler's own library, such as division; RuntimeError where they need more
+    than that and what every C compiler relies on."""
+    prefix, linked = board.prefix, objects[0].with_name("linked.o")
+    flags = cpu_flags(bench, board)
+    archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()
+    link_map = run([compiler(board), *flags, "-nostdlib", "-r", "-Wl,-M", *objects, archive, "-o", linked])
+    unknown = set(re.findall(r"U (\w+)", run([f"{prefix}nm", "-u", linked]).stdout.decode())) - {"memcpy", "memset"}
+    if unknown:
+        raise RuntimeError(f"{board.core}: {', '.join(CORE)} call {', '.join(sorted(unknown))} of other files of lib/")
+    members = set(re.findall(r"libgcc\.a\(([^)]+)\)", link_map.stdout.decode()))
+    lines = run([f"{prefix}size", archive]).stdout.decode().splitlines()[1:]
+    return sum(int(line.split()[0]) for line in lines if line.split()[5] in members)
 
 
 def _ram(bench: Bench, board: Board, command: List[str], scratch: Path, tool_version: str) -> None:

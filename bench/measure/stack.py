@@ -9,7 +9,7 @@ from typing import Dict, List, Set, Tuple
 
 from measure.boards import Board, compiler, cpu_flags
 from measure.core import Bench, run, version
-from measure.sizes import LEVELS, OPTIONAL, compile_command
+from measure.sizes import LEVELS, compile_command
 
 #: How a call through a pointer appears; the only one is the program's own callback, whose stack is not the library's.
 _INDIRECT = "__indirect_call"
@@ -95,15 +95,15 @@ def _machine_code(listing: str) -> Tuple[int, Set[str]]:
     return frame, set(re.findall(r"R_(?:ARM_THM_CALL|ARM_THM_JUMP24|RISCV_CALL(?:_PLT)?)\s+(\w+)", listing))
 
 
-def public_functions(bench: Bench) -> List[str]:
-    """The functions that labial.h declares."""
-    text = (bench.source / "include" / "labial" / "labial.h").read_text(encoding="utf-8")
+def public_functions(bench: Bench, header: str = "labial.h") -> List[str]:
+    """The functions that a header of include/labial declares."""
+    text = (bench.source / "include" / "labial" / header).read_text(encoding="utf-8")
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     return sorted(set(re.findall(r"^[a-z][\w \*]*?\b(labial_\w+)\([^;{]*\);", text, re.MULTILINE)))
 
 
 def measure(bench: Bench, board: Board) -> None:
-    """The deepest call of labial_tick() and of all functions of labial.h, at each level."""
+    """The deepest call of labial_tick(), of all functions of labial.h and of those of all headers, at each level."""
     tool_version = version(compiler(board))
     for level in LEVELS:
         graph = CallGraph()
@@ -111,17 +111,17 @@ def measure(bench: Bench, board: Board) -> None:
         with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
             # The board's memcpy and memset stand for those of whatever C library a program has.
             for path in (*sorted((bench.source / "lib").glob("*.c")), bench.source / "boards" / "memory.c"):
-                if path.stem in OPTIONAL:
-                    continue
                 own = ["-fno-tree-loop-distribute-patterns"] if path.stem == "memory" else []
                 run([*command, *own, path, "-o", Path(scratch) / f"{path.stem}.o"])
             for found in sorted(Path(scratch).glob("*.ci")):
                 graph.add_ci(found.read_text(encoding="utf-8"))
         add_archive(graph, board, cpu_flags(bench, board))
-        functions = [name for name in public_functions(bench) if name in graph.frames]
+        headers = sorted(path.name for path in (bench.source / "include" / "labial").glob("*.h"))
+        everything = [name for header in headers for name in public_functions(bench, header)]
         shown = [*command, "lib/*.c"]
         for figure, depth in (
             (f"stack {level}: labial_tick()", graph.deepest("labial_tick")),
-            (f"stack {level}: every function", max(graph.deepest(name) for name in functions)),
+            (f"stack {level}: every function", max(graph.deepest(name) for name in public_functions(bench))),
+            (f"stack {level}: all of lib", max(graph.deepest(name) for name in everything)),
         ):
             bench.add(board.preset, figure, depth[0], "bytes", [*shown, "#", " > ".join(depth[1])], tool_version)

@@ -7,7 +7,7 @@ from typing import List, Optional, Sequence, Tuple
 from measure.boards import BOARDS, RATE, SECONDS
 from measure.core import Bench
 from measure.profile import Row
-from measure.sizes import LEVELS, OPTIONAL
+from measure.sizes import CORE, LEVELS
 
 #: What is aimed at: what it is called, target, figure, the limit, and whether the limit is the least.
 GOALS = (
@@ -21,7 +21,7 @@ GOALS = (
     ("MLPG, x86-64", "host", "MLPG", 210, False),
     ("MLPG error, largest, speech", "accuracy", "speech, *: MLPG error, largest", 0.1, False),
     ("MLPG error, largest, laughter", "accuracy", "laughter, *: MLPG error, largest", 0.1, False),
-    ("code, Cortex-M0 -Os", "m0", "code -Os: total", 6144, False),
+    ("code that plays compiled-in models, Cortex-M0 -Os", "m0", "code -Os: total", 6144, False),
     ("speech model", "m0", "speech: model", 48 * 1024, False),
     ("laughter model", "m0", "laughter: model", 40 * 1024, False),
     ("workspace and labial_t", "m0", "speech: workspace and labial_t", 6144, False),
@@ -80,7 +80,11 @@ def _cost(bench: Bench) -> List[str]:
 
 
 def _memory(bench: Bench) -> List[str]:
-    rows = [("code, -Os", "code -Os: total"), ("code, -O2", "code -O2: total")]
+    rows = []
+    for level in LEVELS:
+        rows += [(f"code that plays compiled-in models, {level}", f"code {level}: total"),
+                 (f"the compiler's helpers that it links, {level}", f"code {level}: compiler's helpers"),
+                 (f"code, all of `lib/`, {level}", f"code {level}: all of lib")]
     for model in ("speech", "laughter"):
         rows += [(f"{model} model", f"{model}: model"), (f"{model} names, only if used", f"{model}: names")]
     rows += [("`labial_t`", "labial_t")]
@@ -90,16 +94,19 @@ def _memory(bench: Bench) -> List[str]:
              (".data and .bss of library and models", ".data and .bss of library and models")]
     for level in LEVELS:
         rows += [(f"stack, {level}: `labial_tick()`, at most", f"stack {level}: labial_tick()"),
-                 (f"stack, {level}: any function of labial.h, at most", f"stack {level}: every function")]
+                 (f"stack, {level}: any function of labial.h, at most", f"stack {level}: every function"),
+                 (f"stack, {level}: any function of all headers, at most", f"stack {level}: all of lib")]
     rows += [("stack, -O2: painted, speech, callback included", "speech: stack, painted"),
              ("stack, -O2: painted, laughter, callback included", "laughter: stack, painted")]
-    optional = ", ".join(f"`{name}.c`" for name in OPTIONAL if bench.value("m0", f"code -Os: {name}.c") is not None)
+    core = ", ".join(f"`{name}.c`" for name in CORE)
     return [
         "## Bytes", "",
-        f"Code is .text with read-only data of all of `lib/*.c` except what is linked only when used: {optional}. It "
-        "does not hold what the compiler brings for division and what the C library brings for `memcpy` and `memset`; "
-        "stack does. The most that the stack can take comes from the compiler's frames and call graph and from the "
-        "machine code of its own functions; the program's callback is not in it.", "",
+        f"Code is .text with read-only data. What plays compiled-in models is {core}. The other files of `lib/` are "
+        "linked only when a program calls them: `model.c`, the check of a model, and `blob.c` for models from binary "
+        "files. The compiler's helpers are functions of its own, such as division where the processor has none; what "
+        "the C library brings for `memcpy` and `memset` is not counted. Stack counts all of these. The most that it "
+        "can take comes from the compiler's frames and call graph and from the machine code of its own functions; the "
+        "program's callback is not in it.", "",
         *_by_board(bench, rows),
         "By file:", "",
         *_files(bench),
@@ -116,8 +123,11 @@ def _files(bench: Bench) -> List[str]:
     head, rows = [""], []
     for board in BOARDS:
         head += [f"{board.core} {level}" for level in LEVELS]
-    for name in [*names, "total"]:
-        row = [name if name.split(".")[0] not in OPTIONAL else f"({name})"]
+    names.sort(key=lambda name: name.split(".")[0] not in CORE)
+    played = [name for name in names if name.split(".")[0] in CORE]
+    labels = {"total": "**plays compiled-in models**", "all of lib": "**all of `lib/`**"}
+    for name in [*played, "total", *names[len(played):], "all of lib"]:
+        row = [labels.get(name, name)]
         for board in BOARDS:
             row += [_number(bench.value(board.preset, f"code {level}: {name}")) for level in LEVELS]
         rows.append(row)
@@ -127,8 +137,9 @@ def _files(bench: Bench) -> List[str]:
 def _mlpg(bench: Bench) -> List[str]:
     lines = [
         "## Equation 3 alone", "",
-        "Instructions per frame and channel: units of 40 frames of the speech model's states.", "",
-        *_by_board(bench, [("`labial_trajectory_solve()`", "MLPG")], host=True),
+        "Instructions per frame and channel: units of 40 frames of the speech model's states, each solved in one call "
+        "forwards and one backwards, the solver's state cleared before.", "",
+        *_by_board(bench, [("`labial_trajectory_forward()` and `_backward()`", "MLPG")], host=True),
     ]
     rows = [["Labial", _number(bench.value("host", "MLPG")), "1",
              _number(bench.value("host", "MLPG: memory of a unit")), "1"]]
@@ -142,7 +153,7 @@ def _mlpg(bench: Bench) -> List[str]:
         "and variances unit by unit as its public structures, in doubles, its allocations included; its solution is "
         "Labial's to less than a tenth of a FAP unit. SPTK: its program `mlpg`, which recurses over the frames as "
         "they arrive; the same frames as one sequence, what each further frame costs, reading and writing included. "
-        "Memory: Labial's scratch memory and positions of a unit, the others' heap at its peak.", "",
+        "Memory: Labial's solver, factors and positions of a unit, the others' heap at its peak.", "",
         *_rows(["", "instructions per frame and channel", "times Labial's", "bytes", "times Labial's"], rows),
     ]
 
@@ -156,7 +167,9 @@ def _accuracy(bench: Bench) -> List[str]:
         "MLPG: the library's solution, rounded to 1/16 FAP unit as it is, against float64 for the same tables, state "
         "paths and targets. Full scale is what a position can be, 1,024 FAP units to either side, so that the unit of "
         "error is one FAP unit. Paths: the likelihood, under the trained float64 model, that the exported tables' path "
-        "loses to the best path of a search over all transitions.", "",
+        "loses to the best path of a search over all transitions, which like the library's sees one frame of those "
+        "that share a state. A piece is what is decoded at once, one or more units; a unit runs from one vowel, p, b "
+        "or m to the next.", "",
         *_rows(["", "", ""], [[figure.figure, f"{figure.value:.4f}", figure.unit] for figure in own]),
     ]
 

@@ -60,7 +60,6 @@ int script_tick(script_t *script)
     int result = LABIAL_OK;
     while (result >= 0 && script->next < sizeof lines / sizeof lines[0] && labial_room(&script->stream) > 0) {
         const line_t *line = &lines[script->next++];
-        /* Only where the model changes, for labial_use() checks all of its tables. */
         if (script->next > 1 && line->model != line[-1].model)
             result = labial_use(&script->stream, models[line->model]);
         if (result >= 0)

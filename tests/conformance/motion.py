@@ -3,7 +3,6 @@ leaves to the stream - passing from model to model, cancelling, taking up again 
 
 from __future__ import annotations
 
-import math
 from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
@@ -13,16 +12,15 @@ from labial.reference.shape import targets
 from labial.reference.stream import frame_counts
 from labial.reference.tables import Tables
 from labial.reference.trajectory import join, solve
-from labial.reference.units import CUT_OVERLAP, OVERLAP, WINDOW, Piece
-from labial.reference.viterbi import viterbi
-from scripts import Part, Script
+from labial.reference.units import OVERLAP, PIECE, WINDOW, Piece
+from scripts import Part, Script, ease_frames
 
 
 def mixed_pieces(frames: Sequence[int], boundary: Sequence[bool], model: Sequence[str]) -> List[Tuple[Piece, str]]:
     """As :func:`labial.reference.units.pieces`, for phonemes of several models; each piece with its own.
 
-    A run of one model's phonemes is cut as if it were alone, but its last piece runs on over the next run, for
-    CUT_OVERLAP frames, the rest of the window or the length of that run, whichever is least.
+    A run of one model's phonemes is cut as if it were alone, but its last piece runs on over the next run: for OVERLAP
+    frames, the rest of the window, the length of that run or its own frames of the first, whichever is least.
     """
     spans = []
     at = 0
@@ -37,15 +35,16 @@ def mixed_pieces(frames: Sequence[int], boundary: Sequence[bool], model: Sequenc
         change = next((first for first, _, _, name in spans if first > begin and name != own), at)
         after = next((first for first, _, _, name in spans if first > change and name == own), at)
         limit = begin + WINDOW
-        if change >= limit and change < at or change > limit:
-            end, fade_out = limit, CUT_OVERLAP
+        end, fade_out = limit, OVERLAP
+        for first, last, is_boundary, _ in spans[:-1]:
+            if is_boundary and max(begin + fade_in, begin + 1) <= first < change and last <= limit:
+                end, fade_out = last, min(last - first, (last - begin) // 2, OVERLAP)
+                if end - begin >= PIECE:
+                    break
         else:
-            fade_out = min(CUT_OVERLAP, limit - change, after - change)
-            end = change + fade_out
-        for first, last, is_boundary, name in spans[:-1]:
-            if is_boundary and name == own and max(begin + fade_in, begin + 1) <= first < change and last <= limit:
-                end, fade_out = last, min(last - first, OVERLAP)
-                break
+            if change < limit or change == at == limit:
+                fade_out = min(OVERLAP, limit - change, after - change, change - begin)
+                end = change + fade_out
         result.append((Piece(begin, end, fade_in, fade_out), own))
         if not fade_out:
             break
@@ -70,17 +69,19 @@ def part_motion(tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed
                                          for push in part.pushes], durations, frames) for name in set(names)}
     motion = []
     for piece, name in cut:
-        span = slice(piece.begin, piece.end)
-        aim, table = aims[name], tables[name]
-        path = viterbi(table.emission(aim.position[span]), table.transition, table.initial)
-        motion.append(solve(table.equation(path, aim.position[span], aim.component[span], aim.frames[span])))
+        aim = aims[name][piece.begin : piece.end]
+        motion.append(solve(tables[name].equation(tables[name].search(aim), aim)))
     pieces = [piece for piece, _ in cut]
     if resumed:
         first = pieces[0]
-        fade = min(first.end - first.begin - first.fade_out, CUT_OVERLAP)
-        share = (np.arange(1, fade + 1) / (fade + 1))[:, None]
-        motion[0][:fade] = held + (motion[0][:fade] - held) * share
+        fade = min(first.end - first.begin - first.fade_out, OVERLAP)
+        motion[0][:fade] = held + (motion[0][:fade] - held) * smooth(np.arange(1, fade + 1) / (fade + 1))
     return join(pieces, motion)[:wanted]
+
+
+def smooth(s: np.ndarray) -> np.ndarray:
+    """(T, 1) how far a transition has gone at `s` (T,), 0 .. 1."""
+    return (s * s * (3.0 - 2.0 * s))[:, None]
 
 
 def script_motion(tables: Dict[str, Tables], script: Script) -> np.ndarray:
@@ -95,8 +96,12 @@ def script_motion(tables: Dict[str, Tables], script: Script) -> np.ndarray:
         if len(motion):
             held = np.floor(motion[-1] + 0.5)  # what the program was given
         if part.cancel:
-            length = max(1, math.ceil(part.cancel[1] * rate / 1000))
-            s = (np.arange(1, length + 1) / length)[:, None]
-            shown.append(held * (1.0 - s * s * (3.0 - 2.0 * s)))
+            eased = [part.cancel[1], *(milliseconds for _, milliseconds in part.again)]
+            until = [frames for frames, _ in part.again]
+            for milliseconds, frames in zip(eased, [*until, None]):
+                length = ease_frames(milliseconds, rate)
+                shown.append((held * (1.0 - smooth(np.arange(1, length + 1) / length)))[:frames])
+                if len(shown[-1]):
+                    held = np.floor(shown[-1][-1] + 0.5)
             held = np.zeros(CHANNELS)
     return np.concatenate(shown)

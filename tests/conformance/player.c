@@ -1,8 +1,5 @@
 #include "player.h"
 
-#include "laughter_synthetic.h"
-#include "speech_en.h"
-
 /* Ticks without a frame after which a stream counts as stuck: more than the longest piece takes. */
 #define PATIENCE 1000u
 
@@ -88,9 +85,19 @@ static void push(player_t *player, const conformance_step_t *step)
         complain(player, "a phoneme is refused");
 }
 
+/* Ends or cancels what was pushed. */
 static void finish(player_t *player, const conformance_step_t *step)
 {
-    if (step->kind == CONFORMANCE_CANCEL) {
+    uint32_t left;
+    if (step->kind == CONFORMANCE_AGAIN) {
+        for (left = step->value; left > 0 && !player->complaint; left--) {
+            tick(player);
+            if (player->last != LABIAL_OK)
+                complain(player, "an easing is over too early");
+        }
+        if (labial_cancel(player->stream, step->milliseconds) != LABIAL_OK)
+            complain(player, "a second cancel is refused");
+    } else if (step->kind == CONFORMANCE_CANCEL) {
         while (!player->complaint && !is_cut(player)) {
             tick(player);
             if (player->last == LABIAL_WAITING || player->last == LABIAL_STARVED)
@@ -101,6 +108,11 @@ static void finish(player_t *player, const conformance_step_t *step)
     } else if (labial_end(player->stream) != LABIAL_OK) {
         complain(player, "an end is refused");
     }
+}
+
+/* Ticks until nothing is left. */
+static void drain(player_t *player)
+{
     do {
         if (player->feed == CONFORMANCE_WORK)
             while (labial_work(player->stream) == LABIAL_OK) {
@@ -143,6 +155,9 @@ const char *conformance_play(const conformance_stream_t *script, conformance_fee
             continue;
         }
         finish(&player, step);
+        if (i + 1u < script->step_count && step[1].kind == CONFORMANCE_AGAIN)
+            continue;
+        drain(&player);
         if (i + 1u < script->step_count) {
             if (labial_restart(stream) != LABIAL_OK)
                 complain(&player, "a restart is refused");

@@ -4,7 +4,14 @@
 #ifndef CONFORMANCE_PLAYER_H
 #define CONFORMANCE_PLAYER_H
 
+#include "laughter_synthetic.h"
+#include "speech_en.h"
 #include "vectors.h"
+
+/* Bytes of workspace, enough for both bundled models. */
+#define CONFORMANCE_WORKSPACE                                                                \
+    (SPEECH_EN_WORKSPACE_SIZE > LAUGHTER_SYNTHETIC_WORKSPACE_SIZE ? SPEECH_EN_WORKSPACE_SIZE \
+                                                                  : LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
 
 typedef enum {
     CONFORMANCE_FILL,   /* as many phonemes as there is room for before every tick */
@@ -18,7 +25,7 @@ typedef enum {
 extern const char *const conformance_feed_names[CONFORMANCE_FEEDS];
 
 /*
- * Plays a stream from labial_init() on; `sink` receives its frames. `workspace` has room for both bundled models.
+ * Plays a stream from labial_init() on; `sink` receives its frames. `workspace` has CONFORMANCE_WORKSPACE bytes.
  *
  * Returns null, or what the library did that it must not do: an error, frames that are misnumbered, more than one per
  * tick, a frame that is late though phonemes were there, a stream that stands still.

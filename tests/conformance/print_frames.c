@@ -3,13 +3,9 @@
  */
 #include "board.h"
 #include "player.h"
-#include "laughter_synthetic.h"
-#include "speech_en.h"
-
-#define STATES (SPEECH_EN_STATES > LAUGHTER_SYNTHETIC_STATES ? SPEECH_EN_STATES : LAUGHTER_SYNTHETIC_STATES)
 
 static labial_t stream;
-static uint32_t workspace[LABIAL_WORKSPACE_SIZE(STATES) / 4];
+static uint32_t workspace[CONFORMANCE_WORKSPACE / 4];
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple, Union
 
@@ -33,10 +33,12 @@ class Push:
 
 @dataclass(frozen=True)
 class Part:
-    """What is pushed before an end or, with `cancel` (frames before it, milliseconds of easing), before a cancel."""
+    """What is pushed before an end or, with `cancel` (frames before it, milliseconds of easing), before a cancel, which
+    `again` repeats (frames of the easing before it, milliseconds of another)."""
 
     pushes: Tuple[Push, ...]
     cancel: Optional[Tuple[int, int]]
+    again: Tuple[Tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,11 @@ class Script:
 
     name: str
     parts: Tuple[Part, ...]
+
+
+def ease_frames(milliseconds: int, fps: int) -> int:
+    """Frames of an easing over `milliseconds`."""
+    return min(max(-(-milliseconds * fps // 1000), 1), 1000)
 
 
 def read(path: Path, models: Dict[str, ExportedModel]) -> List[Script]:
@@ -73,10 +80,18 @@ def read(path: Path, models: Dict[str, ExportedModel]) -> List[Script]:
             name, parts, pushes = match.group(1), [], []
         elif word in MODELS and name:
             pushes += _pushes(where, word, rest, models[word])
+        elif word == "turns" and name:
+            pushes += _turns(where, rest, models)
         elif (word == "end" and not rest or word == "cancel" and re.fullmatch(r"\d+ \d+", rest)) and name:
             at = rest.split()
             parts.append(Part(tuple(pushes), (int(at[0]), int(at[1])) if at else None))
             pushes = []
+        elif word == "again" and re.fullmatch(r"\d+ \d+", rest) and parts and parts[-1].cancel and not pushes:
+            after, milliseconds = map(int, rest.split())
+            eased = (parts[-1].cancel, *parts[-1].again)[-1][1]
+            if after >= ease_frames(eased, models["speech"].fps):
+                raise LabialError(f"{where}: the easing over {eased} ms is done before its frame {after}")
+            parts[-1] = replace(parts[-1], again=(*parts[-1].again, (after, milliseconds)))
         else:
             raise LabialError(f"{where}: {line!r} is not understood")
     finish()
@@ -96,6 +111,14 @@ def _pushes(where: str, word: str, text: str, model: ExportedModel) -> List[Push
     return found
 
 
+def _turns(where: str, text: str, models: Dict[str, ExportedModel]) -> List[Push]:
+    match = re.fullmatch(r"(\d+): ([^|]+)\|([^|]+)", text)
+    if not match:
+        raise LabialError(f"{where}: turns need a number and a list of phonemes for each model")
+    lists = [_pushes(where, word, part, models[word]) for word, part in zip(MODELS, match.groups()[1:])]
+    return [lists[i % 2][i // 2 % len(lists[i % 2])] for i in range(int(match[1]))]
+
+
 def digest(frames: np.ndarray) -> int:
     """CRC-32 of frames (T, 13) as little-endian int16."""
     return zlib.crc32(frames.astype("<i2").tobytes())
@@ -108,7 +131,8 @@ def as_c(scripts: Sequence[Script], models: Dict[str, ExportedModel], frames: Op
     text += [f'#include "{model.name}.h"' for model in models.values()]
     text += ["", "#define PUSH(model, phoneme, ms) { CONFORMANCE_PUSH, CONFORMANCE_##model, phoneme, ms }",
              "#define END { CONFORMANCE_END, 0, 0, 0 }",
-             "#define CANCEL(frames, ms) { CONFORMANCE_CANCEL, 0, frames, ms }"]
+             "#define CANCEL(frames, ms) { CONFORMANCE_CANCEL, 0, frames, ms }",
+             "#define AGAIN(frames, ms) { CONFORMANCE_AGAIN, 0, frames, ms }"]
     table = []
     for script in scripts:
         steps: List[str] = []
@@ -116,6 +140,7 @@ def as_c(scripts: Sequence[Script], models: Dict[str, ExportedModel], frames: Op
             steps += [f"PUSH({push.model.upper()}, {constants[push.model][push.phoneme]}, {push.milliseconds})"
                       for push in part.pushes]
             steps.append("END" if part.cancel is None else "CANCEL({}, {})".format(*part.cancel))
+            steps += ["AGAIN({}, {})".format(*again) for again in part.again]
         text += ["", f"static const conformance_step_t {script.name}_steps[] = {{", _wrapped(steps), "};"]
         motion = frames[script.name] if frames else np.zeros((0, 13), dtype=np.int64)
         table.append(f'    {{ "{script.name}", {script.name}_steps, {len(steps)}, {len(motion)}, '

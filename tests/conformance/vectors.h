@@ -13,13 +13,14 @@ enum { CONFORMANCE_SPEECH, CONFORMANCE_LAUGHTER, CONFORMANCE_MODELS };
 typedef struct {
     uint8_t kind;
     uint8_t model;         /* push: CONFORMANCE_SPEECH or CONFORMANCE_LAUGHTER */
-    uint16_t value;        /* push: the phoneme; cancel: how many frames come before it */
-    uint32_t milliseconds; /* push, cancel */
+    uint16_t value;        /* push: the phoneme; cancel: how many frames come before it; again: how many of the easing */
+    uint32_t milliseconds; /* push, cancel, again */
 } conformance_step_t;
 
-enum { CONFORMANCE_PUSH, CONFORMANCE_END, CONFORMANCE_CANCEL };
+/* CONFORMANCE_AGAIN follows a cancel, which it repeats while the face eases. */
+enum { CONFORMANCE_PUSH, CONFORMANCE_END, CONFORMANCE_CANCEL, CONFORMANCE_AGAIN };
 
-/* A stream: its steps, of which the last ends or cancels it. */
+/* A stream: its steps, of which the last ends or cancels it (again). */
 typedef struct {
     const char *name;
     const conformance_step_t *steps;

@@ -4,13 +4,9 @@
 #ifndef DEVICE_H
 #define DEVICE_H
 
-#include "laughter_synthetic.h"
 #include "player.h"
-#include "speech_en.h"
 
-#define DEVICE_STATES \
-    (SPEECH_EN_STATES > LAUGHTER_SYNTHETIC_STATES ? SPEECH_EN_STATES : LAUGHTER_SYNTHETIC_STATES)
-#define DEVICE_WORKSPACE LABIAL_WORKSPACE_SIZE(DEVICE_STATES)
+#define DEVICE_WORKSPACE CONFORMANCE_WORKSPACE
 
 /* The only stream and workspace of the tests, the latter exactly as large as is demanded, each between canaries. */
 #define DEVICE_CANARIES 4

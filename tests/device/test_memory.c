@@ -7,8 +7,10 @@
 
 #include "board.h"
 
-/* Stack that the deepest call of the library may take, with the player's and the callback's own; bytes. */
+/* Stack that the deepest call of the library may take, with the player's and the callback's own, and what a tick alone
+ * may; bytes. */
 #define STACK_LIMIT 1024u
+#define TICK_STACK_LIMIT 512u
 
 static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -21,7 +23,7 @@ static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNEL
  * after every test. The streams are those that fill the queue, the window and the ring. */
 static void fullest_streams_stay_inside(void)
 {
-    static const char *const names[] = { "queue", "long_vowel", "switch_in_long", "one_frame", "cancelled" };
+    static const char *const names[] = { "queue", "long_vowel", "switch_in_long", "turns", "one_frame", "cancelled" };
     unsigned i, feed;
     for (i = 0; i < sizeof names / sizeof names[0]; i++)
         for (feed = 0; feed < CONFORMANCE_FEEDS; feed++) {
@@ -74,6 +76,40 @@ static void models_are_sound(void)
     TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_model_check(&laughter_synthetic));
 }
 
+/* Would catch an image whose models are of another format than its library. */
+static void other_formats_are_refused(void)
+{
+    labial_t *stream = &device_memory.stream;
+    labial_model_t other = speech_en;
+    other.format++;
+    TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_VERSION, labial_model_check(&other));
+    TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_VERSION,
+                          labial_init(stream, &other, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+    TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_STATE, labial_tick(stream));
+    TEST_ASSERT_EQUAL_INT(LABIAL_OK,
+                          labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+    TEST_ASSERT_EQUAL_INT(LABIAL_ERROR_VERSION, labial_use(stream, &other));
+}
+
+/* Stack below this function of the ticks of a sentence and a laugh, all pushed before, callback included. */
+__attribute__((noinline)) static uint32_t depth_of_ticks(void)
+{
+    labial_t *stream = &device_memory.stream;
+    unsigned i;
+    TEST_ASSERT_EQUAL_INT(LABIAL_OK,
+                          labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+    for (i = 0; i < 40; i++) {
+        if (i == 30)
+            TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_use(stream, &laughter_synthetic));
+        TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_push(stream, i < 30 ? i : i - 30u, 90));
+    }
+    TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_end(stream));
+    board_stack_paint();
+    while (labial_tick(stream) != LABIAL_DONE) {
+    }
+    return board_stack_depth();
+}
+
 /* Would catch a buffer or a recursion that a small stack does not bear. */
 static void stack_is_small(void)
 {
@@ -89,8 +125,13 @@ static void stack_is_small(void)
     depth = board_stack_depth();
     board_print("stack: ");
     board_print_unsigned(depth);
-    board_print(" bytes\n");
+    board_print(" bytes, ");
     TEST_ASSERT_LESS_OR_EQUAL_UINT32(STACK_LIMIT, depth);
+    depth = depth_of_ticks();
+    board_print("of a tick alone: ");
+    board_print_unsigned(depth);
+    board_print(" bytes\n");
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(TICK_STACK_LIMIT, depth);
 }
 
 void test_memory(void)
@@ -98,6 +139,7 @@ void test_memory(void)
     UnitySetTestFile(__FILE__);
     RUN_TEST(models_are_sound);
     RUN_TEST(unfit_workspaces_are_refused);
+    RUN_TEST(other_formats_are_refused);
     RUN_TEST(fullest_streams_stay_inside);
     RUN_TEST(alignment_to_four_bytes_is_enough);
     RUN_TEST(stack_is_small);

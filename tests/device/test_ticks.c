@@ -83,7 +83,7 @@ static void long_units_are_shared_out(void)
     check_share(FRAMES);
 }
 
-/* The same for units of two frames, of which one is delivered. */
+/* The same for units of two frames, of which many are decoded together. */
 static void short_units_are_shared_out(void)
 {
     check_share(1);

@@ -5,15 +5,21 @@ from __future__ import annotations
 import dataclasses
 import sys
 from pathlib import Path
+from typing import List
 
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
 
+from accuracy import units_in  # noqa: E402
 from measure import baseline  # noqa: E402
-from measure.core import Figure  # noqa: E402
+from measure.core import Bench, Figure  # noqa: E402
 from measure.profile import cycles  # noqa: E402
-from measure.stack import CallGraph, _machine_code  # noqa: E402
+from measure.stack import CallGraph, _machine_code, public_functions  # noqa: E402
+
+from labial.reference import units  # noqa: E402
+
+SOURCE = Path(__file__).resolve().parents[2]
 
 MEAN = Figure("m0", "speech: mean", 1000.0, "instructions/frame", "run it", "gcc 12.2.1")
 
@@ -38,11 +44,14 @@ def test_nothing_may_become_something() -> None:
     assert len(baseline.compare([empty], [dataclasses.replace(empty, value=4.0)])[0]) == 1
 
 
-def test_timings_and_corpora_are_not_held() -> None:
-    # Catches a check that fails on a slower machine, or on one without somebody's corpus.
+def test_timings_corpora_and_ratios_to_others_are_not_held() -> None:
+    # Catches a check that fails on a slower machine, on one without somebody's corpus, or when Labial gets faster than
+    # another program by more.
     speed = changed(5.0, unit="frames/s")
+    ratio = changed(4.0, unit="times Labial's instructions")
     loss = changed(5.0, target="accuracy", figure="speech, corpus: MLPG error, largest")
-    assert baseline.checked([MEAN, speed, loss]) == [MEAN]
+    assert baseline.checked([MEAN, speed, ratio, loss]) == [MEAN]
+    assert baseline.compare([ratio], [dataclasses.replace(ratio, value=5.0)]) == ([], [])
     assert baseline.compare([speed, loss], []) == ([], [])
 
 
@@ -120,3 +129,30 @@ def test_calls_of_machine_code() -> None:
 def test_cycles_are_those_of_the_manual(mnemonic: str, operands: str, expected: int) -> None:
     # Catches instructions that one pattern takes for another: bics for a branch, ldrsh for a word of data processing.
     assert cycles(mnemonic, operands) == expected
+
+
+def test_commands_name_the_preset_whatever_was_built_where(tmp_path: Path) -> None:
+    # Catches folders of one machine in the committed baseline.
+    for build in (tmp_path / "src" / "build" / "bench", tmp_path / "elsewhere"):
+        bench = Bench(tmp_path / "src", build)
+        command = [build / "bench" / "labial-bench", "speech", "20", "<", tmp_path / "src" / "lib" / "work.c"]
+        assert bench.shown(command) == "build/bench/bench/labial-bench speech 20 < lib/work.c"
+
+
+def test_functions_of_every_header_are_found() -> None:
+    # Catches a stack bound that leaves functions out because their declarations are not recognised.
+    bench = Bench(SOURCE, SOURCE)
+    assert {"labial_init", "labial_tick", "labial_latency", "labial_workspace_size"} <= set(public_functions(bench))
+    assert all(public_functions(bench, path.name) for path in (SOURCE / "include" / "labial").glob("*.h"))
+
+
+@pytest.mark.parametrize("frames, boundary, expected", [
+    ([4, 4, 4, 4, 4], [0, 1, 0, 1, 0], 3), ([4, 4, 4], [1, 0, 1], 1), ([4, 4, 4], [0, 1, 0], 2), ([4], [0], 1),
+    ([4, 0, 4], [0, 1, 0], 1), ([], [], 0),
+])
+def test_units_are_the_pieces_of_one_unit(frames: List[int], boundary: List[int], expected: int,
+                                          monkeypatch: pytest.MonkeyPatch) -> None:
+    # Catches units counted otherwise than the cut makes them when it takes one at a time.
+    monkeypatch.setattr(units, "PIECE", 1)
+    held = [bool(is_boundary) for is_boundary in boundary]
+    assert units_in(frames, held) == len(units.pieces(frames, held)) == expected
