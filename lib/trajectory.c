@@ -60,6 +60,13 @@ static unsigned headroom(int32_t d)
 #endif
 }
 
+/* x / d in Q28, for |x| < 8 d; `inverse` is the reciprocal of d shifted left by `shift`. */
+static int32_t quotient(int32_t x, int32_t inverse, unsigned shift)
+{
+    x = shift < 3u ? x >> (3u - shift) : (int32_t)((uint32_t)x << (shift - 3u));
+    return labial_mulshift(x, inverse, 29);
+}
+
 /* a x + b y with a and b in Q28. The one makes up for what two products that are rounded down lose on average. */
 static int32_t two_products(int32_t a, int32_t x, int32_t b, int32_t y)
 {
@@ -84,8 +91,8 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t *factors)
     inverse = reciprocal((int32_t)((uint32_t)d << shift));
     c *= 1 << 12;
     solver->kappa2 = solver->kappa1;
-    solver->lambda = factors[0] = labial_mulshift(held, inverse, 32u - shift);
-    solver->kappa1 = factors[1] = labial_mulshift(c, inverse, 32u - shift);
+    solver->lambda = factors[0] = quotient(held, inverse, shift);
+    solver->kappa1 = factors[1] = quotient(c, inverse, shift);
     factors[2] = shift < 9u ? labial_mulshift(z, inverse, 31) >> (9u - shift) : labial_mulshift(z, inverse, 40u - shift);
     solver->e = held;
     solver->c2 = solver->c1;
@@ -144,7 +151,7 @@ void labial_trajectory_backward(labial_solver_t *solver, const int32_t *factors,
         int32_t m;
         factors -= LABIAL_FACTORS;
         positions -= LABIAL_CHANNELS;
-        m = labial_sub(factors[2], two_products(factors[0], m1, factors[1], m2));
+        m = labial_sub(factors[2], labial_add(labial_mulshift(factors[0], m1, 28), labial_mulshift(factors[1], m2, 28)));
         m2 = m1;
         m1 = m;
         *positions = (int16_t)labial_clamp(labial_add(m, 128) >> 8, LABIAL_POSITION_MAX);

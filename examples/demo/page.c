@@ -1,5 +1,5 @@
 /*
- * page.c - growing lists of frames and phonemes, and their JSON.
+ * page.c - lists of frames and phonemes, and their JSON.
  */
 #include "page.h"
 
@@ -7,21 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "grow.h"
 #include "labial/faps.h"
-
-/* Makes room for one more of `size` bytes at `items`. Returns the list, moved if need be, or null. */
-static void *grow(void *items, size_t count, size_t *room, size_t size)
-{
-    if (count < *room)
-        return items;
-    const size_t wanted = *room ? *room * 2u : 256u;
-    if (wanted > SIZE_MAX / size)
-        return NULL;
-    void *moved = realloc(items, wanted * size);
-    if (moved)
-        *room = wanted;
-    return moved;
-}
 
 int page_add_frame(page_t *page, const int16_t faps[LABIAL_CHANNELS])
 {

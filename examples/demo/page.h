@@ -16,7 +16,7 @@
 /* A phoneme's place among the frames. */
 typedef struct {
     const char *label; /* static */
-    const char *kind;  /* "speech", "laughter" or "silence"; static */
+    const char *kind;  /* "speech", "laughing" (spoken while laughing), "laughter" or "silence"; static */
     uint32_t start_frame;
     uint32_t frames;
 } page_phoneme_t;

@@ -7,6 +7,7 @@ folder that is the page's own:
 - ``c``, ``cpp``: compiled with warnings as errors; what has a main() is linked with the library, the bundled models and
   the page's other files of the same language; .ino files get the stub of Arduino.h;
 - ``python``: run, or only compiled when it has a name;
+- ``js``: compiled as a module;
 - ``cmake``: a CMakeLists.txt, which an ``sh`` block below it hands to cmake;
 - ``toml``, ``ini``, ``json``, ``yaml``: parsed;
 - ``text``: what programs print, drawings; no commands.
@@ -26,11 +27,11 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Sequence
+from typing import Dict, List, Mapping, Optional, Sequence, Set
 
 from packages import CC, CXX, SOURCE
 
-LABELS = ("sh", "c", "cpp", "python", "cmake", "toml", "ini", "json", "yaml", "text")
+LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "toml", "ini", "json", "yaml", "text")
 
 #: Tools that a page may use and a machine may lack, and what installs each.
 TOOLS: Dict[str, str] = {
@@ -41,7 +42,11 @@ TOOLS: Dict[str, str] = {
     "g++": "the Debian package g++",
     "labial-bench": "a build with LABIAL_BUILD_EXAMPLES",
     "labial-demo": "a build with LABIAL_BUILD_EXAMPLES",
+    "labial-rig-sprites": "a build with LABIAL_BUILD_EXAMPLES",
     "labial-say": "a build with LABIAL_BUILD_EXAMPLES",
+    "labial-say-espeak": "the Debian package libespeak-ng-dev, before the build",
+    "labial-say-flite": "the Debian package flite1-dev, before the build",
+    "node": "the Debian package nodejs",
     "pkg-config": "the Debian package pkgconf",
     "qemu-system-arm": "the Debian package qemu-system-arm",
     "valgrind": "the Debian package valgrind",
@@ -52,8 +57,13 @@ EXTERNAL = ("arduino-cli", "idf.py", "pio", "west")
 
 _FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,})\s*(.*)$")
 _NAME = re.compile(r"^(?:#|//|/\*|;)\s*((?:[\w.-]+/)*[\w-]+\.[A-Za-z]{1,6})(?=[\s,:]|$)")
+_HEADING = re.compile(r"^#+ +(.*?) *#*$", re.MULTILINE)
 _MAIN = re.compile(r"^int main\(", re.MULTILINE)
 _COMMAND = re.compile(r"^\s*(?:\$ |sudo |(?:labial(?:-\w+)?|cmake|ctest|pip|pio|west|idf\.py|arduino-cli|cc|gcc|git) )")
+
+
+#: The address in each link and picture of a page.
+LINK = re.compile(r"\]\(([^()\s]+)\)")
 
 
 class PageError(Exception):
@@ -116,6 +126,16 @@ def _block(page: Path, label: str, line: int, lines: Sequence[str]) -> Block:
     return block
 
 
+def headings(page: Path) -> Set[str]:
+    """What follows # in addresses of a page's headings: small letters, hyphens for spaces, numbers when one recurs."""
+    text = re.sub(r"^( {0,3})(`{3,}).*?^\1\2\s*$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    found: Dict[str, int] = {}
+    for title in _HEADING.findall(text):
+        name = re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+        found[name] = found.get(name, -1) + 1
+    return {name if number == 0 else f"{name}-{number}" for name, last in found.items() for number in range(last + 1)}
+
+
 def command(line: str) -> str:
     """A line of a shell script without the comment that ends it."""
     return re.sub(r"\s+#.*$", "", line)
@@ -143,7 +163,8 @@ class Runner:
         for name, arguments in (("labial", " -m labial"), ("python3", ""), ("python", "")):
             (wrappers / name).write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
             (wrappers / name).chmod(0o755)
-        folders = [str(wrappers), os.environ.get("LABIAL_PROGRAMS", ""), os.environ.get("PATH", "")]
+        listed = (os.environ.get(name, "") for name in ("LABIAL_PROGRAMS", "LABIAL_RIG_EXAMPLES", "PATH"))
+        folders = [str(wrappers), *listed]
         path = os.pathsep.join(folder for folder in folders if folder)
         return {**os.environ, "PATH": path, "LABIAL": str(SOURCE), "PYTHONPATH": str(SOURCE / "export"),
                 "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1", "HOME": str(self._folder)}
@@ -219,6 +240,14 @@ class Runner:
             raise PageError(str(error)) from None
         if not block.name:
             self._call([sys.executable, "-"], block.text)
+
+    def _js(self, block: Block, later: Sequence[Block]) -> None:
+        if not shutil.which("node", path=self._env["PATH"]):
+            raise MissingTool(f"{self._page.name}:{block.line} needs node: {TOOLS['node']}")
+        path = self._folder / f"block-{block.line}.mjs"  # which says that it is a module
+        path.write_text(block.text, encoding="utf-8")
+        self._call(["node", "--check", path.name])
+        path.unlink()
 
     def _cmake(self, block: Block, later: Sequence[Block]) -> None:
         if not block.name or Path(block.name).name != "CMakeLists.txt":

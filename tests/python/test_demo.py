@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
+import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
@@ -15,6 +17,12 @@ PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
 pytestmark = pytest.mark.skipif(not PAGE, reason="LABIAL_DEMO_PAGE does not name the built page")
 
 DEMO = Path(__file__).resolve().parents[2] / "examples" / "demo"
+PLAYER = DEMO.parents[1] / "export" / "labial" / "see" / "player.html"
+
+#: FAP units between the lips up to which labial_blend_default keeps them as speech has them.
+CLOSED = 120
+#: Channels of a frame: those of the lips' height, the jaw, the corners' height.
+LIPS, JAW, CORNERS = (3, 4, 7, 8, 9, 10), 0, (11, 12)
 
 
 class _Page(HTMLParser):
@@ -59,17 +67,41 @@ def page(text: str) -> _Page:
     return parser
 
 
-@pytest.fixture(scope="module")
-def data(page: _Page) -> Dict[str, Any]:
-    """What the page plays."""
+def read_data(page: _Page) -> Dict[str, Any]:
+    """What a page plays."""
     assert page.data_elements == 1
     return json.loads(page.data)
 
 
-def flite_milliseconds() -> int:
-    """How long the sentence lasts: the last end time of each line."""
-    lines = (DEMO / "sentence.flite").read_text().splitlines()
-    return sum(round(float(line.split()[-1].split(":")[1]) * 1000) for line in lines if line.strip())
+@pytest.fixture(scope="module")
+def data(page: _Page) -> Dict[str, Any]:
+    """What the built page plays."""
+    return read_data(page)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Dict[str, Any]:
+    """What the page would play if the last sentence had a pause in the place of its laugh."""
+    program = shutil.which("labial-demo", path=os.environ.get("LABIAL_PROGRAMS", ""))
+    if not program:
+        pytest.skip("LABIAL_PROGRAMS does not name the folder of labial-demo")
+    folder = tmp_path_factory.mktemp("plain")
+    pause, count = re.subn(r"<laugh ([0-9.]+) [0-9.]+>", r"pau:\1", (DEMO / "laughing.flite").read_text())
+    assert count == 1
+    (folder / "plain.flite").write_text(pause)
+    subprocess.run([program, folder / "plain.html", PLAYER, DEMO / "sentence.flite", DEMO / "laugh.lab",
+                    folder / "plain.flite"], check=True, timeout=60)
+    parser = _Page()
+    parser.feed((folder / "plain.html").read_text(encoding="utf-8"))
+    parser.close()
+    return read_data(parser)
+
+
+def flite_milliseconds(name: str) -> int:
+    """How long a file lasts: the last end time of each line, and the lengths of laughs on lines of their own."""
+    lines = [line.split() for line in (DEMO / name).read_text().splitlines() if line.strip()]
+    ends = [line[1] if line[0] == "<laugh" else line[-1].split(":")[1] for line in lines]
+    return sum(round(float(end) * 1000) for end in ends)
 
 
 def lab_milliseconds() -> int:
@@ -77,35 +109,98 @@ def lab_milliseconds() -> int:
     return round(float((DEMO / "laugh.lab").read_text().split("\n")[-2].split()[1]) * 1000)
 
 
-def test_frames_last_as_long_as_both_timings(data: Dict[str, Any]) -> None:
-    """No frame is lost or added, not even where one model hands over to the other."""
-    total = flite_milliseconds() + lab_milliseconds()
+def parts(data: Dict[str, Any]) -> Tuple[int, int]:
+    """The frames with which the laugh and the last sentence begin."""
+    first = flite_milliseconds("sentence.flite")
+    begin, end = (int(ms * data["fps"] / 1000 + 0.5) for ms in (first, first + lab_milliseconds()))
+    return begin, end
+
+
+def spans(data: Dict[str, Any], kind: str, frm: int = 0) -> List[Tuple[str, int, int]]:
+    """Label, first frame and frame past the end of the phonemes of a kind, from a frame on."""
+    return [(p["label"], p["start_frame"], p["start_frame"] + p["frames"]) for p in data["phonemes"]
+            if p["kind"] == kind and p["start_frame"] >= frm]
+
+
+def opening(frame: List[int]) -> int:
+    """FAP units between the lips."""
+    return -(frame[3] + frame[4])
+
+
+def test_frames_last_as_long_as_the_timings(data: Dict[str, Any]) -> None:
+    """No frame is lost or added, not even where one model hands over to the other or both run side by side."""
+    total = flite_milliseconds("sentence.flite") + lab_milliseconds() + flite_milliseconds("laughing.flite")
     assert len(data["frames"]) == int(total * data["fps"] / 1000 + 0.5)
 
 
 def test_frames_are_13_integers_that_move(data: Dict[str, Any]) -> None:
-    """Every frame has the 13 channels within FAP limits, and the jaw and the lips move in both parts."""
+    """Every frame has the 13 channels within FAP limits, and the jaw and the lips move in all three parts."""
     assert data["channels"] == [f"fap{n}" for n in (3, 16, 17, *range(51, 61))]
     for frame in data["frames"]:
         assert len(frame) == 13
         assert all(type(value) is int and -1860 <= value <= 1860 for value in frame)
-    middle = int(flite_milliseconds() * data["fps"] / 1000)
-    for part in (data["frames"][:middle], data["frames"][middle:]):
+    laugh, both = parts(data)
+    for part in (data["frames"][:laugh], data["frames"][laugh:both], data["frames"][both:]):
         for channel in (0, 4):
             values = [frame[channel] for frame in part]
             assert max(values) - min(values) >= 20
 
 
 def test_phonemes_tile_the_frames(data: Dict[str, Any]) -> None:
-    """Phonemes follow each other from the first frame to the last, speech before laughter."""
+    """Phonemes follow each other from the first frame to the last: speech, laughter, and both."""
     at = 0
     for phoneme in data["phonemes"]:
         assert phoneme["start_frame"] == at and phoneme["frames"] >= 1 and phoneme["label"]
-        assert phoneme["kind"] in ("speech", "laughter", "silence")
+        assert phoneme["kind"] in ("speech", "laughing", "laughter", "silence")
         at += phoneme["frames"]
     assert at == len(data["frames"])
     kinds = [phoneme["kind"] for phoneme in data["phonemes"] if phoneme["kind"] != "silence"]
-    assert kinds == sorted(kinds, reverse=True) and set(kinds) == {"speech", "laughter"}
+    order = [kind for kind, before in zip(kinds, [None, *kinds]) if kind != before]
+    assert order == ["speech", "laughter", "speech", "laughing", "laughter", "laughing", "speech"]
+
+
+def test_the_sentence_breaks_into_laughter_and_recovers(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
+    """Before and after, the frames are those of plain speech; in between the corners rise with every word, and in the
+    pause the mouth laughs. Would catch streams out of step, and laughter that stays."""
+    frames, speech, both = data["frames"], plain["frames"], parts(data)[1]
+    assert len(frames) == len(speech)
+    laughing = spans(data, "laughing", both)
+    begin, end = laughing[0][1], laughing[-1][2]
+    assert frames[:begin] == speech[:begin]
+    ramp = int(0.24 * data["fps"])
+    assert frames[end + ramp :] == speech[end + ramp :] and len(frames) > end + 2 * ramp
+    for _, first, last in laughing:
+        if first >= begin + ramp and last <= end - ramp:
+            assert all(frames[i][c] > speech[i][c] + 30 for i in range(first, last) for c in CORNERS)
+    (_, first, last), = spans(data, "laughter", both)
+    openings = [opening(frame) for frame in frames[first + ramp : last - ramp]]
+    tops = [i for i in range(1, len(openings) - 1) if openings[i - 1] < openings[i] >= openings[i + 1]]
+    assert len(tops) >= 4 and max(openings) >= 100 > min(openings)
+
+
+def test_lips_close_in_words_spoken_laughing(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
+    """In p, b, m lips that meet in plain speech meet in the same place, over a jaw that is no wider open; and they do
+    meet in nearly all of them."""
+    frames, speech = data["frames"], plain["frames"]
+    closures = [span for span in spans(data, "laughing", parts(data)[1]) if span[0] in ("P", "B", "M")]
+    assert len(closures) >= 8
+    met = 0
+    for label, first, last in closures:
+        closed = [i for i in range(first, last) if opening(speech[i]) <= CLOSED]
+        met += bool(closed)
+        for i in closed:
+            assert [frames[i][c] for c in LIPS] == [speech[i][c] for c in LIPS], (label, i)
+            assert frames[i][JAW] <= speech[i][JAW], (label, i)
+    assert met >= len(closures) - 1
+
+
+def test_laughing_words_do_not_jerk(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
+    """From frame to frame nothing moves farther than plain speech does anywhere."""
+
+    def leaps(frames: List[List[int]]) -> int:
+        return max(abs(a - b) for before, after in zip(frames, frames[1:]) for a, b in zip(before, after))
+
+    assert leaps(data["frames"][parts(data)[1] :]) <= leaps(plain["frames"])
 
 
 def test_nothing_is_requested(text: str, page: _Page) -> None:

@@ -9,9 +9,12 @@ from typing import Dict, List
 import numpy as np
 import pytest
 
-from labial.faps import FAP_COLUMNS
+from labial.corpus.folder import read_frames
+from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from packages import CC, SOURCE, run
-from pages import EXTERNAL, Block, MissingTool, PageError, Runner, command, parse
+from pages import EXTERNAL, LINK, Block, MissingTool, PageError, Runner, command, headings, parse
+from test_record import FACE, SIDE, UP
+from test_see import wav
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
 
@@ -21,6 +24,9 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         "cmake --workflow --preset test": "this test is a part of it",
         "pip install './export[train,evaluate]'": "fetches; test_packages_cmake.py installs the exporter without",
         "labial evaluate CORPUS --splits 20 -o report/": "takes too long; test_evaluate.py runs it on less",
+    },
+    "record.md": {
+        "labial evaluate corpus/ --splits 5 -o report/": "takes too long; test_evaluate.py runs it on less",
     },
 }
 
@@ -35,9 +41,11 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
 
 
 def prepare(page: Path, folder: Path) -> None:
-    """What a page expects to find: README.md the source tree and what its reader brings, other pages nothing."""
+    """What a page expects to find: README.md the source tree and its reader's corpus, record.md recordings."""
     if page.name != "README.md":
         folder.mkdir()
+        if page.name == "record.md":
+            write_recordings(folder)
         return
     unwanted = shutil.ignore_patterns("build", ".git", "__pycache__", "*.egg-info", ".venv")
     shutil.copytree(SOURCE, folder, ignore=unwanted)
@@ -46,10 +54,10 @@ def prepare(page: Path, folder: Path) -> None:
 
 
 def write_corpus(folder: Path) -> None:
-    """A small speech corpus in Labial's own format: every phoneme has a pose, joined by easing."""
+    """A small speech corpus in Labial's own format: each phoneme has its place in every channel, joined by easing."""
     rng = np.random.default_rng(1)
     labels = ["SIL", "M", "AA", "B", "IY", "F", "EH", "S", "UW"]
-    poses = rng.normal(0.0, 120.0, (len(labels), len(FAP_COLUMNS)))
+    poses = rng.permuted(np.tile(np.linspace(-200.0, 200.0, len(labels)), (len(FAP_COLUMNS), 1)), axis=1).T
     folder.mkdir()
     for utterance in range(12):
         phones = [0, *rng.integers(1, len(labels), 30), 0]
@@ -64,6 +72,35 @@ def write_corpus(folder: Path) -> None:
         lines = [",".join(("time", *FAP_COLUMNS))]
         lines += [",".join([f"{t / 50:.2f}", *(f"{x:.1f}" for x in row)]) for t, row in enumerate(motion)]
         (folder / f"a{utterance}.csv").write_text("\n".join(lines) + "\n")
+
+
+def write_recordings(folder: Path) -> None:
+    """What a face tracker and an aligner would have made of the motion of that corpus: recordings/, and a sound."""
+    write_corpus(folder / "seen")
+    (folder / "recordings").mkdir()
+    for number, path in enumerate(sorted((folder / "seen").glob("*.csv")), 1):
+        times, frames = read_frames(path)
+        fap = dict(zip(FAP_NUMBERS, frames.T))
+        points = np.zeros((len(times), 478, 3))
+        for landmark, place in FACE.items():
+            points[:, landmark] = place
+        for landmark, axis, moved in (
+            (152, 1, fap[3] / UP), (17, 2, -fap[16] / UP), (0, 2, -fap[17] / UP), (0, 1, fap[51] / UP),
+            (17, 1, -fap[52] / UP), (291, 0, fap[53] / SIDE), (61, 0, -fap[54] / SIDE), (269, 1, fap[55] / UP),
+            (39, 1, fap[56] / UP), (405, 1, -fap[57] / UP), (181, 1, -fap[58] / UP), (291, 1, -fap[59] / UP),
+            (61, 1, -fap[60] / UP),
+        ):  # fmt: skip
+            points[:, landmark, axis] += moved
+        name = folder / "recordings" / f"s{number:02}"
+        np.savez(name.with_suffix(".npz"), landmarks=points, fps=50)
+        rows = [line.split() for line in path.with_suffix(".lab").read_text().splitlines()]
+        intervals = "".join(f'{begin}\n{end}\n"{label}"\n' for begin, end, label in rows)
+        head = f'File type = "ooTextFile"\nObject class = "TextGrid"\n\n0\n{rows[-1][1]}\n<exists>\n1\n"IntervalTier"\n'
+        text = f'{head}"phones"\n0\n{rows[-1][1]}\n{len(rows)}\n{intervals}'
+        name.with_suffix(".TextGrid").write_text(text)
+    shutil.rmtree(folder / "seen")
+    (folder / "sound").mkdir()
+    (folder / "sound" / "s01.wav").write_bytes(wav())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -83,9 +120,23 @@ def test_page_works(page: Path, tmp_path: Path, objects: List[Path]) -> None:
 
 def test_passed_over_lines_are_there() -> None:
     """What is not run is on the page as it stands in the list."""
+    paths = {page.name: page for page in PAGES}
     for name, lines in NOT_RUN.items():
-        text = (SOURCE / name).read_text(encoding="utf-8").splitlines()
+        text = paths[name].read_text(encoding="utf-8").splitlines()
         assert set(lines) <= {command(line) for line in text}, name
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    """A page, a file or a heading that was renamed."""
+    for address in LINK.findall(page.read_text(encoding="utf-8")):
+        if "://" in address or address.startswith("mailto:"):
+            continue
+        path, _, heading = address.partition("#")
+        target = page.parent / path if path else page
+        assert target.exists(), f"{page.name}: {address}"
+        if heading:
+            assert heading in headings(target), f"{page.name}: {address}"
 
 
 # ---- The checks themselves -----------------------------------------------------------------------------------------
@@ -159,6 +210,7 @@ def test_good_page_passes(tmp_path: Path, objects: List[Path]) -> None:
     ("```c\nint labial_no(void);\nint main(void) { return labial_no(); }\n```\n", "labial_no"),
     ("```cpp\n// A.ino\nvoid setup() { Serial.prin(1); }\n```\n", "prin"),
     ("```python\nassert False\n```\n", "AssertionError"),
+    ("```js\nfunction x( {\n```\n", "SyntaxError"),
     ("```python\n# a.py\nx = = 1\n```\n", "(a.py, line 2)"),
     ("```cmake\nproject(x)\n```\n", "CMakeLists.txt"),
     ("```cmake\n# CMakeLists.txt\nproject(x)\n```\n", "no sh block"),
@@ -172,6 +224,13 @@ def test_bad_page_fails(tmp_path: Path, objects: List[Path], text: str, complain
     with pytest.raises(PageError, match=".*") as raised:
         check(tmp_path, text, objects)
     assert complaint in str(raised.value)
+
+
+def test_headings_are_addressed_as_on_the_web(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("# One\n\n## ARKit's `jaw`, 2\n\n```sh\n# no heading\n```\n\n## One\n")
+    assert headings(page) == {"one", "arkits-jaw-2", "one-1"}
+    assert LINK.findall("[a](b.md#c), ![d](e.svg) and [f]( g)") == ["b.md#c", "e.svg"]
 
 
 def test_missing_tool_is_told(tmp_path: Path, objects: List[Path], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,10 +10,12 @@ import pytest
 
 from labial.corpus import Episode, Segment
 from labial.errors import LabialError
+from labial.evaluate.bands import bands
 from labial.evaluate.material import Timeline, Utterance, timeline, utterance, utterances
 from labial.evaluate.splits import make_splits
 from labial.evaluate.training import Training, choose, validation_error
 from labial.phonesets import SPEECH
+from labial.see.motion import Band
 from labial.train import train
 from labial.train.codebook import lbg
 
@@ -172,3 +174,16 @@ def test_methods_share_the_cells_of_their_codebooks(monkeypatch) -> None:
         for field in fields(model):
             own, other = getattr(model, field.name), getattr(alone, field.name)
             assert np.array_equal(own, other) if isinstance(own, np.ndarray) else own == other, field.name
+
+
+def test_bands_are_the_phonemes_that_have_frames() -> None:
+    """Catches phonemes without frames that are drawn, bands that leave the window, and kinds of other phonemes."""
+    given = timeline([0, 2, 1, 0], [100, 1, 59, 100], 50)
+    assert given.length.tolist() == [5, 0, 3, 5]
+    labels, kinds = ("SIL", "AA", "T"), ("silence", "vowel", "other")
+    assert bands(given, labels, kinds, 50) == [
+        Band(0.0, 0.1, "SIL", "silence"),
+        Band(0.1, 0.16, "AA", "vowel"),
+        Band(0.16, 0.26, "SIL", "silence"),
+    ]
+    assert bands(given, labels, kinds, 50, 5, 9) == [Band(0.1, 0.16, "AA", "vowel"), Band(0.16, 0.18, "SIL", "silence")]

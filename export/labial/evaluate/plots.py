@@ -7,11 +7,14 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
-from labial.evaluate.drawing import Span, label_phonemes, pyplot, save, spans
+from labial.evaluate.bands import bands
 from labial.evaluate.protocol import HUMAN, Example, Options, Outcome
 from labial.evaluate.report import cell, grouping, methods_of, table_4, title
 from labial.evaluate.trajectories import JUDGED, JUDGED_NAMES
 from labial.phonesets import PHONE_SETS
+from labial.see import drawing
+from labial.see.drawing import COLOURS, STYLE, pyplot
+from labial.see.motion import Band, kind_of
 
 #: Seconds of an utterance that its trajectories are shown for.
 LONGEST = 5
@@ -46,34 +49,52 @@ def _name(example: Example, options: Options) -> str:
 
 
 def _curves(axes: pyplot.Axes, example: Example, frames: slice, channel: int, options: Options) -> None:
-    """The original and the methods."""
+    """The original and the methods, over the phonemes."""
+    drawing.shade(axes, _bands(example, frames, options))
     time = (np.arange(frames.start, frames.stop) + 0.5) / options.fps
     original = title(HUMAN, options.synthetic)
-    axes.plot(time, example.utterance.human[frames, channel], color="black", linewidth=1.5, label=original)
-    for name in _drawn(example):
-        axes.plot(time, example.motion[name][frames, channel], linewidth=1.2, label=title(name))
+    axes.plot(time, example.utterance.human[frames, channel], color="black", linewidth=1.6, label=original)
+    for name, colour in zip(_drawn(example), COLOURS):
+        axes.plot(time, example.motion[name][frames, channel], color=colour, linewidth=1.3, label=title(name))
+    axes.set_xlim(frames.start / options.fps, frames.stop / options.fps)
 
 
-def _phonemes(example: Example, frames: slice, options: Options) -> List[Span]:
-    given, names = example.utterance.timeline, PHONE_SETS[example.kind].phonemes
-    return spans(given, names, options.fps, frames.start, frames.stop)
+def _bands(example: Example, frames: slice, options: Options) -> List[Band]:
+    phones = PHONE_SETS[example.kind]
+    kinds = [kind_of(label, phones) for label in phones.phonemes]
+    return bands(example.utterance.timeline, phones.phonemes, kinds, options.fps, frames.start, frames.stop)
+
+
+def _finish(figure: pyplot.Figure, every: Sequence[pyplot.Axes], example: Example, frames: slice, options: Options,
+            path: Path) -> str:
+    """Phonemes above the first axes, the legend below the last, and the file; returns its name."""
+    shown = _bands(example, frames, options)
+    curves = every[0].get_legend_handles_labels()[0]
+    patches = list(drawing.legend_patches(shown))
+    figure.align_ylabels(every)
+    handles = [*curves, *patches]
+    figure.legend(handles=handles, loc="lower center", ncol=len(handles) if len(handles) <= 7 else 5, frameon=False,
+                  fontsize=7.5, columnspacing=1.6)
+    room = (0, (0.25 if len(handles) <= 7 else 0.42) / figure.get_figheight(), 1, 1)  # below it is the legend
+    figure.tight_layout(rect=room)
+    drawing.label(every[0], shown, upright=example.kind == "laughter")
+    figure.tight_layout(rect=room)
+    drawing.write(figure, path)
+    return path.name
 
 
 def step_stream(example: Example, options: Options, folder: Path) -> str:
     """The paper's figure 3: step stream and smoothed curve over one word, or one train of pulses."""
     begin, end, word = _stretch(example)
     frames = slice(begin, end)
-    figure, every = pyplot.subplots(2, 1, figsize=(8, 6), sharex=True)
+    figure, every = pyplot.subplots(2, 1, figsize=(8.5, 6), sharex=True)
     for axes, k, channel in zip(every, JUDGED, JUDGED_NAMES):
         edges = np.arange(begin, end + 1) / options.fps
         axes.stairs(example.steps[frames, k], edges, color="0.5", label="step stream (eq. 2)", baseline=None)
         _curves(axes, example, frames, k, options)
         axes.set_ylabel(f"{channel}, FAP units")
-        label_phonemes(axes, _phonemes(example, frames, options), upright=example.kind == "laughter")
     every[-1].set_xlabel(f"seconds, {_name(example, options)}" + (f', "{word}"' if word else ""))
-    every[0].legend(fontsize=7)
-    figure.tight_layout()
-    return save(figure, folder / "steps_and_curve.png")
+    return _finish(figure, every, example, frames, options, folder / "steps_and_curve.png")
 
 
 def trajectories(example: Example, options: Options, folder: Path) -> str:
@@ -82,13 +103,9 @@ def trajectories(example: Example, options: Options, folder: Path) -> str:
     figure, every = pyplot.subplots(len(JUDGED), 1, figsize=(11, 9), sharex=True)
     for axes, k, channel in zip(every, JUDGED, JUDGED_NAMES):
         _curves(axes, example, frames, k, options)
-        axes.set_ylabel(channel, fontsize=8)
-    label_phonemes(every[0], _phonemes(example, frames, options), upright=example.kind == "laughter")
-    figure.align_ylabels(every)
+        axes.set_ylabel(channel)
     every[-1].set_xlabel(f"seconds, {_name(example, options)}; FAP units")
-    every[0].legend(fontsize=7, loc="upper right")
-    figure.tight_layout()
-    return save(figure, folder / "trajectories.png")
+    return _finish(figure, every, example, frames, options, folder / "trajectories.png")
 
 
 def _bars(
@@ -105,11 +122,13 @@ def _bars(
                  label=title(method), color=pyplot.get_cmap("tab20")(index), error_kw={"linewidth": 0.6})
     axes.set_xticks(np.arange(len(groups)), [name for name, _ in groups], rotation=20, ha="right", fontsize=8)
     axes.set_ylabel(label + (", synthetic data" if options.synthetic else ""))
-    axes.legend(fontsize=7, ncol=3)
+    axes.legend(fontsize=7, ncol=3, frameon=False)
     figure.tight_layout()
-    return save(figure, path)
+    drawing.write(figure, path)
+    return path.name
 
 
+@pyplot.rc_context(STYLE)
 def write(outcomes: Sequence[Outcome], options: Options, folder: Path) -> List[str]:
     """Writes all plots; returns their file names."""
     names = []

@@ -14,7 +14,7 @@ from typing import Dict, List, Optional, Sequence
 import numpy as np
 
 from labial.errors import LabialError
-from labial.evaluate.drawing import Span, label_phonemes, pyplot, save, spans
+from labial.evaluate.bands import bands
 from labial.evaluate.material import timeline
 from labial.evaluate.trajectories import labial_parameters
 from labial.faps import FAP_NUMBERS
@@ -22,6 +22,9 @@ from labial.model import Model, load
 from labial.phones import read_stream
 from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
+from labial.see import drawing
+from labial.see.drawing import STYLE, pyplot
+from labial.see.motion import Band
 
 #: Titles of the panels, in the order of labial_parameters().
 PANELS = (
@@ -31,9 +34,8 @@ PANELS = (
     "bottom lip forward\nFAP 16",
 )
 
-#: Colours of the first models, from pale to strong, and of phonemes that close the lips, and of vowels.
-COLOURS = ("#d1802f", "#1f5fa8", "#2f8f5b", "#8a4fa3")
-CLOSING, VOWEL = "#d64550", "#eef1f4"
+#: Colours of the models: Labial's, blue, comes second, after the published method.
+COLOURS = tuple(drawing.COLOURS[index] for index in (1, 0, 2, 3))
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,14 @@ class Drawn:
     """What is drawn: `motion` holds (T, 4) labial parameters by the model's name, FAP units."""
 
     fps: int
-    phonemes: List[Span]
-    closing: List[Span]
-    vowels: List[Span]
+    phonemes: List[Band]
     motion: Dict[str, np.ndarray]
     contact: Optional[float]  #: distance of the lips in firm contact, FAP units, where a model knows it
+
+    @property
+    def closing(self) -> List[Band]:
+        """The phonemes that close the lips."""
+        return [band for band in self.phonemes if band.kind == "closed"]
 
 
 def _contact(models: Sequence[Model]) -> Optional[float]:
@@ -62,6 +67,13 @@ def _bilabial(model: Model) -> int:
     return model.classes.index("bilabial") if "bilabial" in model.classes else -1
 
 
+def _kinds(model: Model) -> List[str]:
+    """(P,) kinds of bands, by what the model knows of its phonemes."""
+    known = {"silence": "silence", "bilabial": "closed", "labiodental": "labiodental"}
+    return [known.get(model.classes[number], "vowel" if boundary else "other")
+            for number, boundary in zip(model.phoneme_class, model.boundary)]
+
+
 def synthesise_all(phones: Path, models: Dict[str, Model]) -> Drawn:
     """The motion of all models, which must have the same phonemes and frame rate."""
     first = next(iter(models.values()))
@@ -70,14 +82,9 @@ def synthesise_all(phones: Path, models: Dict[str, Model]) -> Drawn:
         if (model.phonemes, model.fps) != (first.phonemes, first.fps):
             raise LabialError(f"{name}: its phonemes or its frame rate are not those of the first model")
     given = timeline((p for p, _ in stream), (ms for _, ms in stream), first.fps)
-    phonemes = spans(given, first.phonemes, first.fps)
-    closes = {label for label, c in zip(first.phonemes, first.phoneme_class) if c == _bilabial(first)}
-    opens = {label for label, boundary in zip(first.phonemes, first.boundary) if boundary} - closes
     return Drawn(
         first.fps,
-        phonemes,
-        [item for item in phonemes if item.label in closes],
-        [item for item in phonemes if item.label in opens],
+        bands(given, first.phonemes, _kinds(first), first.fps),
         {name: labial_parameters(synthesise(FloatTables(model), stream)) for name, model in models.items()},
         _contact(list(models.values())),
     )
@@ -86,9 +93,10 @@ def synthesise_all(phones: Path, models: Dict[str, Model]) -> Drawn:
 def least(drawn: Drawn, name: str) -> List[float]:
     """Each closure's least distance of the lips, FAP units, at its own frames."""
     opening = drawn.motion[name][:, 0]
-    return [float(opening[round(s.begin * drawn.fps) : round(s.end * drawn.fps)].min()) for s in drawn.closing]
+    return [float(opening[round(b.start * drawn.fps) : round(b.end * drawn.fps)].min()) for b in drawn.closing]
 
 
+@pyplot.rc_context(STYLE)
 def draw(drawn: Drawn, path: Path) -> None:
     """Writes the figure, SVG or PNG."""
     ratios = {"height_ratios": (1.7, 1, 1, 1)}  # closures are seen in the first
@@ -96,27 +104,24 @@ def draw(drawn: Drawn, path: Path) -> None:
     total = len(next(iter(drawn.motion.values())))
     time = (np.arange(total) + 0.5) / drawn.fps
     for index, (axes, title) in enumerate(zip(every, PANELS)):
-        for item in drawn.vowels:
-            axes.axvspan(item.begin, item.end, color=VOWEL, linewidth=0, zorder=0)
-        for item in drawn.closing:
-            axes.axvspan(item.begin, item.end, color=CLOSING, alpha=0.22, linewidth=0, zorder=0)
+        drawing.shade(axes, drawn.phonemes)
         for (name, motion), colour in zip(drawn.motion.items(), COLOURS):
             axes.plot(time, motion[:, index], color=colour, linewidth=1.8, label=name, solid_capstyle="round")
-        axes.set_ylabel(title, fontsize=9)
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.tick_params(labelsize=8)
+        axes.set_ylabel(title)
     if drawn.contact is not None:
-        every[0].axhline(drawn.contact, color=CLOSING, linewidth=1, linestyle=(0, (4, 3)), zorder=1)
-        every[0].text(total / drawn.fps, drawn.contact, " firm\n contact", color=CLOSING, fontsize=8, va="center")
+        closed = drawing.LABELS["closed"]
+        every[0].axhline(drawn.contact, color=closed, linewidth=1, linestyle=(0, (4, 3)), zorder=1)
+        every[0].text(total / drawn.fps, drawn.contact, " firm\n contact", color=closed, fontsize=8, va="center")
     every[0].set_xlim(0, total / drawn.fps)
-    for text, item in zip(label_phonemes(every[0], drawn.phonemes, size=8.5), drawn.phonemes):
-        if item in drawn.closing:
-            text.set(color=CLOSING, fontweight="bold")
     every[0].legend(fontsize=10, frameon=False, loc="upper right", ncol=len(drawn.motion))
-    every[-1].set_xlabel("seconds; vertical axes in FAP units", fontsize=9)
+    every[-1].set_xlabel("seconds; vertical axes in FAP units", loc="right")
+    patches = list(drawing.legend_patches(drawn.phonemes))
+    figure.legend(handles=patches, loc="lower left", ncol=len(patches), frameon=False, fontsize=8)
     figure.align_ylabels(every)
     figure.tight_layout(h_pad=0.6)
-    save(figure, path)
+    drawing.label(every[0], drawn.phonemes, size=8.5)
+    figure.tight_layout(h_pad=0.6)
+    drawing.write(figure, path)
 
 
 def main(arguments: Optional[List[str]] = None) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Iterable, Sequence, Union
+from typing import Iterable, List, Sequence, Union
 
 import matplotlib
 
@@ -13,6 +13,7 @@ from labial.see.motion import KINDS, Band
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
 
 #: Colours of curves, told apart by people who see no difference of red and green too (Okabe and Ito).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
@@ -23,7 +24,9 @@ BANDS = {
     "labiodental": ("#d9cdf0", "f v: lip to teeth"),
     "silence": ("#e4e7eb", "silence"),
 }
-assert set(BANDS) <= set(KINDS)
+#: Colour of the labels of each kind; of others "0.1". Those of consonants that have a band are bold.
+LABELS = {"closed": "#b3202c", "labiodental": "#5b3f99", "silence": "0.55"}
+assert set(BANDS) | set(LABELS) <= set(KINDS)
 
 #: Settings of a whole figure, for `pyplot.rc_context`.
 STYLE = {
@@ -49,28 +52,37 @@ def shade(axes: pyplot.Axes, bands: Iterable[Band]) -> None:
             axes.axvline(edge, color="0.82", linewidth=0.5, zorder=0.5)
 
 
-def label(axes: pyplot.Axes, bands: Sequence[Band], size: float = 7.0) -> None:
-    """Writes the bands' labels above the axes; short bands in a row climb in steps so that labels stay apart.
+def label(axes: pyplot.Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = False) -> List[Text]:
+    """Writes the bands' labels above the axes and returns them; short bands in a row climb in steps so that labels stay
+    apart, and a label for which there is no room is left out. `upright` suits names that are longer than their phonemes
+    last, as those of laughter.
 
-    The axes must have their limits and their place in the figure.
+    The axes must have their limits and their place in the figure; what changes their width afterwards changes it
+    little.
     """
-    points = axes.get_window_extent().width * 72.0 / axes.figure.dpi
+    texts: List[Text] = []
+    scale = 72.0 / axes.figure.dpi
+    points = axes.get_window_extent().width * scale
     left, right = axes.get_xlim()
-    taken = [-1e9, -1e9, -1e9]  # where the last label of each row ends, points
+    taken = [-1e9] * (1 if upright else 3)  # where the last label of each row ends, points
     for band in bands:
         middle = (band.start + band.end) / 2
         if not left <= middle <= right:
             continue
         place = (middle - left) / (right - left) * points
-        half = 0.32 * size * max(len(band.label), 1)
+        text = axes.annotate(
+            band.label, (middle, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(0, 3), textcoords="offset points",
+            ha="center", va="bottom", rotation=90 if upright else 0, fontsize=size, color=LABELS.get(band.kind, "0.1"),
+            fontweight="bold" if band.kind in ("closed", "labiodental") else "normal")  # fmt: skip
+        half = 0.4 * size if upright else 0.5 * text.get_window_extent().width * scale + 1.0
         row = next((number for number, end in enumerate(taken) if place - half >= end), None)
         if row is None:
-            continue  # there is room for three rows; with more, zoom in
-        taken[row] = place + half + 1.5
-        axes.annotate(band.label, (middle, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(0, 3 + row * size * 1.15),
-                      textcoords="offset points", ha="center", va="bottom", fontsize=size,
-                      color="0.55" if band.kind == "silence" else "0.1",
-                      fontweight="bold" if band.kind in ("closed", "labiodental") else "normal")
+            text.remove()
+            continue
+        taken[row] = place + half
+        text.set_position((0, 3 + row * size * 1.15))
+        texts.append(text)
+    return texts
 
 
 def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
@@ -81,7 +93,10 @@ def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
 
 
 def write(figure: pyplot.Figure, path: Union[str, os.PathLike], dpi: int = 110) -> None:
-    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it."""
-    unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
+    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it.
+
+    Figures are drawn and written within `pyplot.rc_context(STYLE)`.
+    """
+    unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None}}
     figure.savefig(path, dpi=dpi, metadata=unstamped.get(Path(path).suffix.lower()))
     pyplot.close(figure)

@@ -11,7 +11,7 @@ import numpy as np
 from labial.errors import LabialError
 from labial.faps import FAP_COLUMNS, FAP_NAMES
 from labial.see.drawing import COLOURS, STYLE, label, legend_patches, pyplot, shade, write
-from labial.see.motion import Band, Motion
+from labial.see.motion import Band, Motion, laughs
 
 #: Channels that are plotted unless others are asked for.
 DEFAULT = "fap3,opening,stretch,fap17"
@@ -85,11 +85,13 @@ def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.P
     rows = panels(channels)
     first, last = _span(motions, bands)
     width = min(max(9.0, 2.2 + 2.6 * (last - first)), _LONGEST_AXIS)
-    height = 1.15 + (1.45 if len(rows) <= 6 else 1.05) * len(rows)
+    upright = laughs(bands)
+    top = 0.75 if upright else 0.45
+    height = 0.7 + top + (1.45 if len(rows) <= 6 else 1.05) * len(rows)
     with pyplot.rc_context(STYLE):
         figure, every = pyplot.subplots(len(rows), 1, figsize=(width, height), sharex=True, squeeze=False)
         # Margins in inches, whatever the size: labels at the left, phonemes above, legend and time below.
-        figure.subplots_adjust(left=1.95 / width, right=1 - 0.2 / width, top=1 - 0.45 / height, bottom=0.75 / height,
+        figure.subplots_adjust(left=1.95 / width, right=1 - 0.2 / width, top=1 - top / height, bottom=0.75 / height,
                                hspace=0.14)
         for axes, row in zip(every[:, 0], rows):
             shade(axes, bands)
@@ -101,7 +103,7 @@ def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.P
             axes.margins(y=0.1)
             axes.locator_params(axis="y", nbins=5)
         every[0, 0].set_xlim(first, last)
-        label(every[0, 0], bands)
+        label(every[0, 0], bands, upright=upright)
         figure.align_ylabels(every[:, 0])
         every[-1, 0].set_xlabel("seconds")
         curves = every[0, 0].get_legend_handles_labels()[0]

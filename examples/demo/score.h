@@ -1,0 +1,57 @@
+/*
+ * score.h - what is to be performed: phonemes one after the other, and laughs that are heard under the words.
+ */
+#ifndef LABIAL_EXAMPLE_SCORE_H
+#define LABIAL_EXAMPLE_SCORE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "labial/model.h"
+#include "labial/names.h"
+
+/* Words are spoken laughing for so long before and after the laugh itself, milliseconds. */
+#define SCORE_LEAD 2000u
+#define SCORE_TRAIL 900u
+
+/* Who utters a file's phonemes. */
+typedef struct {
+    const labial_model_t *model;
+    const labial_names_t *names;
+    const char *kind; /* of the phonemes, as page.h has it; static */
+} score_voice_t;
+
+typedef struct {
+    const labial_model_t *model;
+    const char *label, *kind; /* for the page; static */
+    uint64_t begin;           /* milliseconds from the start of the score */
+    uint32_t milliseconds;
+    uint8_t number; /* of the model */
+} score_phoneme_t;
+
+/* A laugh, in milliseconds from the start of the score: begin <= alone <= words <= end, each no earlier than the end of
+ * the laugh before. */
+typedef struct {
+    uint64_t begin; /* sets in under the words */
+    uint64_t alone; /* the words stop */
+    uint64_t words; /* they go on */
+    uint64_t end;   /* has died away */
+    unsigned intensity; /* of labial_laugh_begin() */
+} score_laugh_t;
+
+/* Zero-initialise, fill with score_read(), release with score_release(). */
+typedef struct {
+    score_phoneme_t *phonemes;
+    size_t phoneme_count, phoneme_room;
+    score_laugh_t *laughs;
+    size_t laugh_count, laugh_room;
+    uint64_t end; /* milliseconds */
+} score_t;
+
+/* Appends the timings of a file (say/timings.h) in a voice. A laugh in a file of speech is a pause in the words, and
+ * sets in SCORE_LEAD before it. Returns 0, or -1 after having said on stderr what is wrong. */
+int score_read(score_t *score, const char *path, const score_voice_t *voice);
+
+void score_release(score_t *score);
+
+#endif

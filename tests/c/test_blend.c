@@ -1,0 +1,338 @@
+/*
+ * test_blend.c - frames of speech and laughter made one: the equation of labial/blend.h, and closures that stay closed.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "labial/blend.h"
+#include "labial/faps.h"
+#include "labial/labial.h"
+
+enum { JAW = 0, UPPER = 3, LOWER = 4 };
+
+static uint32_t seed;
+
+/* A number from `low` to `high`. */
+static int draw(int low, int high)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return low + (int)((seed >> 8) % (uint32_t)(high - low + 1));
+}
+
+static void draw_frame(int16_t faps[LABIAL_CHANNELS], int limit)
+{
+    unsigned c;
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        faps[c] = (int16_t)draw(-limit, limit);
+}
+
+/* A speech frame whose opening is `opening` and whose lower lip is down by `drop`. */
+static void draw_speech(int16_t faps[LABIAL_CHANNELS], int opening, int drop)
+{
+    draw_frame(faps, 600);
+    faps[UPPER] = (int16_t)(drop - opening);
+    faps[LOWER] = (int16_t)-drop;
+}
+
+/* ---- The equation in double precision, from the FAPs' numbers --------------------------------------------------- */
+
+static double freedom(double distance, double low, double high)
+{
+    double x;
+    if (distance <= low)
+        return 0;
+    if (distance >= high)
+        return 1;
+    x = (distance - low) / (high - low);
+    return 3 * x * x - 2 * x * x * x;
+}
+
+static double wanted(const labial_blend_t *blend, double intensity, double words, const int16_t *speech,
+                     const int16_t *laugh, unsigned channel)
+{
+    const double lips = freedom(-(double)speech[UPPER] - speech[LOWER], blend->closed, blend->open);
+    const double touch = freedom(-(double)speech[LOWER], blend->touching, blend->dropped);
+    double share = blend->shares[channel] / 256.0;
+    switch (labial_fap_numbers[channel]) {
+    case 51:
+    case 55:
+    case 56:
+        share *= lips;
+        break;
+    case 3:
+        if (laugh[channel] <= speech[channel])
+            break;
+        share *= touch < lips ? touch : lips;
+        break;
+    case 52:
+    case 57:
+    case 58:
+        share *= touch < lips ? touch : lips;
+        break;
+    default:
+        break;
+    }
+    return speech[channel] + (laugh[channel] - speech[channel]) * intensity * (1 - words * (1 - share));
+}
+
+/* A table of sensible shares and limits. */
+static labial_blend_t draw_table(void)
+{
+    labial_blend_t blend;
+    unsigned c;
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        blend.shares[c] = (uint16_t)draw(0, 256);
+    blend.closed = (int16_t)draw(-100, 200);
+    blend.open = (int16_t)(blend.closed + draw(1, 300));
+    blend.touching = (int16_t)draw(-100, 200);
+    blend.dropped = (int16_t)(blend.touching + draw(1, 300));
+    return blend;
+}
+
+/* Would catch a channel in the wrong group, a limit or a factor that is left out, and lost precision. */
+static void follows_the_equation(void **state)
+{
+    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    double worst = 0;
+    unsigned c;
+    int i;
+    (void)state;
+    seed = 1;
+    for (i = 0; i < 50000; i++) {
+        const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
+        const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)(i % 3 ? 256 : draw(0, 256));
+        if (i % 5)
+            draw_speech(speech, draw(-100, 600), draw(-100, 500));
+        else
+            draw_frame(speech, 2000);
+        draw_frame(laugh, i % 5 ? 300 : 2000);
+        assert_int_equal(labial_blend(&blend, intensity, words, speech, laugh, out), LABIAL_OK);
+        for (c = 0; c < LABIAL_CHANNELS; c++) {
+            const double off = fabs(out[c] - wanted(&blend, intensity / 256.0, words / 256.0, speech, laugh, c));
+            worst = off > worst ? off : worst;
+        }
+    }
+    assert_true(worst <= 1.0);
+}
+
+/* Would catch a laugh that leaks into plain speech, or speech into a laugh without words. */
+static void the_ends_are_exact(void **state)
+{
+    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    int i;
+    (void)state;
+    seed = 2;
+    for (i = 0; i < 20000; i++) {
+        const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
+        draw_frame(speech, i % 3 ? 600 : 32767);
+        draw_frame(laugh, i % 3 ? 300 : 32767);
+        assert_int_equal(labial_blend(&blend, 0, (unsigned)draw(0, 256), speech, laugh, out), LABIAL_OK);
+        assert_memory_equal(out, speech, sizeof out);
+        assert_int_equal(labial_blend(&blend, LABIAL_BLEND_FULL, 0, speech, laugh, out), LABIAL_OK);
+        assert_memory_equal(out, laugh, sizeof out);
+    }
+}
+
+/* Whatever the laugh does and however loud it is: lips that meet in speech meet in the same place, and the jaw does not
+ * open any further than it does in speech. */
+static void closures_are_kept(void **state)
+{
+    static const uint8_t upper[] = {3, 7, 8}, lower[] = {4, 9, 10};
+    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    unsigned c;
+    int i;
+    (void)state;
+    seed = 3;
+    for (i = 0; i < 60000; i++) {
+        const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
+        const int closed = i % 4 < 2; /* else it is the lower lip at the teeth */
+        if (closed)
+            draw_speech(speech, i % 3 ? draw(-500, blend.closed) : blend.closed, draw(-500, 500));
+        else
+            draw_speech(speech, draw(-500, 500), i % 3 ? draw(-500, blend.touching) : blend.touching);
+        draw_frame(laugh, i % 5 ? 400 : 32767);
+        assert_int_equal(labial_blend(&blend, (unsigned)draw(0, 300), 256, speech, laugh, out), LABIAL_OK);
+        for (c = 0; c < sizeof lower; c++)
+            assert_int_equal(out[lower[c]], speech[lower[c]]);
+        assert_true(out[JAW] <= speech[JAW]);
+        for (c = 0; closed && c < sizeof upper; c++)
+            assert_int_equal(out[upper[c]], speech[upper[c]]);
+    }
+}
+
+/* Would catch lips that are held always, which the test above would not mind: vowels laugh, corners laugh anywhere. */
+static void what_is_free_laughs(void **state)
+{
+    int16_t speech[LABIAL_CHANNELS] = {0}, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    const labial_blend_t *blend = &labial_blend_default;
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        laugh[c] = 1000;
+    assert_int_equal(labial_blend(blend, 256, 256, speech, laugh, out), LABIAL_OK); /* at rest */
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        const unsigned fap = labial_fap_numbers[c];
+        const int corner = fap == 53 || fap == 54 || fap >= 59, push = fap == 16 || fap == 17;
+        assert_int_equal(out[c], corner ? 898 : push ? 602 : 0);
+    }
+    laugh[JAW] = -1000; /* the jaw may close at any time */
+    assert_int_equal(labial_blend(blend, 256, 256, speech, laugh, out), LABIAL_OK);
+    assert_int_equal(out[JAW], -352);
+    laugh[JAW] = 1000;
+    speech[UPPER] = (int16_t)(blend->dropped - blend->open - 1);
+    speech[LOWER] = (int16_t)-blend->dropped;
+    assert_int_equal(labial_blend(blend, 256, 256, speech, laugh, out), LABIAL_OK); /* a vowel */
+    assert_int_equal(out[JAW], 352);
+    assert_int_equal(out[LOWER], -270 + (1270 * 90 + 128) / 256);
+    assert_true(out[UPPER] > speech[UPPER] + 300);
+}
+
+static int toward(int from, int value, int to)
+{
+    return to < from ? from - value : value - from;
+}
+
+/* Would catch a ramp that turns back. */
+static void monotone_in_intensity_and_words(void **state)
+{
+    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], before[LABIAL_CHANNELS];
+    unsigned c, step;
+    int i;
+    (void)state;
+    seed = 4;
+    for (i = 0; i < 600; i++) {
+        const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
+        const unsigned fixed = (unsigned)draw(0, 256);
+        draw_frame(speech, i % 3 ? 500 : 32767);
+        draw_frame(laugh, i % 3 ? 500 : 32767);
+        memcpy(before, speech, sizeof before);
+        for (step = 0; step <= 256; step++) {
+            labial_blend(&blend, i % 4 < 2 ? step : fixed, i % 4 < 2 ? fixed : 256u - step, speech, laugh, out);
+            for (c = 0; c < LABIAL_CHANNELS; c++)
+                assert_true(toward(speech[c], out[c], laugh[c]) >= toward(speech[c], before[c], laugh[c]));
+            memcpy(before, out, sizeof before);
+        }
+    }
+}
+
+/* Would catch any overflow: a value beyond both of those that it was made of. */
+static void extremes_stay_between(void **state)
+{
+    static const int16_t ends[] = {INT16_MIN, INT16_MIN + 1, -1, 0, 1, INT16_MAX - 1, INT16_MAX};
+    static const unsigned levels[] = {0, 1, 127, 128, 255, 256, 257, 65536, UINT32_MAX};
+    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    labial_blend_t blend;
+    unsigned c;
+    int i;
+    (void)state;
+    seed = 5;
+    for (i = 0; i < 100000; i++) {
+        blend = labial_blend_default;
+        if (i % 2) {
+            for (c = 0; c < LABIAL_CHANNELS; c++)
+                blend.shares[c] = (uint16_t)draw(0, 65535);
+            blend.closed = ends[draw(0, 6)];
+            blend.open = ends[draw(0, 6)];
+            blend.touching = ends[draw(0, 6)];
+            blend.dropped = ends[draw(0, 6)];
+        }
+        for (c = 0; c < LABIAL_CHANNELS; c++) {
+            speech[c] = ends[draw(0, 6)];
+            laugh[c] = ends[draw(0, 6)];
+        }
+        assert_int_equal(labial_blend(&blend, levels[draw(0, 8)], levels[draw(0, 8)], speech, laugh, out), LABIAL_OK);
+        for (c = 0; c < LABIAL_CHANNELS; c++) {
+            assert_true(out[c] >= (speech[c] < laugh[c] ? speech[c] : laugh[c]));
+            assert_true(out[c] <= (speech[c] < laugh[c] ? laugh[c] : speech[c]));
+        }
+    }
+}
+
+/* Would catch a jump where a limit is passed. The blend may move as far as the faster of its inputs and, while the lips
+ * pass from held to free, by what that lets in: the steepest of 3 x^2 - 2 x^3 is 1.5. */
+static void continuous(void **state)
+{
+    int16_t speech[2][LABIAL_CHANNELS], laugh[2][LABIAL_CHANNELS], out[2][LABIAL_CHANNELS];
+    const labial_blend_t *blend = &labial_blend_default;
+    unsigned c;
+    int i, k;
+    (void)state;
+    seed = 6;
+    for (i = 0; i < 50000; i++) {
+        const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)(i % 2 ? 256 : draw(0, 256));
+        double let_in, opened, dropped;
+        draw_speech(speech[0], draw(80, 280), draw(110, 310));
+        draw_frame(laugh[0], 300);
+        for (c = 0; c < LABIAL_CHANNELS; c++) {
+            speech[1][c] = (int16_t)(speech[0][c] + draw(-6, 6));
+            laugh[1][c] = (int16_t)(laugh[0][c] + draw(-6, 6));
+        }
+        for (k = 0; k < 2; k++)
+            assert_int_equal(labial_blend(blend, intensity, words, speech[k], laugh[k], out[k]), LABIAL_OK);
+        opened = fabs(speech[1][UPPER] + speech[1][LOWER] - speech[0][UPPER] - (double)speech[0][LOWER]);
+        dropped = fabs(speech[1][LOWER] - (double)speech[0][LOWER]);
+        let_in = fmax(opened / (blend->open - blend->closed), dropped / (blend->dropped - blend->touching)) * 1.5;
+        for (c = 0; c < LABIAL_CHANNELS; c++) {
+            const double by_speech = fabs(speech[1][c] - (double)speech[0][c]);
+            const double by_laugh = fabs(laugh[1][c] - (double)laugh[0][c]);
+            const double way = fmax(fabs(laugh[0][c] - (double)speech[0][c]), fabs(laugh[1][c] - (double)speech[1][c]));
+            const double most = fmax(by_speech, by_laugh) + let_in * way * blend->shares[c] / 256.0 + 2.0;
+            assert_true(fabs(out[1][c] - (double)out[0][c]) <= most);
+        }
+    }
+}
+
+static void in_place_and_beyond_full(void **state)
+{
+    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], same[LABIAL_CHANNELS];
+    int i;
+    (void)state;
+    seed = 7;
+    for (i = 0; i < 1000; i++) {
+        const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)draw(0, 256);
+        draw_frame(speech, 300);
+        draw_frame(laugh, 300);
+        labial_blend(&labial_blend_default, intensity, words, speech, laugh, out);
+        memcpy(same, laugh, sizeof same);
+        assert_int_equal(labial_blend(&labial_blend_default, intensity, words, speech, same, same), LABIAL_OK);
+        assert_memory_equal(same, out, sizeof out);
+        memcpy(same, speech, sizeof same);
+        assert_int_equal(labial_blend(&labial_blend_default, intensity, words, same, laugh, same), LABIAL_OK);
+        assert_memory_equal(same, out, sizeof out);
+        labial_blend(&labial_blend_default, 256, 256, speech, laugh, out);
+        labial_blend(&labial_blend_default, 257, 4000000000u, speech, laugh, same);
+        assert_memory_equal(same, out, sizeof out);
+    }
+}
+
+static void null_writes_nothing(void **state)
+{
+    const int16_t in[LABIAL_CHANNELS] = {1, 2, 3};
+    int16_t out[LABIAL_CHANNELS], kept[LABIAL_CHANNELS];
+    (void)state;
+    memset(out, 0x33, sizeof out);
+    memcpy(kept, out, sizeof out);
+    assert_int_equal(labial_blend(NULL, 1, 1, in, in, out), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_blend(&labial_blend_default, 1, 1, NULL, in, out), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_blend(&labial_blend_default, 1, 1, in, NULL, out), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_blend(&labial_blend_default, 1, 1, in, in, NULL), LABIAL_ERROR_NULL);
+    assert_memory_equal(out, kept, sizeof out);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(follows_the_equation),     cmocka_unit_test(the_ends_are_exact),
+        cmocka_unit_test(closures_are_kept),        cmocka_unit_test(what_is_free_laughs),
+        cmocka_unit_test(monotone_in_intensity_and_words), cmocka_unit_test(extremes_stay_between),
+        cmocka_unit_test(continuous),               cmocka_unit_test(in_place_and_beyond_full),
+        cmocka_unit_test(null_writes_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
