@@ -44,8 +44,10 @@ int main(int argc, char **argv)
         bench_feed(&stream, input, &next, &pushed, (uint32_t)seconds * 1000u);
         result = labial_tick(&stream);
         frames += result == LABIAL_OK;
-    } while (result != LABIAL_DONE);
+    } while (result >= 0 && result != LABIAL_DONE);
     taken = (double)(clock() - start) / CLOCKS_PER_SEC;
+    if (result < 0)
+        return 1;
     printf("%lu frames in %.3f s: %.0f frames/s, %.0f times real time (checksum %08lx)\n", frames, taken,
            (double)frames / taken, (double)frames / taken / input->model->frames_per_second, (unsigned long)sum);
     return 0;

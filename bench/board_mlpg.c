@@ -1,6 +1,6 @@
 /*
- * board_mlpg.c - equation 3 alone: prints the instructions that a unit of each channel takes together, forwards, backwards
- * and clearing the solver's state included, and the frames.
+ * board_mlpg.c - equation 3 alone: prints the instructions that a unit of each channel takes together, forwards,
+ * backwards and clearing the solver's state included, and the frames.
  */
 #include "board.h"
 #include "speech_en.h"

@@ -1,5 +1,5 @@
 /*
- * inputs.h - what is synthesised to measure: the phonemes of the demo's sentence, or two trains of laughter, over and over.
+ * inputs.h - what is synthesised to measure: the phonemes of the demo's sentence, or two trains of laughter, repeated.
  */
 #ifndef BENCH_INPUTS_H
 #define BENCH_INPUTS_H
@@ -35,15 +35,15 @@ static const bench_phoneme_t bench_sentence[] = {
 };
 
 static const bench_phoneme_t bench_laugh[] = {
-    L(FRICATIVE, 110), L(A, 104), L(FRICATIVE, 112), L(A, 100), L(FRICATIVE, 114), L(A, 90),  L(FRICATIVE, 122), L(E, 84),
-    L(FRICATIVE, 120), L(CACKLE, 48), L(SILENCE, 180), L(NE, 240), L(FRICATIVE, 120), L(E, 92), L(FRICATIVE, 118), L(IC, 80),
-    L(NASAL, 80),      L(SILENCE, 200)
+    L(FRICATIVE, 110), L(A, 104),     L(FRICATIVE, 112), L(A, 100),  L(FRICATIVE, 114), L(A, 90),
+    L(FRICATIVE, 122), L(E, 84),      L(FRICATIVE, 120), L(CACKLE, 48), L(SILENCE, 180), L(NE, 240),
+    L(FRICATIVE, 120), L(E, 92),      L(FRICATIVE, 118), L(IC, 80),  L(NASAL, 80),      L(SILENCE, 200)
 };
 
 #undef S
 #undef L
 
-/* Keeps the queue full until `milliseconds` have been pushed, then ends the stream. Start with `*next` and `*pushed` 0. */
+/* Keeps the queue full until `milliseconds` were pushed, then ends the stream. `*next` and `*pushed` start as 0. */
 static inline void bench_feed(labial_t *stream, const bench_input_t *input, unsigned *next, uint32_t *pushed,
                               uint32_t milliseconds)
 {

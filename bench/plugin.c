@@ -1,9 +1,11 @@
 /*
- * plugin.c - a plugin for QEMU that counts how often the instruction at each address is executed, and how often the next
- * one is not the one behind it:
+ * plugin.c - a plugin for QEMU that counts how often the instruction at each address is executed, and how often the
+ * next one is not the one behind it:
  *
  *     cc -shared -fPIC plugin.c -o plugin.so
- *     qemu-system-arm -plugin file=plugin.so,out=HISTOGRAM ...      writes lines of an address, hexadecimal, and the two counts
+ *     qemu-system-arm -plugin file=plugin.so,out=HISTOGRAM ...
+ *
+ * writes lines of an address, hexadecimal, and the two counts.
  *
  * QEMU's header qemu-plugin.h is not in every package of QEMU; what is used of version 1 of its interface is declared
  * here.
@@ -23,8 +25,8 @@ enum qemu_plugin_op { QEMU_PLUGIN_INLINE_ADD_U64 };
 
 extern void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id,
                                                   void (*callback)(qemu_plugin_id_t, struct qemu_plugin_tb *));
-extern void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *tb, void (*callback)(unsigned, void *), int flags,
-                                                 void *user);
+extern void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *tb, void (*callback)(unsigned, void *),
+                                                 int flags, void *user);
 extern void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id, void (*callback)(qemu_plugin_id_t, void *), void *user);
 extern void qemu_plugin_register_vcpu_insn_exec_inline(struct qemu_plugin_insn *insn, enum qemu_plugin_op op, void *at,
                                                        uint64_t value);

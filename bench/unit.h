@@ -21,8 +21,8 @@ void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k
 /* The library's solution of channel k, which takes the targets' place. */
 void bench_unit_solve(bench_unit_t *unit, const labial_model_t *model, unsigned k);
 
-/* The same for a unit of up to LABIAL_WINDOW frames from elsewhere; `positions` holds a target every LABIAL_CHANNELS. All
- * that measures the solver calls it here: the solver's state zeroed, all rows forwards, all frames backwards. */
+/* The same for a unit of up to LABIAL_WINDOW frames from elsewhere; `positions` holds a target every LABIAL_CHANNELS.
+ * All that measures the solver calls it here: the solver's state zeroed, all rows forwards, all frames backwards. */
 void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, unsigned length, int16_t *positions);
 
 #endif

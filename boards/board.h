@@ -55,7 +55,7 @@ void board_exit(int status);
 void board_count_start(void);
 uint32_t board_count(void);
 
-/* ---- Interrupts, on Arm boards alone --------------------------------------------------------------------------------- */
+/* ---- Interrupts, on Arm boards alone ----------------------------------------------------------------------------- */
 
 /* Interrupts that have a vector. */
 #define BOARD_INTERRUPTS 32
@@ -64,7 +64,7 @@ uint32_t board_count(void);
  * interrupts defines it. Without a definition an interrupt is a processor fault. */
 void board_interrupt(unsigned number);
 
-/* ---- Stack --------------------------------------------------------------------------------------------------------- */
+/* ---- Stack ------------------------------------------------------------------------------------------------------- */
 
 /* Fills the stack below its caller with a pattern; done once before main(). */
 void board_stack_paint(void);

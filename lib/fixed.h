@@ -68,8 +68,8 @@ static inline uint32_t labial_z_cost(uint32_t z)
     return (z * z) >> 7;
 }
 
-/* How far a transition has gone at `step` of `steps`, 65535 at most, Q14: 3 s^2 - 2 s^3, which starts and ends without a
- * jolt. */
+/* How far a transition has gone at `step` of `steps`, 65535 at most, Q14: 3 s^2 - 2 s^3, which starts and ends without
+ * a jolt. */
 static inline int32_t labial_ease(unsigned step, unsigned steps)
 {
     const uint32_t s = ((uint32_t)step << 14) / steps;

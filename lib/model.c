@@ -102,6 +102,8 @@ int labial_model_check(const labial_model_t *model)
             (uint32_t)model->kernel_behind * model->kernel_stride > LABIAL_REACH ||
             (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride > LABIAL_REACH)
             return LABIAL_ERROR_MODEL;
+    } else if (model->kernel_behind) {
+        return LABIAL_ERROR_MODEL;
     }
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];

@@ -142,8 +142,8 @@ int labial_find_sampa(const labial_names_t *names, const char *name, size_t leng
 {
     /* X-SAMPA's letter and the IPA's two bytes: eng, esh, theta, eth, ezh, turned v, turned h, small capital y, barred
      * u (which stands for y: both are rounded). */
-    static const char other[][4] = {"N\xc5\x8b", "S\xca\x83", "T\xce\xb8", "D\xc3\xb0", "Z\xca\x92",
-                                    "V\xca\x8c", "H\xc9\xa5", "Y\xca\x8f", "y\xca\x89"};
+    static const char other[][4] = { "N\xc5\x8b", "S\xca\x83", "T\xce\xb8", "D\xc3\xb0", "Z\xca\x92",
+                                     "V\xca\x8c", "H\xc9\xa5", "Y\xca\x8f", "y\xca\x89" };
     char text[LABEL_MAX];
     unsigned i;
     if (!names || !name || !names->entries)
@@ -158,7 +158,8 @@ int labial_find_sampa(const labial_names_t *names, const char *name, size_t leng
 /* Whether a label is set in brackets or between signs, as noises are. */
 static int is_bracketed(const char *text, size_t length)
 {
-    static const char pairs[][2] = {{'<', '>'}, {'[', ']'}, {'(', ')'}, {'{', '}'}, {'+', '+'}, {'*', '*'}, {'#', '#'}};
+    static const char pairs[][2] = { { '<', '>' }, { '[', ']' }, { '(', ')' }, { '{', '}' },
+                                     { '+', '+' }, { '*', '*' }, { '#', '#' } };
     unsigned i;
     for (i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
         if (length > 1u && text[0] == pairs[i][0] && text[length - 1u] == pairs[i][1])

@@ -136,7 +136,8 @@ void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL
             sum[k] += kernel[k];
     }
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        target[k] = (int16_t)labial_clamp(shape[k] + scaled(sum[k], model->channels[k].kernel_scale), LABIAL_POSITION_MAX);
+        target[k] = (int16_t)labial_clamp(shape[k] + scaled(sum[k], model->channels[k].kernel_scale),
+                                          LABIAL_POSITION_MAX);
     if (floor) {
         const int16_t *least = model->floors + (floor - 1u) * LABIAL_CHANNELS;
         for (k = 0; k < LABIAL_CHANNELS; k++)

@@ -2,10 +2,10 @@
  * The stream: pushes fill the queue (units), work turns it into frames one small step at a time, ticks share the steps
  * out and play the frames.
  *
- * Why ticks of equal work suffice: a piece delivers at least half of the frames that it decodes (what it shares with its
- * successor, it does not share with its predecessor), so the work of two of its frames per tick keeps up; and half a
- * window of ready frames bridges the time in which the longest piece is decoded. Most pieces deliver more, and their work
- * is spread over as many ticks as leave half a window ready.
+ * Why ticks of equal work suffice: a piece delivers at least half of the frames that it decodes (what it shares with
+ * its successor, it does not share with its predecessor), so the work of two of its frames per tick keeps up; and half
+ * a window of ready frames bridges the time in which the longest piece is decoded. Most pieces deliver more, and their
+ * work is spread over as many ticks as leave half a window ready.
  */
 #include <string.h>
 

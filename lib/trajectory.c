@@ -10,8 +10,8 @@
  *
  * with a, b, c the diagonals and r the right-hand side. Formats: weights, and so a, b, c, are integers; D, e, c are in
  * Q12; r and z in weight times Q4 FAP; lambda and kappa in Q28; z / D and m in Q12 FAP. What keeps this inside 32 bits:
- * every diagonal element is at most LABIAL_WEIGHT_SUM_MAX, every |r| at most LABIAL_PULL_MAX, and every frame is held by
- * at least LABIAL_WEIGHT_MIN, hence 8 <= D < 2^18; |kappa| <= 1 because D_t holds all of the row that gives c_t; and
+ * every diagonal element is at most LABIAL_WEIGHT_SUM_MAX, every |r| at most LABIAL_PULL_MAX, and every frame is held
+ * by at least LABIAL_WEIGHT_MIN, hence 8 <= D < 2^18; |kappa| <= 1 because D_t holds all of the row that gives c_t; and
  * |lambda| <= 2 as long as earlier frames, given this one, are expected no farther from zero than it is, which is what
  * holds, equal neighbours and straight lines all amount to. Were it ever otherwise, lambda is held below 8.
  */
@@ -19,8 +19,8 @@
 
 #include "fixed.h"
 
-/* 2^60 / d for 2^30 <= d < 2^31, to about 29 bits: a table of eight bits and two Newton steps x += x (1 - d x), the first
- * of which needs no more than 16 bits of d. */
+/* 2^60 / d for 2^30 <= d < 2^31, to about 29 bits: a table of eight bits and two Newton steps x += x (1 - d x), the
+ * first of which needs no more than 16 bits of d. */
 static int32_t reciprocal(int32_t d)
 {
     static const uint8_t table[64] = {
@@ -93,7 +93,8 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t *factors)
     solver->kappa2 = solver->kappa1;
     solver->lambda = factors[0] = quotient(held, inverse, shift);
     solver->kappa1 = factors[1] = quotient(c, inverse, shift);
-    factors[2] = shift < 9u ? labial_mulshift(z, inverse, 31) >> (9u - shift) : labial_mulshift(z, inverse, 40u - shift);
+    factors[2] = shift < 9u ? labial_mulshift(z, inverse, 31) >> (9u - shift)
+                            : labial_mulshift(z, inverse, 40u - shift);
     solver->e = held;
     solver->c2 = solver->c1;
     solver->c1 = c;
@@ -151,7 +152,8 @@ void labial_trajectory_backward(labial_solver_t *solver, const int32_t *factors,
         int32_t m;
         factors -= LABIAL_FACTORS;
         positions -= LABIAL_CHANNELS;
-        m = labial_sub(factors[2], labial_add(labial_mulshift(factors[0], m1, 28), labial_mulshift(factors[1], m2, 28)));
+        m = labial_sub(factors[2],
+                       labial_add(labial_mulshift(factors[0], m1, 28), labial_mulshift(factors[1], m2, 28)));
         m2 = m1;
         m1 = m;
         *positions = (int16_t)labial_clamp(labial_add(m, 128) >> 8, LABIAL_POSITION_MAX);

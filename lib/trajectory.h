@@ -26,15 +26,15 @@ typedef struct {
 #define LABIAL_FACTORS 3
 
 /*
- * Forward: takes up rows t .. end - 1; row t factors frame t - 1. All rows from 0 to `length`, of which the last is empty,
- * are taken up in their order, in as many calls as it pleases. `path` is the piece's, `positions` its targets, one every
- * LABIAL_CHANNELS; `factors` has LABIAL_FACTORS numbers per frame.
+ * Forward: takes up rows t .. end - 1; row t factors frame t - 1. All rows from 0 to `length`, of which the last is
+ * empty, are taken up in their order, in as many calls as it pleases. `path` is the piece's, `positions` its targets,
+ * one every LABIAL_CHANNELS; `factors` has LABIAL_FACTORS numbers per frame.
  */
 void labial_trajectory_forward(labial_solver_t *solver, const labial_channel_t *channel, const uint8_t *path,
                                unsigned length, const int16_t *positions, unsigned t, unsigned end, int32_t *factors);
 
-/* Backward: puts the solutions of frames t - 1 .. end, in this order, in the place of their targets; from the last frame to
- * the first, in as many calls as it pleases. */
+/* Backward: puts the solutions of frames t - 1 .. end, in this order, in the place of their targets; from the last
+ * frame to the first, in as many calls as it pleases. */
 void labial_trajectory_backward(labial_solver_t *solver, const int32_t *factors, unsigned t, unsigned end,
                                 int16_t *positions);
 

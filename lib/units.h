@@ -12,8 +12,8 @@
  *
  * Units are decoded together until a piece has LABIAL_PIECE frames. A unit longer than the window is cut into chained
  * pieces that share LABIAL_OVERLAP frames. Where the model changes, the earlier model's last piece runs on into the
- * other's phonemes, and the later one's first piece begins with them. No frame ever belongs to more than two pieces, and
- * no piece shares more than half of its frames with the one after it.
+ * other's phonemes, and the later one's first piece begins with them. No frame ever belongs to more than two pieces,
+ * and no piece shares more than half of its frames with the one after it.
  */
 #ifndef LABIAL_UNITS_H
 #define LABIAL_UNITS_H

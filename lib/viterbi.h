@@ -3,11 +3,11 @@
  *
  * A score is the cost of the best path into a state, times 256; its low byte is free. An edge holds four times its
  * predecessor's number there, so that one addition makes a candidate that names where it comes from: the least of
- * several is the best path, the lower number at a tie. Beside its predecessors, every state can be entered from the best
- * state of the step before, at the highest cost of a transition.
+ * several is the best path, the lower number at a tie. Beside its predecessors, every state can be entered from the
+ * best state of the step before, at the highest cost of a transition.
  *
  * States whose emission costs more than LABIAL_BEAM above the least are passed over: their predecessors are not looked
- * at, and they are not counted for the best. No path of any likelihood runs through them, and they are most of the work.
+ * at, and they are not counted for the best. Likely paths do not run through them, and they are most of the work.
  */
 #ifndef LABIAL_VITERBI_H
 #define LABIAL_VITERBI_H

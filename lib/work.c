@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "fixed.h"
 #include "shape.h"
 #include "trajectory.h"
 #include "units.h"
@@ -43,9 +44,9 @@ int16_t *labial_work_frame(labial_t *stream, unsigned i)
 }
 
 /*
- * How much work ticks do on the piece that was found: that of 1.4 of its frames, or as much more as leaves half a window
- * ready when it is done, which is what the longest next one may take. Never more than that of two, which is always in
- * time, since a piece delivers at least half of its frames.
+ * How much work ticks do on the piece that was found: that of 1.4 of its frames, or as much more as leaves half a
+ * window ready when it is done, which is what the longest next one may take. Never more than that of two, which is
+ * always in time, since a piece delivers at least half of its frames.
  */
 static uint16_t pace_of(const labial_t *stream)
 {
@@ -79,7 +80,7 @@ static int find_piece(labial_t *stream)
         piece->fade_in = (uint16_t)(own < LABIAL_OVERLAP ? own : LABIAL_OVERLAP);
         for (i = 0; i < piece->fade_in; i++)
             for (k = 0; k < LABIAL_CHANNELS; k++)
-                labial_work_frame(stream, i)[k] = (int16_t)(stream->pose[k] * 16);
+                labial_work_frame(stream, i)[k] = (int16_t)labial_clamp(stream->pose[k] * 16, INT16_MAX);
         stream->held_count = piece->fade_in;
         stream->resumed = 0;
     }

@@ -16,8 +16,8 @@ enum { LABIAL_STAGE_FIND, LABIAL_STAGE_TARGET, LABIAL_STAGE_SEARCH, LABIAL_STAGE
 #define LABIAL_SOLVE_ROWS 4u
 #define LABIAL_SOLVE_FRAMES 16u
 
-/* What a step of each stage takes, in some 250 instructions of a Cortex-M0 with a model of 50 states. How even the ticks
- * are depends on their proportions, what they compute does not. */
+/* What a step of each stage takes, in some 250 instructions of a Cortex-M0 with a model of 50 states. How even the
+ * ticks are depends on their proportions, what they compute does not. */
 #define LABIAL_COST_TARGET 12u
 #define LABIAL_COST_SEARCH 18u
 #define LABIAL_COST_SOLVE 6u

@@ -105,5 +105,5 @@ def version(compiler: str) -> str:
     name = Path(compiler).name
     if name in ("cc", "c99"):
         name = "clang" if "clang" in first else "gcc" if "Free Software Foundation" in text else name
-    numbers = re.findall(r"\d+\.\d+\.\d+", first) # the last: packages put their own before it
+    numbers = re.findall(r"\d+\.\d+\.\d+", first)  # the last: packages put their own before it
     return f"{name} {numbers[-1] if numbers else first}"

@@ -62,9 +62,9 @@ typedef struct {
 
 __attribute__((section(".vectors"), used)) static const vectors_t vectors = {
     board_stack_end,
-    { board_reset, board_fault, board_fault, board_fault, board_fault, board_fault, 0, 0, 0, 0, board_fault, board_fault,
-      0, board_fault, board_fault, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS,
-      FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS }
+    { board_reset, board_fault, board_fault, board_fault, board_fault, board_fault, 0, 0, 0, 0, board_fault,
+      board_fault, 0, board_fault, board_fault, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS,
+      FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS }
 };
 
 __attribute__((noinline)) void board_count_start(void)

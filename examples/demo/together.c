@@ -103,8 +103,7 @@ static int prepare_laugh(together_t *t)
 
 /* ---- Both ------------------------------------------------------------------------------------------------------ */
 
-/* How far a ramp has gone that began at `from`, or has to go that ends at `to`, milliseconds: 0 .. LABIAL_BLEND_FULL.
- * */
+/* How far a ramp has gone that began at `from`, or has to go that ends at `to`, milliseconds: 0 to full. */
 static unsigned ramp(uint64_t from, uint64_t to)
 {
     if (to <= from)

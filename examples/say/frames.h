@@ -6,8 +6,8 @@
  *   fap       MPEG-4 text: a header `2.1 NAME FPS NFRAMES`, then two lines per frame: a mask of 68 zeros and ones, and
  *             the frame's number followed by the value of each FAP whose mask is one, here the 23 of inner and outer
  *             lips. The header needs the number of frames, so they are kept in memory and written by frames_finish().
- *   livelink  what Epic's Live Link Face records: `Timecode,BlendShapeCount,` and 61 columns, ARKit's blendshapes from 0
- *             to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
+ *   livelink  what Epic's Live Link Face records: `Timecode,BlendShapeCount,` and 61 columns, ARKit's blendshapes from
+ *             0 to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
  *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
  *             lips and jaw move, from 0 to 1.
  */

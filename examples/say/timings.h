@@ -4,8 +4,8 @@
  *   flite     `flite -psdur`: `pau:0.220 hh:0.295 ...`, where each phoneme *ends*, in seconds. A line is one utterance,
  *             its times start from 0 again and it follows the line before.
  *   lab       `start end label [apex [word]]` per line, seconds. A gap is silence, an overlap an error.
- *   htk       `start end label ...` per line, whole units of 100 ns, as HTK and HTS write them. Of a label with context,
- *             `a^b-c+d=e@...`, the phoneme is what stands between - and +.
+ *   htk       `start end label ...` per line, whole units of 100 ns, as HTK and HTS write them. Of a label with
+ *             context, `a^b-c+d=e@...`, the phoneme is what stands between - and +.
  *   pho       MBROLA: `label milliseconds [position pitch]...` per line. `;` starts a comment, `#` alone is the flush
  *             mark and ignored, `_` is silence, as is eSpeak's `_:`.
  *   mary      MaryTTS's REALISED_DURATIONS: `end number label` per line, seconds, where each phoneme ends; lines that
@@ -15,10 +15,10 @@
  *             asked for; else the first called phones, phonemes, phone or phoneme, also after `speaker - `; else the
  *             first interval tier, which is kept until the end of the file to know that there is no better one.
  *
- * Laughs are written in two ways. `<laugh SECONDS [INTENSITY]>` on a line of its own, or between flite's phonemes, laughs
- * there and makes all that follows later (not in phseg and textgrid, which are files of aligners). The label `<laugh>`
- * or `<laugh:INTENSITY>` in the place of a phoneme's, in every format, laughs for the time that the row gives it.
- * Intensity is 0 to 1, 0.5 without it.
+ * Laughs are written in two ways. `<laugh SECONDS [INTENSITY]>` on a line of its own, or between flite's phonemes,
+ * laughs there and makes all that follows later (not in phseg and textgrid, which are files of aligners). The label
+ * `<laugh>` or `<laugh:INTENSITY>` in the place of a phoneme's, in every format, laughs for the time that the row gives
+ * it. Intensity is 0 to 1, 0.5 without it.
  *
  * The parser of the line formats holds no more than five fields of a line, so that a line may be as long as it likes
  * and each phoneme is reported with the byte that completes it: the blank behind a flite token, the end of a line

@@ -69,6 +69,11 @@ int main(int argc, char **argv)
     int result = speak_options(argc, argv, "labial-say-flite", usage, &options);
     if (result != 0)
         return result - 1;
+    if (options.voice) {
+        fputs("labial-say-flite: there is one voice only, so no --voice; see labial-say-flite --help\n", stderr);
+        free(options.text);
+        return 2;
+    }
     flite_init();
     cst_voice *voice = register_cmu_us_slt(NULL);
     int begun = 0;

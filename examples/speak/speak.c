@@ -73,7 +73,8 @@ int speak_options(int argc, char **argv, const char *program, const char *usage,
     else if ((options->text = malloc(strlen(text) + 1)) != NULL)
         strcpy(options->text, text);
     if (!options->text) {
-        fprintf(stderr, "%s: standard input is not a text of less than %u bytes\n", program, TEXT_MAX);
+        fprintf(stderr, "%s: memory is short, or standard input is not a text of less than %u bytes\n", program,
+                TEXT_MAX);
         return 1 + 1;
     }
     if (options->text[strspn(options->text, " \t\r\n")] == '\0') {

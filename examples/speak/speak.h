@@ -1,6 +1,6 @@
 /*
- * speak.h - what the programs with a speech synthesiser share: options, the sound file, and motion that lasts as long as
- * the sound.
+ * speak.h - what the programs with a speech synthesiser share: options, the sound file, and motion that lasts as long
+ * as the sound.
  *
  * Sound and phonemes may come in any order and in any pieces: sound is appended to a WAV file as it comes, a phoneme is
  * told by where it ends. At the end the shorter of the two is filled up with silence.
@@ -50,7 +50,7 @@ uint64_t speak_time(const speak_t *speak);
  * counts as that. Returns as speak_begin() does. */
 int speak_phoneme(speak_t *speak, const char *label, uint64_t end);
 
-/* Fills up, writes what is left and closes. Returns as speak_begin() does; after an error of any call it only closes. */
+/* Fills up, writes what is left and closes; only closes unless `complete`. Returns as speak_begin() does. */
 int speak_end(speak_t *speak, int complete);
 
 #endif

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _positive(text: str) -> int:
-    value = int(text)
+    value = int(text) if text.isdecimal() and len(text) < 10 else 0
     if value < 1:
         raise argparse.ArgumentTypeError(f"{text} is not a positive number")
     return value
@@ -300,6 +300,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         except OSError as error:
             print(f"labial: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
             return 1
+
 
 if __name__ == "__main__":
     sys.exit(main())

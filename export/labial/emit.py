@@ -64,7 +64,7 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
         "floors": 2 * CHANNELS * (len(model.floors) - 1),
         "states": CHANNELS * states * 16,
         "transitions": 2 * int(model.edges.size),
-        "descriptors": 24 * CHANNELS + 64,
+        "descriptors": 24 * CHANNELS + 60,
     }
 
 
@@ -244,7 +244,6 @@ static const char *const labels[{len(model.phonemes)}] = {{
 
 const labial_names_t {model.name}_names = {{ {size}, {len(model.phonemes)}, entries, labels }};
 """
-
 
 
 def blob(model: ExportedModel) -> bytes:

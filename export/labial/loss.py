@@ -61,7 +61,7 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
 
 
 def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
-    """(pieces, 13) nats by which the exported tables\' path is less likely than the best, under the float tables."""
+    """(pieces, 13) nats by which the exported tables' path is less likely than the best, under the float tables."""
     numbers, durations = [p for p, _ in stream], [ms for _, ms in stream]
     frames = frame_counts(durations, ideal.fps)
     wanted = targets(ideal, numbers, durations, frames)

@@ -2,7 +2,7 @@
  * labial/labial.h - lip motion from phonemes: a stream of phonemes and durations in, a stream of frames out.
  *
  *     static labial_t stream;
- *     static uint32_t workspace[LABIAL_WORKSPACE_SIZE(SPEECH_EN_STATES) / 4];
+ *     static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
  *
  *     labial_init(&stream, &speech_en, workspace, sizeof workspace, on_frame, NULL);
  *     labial_push(&stream, SPEECH_EN_HH, 70);     // phoneme and milliseconds, while labial_room() > 0
@@ -16,9 +16,10 @@
  * streams may. The structure may be moved or copied between calls as long as the workspace stays where it is and only
  * one copy is used on. Nothing needs to be released.
  *
- * Trusted: models that the exporter wrote and the program was linked with. Not trusted: phoneme numbers, durations,
- * the order of calls, and models from files (labial/blob.h): no value of these can make the library read or write
- * outside its memory.
+ * Trusted: models that the exporter wrote and the program was linked with; labial_init() and labial_use() look at their
+ * format and frame rate alone. Not trusted: phoneme numbers, durations, the order of calls, and models from files,
+ * which are not to be used before labial_model_load() (labial/blob.h) has accepted them: no value of these can make the
+ * library read or write outside its memory.
  */
 #ifndef LABIAL_H
 #define LABIAL_H
@@ -39,7 +40,7 @@ extern "C" {
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
 
 /* Most frames that are decoded at once; a longer unit is cut and chained. Costs 28 + states / stride bytes of workspace
- * each. */
+ * and 8 of the stream each. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 40
 #endif
@@ -50,23 +51,24 @@ extern "C" {
 #define LABIAL_PIECE 16
 #endif
 
-/* Most frames over which two pieces, or two models, are cross-faded; half of the window at most. */
+/* Most frames over which two pieces, or two models, are cross-faded; half of the window at most. Costs 34 bytes of the
+ * stream each. */
 #ifndef LABIAL_OVERLAP
 #define LABIAL_OVERLAP 8
 #endif
 
-/* Farthest tap of a model's kernels, in frames, to either side. Costs 18 bytes each. */
+/* Farthest tap of a model's kernels, in frames, to either side. Costs 2 bytes of workspace, 16 of the stream each. */
 #ifndef LABIAL_REACH
 #define LABIAL_REACH 20
 #endif
 
-/* Frames that are held ready at most; half of the window at least. Costs 26 bytes each. */
+/* Frames that are held ready at most; half of the window at least. Costs 26 bytes of the stream each. */
 #ifndef LABIAL_READY
 #define LABIAL_READY 30
 #endif
 
 /* Frames that are ready before the first is delivered, unless input is short. Half of the window and no less is enough
- * for the even work of labial_tick() always to be done in time; 1 delivers as early as possible. LABIAL_READY at most. */
+ * for the even work of labial_tick() always to be done in time; 1 delivers at once. LABIAL_READY at most. */
 #ifndef LABIAL_PREROLL
 #define LABIAL_PREROLL (LABIAL_WINDOW / 2)
 #endif
@@ -140,8 +142,8 @@ typedef struct {
     uint8_t slot;      /* model it is decoded with */
 } labial_piece_t;
 
-/* The stream's state. Its members are private; it is declared here so that it can be allocated statically. Small members
- * come first, where small instructions reach them. */
+/* The stream's state. Its members are private; it is declared here so that it can be allocated statically. Small
+ * members come first, where small instructions reach them. */
 typedef struct {
     uint32_t magic;  /* set while the stream is initialised */
     uint8_t slot;    /* model of the next push */
@@ -196,7 +198,7 @@ typedef struct {
 #define LABIAL_WORKSPACE_SIZE(states, stride)                                                              \
     ((LABIAL_SEARCH_SIZE_(states, stride) > LABIAL_SOLVER_SIZE_ ? LABIAL_SEARCH_SIZE_(states, stride)      \
                                                                 : LABIAL_SOLVER_SIZE_) +                   \
-     (uint32_t)LABIAL_WINDOW * 2u * LABIAL_CHANNELS +                                                      \
+     ((uint32_t)LABIAL_WINDOW * 2u * LABIAL_CHANNELS + 3u) / 4u * 4u +                                     \
      ((uint32_t)LABIAL_WINDOW * 2u + 2u * (uint32_t)LABIAL_REACH + 3u) / 4u * 4u)
 #define LABIAL_SEARCH_SIZE_(states, stride)                                                                \
     (8u * ((uint32_t)(states) + 1u) +                                                                      \
@@ -212,7 +214,8 @@ uint32_t labial_workspace_size(const labial_model_t *model);
  * `workspace` is aligned to four bytes and has at least labial_workspace_size() bytes of the largest model that the
  * stream will use; it belongs to the stream until it is initialised anew or no longer used.
  *
- * The model is trusted: one that was compiled in, or that labial_model_load() or labial_model_check() accepted.
+ * The model stays where it is for as long, and is trusted: one that was compiled in, or that labial_model_load()
+ * accepted. `callback` receives the frames, with `user` as its first argument.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_WORKSPACE. After an error the stream is
  * unusable until it is initialised successfully.
@@ -222,7 +225,8 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 
 /*
  * Makes the next pushes phonemes of `model`, speech or laughter; where the stream passes from one model to the other,
- * both are decoded for LABIAL_OVERLAP frames, each taking the other's phonemes for silence, and cross-faded.
+ * both are decoded for up to LABIAL_OVERLAP frames, each taking the other's phonemes for silence, and cross-faded. The
+ * model is trusted as that of labial_init() is.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
  * LABIAL_ERROR_RATE, LABIAL_ERROR_WORKSPACE (it is too small for the model) or LABIAL_ERROR_MODELS.
@@ -234,8 +238,9 @@ int labial_use(labial_t *stream, const labial_model_t *model);
  * added exactly: after any number of pushes the frames amount to the rounded sum of the durations. A phoneme that gets
  * no frame of its own leaves no trace but its time.
  *
- * How a phoneme looks depends on its successor: its frames wait until that is pushed and the kernels' reach is known,
- * or until labial_end(). A program that goes on without end pushes its pauses in short pieces.
+ * How a phoneme looks depends on what follows: its frames wait until the units that it is decoded with (LABIAL_PIECE),
+ * the phoneme behind these and all that the kernels reach are known, or until labial_end(). A program that goes on
+ * without end pushes its pauses in short pieces.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
  * labial_cancel()), LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION or LABIAL_ERROR_FULL.
@@ -250,8 +255,8 @@ int labial_end(labial_t *stream);
 
 /*
  * Call once per frame period. Does a bounded share of the work on the frames to come - that of decoding two frames at
- * most, and mostly less - and delivers the next frame when there is one. While phonemes are pushed early enough, no frame
- * is late; after a shortage LABIAL_PREROLL frames are gathered again.
+ * most, and mostly less - and delivers the next frame when there is one. While phonemes are pushed early enough, no
+ * frame is late; after a shortage LABIAL_PREROLL frames are gathered again.
  *
  * Returns LABIAL_OK when the callback was called, once; LABIAL_WAITING, LABIAL_STARVED, LABIAL_BUSY or LABIAL_DONE when
  * there was nothing to deliver; LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.

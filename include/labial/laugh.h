@@ -59,8 +59,8 @@ typedef struct {
 } labial_laugh_t;
 
 /*
- * Begins a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts as
- * that). Every `seed` gives another laugh. Below about half a second it is a single breath or pulse.
+ * Begins a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts
+ * as that). Every `seed` gives another laugh. Below about half a second it is a single breath or pulse.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_DURATION.
  */

@@ -96,13 +96,14 @@ typedef struct {
     uint8_t class_count;        /* V: 1 .. LABIAL_CLASSES_MAX */
     uint8_t state_count;        /* Q: 1 .. LABIAL_STATES_MAX */
     uint8_t predecessors;       /* K: a multiple of four, 4 .. LABIAL_STATES_MAX */
-    uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the targets of the middle one,
-                                 * or the later of two, are what the search sees */
+    uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the targets of the middle
+                                 * one, or of the later of two, are what the search sees */
     uint8_t silence;            /* the phoneme that stands before, after and for what is another model's */
     uint8_t soft;               /* 1: shapes are the mixture's mean; 0: those of its best component (equation 2) */
     uint8_t kernel_taps;        /* L: 0 .. LABIAL_KERNEL_TAPS_MAX; 0 without temporal kernels */
     uint8_t kernel_stride;      /* frames from tap to tap */
-    uint8_t kernel_behind;      /* taps that lie before the frame: tap i is at (i - kernel_behind) * kernel_stride */
+    uint8_t kernel_behind;      /* taps that lie before the frame: tap i is at (i - kernel_behind) * kernel_stride,
+                                 * LABIAL_REACH frames away at most; 0 when L is 0 */
     uint8_t floor_count;        /* F: rows of `floors`, 0 .. 255 */
     uint16_t pair_count;        /* R: rows of `pairs` */
     const labial_phoneme_t *phonemes;     /* P */
@@ -111,8 +112,8 @@ typedef struct {
     const int8_t *shapes;      /* N x 13, mean shape in steps of shape_scale */
     const int8_t *slopes;      /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
     const int8_t *kernels;     /* P x L x 13, in steps of kernel_scale; null when L is 0 */
-    const uint16_t *pair_keys; /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one; null
-                                * when R is 0 */
+    const uint16_t *pair_keys; /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one;
+                                * null when R is 0 */
     const int8_t *pairs;       /* R x 13, what such a neighbour adds to the phoneme's shape, in steps of pair_scale */
     const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below: how p, b, m close the
                                 * lips whatever their neighbours do; LABIAL_NO_FLOOR where none; null when F is 0 */
@@ -120,9 +121,9 @@ typedef struct {
 } labial_model_t;
 
 /*
- * Checks everything that labial_init() and the stream rely on: the version, every count, index and sum, and that no
- * pointer that is needed is null. It cannot know how long the arrays are; a model from outside the program goes through
- * labial_model_load(), which does.
+ * Checks everything that a stream relies on, which labial_init() and labial_use() take for granted: the version, every
+ * count, index and sum, and that no pointer that is needed is null. It cannot know how long the arrays are; a model
+ * from outside the program goes through labial_model_load(), which does.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_MODEL (labial/labial.h).
  */

@@ -27,8 +27,8 @@ typedef struct {
 /*
  * The phoneme that `name`, `length` bytes, means: the name as it stands or, if that is unknown, without what does not
  * change the mouth's shape - blanks around it; stress marks before it (the IPA's, ' " , %); the IPA's signs of length
- * and secondary articulation, its ties and diacritics; Praat's backslash sequences for these; X-SAMPA's marks (`:`, `=`,
- * `~`, `;`, `_h`) and Kaldi's places (`_B`) behind it; an ARPABET stress digit behind two letters.
+ * and secondary articulation, its ties and diacritics; Praat's backslash sequences for these; X-SAMPA's marks (`:`,
+ * `=`, `~`, `;`, `_h`) and Kaldi's places (`_B`) behind it; an ARPABET stress digit behind two letters.
  *
  * Returns the phoneme's number, LABIAL_ERROR_NULL or LABIAL_ERROR_NAME.
  */
@@ -42,8 +42,8 @@ int labial_find_sampa(const labial_names_t *names, const char *name, size_t leng
 
 /*
  * A phoneme for any label: the one that labial_find() finds; `silence` (the model's) for what is in brackets or between
- * + * #, as noises are written; else the longest known beginning of the label, its first letters being passed over while
- * there is none; else the neutral vowel, else `silence`.
+ * + * #, as noises are written; else the longest known beginning of the label, its first letters being passed over
+ * while there is none; else the neutral vowel, else `silence`.
  *
  * Returns the phoneme's number or LABIAL_ERROR_NULL.
  */

@@ -1,7 +1,7 @@
 /*
  * labial/rig.h - from the 13 FAPs of a frame to what moves a face: servos, blendshapes, features of a drawn mouth.
  *
- *     static const labial_rig_output_t jaw = LABIAL_RIG_JAW(1400, 1900); // microseconds with the lips closed, wide open
+ *     static const labial_rig_output_t jaw = LABIAL_RIG_JAW(1400, 1900); // microseconds: lips closed, wide open
  *     static const labial_rig_t rig = { &jaw, 1 };
  *     static int32_t values[1];
  *
@@ -50,7 +50,7 @@ extern "C" {
 /* A weight of one, Q12. */
 #define LABIAL_RIG_ONE 4096
 
-/* The gain by which an output moves `units` when its weighted FAPs sum up to `faps`: integer constants, `faps` not 0. */
+/* The gain by which an output moves `units` when its weighted FAPs add up to `faps`: integers, `faps` not 0. */
 #define LABIAL_RIG_GAIN(units, faps) ((int32_t)((int64_t)(units)*65536 / (faps)))
 
 /* One output. 48 bytes. */
@@ -75,8 +75,8 @@ typedef struct {
 #define LABIAL_RIG_OPENING 600
 
 /*
- * An output for a face whose jaw is all that moves: it follows the opening of the lips and not FAP 3, since the jaw of a
- * talker is often open while the lips are closed (p, b, m). `closed` and `open` are integer constants in units of the
+ * An output for a face whose jaw is all that moves: it follows the opening of the lips and not FAP 3, since the jaw of
+ * a talker is often open while the lips are closed (p, b, m). `closed` and `open` are integer constants in units of the
  * output, either may be the larger.
  */
 #define LABIAL_RIG_JAW(closed, open)                                                                               \
@@ -105,8 +105,8 @@ int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
 
 /*
  * Moves the rig's `count` values by one frame. `values` is the caller's, one array per face: it holds the frame before,
- * from which outputs with a slew limit go on, and receives this one; a program that converts values keeps them elsewhere.
- * What is beyond an output's limits in it counts as lying at the limit.
+ * from which outputs with a slew limit go on, and receives this one; a program that converts values keeps them
+ * elsewhere. What is beyond an output's limits in it counts as lying at the limit.
  *
  * Call it once per frame, for the slew limit counts in frames. Sums saturate nowhere within the limits of a checked
  * table; a move beyond +-2^30 counts as +-2^30, which every limit is far below.

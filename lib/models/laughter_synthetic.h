@@ -38,7 +38,7 @@ enum {
     LAUGHTER_SYNTHETIC_A = 11
 };
 
-/* The model, 27322 bytes on a 32-bit target. */
+/* The model, 27318 bytes on a 32-bit target. */
 extern const labial_model_t laughter_synthetic;
 
 /* Its labels and aliases; linked only when used. */

@@ -65,7 +65,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 43164 bytes on a 32-bit target. */
+/* The model, 43160 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

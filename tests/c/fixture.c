@@ -134,8 +134,9 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
             labial_emission_t *emission = &f->emissions[c][q];
             labial_state_t *state = &f->states[c][q];
             /* The shapes of the phonemes first; the rest are spread over +-300 FAP units. */
+            const unsigned gaps = states > count + 1 ? states - count - 1 : 1;
             const int mean = q < count ? position_of_steps(shape_steps(q, 0, c))
-                                       : -4800 + (int)(9600u * (q - count) / (states > count + 1 ? states - count - 1 : 1));
+                                       : -4800 + (int)(9600u * (q - count) / gaps);
             emission->mean = (int16_t)mean;
             emission->gain = gain_of(240.0); /* 15 FAP units; the nearest state is the likeliest */
             emission->initial = (uint8_t)(60 + q % 5);

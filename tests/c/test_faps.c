@@ -29,7 +29,7 @@ static void expanded_numbers_ascend(void **state)
     assert_int_equal(i, LABIAL_FAPS_EXPANDED);
 }
 
-/* Value of one FAP in a frame whose FAP n is `1000 + n`, inner lips as the outer ones ten by ten (4 as 51 .. 13 as 60). */
+/* Value of one FAP in a frame whose FAP n is `1000 + n`, inner lips as the outer ones (4 as 51 .. 13 as 60). */
 static int wanted(unsigned fap)
 {
     return 1000 + (int)(fap >= 4 && fap <= 13 ? fap - 4 + 51 : fap);

@@ -36,7 +36,8 @@
 
 static const int32_t corners[] = {0,      1,       -1,        2,          -2,         3,         255,       -256,
                                   32767,  32768,   -32768,    -32769,     65535,      65536,     -65536,    -65537,
-                                  98304,  1 << 20, 0x7fff8000, 0x7fffffff, -0x7fffffff, INT32_MIN, INT32_MIN + 1, 0x55555555};
+                                  98304,  1 << 20, 0x7fff8000, 0x7fffffff, -0x7fffffff, INT32_MIN, INT32_MIN + 1,
+                                  0x55555555};
 
 #define CORNERS (sizeof corners / sizeof corners[0])
 

@@ -74,7 +74,7 @@ static void optional_tables_may_be_null(void **state)
     (void)state;
     ACCEPTED(const uint8_t *, f.model.contexts, NULL);
     ACCEPTED(const int8_t *, f.model.slopes, NULL);
-    f.model.kernel_taps = 0;
+    f.model.kernel_taps = f.model.kernel_behind = 0;
     ACCEPTED(const int8_t *, f.model.kernels, NULL);
     f.model.floor_count = 0;
     f.phonemes[FIXTURE_P].floor = f.phonemes[FIXTURE_O].floor = 0;
@@ -345,6 +345,10 @@ static void refuses_kernels_beyond_their_reach(void **state)
     ACCEPTED(uint8_t, f.model.kernel_taps, LABIAL_KERNEL_TAPS_MAX);
     REFUSED(uint8_t, f.model.kernel_taps, LABIAL_KERNEL_TAPS_MAX + 1);
     REFUSED(uint8_t, f.model.kernel_stride, 255);
+    f.model.kernel_taps = 0;
+    REFUSED(uint8_t, f.model.kernel_stride, 1); /* taps before the frame, though there are none */
+    f.model.kernel_behind = 0;
+    ACCEPTED(uint8_t, f.model.kernel_stride, 255);
 }
 
 /* Would catch an index or a product that is too narrow for the largest model the limits allow. */
@@ -367,7 +371,7 @@ static void accepts_the_largest_counts(void **state)
     f.model.shapes = shapes;
     f.model.contexts = NULL;
     f.model.slopes = NULL;
-    f.model.kernel_taps = 0;
+    f.model.kernel_taps = f.model.kernel_behind = 0;
     f.model.kernels = NULL;
     f.model.floor_count = 0;
     f.model.floors = NULL;

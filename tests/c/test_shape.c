@@ -197,8 +197,8 @@ static void extremes_stay_within_the_range(void **state)
     }
 }
 
-/* Shape plus, for every tap i, the curve of the phoneme at (i - behind) * stride, and not below the floor of the frame's
- * own phoneme: would catch taps in the wrong order, a wrong row of either table, a missing limit. */
+/* Shape plus, for every tap i, the curve of the phoneme at (i - behind) * stride, and not below the floor of the
+ * frame's own phoneme: would catch taps in the wrong order, a wrong row of either table, a missing limit. */
 static void targets_are_shapes_kernels_and_floors(void **state)
 {
     static int8_t kernels[FIXTURE_SPEECH_COUNT * LABIAL_KERNEL_TAPS_MAX * LABIAL_CHANNELS];

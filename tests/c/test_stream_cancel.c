@@ -1,5 +1,5 @@
 /*
- * test_stream_cancel.c - cancelling eases to the neutral face; a stream that is done or cancelled can be taken up again.
+ * test_stream_cancel.c - cancelling eases to the neutral face; a stream that is over goes on after a restart.
  */
 #include <stdarg.h>
 #include <stddef.h>

@@ -251,7 +251,7 @@ static void a_failed_init_makes_the_stream_unusable(void **state)
     free(stream);
 }
 
-/* Would catch a formula that differs between the macro and the function; the tests' workspaces are exactly this large. */
+/* Would catch a formula that differs between macro and function; the tests' workspaces are exactly this large. */
 static void workspace_sizes_agree(void **state)
 {
     static uint32_t constant[LABIAL_WORKSPACE_SIZE(FIXTURE_SPEECH_STATES, 1) / 4];
@@ -272,8 +272,8 @@ static void workspace_sizes_agree(void **state)
     assert_int_equal(labial_workspace_size(NULL), 0);
 }
 
-/* Would catch writes beside the workspace where no sanitizer looks, on a target for instance; also when the workspace is
- * larger than need be, where parts may be counted from its end, or of an odd size; at every stride. */
+/* Would catch writes beside the workspace where no sanitizer looks, on a target for instance; also when the workspace
+ * is larger than need be, where parts may be counted from its end, or of an odd size; at every stride. */
 static void memory_beside_the_workspace_is_untouched(void **state)
 {
     enum { GUARD = 64, EXTRA = 9 };

@@ -109,7 +109,7 @@ static void every_prefix_is_exact(void **state)
     plain.model.frames_per_second = FIXTURE_RATE;
 }
 
-/* Would catch 32-bit products: a queue full of hours is 900,000 frames times the queue, and its milliseconds still fit. */
+/* Would catch 32-bit products: a queue full of hours is 900,000 frames times the queue; its milliseconds still fit. */
 static void a_queue_full_of_hours_is_counted_exactly(void **state)
 {
     fixture_host_t host;

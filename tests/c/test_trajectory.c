@@ -1,7 +1,7 @@
 /*
  * test_trajectory.c - equation 3 in integers, against a dense solution in doubles of the same weights and means.
  *
- * The oracle writes W row by row as in the paper and multiplies W' U^-1 W out; nothing of it is pentadiagonal by design.
+ * The oracle writes W row by row as in the paper and multiplies W' U^-1 W out; none of it knows of diagonals.
  */
 #include <stdarg.h>
 #include <stddef.h>

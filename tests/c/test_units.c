@@ -234,7 +234,7 @@ static void models_run_on_into_each_other(void **state)
     expect(0, 10 + LABIAL_OVERLAP, 0, LABIAL_OVERLAP);
     expect(10, 10, LABIAL_OVERLAP, 0);
     expect(0, 0, 0, 0);
-    begin(&plain.model); /* a laugh shorter than the cross-fade: both fades are as long as it is, but no more than half */
+    begin(&plain.model); /* a laugh shorter than the cross-fade: both fades are as long as it is, but half at most */
     push(FIXTURE_S, 5);
     assert_int_equal(labial_use(&stream, &laugh.model), LABIAL_OK);
     push(FIXTURE_FRICATIVE, 3);

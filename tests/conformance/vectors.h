@@ -13,7 +13,7 @@ enum { CONFORMANCE_SPEECH, CONFORMANCE_LAUGHTER, CONFORMANCE_MODELS };
 typedef struct {
     uint8_t kind;
     uint8_t model;         /* push: CONFORMANCE_SPEECH or CONFORMANCE_LAUGHTER */
-    uint16_t value;        /* push: the phoneme; cancel: how many frames come before it; again: how many of the easing */
+    uint16_t value;        /* push: the phoneme; cancel: the frames that come before it; again: those of the easing */
     uint32_t milliseconds; /* push, cancel, again */
 } conformance_step_t;
 

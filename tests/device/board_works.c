@@ -53,7 +53,8 @@ static void check_counter(void)
     expect(round >= 2 && round <= 6, "a round of the loop takes two to six instructions");
     expect(many == one + 100000u * round, "100,000 more rounds take exactly as many times what one takes");
     expect(count_loop(100001) == many, "the same loop counts the same again");
-    expect(count_loop(BOARD_COUNT_MAX / round) / round >= BOARD_COUNT_MAX / round, "the longest stretch can be counted");
+    expect(count_loop(BOARD_COUNT_MAX / round) / round >= BOARD_COUNT_MAX / round,
+           "the longest stretch can be counted");
     long_stretch = count_loop(8000001);
     expect(long_stretch == BOARD_COUNT_OVERFLOW || long_stretch == one + 8000000u * round,
            "a longer stretch is counted or said to be too long");

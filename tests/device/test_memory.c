@@ -69,7 +69,7 @@ static void unfit_workspaces_are_refused(void)
     TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_init(stream, &speech_en, workspace, size, ignore, NULL));
 }
 
-/* Would catch tables that were damaged on their way to flash, and structures laid out otherwise than they were written. */
+/* Would catch tables that were damaged on their way to flash, and structures with another layout. */
 static void models_are_sound(void)
 {
     TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_model_check(&speech_en));

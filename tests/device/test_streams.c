@@ -1,5 +1,5 @@
 /*
- * test_streams.c - the conformance streams of tests/conformance: the frames are those of every other target, bit for bit.
+ * test_streams.c - the conformance streams of tests/conformance: the same frames as on every target, bit for bit.
  */
 #include "device.h"
 

@@ -1,6 +1,6 @@
 /*
- * test_ticks.c - a tick does a bounded share of the work, counted in steps of labial_work() rather than in time, so that
- * the verdict is the same on every board.
+ * test_ticks.c - a tick does a bounded share of the work, counted in steps of labial_work() rather than in time, so
+ * that the verdict is the same on every board.
  */
 #include "device.h"
 

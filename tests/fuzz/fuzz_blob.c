@@ -11,15 +11,8 @@
 #include <string.h>
 
 #include "fixture.h"
+#include "fuzz.h"
 #include "labial/blob.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define REQUIRE(condition) \
-    do {                   \
-        if (!(condition))  \
-            abort();       \
-    } while (0)
 
 #define ROOM 32768
 

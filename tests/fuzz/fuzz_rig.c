@@ -1,21 +1,14 @@
 /*
- * fuzz_rig.c - any bytes as a rig, FAPs and last values. No table may make labial_rig_apply() write elsewhere or behave in
- * an undefined way; with one that labial_rig_check() accepts, every value keeps its limits and its slew.
+ * fuzz_rig.c - any bytes as a rig, FAPs and last values. No table may make labial_rig_apply() write elsewhere or behave
+ * in an undefined way; with one that labial_rig_check() accepts, every value keeps its limits and its slew.
  */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "fuzz.h"
 #include "labial/rig.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define REQUIRE(condition) \
-    do {                   \
-        if (!(condition))  \
-            abort();       \
-    } while (0)
 
 #define OUTPUTS 4
 

@@ -1,10 +1,10 @@
 /*
  * fuzz_stream.c - any sequence of calls, right and wrong ones: libFuzzer's bytes choose them.
  *
- * The structure and the workspace lie on the heap, exactly as large as they must be, so that AddressSanitizer sees every
- * access beside them. Beyond that: results are those the header lists, frames are numbered without a gap, the callback
- * comes once per LABIAL_OK, errors change nothing that can be asked for, and a stream that ends lasts exactly as long
- * as its phonemes.
+ * The structure and the workspace lie on the heap, exactly as large as they must be, so that AddressSanitizer sees
+ * every access beside them. Beyond that: results are those the header lists, frames are numbered without a gap, the
+ * callback comes once per LABIAL_OK, errors change nothing that can be asked for, and a stream that ends lasts exactly
+ * as long as its phonemes.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -12,14 +12,7 @@
 #include <string.h>
 
 #include "fixture.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define REQUIRE(condition) \
-    do {                   \
-        if (!(condition))  \
-            abort();       \
-    } while (0)
+#include "fuzz.h"
 
 static fixture_model_t speech, laugh, plain, slow, other_rate;
 

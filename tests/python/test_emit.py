@@ -10,6 +10,8 @@ import pytest
 
 from labial import emit
 from labial.errors import LabialError, ModelError
+from labial.faps import CHANNELS
+from labial.model import load
 from labial.native import NativeModel, compiler, library_root
 from labial.quantise import quantise
 from labial.report import workspace_bytes
@@ -35,6 +37,14 @@ def test_same_model_same_bytes(tmp_path: Path) -> None:
         emit.write(quantise(random_model(1), "some_model"), tmp_path / folder, binary=True)
     for path in sorted((tmp_path / "a").iterdir()):
         assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
+
+
+@pytest.mark.parametrize("name", ["speech_en", "laughter_synthetic"])
+def test_bundled_tables_are_those_of_the_trained_models(tmp_path: Path, name: str) -> None:
+    """Catches a model that was trained anew and not exported, and an exporter that changed under the tables."""
+    root = library_root()
+    for path in emit.write(quantise(load(root / "export" / "models" / f"{name}.npz"), name), tmp_path):
+        assert path.read_bytes() == (root / "lib" / "models" / path.name).read_bytes(), path.name
 
 
 @pytest.mark.parametrize(
@@ -124,21 +134,33 @@ int main(int argc, char **argv)
 
 
 def test_sizes_that_are_printed_are_the_librarys(tmp_path: Path) -> None:
-    """The report counts in Python what the C compiler lays out."""
+    """The report counts in Python what the C compiler lays out; of a descriptor, what it is with 32-bit pointers."""
     model = quantise(random_model(4), "some_model")
     emit.write(model, tmp_path)
     (tmp_path / "main.c").write_text("""
+#include <stddef.h>
 #include <stdio.h>
 #include "some_model.h"
+#define POINTERS(type, first) (unsigned)((sizeof(type) - offsetof(type, first)) / sizeof(void *))
 int main(void)
 {
-    printf("%u %u %u %u", (unsigned)SOME_MODEL_WORKSPACE_SIZE, (unsigned)labial_workspace_size(&some_model),
-           (unsigned)(sizeof(labial_emission_t) + sizeof(labial_state_t)), (unsigned)sizeof(labial_phoneme_t));
+    printf("%u %u %u %u %u ", (unsigned)SOME_MODEL_WORKSPACE_SIZE, (unsigned)labial_workspace_size(&some_model),
+           (unsigned)(sizeof(labial_emission_t) + sizeof(labial_state_t)), (unsigned)sizeof(labial_phoneme_t),
+           (unsigned)sizeof(labial_component_t));
+    printf("%u %u %u %u", (unsigned)offsetof(labial_model_t, pair_count) + 2, POINTERS(labial_model_t, phonemes),
+           (unsigned)offsetof(labial_channel_t, pair_scale) + 2, POINTERS(labial_channel_t, emissions));
     return 0;
 }
 """)
     done = subprocess.run([str(build(tmp_path, "main.c", "some_model.c"))], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == [str(workspace_bytes(12, 2)), str(workspace_bytes(12, 2)), "16", "6"]
+    *sizes, head, pointers, channel_head, channel_pointers = map(int, done.stdout.split())
+    assert sizes == [workspace_bytes(12, 2), workspace_bytes(12, 2), 16, 6, 6]
+
+    def on_32_bits(head: int, pointers: int) -> int:
+        return (head + 3) // 4 * 4 + 4 * pointers
+
+    descriptors = CHANNELS * on_32_bits(channel_head, channel_pointers) + on_32_bits(head, pointers)
+    assert emit.table_bytes(model)["descriptors"] == descriptors
 
 
 def test_compiler_errors_are_reported(tmp_path: Path) -> None:

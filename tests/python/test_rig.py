@@ -194,6 +194,7 @@ def test_without_matplotlib_the_way_out_is_named(
 ) -> None:
     """The tables need no drawing."""
     real = builtins.__import__
+    monkeypatch.delitem(sys.modules, "labial.see.drawing", raising=False)  # which other tests may have imported
 
     def refuse(name: str, *rest: object, **named: object) -> object:
         if name.split(".")[0] == "matplotlib":
@@ -208,6 +209,8 @@ def test_without_matplotlib_the_way_out_is_named(
 
 GAIN = JAW.replace("full = 1900", "gain = 1\nminimum = 1000\nmaximum = 2000")
 PLAIN = 'unit = "plain"\n'
+#: Python refuses whole numbers of thousands of digits since its releases of September 2022.
+TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
 
 
 @pytest.mark.parametrize(
@@ -251,6 +254,7 @@ PLAIN = 'unit = "plain"\n'
         (JAW.replace("1400", "[]"), "output.jaw.neutral: [] is not a number"),
         (JAW.replace("1400", "inf"), "output.jaw.neutral: inf is not a finite number"),
         (JAW.replace("1400", "9" * 400), "output.jaw.neutral: inf is not a finite number"),
+        (JAW.replace("1400", "9" * 5000), "output.jaw.neutral: inf" if TAKES_ANY_NUMBER else ": not TOML: "),
         (JAW.replace("1400", "150"), "output.jaw.neutral: 150 is not a servo's pulse, 400 .. 2600 microseconds"),
         (JAW.replace("1900", "19000"), "output.jaw.maximum: 19000 is not a servo's pulse"),
         (JAW.replace("1900", "1400"), "output.jaw.full: is the same as neutral"),
@@ -294,7 +298,7 @@ def test_what_is_no_text_is_refused(
     """Binary files and nesting without end."""
     (tmp_path / "face.toml").write_bytes(content)
     assert main(["rig", str(tmp_path / "face.toml"), "-o", str(tmp_path), "--no-figure"]) == 1
-    assert f"face.toml: {message}" in capsys.readouterr().err or message == "not TOML"
+    assert re.search(rf"face\.toml:(\d+:)? {message}", capsys.readouterr().err)
 
 
 def test_names_that_c_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -91,6 +91,7 @@ def test_fap_files_hold_the_same_motion(tmp_path: Path, entries: int) -> None:
     (fap([3], [[1]]).replace("0 0", "0 2", 1), "2: expected a mask"),
     (fap([3], [[1]], entries=60), "2: expected a mask"),
     (fap([3], [[1]]).replace("0 1\n", "0 x\n"), "3: not a whole number"),
+    (fap([3], [[10**400]]), "3: a value is beyond"),
 ])  # fmt: skip
 def test_malformed_fap_names_the_line(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "a.fap"
@@ -110,6 +111,15 @@ def test_times_make_an_even_grid() -> None:
     rate, filled = even(times, np.outer(times, np.ones(13)))
     assert rate == pytest.approx(50) and np.allclose(filled[:, 0], np.arange(51) / 50)
     assert even(np.array([3.0]), np.zeros((1, 13)))[0] == 25
+
+
+def test_times_that_are_no_grid_are_refused(given: Path, capsys) -> None:
+    """Catches two frames a nanosecond apart that ask for more frames in between than there is memory for."""
+    lines = frames(4).splitlines()
+    lines[2:] = [f"{time},{line.split(',', 1)[1]}" for time, line in zip(("1e-9", "2e-9", "1000"), lines[2:])]
+    (given / "a.csv").write_text("\n".join(lines) + "\n")
+    assert main(["page", str(given / "a.csv"), "-o", str(given / "a.html")]) == 1
+    assert "a: its times are too uneven: 4 frames" in capsys.readouterr().err and not (given / "a.html").exists()
 
 
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from labial.corpus.timings import (
@@ -112,7 +114,8 @@ def test_lab_with_three_to_five_columns(tmp_path):
     ("0 0.1\n", 1, "columns"), ("0 .1 A\n.1 .2 B .15 w x\n", 2, "columns"), ("0 .1 A\n.1 x B\n", 2, "finite"),
     ("0 nan A\n", 1, "finite"), ("0 inf A\n", 1, "finite"), ("0 .1 A\n.2 .15 B\n", 2, "before its start"),
     ("0 .2 A\n.1 .3 B\n", 2, "before the end"), ("0 .1 A .3\n", 1, "apex"), ("0.0 3700000 sil\n", 1, "seconds"),
-    ("0 .1 A -\n", 1, "apex"), ("\n\n", None, "no segments"),
+    ("0 .1 A -\n", 1, "apex"), ("\n\n", None, "no segments"), ("0 \u00b2 A\n", 1, "finite"),
+    (f"0 {'9' * 400} A\n", 1, "finite"), (f"0 {'9' * 20} A\n", 1, "more than a day"),
 ])  # fmt: skip
 def test_malformed_lab_names_the_line(tmp_path, text, line, words):
     """Catches a bad line that is skipped, or reported without its place."""
@@ -127,6 +130,7 @@ def test_phseg_frames_are_inclusive_and_tile(tmp_path):
 
 @pytest.mark.parametrize("old, new, line", [
     ("SFrm", "Start", 1), ("   12 ", "   1x ", 3), ("   12    19", "   12    10", 3), ("   12 ", "   10 ", 3),
+    ("   12 ", "   \u00b2 ", 3), ("   12    19", f"   12  {'9' * 400}", 3),
     ("-99 HH SIL AY b", "", 3), ("    0    11", "Total score: 3\n 0 11", 2),
 ])  # fmt: skip
 def test_malformed_phseg_names_the_line(tmp_path, old, new, line):
@@ -162,6 +166,8 @@ def test_textgrid_forms_and_encodings(tmp_path, text, encoding):
 
 @pytest.mark.parametrize("text, line, words", [
     ("", 1, "TextGrid"), ("hello", 1, "TextGrid"), (LONG[:-30], None, "well-formed"),
+    (LONG.replace("xmax = 1\n", "xmax = -1..2\n", 1), None, "well-formed"),
+    (LONG.replace("size = 3", f"size = {'9' * 5000}"), None, "should have"),
     (LONG.replace("xmin = 0.25", "xmin = -0.25"), 30, "negative"), (LONG.replace("size = 3", "size = 4"), None, "3"),
     (LONG.replace("xmax = 0.25", "xmax = 0.5"), None, "overlap"), (SHORT[:-11], None, "1 could be read"),
     (SHORT.replace('"B"', "B"), None, ""), (LONG.replace("IntervalTier", "TextTier"), None, ""),
@@ -170,6 +176,12 @@ def test_textgrid_forms_and_encodings(tmp_path, text, encoding):
 def test_malformed_textgrid_is_a_data_error(tmp_path, text, line, words):
     """Catches what the TextGrid library lets pass: lost signs, truncated short files, counts that do not hold."""
     fails(read_textgrid, put(tmp_path, "a.TextGrid", text), line, words)
+
+
+def test_textgrid_without_its_reader_names_the_package(tmp_path, monkeypatch):
+    """Catches a traceback where the exporter was installed with numpy alone."""
+    monkeypatch.setitem(sys.modules, "praatio", None)
+    fails(read_timings, put(tmp_path, "a.TextGrid", LONG), None, "labial[train]")
 
 
 @pytest.mark.parametrize("name, text, count", [

@@ -10,6 +10,7 @@ from typing import Dict, List, Tuple, Union
 import numpy as np
 
 from labial.corpus.episode import Episode
+from labial.corpus.lines import read_lines, table_rows
 from labial.corpus.timings import phoneme_segments, read_timings
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_COLUMNS
@@ -25,21 +26,11 @@ SLACK = 1.0
 
 def read_frames(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     """Reads a frames file: (T,) times in seconds, strictly increasing, and (T, 13) FAPs, both float64."""
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeError) as error:
-        raise DataError(path, None, f"cannot be read: {error}") from None
+    lines = read_lines(path)
     if not lines or [name.strip() for name in lines[0].split(",")] != HEADER.split(","):
         raise DataError(path, 1, f"the header is not {HEADER!r}")
     rows: List[List[float]] = []
-    for line, text in enumerate(lines[1:], 2):
-        if not text.strip():
-            if any(rest.strip() for rest in lines[line:]):
-                raise DataError(path, line, "empty line")
-            break
-        fields = text.split(",")
-        if len(fields) != CHANNELS + 1:
-            raise DataError(path, line, f"{len(fields)} columns, not {CHANNELS + 1}")
+    for line, fields in table_rows(path, lines, CHANNELS + 1):
         try:
             row = [float(field) for field in fields]
         except ValueError as error:

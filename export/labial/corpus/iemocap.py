@@ -27,6 +27,7 @@ import numpy as np
 
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span
+from labial.corpus.lines import read_lines
 from labial.corpus.pose import align_head
 from labial.corpus.timings import phoneme_segments, read_phseg
 from labial.errors import DataError
@@ -81,10 +82,7 @@ class _Utterance:
 def read_markers(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     """Reads a motion file: (T,) times in seconds from its first frame, and (T, len(MOUTH + NOSTRILS + HEAD), 3)
     positions of those markers, NaN where missing."""
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeError) as error:
-        raise DataError(path, None, f"cannot be read: {error}") from None
+    lines = read_lines(path)
     names = lines[0].split() if lines else []
     if names[:2] != ["Frame#", "Time"]:
         raise DataError(path, 1, "the header does not begin with 'Frame# Time'")

@@ -72,7 +72,7 @@ def read_htk(path: PathLike) -> List[SourceSegment]:
     for line, fields in _rows(path):
         if len(fields) < 3:
             raise DataError(path, line, f"expected 'start end label', found {len(fields)} columns")
-        if not (fields[0].isdigit() and fields[1].isdigit()):
+        if not (_is_whole(fields[0]) and _is_whole(fields[1])):
             raise DataError(path, line, f"times {fields[0]!r} and {fields[1]!r} are not whole numbers of 100 ns")
         start, end = int(fields[0]) / _HTK_RATE, int(fields[1]) / _HTK_RATE
         segments.append(SourceSegment(start, end, _centre(fields[2]), line=line))
@@ -112,7 +112,7 @@ def read_phseg(path: PathLike) -> List[SourceSegment]:
             break
         if len(fields) < 4:
             raise DataError(path, line, f"expected 'SFrm EFrm SegAScr Phone', found {len(fields)} columns")
-        if not (fields[0].isdigit() and fields[1].isdigit()):
+        if not (_is_whole(fields[0]) and _is_whole(fields[1])):
             raise DataError(path, line, f"frames {fields[0]!r} and {fields[1]!r} are not whole numbers")
         first, last = int(fields[0]), int(fields[1])
         if last < first:
@@ -176,9 +176,12 @@ def read_textgrid(path: PathLike, tier: Optional[str] = None) -> List[SourceSegm
 
 def read_textgrid_tiers(path: PathLike) -> Dict[str, List[SourceSegment]]:
     """Reads all interval tiers of a TextGrid, in order. A second tier of the same name is called "name_2"."""
-    from praatio import textgrid  # only corpora need it, programs that load models do not
-    from praatio.data_classes.interval_tier import IntervalTier
-    from praatio.utilities.errors import PraatioException
+    try:  # whoever has no TextGrids needs no reader of them
+        from praatio import textgrid
+        from praatio.data_classes.interval_tier import IntervalTier
+        from praatio.utilities.errors import PraatioException
+    except ModuleNotFoundError as error:
+        raise DataError(path, None, f"TextGrids need the package {error.name}: install labial[train]") from None
 
     text = _text(path, ("utf-8-sig", "utf-16"))
     if "ooTextFile" not in text[:200] or "TextGrid" not in text[:200]:
@@ -192,7 +195,7 @@ def read_textgrid_tiers(path: PathLike) -> Dict[str, List[SourceSegment]]:
     declared = _TIER_SIZE.findall(text)
     interval_tiers = [item for item in grid.tiers if isinstance(item, IntervalTier)]
     found = [len(item.entries) for item in interval_tiers]
-    if [int(count) for count in declared] != found:
+    if [count.lstrip("0") or "0" for count in declared] != list(map(str, found)):  # a count may have any length
         raise DataError(path, None, f"interval tiers should have {', '.join(declared) or 'no'} intervals, "
                         f"but {', '.join(map(str, found)) or 'none'} could be read")
     result = {}
@@ -263,6 +266,9 @@ _READERS: Dict[str, Callable[[PathLike], List[SourceSegment]]] = {
     ".realised_durations": read_mary,
 }  # fmt: skip
 
+#: Suffixes by which formats are told, in small letters.
+SUFFIXES = tuple(_READERS)
+
 
 def _text(path: PathLike, encodings: Sequence[str] = ("utf-8-sig",)) -> str:
     try:
@@ -287,7 +293,7 @@ def _rows(path: PathLike, comment: str = "") -> List[Tuple[int, List[str]]]:
 
 
 def _is_htk(fields: Sequence[str]) -> bool:
-    return len(fields) >= 3 and fields[0].isdigit() and fields[1].isdigit() and int(fields[1]) > _LONGEST_PHONEME
+    return len(fields) >= 3 and all(map(_is_whole, fields[:2])) and int(fields[1]) > _LONGEST_PHONEME
 
 
 def _centre(label: str) -> str:
@@ -298,6 +304,11 @@ def _centre(label: str) -> str:
     if 0 <= begin < len(label) - 1:
         label = label[begin + 1 :]
     return label[0] + label[1:].split("+")[0]
+
+
+def _is_whole(text: str) -> bool:
+    """Whether `text` is a whole number, of at most 18 digits: times of a file are far from that."""
+    return text.isdecimal() and len(text) <= 18
 
 
 def _is_number(text: str) -> bool:
@@ -317,7 +328,7 @@ def _refuse_signs(path: PathLike, text: str) -> None:
     """Times below zero would lose their sign in the library (it allows for a start of -0)."""
     for line, content in enumerate(text.splitlines(), 1):
         match = re.fullmatch(r"\s*(?:(?:xmin|xmax|number)\s*=\s*)?(-[\d.]+)\s*", content)
-        if match and float(match.group(1)) != 0:
+        if match and _is_number(match.group(1)) and float(match.group(1)) != 0:
             raise DataError(path, line, f"the time {match.group(1)} is negative")
 
 

@@ -24,6 +24,7 @@ from typing import Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
+from labial.corpus.lines import read_lines, table_rows
 from labial.errors import DataError, LabialError
 
 PathLike = Union[str, os.PathLike]
@@ -58,11 +59,6 @@ class Landmarks:
     times: np.ndarray  #: (T,) seconds, strictly increasing
     points: np.ndarray  #: (T, len(USED), 2 or 3), one unit for all axes; all NaN in a frame that lacks any of them
     pucker: Optional[np.ndarray]  #: (T,) the tracker's score, 0 .. 1; NaN in a frame without a face
-
-    @property
-    def seen(self) -> np.ndarray:
-        """(T,) bool: the frames that have a face."""
-        return np.isfinite(self.points[:, 0, 0])
 
 
 def parse_size(text: str) -> Tuple[int, int]:
@@ -206,10 +202,7 @@ def _numbers(path: PathLike, name: str, array: np.ndarray) -> np.ndarray:
 
 
 def _read_csv(path: PathLike) -> Tuple[Optional[np.ndarray], np.ndarray, Optional[np.ndarray]]:
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeError) as error:
-        raise DataError(path, None, f"cannot be read: {error}") from None
+    lines = read_lines(path)
     names = [name.strip() for name in lines[0].split(",")] if lines else []
     if len(set(names)) != len(names):
         raise DataError(path, 1, "two columns have the same name")
@@ -223,14 +216,7 @@ def _read_csv(path: PathLike) -> Tuple[Optional[np.ndarray], np.ndarray, Optiona
     rows: List[List[float]] = []
     times: List[float] = []
     scores: List[float] = []
-    for line, text in enumerate(lines[1:], 2):
-        if not text.strip():
-            if any(rest.strip() for rest in lines[line:]):
-                raise DataError(path, line, "empty line")
-            break
-        fields = text.split(",")
-        if len(fields) != len(names):
-            raise DataError(path, line, f"{len(fields)} columns, not {len(names)}")
+    for line, fields in table_rows(path, lines, len(names)):
         rows.append([_field(path, line, fields[column]) for column in columns])
         if extra[0] is not None:
             times.append(_field(path, line, fields[extra[0]]))

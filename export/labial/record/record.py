@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span
-from labial.corpus.timings import phoneme_segments, read_timings
+from labial.corpus.timings import SUFFIXES, phoneme_segments, read_timings
 from labial.errors import DataError, LabialError
 from labial.frames import even, write_csv
 from labial.phonesets import PhoneSet
@@ -22,7 +22,6 @@ from labial.record.mouth import Recording, faps, fill
 PathLike = Union[str, os.PathLike]
 
 _LANDMARKS = (".npz", ".npy", ".csv")
-_TIMINGS = (".lab", ".textgrid", ".phseg", ".pho", ".psdur")
 #: Slower recordings lose closures: half of GRID's /b/ last 70 ms or less, and the lips touch for a part of that.
 _SLOW = 24.0
 
@@ -102,9 +101,10 @@ def _read(path: Path, phone_set: PhoneSet, given: Given) -> Recording:
 def _timings(path: Path) -> Path:
     """The timings beside a landmark file."""
     found = [file for file in sorted(path.parent.iterdir())
-             if file.stem == path.stem and file.suffix.lower() in _TIMINGS and file.is_file()]
+             if file.stem == path.stem and file.suffix.lower() in SUFFIXES and file.is_file()]
     if not found:
-        raise DataError(path, None, f"no phoneme timings beside it: {path.stem}.lab, .TextGrid, .phseg, .pho or .psdur")
+        others = ", ".join(SUFFIXES)
+        raise DataError(path, None, f"no phoneme timings beside it: {path.stem}.lab or another of {others}")
     if len(found) > 1:
         raise DataError(found[1], None, f"there is also {found[0].name}; which of them to use is not clear")
     return found[0]

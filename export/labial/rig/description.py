@@ -97,7 +97,7 @@ def read(path: Union[str, os.PathLike], name: str) -> Rig:
         content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except UnicodeDecodeError as error:
         raise DataError(where, None, f"not UTF-8 text: byte {error.start}") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # TOMLDecodeError, or a number of more digits than Python takes
         found = re.fullmatch(r"(.*?)(?: \(at line (\d+), column (\d+)\))?", str(error), re.DOTALL)
         line = int(found[2]) if found and found[2] else None
         column = f" (column {found[3]})" if found and found[3] else ""

@@ -14,32 +14,28 @@ from labial.rig.table import convert, expected
 
 #: Shares of a pose that are drawn; a quarter beyond it, where limits show.
 _SHARES = np.linspace(0.0, 1.25, 51)
-_COLOURS = ("#1b6ca8", "#c8553d", "#3a7d44", "#8a4fa3")
 
 
 def draw(rig: Rig, path: Union[str, Path]) -> None:
     """Writes the drawing as SVG; the same rig gives the same bytes. Raises LabialError without matplotlib."""
     try:
-        import matplotlib
-    except ModuleNotFoundError:
-        raise LabialError("drawing needs the package matplotlib: install labial[rig], or give --no-figure") from None
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
-    from matplotlib.figure import Figure
+        from labial.see.drawing import COLOURS, STYLE, pyplot, write
+    except ModuleNotFoundError as error:
+        raise LabialError(f"drawing needs the package {error.name}: install labial[rig], or give --no-figure") from None
 
     table = convert(rig)
     columns = min(len(table), 3)
     rows = -(-len(table) // columns)
-    with matplotlib.rc_context({"svg.hashsalt": "labial", "svg.fonttype": "none", "font.size": 9}):
-        figure = Figure(figsize=(3.4 * columns + 0.4, 2.5 * rows + 0.7), layout="constrained")
-        FigureCanvasSVG(figure)
-        every = figure.subplots(rows, columns, squeeze=False, sharex=True)
-        for (pose, faps), colour in zip(POSES.items(), _COLOURS):
+    with pyplot.rc_context(STYLE):
+        figure, every = pyplot.subplots(rows, columns, figsize=(3.4 * columns + 0.4, 2.5 * rows + 0.7), squeeze=False,
+                                        sharex=True, layout="constrained")
+        for (pose, faps), colour in zip(POSES.items(), COLOURS):
             values = expected(rig, table, _SHARES[:, None] * faps)
             for number in range(len(table)):
                 every.flat[number].plot(100 * _SHARES, values[:, number], color=colour, label=pose, linewidth=1.6)
         for axes, whole in zip(every.flat, table):
             for limit in (whole.minimum, whole.maximum):
-                axes.axhline(limit, color="#888888", linewidth=0.8, linestyle="--")
+                axes.axhline(limit, color="0.55", linewidth=0.8, linestyle="--")
             margin = 0.06 * max(whole.maximum - whole.minimum, 1)
             axes.set_ylim(whole.minimum - margin, whole.maximum + margin)
             axes.set_title(whole.name)
@@ -47,9 +43,11 @@ def draw(rig: Rig, path: Union[str, Path]) -> None:
             axes.grid(alpha=0.25)
         for axes in list(every.flat)[len(table):]:
             axes.set_visible(False)
+        for axes in list(every.flat)[max(len(table) - columns, 0) : len(table)]:  # each column's last
+            axes.tick_params(labelbottom=True)
         for axes in every[:, 0]:
             axes.set_ylabel(rig.unit.text.split(" (")[0])
         figure.supxlabel("percent of the pose")
         figure.legend(*every.flat[0].get_legend_handles_labels(), loc="outside upper center", frameon=False,
                       ncols=2 if columns == 1 else len(POSES))
-        figure.savefig(path, format="svg", metadata={"Date": None})
+        write(figure, path)

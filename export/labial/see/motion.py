@@ -11,6 +11,7 @@ from typing import List, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from labial.corpus.folder import read_frames
+from labial.corpus.lines import read_lines
 from labial.corpus.timings import read_timings
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
@@ -22,6 +23,8 @@ PathLike = Union[str, os.PathLike]
 KINDS = ("vowel", "closed", "labiodental", "silence", "other")
 #: FAPs that MPEG-4 defines, each with an entry in the mask of a .fap file.
 _MASK = 68
+#: No value of a .fap file is larger: whole numbers there have 32 bits.
+_LARGEST = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -66,10 +69,7 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     which some programs write, is ignored), and the frame's number with the values of the FAPs whose mask is one. A FAP
     that a frame does not set keeps its value, 0 to begin with.
     """
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeError) as error:
-        raise DataError(path, None, f"cannot be read: {error}") from None
+    lines = read_lines(path)
     rows = [(line, text.split()) for line, text in enumerate(lines, 1) if text.strip()]
     head = rows[0][1] if rows else []
     try:
@@ -96,6 +96,8 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
         if len(numbers) != 1 + len(chosen):
             raise DataError(path, line, f"expected the frame's number and {len(chosen)} values, as the mask says, "
                             f"found {len(numbers)}")
+        if max(map(abs, numbers)) > _LARGEST:
+            raise DataError(path, line, f"a value is beyond {_LARGEST}")
         for number, value in zip(chosen, numbers[1:]):
             if number <= _MASK:
                 held[number] = value

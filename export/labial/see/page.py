@@ -11,7 +11,7 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 
 import numpy as np
 
-from labial.errors import DataError
+from labial.errors import DataError, LabialError
 from labial.faps import FAP_COLUMNS
 from labial.frames import even
 from labial.see.motion import Band, Motion, laughs
@@ -26,9 +26,13 @@ PLACEHOLDER = "@LABIAL_DATA@"
 def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None, title: Optional[str] = None) -> str:
     """The page as text; `title` is the motion's name unless given.
 
-    `audio` is a WAV file whose time 0 is that of the motion's file. Raises DataError, which names it, when it is none.
+    `audio` is a WAV file whose time 0 is that of the motion's file. Raises DataError, which names it, when it is none,
+    and LabialError for a motion whose frames are too uneven in time to be played.
     """
-    fps, frames = even(motion.times, motion.frames)
+    try:
+        fps, frames = even(motion.times, motion.frames)
+    except ValueError as error:
+        raise LabialError(f"{motion.name}: {error}") from None
     start = float(motion.times[0])
     data: Dict[str, Any] = {
         "title": title or motion.name,

@@ -27,7 +27,6 @@ PRIOR_FRAMES = 20.0
 #: the device's weights carry.
 DYNAMIC_RANGE = 2000.0
 
-
 #: Frames that share a state of the decoded path. Targets move slowly enough that more states change nothing.
 SEARCH_STRIDE = 3
 
