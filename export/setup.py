@@ -17,7 +17,7 @@ def _copy_library(target: Path) -> None:
     tree = next((tree for tree in _TREES if (tree / "include" / "labial" / "labial.h").is_file()), None)
     if tree is None:
         raise SystemExit(f"{_HERE.parent}: the C library, include/ and lib/, is not beside the exporter")
-    for pattern in ("include/labial/*.h", "lib/*.c", "lib/*.h"):
+    for pattern in ("LICENSE", "include/labial/*.h", "lib/*.c", "lib/*.h"):
         for path in tree.glob(pattern):
             copy = target / path.relative_to(tree)
             copy.parent.mkdir(parents=True, exist_ok=True)
