@@ -21,12 +21,11 @@ import numpy as np
 
 from labial import emit
 from labial.corpus import read_corpus
-from labial.corpus.episode import Episode
 from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.loss import path_loss
 from labial.model import Model, load
-from labial.phones import Stream, drawn_streams
+from labial.phones import Stream, drawn_streams, stream_of
 from labial.quantise import ExportedModel, quantise
 from labial.reference import units
 from labial.reference.shape import targets
@@ -42,19 +41,12 @@ EPISODES = 60
 UNIT = 1.0
 
 
-def stream_of(episode: Episode, model: Model) -> Stream:
-    """An episode's phonemes as a stream, boundaries rounded to milliseconds."""
-    bounds = [round(1000 * segment.end) for segment in episode.segments]
-    begins = [round(1000 * episode.segments[0].start), *bounds[:-1]]
-    return [(model.phonemes.index(segment.label), end - begin)
-            for segment, begin, end in zip(episode.segments, begins, bounds)]
-
-
 def corpus_streams(path: str, model: Model) -> List[Stream]:
     """The streams of EPISODES episodes of a corpus."""
     episodes = list(read_corpus(path, model.kind))
     chosen = np.unique(np.linspace(0, len(episodes) - 1, min(EPISODES, len(episodes))).astype(int))
-    return [stream_of(episodes[i], model) for i in chosen]
+    parts = [episodes[i].segments for i in chosen]
+    return [stream_of(segments, model, round(1000 * segments[0].start)) for segments in parts]
 
 
 def check_bundled(exported: ExportedModel, root: Path) -> None:

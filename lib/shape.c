@@ -127,11 +127,11 @@ void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL
     int32_t sum[LABIAL_CHANNELS] = { 0 };
     unsigned k, tap;
     const unsigned stride = model->kernel_stride, taps = model->kernel_taps;
-    const uint8_t *label = labels - model->kernel_behind * stride;
+    int lag = -(int)(model->kernel_behind * stride); /* an index, as no pointer may go past the array's end */
     const unsigned floor = model->phonemes[*labels].floor;
 
-    for (tap = 0; tap < taps; tap++, label += stride) {
-        const int8_t *kernel = model->kernels + ((size_t)*label * taps + tap) * LABIAL_CHANNELS;
+    for (tap = 0; tap < taps; tap++, lag += (int)stride) {
+        const int8_t *kernel = model->kernels + ((size_t)labels[lag] * taps + tap) * LABIAL_CHANNELS;
         for (k = 0; k < LABIAL_CHANNELS; k++)
             sum[k] += kernel[k];
     }

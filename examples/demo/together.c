@@ -19,9 +19,7 @@
 /* Milliseconds over which laughter sets in and dies away, and over which it takes the mouth from the words. */
 #define RAMP 240u
 
-#define TALK_SIZE                                                                                           \
-    (SPEECH_EN_WORKSPACE_SIZE > LAUGHTER_SYNTHETIC_WORKSPACE_SIZE ? SPEECH_EN_WORKSPACE_SIZE                \
-                                                                  : LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
+#define TALK_SIZE LABIAL_LARGER(SPEECH_EN_WORKSPACE_SIZE, LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
 
 typedef struct {
     const score_t *score;

@@ -1,5 +1,5 @@
 /*
- * arkit.c - ARKit blendshapes of a sentence and a laugh as CSV, weights from 0 to 1 (examples/faces/arkit.toml).
+ * arkit.c - ARKit blendshapes of a sentence and a laugh as CSV, weights from 0 to 1 (examples/faces/arkit.h).
  *
  *     labial-rig-arkit > blendshapes.csv
  */

@@ -9,9 +9,7 @@
 #define SPEECH 0
 #define LAUGHTER 1
 
-#define WORKSPACE_SIZE                                                                                      \
-    (SPEECH_EN_WORKSPACE_SIZE > LAUGHTER_SYNTHETIC_WORKSPACE_SIZE ? SPEECH_EN_WORKSPACE_SIZE                \
-                                                                  : LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
+#define WORKSPACE_SIZE LABIAL_LARGER(SPEECH_EN_WORKSPACE_SIZE, LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
 
 typedef struct {
     uint8_t model;

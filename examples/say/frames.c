@@ -3,11 +3,12 @@
  */
 #include "frames.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "arkit.h"
+#include "livelink.h"
 
 /* FAPs of MPEG-4, each with an entry in the mask of a fap file. */
 #define FAP_COUNT 68
@@ -28,38 +29,40 @@ static void write_csv_frame(const frames_t *frames, const int16_t faps[LABIAL_CH
 }
 
 /* A weight in thousandths, as a number from 0 to 1. */
-static void write_weight(FILE *out, int weight)
+static void write_weight(FILE *out, int32_t weight)
 {
-    fprintf(out, "%d.%03d", weight / 1000, weight % 1000);
+    fprintf(out, "%" PRId32 ".%03" PRId32, weight / 1000, weight % 1000);
 }
 
-static void write_livelink_frame(const frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void write_livelink_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
     const uint32_t seconds = frames->count / frames->frames_per_second;
-    int weights[ARKIT_SHAPES];
-    arkit_weights(faps, weights);
+    labial_rig_apply(&arkit, faps, frames->weights);
     fprintf(frames->out, "%02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 ".000,%d", seconds / 3600u,
-            seconds / 60u % 60u, seconds % 60u, frames->count % frames->frames_per_second, ARKIT_COLUMNS);
-    for (int c = 0, next = 0; c < ARKIT_COLUMNS; c++) {
-        const int moves = next < ARKIT_SHAPES && arkit_is_column(&arkit_shapes[next], arkit_columns[c]);
+            seconds / 60u % 60u, seconds % 60u, frames->count % frames->frames_per_second, LIVELINK_COLUMNS);
+    for (int i = 0; i < LIVELINK_COLUMNS; i++) {
+        const int output = livelink_columns[i].output;
         putc(',', frames->out);
-        write_weight(frames->out, moves ? weights[next] : 0);
-        next += moves;
+        write_weight(frames->out, output >= 0 ? frames->weights[output] : 0);
     }
     putc('\n', frames->out);
 }
 
-static void write_jsonl_frame(const frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void write_jsonl_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
-    int weights[ARKIT_SHAPES];
-    arkit_weights(faps, weights);
+    const char *before = "},\"arkit\":{";
+    labial_rig_apply(&arkit, faps, frames->weights);
     fprintf(frames->out, "{\"frame\":%" PRIu32 ",\"time\":", frames->count);
     write_time(frames);
     for (int i = 0; i < LABIAL_CHANNELS; i++)
         fprintf(frames->out, "%s\"fap%d\":%d", i == 0 ? ",\"faps\":{" : ",", labial_fap_numbers[i], faps[i]);
-    for (int i = 0; i < ARKIT_SHAPES; i++) {
-        fprintf(frames->out, "%s\"%s\":", i == 0 ? "},\"arkit\":{" : ",", arkit_shapes[i].name);
-        write_weight(frames->out, weights[i]);
+    for (int i = 0; i < LIVELINK_COLUMNS; i++) {
+        const livelink_column_t *column = &livelink_columns[i];
+        if (column->output < 0)
+            continue;
+        fprintf(frames->out, "%s\"%c%s\":", before, tolower((unsigned char)column->name[0]), column->name + 1);
+        write_weight(frames->out, frames->weights[column->output]);
+        before = ",";
     }
     fputs("}}\n", frames->out);
 }
@@ -112,6 +115,7 @@ void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char
     frames->format = format;
     frames->name = name;
     frames->frames_per_second = frames_per_second;
+    labial_rig_rest(&arkit, frames->weights);
     if (format == FRAMES_CSV) {
         fputs("time", out);
         for (int i = 0; i < LABIAL_CHANNELS; i++)
@@ -119,8 +123,8 @@ void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char
         putc('\n', out);
     } else if (format == FRAMES_LIVELINK) {
         fputs("Timecode,BlendShapeCount", out);
-        for (int i = 0; i < ARKIT_COLUMNS; i++)
-            fprintf(out, ",%s", arkit_columns[i]);
+        for (int i = 0; i < LIVELINK_COLUMNS; i++)
+            fprintf(out, ",%s", livelink_columns[i].name);
         putc('\n', out);
     }
 }

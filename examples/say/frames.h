@@ -18,6 +18,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "arkit.h"
 #include "labial/faps.h"
 
 typedef enum { FRAMES_CSV, FRAMES_FAP, FRAMES_LIVELINK, FRAMES_JSONL } frames_format_t;
@@ -30,6 +31,7 @@ typedef struct {
     unsigned frames_per_second;
     uint32_t count;
     int failed;
+    int32_t weights[ARKIT_OUTPUTS]; /* livelink, jsonl: of the latest frame, thousandths */
     int16_t (*kept)[LABIAL_CHANNELS]; /* fap: `count` frames in room for `room`, owned */
     size_t room;
 } frames_t;

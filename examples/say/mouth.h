@@ -13,9 +13,7 @@
 #include "laughter_synthetic.h"
 #include "speech_en.h"
 
-#define MOUTH_WORKSPACE_SIZE                                                                                \
-    (SPEECH_EN_WORKSPACE_SIZE > LAUGHTER_SYNTHETIC_WORKSPACE_SIZE ? SPEECH_EN_WORKSPACE_SIZE                \
-                                                                  : LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
+#define MOUTH_WORKSPACE_SIZE LABIAL_LARGER(SPEECH_EN_WORKSPACE_SIZE, LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
 
 /* Unknown labels that are remembered as named; further ones pass unnamed. */
 #define MOUTH_UNKNOWN_MAX 64

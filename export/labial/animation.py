@@ -1,37 +1,23 @@
 """Frames as animation files: MPEG-4 .fap, Live Link Face CSV, JSON lines. CSV is in labial.frames.
 
-The same formats as examples/say/frames.c writes, and the same blendshapes as examples/say/arkit.c.
+The same formats as examples/say/frames.c writes. How FAPs move ARKit's blendshapes is described in rig/arkit.toml, from
+which ``labial rig`` writes examples/faces/arkit.c for it.
 """
 
 from __future__ import annotations
 
+import functools
 import json
 import re
-from typing import Callable, Dict, TextIO, Tuple
+from pathlib import Path
+from typing import Callable, Dict, List, TextIO, Tuple
 
 import numpy as np
 
 from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.frames import write_csv
-
-#: ARKit's blendshapes that lips and jaw move: weight at rest in thousandths, and FAP number to weight in millionths per
-#: FAP unit. Weights are held to 0 .. 1.
-ARKIT: Dict[str, Tuple[int, Dict[int, int]]] = {
-    "jawOpen": (0, {3: 1250}),
-    "mouthClose": (0, {3: 1250, 51: 1250, 52: 1250}),
-    "mouthFunnel": (-400, {17: 4242, 51: -848, 52: -848, 53: -2121, 54: -2121}),
-    "mouthPucker": (-100, {17: 3929, 51: 393, 52: 393, 53: -1964, 54: -1964}),
-    "mouthSmileLeft": (-150, {3: 1278, 53: 3194, 59: 3194}),
-    "mouthSmileRight": (-150, {3: 1278, 54: 3194, 60: 3194}),
-    "mouthFrownLeft": (0, {3: -1600, 59: -4000}),
-    "mouthFrownRight": (0, {3: -1600, 60: -4000}),
-    "mouthStretchLeft": (0, {53: 4000, 59: -2000}),
-    "mouthStretchRight": (0, {54: 4000, 60: -2000}),
-    "mouthLowerDownLeft": (0, {3: -3000, 57: -3333}),
-    "mouthLowerDownRight": (0, {3: -3000, 58: -3333}),
-    "mouthUpperUpLeft": (0, {55: -5000}),
-    "mouthUpperUpRight": (0, {56: -5000}),
-}
+from labial.rig.description import Rig, read
+from labial.rig.table import TableOutput, convert, expected
 
 #: Columns of a Live Link Face recording: ARKit's 52 blendshapes and 9 rotations.
 LIVE_LINK = """
@@ -49,14 +35,24 @@ LIVE_LINK = """
 _FAPS = 68
 
 
-def arkit(frames: np.ndarray) -> np.ndarray:
-    """(T, 14) weights 0 .. 1 of the blendshapes in `ARKIT`, from (T, 13) frames in FAP units."""
-    matrix, offsets = np.zeros((len(ARKIT), len(FAP_NUMBERS))), np.zeros(len(ARKIT))
-    for row, (offset, weights) in enumerate(ARKIT.values()):
-        offsets[row] = offset / 1e3
-        for fap, weight in weights.items():
-            matrix[row, FAP_NUMBERS.index(fap)] = weight / 1e6
-    return np.clip(np.asarray(frames, dtype=np.float64) @ matrix.T + offsets, 0.0, 1.0)
+@functools.cache
+def _face() -> Tuple[Rig, List[TableOutput]]:
+    """The rig of ARKit's blendshapes, in thousandths, and its table."""
+    rig = read(Path(__file__).with_name("rig") / "arkit.toml", "arkit")
+    return rig, convert(rig)
+
+
+def arkit(frames: np.ndarray) -> Dict[str, np.ndarray]:
+    """(T,) weights 0 .. 1 of each of ARKit's blendshapes that lips and jaw move, in the order of `LIVE_LINK`, from
+    (T, 13) frames in FAP units."""
+    rig, table = _face()
+    weights = expected(rig, table, np.asarray(frames, dtype=np.float64)) / 1000.0
+    found = {output.name: column for output, column in zip(rig.outputs, weights.T)}
+    return {name: found[name] for name in map(_arkit_name, LIVE_LINK) if name in found}
+
+
+def _arkit_name(column: str) -> str:
+    return column[0].lower() + column[1:]
 
 
 def write_fap(out: TextIO, frames: np.ndarray, fps: int, name: str) -> None:
@@ -74,22 +70,25 @@ def write_fap(out: TextIO, frames: np.ndarray, fps: int, name: str) -> None:
 def write_live_link(out: TextIO, frames: np.ndarray, fps: int, name: str = "") -> None:
     """Writes (T, 13) frames as Live Link Face records them: timecode ``HH:MM:SS:FF.000``, 61, then the columns."""
     out.write(",".join(("Timecode", "BlendShapeCount", *LIVE_LINK)) + "\n")
-    shapes = {shape[0].upper() + shape[1:]: index for index, shape in enumerate(ARKIT)}
-    for number, weights in enumerate(arkit(frames)):
+    weights = arkit(frames)
+    still = np.zeros(len(frames))
+    columns = np.stack([weights.get(_arkit_name(column), still) for column in LIVE_LINK], axis=1)
+    for number, row in enumerate(columns):
         seconds, frame = divmod(number, fps)
-        values = [f"{weights[shapes[column]]:.3f}" if column in shapes else "0.000" for column in LIVE_LINK]
+        values = [f"{value:.3f}" for value in row]
         timecode = f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}:{frame:02}.000"
         out.write(",".join((timecode, str(len(LIVE_LINK)), *values)) + "\n")
 
 
 def write_json_lines(out: TextIO, frames: np.ndarray, fps: int, name: str = "") -> None:
     """Writes (T, 13) frames as one JSON object per line: frame, time in seconds, faps, arkit."""
-    for number, (frame, weights) in enumerate(zip(frames, arkit(frames))):
+    weights = arkit(frames)
+    for number, (frame, values) in enumerate(zip(frames, np.stack(list(weights.values()), axis=1))):
         out.write(json.dumps({
             "frame": number,
             "time": round(number / fps, 3),
             "faps": dict(zip(FAP_COLUMNS, np.round(frame, 2).tolist())),
-            "arkit": dict(zip(ARKIT, np.round(weights, 3).tolist())),
+            "arkit": dict(zip(weights, np.round(values, 3).tolist())),
         }, separators=(",", ":")) + "\n")
 
 

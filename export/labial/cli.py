@@ -39,10 +39,10 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument("--fps", type=_positive, default=50, help="frames per second (50)")
     train.add_argument("--codebook", type=_positive, default=50, help="states per channel (50)")
     train.add_argument("--components", type=_positive, default=5, help="mixture components per phoneme (5)")
-    train.add_argument("--look-ahead", type=int, default=120, metavar="MS",
-                       help="how far the kernels reach into what follows, 0 .. 360 ms (120); less is less latency")
-    train.add_argument("--search-stride", type=_positive, default=3, metavar="FRAMES",
-                       help="frames that share a state of the decoded path (3); 1 decodes every frame, as published")
+    train.add_argument("--look-ahead", type=int, metavar="MS", help="--method labial: how far the kernels reach into "
+                       "what follows, 0 .. 360 ms (120); less is less latency")
+    train.add_argument("--search-stride", type=_positive, metavar="FRAMES", help="--method labial: frames that "
+                       "share a state of the decoded path (3); 1 decodes every frame, as --method paper always does")
     train.add_argument("--seed", type=int, default=0)
     train.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, help="processes; the result is the same")
     train.add_argument("--attribution", default="", help="what whoever passes the model on must say; kept in the model")
@@ -148,10 +148,18 @@ def _train(options: argparse.Namespace) -> int:
     from labial.corpus import read_corpus
     from labial.model import save
 
+    own = {}  # what only --method labial has
+    if options.look_ahead is not None:
+        own["look_ahead"] = options.look_ahead / 1000.0
+    if options.search_stride is not None:
+        own["search_stride"] = options.search_stride
+    if own and options.method == "paper":
+        names = " and ".join("--" + name.replace("_", "-") for name in own)
+        warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)
     model = train(read_corpus(options.corpus, options.kind), kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
                   progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution,
-                  look_ahead=options.look_ahead / 1000.0, search_stride=options.search_stride)
+                  **own)
     save(model, options.output)
     print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
           f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")

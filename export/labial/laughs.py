@@ -17,40 +17,43 @@ from statistics import NormalDist
 from typing import Iterator, List, Sequence, Tuple, Union
 
 from labial.corpus import laughter
+from labial.corpus.laughter import PERIOD_LONGEST, PERIOD_SHORTEST, PULSES, SHORTEST, TRAIN_LONGEST, VOWELS
 from labial.phonesets import LAUGHTER
 
 #: Intensity of the heartiest laugh.
 FULL = 256
-#: Shortest duration of a piece, one frame, in milliseconds.
-_SHORTEST = 20
-_PERIOD_SHORTEST, _PERIOD_LONGEST = 140, 280
 #: How much more frequent (of 256, per full range) a kind of pulse or a vowel is at the highest intensity than at the
 #: middle one; a design choice.
 _PULSE_TILT = {"h": -40, "bare": 128, "cackle": 205, "nasal": -230, "stop": 0}
 _VOWEL_TILT = {"a": 128, "e": -50, "o": 40, "ic": -128}
-#: Of 256: shares of what a pause between trains may have, as in the corpus.
-_INHALED, _CLICKED, _BY_NOSE, _GRUNTED, _SILENT, _RESTED = 192, 51, 192, 46, 128, 38
-_ONSETS = {"ne": 64, "click": 38, "grunt": 51, "plosive": 38}
 
-_QUANTILES = [NormalDist().inv_cdf((k + 0.5) / 32) for k in range(32)]
-#: Standard normal deviates in 1/32, and lognormal factors of durations (in 1/128) and of train lengths (in 1/32).
-DEVIATES = [round(32 * z) for z in _QUANTILES]
-STRETCH = [round(128 * math.exp(laughter._SPREAD * z)) for z in _QUANTILES]
-LENGTHS = [round(32 * math.exp(laughter._TRAIN_SPREAD * z)) for z in _QUANTILES]
-PERIOD, PERIOD_SPREAD = round(laughter._PERIOD), round(laughter._PERIOD_SPREAD)
-TRAIN_MEDIAN, TRAIN_LONGEST = round(laughter._TRAIN_MEDIAN), laughter._TRAIN_LONGEST
-MEDIANS = [laughter.MEDIANS.get(label, 0) for label in LAUGHTER.phonemes]
+
+def _of_256(share: float) -> int:
+    return round(256 * share)
 
 
 def _shares(shares: Sequence[float]) -> List[int]:
     """`shares` of 256, the first taking what rounding leaves."""
-    rounded = [round(256 * share) for share in shares]
+    rounded = [_of_256(share) for share in shares]
     rounded[0] += 256 - sum(rounded)
     return rounded
 
 
-PULSES, PULSE_SHARES = laughter._PULSES, _shares(laughter._PULSE_SHARES)
-VOWELS, VOWEL_SHARES = laughter._VOWELS, _shares(laughter._VOWEL_SHARES)
+#: Of 256: how often a kind or a vowel changes within a train, what a laugh begins with, what a pause has.
+_CHANGED = _of_256(laughter.CHANGED)
+_ONSETS = {label: _of_256(share) for label, share in laughter.ONSETS.items()}
+_INHALED, _CLICKED, _BY_NOSE = _of_256(laughter.INHALED), _of_256(laughter.CLICKED), _of_256(laughter.BY_NOSE)
+_GRUNTED, _SILENT, _RESTED = _of_256(laughter.GRUNTED), _of_256(laughter.SILENT), _of_256(laughter.RESTED)
+
+_QUANTILES = [NormalDist().inv_cdf((k + 0.5) / 32) for k in range(32)]
+#: Standard normal deviates in 1/32, and lognormal factors of durations (in 1/128) and of train lengths (in 1/32).
+DEVIATES = [round(32 * z) for z in _QUANTILES]
+STRETCH = [round(128 * math.exp(laughter.SPREAD * z)) for z in _QUANTILES]
+LENGTHS = [round(32 * math.exp(laughter.TRAIN_SPREAD * z)) for z in _QUANTILES]
+PERIOD, PERIOD_SPREAD = round(laughter.PERIOD), round(laughter.PERIOD_SPREAD)
+TRAIN_MEDIAN = round(laughter.TRAIN_MEDIAN)
+MEDIANS = [laughter.MEDIANS.get(label, 0) for label in LAUGHTER.phonemes]
+PULSE_SHARES, VOWEL_SHARES = _shares(laughter.PULSE_SHARES), _shares(laughter.VOWEL_SHARES)
 
 
 class _Laugh:
@@ -91,7 +94,7 @@ class _Laugh:
             value = MEDIANS[LAUGHTER.phonemes.index(label)] * STRETCH[self.draw(32)] >> 7
             if label in VOWELS or label in ("cackle", "nasal"):
                 value = value * (218 + (77 * self.intensity >> 8)) >> 8
-        return max(value, _SHORTEST)
+        return max(value, SHORTEST)
 
     def add(self, label: str, milliseconds: int) -> None:
         self.queue.append((label, milliseconds))
@@ -109,12 +112,12 @@ class _Laugh:
         self.choose_vowel()
 
     def pulse(self, room: int) -> None:
-        if self.chance(38):
+        if self.chance(_CHANGED):
             self.choose_kind()
-        if self.chance(38):
+        if self.chance(_CHANGED):
             self.choose_vowel()
         period = PERIOD + (PERIOD_SPREAD * DEVIATES[self.draw(32)] >> 5)
-        period = min(max(period, _PERIOD_SHORTEST), _PERIOD_LONGEST, room)
+        period = min(max(period, PERIOD_SHORTEST), PERIOD_LONGEST, room)
         kind = PULSES[self.kind]
         note = kind if kind in ("cackle", "nasal") else VOWELS[self.vowel]
         sound = min(self.duration(note), period - 40)
@@ -144,7 +147,7 @@ class _Laugh:
             self.add("silence", self.duration("silence"))
         if self.chance(_RESTED):
             self.add("silence", 450 + self.draw(451))
-        if sum(milliseconds for _, milliseconds in self.queue) + _PERIOD_SHORTEST > room:
+        if sum(milliseconds for _, milliseconds in self.queue) + PERIOD_SHORTEST > room:
             breath = min(self.duration("ne"), room)
             self.queue = [("ne", breath)]
             if breath + PERIOD > room:  # no pulse fits behind it: the laugh ends with air drawn in
@@ -158,7 +161,7 @@ class _Laugh:
         for label, share in _ONSETS.items():
             if place < share:
                 milliseconds = self.duration(label)
-                if milliseconds + 3 * _PERIOD_SHORTEST <= room:
+                if milliseconds + 3 * PERIOD_SHORTEST <= room:
                     self.add(label, milliseconds)
                 return
             place -= share
@@ -166,9 +169,9 @@ class _Laugh:
     def compose(self) -> None:
         """Fills the queue with what comes next."""
         room = self.left - self.tail
-        if room < _SHORTEST:
+        if room < SHORTEST:
             self.add("silence", self.left)
-        elif room < _PERIOD_SHORTEST:
+        elif room < PERIOD_SHORTEST:
             self.add("fricative", room)
         elif self.pulses == 0:
             self.pause(room)
@@ -185,7 +188,7 @@ def pieces(milliseconds: int, intensity: int, seed: int) -> Iterator[Tuple[str, 
         while not laugh.queue:
             laugh.compose()
         label, length = laugh.queue.pop(0)
-        length = laugh.left if laugh.left < length + _SHORTEST else length
+        length = laugh.left if laugh.left < length + SHORTEST else length
         laugh.left -= length
         yield label, length
 
@@ -210,9 +213,9 @@ def table_header() -> str:
 
 """,
         "".join(f"#define {name} {value}\n" for name, value in (
-            ("PERIOD", PERIOD), ("PERIOD_SPREAD", PERIOD_SPREAD), ("PERIOD_SHORTEST", _PERIOD_SHORTEST),
-            ("PERIOD_LONGEST", _PERIOD_LONGEST), ("TRAIN_MEDIAN", TRAIN_MEDIAN), ("TRAIN_LONGEST", TRAIN_LONGEST),
-            ("SHORTEST", _SHORTEST))),
+            ("PERIOD", PERIOD), ("PERIOD_SPREAD", PERIOD_SPREAD), ("PERIOD_SHORTEST", PERIOD_SHORTEST),
+            ("PERIOD_LONGEST", PERIOD_LONGEST), ("TRAIN_MEDIAN", TRAIN_MEDIAN), ("TRAIN_LONGEST", TRAIN_LONGEST),
+            ("SHORTEST", SHORTEST))),
         "\n/* Of 256: what a pause between trains has. */\n",
         "".join(f"#define {name} {value}\n" for name, value in (
             ("INHALED", _INHALED), ("CLICKED", _CLICKED), ("BY_NOSE", _BY_NOSE), ("GRUNTED", _GRUNTED),

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from typing import List, Tuple, Union
+from typing import List, Sequence, Tuple, Union
 
 import numpy as np
 
+from labial.corpus.episode import Segment
 from labial.corpus.timings import phoneme_segments, read_timings
 from labial.model import Model
 from labial.phonesets import PhoneSet, aliases_for
@@ -31,13 +32,18 @@ def phone_set(model: Model) -> PhoneSet:
 def read_stream(path: Union[str, os.PathLike], model: Model) -> Stream:
     """Reads phoneme timings of any format that corpora come in; gaps are silence.
 
-    Boundaries are rounded to milliseconds, so that rounding never adds up. Raises DataError, which names the file and
-    the line, for what is malformed; labels that the model does not know are the nearest, with one warning each.
+    The first phoneme lasts from time 0. Raises DataError, which names the file and the line, for what is malformed;
+    labels that the model does not know are the nearest, with one warning each.
     """
-    segments = phoneme_segments(path, read_timings(path), phone_set(model), strict=False)
-    bounds = [round(1000 * segment.end) for segment in segments]
-    begins = [0, *bounds[:-1]]
-    return [(model.phonemes.index(segment.label), end - begin) for segment, begin, end in zip(segments, begins, bounds)]
+    return stream_of(phoneme_segments(path, read_timings(path), phone_set(model), strict=False), model, 0)
+
+
+def stream_of(segments: Sequence[Segment], model: Model, begin: int) -> Stream:
+    """Phonemes of the model that follow each other without gaps as a stream from `begin`, milliseconds. Boundaries are
+    rounded to milliseconds, so that rounding never adds up."""
+    bounds = [begin, *(round(1000 * segment.end) for segment in segments)]
+    return [(model.phonemes.index(segment.label), after - before)
+            for segment, before, after in zip(segments, bounds, bounds[1:])]
 
 
 def drawn_streams(model: Model, count: int = 24, length: int = 24, seed: int = 0) -> List[Stream]:

@@ -208,6 +208,9 @@ typedef struct {
 /* The same for a given model; 0 for a null pointer. */
 uint32_t labial_workspace_size(const labial_model_t *model);
 
+/* The larger of two sizes, for the workspace of a stream that uses two models; nested, of more. */
+#define LABIAL_LARGER(a, b) ((a) > (b) ? (a) : (b))
+
 /*
  * Prepares a stream whose first phonemes are those of `model`; whatever it held before is forgotten.
  *

@@ -9,9 +9,7 @@
 #include "vectors.h"
 
 /* Bytes of workspace, enough for both bundled models. */
-#define CONFORMANCE_WORKSPACE                                                                \
-    (SPEECH_EN_WORKSPACE_SIZE > LAUGHTER_SYNTHETIC_WORKSPACE_SIZE ? SPEECH_EN_WORKSPACE_SIZE \
-                                                                  : LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
+#define CONFORMANCE_WORKSPACE LABIAL_LARGER(SPEECH_EN_WORKSPACE_SIZE, LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
 
 typedef enum {
     CONFORMANCE_FILL,   /* as many phonemes as there is room for before every tick */

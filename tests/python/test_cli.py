@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 
 import numpy as np
@@ -76,6 +77,25 @@ def test_errors_are_one_line(
     assert main(arguments) == 1
     error = capsys.readouterr().err
     assert error.startswith("labial: ") and message in error and error.count("\n") == 1
+
+
+def test_options_of_one_method_are_not_silently_ignored(
+    given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What asks the published method for what it does not have is told so; nobody else is."""
+    asked = []
+    module = importlib.import_module("labial.train.train")  # the package has a function of this name
+    monkeypatch.setattr(module, "train", lambda corpus, **options: asked.append(options) or random_model(3))
+    monkeypatch.setattr("labial.corpus.read_corpus", lambda path, kind: [])
+    for method, options, warned in (
+        ("paper", [], False), ("labial", ["--look-ahead", "60", "--search-stride", "1"], False),
+        ("paper", ["--search-stride", "1"], True), ("paper", ["--look-ahead", "60"], True),
+    ):
+        assert main(["train", "corpus", "-o", str(given / "m.npz"), "--method", method, *options]) == 0
+        err = capsys.readouterr().err
+        assert ("--method paper" in err) == warned and all(name in err for name in options[::2] if warned)
+    assert asked[1]["look_ahead"] == 0.06 and asked[1]["search_stride"] == 1
+    assert not {"look_ahead", "search_stride"} & set(asked[0])
 
 
 def test_amplitude_widens_what_is_exported(given: Path) -> None:

@@ -164,9 +164,11 @@ def test_arduino_sketches_run(arduino: Path, tmp_path: Path) -> None:
     assert 150 < len(lines) < 250
     jaws = [int(re.fullmatch(r"jaw:(-?\d+),upper_lip:(-?\d+),lower_lip:(-?\d+)", line)[1]) for line in lines]
     assert max(jaws) - min(jaws) > 100
-    out = run(tmp_path / "JawServo", 9000, text="HH 70 AH 60 L 80 OW 250\nm 80 zz AA 300\n").splitlines()
+    out = run(tmp_path / "JawServo", 9000, text="HH 70 AH 60 L 80 OW 250\nAA 200 m 80 zz AA 200\n").splitlines()
     angles = [int(line[6:]) for line in out if line.startswith("servo ")]
-    assert len(angles) == 1 + 23 + 19 and 80 <= min(angles) < 90 < max(angles) <= 110
+    assert len(angles) == 1 + 23 + 24 and 80 <= min(angles) and max(angles) <= 110
+    vowel, closed, again = angles[24:33], angles[33:39], angles[39:]  # m from 0.2 to 0.28 s of the second line
+    assert max(vowel) > 100 and max(again) > 100 and min(closed) < 85
     assert [line for line in out if not line.startswith("servo ")] == ["no phoneme of this name is known"]
 
 

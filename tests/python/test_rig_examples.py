@@ -85,7 +85,7 @@ def test_blendshapes_are_weights() -> None:
     """Every shape is used and stays a weight; lips close over the open jaw; the laugh smiles and speech hardly does."""
     header, *rows = output("arkit")
     names = header.split(",")[1:]
-    assert names == [item.name for item in read(ROOT / "examples" / "faces" / "arkit.toml", "arkit").outputs]
+    assert names == [item.name for item in read(ROOT / "export" / "labial" / "rig" / "arkit.toml", "arkit").outputs]
     values = np.array([[float(x) for x in row.split(",")] for row in rows])
     assert np.allclose(values[:, 0], np.arange(FRAMES) / 50)
     weights = dict(zip(names, values[:, 1:].T))

@@ -8,14 +8,18 @@
  * A servo at pin 9. Boards of the ESP32 family use the library ESP32Servo: replace Servo.h by ESP32Servo.h.
  */
 #include <Servo.h>
+#include <labial/rig.h>
 #include <speech_en.h>
 
-// What your jaw needs: the servo's angles with the mouth closed and wide open, in degrees, and the jaw's motion in FAP
-// units that stands for wide open.
+// What your jaw needs: the servo's angles with the mouth closed and wide open, in degrees.
 static const int closedAngle = 80;
 static const int openAngle = 110;
-static const int openJaw = 400;
 static const int servoPin = 9;
+
+// The jaw follows the opening of the lips, for m, b and p must close a mouth that has nothing but a jaw.
+static const labial_rig_output_t jaw = LABIAL_RIG_JAW(closedAngle, openAngle);
+static const labial_rig_t rig = { &jaw, 1 };
+static int32_t angle;
 
 static Servo servo;
 static labial_t face;
@@ -30,8 +34,8 @@ static bool speaking = false;
 
 static void onFrame(void *, uint32_t, const int16_t faps[LABIAL_CHANNELS])
 {
-    const int jaw = constrain((int)faps[0], 0, openJaw);
-    servo.write(closedAngle + (openAngle - closedAngle) * jaw / openJaw);
+    labial_rig_apply(&rig, faps, &angle);
+    servo.write((int)angle);
 }
 
 // Ends the word: a number is the milliseconds of the phoneme before it, anything else a phoneme's name.
@@ -58,7 +62,8 @@ void setup()
 {
     Serial.begin(115200);
     servo.attach(servoPin);
-    servo.write(closedAngle);
+    labial_rig_rest(&rig, &angle);
+    servo.write((int)angle);
     const int result = labial_init(&face, &speech_en, workspace, sizeof workspace, onFrame, NULL);
     while (result != LABIAL_OK) {
         Serial.println(labial_result_text(result));

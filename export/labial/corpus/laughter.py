@@ -33,9 +33,15 @@ FPS = 50
 #: Median duration in milliseconds of what is drawn on its own; fricatives and silences inside a pulse fill its period.
 MEDIANS = {"a": 98, "e": 92, "o": 92, "ic": 80, "cackle": 48, "nasal": 80, "ne": 240, "fricative": 120, "click": 40,
            "plosive": 40, "grunt": 200}  # fmt: skip
-_SPREAD = 0.22  # standard deviation of a duration's logarithm
-_PERIOD, _PERIOD_SPREAD = 210.0, 25.0  # ms from onset to onset
-_TRAIN_MEDIAN, _TRAIN_SPREAD, _TRAIN_LONGEST = 3.0, 0.6, 17
+#: Standard deviation of a duration's logarithm.
+SPREAD = 0.22
+#: A pulse's period, milliseconds from onset to onset: mean, standard deviation, and what it is held within.
+PERIOD, PERIOD_SPREAD = 210.0, 25.0
+PERIOD_SHORTEST, PERIOD_LONGEST = 140, 280
+#: Pulses of a train: median, standard deviation of the logarithm, most.
+TRAIN_MEDIAN, TRAIN_SPREAD, TRAIN_LONGEST = 3.0, 0.6, 17
+#: Shortest phoneme, milliseconds: one frame.
+SHORTEST = 20
 
 #: What a phoneme asks of the mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
 _GESTURES = {
@@ -56,8 +62,15 @@ _JAW = 330.0  # FAP 3 of the widest opening: about 10 mm of an adult's face
 _STEP = 5  # ms between samples of the motion before it is sampled at FPS
 
 #: Kinds of a pulse and their shares: vowel after breath, vowel and silence, cackle, closed lips, glottal stop first.
-_PULSES, _PULSE_SHARES = ("h", "bare", "cackle", "nasal", "stop"), (0.62, 0.12, 0.10, 0.09, 0.07)
-_VOWELS, _VOWEL_SHARES = ("a", "e", "o", "ic"), (0.40, 0.34, 0.10, 0.16)
+PULSES, PULSE_SHARES = ("h", "bare", "cackle", "nasal", "stop"), (0.62, 0.12, 0.10, 0.09, 0.07)
+VOWELS, VOWEL_SHARES = ("a", "e", "o", "ic"), (0.40, 0.34, 0.10, 0.16)
+#: How often the kind of a pulse, and its vowel, is drawn again within a train.
+CHANGED = 0.15
+#: What a bout may begin with, and how often.
+ONSETS = {"ne": 0.25, "click": 0.15, "grunt": 0.20, "plosive": 0.15}
+#: How often a pause between trains has an inhalation, that inhalation a click before it, and is by the nose; and how
+#: often the pause has a grunt, a silence and a longer rest.
+INHALED, CLICKED, BY_NOSE, GRUNTED, SILENT, RESTED = 0.75, 0.2, 0.75, 0.18, 0.5, 0.15
 
 _Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
 
@@ -93,7 +106,7 @@ def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
     """A bout's phonemes and its intensity, 0.35 to 1."""
     intensity = float(random.uniform(0.35, 1.0))
     bout: List[_Phoneme] = [("silence", int(random.uniform(200, 500)), 0.0)]
-    for label, share in (("ne", 0.25), ("click", 0.15), ("grunt", 0.20), ("plosive", 0.15)):
+    for label, share in ONSETS.items():
         if random.random() < share:
             bout.append((label, _duration(random, label), 0.5 * intensity))
             break
@@ -101,18 +114,17 @@ def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
     for train in range(trains):
         loudness = intensity * 0.88**train
         bout += _train(random, loudness)
-        pause = random.random()
-        if pause < 0.75:  # air runs out and is drawn in again
+        if random.random() < INHALED:  # air runs out and is drawn in again
             bout.append(("silence", _duration(random, "silence"), 0.25 * loudness))
-            if random.random() < 0.2:
+            if random.random() < CLICKED:
                 bout.append(("click", _duration(random, "click"), 0.6 * loudness))
-            inhaled = "ne" if random.random() < 0.75 else "fricative"
+            inhaled = "ne" if random.random() < BY_NOSE else "fricative"
             bout.append((inhaled, _duration(random, inhaled), 0.7 * loudness))
-        if random.random() < 0.18:
+        if random.random() < GRUNTED:
             bout.append(("grunt", _duration(random, "grunt"), 0.5 * loudness))
-        if random.random() < 0.5:
+        if random.random() < SILENT:
             bout.append(("silence", _duration(random, "silence"), 0.25 * loudness))
-        if random.random() < 0.15:
+        if random.random() < RESTED:
             longest = 5000 if random.random() < 0.1 else 900
             bout.append(("silence", int(random.uniform(0.5, 1.0) * longest), 0.0))
     if random.random() < 0.5:
@@ -123,16 +135,16 @@ def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
 
 def _train(random: np.random.Generator, loudness: float) -> List[_Phoneme]:
     """Pulses of one exhalation, each softer than the one before; most have the train's own vowel."""
-    count = min(max(round(_TRAIN_MEDIAN * float(np.exp(random.normal(0, _TRAIN_SPREAD)))), 1), _TRAIN_LONGEST)
-    kind, vowel = random.choice(_PULSES, p=_PULSE_SHARES), random.choice(_VOWELS, p=_VOWEL_SHARES)
+    count = min(max(round(TRAIN_MEDIAN * float(np.exp(random.normal(0, TRAIN_SPREAD)))), 1), TRAIN_LONGEST)
+    kind, vowel = random.choice(PULSES, p=PULSE_SHARES), random.choice(VOWELS, p=VOWEL_SHARES)
     train: List[_Phoneme] = []
     for pulse in range(count):
-        if random.random() < 0.15:
-            kind = random.choice(_PULSES, p=_PULSE_SHARES)
-        if random.random() < 0.15:
-            vowel = random.choice(_VOWELS, p=_VOWEL_SHARES)
+        if random.random() < CHANGED:
+            kind = random.choice(PULSES, p=PULSE_SHARES)
+        if random.random() < CHANGED:
+            vowel = random.choice(VOWELS, p=VOWEL_SHARES)
         loud = loudness * 0.93**pulse * float(np.exp(random.normal(0, 0.10)))
-        period = int(np.clip(random.normal(_PERIOD, _PERIOD_SPREAD), 140, 280))
+        period = int(np.clip(random.normal(PERIOD, PERIOD_SPREAD), PERIOD_SHORTEST, PERIOD_LONGEST))
         note = str({"cackle": "cackle", "nasal": "nasal"}.get(str(kind), vowel))
         sound = min(_duration(random, note), period - 40)
         rest = period - sound
@@ -151,8 +163,8 @@ def _train(random: np.random.Generator, loudness: float) -> List[_Phoneme]:
 def _duration(random: np.random.Generator, label: str) -> int:
     """Milliseconds, at least one frame."""
     if label == "silence":
-        return max(int(random.uniform(160, 420)), 20)
-    return max(round(MEDIANS[label] * float(np.exp(random.normal(0, _SPREAD)))), 20)
+        return max(int(random.uniform(160, 420)), SHORTEST)
+    return max(round(MEDIANS[label] * float(np.exp(random.normal(0, SPREAD)))), SHORTEST)
 
 
 def _motion(random: np.random.Generator, phonemes: List[_Phoneme], intensity: float) -> np.ndarray:

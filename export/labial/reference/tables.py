@@ -15,7 +15,7 @@ from labial.faps import CHANNELS
 from labial.fixed import BEAM, DURATION_Z_MAX, EMISSION_Z_MAX, LEAP, POSITION_MAX, rounded_shift, weight_value, z_cost
 from labial.model import Model
 from labial.quantise import ExportedModel
-from labial.reference.viterbi import decode
+from labial.reference.viterbi import decode, normal_costs
 
 #: Durations farther than this many standard deviations from a component's mean change its shape no more.
 SLOPE_LIMIT = 3.0
@@ -81,9 +81,7 @@ class FloatTables:
 
     def emission(self, targets: np.ndarray) -> np.ndarray:
         """(T, 13, Q) cost of every state for the targets."""
-        variance = self.model.decode_variance
-        distance = targets[:, :, None] - self.model.decode_mean
-        return 0.5 * (distance**2 / variance + np.log(variance))
+        return normal_costs(targets, self.model.decode_mean, self.model.decode_variance)
 
     def search(self, targets: np.ndarray) -> np.ndarray:
         """(T, 13) int64: the state path for targets (T, 13)."""

@@ -52,6 +52,13 @@ def viterbi(
     return path
 
 
+def normal_costs(targets: np.ndarray, mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
+    """(T, 13, Q) cost of every state for targets (T, 13), in nats: -log N of the states' means and variances (13, Q),
+    without the constant."""
+    distance = targets[:, :, None] - mean
+    return 0.5 * (distance**2 / variance + np.log(variance))
+
+
 def decode(
     emission: Callable[[np.ndarray], np.ndarray],
     targets: np.ndarray,

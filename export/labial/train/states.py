@@ -72,16 +72,11 @@ def codebook_tables(codebooks: SequenceOf[Codebook], stride: int) -> StateTables
     )
 
 
-def emission_costs(target: np.ndarray, tables: StateTables) -> np.ndarray:
-    """(T, 13, Q) costs of the states for a target (T, 13) in FAP, in nats: -log N without the constant."""
-    offset = target[:, :, None] - tables.decode_mean
-    return 0.5 * (offset**2 / tables.decode_variance + np.log(tables.decode_variance))
-
-
 def decode(target: np.ndarray, tables: StateTables) -> np.ndarray:
     """(T, 13) int64: the state path of every channel for a target (T, 13), over the whole utterance."""
     return viterbi.decode(
-        lambda seen: emission_costs(seen, tables), target, -tables.log_transition, -tables.log_initial, tables.stride
+        lambda seen: viterbi.normal_costs(seen, tables.decode_mean, tables.decode_variance),
+        target, -tables.log_transition, -tables.log_initial, tables.stride,
     )
 
 
