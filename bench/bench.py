@@ -2,7 +2,8 @@
 """Measures Labial: what a frame costs on every board and on the host, bytes, stack, accuracy.
 
     cmake --workflow --preset bench              measures, writes build/bench/bench.json and bench.md, and checks
-    python3 bench/bench.py --update              makes what was measured last the baseline, bench/baseline.json
+    python3 bench/bench.py --update              makes what was measured last the baseline, bench/baseline.json, and the
+                                                 figures of README.md
 
 Needs the programs of the preset `bench` in its build folder; what a machine lacks is left out with a sentence.
 """
@@ -14,7 +15,7 @@ import sys
 from pathlib import Path
 from typing import Callable, List
 
-from measure import baseline, boards, host, loss, mlpg, profile, sizes, stack, table
+from measure import baseline, boards, host, loss, mlpg, profile, readme, sizes, stack, table
 from measure.core import Bench, LeftOut
 
 
@@ -23,7 +24,8 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Measures Labial.")
     parser.add_argument("--build", type=Path, default=source / "build" / "bench", help="folder of the preset `bench`")
     parser.add_argument("--check", action="store_true", help="fail when a figure is worse than bench/baseline.json")
-    parser.add_argument("--update", action="store_true", help="measure nothing; make the last figures the baseline")
+    parser.add_argument("--update", action="store_true",
+                        help="measure nothing; make the last figures the baseline and README.md's")
     parser.add_argument("--require-all", action="store_true", help="fail when anything is left out")
     parser.add_argument("--compiler", default="cc", help="that built the host's programs (cc)")
     parser.add_argument("--corpus", default="", help="speech corpus whose phonemes the loss is measured on")
@@ -80,8 +82,11 @@ def main() -> int:
     options = _options()
     recorded, committed = options.build / "bench.json", options.source / "bench" / "baseline.json"
     if options.update:
-        baseline.write(committed, baseline.checked(baseline.read(recorded)))
-        print(f"Written: {committed}")
+        kept = baseline.checked(baseline.read(recorded))
+        page = options.source / "README.md"
+        page.write_text(readme.updated(page.read_text(encoding="utf-8"), kept), encoding="utf-8")
+        baseline.write(committed, kept)
+        print(f"Written: {committed} and the figures of {page}")
         return 0
     bench = Bench(options.source, options.build)
     rows = _measure(bench, options.compiler, options.corpus)
