@@ -11,9 +11,6 @@
 /* The highest cost of a transition, as a score. */
 #define LEAP 0xff00u
 
-/* The last step's score of the predecessor that an edge names. */
-#define SCORE(scores, packed) (*(const uint32_t *)(const void *)((scores) + (uint8_t)(packed)))
-
 /* Negative log-likelihood of a position in a state. */
 static inline uint32_t emission(const labial_emission_t *state, int32_t position)
 {
@@ -52,26 +49,24 @@ static uint32_t emit(const labial_emission_t *state, unsigned states, int32_t po
     return least;
 }
 
-/* The best of `best` and of what `count` edges, a multiple of four, make of the last step's scores. */
+/* The better of `best` and of what an edge makes of the last step's score of its predecessor. */
+static inline uint32_t better(const uint8_t *scores, const uint16_t *edge, uint32_t best)
+{
+    const uint32_t score = *edge + *(const uint32_t *)(const void *)(scores + (uint8_t)*edge);
+    if (score < best)
+        best = score;
+    return best;
+}
+
+/* The best of `best` and of `count` edges, a multiple of four. */
 static uint32_t enter(const uint8_t *scores, const uint16_t *edge, unsigned count, uint32_t best)
 {
     const uint16_t *end = edge + count;
     do {
-        uint32_t packed = edge[0], score = packed + SCORE(scores, packed);
-        if (score < best)
-            best = score;
-        packed = edge[1];
-        score = packed + SCORE(scores, packed);
-        if (score < best)
-            best = score;
-        packed = edge[2];
-        score = packed + SCORE(scores, packed);
-        if (score < best)
-            best = score;
-        packed = edge[3];
-        score = packed + SCORE(scores, packed);
-        if (score < best)
-            best = score;
+        best = better(scores, edge, best);
+        best = better(scores, edge + 1, best);
+        best = better(scores, edge + 2, best);
+        best = better(scores, edge + 3, best);
         edge += 4;
     } while (edge < end);
     return best;
@@ -90,18 +85,13 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
     for (q = 0; q < 4u * states; q += 4u, edge += predecessors) {
         const uint32_t cost = *to;
         uint32_t best = leap;
-        if (cost <= limit) {
+        if (cost <= limit)
             best = enter((const uint8_t *)from, edge, predecessors, leap);
-            *back++ = (uint8_t)best;
-            best = best - (uint8_t)best + cost;
-            *to++ = best;
-            best += q;
-            if (best < winner)
-                winner = best;
-        } else {
-            *back++ = (uint8_t)best;
-            *to++ = best - (uint8_t)best + cost;
-        }
+        *back++ = (uint8_t)best;
+        best = best - (uint8_t)best + cost;
+        *to++ = best;
+        if (cost <= limit && best + q < winner)
+            winner = best + q;
     }
     *to = winner;
 }

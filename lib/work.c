@@ -31,7 +31,7 @@ static void lay_out(const labial_t *stream, workspace_t *workspace)
     workspace->back = (uint8_t *)(workspace->scores[1] + row);
     workspace->solver = (labial_solver_t *)(void *)stream->workspace;
     workspace->factors = (int32_t *)(workspace->solver + 1);
-    tail -= (LABIAL_WINDOW * 2u + 2u * LABIAL_REACH + 3u) / 4u * 4u;
+    tail -= LABIAL_LABELS_SIZE_; /* path and labels */
     workspace->path = tail;
     workspace->labels = tail + LABIAL_WINDOW;
     workspace->positions = (int16_t *)(void *)(tail - LABIAL_WINDOW * LABIAL_CHANNELS * 2u);

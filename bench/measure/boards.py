@@ -26,7 +26,6 @@ class Board:
 
     preset: str
     core: str
-    machine: str
     prefix: str
     package: str
     emulator: str
@@ -39,11 +38,11 @@ _ARM = ("arm-none-eabi-", "gcc-arm-none-eabi", "qemu-system-arm", "qemu-system-a
 _RISCV = ("riscv64-unknown-elf-", "gcc-riscv64-unknown-elf", "qemu-system-riscv32", "qemu-system-misc")
 
 BOARDS = (
-    Board("m0", "Cortex-M0", "microbit", *_ARM, 16, "nRF51822 of the micro:bit"),
-    Board("m3", "Cortex-M3", "mps2-an385", *_ARM, 72, "STM32F103"),
-    Board("m4", "Cortex-M4F", "mps2-an386", *_ARM, 64, "nRF52840"),
-    Board("m7", "Cortex-M7", "mps2-an500", *_ARM, 216, "STM32F746"),
-    Board("rv32", "RV32IMAC", "sifive_e", *_RISCV, 108, "GD32VF103"),
+    Board("m0", "Cortex-M0", *_ARM, 16, "nRF51822 of the micro:bit"),
+    Board("m3", "Cortex-M3", *_ARM, 72, "STM32F103"),
+    Board("m4", "Cortex-M4F", *_ARM, 64, "nRF52840"),
+    Board("m7", "Cortex-M7", *_ARM, 216, "STM32F746"),
+    Board("rv32", "RV32IMAC", *_RISCV, 108, "GD32VF103"),
 )
 
 

@@ -198,12 +198,12 @@ typedef struct {
 #define LABIAL_WORKSPACE_SIZE(states, stride)                                                              \
     ((LABIAL_SEARCH_SIZE_(states, stride) > LABIAL_SOLVER_SIZE_ ? LABIAL_SEARCH_SIZE_(states, stride)      \
                                                                 : LABIAL_SOLVER_SIZE_) +                   \
-     ((uint32_t)LABIAL_WINDOW * 2u * LABIAL_CHANNELS + 3u) / 4u * 4u +                                     \
-     ((uint32_t)LABIAL_WINDOW * 2u + 2u * (uint32_t)LABIAL_REACH + 3u) / 4u * 4u)
+     ((uint32_t)LABIAL_WINDOW * 2u * LABIAL_CHANNELS + 3u) / 4u * 4u + LABIAL_LABELS_SIZE_)
 #define LABIAL_SEARCH_SIZE_(states, stride)                                                                \
     (8u * ((uint32_t)(states) + 1u) +                                                                      \
      (((uint32_t)LABIAL_WINDOW - 1u) / (uint32_t)(stride) * (uint32_t)(states) + 3u) / 4u * 4u)
 #define LABIAL_SOLVER_SIZE_ (60u + 12u * (uint32_t)LABIAL_WINDOW)
+#define LABIAL_LABELS_SIZE_ (((uint32_t)LABIAL_WINDOW * 2u + 2u * (uint32_t)LABIAL_REACH + 3u) / 4u * 4u)
 
 /* The same for a given model; 0 for a null pointer. */
 uint32_t labial_workspace_size(const labial_model_t *model);

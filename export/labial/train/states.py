@@ -123,6 +123,8 @@ def match_states(
         state_mean=mean,
         state_precision=precision,
         state_anchor=anchor,
+        # A path repeats each state for its stride, so that every stride-th frame is the chain that was decoded; human
+        # paths change in every frame, and codebooks count all pairs that lie a stride apart.
         log_transition=np.stack(
             [transitions([item[:: tables.stride, channel] for item in paths], size) for channel in range(CHANNELS)]
         ),
