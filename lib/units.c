@@ -40,8 +40,8 @@ static uint32_t run_of_model(const labial_t *stream, unsigned i, uint32_t most)
     return least(frames, most);
 }
 
-/* Whether everything is known that the piece from `begin` to `end` depends on: the phonemes within its model's reach,
- * and the neighbour of the phoneme it ends in, segment `last`, which itself ends at `last_end`. */
+/* Whether everything is known that a piece depends on which ends at `end`: the phonemes within its model's reach, and the
+ * neighbour of the phoneme it ends in, which itself ends at `last_end`. */
 static int is_known(const labial_t *stream, unsigned slot, uint32_t end, uint32_t last_end)
 {
     const labial_model_t *model = stream->models[slot];
@@ -96,10 +96,7 @@ int labial_units_next(labial_t *stream, labial_piece_t *piece)
         }
         if (segment->slot != slot) { /* the model changes: run on into the other's phonemes */
             const uint32_t most = least(least(limit - start, start - begin), LABIAL_OVERLAP);
-            const uint32_t overlap = run_of_model(stream, i, most);
-            if (overlap < most && start + overlap == stream->queue_frames && !stream->ended)
-                return LABIAL_WAITING;
-            end = start + overlap;
+            end = start + run_of_model(stream, i, most); /* shorter while not all is pushed: then not known either */
             next = start;
             for (last_end = stop; last_end < end;)
                 last_end += labial_units_segment(stream, ++i)->frames;
