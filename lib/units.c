@@ -40,8 +40,8 @@ static uint32_t run_of_model(const labial_t *stream, unsigned i, uint32_t most)
     return least(frames, most);
 }
 
-/* Whether everything is known that a piece depends on which ends at `end`: the phonemes within its model's reach, and the
- * neighbour of the phoneme it ends in, which itself ends at `last_end`. */
+/* Whether everything is known that a piece depends on which ends at `end`: the phonemes within its model's reach, and
+ * the neighbour of the phoneme it ends in, which itself ends at `last_end`. */
 static int is_known(const labial_t *stream, unsigned slot, uint32_t end, uint32_t last_end)
 {
     const labial_model_t *model = stream->models[slot];
