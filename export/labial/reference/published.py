@@ -95,7 +95,7 @@ def decode(tables: FloatTables, target: np.ndarray) -> np.ndarray:
     search sees the middle one, or the later of two."""
     seen = target[looked_at(len(target), tables.stride)]
     states = np.arange(tables.chains.mean.shape[1])
-    emission = tables.emission(seen, np.broadcast_to(states, (CHANNELS, len(states))))
+    emission = tables.chains.emission(seen, np.broadcast_to(states, (CHANNELS, len(states))))
     path = viterbi(emission, tables.chains.transition, tables.chains.initial)
     return np.repeat(path, tables.stride, axis=0)[: len(target)]
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from labial.faps import CHANNELS
 from labial.fixed import (
-    COST_SCALE,
     DURATION_Z_MAX,
     EMISSION_Z_MAX,
     LEAP,
@@ -25,7 +24,7 @@ from labial.fixed import (
 )
 from labial.model import Model
 from labial.quantise import ExportedModel
-from labial.reference.viterbi import LAG, Chains, decode, normal_costs
+from labial.reference.viterbi import LAG, Chains, decode, normal_chains
 
 #: Durations farther than this many standard deviations from a component's mean change its shape no more.
 SLOPE_LIMIT = 3.0
@@ -59,8 +58,7 @@ class FloatTables:
         self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
         self.ahead = max(int(self.lags[-1]), 0) if len(self.lags) else 0
         self.stride = model.search_stride
-        self.chains = Chains(model.decode_mean, -np.asarray(model.log_transition), -np.asarray(model.log_initial),
-                             LEAP / COST_SCALE, self.emission)
+        self.chains = normal_chains(model.decode_mean, model.decode_variance, model.log_transition, model.log_initial)
         self._first = model.first_component()
         self._pair = {tuple(key): row for row, key in enumerate(np.asarray(model.pair_key).tolist())}
 
@@ -91,11 +89,6 @@ class FloatTables:
         below the floors of `labels` (T,), the frames' own phonemes."""
         taps = np.arange(neighbours.shape[1])
         return np.maximum(shapes + self.model.kernel[neighbours, taps].sum(axis=1), self.model.floor[labels])
-
-    def emission(self, targets: np.ndarray, states: np.ndarray) -> np.ndarray:
-        """(..., 13, W) costs of states (..., 13, W) for targets (..., 13)."""
-        own = _CHANNEL[:, None], states
-        return normal_costs(targets[..., None] - self.model.decode_mean[own], self.model.decode_variance[own])
 
     def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG) -> np.ndarray:
         """(T, 13) int64: the state path for targets (T, 13), given the frames (T,) that end units."""
@@ -174,7 +167,7 @@ class ExportedTables:
         return np.maximum(held, model.floors[model.floor[labels]])
 
     def emission(self, targets: np.ndarray, states: np.ndarray) -> np.ndarray:
-        """As :meth:`FloatTables.emission`, in 1/32 nat."""
+        """(..., 13, W) costs of states (..., 13, W) for targets (..., 13), in 1/32 nat."""
         model, own = self.exported, (_CHANNEL[:, None], states)
         distance = np.abs(targets[..., None] - model.emission_mean[own])
         z = np.minimum((distance * model.emission_gain[own]) >> 12, EMISSION_Z_MAX)

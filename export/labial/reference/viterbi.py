@@ -15,7 +15,7 @@ from typing import Callable, List, Sequence
 import numpy as np
 
 from labial.faps import CHANNELS
-from labial.fixed import SEARCHED
+from labial.fixed import COST_SCALE, LEAP, SEARCHED
 
 #: The library's default of LABIAL_LAG, blocks.
 LAG = 0
@@ -36,6 +36,18 @@ class Chains:
     initial: np.ndarray  #: (13, Q)
     leap: float
     emission: Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+def normal_chains(
+    mean: np.ndarray, variance: np.ndarray, log_transition: np.ndarray, log_initial: np.ndarray
+) -> Chains:
+    """The chains, in nats, of states that are Gaussians of these means and variances (13, Q), but for the constant."""
+
+    def emission(targets: np.ndarray, states: np.ndarray) -> np.ndarray:
+        own = _CHANNEL[:, None], states
+        return 0.5 * ((targets[..., None] - mean[own]) ** 2 / variance[own] + np.log(variance[own]))
+
+    return Chains(mean, -log_transition, -log_initial, LEAP / COST_SCALE, emission)
 
 
 def block_at(frames: int, stride: int) -> np.ndarray:
@@ -127,8 +139,3 @@ def decode(chains: Chains, targets: Sequence[np.ndarray], ends: Sequence[np.ndar
         closed[item[np.flatnonzero(end)], i, _CHANNEL] = True
     path = search(chains, position, closed, lag=lag, searched=searched)
     return [np.take_along_axis(path[:, i], item, axis=0) for i, item in enumerate(number)]
-
-
-def normal_costs(distance: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """Costs in nats of lying so far from the means of Gaussians: -log N, without the constant."""
-    return 0.5 * (distance**2 / variance + np.log(variance))
