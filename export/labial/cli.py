@@ -56,7 +56,8 @@ def parser() -> argparse.ArgumentParser:
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
                        help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
-    synth.add_argument("--whole", action="store_true", help="decode the whole utterance at once, not unit by unit")
+    synth.add_argument("--whole", action="store_true",
+                       help="search and solve the whole utterance at once, not as the run-time does")
     synth.set_defaults(run=_synth)
 
     export = commands.add_parser("export", help="write a model as C tables")
@@ -170,11 +171,13 @@ def _synth(options: argparse.Namespace) -> int:
     from labial.animation import WRITERS
     from labial.model import load
     from labial.phones import read_stream
-    from labial.reference.stream import synthesise
+    from labial.reference import published, stream
     from labial.reference.tables import FloatTables
 
     model = load(options.model)
-    frames = synthesise(FloatTables(model), read_stream(options.phones, model), whole=options.whole)
+    tables, phonemes = FloatTables(model), read_stream(options.phones, model)
+    whole = options.whole
+    frames = published.synthesise(tables, phonemes, whole=True) if whole else stream.synthesise(tables, phonemes)
     name = Path(options.model).stem
     if options.output:
         with open(options.output, "w", encoding="ascii", newline="\n") as out:

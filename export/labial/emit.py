@@ -93,6 +93,18 @@ def _comment(model: ExportedModel, what: str) -> str:
     return f"/*\n{body}\n */\n"
 
 
+def _reach_check(model: ExportedModel) -> str:
+    """What refuses to compile where the library's memory of phonemes is too short for the model's kernels."""
+    reach = model.kernel_stride * max(model.kernel_behind, model.kernels.shape[1] - 1 - model.kernel_behind)
+    if reach <= 0:
+        return ""
+    return f"""
+#if LABIAL_REACH < {reach}
+#error "{model.name} needs LABIAL_REACH of {reach} at least: its kernels reach so far."
+#endif
+"""
+
+
 def header(model: ExportedModel) -> str:
     """NAME.h: the model's symbol, sizes and phoneme numbers."""
     upper = model.name.upper()
@@ -106,7 +118,7 @@ def header(model: ExportedModel) -> str:
 #if LABIAL_MODEL_FORMAT != {FORMAT}
 #error "{model.name} was exported for another version of Labial: run labial export again."
 #endif
-
+{_reach_check(model)}
 #ifdef __cplusplus
 extern "C" {{
 #endif
@@ -114,7 +126,7 @@ extern "C" {{
 #define {upper}_FPS {model.fps}
 #define {upper}_PHONEMES {len(model.phonemes)}
 #define {upper}_STATES {model.edges.shape[1]}
-#define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({upper}_STATES, {model.search_stride})
+#define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({model.search_stride})
 
 /* Phoneme numbers. */
 enum {{
@@ -161,9 +173,9 @@ def source(model: ExportedModel) -> str:
             for mean, width, cost, initial in zip(
                 model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k]))))
         parts.append(_records(f"labial_state_t states_{k}", (
-            "{ { " + ", ".join(map(str, mean)) + " }, { " + ", ".join(map(str, weight)) + f" }}, {anchor} }}"
-            for mean, weight, anchor in zip(
-                model.state_mean[k].tolist(), model.state_weight[k].tolist(), model.state_anchor[k]))))
+            "{ { " + ", ".join(map(str, mean)) + f" }}, {hold}, {share}, {{ {delta}, {bend} }} }}"
+            for mean, hold, share, (delta, bend) in zip(
+                model.state_mean[k].tolist(), model.state_hold[k], model.state_share[k], model.state_weight[k]))))
         parts.append(_table(f"uint16_t edges_{k}", model.edges[k]))
     channels = ",\n".join(
         f"    {{ {model.centre[k]}, {model.shape_scale[k]}, {model.slope_scale[k]}, {model.kernel_scale[k]}, "
@@ -274,8 +286,8 @@ def blob(model: ExportedModel) -> bytes:
                         model.pair_scale[k], 0))
         add(b"".join(struct.pack("<hHBB", *row) for row in zip(
             model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k])))
-        add(b"".join(struct.pack("<hhhBBBB", *mean, *weight, anchor) for mean, weight, anchor in zip(
-            model.state_mean[k], model.state_weight[k], model.state_anchor[k])))
+        add(b"".join(struct.pack("<hhhBBBB", *mean, hold, share, *weight) for mean, hold, share, weight in zip(
+            model.state_mean[k], model.state_hold[k], model.state_share[k], model.state_weight[k])))
         table(model.edges[k], "<u2")
     body = struct.pack(
         "<HHHBBBBBBBBBBBBH", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,

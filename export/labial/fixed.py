@@ -12,19 +12,20 @@ POSITION_SCALE = 16
 POSITION_MAX = 16383
 NO_FLOOR = -16384
 
-#: Bounds of equation 3: the largest diagonal element, the least weight that holds a frame in place, and the largest
-#: right-hand side.
-WEIGHT_SUM_MAX = 262143
+#: Bounds of equation 3, per channel: the largest diagonal element; the least weight that holds a frame in place; how
+#: many times that a state's delta-delta may weigh; and how far, in positions, the least held frame may be pulled.
+WEIGHT_SUM_MAX = 16383
 WEIGHT_MIN = 8
-PULL_MAX = 2**30 - 1
+STIFFNESS_MAX = 16
+PULL_MAX = 131071
 
 #: The largest z, Q6, of a duration and of an emission; beyond it a Gaussian's cost no longer grows.
 DURATION_Z_MAX = 65535
 EMISSION_Z_MAX = 1023
 
-#: States whose emission costs this much more than the least are passed over by the search, and entered at the highest
-#: cost of a transition.
-BEAM = 96
+#: The search scores so many states, those around the one nearest to the target. Any of them can be entered from the
+#: best one of the step before at the highest cost of a transition; scores are held to that too, above the best.
+SEARCHED = 12
 LEAP = 255
 
 #: Numbers that the 256 codes of the minifloat weight stand for.
@@ -42,6 +43,24 @@ def weight_code(value: np.ndarray) -> np.ndarray:
     above = np.clip(np.searchsorted(WEIGHTS, value), 1, 255)
     nearer_below = value - WEIGHTS[above - 1] <= WEIGHTS[above] - value
     return np.where(nearer_below, above - 1, above).astype(np.uint8)
+
+
+def weight_code_below(value: np.ndarray) -> np.ndarray:
+    """uint8: the codes of the largest weights that do not exceed the values, which must not be negative."""
+    return (np.searchsorted(WEIGHTS, value, side="right") - 1).astype(np.uint8)
+
+
+def share_value(code: np.ndarray) -> np.ndarray:
+    """int64: the 256ths that the codes of a share stand for, 0 .. 256; of all numbers 128 alone has no code."""
+    code = np.asarray(code, dtype=np.int64)
+    return code + (code >> 7)
+
+
+def share_code(share: np.ndarray) -> np.ndarray:
+    """uint8: the codes nearest to shares, 0 .. 1."""
+    parts = np.asarray(share, dtype=np.float64) * 256.0
+    nearest = np.rint(parts)
+    return np.where(parts < 128.0, np.minimum(nearest, 127), np.maximum(nearest, 129) - 1).astype(np.uint8)
 
 
 def gain(deviation: np.ndarray) -> np.ndarray:

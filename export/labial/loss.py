@@ -12,18 +12,17 @@ from labial.fixed import COST_SCALE, LEAP
 from labial.model import Model
 from labial.phones import Stream
 from labial.quantise import ExportedModel
-from labial.reference import units
-from labial.reference.shape import targets
-from labial.reference.stream import frame_counts, synthesise
+from labial.reference.published import path_cost, viterbi
+from labial.reference.stream import aims, synthesise
 from labial.reference.tables import ExportedTables, FloatTables
-from labial.reference.viterbi import looked_at, path_cost, viterbi
+from labial.reference.viterbi import block_ends, looked_at
 
 
 @dataclass(frozen=True)
 class Loss:
     """Per channel, (13,): `rms` and `largest` difference between the motions of the float and the exported tables, FAP;
     `extent`, the 1 to 99 percentile range that `rms` is held against, FAP; `path`, nats of likelihood that the exported
-    tables' state paths lose per piece."""
+    tables' state paths lose per state, against the likeliest of the whole stream."""
 
     rms: np.ndarray
     largest: np.ndarray
@@ -46,7 +45,7 @@ def channel_extent(model: Model, motion: np.ndarray) -> np.ndarray:
 
 
 def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) -> Loss:
-    """The loss over `streams`."""
+    """The loss over `streams`, each of a frame at least."""
     ideal, tables = FloatTables(model), ExportedTables(exported)
     expected = np.concatenate([synthesise(ideal, stream) for stream in streams])
     found = np.concatenate([synthesise(tables, stream) for stream in streams])
@@ -61,18 +60,18 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
 
 
 def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
-    """(pieces, 13) nats by which the exported tables' path is less likely than the best, under the float tables."""
-    numbers, durations = [p for p, _ in stream], [ms for _, ms in stream]
-    frames = frame_counts(durations, ideal.fps)
-    wanted = targets(ideal, numbers, durations, frames)
-    given = targets(tables, numbers, durations, frames)
-    transition = np.minimum(ideal.transition, LEAP / COST_SCALE)  # the library enters any state at that cost
-    lost: List[np.ndarray] = []
-    for piece in units.pieces(frames, [bool(ideal.boundary[p]) for p in numbers]):
-        span = slice(piece.begin, piece.end)
-        seen = looked_at(piece.end - piece.begin, ideal.stride)
-        terms = (ideal.emission(wanted[span][seen]), transition, ideal.initial)
-        best = path_cost(viterbi(*terms), *terms)
-        taken = path_cost(tables.search(given[span])[:: ideal.stride], *terms)
-        lost.append(taken - best)
-    return np.array(lost).reshape(-1, CHANNELS)
+    """(1, 13) nats per state by which the exported tables' path is less likely than the best, by the float tables."""
+    wanted, _ = aims(ideal, stream)
+    given, ends = aims(tables, stream)
+    taken = tables.search(given, ends)
+    chains = ideal.chains
+    transition = np.minimum(chains.transition, LEAP / COST_SCALE)  # the library enters any state at that cost
+    lost: List[float] = []
+    for k in range(CHANNELS):
+        last = block_ends(len(given), ideal.stride, k)
+        seen = wanted[looked_at(len(given), ideal.stride, len(last))[:, k], k]
+        every = np.broadcast_to(np.arange(chains.mean.shape[1]), chains.mean.shape)
+        emission = chains.emission(np.repeat(seen[:, None], CHANNELS, axis=1), every)[:, k]
+        terms = (emission, transition[k], chains.initial[k])
+        lost.append(float(path_cost(taken[last, k], *terms) - path_cost(viterbi(*terms), *terms)) / len(last))
+    return np.array([lost])

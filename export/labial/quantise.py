@@ -15,10 +15,13 @@ from labial.fixed import (
     POSITION_MAX,
     POSITION_SCALE,
     PULL_MAX,
+    STIFFNESS_MAX,
     WEIGHT_MIN,
     WEIGHT_SUM_MAX,
     gain,
+    share_code,
     weight_code,
+    weight_code_below,
     weight_value,
 )
 from labial.labels import without_redundant
@@ -26,13 +29,13 @@ from labial.model import Model
 from labial.phonesets import aliases_for
 
 #: Version of the tables' meaning.
-FORMAT = 2
+FORMAT = 3
 
 #: The library's limits.
 LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
 
 #: Predecessors that are kept for each state by default.
-DEFAULT_PREDECESSORS = 8
+DEFAULT_PREDECESSORS = 4
 
 #: Steps after which the states of a chain are taken to be as frequent as in the long run.
 STATIONARY_STEPS = 2000
@@ -83,17 +86,18 @@ class ExportedModel:
     emission_cost: np.ndarray  #: (13, Q)
     initial: np.ndarray  #: (13, Q)
     state_mean: np.ndarray  #: (13, Q, 3)
-    state_weight: np.ndarray  #: (13, Q, 3) codes
-    state_anchor: np.ndarray  #: (13, Q) codes
+    state_hold: np.ndarray  #: (13, Q) codes of static's and the anchor's weight together
+    state_share: np.ndarray  #: (13, Q) codes of the anchor's share of it
+    state_weight: np.ndarray  #: (13, Q, 2) codes of a quarter of delta's and of delta-delta's weight
     search_stride: int
-    edges: np.ndarray  #: (13, Q, K), 4 * predecessor | cost << 8
+    edges: np.ndarray  #: (13, Q, K), predecessor | cost << 8
 
     def dense_transitions(self) -> np.ndarray:
         """(13, Q, Q) costs [from, to], inf where there is no edge."""
         states = self.edges.shape[1]
         dense = np.full((CHANNELS, states, states), np.inf)
         channel, to, _ = np.indices(self.edges.shape)
-        np.minimum.at(dense, (channel, (self.edges & 255) >> 2, to), self.edges >> 8)
+        np.minimum.at(dense, (channel, self.edges & 255, to), self.edges >> 8)
         return dense
 
 
@@ -114,7 +118,10 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
-    weights, anchors = _weights(model)
+    state_mean = _positions(
+        model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
+    )
+    hold, weights = state_weights(model, state_mean)
     aliases = aliases_for(model.kind, model.phonemes, model.aliases)
     names = without_redundant({**aliases, **{label: label for label in model.phonemes}})
     return ExportedModel(
@@ -155,11 +162,10 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         emission_gain=gain(np.sqrt(model.decode_variance) * POSITION_SCALE),
         emission_cost=_costs(-0.5 * np.log(model.decode_variance), 255),
         initial=_costs(model.log_initial, 255),
-        state_mean=_positions(
-            model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
-        ),
+        state_mean=state_mean,
+        state_hold=hold,
+        state_share=share_code(model.state_anchor / (model.state_precision[..., 0] + model.state_anchor)),
         state_weight=weights,
-        state_anchor=anchors,
         search_stride=model.search_stride,
         edges=_transitions(model, predecessors),
     )
@@ -270,10 +276,10 @@ def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
 
 def _transitions(model: Model, predecessors: int) -> np.ndarray:
     """Edges (13, Q, K): for each state the predecessors that it is entered from most often, itself among them, in
-    ascending order. K is a multiple of four; where there are fewer the last one is repeated."""
+    ascending order. Where there are fewer the last one is repeated."""
     states = model.log_initial.shape[1]
     kept_count = min(predecessors, states)
-    edges = np.zeros((CHANNELS, states, -(-kept_count // 4) * 4), dtype=np.int64)
+    edges = np.zeros((CHANNELS, states, kept_count), dtype=np.int64)
     for k in range(CHANNELS):
         cost = np.minimum(np.rint(-COST_SCALE * model.log_transition[k]), 1e9)
         usage = _stationary(model.log_transition[k])[:, None] * np.exp(model.log_transition[k])
@@ -282,8 +288,8 @@ def _transitions(model: Model, predecessors: int) -> np.ndarray:
             kept = [int(p) for p in order[:kept_count] if cost[p, q] <= 255 or p == q]
             if q not in kept:
                 kept = kept[: kept_count - 1] + [q]
-            kept = sorted(kept) + [max(kept)] * (edges.shape[2] - len(kept))
-            edges[k, q] = [4 * p | int(min(cost[p, q], 255)) << 8 for p in kept]
+            kept = sorted(kept) + [max(kept)] * (kept_count - len(kept))
+            edges[k, q] = [p | int(min(cost[p, q], 255)) << 8 for p in kept]
     return edges
 
 
@@ -297,33 +303,47 @@ def _stationary(log_transition: np.ndarray) -> np.ndarray:
     return share
 
 
-def _weights(model: Model) -> Tuple[np.ndarray, np.ndarray]:
-    """Codes of the states' weights (13, Q, 3) and anchors (13, Q).
+def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Codes of what holds the states (13, Q) and of their moving weights (13, Q, 2), a quarter of delta's and
+    delta-delta's; `state_mean` (13, Q, 3) in positions.
 
-    Each channel's precisions are scaled as high as equation 3's bounds let them; what would then hold a frame by less
-    than WEIGHT_MIN is raised to it.
+    Each channel's precisions are scaled as high as the largest diagonal element allows; states that then exceed another
+    of equation 3's bounds are brought within it, one by one.
     """
-    weights = np.zeros(model.state_precision.shape, dtype=np.int64)
-    anchors = np.zeros(model.state_anchor.shape, dtype=np.int64)
+    hold = np.zeros(model.state_anchor.shape, dtype=np.int64)
+    moving = np.zeros((*hold.shape, 2), dtype=np.int64)
     for k in range(CHANNELS):
-        precision = model.state_precision[k] * np.array([1.0, 0.25, 1.0])
-        mean = np.abs(np.rint(model.state_mean[k] * POSITION_SCALE))
-        scale = 1.0 / _fill(precision, model.state_anchor[k], mean)
+        held = model.state_precision[k, :, 0] + model.state_anchor[k]
+        tied = model.state_precision[k, :, 1:] * np.array([0.25, 1.0])
+        scale = WEIGHT_SUM_MAX / _diagonal(held, tied)
         while True:
-            weights[k] = weight_code(precision * scale)
-            anchors[k] = weight_code(model.state_anchor[k] * scale)
-            short = weight_value(weights[k, :, 0]) + weight_value(anchors[k]) < WEIGHT_MIN
-            weights[k, short, 0] = weight_code(np.array(WEIGHT_MIN))
-            if _fill(weight_value(weights[k]), weight_value(anchors[k]), mean) <= 1.0:
+            hold[k] = np.maximum(weight_code(held * scale), weight_code(np.array(WEIGHT_MIN)))
+            moving[k] = _within(weight_value(hold[k]), weight_code(tied * scale), np.abs(state_mean[k, :, 1:]))
+            if _diagonal(weight_value(hold[k]), weight_value(moving[k])) <= WEIGHT_SUM_MAX:
                 break
             scale *= 0.99
-    return weights, anchors
+    return hold, moving
 
 
-def _fill(weights: np.ndarray, anchors: np.ndarray, mean: np.ndarray) -> float:
-    """How much of equation 3's bounds a channel's weights (Q, 3) and anchors (Q,) use, the larger of two shares;
-    `mean` (Q, 3) in positions."""
-    held = (weights[:, 0] + anchors).max()
-    diagonal = held + 2 * weights[:, 1].max() + 6 * weights[:, 2].max()
-    pull = held * POSITION_MAX + 4 * (weights * mean)[:, 1].max() + 4 * (weights * mean)[:, 2].max()
-    return max(float(diagonal) / WEIGHT_SUM_MAX, float(pull) / PULL_MAX)
+def _diagonal(hold: np.ndarray, moving: np.ndarray) -> float:
+    """The largest diagonal element that states of these weights (Q,) and (Q, 2) can make together."""
+    return float(hold.max() + 2 * moving[:, 0].max() + 6 * moving[:, 1].max())
+
+
+def _within(hold: np.ndarray, codes: np.ndarray, mean: np.ndarray) -> np.ndarray:
+    """Codes (Q, 2) of moving weights, lowered where a state is too stiff for what holds it, (Q,), delta weighs more
+    than delta-delta, or means (Q, 2), positions, pull too far."""
+    codes = _lowered(codes, STIFFNESS_MAX * hold / np.maximum(weight_value(codes[:, 1]), 1))
+    codes[:, 0] = np.minimum(codes[:, 0], codes[:, 1])
+    pull = weight_value(codes) * mean
+    excess = 4 * pull.max(axis=0).sum() / (PULL_MAX * hold.min())
+    if excess <= 1.0:
+        return codes
+    most = pull.max(axis=0) / excess
+    return _lowered(codes, (most / np.maximum(pull, 1e-9)).min(axis=1))
+
+
+def _lowered(codes: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Codes (Q, 2) of the weights times a share (Q,), where it is below 1."""
+    lower = weight_code_below(weight_value(codes) * np.minimum(share, 1.0)[:, None])
+    return np.where(share[:, None] < 1.0, lower, codes)

@@ -5,18 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from labial import emit
-from labial.faps import FAP_NAMES
+from labial.faps import CHANNELS, FAP_NAMES
 from labial.fixed import WEIGHT_MIN, weight_value
 from labial.loss import Loss
 from labial.model import Model
-from labial.quantise import LIMITS, ExportedModel
-from labial.reference.units import WINDOW
+from labial.quantise import ExportedModel
+from labial.reference.trajectory import WINDOW
 
 
-def workspace_bytes(states: int, stride: int) -> int:
+def workspace_bytes(stride: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
-    searching = 8 * (states + 1) + ((WINDOW - 1) // stride * states + 3) // 4 * 4
-    return max(searching, 60 + 12 * WINDOW) + WINDOW * 2 * 13 + (WINDOW * 2 + 2 * LIMITS["reach"] + 3) // 4 * 4
+    return CHANNELS * (8 * (WINDOW + stride + 1) + 56) + (stride * (28 + 2 * CHANNELS) + 3) // 4 * 4
 
 
 def memory(exported: ExportedModel) -> str:
@@ -25,19 +24,19 @@ def memory(exported: ExportedModel) -> str:
     lines = [f"{'flash, ' + name:<32}{size:>8} bytes" for name, size in tables.items()]
     lines.append(f"{'flash, model':<32}{sum(tables.values()):>8} bytes")
     lines.append(f"{'flash, names, if used':<32}{emit.names_bytes(exported):>8} bytes")
-    lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.edges.shape[1], exported.search_stride):>8} bytes")
+    lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.search_stride):>8} bytes")
     return "\n".join(lines)
 
 
 def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
     """The loss per channel, and what was dropped or held to a limit."""
-    lines = [f"{'quantisation loss, FAP units':<32}{'rms':>8}{'max':>8}{'% of range':>12}{'nats per piece':>15}"]
+    lines = [f"{'quantisation loss, FAP units':<32}{'rms':>8}{'max':>8}{'% of range':>12}{'nats per state':>15}"]
     for k, name in enumerate(FAP_NAMES):
         lines.append(f"{name:<32}{loss.rms[k]:>8.3f}{loss.largest[k]:>8.2f}{loss.share[k]:>12.2f}{loss.path[k]:>15.3f}")
     possible = int(np.isfinite(model.log_transition).sum())
     kept = int(np.isfinite(exported.dense_transitions()).sum())
-    floor = int((weight_value(exported.state_weight[..., 0]) + weight_value(exported.state_anchor) <= WEIGHT_MIN).sum())
-    lines.append(f"transitions kept: {kept} of {possible}; the state paths lose {loss.path.mean():.3f} nats per piece "
-                 "and channel on average")
-    lines.append(f"states held by no more than the least weight: {floor} of {exported.state_anchor.size}")
+    lines.append(f"transitions kept: {kept} of {possible}; the state paths lose {loss.path.mean():.3f} nats per state "
+                 "on average")
+    floor = int((weight_value(exported.state_hold) <= WEIGHT_MIN).sum())
+    lines.append(f"states held by no more than the least weight: {floor} of {exported.state_hold.size}")
     return "\n".join(lines)

@@ -12,7 +12,7 @@ from labial.corpus import resample
 from labial.corpus.episode import Episode
 from labial.errors import LabialError
 from labial.phonesets import PhoneSet
-from labial.reference.stream import frame_counts
+from labial.reference.units import frame_counts
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from labial.evaluate.trajectories import (
     labial_parameters,
 )
 from labial.phonesets import PhoneSet
-from labial.reference.units import pieces
+from labial.reference.published import pieces
 
 #: Lips count as closed below this percentile of the openness of all training frames but silence.
 CLOSED_PERCENTILE = 20.0
@@ -30,6 +30,9 @@ FIRM_PERCENTILE = 50.0
 
 #: A closure is looked for in its segment and this many seconds to both sides.
 CLOSURE_REACH = 0.04
+
+#: Seams are looked for where units meet, short ones taken together until they have so many frames.
+JOINED_FRAMES = 16
 
 #: The viseme classes whose phonemes close the lips, of speech and of laughter; without them there are no closure rates.
 CLOSED_CLASSES = ("bilabial", "nose")
@@ -136,7 +139,7 @@ class Judge:
         """(T - 2,) bool: see :func:`joins`. Methods without units are judged at the same frames."""
         given = item.timeline
         boundary = [self._phone_set.boundary[p] for p in given.phoneme]
-        cut = pieces([int(count) for count in given.length], boundary)
+        cut = pieces([int(count) for count in given.length], boundary, JOINED_FRAMES)
         return joins([piece.begin for piece in cut[1:]], [piece.fade_in for piece in cut[1:]], given.frames)
 
     def _jerk(self, motion: Sequence[np.ndarray]) -> np.ndarray:

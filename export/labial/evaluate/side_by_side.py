@@ -19,8 +19,8 @@ from labial.evaluate.material import timeline
 from labial.evaluate.trajectories import labial_parameters
 from labial.faps import FAP_NUMBERS
 from labial.model import Model, load
-from labial.phones import read_stream
-from labial.reference.stream import synthesise
+from labial.phones import Stream, read_stream
+from labial.reference import published, stream
 from labial.reference.tables import FloatTables
 from labial.see import drawing
 from labial.see.drawing import STYLE, pyplot
@@ -74,18 +74,24 @@ def _kinds(model: Model) -> List[str]:
             for number, boundary in zip(model.phoneme_class, model.boundary)]
 
 
+def _motion(model: Model, given: Stream) -> np.ndarray:
+    """(T, 13) FAP: the published method unit by unit, Labial as the run-time does."""
+    synthesise = published.synthesise if model.method == "paper" else stream.synthesise
+    return synthesise(FloatTables(model), given)
+
+
 def synthesise_all(phones: Path, models: Dict[str, Model]) -> Drawn:
     """The motion of all models, which must have the same phonemes and frame rate."""
     first = next(iter(models.values()))
-    stream = read_stream(phones, first)
+    given = read_stream(phones, first)
     for name, model in models.items():
         if (model.phonemes, model.fps) != (first.phonemes, first.fps):
             raise LabialError(f"{name}: its phonemes or its frame rate are not those of the first model")
-    given = timeline((p for p, _ in stream), (ms for _, ms in stream), first.fps)
+    spans = timeline((p for p, _ in given), (ms for _, ms in given), first.fps)
     return Drawn(
         first.fps,
-        bands(given, first.phonemes, _kinds(first), first.fps),
-        {name: labial_parameters(synthesise(FloatTables(model), stream)) for name, model in models.items()},
+        bands(spans, first.phonemes, _kinds(first), first.fps),
+        {name: labial_parameters(_motion(model, given)) for name, model in models.items()},
         _contact(list(models.values())),
     )
 

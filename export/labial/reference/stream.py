@@ -2,54 +2,67 @@
 
 from __future__ import annotations
 
-from typing import List, Sequence, Tuple
+from typing import Sequence, Tuple
 
 import numpy as np
 
 from labial.errors import LabialError
 from labial.faps import CHANNELS
-from labial.reference import units
+from labial.reference import trajectory
 from labial.reference.shape import targets
 from labial.reference.tables import Tables
-from labial.reference.trajectory import join, solve
+from labial.reference.trajectory import WINDOW
+from labial.reference.units import segments, unit_ends
+from labial.reference.viterbi import LAG
 
 #: Longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
 
 
-def frame_counts(milliseconds: Sequence[int], fps: int) -> List[int]:
-    """Frames of each phoneme; what one leaves over goes to the next, so that they amount to the rounded sum."""
-    counts = []
-    remainder = 500
-    for duration in milliseconds:
-        thousandths = int(duration) * fps + remainder
-        counts.append(thousandths // 1000)
-        remainder = thousandths % 1000
-    return counts
-
-
-def synthesise(tables: Tables, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False,
-               window: int = units.WINDOW) -> np.ndarray:
-    """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
-
-    Decodes piece by piece, as the library does, or with `whole` the utterance at once.
-    """
+def check(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> None:
+    """Raises LabialError for phonemes that the model does not have and durations that no phoneme has."""
     for number, milliseconds in phonemes:
         if not 0 <= number < len(tables.phonemes):
             raise LabialError(f"phoneme {number}: the model has {len(tables.phonemes)}")
         if not 0 <= milliseconds <= DURATION_MAX:
             raise LabialError(f"phoneme {tables.phonemes[number]}: {milliseconds} ms is not within 0 .. {DURATION_MAX}")
-    numbers = [number for number, _ in phonemes]
-    durations = [milliseconds for _, milliseconds in phonemes]
-    frames = frame_counts(durations, tables.fps)
-    if not sum(frames):
+
+
+def synthesise(
+    tables: Tables,
+    phonemes: Sequence[Tuple[int, int]],
+    *,
+    whole: bool = False,
+    window: int = WINDOW,
+    lag: int = LAG,
+) -> np.ndarray:
+    """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
+
+    `window` is how many frames beyond those delivered the solution knows, or with `whole` all of them; `lag` how many
+    blocks later the search decides.
+    """
+    target, ends = aims(tables, phonemes)
+    return solution(tables, target, ends, whole=whole, window=window, lag=lag)
+
+
+def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> Tuple[np.ndarray, np.ndarray]:
+    """Targets (T, 13) in the tables' positions and the frames (T,) that end units, of pairs of phoneme number and
+    milliseconds."""
+    check(tables, phonemes)
+    held = segments(phonemes, tables.silence, tables.ahead, tables.fps)
+    target = targets(tables, [item.phoneme for item in held], [item.milliseconds for item in held],
+                     [item.frames for item in held])
+    return target, unit_ends(held, tables.boundary)
+
+
+def solution(
+    tables: Tables, target: np.ndarray, ends: np.ndarray, *, whole: bool = False, window: int = WINDOW, lag: int = LAG
+) -> np.ndarray:
+    """(T, 13) float64, FAP units: the motion for targets (T, 13) in the tables' positions; `ends` (T,) are the frames
+    that end a unit, the last one among them."""
+    if not len(target):
         return np.zeros((0, CHANNELS))
-    boundary = [bool(tables.boundary[number]) for number in numbers]
-    cut = units.whole(frames) if whole else units.pieces(frames, boundary, window)
-    target = targets(tables, numbers, durations, frames)
-    motion = []
-    for piece in cut:
-        positions = target[piece.begin : piece.end]
-        path = tables.search(positions)
-        motion.append(solve(tables.equation(path, positions)))
-    return join(cut, motion)
+    terms = tables.equation(tables.search(target, ends, lag), target)
+    if whole:
+        return trajectory.solve_whole(terms)
+    return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window))

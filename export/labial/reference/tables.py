@@ -12,13 +12,24 @@ from typing import Union
 import numpy as np
 
 from labial.faps import CHANNELS
-from labial.fixed import BEAM, DURATION_Z_MAX, EMISSION_Z_MAX, LEAP, POSITION_MAX, rounded_shift, weight_value, z_cost
+from labial.fixed import (
+    DURATION_Z_MAX,
+    EMISSION_Z_MAX,
+    LEAP,
+    POSITION_MAX,
+    rounded_shift,
+    share_value,
+    weight_value,
+    z_cost,
+)
 from labial.model import Model
 from labial.quantise import ExportedModel
-from labial.reference.viterbi import decode, normal_costs
+from labial.reference.viterbi import LAG, Chains, decode, normal_chains
 
 #: Durations farther than this many standard deviations from a component's mean change its shape no more.
 SLOPE_LIMIT = 3.0
+
+_CHANNEL = np.arange(CHANNELS)
 
 
 @dataclass(frozen=True)
@@ -45,9 +56,9 @@ class FloatTables:
         self.boundary = np.asarray(model.boundary, dtype=bool)
         self.viseme_class = np.asarray(model.phoneme_class)
         self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
+        self.ahead = max(int(self.lags[-1]), 0) if len(self.lags) else 0
         self.stride = model.search_stride
-        self.initial = -np.asarray(model.log_initial)
-        self.transition = -np.asarray(model.log_transition)
+        self.chains = normal_chains(model.decode_mean, model.decode_variance, model.log_transition, model.log_initial)
         self._first = model.first_component()
         self._pair = {tuple(key): row for row, key in enumerate(np.asarray(model.pair_key).tolist())}
 
@@ -79,21 +90,17 @@ class FloatTables:
         taps = np.arange(neighbours.shape[1])
         return np.maximum(shapes + self.model.kernel[neighbours, taps].sum(axis=1), self.model.floor[labels])
 
-    def emission(self, targets: np.ndarray) -> np.ndarray:
-        """(T, 13, Q) cost of every state for the targets."""
-        return normal_costs(targets, self.model.decode_mean, self.model.decode_variance)
-
-    def search(self, targets: np.ndarray) -> np.ndarray:
-        """(T, 13) int64: the state path for targets (T, 13)."""
-        return decode(self.emission, targets, self.transition, self.initial, self.stride)
+    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG) -> np.ndarray:
+        """(T, 13) int64: the state path for targets (T, 13), given the frames (T,) that end units."""
+        return decode(self.chains, [targets], [ends], self.stride, lag=lag)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray) -> Equation:
         """Equation 3's terms for `path` (T, 13)."""
-        channel = np.arange(CHANNELS)
+        own = _CHANNEL, path
         return Equation(
-            weight=self.model.state_precision[channel, path],
-            mean=self.model.state_mean[channel, path],
-            anchor=self.model.state_anchor[channel, path],
+            weight=self.model.state_precision[own],
+            mean=self.model.state_mean[own],
+            anchor=self.model.state_anchor[own],
             target=targets,
         )
 
@@ -117,9 +124,10 @@ class ExportedTables:
         self.viseme_class = exported.viseme_class
         taps = exported.kernels.shape[1]
         self.lags = (np.arange(taps) - exported.kernel_behind) * exported.kernel_stride
+        self.ahead = max(int(self.lags[-1]), 0) if taps else 0
         self.stride = exported.search_stride
-        self.initial = exported.initial.astype(np.float64)
-        self.transition = exported.dense_transitions()
+        self.chains = Chains(exported.emission_mean, exported.dense_transitions(), exported.initial, LEAP,
+                             self.emission)
 
     def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
         """As :meth:`FloatTables.select`, in positions."""
@@ -158,27 +166,26 @@ class ExportedTables:
         held = np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
         return np.maximum(held, model.floors[model.floor[labels]])
 
-    def emission(self, targets: np.ndarray) -> np.ndarray:
-        """As :meth:`FloatTables.emission`, in 1/32 nat."""
-        model = self.exported
-        distance = np.abs(targets[:, :, None] - model.emission_mean)
-        z = np.minimum((distance * model.emission_gain) >> 12, EMISSION_Z_MAX)
-        return (z_cost(z) + model.emission_cost).astype(np.float64)
+    def emission(self, targets: np.ndarray, states: np.ndarray) -> np.ndarray:
+        """(..., 13, W) costs of states (..., 13, W) for targets (..., 13), in 1/32 nat."""
+        model, own = self.exported, (_CHANNEL[:, None], states)
+        distance = np.abs(targets[..., None] - model.emission_mean[own])
+        z = np.minimum((distance * model.emission_gain[own]) >> 12, EMISSION_Z_MAX)
+        return z_cost(z) + model.emission_cost[own]
 
-    def search(self, targets: np.ndarray) -> np.ndarray:
-        """As :meth:`FloatTables.search`; states far from the target are passed over."""
-        return decode(self.emission, targets, self.transition, self.initial, self.stride, beam=BEAM, leap=LEAP)
+    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG) -> np.ndarray:
+        """As :meth:`FloatTables.search`."""
+        return decode(self.chains, [targets], [ends], self.stride, lag=lag)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray) -> Equation:
         """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""
-        model = self.exported
-        channel = np.arange(CHANNELS)
-        weight = weight_value(model.state_weight[channel, path]).astype(np.float64)
-        weight[..., 1] *= 4.0  # the tables hold a quarter of delta's precision
+        model, own = self.exported, (_CHANNEL, path)
+        hold, share = weight_value(model.state_hold[own]), share_value(model.state_share[own]) / 256.0
+        moving = weight_value(model.state_weight[own]) * np.array([4, 1])  # the tables hold a quarter of delta's
         return Equation(
-            weight=weight,
-            mean=model.state_mean[channel, path] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
-            anchor=weight_value(model.state_anchor[channel, path]).astype(np.float64),
+            weight=np.concatenate([(hold * (1.0 - share))[..., None], moving], axis=-1),
+            mean=model.state_mean[own] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
+            anchor=hold * share,
             target=self.to_fap(targets),
         )
 

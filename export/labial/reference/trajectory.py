@@ -1,75 +1,97 @@
-"""States to motion: equation 3 of the paper, with anchors, and the joining of units (``lib/trajectory.c``)."""
+"""States to motion: equation 3 of the paper, with anchors, as a factorisation that runs on (``lib/trajectory.c``).
+
+The matrix W' U^-1 W + A is pentadiagonal and, but for what holds the frames, static weights and anchors, its rows sum
+to zero: constants have neither delta nor delta-delta. So it is factored as L D L' by way of its row sums, and each
+frame continues those beyond it, drawn by a share of its own towards what it would be if they all equalled it.
+"""
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Tuple
 
 import numpy as np
 
+from labial.faps import CHANNELS
 from labial.reference.tables import Equation
-from labial.reference.units import Piece
+
+#: The library's default of LABIAL_WINDOW: frames that are known beyond those that are delivered.
+WINDOW = 4
 
 
-def solve(terms: Equation) -> np.ndarray:
-    """(T, 13) trajectories m that solve (W' U^-1 W + A) m = W' U^-1 mu + A x, per channel.
+def _next(values: np.ndarray) -> np.ndarray:
+    """Each frame's successor, 0 behind the last."""
+    return np.concatenate([values[1:], np.zeros_like(values[:1])])
+
+
+def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(T, 13) each: `settled`, rho and kappa of the frames.
+
+    `settled` is the frame's value if all beyond it equalled it. With those beyond given it is
+    m[t] = m[t+1] + rho[t] (settled[t] - m[t+1]) + kappa[t] (m[t+1] - m[t+2]).
+    """
+    weight = terms.weight.copy()
+    weight[0, :, 1:] = 0.0  # rows whose delta window would leave the stream
+    weight[-1, :, 1:] = 0.0
+    delta, bend = weight[..., 1] / 4.0, weight[..., 2]
+    hold = weight[..., 0] + terms.anchor
+    aim = (weight[..., 0] * terms.mean[..., 0] + terms.anchor * terms.target) / hold
+    turn, pull = bend * terms.mean[..., 2], 2.0 * delta * terms.mean[..., 1]
+    pushed = -2.0 * turn + _next(turn - pull)
+    pushed[1:] += (turn + pull)[:-1]
+    across = _next(bend - delta)  # the element two beside the diagonal, c
+    along = 2.0 * (delta + _next(delta))
+    settled, rho, kappa = (np.zeros_like(hold) for _ in range(3))
+    zero = np.zeros(hold.shape[1:])
+    k1 = k2 = carried = bent = before1 = before2 = zero  # k[t-1], k[t-2], rho F and kappa F of t-1, settled of t-1, t-2
+    for t in range(len(hold)):
+        held = hold[t] + carried + 2.0 * k1 - k2
+        tied = along[t] + 2.0 * k1 + bent
+        pivot = held + tied + across[t]
+        rho[t], kappa[t] = held / pivot, across[t] / pivot
+        drawn = hold[t] * (aim[t] - before1) + k2 * (before1 - before2) + pushed[t]
+        settled[t] = before1 + drawn / held
+        k1, k2, carried, bent = rho[t] * across[t], k1, rho[t] * tied, kappa[t] * tied
+        before1, before2 = settled[t], before1
+    return settled, rho, kappa
+
+
+def starts(frames: int, stride: int, window: int = WINDOW) -> np.ndarray:
+    """(T, 13) int64: the frame from which the way back to each frame starts.
+
+    A channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends with frame k. Then
+    the frame before k has all that it is tied to, and k itself where it is the stream's last.
+    """
+    frame = np.arange(frames)[:, None]
+    earliest = frame + window + 1
+    end = earliest + (np.arange(CHANNELS) - earliest) % stride
+    return np.where(end == frames - 1, end, np.minimum(end - 1, frames - 1))
+
+
+def solve(terms: Equation, start: np.ndarray) -> np.ndarray:
+    """(T, 13) trajectories m of equation 3, (W' U^-1 W + A) m = W' U^-1 mu + A x, each frame by a way back of its own,
+    which takes the frames beyond its `start` (T, 13) to equal that one. It is exact where that is the last frame.
 
     W stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame;
-    those whose window would leave the piece are dropped. The matrix is pentadiagonal; it is factored as L D L'.
+    those whose window would leave the stream are dropped.
     """
-    weight, mean = terms.weight.copy(), terms.mean
-    frames = len(weight)
-    weight[0, :, 1:] = 0.0
-    weight[-1, :, 1:] = 0.0
-    static, delta, delta2 = weight[..., 0], weight[..., 1] / 4.0, weight[..., 2]
-    diagonal = static + terms.anchor + 4.0 * delta2
-    diagonal[1:] += delta[:-1] + delta2[:-1]
-    diagonal[:-1] += delta[1:] + delta2[1:]
-    first = np.zeros_like(diagonal)  # [t, t + 1]
-    first[:-1] = -2.0 * (delta2[:-1] + delta2[1:])
-    second = np.zeros_like(diagonal)  # [t, t + 2]
-    second[:-2] = (delta2 - delta)[1:-1]
-    delta_pull, delta2_pull = 2.0 * delta * mean[..., 1], delta2 * mean[..., 2]
-    right = static * mean[..., 0] + terms.anchor * terms.target - 2.0 * delta2_pull
-    right[1:] += delta_pull[:-1] + delta2_pull[:-1]
-    right[:-1] += delta2_pull[1:] - delta_pull[1:]
-    return _solve_pentadiagonal(diagonal, first, second, right) if frames else right
+    settled, rho, kappa = forward(terms)
+    frame = np.arange(len(settled))[:, None]
+    channel = np.arange(settled.shape[1])
+    m = np.take_along_axis(settled, start, axis=0)
+    beyond = m  # m of the frame behind
+    for back in range(int((start - frame).max(initial=0)) - 1, -1, -1):
+        at = np.minimum(frame + back, len(settled) - 1), channel
+        step = m + rho[at] * (settled[at] - m) + kappa[at] * (m - beyond)
+        under_way = frame + back < start
+        m, beyond = np.where(under_way, step, m), np.where(under_way, m, beyond)
+    return m
 
 
-def _solve_pentadiagonal(diagonal: np.ndarray, first: np.ndarray, second: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solves symmetric positive definite pentadiagonal systems, one per column; all arguments are (T, K)."""
-    frames = len(diagonal)
-    pivot, lower1, lower2, solution = (np.zeros_like(right) for _ in range(4))
-    for t in range(frames):
-        pivot[t] = diagonal[t]
-        above = first[t].copy()
-        solution[t] = right[t]
-        if t >= 1:
-            pivot[t] -= lower1[t - 1] ** 2 * pivot[t - 1]
-            above -= lower2[t - 1] * lower1[t - 1] * pivot[t - 1]
-            solution[t] -= lower1[t - 1] * solution[t - 1]
-        if t >= 2:
-            pivot[t] -= lower2[t - 2] ** 2 * pivot[t - 2]
-            solution[t] -= lower2[t - 2] * solution[t - 2]
-        lower1[t] = above / pivot[t]
-        lower2[t] = second[t] / pivot[t]
-    solution /= pivot
-    for t in range(frames - 2, -1, -1):
-        solution[t] -= lower1[t] * solution[t + 1]
-        if t + 2 < frames:
-            solution[t] -= lower2[t] * solution[t + 2]
-    return solution
-
-
-def join(pieces: Sequence[Piece], trajectories: Sequence[np.ndarray]) -> np.ndarray:
-    """(T, 13): the pieces' trajectories laid end to end, cross-faded along 3 s^2 - 2 s^3 where two
-    share frames."""
-    total = pieces[-1].end if pieces else 0
-    result = np.zeros((total, trajectories[0].shape[1] if trajectories else 0))
-    for piece, motion in zip(pieces, trajectories):
-        fade = piece.fade_in
-        s = (np.arange(1, fade + 1) / (fade + 1))[:, None]
-        share = s * s * (3.0 - 2.0 * s)
-        shared = slice(piece.begin, piece.begin + fade)
-        result[shared] += (motion[:fade] - result[shared]) * share
-        result[piece.begin + fade : piece.end] = motion[fade:]
-    return result
+def solve_whole(terms: Equation) -> np.ndarray:
+    """(T, 13) trajectories of equation 3 by one way back over all frames, exactly."""
+    settled, rho, kappa = forward(terms)
+    m = settled.copy()
+    for t in range(len(m) - 2, -1, -1):
+        beyond = m[min(t + 2, len(m) - 1)]
+        m[t] = m[t + 1] + rho[t] * (settled[t] - m[t + 1]) + kappa[t] * (m[t + 1] - beyond)
+    return m

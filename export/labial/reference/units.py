@@ -1,62 +1,63 @@
-"""Phonemes to pieces: the stretches that are decoded at once (section 3 of the method; ``lib/units.c``)."""
+"""Phonemes to frames, pauses cut in two, and where units end (section 3 of the method; ``lib/units.c``)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Sequence
+from typing import List, Sequence, Tuple
 
-#: The library's default limits (``include/labial/labial.h``), frames.
-WINDOW = 40
-PIECE = 16
-OVERLAP = 8
+import numpy as np
+
+#: Milliseconds of a phoneme that the shapes tell apart at most.
+MILLISECONDS_MAX = 65535
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Frames begin .. end - 1, of which the first `fade_in` are shared with the piece before and the last `fade_out`
-    with the piece after."""
+class Segment:
+    """A phoneme as the steps behind see it: its number, milliseconds (capped) and frames."""
 
-    begin: int
-    end: int
-    fade_in: int
-    fade_out: int
+    phoneme: int
+    milliseconds: int
+    frames: int
 
 
-def whole(frames: Sequence[int]) -> List[Piece]:
-    """One piece for the whole utterance."""
-    total = sum(frames)
-    return [Piece(0, total, 0, 0)] if total else []
+def frame_counts(milliseconds: Sequence[int], fps: int) -> List[int]:
+    """Frames of each phoneme; what one leaves over goes to the next, so that they amount to the rounded sum."""
+    counts = []
+    remainder = 500
+    for duration in milliseconds:
+        thousandths = int(duration) * fps + remainder
+        counts.append(thousandths // 1000)
+        remainder = thousandths % 1000
+    return counts
 
 
-def pieces(frames: Sequence[int], boundary: Sequence[bool], window: int = WINDOW) -> List[Piece]:
-    """Cuts phonemes of the given frames into pieces.
+def pause_cut(frames: int, milliseconds: int, ahead: int, fps: int) -> List[Tuple[int, int]]:
+    """Frames and milliseconds of the parts of a pause: a head and a tail of `ahead` frames, where it has more.
 
-    A unit is what lies from one boundary phoneme to the next inclusive; a piece holds as many units as it takes to
-    have PIECE frames, or as fit the `window`. Neighbours share the boundary phoneme, its last OVERLAP frames if it is
-    longer. A unit that does not fit the window is cut, and the parts share OVERLAP frames. Phonemes of no frames are
-    left out. The last phoneme always ends a unit.
+    The kernels reach `ahead` frames into what follows, so that nothing in the head needs to know what ends the pause.
     """
-    spans = []
-    start = 0
-    for count, is_boundary in zip(frames, boundary):
-        if count:
-            spans.append((start, start + count, is_boundary))
-            start += count
-    result: List[Piece] = []
-    begin = fade_in = 0
-    while begin < start:
-        limit = begin + window
-        end, fade_out = limit, OVERLAP
-        for from_frame, to_frame, is_boundary in spans[:-1]:
-            if is_boundary and from_frame >= begin + fade_in and from_frame > begin and to_frame <= limit:
-                end, fade_out = to_frame, min(to_frame - from_frame, (to_frame - begin) // 2, OVERLAP)
-                if end - begin >= PIECE:
-                    break
-        else:
-            if start <= limit:
-                end, fade_out = start, 0
-        result.append(Piece(begin, end, fade_in, fade_out))
-        if not fade_out:
-            break
-        begin, fade_in = end - fade_out, fade_out
+    if not 0 < ahead < frames:
+        return [(frames, milliseconds)]
+    tail = ahead * 1000 // fps
+    return [(frames - ahead, milliseconds - tail), (ahead, tail)]
+
+
+def segments(phonemes: Sequence[Tuple[int, int]], silence: int, ahead: int, fps: int) -> List[Segment]:
+    """The phonemes, pairs of number and milliseconds, that have frames; pauses are cut by :func:`pause_cut`."""
+    result = []
+    for (phoneme, milliseconds), frames in zip(phonemes, frame_counts([ms for _, ms in phonemes], fps)):
+        capped = min(milliseconds, MILLISECONDS_MAX)
+        parts = pause_cut(frames, capped, ahead, fps) if phoneme == silence else [(frames, capped)]
+        result += [Segment(phoneme, ms, count) for count, ms in parts if count]
     return result
+
+
+def unit_ends(held: Sequence[Segment], boundary: np.ndarray) -> np.ndarray:
+    """(T,) bool: the frames that end a unit, the last ones of boundary phonemes, (P,) `boundary`, and of the stream."""
+    ends = np.zeros(sum(item.frames for item in held), dtype=bool)
+    ends[-1:] = True
+    last = -1
+    for item in held:
+        last += item.frames
+        ends[last] |= bool(boundary[item.phoneme])
+    return ends

@@ -1,94 +1,141 @@
-"""Viterbi search for the cheapest state path (section 3 of the paper), for all channels at once."""
+"""The Viterbi search for a state path (section 3 of the paper), decided as the frames come (``lib/viterbi.c``).
+
+Each channel has a state for every `stride` frames, a *block*, and a grid of its own: a block ends with every frame k
+for which k and the channel's number leave the same remainder by `stride`, and with the last frame. So in each tick a
+share of the channels takes a step. A step scores a window of states, those around the one whose mean is nearest to the
+target; states are sorted by mean. The block's state is the best one at once, or, with a lag, the one that the best some
+blocks later, or at the unit's end, comes from. Scores run on, but the end of a unit leaves its best state alone.
+"""
 
 from __future__ import annotations
 
-from typing import Callable
+from dataclasses import dataclass
+from typing import Callable, List, Sequence
 
 import numpy as np
 
+from labial.faps import CHANNELS
+from labial.fixed import COST_SCALE, LEAP, SEARCHED
 
-def viterbi(
-    emission: np.ndarray,
-    transition: np.ndarray,
-    initial: np.ndarray,
-    *,
-    beam: float = np.inf,
-    leap: float = np.inf,
-) -> np.ndarray:
-    """The state path of least total cost.
+#: The library's default of LABIAL_LAG, blocks.
+LAG = 0
 
-    `emission` is (T, ..., Q), the cost of each state in each step; `transition` (..., Q, Q) that of going [from, to];
-    `initial` (..., Q) that of starting. Costs are negative log-probabilities, +inf forbids. Any leading axes
-    (channels) are searched independently, each with its own tables. Returns (T, ...) int64. Ties go to the lower
-    state, and for a step's predecessor to the lower predecessor.
+_CHANNEL = np.arange(CHANNELS)
 
-    Any state can also be entered from the best one of the step before, at the cost `leap`. States whose emission costs
-    more than `beam` above the least of their step are passed over, but for the first step: they can be entered in no
-    other way, and do not count for the best.
+
+@dataclass(frozen=True)
+class Chains:
+    """What the search sees of the 13 channels' hidden Markov models. Costs are negative log-probabilities, inf forbids.
+
+    `emission` gives the costs (..., 13, W) of states (..., 13, W) for targets (..., 13). Any state can be entered from
+    the best one of the step before at the cost `leap`; scores are held to it.
     """
-    emission = np.asarray(emission, dtype=np.float64)
-    steps = len(emission)
-    into = np.ascontiguousarray(np.swapaxes(transition, -1, -2), dtype=np.float64)  # [to, from]
-    path = np.empty(emission.shape[:-1], dtype=np.int64)
-    if steps == 0:
-        return path
-    back = np.empty(emission.shape, dtype=np.int64)
-    passed = emission > emission.min(axis=-1, keepdims=True) + beam
-    passed[0] = False
-    cost = initial + emission[0]
-    for t in range(1, steps):
-        total = into + cost[..., None, :]
-        if leap < np.inf:
-            within = np.where(passed[t - 1], np.inf, cost)
-            best = within.argmin(axis=-1)[..., None]
-            leapt = np.where(np.arange(cost.shape[-1]) == best, within + leap, np.inf)
-            total = np.where(passed[t][..., None], np.inf, total)
-            total = np.minimum(total, leapt[..., None, :])
-        back[t] = total.argmin(axis=-1)
-        cost = np.take_along_axis(total, back[t][..., None], axis=-1)[..., 0] + emission[t]
-    path[-1] = cost.argmin(axis=-1)
-    for t in range(steps - 1, 0, -1):
-        path[t - 1] = np.take_along_axis(back[t], path[t][..., None], axis=-1)[..., 0]
-    return path
+
+    mean: np.ndarray  #: (13, Q) ascending
+    transition: np.ndarray  #: (13, Q, Q) [from, to]
+    initial: np.ndarray  #: (13, Q)
+    leap: float
+    emission: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
-def normal_costs(targets: np.ndarray, mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """(T, 13, Q) cost of every state for targets (T, 13), in nats: -log N of the states' means and variances (13, Q),
-    without the constant."""
-    distance = targets[:, :, None] - mean
-    return 0.5 * (distance**2 / variance + np.log(variance))
+def normal_chains(
+    mean: np.ndarray, variance: np.ndarray, log_transition: np.ndarray, log_initial: np.ndarray
+) -> Chains:
+    """The chains, in nats, of states that are Gaussians of these means and variances (13, Q), but for the constant."""
+
+    def emission(targets: np.ndarray, states: np.ndarray) -> np.ndarray:
+        own = _CHANNEL[:, None], states
+        return 0.5 * ((targets[..., None] - mean[own]) ** 2 / variance[own] + np.log(variance[own]))
+
+    return Chains(mean, -log_transition, -log_initial, LEAP / COST_SCALE, emission)
 
 
-def decode(
-    emission: Callable[[np.ndarray], np.ndarray],
-    targets: np.ndarray,
-    transition: np.ndarray,
-    initial: np.ndarray,
-    stride: int,
-    *,
-    beam: float = np.inf,
-    leap: float = np.inf,
-) -> np.ndarray:
-    """(T, 13) int64: the state path for targets (T, 13), a state for every `stride` frames.
+def block_at(frames: int, stride: int) -> np.ndarray:
+    """(T, 13) int64: the block of each frame, per channel."""
+    return np.maximum(-((_CHANNEL % stride - np.arange(frames)[:, None]) // stride), 0)
 
-    Of these the search sees the middle one, or the later of two. `emission` gives the costs (S, 13, Q) of some targets
-    (S, 13); the other arguments are those of :func:`viterbi`.
+
+def block_ends(frames: int, stride: int, channel: int) -> np.ndarray:
+    """(B,) int64: the last frames of a channel's blocks."""
+    return np.append(np.arange(channel % stride, frames - 1, stride), frames - 1)
+
+
+def looked_at(frames: int, stride: int, blocks: int) -> np.ndarray:
+    """(B, 13) int64: the frames whose targets the search sees: the middle ones of whole blocks, or the later of two."""
+    end = _CHANNEL % stride + stride * np.arange(blocks)[:, None]
+    return np.clip(end - stride + 1 + stride // 2, 0, frames - 1)
+
+
+def window(position: np.ndarray, mean: np.ndarray, width: int) -> np.ndarray:
+    """(..., 13) int64: the first of the `width` states that are scored for targets (..., 13), given means (13, Q)."""
+    states = mean.shape[1]
+    above = (mean < position[..., None]).sum(axis=-1)
+    upper = mean[_CHANNEL, np.minimum(above, states - 1)]
+    lower = mean[_CHANNEL, np.maximum(above - 1, 0)]
+    is_upper = (above < states) & ((above == 0) | (upper - position < position - lower))
+    return np.clip(np.where(is_upper, above, above - 1) - width // 2, 0, states - width)
+
+
+def search(chains: Chains, position: np.ndarray, closed: np.ndarray, *, lag: int = LAG,
+           searched: int = SEARCHED) -> np.ndarray:
+    """(B, N, 13) int64: the states of B blocks of N utterances, for the targets (B, N, 13) that are looked at.
+
+    `closed` (B, N, 13) says which blocks end a unit. Of the edges into a state the least wins, the first of equals, a
+    leap before all; of states the least, the first of equals.
     """
-    seen = targets[looked_at(len(targets), stride)]
-    path = viterbi(emission(seen), transition, initial, beam=beam, leap=leap)
-    return np.repeat(path, stride, axis=0)[: len(targets)]
+    width = min(searched, chains.mean.shape[1])
+    rank = np.arange(width)
+    first = window(position, chains.mean, width)
+    winner = np.zeros(position.shape, dtype=np.int64)  # its place in the window
+    back = np.zeros((*position.shape, width), dtype=np.int64)  # place in the window of the block before
+    score = state = None
+    for b in range(len(position)):
+        before, state = state, first[b][..., None] + rank
+        if b == 0:
+            enter = chains.initial[_CHANNEL[:, None], state]
+        else:
+            edges = chains.transition[_CHANNEL[:, None, None], before[..., :, None], state[..., None, :]]
+            through = score[..., :, None] + edges
+            origin = through.argmin(axis=-2)
+            least = np.take_along_axis(through, origin[..., None, :], axis=-2)[..., 0, :]
+            leaps = least >= chains.leap
+            back[b] = np.where(leaps, winner[b - 1][..., None], origin)
+            enter = np.where(leaps, chains.leap, least)
+        total = enter + chains.emission(position[b], state)
+        winner[b] = total.argmin(axis=-1)
+        score = np.minimum(total - total.min(axis=-1, keepdims=True), chains.leap)
+        score[closed[b][..., None] & (rank != winner[b][..., None])] = chains.leap
+    return first + _traced(winner, back, lag)
 
 
-def looked_at(frames: int, stride: int) -> np.ndarray:
-    """(S,) the frames, of `frames`, whose targets the search sees."""
-    return np.minimum(np.arange(0, frames, stride) + stride // 2, frames - 1)
+def _traced(winner: np.ndarray, back: np.ndarray, lag: int) -> np.ndarray:
+    """(B, N, 13): the places of blocks from which the winner `lag` blocks later comes, or the last one. A unit's end
+    leaves its winner alone, so that later ones all come from it."""
+    if not lag:
+        return winner
+    result = np.empty_like(winner)
+    for b in range(len(winner)):
+        last = min(b + lag, len(winner) - 1)
+        place = winner[last]
+        for later in range(last, b, -1):
+            place = np.take_along_axis(back[later], place[..., None], axis=-1)[..., 0]
+        result[b] = place
+    return result
 
 
-def path_cost(path: np.ndarray, emission: np.ndarray, transition: np.ndarray, initial: np.ndarray) -> np.ndarray:
-    """(...) total cost of a path (T, ...) under the tables of :func:`viterbi`."""
-    frames = len(path)
-    index = tuple(np.indices(path.shape[1:]))
-    cost = initial[index + (path[0],)] + emission[(0,) + index + (path[0],)]
-    for t in range(1, frames):
-        cost = cost + transition[index + (path[t - 1], path[t])] + emission[(t,) + index + (path[t],)]
-    return cost
+def decode(chains: Chains, targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], stride: int, *, lag: int = LAG,
+           searched: int = SEARCHED) -> List[np.ndarray]:
+    """(T, 13) int64 each: the state paths of utterances, given their targets (T, 13) and which frames (T,) end units.
+
+    Every utterance has at least one frame, the last of which ends a unit.
+    """
+    number = [block_at(len(target), stride) for target in targets]
+    blocks = max(int(item.max()) for item in number) + 1
+    position = np.stack(
+        [np.take_along_axis(target, looked_at(len(target), stride, blocks), axis=0) for target in targets], axis=1
+    )
+    closed = np.zeros(position.shape, dtype=bool)
+    for i, (end, item) in enumerate(zip(ends, number)):
+        closed[item[np.flatnonzero(end)], i, _CHANNEL] = True
+    path = search(chains, position, closed, lag=lag, searched=searched)
+    return [np.take_along_axis(path[:, i], item, axis=0) for i, item in enumerate(number)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Iterable, List, Tuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from labial.corpus import resample
 from labial.corpus.episode import Episode
 from labial.errors import LabialError
 from labial.phonesets import PhoneSet
+from labial.reference.units import pause_cut
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,29 @@ def sequences(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[
     if not result:
         raise LabialError("the corpus holds no episode that is long enough to train on")
     return result
+
+
+def with_pauses_cut(item: Sequence, silence: int, ahead: int, fps: int) -> Sequence:
+    """The sequence with its pauses cut as the run-time does with kernels that reach `ahead` frames into what follows.
+
+    The apex stays with the part that it lies in; that of the other part is its middle.
+    """
+    rows: List[Tuple[int, float, int, int]] = []
+    begin = 0
+    for phoneme, duration, length, apex in zip(item.phoneme, item.duration, item.length, item.apex):
+        parts = pause_cut(int(length), round(1000 * duration), ahead, fps) if phoneme == silence else []
+        for frames, milliseconds in parts if len(parts) > 1 else [(int(length), 1000 * duration)]:
+            middle = begin + frames // 2
+            rows.append((phoneme, milliseconds / 1000.0, frames, apex if begin <= apex < begin + frames else middle))
+            begin += frames
+    phonemes, durations, lengths, apexes = zip(*rows)
+    return replace(
+        item,
+        phoneme=np.array(phonemes, dtype=np.int64),
+        duration=np.array(durations, dtype=np.float64),
+        length=np.array(lengths, dtype=np.int64),
+        apex=np.array(apexes, dtype=np.int64),
+    )
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ the decoded paths too: smooth targets take far fewer of them than people do, so 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import List, Tuple
 from typing import Sequence as SequenceOf
-from typing import Tuple
 
 import numpy as np
 
@@ -23,8 +23,8 @@ from labial.train.codebook import VARIANCE_FLOOR, Codebook, features, transition
 #: count as this many frames.
 PRIOR_FRAMES = 20.0
 
-#: Largest diagonal element of equation 3's matrix over the least of static + anchor, per channel: half the range that
-#: the device's weights carry.
+#: Largest diagonal element of equation 3's matrix over the least of static + anchor, per channel. The device's weights
+#: carry WEIGHT_SUM_MAX / WEIGHT_MIN, a little more.
 DYNAMIC_RANGE = 2000.0
 
 #: Frames that share a state of the decoded path. Targets move slowly enough that more states change nothing.
@@ -72,12 +72,11 @@ def codebook_tables(codebooks: SequenceOf[Codebook], stride: int) -> StateTables
     )
 
 
-def decode(target: np.ndarray, tables: StateTables) -> np.ndarray:
-    """(T, 13) int64: the state path of every channel for a target (T, 13), over the whole utterance."""
-    return viterbi.decode(
-        lambda seen: viterbi.normal_costs(seen, tables.decode_mean, tables.decode_variance),
-        target, -tables.log_transition, -tables.log_initial, tables.stride,
-    )
+def decode(targets: SequenceOf[np.ndarray], ends: SequenceOf[np.ndarray], tables: StateTables) -> List[np.ndarray]:
+    """(T, 13) int64 each: the state paths of utterances as the run-time decides on them, for targets (T, 13) and the
+    frames (T,) that end units."""
+    hidden = tables.decode_mean, tables.decode_variance, tables.log_transition, tables.log_initial
+    return viterbi.decode(viterbi.normal_chains(*hidden), targets, ends, tables.stride)
 
 
 def _state_moments(values: np.ndarray, path: np.ndarray, prior_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -123,11 +122,12 @@ def match_states(
         state_mean=mean,
         state_precision=precision,
         state_anchor=anchor,
-        # A path repeats each state for its stride, so that every stride-th frame is the chain that was decoded; human
+        # A path repeats each state throughout its block, so that the blocks' ends are the chain that was decoded; human
         # paths change in every frame, and codebooks count all pairs that lie a stride apart.
-        log_transition=np.stack(
-            [transitions([item[:: tables.stride, channel] for item in paths], size) for channel in range(CHANNELS)]
-        ),
+        log_transition=np.stack([
+            transitions([item[viterbi.block_ends(len(item), tables.stride, k), k] for item in paths], size)
+            for k in range(CHANNELS)
+        ]),
         log_initial=tables.log_initial,
         stride=tables.stride,
     )

@@ -19,12 +19,15 @@ from labial.train.closures import floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
-from labial.train.kernels import LOOK_AHEAD, REACH, Kernels, Penalties, add_kernels, fit_kernels
+from labial.train.kernels import LOOK_AHEAD, REACH, Kernels, Penalties, add_kernels, fit_kernels, lags
 from labial.train.selection import Choice, choose, shapes
-from labial.train.sequences import Occurrences, Sequence, occurrences, sequences
+from labial.train.sequences import Occurrences, Sequence, occurrences, sequences, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
 from labial.train.states import SEARCH_STRIDE, Scales, StateTables, codebook_tables, decode, match_states
 from labial.train.workers import Workers
+
+#: Utterances whose paths are decoded at once.
+BATCH = 40
 
 
 @dataclass(frozen=True)
@@ -71,8 +74,16 @@ def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int, Division]
     return train_channel(*task)
 
 
-def _decode(task: Tuple[np.ndarray, StateTables]) -> np.ndarray:
+def _decode(task: Tuple[List[np.ndarray], List[np.ndarray], StateTables]) -> List[np.ndarray]:
     return decode(*task)
+
+
+def _unit_ends(item: Sequence, boundary: np.ndarray) -> np.ndarray:
+    """(T,) bool: the frames that end a unit, the last ones of boundary phonemes and of the utterance."""
+    ends = np.zeros(len(item.frames), dtype=bool)
+    ends[np.cumsum(item.length)[boundary[item.phoneme]] - 1] = True
+    ends[-1] = True
+    return ends
 
 
 def _unit_starts(item: Sequence, boundary: np.ndarray) -> np.ndarray:
@@ -166,6 +177,9 @@ def train(
     stride = search_stride if extended else 1
 
     material = sequences(corpus, phone_set, fps)
+    if extended:
+        ahead = int(lags(fps, look_ahead)[-1])
+        material = [with_pauses_cut(item, silence, ahead, fps) for item in material]
     items = occurrences(material, phone_set)
     counts = np.bincount(items.phoneme, minlength=phonemes)
     plan = back_off(counts, phone_set)
@@ -190,7 +204,10 @@ def train(
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
             pair_key, pair_shape = fitted.pair_key, fitted.pair_shape
             targets = _targets(choice, fitted, material, silence, floor)
-            paths = workers.run("matched states", _decode, [(target, states) for target in targets])
+            ends = [_unit_ends(item, boundary) for item in material]
+            batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
+            tasks = [(targets[batch], ends[batch], states) for batch in batches]
+            paths = [path for batch in workers.run("matched states", _decode, tasks) for path in batch]
             states = match_states(states, paths, targets, [item.frames for item in material], scales)
 
     everything = np.concatenate([item.frames for item in material])

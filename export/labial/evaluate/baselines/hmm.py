@@ -25,8 +25,8 @@ from labial.evaluate.material import Timeline, Utterance
 from labial.evaluate.training import Training, choose
 from labial.faps import CHANNELS
 from labial.phonesets import PhoneSet
+from labial.reference.published import solve
 from labial.reference.tables import Equation
-from labial.reference.trajectory import solve
 
 #: States per phoneme, and frames that a level's parent counts for, that are tried.
 STATES = (3, 5)

@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Sequence
+from typing import Callable, List, Sequence
 
 import numpy as np
 
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
 from labial.native import NativeModel
+from labial.phones import Stream
 from labial.quantise import ExportedModel, quantise
-from labial.reference.stream import synthesise
+from labial.reference import published, stream
 from labial.reference.tables import FloatTables
 
 
 @dataclass(frozen=True)
 class Float:
-    """A model in the float64 reference, unit by unit."""
+    """A model in the float64 reference, by `synthesise`: as the run-time does, or as published."""
 
     tables: FloatTables
+    synthesise: Callable[[FloatTables, Stream], np.ndarray]
 
     def predict(self, timeline: Timeline) -> np.ndarray:
         """(T, 13)."""
-        return synthesise(self.tables, timeline.stream)
+        return self.synthesise(self.tables, timeline.stream)
 
 
 @dataclass(frozen=True)
@@ -43,13 +45,13 @@ class Device:
 
 
 def fit_paper(training: Training) -> Float:
-    """The published method."""
-    return Float(FloatTables(training.model("paper")))
+    """The published method, unit by unit."""
+    return Float(FloatTables(training.model("paper")), published.synthesise)
 
 
 def fit_labial(training: Training) -> Float:
     """Labial, in floating point."""
-    return Float(FloatTables(training.model("labial")))
+    return Float(FloatTables(training.model("labial")), stream.synthesise)
 
 
 def fit_device(training: Training) -> Device:
