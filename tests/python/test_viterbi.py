@@ -58,7 +58,7 @@ def likeliest(emission: np.ndarray, transition: np.ndarray, initial: np.ndarray)
 
 
 def test_a_long_lag_agrees_with_hmmlearn() -> None:
-    """Another program's search over a long sequence: catches a recursion or a trace that goes wrong far from its end."""
+    """Another program's search over a long sequence: catches a recursion or a trace that errs far from its end."""
     models = [hidden_markov_model(seed, 9, 4.0) for seed in (1, 2)]
     assert all(-np.log(item.transmat_).max() < LEAP / 32 for item in models)  # so that nothing needs a leap
     samples = [item.sample(150, random_state=3)[0] for item in models]
@@ -170,7 +170,9 @@ def scalar_search(model: ExportedModel, channel: int, target: np.ndarray, ends: 
     return found
 
 
-@pytest.mark.parametrize(("seed", "states", "lag"), [(0, 12, 0), (1, 30, 0), (2, 50, 0), (3, 50, 3), (4, 20, 2), (5, 5, 1)])
+@pytest.mark.parametrize(
+    ("seed", "states", "lag"), [(0, 12, 0), (1, 30, 0), (2, 50, 0), (3, 50, 3), (4, 20, 2), (5, 5, 1)]
+)
 def test_exported_decisions_are_those_of_the_rules(seed: int, states: int, lag: int) -> None:
     """The library takes the same ones: a tie, a clamp, an edge from outside the window or a grid that differs would
     show. Few states and coarse costs make ties frequent."""
@@ -206,7 +208,7 @@ def test_a_step_by_hand() -> None:
 
 
 def test_every_channel_has_a_grid_of_its_own() -> None:
-    """Channel 4 of stride 3 ends its blocks with the frames 1, 4, 7: the others must take their steps in other ticks."""
+    """Channel 4 of stride 3 ends its blocks with the frames 1, 4, 7; its neighbours take their steps in other ticks."""
     assert block_at(8, 3)[:, 4].tolist() == [0, 0, 1, 1, 1, 2, 2, 2]
     assert block_at(8, 3)[:, 3].tolist() == [0, 1, 1, 1, 2, 2, 2, 3]
     assert block_at(8, 3)[:, 5].tolist() == [0, 0, 0, 1, 1, 1, 2, 2]
