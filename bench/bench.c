@@ -16,7 +16,7 @@ static const bench_input_t speech = BENCH_INPUT(SPEECH);
 static const bench_input_t laughter = BENCH_INPUT(LAUGHTER);
 
 static labial_t stream;
-static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX, 1) / 4];
+static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4];
 
 int main(int argc, char **argv)
 {

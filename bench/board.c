@@ -12,7 +12,7 @@
 static const bench_input_t input = BENCH_INPUT(BENCH_MODEL);
 
 static labial_t stream;
-static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_STATES_MAX, 1) / 4];
+static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4];
 
 static void report(const char *name, uint32_t number)
 {

@@ -11,8 +11,10 @@
 
 typedef char labial_arithmetic_shift_is_required[((-1) >> 1) == -1 ? 1 : -1];
 
-/* Cores whose widest product is 32 x 32 -> 32 bits make a 64-bit product from four small ones. Set by hand to test
- * that both ways give the same bits. */
+typedef char labial_int_of_32_bits_is_required[sizeof(int) >= 4 && sizeof(unsigned) >= 4 ? 1 : -1];
+
+/* Cores whose widest product is 32 x 32 -> 32 bits make wider ones of several. Set by hand to test that both ways give
+ * the same bits. */
 #ifndef LABIAL_NARROW_MULTIPLY
 #if defined(__ARM_ARCH_6M__) || defined(__ARM_ARCH_8M_BASE__)
 #define LABIAL_NARROW_MULTIPLY 1
@@ -21,31 +23,22 @@ typedef char labial_arithmetic_shift_is_required[((-1) >> 1) == -1 ? 1 : -1];
 #endif
 #endif
 
-/* a + b and a - b, modulo 2^32. */
-static inline int32_t labial_add(int32_t a, int32_t b)
-{
-    return (int32_t)((uint32_t)a + (uint32_t)b);
-}
-
-static inline int32_t labial_sub(int32_t a, int32_t b)
-{
-    return (int32_t)((uint32_t)a - (uint32_t)b);
-}
-
-/* a * b / 2^shift, rounded down, modulo 2^32. 16 <= shift <= 31. */
-static inline int32_t labial_mulshift(int32_t a, int32_t b, unsigned shift)
+/* x * f / 2^16, rounded down, for f up to 65536. The result has the size of x. */
+static inline int32_t labial_part16(int32_t x, uint32_t f)
 {
 #if LABIAL_NARROW_MULTIPLY
-    /* a = ah * 2^16 + al with al unsigned, likewise b. No sum overflows: 32767 * 65535 + 65535 < 2^31. */
-    const int32_t al = (int32_t)((uint32_t)a & 0xffffu), bl = (int32_t)((uint32_t)b & 0xffffu);
-    const int32_t ah = a >> 16, bh = b >> 16;
-    const int32_t cross_a = ah * bl + (int32_t)(((uint32_t)al * (uint32_t)bl) >> 16);
-    const int32_t cross_b = al * bh + (int32_t)((uint32_t)cross_a & 0xffffu);
-    const int32_t high = ah * bh + (cross_a >> 16) + (cross_b >> 16);
-    return (int32_t)(((uint32_t)high << (32u - shift)) | (((uint32_t)cross_b & 0xffffu) >> (shift - 16u)));
+    const uint32_t low = ((uint32_t)x & 0xffffu) * f; /* below 2^32 */
+    return (int32_t)((uint32_t)(x >> 16) * f + (low >> 16));
 #else
-    return (int32_t)(uint32_t)(uint64_t)(((int64_t)a * b) >> shift);
+    return (int32_t)(((int64_t)x * (int32_t)f) >> 16);
 #endif
+}
+
+/* x * f / 2^24 for f up to 2^24: the upper 16 bits of f times x, and the lower eight times the upper half of x. Below
+ * the true value by less than two. */
+static inline int32_t labial_part24(int32_t x, uint32_t f)
+{
+    return labial_part16(x, f >> 8) + (((x >> 16) * (int32_t)(f & 255u)) >> 8);
 }
 
 /* The number that an 8-bit minifloat weight stands for, 0 .. 507904. */

@@ -27,45 +27,51 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* weight * |mean|, about LABIAL_PULL_MAX at most. */
-static uint32_t pull(uint32_t weight, int32_t mean)
+static uint32_t smaller(uint32_t a, uint32_t b)
 {
-    const uint32_t distance = (uint32_t)(mean < 0 ? -mean : mean);
-    return (weight >> 4) * distance > LABIAL_PULL_MAX >> 4 ? LABIAL_PULL_MAX : weight * distance;
+    return a < b ? a : b;
 }
 
-/* Every position is in range, every frame is held, and neither a diagonal element nor a right-hand side of equation 3
- * can exceed its limit. */
+/* weight * |mean|, below 2^33 / 4 with any weight within the limits. */
+static uint32_t pull(uint32_t weight, int32_t mean)
+{
+    return weight * (uint32_t)(mean < 0 ? -mean : mean);
+}
+
+/* States are in order and in range, and equation 3 is within the limits that lib/trajectory.c needs. */
 static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel)
 {
-    uint32_t held = 0, delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
+    uint32_t least = UINT32_MAX, most = 0, delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
     unsigned q, i;
     for (q = 0; q < model->state_count; q++) {
         const labial_state_t *state = &channel->states[q];
-        const uint32_t hold = labial_weight(state->weight[0]) + labial_weight(state->anchor);
-        if (!is_position(channel->emissions[q].mean) || hold < LABIAL_WEIGHT_MIN)
+        const uint32_t hold = labial_weight(state->hold), d = labial_weight(state->weight[0]),
+                       dd = labial_weight(state->weight[1]);
+        if (!is_position(channel->emissions[q].mean) ||
+            (q > 0 && channel->emissions[q].mean < channel->emissions[q - 1u].mean))
             return 0;
         for (i = 0; i < 3; i++)
             if (!is_position(state->mean[i]))
                 return 0;
-        held = larger(held, hold);
-        delta = larger(delta, labial_weight(state->weight[1]));
-        delta2 = larger(delta2, labial_weight(state->weight[2]));
-        delta_pull = larger(delta_pull, pull(labial_weight(state->weight[1]), state->mean[1]));
-        delta2_pull = larger(delta2_pull, pull(labial_weight(state->weight[2]), state->mean[2]));
+        if (hold < LABIAL_WEIGHT_MIN || hold > LABIAL_WEIGHT_SUM_MAX || d > dd || dd > LABIAL_STIFFNESS_MAX * hold ||
+            dd > LABIAL_WEIGHT_SUM_MAX / 6)
+            return 0;
+        least = smaller(least, hold);
+        most = larger(most, hold);
+        delta = larger(delta, d);
+        delta2 = larger(delta2, dd);
+        delta_pull = larger(delta_pull, pull(d, state->mean[1]));
+        delta2_pull = larger(delta2_pull, pull(dd, state->mean[2]));
     }
-    return held + 2u * delta + 6u * delta2 <= LABIAL_WEIGHT_SUM_MAX && delta_pull <= LABIAL_PULL_MAX / 4 &&
-           delta2_pull <= LABIAL_PULL_MAX / 4 && held <= LABIAL_PULL_MAX / LABIAL_POSITION_MAX &&
-           held * LABIAL_POSITION_MAX <= LABIAL_PULL_MAX - (4u * delta_pull + 4u * delta2_pull > LABIAL_PULL_MAX
-                                                                ? LABIAL_PULL_MAX
-                                                                : 4u * delta_pull + 4u * delta2_pull);
+    return most + 2u * delta + 6u * delta2 <= LABIAL_WEIGHT_SUM_MAX &&
+           4u * delta_pull + 4u * delta2_pull <= LABIAL_PULL_MAX * least;
 }
 
 static int transitions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
 {
     unsigned i;
     for (i = 0; i < (unsigned)model->state_count * model->predecessors; i++)
-        if ((channel->edges[i] & 3u) || (channel->edges[i] & 0xffu) >= 4u * model->state_count)
+        if ((channel->edges[i] & 0xffu) >= model->state_count)
             return 0;
     return 1;
 }
@@ -94,7 +100,7 @@ int labial_model_check(const labial_model_t *model)
         model->phoneme_count == 0 || model->phoneme_count > LABIAL_PHONEMES_MAX || model->class_count == 0 ||
         model->class_count > LABIAL_CLASSES_MAX || model->state_count == 0 ||
         model->state_count > LABIAL_STATES_MAX || model->predecessors == 0 ||
-        model->predecessors % 4u != 0 || model->predecessors > LABIAL_STATES_MAX || model->search_stride == 0 ||
+        model->predecessors > LABIAL_STATES_MAX || model->search_stride == 0 ||
         model->search_stride > LABIAL_SEARCH_STRIDE_MAX || model->silence >= model->phoneme_count || model->soft > 1)
         return LABIAL_ERROR_MODEL;
     if (model->kernel_taps) {

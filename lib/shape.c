@@ -51,10 +51,10 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
     return best;
 }
 
-void labial_shape_select(const labial_model_t *model, unsigned phoneme_number, uint16_t ms,
-                         unsigned previous_class, unsigned next_class, int16_t shape[LABIAL_CHANNELS])
+/* The shape of a phoneme between neighbours of the given viseme classes. */
+static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms, unsigned previous_class,
+                unsigned next_class, int16_t shape[LABIAL_CHANNELS])
 {
-    const labial_phoneme_t *phoneme = &model->phonemes[phoneme_number];
     const unsigned count = phoneme->component_count;
     uint32_t shares[LABIAL_PHONEME_COMPONENTS_MAX] = { 0 }; /* first costs, then the mixture's weights, Q12 */
     int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX];      /* first z, Q6, held to SLOPE_Z_MAX, then share * z, Q12 */
@@ -101,10 +101,10 @@ static int32_t scaled(int32_t steps, uint16_t scale)
     return (steps * (int32_t)scale + 128) >> 8;
 }
 
-void labial_shape_add_pair(const labial_model_t *model, unsigned phoneme, unsigned neighbour, int next,
-                           int16_t shape[LABIAL_CHANNELS])
+/* Adds what a neighbour adds to the shape of a phoneme; nothing for pairs that the model does not know. `key` is theirs
+ * in `pair_keys`. */
+static void add_pair(const labial_model_t *model, unsigned key, int16_t shape[LABIAL_CHANNELS])
 {
-    const unsigned key = phoneme << 8 | (next ? 128u : 0u) | neighbour;
     unsigned low = 0, high = model->pair_count, k;
     while (low < high) {
         const unsigned middle = low + (high - low) / 2u;
@@ -119,6 +119,15 @@ void labial_shape_add_pair(const labial_model_t *model, unsigned phoneme, unsign
         const int32_t added = scaled(model->pairs[(size_t)low * LABIAL_CHANNELS + k], model->channels[k].pair_scale);
         shape[k] = (int16_t)labial_clamp(shape[k] + added, LABIAL_POSITION_MAX);
     }
+}
+
+void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
+                         int16_t shape[LABIAL_CHANNELS])
+{
+    const labial_phoneme_t *phonemes = model->phonemes;
+    mix(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, shape);
+    add_pair(model, phoneme << 8 | previous, shape);
+    add_pair(model, phoneme << 8 | 128u | next, shape);
 }
 
 void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL_CHANNELS], const uint8_t *labels,

@@ -8,15 +8,10 @@
 
 /*
  * Shape selection (paper, eq. 2; section 2 of the method for context and soft selection): the positions of `phoneme`
- * lasting `ms` milliseconds between phonemes of the given viseme classes.
+ * lasting `ms` milliseconds between the given neighbours, with what these add to it as a pair.
  */
-void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous_class,
-                         unsigned next_class, int16_t shape[LABIAL_CHANNELS]);
-
-/* Adds to the shape of `phoneme` what its previous neighbour, or with `next` its next one, adds; nothing for pairs that
- * the model does not know. */
-void labial_shape_add_pair(const labial_model_t *model, unsigned phoneme, unsigned neighbour, int next,
-                           int16_t shape[LABIAL_CHANNELS]);
+void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
+                         int16_t shape[LABIAL_CHANNELS]);
 
 /*
  * The target of one frame: the phoneme's shape and what the temporal kernels of its neighbours add, but not below the

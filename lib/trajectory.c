@@ -1,27 +1,37 @@
 /*
- * The matrix of equation 3 is symmetric, positive definite and pentadiagonal. It is factored as L D L' frame by frame,
- * with lambda and kappa the first and second subdiagonal of L:
+ * The matrix of equation 3 is symmetric, positive definite and pentadiagonal, and its rows sum to what holds each frame,
+ * since deltas of a constant are zero. L D L' written with these sums keeps apart what holds a frame (g), what ties it to
+ * its neighbours (f, c), and has no small difference of large numbers. With h the hold of frame t, d and dd its weights:
  *
- *     e_t      = b_t - kappa_(t-1) e_(t-1)                              (eliminated off-diagonal)
- *     D_t      = a_t - lambda_(t-1) e_(t-1) - kappa_(t-2) c_(t-2)
- *     lambda_t = e_t / D_t,  kappa_t = c_t / D_t
- *     z_t      = r_t - lambda_(t-1) z_(t-1) - kappa_(t-2) z_(t-2)
- *     m_t      = z_t / D_t - lambda_t m_(t+1) - kappa_t m_(t+2)         (backwards)
+ *     c_t     = dd_(t+1) - d_(t+1)                                   second off-diagonal
+ *     k_t     = rho_t c_t
+ *     g_t     = h_t + rho_(t-1) f_(t-1) + 2 k_(t-1) - k_(t-2)        row sums, eliminated like a right-hand side
+ *     f_t     = 2 (d_t + d_(t+1)) + 2 k_(t-1) + kappa_(t-1) f_(t-1)  eliminated first off-diagonal: -(f + 2 c)
+ *     rho_t   = g_t / D_t,  kappa_t = c_t / D_t,  D_t = g_t + f_t + c_t
+ *     q_t     = q_(t-1) + (h_t (x_t - q_(t-1)) + k_(t-2) (q_(t-1) - q_(t-2)) + p_t) / g_t
+ *     m_t     = m_(t+1) + rho_t (q_t - m_(t+1)) + kappa_t (m_(t+1) - m_(t+2))              (backwards)
  *
- * with a, b, c the diagonals and r the right-hand side. Formats: weights, and so a, b, c, are integers; D, e, c are in
- * Q12; r and z in weight times Q4 FAP; lambda and kappa in Q28; z / D and m in Q12 FAP. What keeps this inside 32 bits:
- * every diagonal element is at most LABIAL_WEIGHT_SUM_MAX, every |r| at most LABIAL_PULL_MAX, and every frame is held
- * by at least LABIAL_WEIGHT_MIN, hence 8 <= D < 2^18; |kappa| <= 1 because D_t holds all of the row that gives c_t; and
- * |lambda| <= 2 as long as earlier frames, given this one, are expected no farther from zero than it is, which is what
- * holds, equal neighbours and straight lines all amount to. Were it ever otherwise, lambda is held below 8.
+ * q_t is the position of frame t given all before it, x_t where its hold draws it, p_t the pull of delta and delta-delta
+ * means. Rounding rho or kappa moves m by that share of a difference, and nothing where the motion rests.
+ *
+ * Formats: weights are integers; g, f, c, D, k in Q16; rho and kappa in Q24, 16 bits where they are kept for the way back;
+ * q and m in Q12 FAP. All of g, f, c and D stay below 2^30 because LABIAL_WEIGHT_SUM_MAX bounds the diagonal; g is never
+ * below the hold, and rho and kappa lie within 0 .. 1 as long as d is not above dd.
  */
 #include "trajectory.h"
 
-#include "fixed.h"
+#include <string.h>
 
-/* 2^60 / d for 2^30 <= d < 2^31, to about 29 bits: a table of eight bits and two Newton steps x += x (1 - d x), the
- * first of which needs no more than 16 bits of d. */
-static int32_t reciprocal(int32_t d)
+#include "fixed.h"
+#include "units.h"
+
+#define ONE ((uint32_t)1 << 24)
+
+/* A quotient that may be as large as 2^BEND_BITS has so many bits less. */
+#define BEND_BITS 4
+
+/* 2^54 / d for 2^30 <= d < 2^31, to about 24 bits: a table of eight bits and two Newton steps x += x (1 - d x). */
+static uint32_t reciprocal(uint32_t d)
 {
     static const uint8_t table[64] = {
         254, 250, 246, 243, 239, 236, 232, 229, 226, 223, 220, 217, 214, 211, 209, 206, 204, 201, 199, 196,
@@ -29,30 +39,28 @@ static int32_t reciprocal(int32_t d)
         157, 155, 154, 152, 151, 150, 148, 147, 146, 144, 143, 142, 141, 139, 138, 137, 136, 135, 134, 133,
         132, 131, 130, 129
     };
-    const int32_t one = (int32_t)1 << 30;
-    const int32_t rough = table[((uint32_t)d >> 24) & 63u];
-    const int32_t short_d = (int32_t)(((uint32_t)d + 0x8000u) >> 16);
-    int32_t x = (rough << 22) + rough * (((int32_t)1 << 22) - short_d * rough);
-    x += labial_mulshift(x, one - labial_mulshift(d, x, 30), 30);
-    return x;
+    const int32_t rough = table[(d >> 24) & 63u];
+    const int32_t x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(d >> 15) * rough * 2)) >> 16);
+    const int32_t error = ((int32_t)1 << 30) - labial_part16((int32_t)d, (uint32_t)x);
+    return (uint32_t)((x << 8) + ((x * (error >> 4)) >> 18));
 }
 
-/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^15 <= d < 2^31. */
-static unsigned headroom(int32_t d)
+/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^19 <= d < 2^31. */
+static unsigned headroom(uint32_t d)
 {
 #if defined(__GNUC__) && (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
-    return (unsigned)__builtin_clz((unsigned)d) - 1u;
+    return (unsigned)__builtin_clz(d) - 1u;
 #else
     unsigned shift = 0;
-    if (d < (int32_t)1 << 23) {
+    if (d < (uint32_t)1 << 23) {
         d <<= 8;
         shift = 8;
     }
-    if (d < (int32_t)1 << 27) {
+    if (d < (uint32_t)1 << 27) {
         d <<= 4;
         shift += 4;
     }
-    while (d < (int32_t)1 << 30) {
+    while (d < (uint32_t)1 << 30) {
         d <<= 1;
         shift++;
     }
@@ -60,113 +68,124 @@ static unsigned headroom(int32_t d)
 #endif
 }
 
-/* x / d in Q28, for |x| < 8 d; `inverse` is the reciprocal of d shifted left by `shift`. */
-static int32_t quotient(int32_t x, int32_t inverse, unsigned shift)
-{
-    x = shift < 3u ? x >> (3u - shift) : (int32_t)((uint32_t)x << (shift - 3u));
-    return labial_mulshift(x, inverse, 29);
-}
-
-/* a x + b y with a and b in Q28. The one makes up for what two products that are rounded down lose on average. */
-static int32_t two_products(int32_t a, int32_t x, int32_t b, int32_t y)
-{
-    return labial_add(labial_add(labial_mulshift(a, x, 28), labial_mulshift(b, y, 28)), 1);
-}
-
-/* Takes up frame t - 1, to which no later row adds anything but c, its second off-diagonal element. */
-static void factor(labial_solver_t *solver, int32_t c, int32_t *factors)
-{
-    const int32_t a = solver->a1 * (1 << 12), b = solver->b1 * (1 << 12);
-    const int32_t lambda = solver->lambda, kappa = solver->kappa2, z1 = solver->z1;
-    const int32_t e = labial_sub(b, labial_mulshift(solver->kappa1, solver->e, 28));
-    const int32_t z = labial_sub(solver->r1, two_products(lambda, z1, kappa, solver->z2));
-    int32_t d = labial_sub(a, two_products(lambda, solver->e, kappa, solver->c2));
-    int32_t inverse, held;
+/* A divisor: 2^54 / (d << shift), and that shift. */
+typedef struct {
+    uint32_t inverse;
     unsigned shift;
+} divisor_t;
 
-    /* Not needed with a model that was checked; it keeps what follows defined. */
-    d = d < LABIAL_WEIGHT_MIN << 12 ? LABIAL_WEIGHT_MIN << 12 : d < 1 << 30 ? d : (1 << 30) - 1;
-    held = labial_clamp(e, d < (int32_t)1 << 27 ? 8 * d - 1 : INT32_MAX);
-    shift = headroom(d); /* 1 .. 15 */
-    inverse = reciprocal((int32_t)((uint32_t)d << shift));
-    c *= 1 << 12;
-    solver->kappa2 = solver->kappa1;
-    solver->lambda = factors[0] = quotient(held, inverse, shift);
-    solver->kappa1 = factors[1] = quotient(c, inverse, shift);
-    factors[2] = shift < 9u ? labial_mulshift(z, inverse, 31) >> (9u - shift)
-                            : labial_mulshift(z, inverse, 40u - shift);
-    solver->e = held;
-    solver->c2 = solver->c1;
-    solver->c1 = c;
-    solver->z2 = z1;
-    solver->z1 = z;
+static divisor_t divisor(uint32_t d)
+{
+    divisor_t result;
+    result.shift = headroom(d);
+    result.inverse = reciprocal(d << result.shift);
+    return result;
 }
 
-/* Takes up row t. */
-static void take_row(labial_solver_t *solver, const labial_channel_t *channel, const uint8_t *path, unsigned length,
-                     const int16_t *positions, unsigned t, int32_t *factors)
+/* a / d in Q24, for 0 <= a < 2^30, a / d < 2^7. */
+static uint32_t quotient(int32_t a, divisor_t d)
 {
-    int32_t held = 0, pull = 0;        /* static row and anchor: weight, and weight times mean */
-    int32_t delta = 0, delta_pull = 0; /* a quarter of delta's precision; half of precision times mean */
-    int32_t delta2 = 0, delta2_pull = 0;
-    if (t < length) {
-        const labial_state_t *state = &channel->states[path[t]];
-        const int32_t anchor = (int32_t)labial_weight(state->anchor);
-        held = (int32_t)labial_weight(state->weight[0]);
-        pull = held * state->mean[0] + anchor * positions[t * LABIAL_CHANNELS];
-        held += anchor;
-        if (t > 0 && t + 1u < length) {
-            delta = (int32_t)labial_weight(state->weight[1]);
-            delta_pull = delta * 2 * state->mean[1];
-            delta2 = (int32_t)labial_weight(state->weight[2]);
-            delta2_pull = delta2 * state->mean[2];
-        }
+    const uint32_t scaled = (uint32_t)labial_part24(a, d.inverse); /* Q(30 - shift) */
+    return d.shift < 6u ? scaled >> (6u - d.shift) : scaled << (d.shift - 6u);
+}
+
+/* 0 .. 2^24 as 16 bits: what is above one half is kept less one, so that one fits. */
+static uint16_t short_part(uint32_t part)
+{
+    const uint32_t rounded = (part + 128u) >> 8;
+    return (uint16_t)(rounded - (rounded > 32768u));
+}
+
+/* x times such a part. */
+static int32_t short_product(int32_t x, uint16_t part)
+{
+    return labial_part16(x, (uint32_t)part + (part >> 15));
+}
+
+/* Factors the pending frame; c is its second off-diagonal, `delta` the weight of the row after it. */
+static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_factors_t *factors)
+{
+    const int32_t hold = (int32_t)solver->hold << 16, k1 = solver->k1, k2 = solver->k2;
+    const int32_t f = 2 * (((int32_t)solver->delta + delta) * 65536 + k1) + solver->kappa_f;
+    int32_t g = hold + solver->rho_f + 2 * k1 - k2, q = solver->q1;
+    uint32_t rho, kappa, bend;
+    divisor_t d;
+    if (g < hold) /* by rounding */
+        g = hold;
+    c *= 65536;
+    d = divisor((uint32_t)(g + f + c));
+    rho = quotient(g, d);
+    kappa = quotient(c, d);
+
+    d = divisor((uint32_t)g);
+    bend = quotient(k2, d) >> BEND_BITS; /* k2 / g, which may exceed one */
+    q += labial_part24(solver->position - q, quotient(hold, d)) +
+         labial_part24((q - solver->q2) * (1 << BEND_BITS), bend < ONE ? bend : ONE);
+    q += d.shift < 6u ? labial_part24(solver->pull, d.inverse) >> (6u - d.shift)
+                      : labial_part24(solver->pull, d.inverse) * (1 << (d.shift - 6u));
+
+    factors->q = q;
+    factors->rho = short_part(rho);
+    factors->kappa = short_part(kappa);
+    solver->q2 = solver->q1;
+    solver->q1 = q;
+    solver->k2 = k1;
+    solver->k1 = labial_part24(c, rho);
+    solver->rho_f = labial_part24(f, rho);
+    solver->kappa_f = labial_part24(f, kappa);
+}
+
+void labial_trajectory_ask(const labial_channel_t *channel, unsigned number, labial_ask_t *ask)
+{
+    const labial_state_t *state = &channel->states[number];
+    ask->origin = state->mean[0];
+    ask->position = ((int32_t)channel->centre + state->mean[0]) * 256;
+    ask->share = (int32_t)state->share + (state->share >> 7);
+    ask->hold = (int32_t)labial_weight(state->hold);
+    ask->delta = (int32_t)labial_weight(state->weight[0]);
+    ask->delta2 = (int32_t)labial_weight(state->weight[1]);
+    ask->delta_pull = 2 * ask->delta * state->mean[1];
+    ask->delta2_pull = ask->delta2 * state->mean[2];
+}
+
+void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, unsigned marks,
+                           labial_factors_t *before, labial_factors_t *own)
+{
+    int32_t delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
+    if (!(marks & (LABIAL_BEGINS | LABIAL_ENDS))) {
+        delta = ask->delta;
+        delta2 = ask->delta2;
+        delta_pull = ask->delta_pull;
+        delta2_pull = ask->delta2_pull;
     }
-    if (t > 0) {
-        solver->a1 += delta + delta2;
-        solver->b1 -= 2 * delta2;
-        solver->r1 = labial_add(solver->r1, labial_sub(delta2_pull, delta_pull));
-        factor(solver, delta2 - delta, factors + (t - 1u) * LABIAL_FACTORS);
+    if (marks & LABIAL_BEGINS) {
+        memset(solver, 0, sizeof *solver);
+    } else {
+        solver->pull += delta2_pull - delta_pull;
+        factor(solver, delta2 - delta, delta, before);
     }
-    solver->a1 = solver->a0 + held + 4 * delta2;
-    solver->b1 = -2 * delta2;
-    solver->r1 = labial_add(solver->r0, labial_sub(pull, 2 * delta2_pull));
-    solver->a0 = delta + delta2;
-    solver->r0 = delta_pull + delta2_pull;
+    solver->hold = (uint16_t)ask->hold;
+    solver->delta = (uint16_t)delta;
+    solver->position = ask->position + (position - ask->origin) * ask->share;
+    solver->pull = solver->next_pull - 2 * delta2_pull;
+    solver->next_pull = delta2_pull + delta_pull;
+    if (marks & LABIAL_ENDS)
+        factor(solver, 0, 0, own);
 }
 
-void labial_trajectory_forward(labial_solver_t *solver, const labial_channel_t *channel, const uint8_t *path,
-                               unsigned length, const int16_t *positions, unsigned t, unsigned end, int32_t *factors)
+void labial_trajectory_back(const labial_factors_t *factors, unsigned size, unsigned newest, unsigned count,
+                            unsigned wanted, unsigned place, unsigned places, int16_t *motion)
 {
-    for (; t < end; t++)
-        take_row(solver, channel, path, length, positions, t, factors);
-}
-
-void labial_trajectory_backward(labial_solver_t *solver, const int32_t *factors, unsigned t, unsigned end,
-                                int16_t *positions)
-{
-    int32_t m1 = solver->m1, m2 = solver->m2;
-    factors += t * LABIAL_FACTORS;
-    positions += t * LABIAL_CHANNELS;
-    for (; t > end; t--) {
-        int32_t m;
-        factors -= LABIAL_FACTORS;
-        positions -= LABIAL_CHANNELS;
-        m = labial_sub(factors[2],
-                       labial_add(labial_mulshift(factors[0], m1, 28), labial_mulshift(factors[1], m2, 28)));
+    int32_t m1 = factors[newest].q, m2 = m1;
+    for (; count > 0; count--) {
+        const labial_factors_t *at = &factors[newest];
+        const int32_t m = m1 + short_product(at->q - m1, at->rho) + short_product(m1 - m2, at->kappa);
         m2 = m1;
         m1 = m;
-        *positions = (int16_t)labial_clamp(labial_add(m, 128) >> 8, LABIAL_POSITION_MAX);
+        newest = newest > 0 ? newest - 1u : size - 1u;
+        if (count <= wanted) {
+            motion[place * LABIAL_CHANNELS] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
+            place = place > 0 ? place - 1u : places - 1u;
+        }
     }
-    solver->m1 = m1;
-    solver->m2 = m2;
-}
-
-void labial_trajectory_fade(int16_t held[LABIAL_CHANNELS], const int16_t fresh[LABIAL_CHANNELS], unsigned step,
-                            unsigned steps)
-{
-    const int32_t share = labial_ease(step, steps);
-    unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        held[k] = (int16_t)(held[k] + (((fresh[k] - held[k]) * share + 8192) >> 14));
 }

@@ -2,157 +2,143 @@
 
 #include <string.h>
 
-const labial_segment_t *labial_units_segment(const labial_t *stream, unsigned i)
+/* The i-th segment held, the oldest being 0. */
+static const labial_segment_t *segment_at(const labial_units_t *units, unsigned i)
 {
-    i += stream->queue_head;
-    return &stream->queue[i < LABIAL_QUEUE ? i : i - LABIAL_QUEUE];
+    i += units->head;
+    return &units->segments[i < LABIAL_QUEUE ? i : i - LABIAL_QUEUE];
 }
 
-unsigned labial_units_phoneme(const labial_t *stream, const labial_segment_t *segment, unsigned slot)
+/* The phoneme of a segment as the model in `slot` sees it: another model's phonemes are silence. */
+static uint8_t phoneme_in(const labial_segment_t *segment, unsigned slot, uint8_t silence)
 {
-    return segment->slot == slot ? segment->phoneme : stream->models[slot]->silence;
+    return segment->slot == slot ? segment->phoneme : silence;
 }
 
-void labial_units_push(labial_t *stream, const labial_segment_t *segment)
+void labial_units_forget(labial_units_t *units)
 {
-    unsigned i = (unsigned)stream->queue_head + stream->queue_count;
-    stream->queue[i < LABIAL_QUEUE ? i : i - LABIAL_QUEUE] = *segment;
-    stream->queue_count++;
-    stream->queue_frames += segment->frames;
+    units->head = units->count = 0;
+    units->taken = units->frames = 0;
+    units->remainder = 500; /* so that frames are those of the rounded sum */
+    units->begins = 1;
 }
 
-static uint32_t least(uint32_t a, uint32_t b)
+uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slot, uint32_t milliseconds,
+                           uint32_t frames_per_second)
 {
-    return a < b ? a : b;
-}
-
-/* Frames from segment `i` on that belong to one model, as far as they are known and not more than `most`. */
-static uint32_t run_of_model(const labial_t *stream, unsigned i, uint32_t most)
-{
-    const unsigned slot = labial_units_segment(stream, i)->slot;
-    uint32_t frames = 0;
-    for (; i < stream->queue_count && frames < most; i++) {
-        const labial_segment_t *segment = labial_units_segment(stream, i);
-        if (segment->slot != slot)
-            return frames;
-        frames += segment->frames;
+    const uint32_t thousandths = milliseconds * frames_per_second + units->remainder;
+    const uint32_t frames = thousandths / 1000u;
+    units->remainder = (uint16_t)(thousandths - frames * 1000u);
+    if (frames > 0) {
+        const unsigned i = (unsigned)units->head + units->count;
+        labial_segment_t *segment = &units->segments[i < LABIAL_QUEUE ? i : i - LABIAL_QUEUE];
+        segment->frames = frames;
+        segment->ms = (uint16_t)(milliseconds < 65535u ? milliseconds : 65535u);
+        segment->phoneme = (uint8_t)phoneme;
+        segment->slot = (uint8_t)slot;
+        units->count++;
+        units->frames += frames;
     }
-    return least(frames, most);
+    return frames;
 }
 
-/* Whether everything is known that a piece depends on which ends at `end`: the phonemes within its model's reach, and
- * the neighbour of the phoneme it ends in, which itself ends at `last_end`. */
-static int is_known(const labial_t *stream, unsigned slot, uint32_t end, uint32_t last_end)
+int labial_units_hold(const labial_units_t *units, unsigned slot)
 {
-    const labial_model_t *model = stream->models[slot];
-    uint32_t ahead = 0;
-    if (stream->ended)
-        return 1;
-    if (model->kernel_taps)
-        ahead = ((uint32_t)model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride;
-    return stream->queue_frames >= end + ahead && stream->queue_frames > last_end;
-}
-
-unsigned labial_units_first(const labial_t *stream, const labial_piece_t *piece, uint32_t *begin)
-{
-    unsigned i = 0;
-    uint32_t start = 0;
-    while (start + labial_units_segment(stream, i)->frames <= piece->begin)
-        start += labial_units_segment(stream, i++)->frames;
-    *begin = start;
-    return i;
-}
-
-int labial_units_next(labial_t *stream, labial_piece_t *piece)
-{
-    const uint32_t begin = stream->next_begin, limit = begin + LABIAL_WINDOW;
-    uint32_t start, end = 0, next = 0, last_end = 0;
-    unsigned first, i, slot;
-
-    if (begin == stream->queue_frames)
-        return stream->ended ? LABIAL_DONE : LABIAL_WAITING;
-    piece->begin = begin;
-    first = labial_units_first(stream, piece, &start);
-    slot = labial_units_segment(stream, first)->slot;
-
-    for (i = first;; i++) {
-        const labial_segment_t *segment;
-        uint32_t stop;
-        if (i == stream->queue_count) { /* the stream's last phoneme ends the last unit */
-            if (!stream->ended)
-                return LABIAL_WAITING;
-            end = next = last_end = start;
-            break;
-        }
-        segment = labial_units_segment(stream, i);
-        stop = start + segment->frames;
-        if (start == limit || (segment->slot == slot && stop > limit)) { /* the window is full */
-            if (end == 0) { /* with a unit that is longer: cut */
-                last_end = start == limit ? start : stop;
-                end = limit;
-                next = end - LABIAL_OVERLAP;
-            }
-            break;
-        }
-        if (segment->slot != slot) { /* the model changes: run on into the other's phonemes */
-            const uint32_t most = least(least(limit - start, start - begin), LABIAL_OVERLAP);
-            end = start + run_of_model(stream, i, most); /* shorter while not all is pushed: then not known either */
-            next = start;
-            for (last_end = stop; last_end < end;)
-                last_end += labial_units_segment(stream, ++i)->frames;
-            break;
-        }
-        if (i > first && stream->models[slot]->phonemes[segment->phoneme].boundary &&
-            start >= begin + stream->next_fade_in && i + 1u < stream->queue_count) { /* the end of a unit */
-            end = last_end = stop;
-            next = end - least(least(segment->frames, (end - begin) / 2u), LABIAL_OVERLAP);
-            if (end - begin >= LABIAL_PIECE)
-                break;
-        }
-        start = stop;
-    }
-    if (!is_known(stream, slot, end, last_end))
-        return LABIAL_WAITING;
-
-    piece->length = (uint16_t)(end - begin);
-    piece->fade_in = stream->next_fade_in;
-    piece->fade_out = (uint16_t)(end - next);
-    piece->slot = (uint8_t)slot;
-    stream->next_begin = next;
-    stream->next_fade_in = piece->fade_out;
-    return LABIAL_OK;
-}
-
-void labial_units_labels(const labial_t *stream, const labial_piece_t *piece, uint8_t *labels)
-{
-    const unsigned count = (unsigned)piece->length + 2u * LABIAL_REACH;
-    const uint8_t silence = stream->models[piece->slot]->silence;
-    uint32_t start = LABIAL_REACH; /* of a segment, counted from the first label, plus piece->begin */
     unsigned i;
-
-    memset(labels, silence, count);
-    for (i = 0; i < stream->queue_count && start < piece->begin + count; i++) {
-        const labial_segment_t *segment = labial_units_segment(stream, i);
-        const uint32_t end = start + segment->frames;
-        if (end > piece->begin) {
-            const uint32_t from = start > piece->begin ? start - piece->begin : 0;
-            const uint32_t to = end - piece->begin < count ? end - piece->begin : count;
-            memset(labels + from, (int)labial_units_phoneme(stream, segment, piece->slot), to - from);
-        }
-        start = end;
-    }
+    for (i = 0; i < units->count; i++)
+        if (segment_at(units, i)->slot == slot)
+            return 1;
+    return 0;
 }
 
-void labial_units_trim(labial_t *stream)
+/* Frames that the model's kernels look ahead. */
+static unsigned look_ahead(const labial_model_t *model)
 {
-    while (stream->queue_count > 1u) {
-        const uint32_t frames = labial_units_segment(stream, 0)->frames;
-        if (frames + LABIAL_REACH > stream->next_begin ||
-            frames + labial_units_segment(stream, 1)->frames > stream->next_begin)
-            return;
-        stream->queue_head = (uint16_t)(stream->queue_head + 1u < LABIAL_QUEUE ? stream->queue_head + 1u : 0u);
-        stream->queue_count--;
-        stream->queue_frames -= frames;
-        stream->next_begin -= frames;
+    return model->kernel_taps ? (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride : 0u;
+}
+
+/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` behind it; silence where there is
+ * none. */
+static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsigned ahead)
+{
+    uint8_t *label = units->labels + LABIAL_REACH;
+    uint32_t left = segment_at(units, 0)->frames - units->taken;
+    unsigned i = 0;
+    if (units->begins)
+        memset(units->labels, silence, LABIAL_REACH);
+    else
+        memmove(units->labels, units->labels + 1, LABIAL_REACH);
+    for (ahead++; ahead > 0 && i < units->count;) {
+        const labial_segment_t *segment = segment_at(units, i);
+        const uint8_t phoneme = phoneme_in(segment, slot, silence);
+        if (i > 0)
+            left = segment->frames;
+        for (; left > 0 && ahead > 0; left--, ahead--)
+            *label++ = phoneme;
+        i++;
     }
+    for (; ahead > 0; ahead--)
+        *label++ = silence;
+}
+
+/* Leaves the oldest segment, all of whose frames were taken. */
+static void drop(labial_units_t *units, const labial_segment_t *segment)
+{
+    units->before = segment->phoneme;
+    units->taken = 0;
+    units->head = (uint8_t)(units->head + 1u < LABIAL_QUEUE ? units->head + 1u : 0u);
+    units->count--;
+}
+
+int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
+                      labial_taken_t *taken)
+{
+    const labial_segment_t *segment = segment_at(units, 0), *next = NULL;
+    const labial_model_t *model;
+    uint32_t left, head = 0;
+    unsigned ahead;
+    uint8_t silence;
+
+    if (units->count == 0)
+        return ended ? LABIAL_DONE : LABIAL_STARVED;
+    model = models[segment->slot];
+    silence = model->silence;
+    ahead = look_ahead(model);
+    left = segment->frames - units->taken;
+    if (units->count > 1u)
+        next = segment_at(units, 1);
+    if (segment->phoneme == silence && ahead > 0 && segment->frames > ahead)
+        head = segment->frames - ahead; /* a long silence: two phonemes */
+    if (!ended && units->taken >= head && (!next || units->frames <= ahead))
+        return LABIAL_STARVED;
+
+    relabel(units, segment->slot, silence, ahead);
+    taken->slot = segment->slot;
+    taken->labels = units->labels + LABIAL_REACH;
+    taken->previous = units->begins ? silence : units->before;
+    taken->next = next ? phoneme_in(next, segment->slot, silence) : silence;
+    taken->ms = segment->ms;
+    taken->is_first = units->taken == 0 || units->taken == head;
+    if (head > 0) {
+        const uint16_t tail_ms = (uint16_t)(ahead * 1000u / model->frames_per_second);
+        taken->ms = (uint16_t)(units->taken < head ? segment->ms - tail_ms : tail_ms);
+        if (units->taken < head)
+            taken->next = silence;
+        else
+            taken->previous = silence;
+    }
+    taken->marks = (uint8_t)(units->begins ? LABIAL_BEGINS : 0);
+    units->begins = 0;
+    units->taken++;
+    units->frames--;
+    if (left == 1u) {
+        if (!next || next->slot != segment->slot) {
+            taken->marks |= LABIAL_ENDS | LABIAL_UNIT_ENDS;
+            units->begins = 1;
+        } else if (model->phonemes[segment->phoneme].boundary) {
+            taken->marks |= LABIAL_UNIT_ENDS;
+        }
+        drop(units, segment);
+    }
+    return LABIAL_OK;
 }

@@ -1,50 +1,55 @@
 /*
- * units.h - phonemes to pieces: the queue of what was pushed, cut into the stretches that are decoded at once.
+ * units.h - phonemes to frames: the queue of what was pushed, taken frame by frame.
  *
- * A unit runs from one boundary phoneme (a vowel, p, b, m) to the next inclusive, so that neighbouring units share a
- * phoneme and are cross-faded over it (section 3 of the method):
+ * A frame is taken when all is known that its target depends on: what its model's kernels reach, and the phoneme behind
+ * its own. So what is taken never depends on when it was pushed. A pause holds nothing up: a silence that is longer than
+ * the kernels look ahead is taken as two phonemes, of which the first needs nothing of what follows.
  *
- *     phonemes   | m |  ey  | b |   iy   | m |  ey  |
- *     pieces     [ m    ey ]
- *                    [ ey    b ]
- *                           [ b    iy ]
- *                               [ iy     m ] ...
+ *     pushed    | m |  ey  | b |   iy   |          silence           | m |
+ *     taken     | m |  ey  | b |   iy   |      silence     | silence | m |
+ *     units     | m    ey  | b |   iy   |      silence       silence   m |
  *
- * Units are decoded together until a piece has LABIAL_PIECE frames. A unit longer than the window is cut into chained
- * pieces that share LABIAL_OVERLAP frames. Where the model changes, the earlier model's last piece runs on into the
- * other's phonemes, and the later one's first piece begins with them. No frame ever belongs to more than two pieces,
- * and no piece shares more than half of its frames with the one after it.
+ * A unit runs from the end of a boundary phoneme (a vowel, p, b, m) to that of the next. Where the model changes a
+ * solution ends, and another begins with the next frame.
  */
 #ifndef LABIAL_UNITS_H
 #define LABIAL_UNITS_H
 
 #include "labial/labial.h"
 
-/* The i-th segment held, the oldest being 0. */
-const labial_segment_t *labial_units_segment(const labial_t *stream, unsigned i);
+/* What is to be known of a frame: `taken` is the phoneme it belongs to, `labels` the phoneme of every frame from
+ * LABIAL_REACH before it to LABIAL_REACH behind it as its model sees them, of which those that its kernels reach count. */
+typedef struct {
+    const uint8_t *labels;  /* of the frame itself; valid until the next is taken */
+    uint16_t ms;            /* of its phoneme */
+    uint8_t previous, next; /* the phoneme's neighbours */
+    uint8_t slot;           /* of its model */
+    uint8_t is_first;       /* of its phoneme */
+    uint8_t marks;          /* LABIAL_BEGINS and so on */
+} labial_taken_t;
 
-/* The phoneme of a segment as the model in `slot` sees it: another model's phonemes are silence. */
-unsigned labial_units_phoneme(const labial_t *stream, const labial_segment_t *segment, unsigned slot);
+enum {
+    LABIAL_BEGINS = 1,   /* the first frame of a solution */
+    LABIAL_ENDS = 2,     /* the last one */
+    LABIAL_UNIT_ENDS = 4 /* the last frame of a unit */
+};
 
-/* Appends a segment of at least one frame; the queue must have room. */
-void labial_units_push(labial_t *stream, const labial_segment_t *segment);
+/* Empties the queue. */
+void labial_units_forget(labial_units_t *units);
+
+/* Appends a phoneme; the queue must have room. Returns its frames, which may be none. */
+uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slot, uint32_t milliseconds,
+                           uint32_t frames_per_second);
 
 /*
- * Finds the next piece. What a piece is never depends on when its phonemes were pushed: it is found once the phoneme
- * that follows it and everything that its kernels reach are known, or the stream has ended.
+ * Takes the next frame; `ended` says that no more phonemes will come.
  *
- * Returns LABIAL_OK, LABIAL_WAITING or LABIAL_DONE.
+ * Returns LABIAL_OK, LABIAL_STARVED when more must be known, or LABIAL_DONE when every frame was taken.
  */
-int labial_units_next(labial_t *stream, labial_piece_t *piece);
+int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
+                      labial_taken_t *taken);
 
-/* Writes the phoneme of every frame from LABIAL_REACH before the piece to LABIAL_REACH after it, silence where there is
- * none: piece->length + 2 * LABIAL_REACH labels. */
-void labial_units_labels(const labial_t *stream, const labial_piece_t *piece, uint8_t *labels);
-
-/* The first segment, counted from the oldest, that holds a frame of the piece; `begin` receives where it starts. */
-unsigned labial_units_first(const labial_t *stream, const labial_piece_t *piece, uint32_t *begin);
-
-/* Lets go of the segments that no later piece needs, as phonemes, for its kernels or as context. */
-void labial_units_trim(labial_t *stream);
+/* Whether phonemes of the model in `slot` are held. */
+int labial_units_hold(const labial_units_t *units, unsigned slot);
 
 #endif

@@ -1,15 +1,36 @@
 #include "viterbi.h"
 
-#include <stddef.h>
+#include <string.h>
 
 #include "fixed.h"
 
-/* Largest z of an emission, just below 16 in Q6: beyond some 22 standard deviations a state costs no more. It keeps the
- * scores of the longest window within 24 bits. */
+/* Largest z of an emission, just below 16 in Q6: beyond some 22 standard deviations a state costs no more. */
 #define EMISSION_Z_MAX 1023u
 
-/* The highest cost of a transition, as a score. */
-#define LEAP 0xff00u
+/* States of the window. */
+static unsigned searched(const labial_model_t *model)
+{
+    return model->state_count < LABIAL_SEARCHED ? model->state_count : LABIAL_SEARCHED;
+}
+
+/* First state of the window around the one whose mean is nearest to `position`, the lower one at a tie. */
+static unsigned first_of_window(const labial_model_t *model, const labial_channel_t *channel, int32_t position)
+{
+    const labial_emission_t *emissions = channel->emissions;
+    const unsigned states = model->state_count, size = searched(model);
+    unsigned low = 0, high = states;
+    while (low < high) {
+        const unsigned middle = (low + high) / 2u;
+        if (emissions[middle].mean < position)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    if (low == states || (low > 0 && position - emissions[low - 1u].mean <= emissions[low].mean - position))
+        low--;
+    low = low > size / 2u ? low - size / 2u : 0u;
+    return low + size < states ? low : states - size;
+}
 
 /* Negative log-likelihood of a position in a state. */
 static inline uint32_t emission(const labial_emission_t *state, int32_t position)
@@ -19,96 +40,124 @@ static inline uint32_t emission(const labial_emission_t *state, int32_t position
     return labial_z_cost(z) + state->cost;
 }
 
-void labial_viterbi_start(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
-                          uint32_t *scores)
+/* The paths so far move back by a step. */
+static void age(labial_search_t *search)
 {
-    const unsigned states = model->state_count;
-    uint32_t best = UINT32_MAX;
-    unsigned q;
-    for (q = 0; q < states; q++) {
-        const labial_emission_t *state = &channel->emissions[q];
-        const uint32_t score = (emission(state, position) + state->initial) << 8;
-        scores[q] = score;
-        if (score + 4u * q < best)
-            best = score + 4u * q;
+#if LABIAL_LAG > 0
+    memmove(search->path + 1, search->path, LABIAL_LAG);
+    memmove(search->spans + 1, search->spans, LABIAL_LAG);
+    memmove(search->back[1], search->back[0], sizeof search->back[0] * (LABIAL_LAG - 1u));
+    memmove(search->firsts + 1, search->firsts, LABIAL_LAG - 1u);
+    if (search->undecided < LABIAL_LAG)
+        search->undecided++;
+#else
+    (void)search;
+#endif
+}
+
+/* Takes up the costs of the window's states, of which `best` is the least: the scores, and the path into that state. */
+static void take(labial_search_t *search, unsigned first, unsigned size, const uint16_t *costs, unsigned best)
+{
+    unsigned i;
+    for (i = 0; i < size; i++) {
+        const uint32_t above = (uint32_t)costs[i] - costs[best];
+        search->scores[i] = (uint8_t)(above < LABIAL_DEAD ? above : LABIAL_DEAD);
     }
-    scores[states] = best;
+    search->first = (uint8_t)first;
+    search->best = (uint8_t)best;
+    search->path[0] = (uint8_t)(first + best);
+#if LABIAL_LAG > 0
+    /* Trace the way back through the steps that are not decided. */
+    for (i = 0; i < search->undecided; i++) {
+        best = search->back[i][best];
+        search->path[i + 1u] = (uint8_t)(search->firsts[i] + best);
+    }
+#endif
 }
 
-/* Emissions of all states for a position, as scores; returns the least. */
-static uint32_t emit(const labial_emission_t *state, unsigned states, int32_t position, uint32_t *scores)
+void labial_viterbi_begin(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
+                          labial_search_t *search)
 {
-    const uint32_t *end = scores + states;
-    uint32_t least = UINT32_MAX;
-    do {
-        const uint32_t cost = emission(state++, position) << 8;
-        if (cost < least)
-            least = cost;
-        *scores++ = cost;
-    } while (scores < end);
-    return least;
-}
-
-/* The better of `best` and of what an edge makes of the last step's score of its predecessor. */
-static inline uint32_t better(const uint8_t *scores, const uint16_t *edge, uint32_t best)
-{
-    const uint32_t score = *edge + *(const uint32_t *)(const void *)(scores + (uint8_t)*edge);
-    if (score < best)
-        best = score;
-    return best;
-}
-
-/* The best of `best` and of `count` edges, a multiple of four. */
-static uint32_t enter(const uint8_t *scores, const uint16_t *edge, unsigned count, uint32_t best)
-{
-    const uint16_t *end = edge + count;
-    do {
-        best = better(scores, edge, best);
-        best = better(scores, edge + 1, best);
-        best = better(scores, edge + 2, best);
-        best = better(scores, edge + 3, best);
-        edge += 4;
-    } while (edge < end);
-    return best;
+    const unsigned first = first_of_window(model, channel, position), size = searched(model);
+    uint16_t costs[LABIAL_SEARCHED];
+    unsigned i, best = 0;
+    for (i = 0; i < size; i++) {
+        const labial_emission_t *state = &channel->emissions[first + i];
+        costs[i] = (uint16_t)(emission(state, position) + state->initial);
+        if (costs[i] < costs[best])
+            best = i;
+    }
+    age(search);
+#if LABIAL_LAG > 0
+    search->undecided = 0;
+#endif
+    take(search, first, size, costs, best);
 }
 
 void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
-                         const uint32_t *from, uint32_t *to, uint8_t *back)
+                         labial_search_t *search)
 {
-    const unsigned states = model->state_count, predecessors = model->predecessors;
-    const uint16_t *edge = channel->edges;
-    const uint32_t limit = emit(channel->emissions, states, position, to) + (LABIAL_BEAM << 8);
-    const uint32_t leap = from[states] + LEAP;
-    uint32_t winner = UINT32_MAX;
-    unsigned q;
+    const unsigned first = first_of_window(model, channel, position), size = searched(model);
+    const unsigned predecessors = model->predecessors, from = search->first;
+    const uint16_t *edge = channel->edges + (size_t)first * predecessors;
+    uint16_t costs[LABIAL_SEARCHED];
+    unsigned i, j, best = 0;
 
-    for (q = 0; q < 4u * states; q += 4u, edge += predecessors) {
-        const uint32_t cost = *to;
-        uint32_t best = leap;
-        if (cost <= limit)
-            best = enter((const uint8_t *)from, edge, predecessors, leap);
-        *back++ = (uint8_t)best;
-        best = best - (uint8_t)best + cost;
-        *to++ = best;
-        if (cost <= limit && best + q < winner)
-            winner = best + q;
+    age(search);
+    for (i = 0; i < size; i++) {
+        uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
+#if LABIAL_LAG > 0
+        search->back[0][i] = search->best;
+#endif
+        for (j = predecessors; j > 0; j--, edge++) {
+            const unsigned predecessor = (*edge & 0xffu) - from;
+            if (predecessor < size) {
+                const uint32_t score = search->scores[predecessor] + ((uint32_t)*edge >> 8);
+                if (score < least) {
+                    least = score;
+#if LABIAL_LAG > 0
+                    search->back[0][i] = (uint8_t)predecessor;
+#endif
+                }
+            }
+        }
+        costs[i] = (uint16_t)(least + emission(&channel->emissions[first + i], position));
+        if (costs[i] < costs[best])
+            best = i;
     }
-    *to = winner;
+#if LABIAL_LAG > 0
+    search->firsts[0] = (uint8_t)from;
+#endif
+    take(search, first, size, costs, best);
 }
 
-void labial_viterbi_path(const labial_model_t *model, unsigned length, const uint32_t *scores, const uint8_t *back,
-                         uint8_t *path)
+void labial_viterbi_end_unit(labial_search_t *search)
 {
-    const unsigned states = model->state_count, stride = model->search_stride;
-    unsigned q, state = 0, step = (length - 1u) / stride, t = length;
-    for (q = 1; q < states; q++)
-        if (scores[q] < scores[state])
-            state = q;
-    for (;;) {
-        while (t > step * stride)
-            path[--t] = (uint8_t)state;
-        if (step == 0)
-            return;
-        state = back[(size_t)--step * states + state] >> 2;
-    }
+    memset(search->scores, (int)LABIAL_DEAD, sizeof search->scores);
+    search->scores[search->best] = 0;
+#if LABIAL_LAG > 0
+    search->undecided = 0;
+#endif
+}
+
+void labial_viterbi_span(labial_search_t *search, unsigned frames)
+{
+#if LABIAL_LAG > 0
+    search->spans[0] = (uint8_t)frames;
+#else
+    (void)search;
+    (void)frames;
+#endif
+}
+
+unsigned labial_viterbi_state(const labial_search_t *search, unsigned age)
+{
+    unsigned i = 0;
+#if LABIAL_LAG > 0
+    for (; age >= search->spans[i]; i++)
+        age -= search->spans[i];
+#else
+    (void)age;
+#endif
+    return search->path[i];
 }

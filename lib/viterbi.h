@@ -1,34 +1,39 @@
 /*
- * viterbi.h - targets to states: the most likely path of one channel through its codebook (section 3 of the method).
+ * viterbi.h - targets to states: the most likely path of one channel through its codebook, step by step.
  *
- * A score is the cost of the best path into a state, times 256; its low byte is free. An edge holds four times its
- * predecessor's number there, so that one addition makes a candidate that names where it comes from: the least of
- * several is the best path, the lower number at a tie. Beside its predecessors, every state can be entered from the
- * best state of the step before, at the highest cost of a transition.
+ * A score is the cost of the best path into a state above that of the best one, at most LABIAL_DEAD. Beside its
+ * predecessors every state can be entered from the best state of the step before, at the cost LABIAL_DEAD, the highest
+ * of a transition: so that what is as far behind as that need not be kept, and eight bits are enough.
  *
- * States whose emission costs more than LABIAL_BEAM above the least are passed over: their predecessors are not looked
- * at, and they are not counted for the best. Likely paths do not run through them, and they are most of the work.
+ * Only the LABIAL_SEARCHED states around the one that is nearest to the target are looked at; the others are dead. Likely
+ * paths hardly leave this window, and it makes all steps alike.
+ *
+ * Which state was the right one for a step is decided LABIAL_LAG steps later, by the way back from the state that is best
+ * then, or from the end of the unit when that comes earlier; nothing before the end of a unit is decided after it.
  */
 #ifndef LABIAL_VITERBI_H
 #define LABIAL_VITERBI_H
 
-#include "labial/model.h"
+#include "labial/labial.h"
 
-/* Cost: three nats. */
-#define LABIAL_BEAM 96u
+#define LABIAL_DEAD 255u
 
-/* Scores of the first step, whose target is `position`: one for each state, and behind them the best of those that were
- * not passed over, with four times its number in the low byte. */
-void labial_viterbi_start(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
-                          uint32_t *scores);
+/* Begins a path: the first step's target is `position`. */
+void labial_viterbi_begin(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
+                          labial_search_t *search);
 
-/* Scores `to` of the next step from those of the last; `back` receives four times each state's best predecessor. */
+/* The next step of a path. */
 void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
-                         const uint32_t *from, uint32_t *to, uint8_t *back);
+                         labial_search_t *search);
 
-/* The best path that ends in the last step's `scores`, a state for each of `length` frames; `back` holds a row of
- * predecessors for each step but the first. */
-void labial_viterbi_path(const labial_model_t *model, unsigned length, const uint32_t *scores, const uint8_t *back,
-                         uint8_t *path);
+/* Ends a unit with the last step: whatever follows comes from its best state. */
+void labial_viterbi_end_unit(labial_search_t *search);
+
+/* How many frames the last step stands for. */
+void labial_viterbi_span(labial_search_t *search, unsigned frames);
+
+/* The state of the frame that lies `age` frames before the last one of the last step, at most LABIAL_LAG before that
+ * step's first. */
+unsigned labial_viterbi_state(const labial_search_t *search, unsigned age);
 
 #endif

@@ -34,54 +34,42 @@ extern "C" {
 #endif
 
 #define LABIAL_VERSION_MAJOR 0
-#define LABIAL_VERSION_MINOR 1
+#define LABIAL_VERSION_MINOR 2
 #define LABIAL_VERSION_PATCH 0
 
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
 
-/* Most frames that are decoded at once; a longer unit is cut and chained. Costs 28 + states / stride bytes of workspace
- * and 8 of the stream each. */
+/* Frames that the trajectory's way back starts ahead of those that are delivered. Each buys smoothness by a frame of
+ * delay and 104 bytes of workspace; 4 leave .2 % of a channel's range (RMS) with the bundled models, the published method's
+ * stiffer ones need 16 and more. 1 .. 48. */
 #ifndef LABIAL_WINDOW
-#define LABIAL_WINDOW 40
+#define LABIAL_WINDOW 4
 #endif
 
-/* Short units are decoded together until they have so many frames, or no further one fits the window. More gives fewer
- * joins and less work, less is less latency; 1 decodes every unit by itself. LABIAL_WINDOW at most. */
-#ifndef LABIAL_PIECE
-#define LABIAL_PIECE 16
+/* Frames after which the search decides on a state, if its unit does not end before. Each buys a likelier path by a frame
+ * of delay and 223 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long as the longest
+ * unit decodes units as published. */
+#ifndef LABIAL_LAG
+#define LABIAL_LAG 0
 #endif
 
-/* Most frames over which two pieces, or two models, are cross-faded; half of the window at most. Costs 34 bytes of the
- * stream each. */
-#ifndef LABIAL_OVERLAP
-#define LABIAL_OVERLAP 8
+/* Phonemes that can be held: how far ahead a program can push. Costs 8 bytes of the stream each. LABIAL_REACH + 2 ..
+ * 255; with these no sequence of pushes can stall the stream. */
+#ifndef LABIAL_QUEUE
+#define LABIAL_QUEUE 32
 #endif
 
-/* Farthest tap of a model's kernels, in frames, to either side. Costs 2 bytes of workspace, 16 of the stream each. */
+/* Farthest tap of a model's kernels, in frames, to either side. Costs 2 bytes of the stream each; a model says when it
+ * needs more. 0 .. 60. */
 #ifndef LABIAL_REACH
 #define LABIAL_REACH 20
 #endif
 
-/* Frames that are held ready at most; half of the window at least. Costs 26 bytes of the stream each. */
-#ifndef LABIAL_READY
-#define LABIAL_READY 30
-#endif
-
-/* Frames that are ready before the first is delivered, unless input is short. Half of the window and no less is enough
- * for the even work of labial_tick() always to be done in time; 1 delivers at once. LABIAL_READY at most. */
-#ifndef LABIAL_PREROLL
-#define LABIAL_PREROLL (LABIAL_WINDOW / 2)
-#endif
-
 /* Models whose phonemes a stream can hold at the same time. A model makes room for another when its phonemes have been
- * decoded and are no longer needed as context. */
+ * taken up. 1 .. 255. */
 #ifndef LABIAL_MODELS
 #define LABIAL_MODELS 2
 #endif
-
-/* Phonemes that can be held. So many that a window of one-frame phonemes, what the kernels reach beyond it and the
- * neighbours that give context always fit; no sequence of pushes can stall the stream. */
-#define LABIAL_QUEUE (LABIAL_WINDOW + 2 * LABIAL_REACH + LABIAL_OVERLAP + 4)
 
 /* Longest duration of one phoneme, milliseconds: one hour. */
 #define LABIAL_DURATION_MAX 3600000u
@@ -90,10 +78,9 @@ extern "C" {
 
 #define LABIAL_RESULTS(X)                                                                                        \
     X(LABIAL_OK, 0, "success")                                                                                   \
-    X(LABIAL_WAITING, 1, "the first frame waits for more phonemes")                                              \
-    X(LABIAL_STARVED, 2, "the next frame is due and waits for more phonemes")                                    \
-    X(LABIAL_BUSY, 3, "the next frame is being computed")                                                        \
-    X(LABIAL_DONE, 4, "the stream has ended and every frame was delivered")                                      \
+    X(LABIAL_WAITING, 1, "the first frame is on its way or waits for phonemes")                                  \
+    X(LABIAL_STARVED, 2, "the next frame waits for more phonemes")                                               \
+    X(LABIAL_DONE, 3, "the stream has ended and every frame was delivered")                                      \
     X(LABIAL_ERROR_NULL, -1, "a pointer that is needed is null")                                                 \
     X(LABIAL_ERROR_VERSION, -2, "the model was exported for another version of the library")                     \
     X(LABIAL_ERROR_MODEL, -3, "the model's tables are out of range")                                             \
@@ -102,7 +89,7 @@ extern "C" {
     X(LABIAL_ERROR_PHONEME, -6, "the model has no phoneme of this number")                                       \
     X(LABIAL_ERROR_DURATION, -7, "the duration exceeds LABIAL_DURATION_MAX")                                     \
     X(LABIAL_ERROR_FULL, -8, "the queue is full; tick and push again")                                           \
-    X(LABIAL_ERROR_RATE, -9, "the model's frame rate is not the stream's")                                       \
+    X(LABIAL_ERROR_RATE, -9, "the model's frame rate or search stride is not the stream's")                      \
     X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still held")                         \
     X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                \
     X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")
@@ -125,85 +112,118 @@ const char *labial_result_text(int result);
  */
 typedef void (*labial_frame_fn)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
 
-/* A phoneme that was pushed. Private. */
+/* ---- What a stream is made of. All members are private; they are declared here so that a stream can be allocated
+ * statically. Each structure belongs to one file of lib/. ---- */
+
+/* A phoneme that was pushed (units.c). */
 typedef struct {
-    uint32_t frames;  /* duration in frames, never 0 */
-    uint16_t ms;      /* duration in milliseconds, 65535 for longer ones */
-    uint8_t phoneme;  /* of the model in the slot */
-    uint8_t slot;     /* model it belongs to */
+    uint32_t frames; /* duration in frames, never 0 */
+    uint16_t ms;     /* duration in milliseconds, 65535 for longer ones */
+    uint8_t phoneme; /* of the model in the slot */
+    uint8_t slot;    /* model it belongs to */
 } labial_segment_t;
 
-/* Part of the input that is decoded at once: a unit, several, or part of one that was cut. Private. */
+/* The queue of what was pushed and not yet taken frame by frame (units.c). */
 typedef struct {
-    uint32_t begin;    /* first frame, counted from the start of the queue's oldest segment */
-    uint16_t length;   /* frames, 1 .. LABIAL_WINDOW */
-    uint16_t fade_in;  /* frames shared with the piece before */
-    uint16_t fade_out; /* frames shared with the piece after; 0 for the stream's last */
-    uint8_t slot;      /* model it is decoded with */
-} labial_piece_t;
+    uint8_t head, count;
+    uint8_t before;     /* phoneme in front of the oldest segment */
+    uint8_t begins;     /* the next frame is the first of a solution */
+    uint16_t remainder; /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
+    uint32_t taken;     /* frames of the oldest segment that were taken */
+    uint32_t frames;    /* that are held and not yet taken */
+    uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last that was taken */
+    labial_segment_t segments[LABIAL_QUEUE];
+} labial_units_t;
 
-/* The stream's state. Its members are private; it is declared here so that it can be allocated statically. Small
- * members come first, where small instructions reach them. */
+/* States that a step of the search looks at; the exporter knows the number too. */
+#define LABIAL_SEARCHED 12
+
+/* Where the search of one channel stands (viterbi.c). */
 typedef struct {
-    uint32_t magic;  /* set while the stream is initialised */
-    uint8_t slot;    /* model of the next push */
-    uint8_t ended;   /* no more phonemes will come */
-    uint8_t stage;   /* of the work on the piece */
-    uint8_t channel; /* and where it stands */
-    uint8_t begun;   /* a frame was delivered since the stream was initialised or taken up again */
-    uint8_t rolling; /* enough frames were ready; cleared when they run out */
-    uint8_t resumed; /* the first piece fades in from `pose` */
+    uint8_t first; /* state of the window */
+    uint8_t best;  /* state, counted from the first */
+    uint8_t scores[LABIAL_SEARCHED];
+    uint8_t path[LABIAL_LAG + 1]; /* states of the last steps, the latest first */
+#if LABIAL_LAG > 0
+    uint8_t spans[LABIAL_LAG + 1]; /* frames of these steps */
+    uint8_t undecided;             /* steps before the last whose states may still change */
+    uint8_t firsts[LABIAL_LAG];    /* windows of the steps before the last */
+    uint8_t back[LABIAL_LAG][LABIAL_SEARCHED]; /* and where in them the states of the next step come from */
+#endif
+} labial_search_t;
 
-    labial_piece_t piece; /* being decoded */
-    uint16_t step;        /* within the stage */
-    uint16_t segment;     /* target: next segment, counted from the oldest */
-    uint16_t pace;        /* work that each tick does on the piece */
-    uint16_t overspent;   /* work that earlier ticks did beyond their share */
+/* Where the solution of one channel stands (trajectory.c): the recursion, and the row that the next one completes. */
+typedef struct {
+    int32_t rho_f, kappa_f; /* Q16 */
+    int32_t k1, k2;         /* Q16 */
+    int32_t q1, q2;         /* Q12 FAP */
+    int32_t position;       /* Q12 FAP */
+    int32_t pull, next_pull;
+    uint16_t hold, delta;
+} labial_solver_t;
 
-    uint16_t queue_head;
-    uint16_t queue_count;
-    uint16_t next_fade_in; /* frames that the next piece shares with the one before */
-    uint16_t remainder;    /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
+/* What the way back needs of a frame (trajectory.c). */
+typedef struct {
+    int32_t q; /* Q12 FAP */
+    uint16_t rho, kappa;
+} labial_factors_t;
 
-    uint16_t ready_head;
-    uint16_t ready_count; /* frames that can be played */
-    uint16_t held_count;  /* frames behind them that the next piece fades into */
+/* A frame that was taken (stream.c). */
+typedef struct {
+    int16_t target[LABIAL_CHANNELS]; /* positions */
+    uint8_t slot;                    /* its model */
+    uint8_t marks;
+} labial_frame_t;
+
+/* One channel (stream.c). */
+typedef struct {
+    labial_solver_t solver;
+    labial_search_t search;
+} labial_track_t;
+
+/* The stream's state (stream.c). Small members come first, where small instructions reach them. */
+typedef struct {
+    uint32_t magic;      /* set while the stream is initialised */
+    uint8_t slot;        /* model of the next push */
+    uint8_t stride;      /* frames that share a state */
+    uint8_t ended;       /* no more phonemes will come */
+    uint8_t begun;       /* a frame was delivered since the stream was initialised or taken up again */
+    uint8_t resumed;     /* the first frame fades in from `pose` */
+    uint8_t entered;     /* frames that were taken, 255 for more */
+    uint8_t beyond;      /* ticks since the last frame was taken */
+    uint8_t phase;       /* channels whose turn it is */
+    uint8_t frame_place; /* of the latest frame in the ring of frames */
+    uint8_t factor_place, motion_place;
+    uint8_t fade_step;    /* 0 when nothing fades */
     uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
     uint16_t ease_step;
-
-    uint32_t queue_frames; /* of all segments held */
-    uint32_t next_begin;   /* first frame of the next piece, counted from the start of the oldest segment */
-    uint32_t segment_end;  /* target: end of the segment whose shape is held */
-    uint32_t frame;        /* number of the next frame */
-    uint32_t pending;      /* frames pushed and not yet delivered */
-
+    uint32_t frame;   /* number of the next frame */
+    uint32_t pending; /* frames pushed and not yet delivered */
+    uint32_t begins[2]; /* bit i: a solution begins with the frame that was taken i ticks ago */
     uint32_t workspace_size;
     uint8_t *workspace;
     const labial_model_t *models[LABIAL_MODELS];
     labial_frame_fn callback;
     void *user;
-
-    int16_t shape[LABIAL_CHANNELS]; /* target: the held shape, positions */
-    int16_t pose[LABIAL_CHANNELS];  /* FAPs of the frame delivered last, from which easing starts */
-    labial_segment_t queue[LABIAL_QUEUE]; /* phonemes, with those still needed as context in front */
-    int16_t ready[LABIAL_READY + LABIAL_OVERLAP][LABIAL_CHANNELS]; /* frames that are solved, Q4 FAP */
+    int16_t shape[LABIAL_CHANNELS];   /* of the phoneme that the latest frame belongs to, positions */
+    int16_t pose[LABIAL_CHANNELS];    /* the frame delivered last, Q4 FAP */
+    int16_t earlier[LABIAL_CHANNELS]; /* the one before it; while something fades, how far it moved on */
+    int16_t held[LABIAL_CHANNELS];    /* the pose that fades */
+    labial_units_t units;
 } labial_t;
 
 /*
- * Bytes of workspace for models of up to `states` codebook entries of which one is searched every `stride` frames, a
- * multiple of four; a constant expression when both are. It holds, in this order: two rows of Viterbi scores and the
- * back-pointers, whose memory the trajectory solver uses in its turn; for each frame of the window the target, which
- * becomes the trajectory; the state path; the phonemes of the window and of what the kernels reach.
+ * Bytes of workspace for models that search a state every `stride` frames, a multiple of four; a constant expression
+ * when `stride` is. It holds, in this order: each channel's factors, in a ring; the channels; the frames whose targets
+ * are still needed, in a ring; the motion that is not yet delivered, likewise.
  */
-#define LABIAL_WORKSPACE_SIZE(states, stride)                                                              \
-    ((LABIAL_SEARCH_SIZE_(states, stride) > LABIAL_SOLVER_SIZE_ ? LABIAL_SEARCH_SIZE_(states, stride)      \
-                                                                : LABIAL_SOLVER_SIZE_) +                   \
-     ((uint32_t)LABIAL_WINDOW * 2u * LABIAL_CHANNELS + 3u) / 4u * 4u + LABIAL_LABELS_SIZE_)
-#define LABIAL_SEARCH_SIZE_(states, stride)                                                                \
-    (8u * ((uint32_t)(states) + 1u) +                                                                      \
-     (((uint32_t)LABIAL_WINDOW - 1u) / (uint32_t)(stride) * (uint32_t)(states) + 3u) / 4u * 4u)
-#define LABIAL_SOLVER_SIZE_ (60u + 12u * (uint32_t)LABIAL_WINDOW)
-#define LABIAL_LABELS_SIZE_ (((uint32_t)LABIAL_WINDOW * 2u + 2u * (uint32_t)LABIAL_REACH + 3u) / 4u * 4u)
+#define LABIAL_WORKSPACE_SIZE(stride)                                                                     \
+    ((uint32_t)(LABIAL_CHANNELS * (LABIAL_FACTORS_(stride) * sizeof(labial_factors_t) + sizeof(labial_track_t)) + \
+                (((stride) + LABIAL_LAG) * sizeof(labial_frame_t) + (stride) * 2u * LABIAL_CHANNELS + 3u) / 4u * 4u))
+#define LABIAL_FACTORS_(stride) (LABIAL_WINDOW + (stride) + 1u)
+
+/* Frames between one that is taken and the one that is delivered in the same tick. */
+#define LABIAL_DELAY(stride) (LABIAL_WINDOW + LABIAL_LAG + (stride))
 
 /* The same for a given model; 0 for a null pointer. */
 uint32_t labial_workspace_size(const labial_model_t *model);
@@ -227,23 +247,22 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
                 labial_frame_fn callback, void *user);
 
 /*
- * Makes the next pushes phonemes of `model`, speech or laughter; where the stream passes from one model to the other,
- * both are decoded for up to LABIAL_OVERLAP frames, each taking the other's phonemes for silence, and cross-faded. The
+ * Makes the next pushes phonemes of `model`, speech or laughter. Each model takes the other's phonemes for silence; where
+ * the stream passes from one to the other, the earlier motion runs out while the later one fades in, over 8 frames. The
  * model is trusted as that of labial_init() is.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
- * LABIAL_ERROR_RATE, LABIAL_ERROR_WORKSPACE (it is too small for the model) or LABIAL_ERROR_MODELS.
+ * LABIAL_ERROR_RATE (frames per second and search stride are those of the stream's first model) or LABIAL_ERROR_MODELS.
  */
 int labial_use(labial_t *stream, const labial_model_t *model);
 
 /*
  * Appends a phoneme of the current model with its duration in milliseconds, 0 to LABIAL_DURATION_MAX. Durations are
  * added exactly: after any number of pushes the frames amount to the rounded sum of the durations. A phoneme that gets
- * no frame of its own leaves no trace but its time.
+ * no frame of its own is skipped, and its time is added to the next.
  *
- * How a phoneme looks depends on what follows: its frames wait until the units that it is decoded with (LABIAL_PIECE),
- * the phoneme behind these and all that the kernels reach are known, or until labial_end(). A program that goes on
- * without end pushes its pauses in short pieces.
+ * How a phoneme looks depends on what follows: its frames wait until the phoneme behind it and all that the kernels reach
+ * are known, or until labial_end(). Pauses of any length hold nothing up: a silence is pushed whole when it begins.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
  * labial_cancel()), LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION or LABIAL_ERROR_FULL.
@@ -257,22 +276,14 @@ unsigned labial_room(const labial_t *stream);
 int labial_end(labial_t *stream);
 
 /*
- * Call once per frame period. Does a bounded share of the work on the frames to come - that of decoding two frames at
- * most, and mostly less - and delivers the next frame when there is one. While phonemes are pushed early enough, no
- * frame is late; after a shortage LABIAL_PREROLL frames are gathered again.
+ * Call once per frame period. Takes up one frame of what was pushed and delivers the one that was taken up
+ * LABIAL_DELAY(stride) ticks before; every call does about the same work. When phonemes came too late, the stream lags
+ * behind by the ticks that returned LABIAL_STARVED, and catches up by as many extra calls (docs/kiosk.md).
  *
- * Returns LABIAL_OK when the callback was called, once; LABIAL_WAITING, LABIAL_STARVED, LABIAL_BUSY or LABIAL_DONE when
- * there was nothing to deliver; LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ * Returns LABIAL_OK when the callback was called, once; LABIAL_WAITING, LABIAL_STARVED or LABIAL_DONE when there was
+ * nothing to deliver; LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_tick(labial_t *stream);
-
-/*
- * Does one small step of the work, for programs with time to spare between frames: ticks find their work done. Never
- * needed. Returns LABIAL_OK when there is more to do at once, LABIAL_WAITING when everything is done that can be done
- * before more phonemes come or frames are taken, LABIAL_DONE when nothing is left to do at all, or LABIAL_ERROR_NULL or
- * LABIAL_ERROR_STATE.
- */
-int labial_work(labial_t *stream);
 
 /*
  * Drops all that was pushed and not yet delivered, and eases the last delivered frame back to the neutral face (all
@@ -295,8 +306,8 @@ int labial_restart(labial_t *stream);
 typedef struct {
     uint32_t frames;       /* pushed and not yet delivered */
     uint32_t milliseconds; /* the same as time, rounded to the nearest */
-    unsigned phonemes;     /* held in the queue, those included that are only kept as context */
-    unsigned ready;        /* frames that are computed; the first wait until LABIAL_PREROLL of them are */
+    unsigned phonemes;     /* held in the queue: pushed, and not yet taken up to their last frame */
+    unsigned delay;        /* frames between one that is taken up and the one that is delivered: LABIAL_DELAY() */
 } labial_latency_t;
 
 /* The stream's look-ahead at this moment; all zero for a null or uninitialised stream. */

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* Version of the tables' meaning. A generated model of another version does not compile, a binary one is refused. */
-#define LABIAL_MODEL_FORMAT 2
+#define LABIAL_MODEL_FORMAT 3
 
 /* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
 #define LABIAL_CHANNELS 13
@@ -38,9 +38,12 @@ extern "C" {
 #define LABIAL_SEARCH_STRIDE_MAX 8       /* frames that share a state */
 #define LABIAL_NO_FLOOR (-16384)         /* in `floors`: below every position */
 #define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
-#define LABIAL_WEIGHT_SUM_MAX 262143     /* the largest diagonal element that equation 3 may have */
-#define LABIAL_WEIGHT_MIN 8              /* the least that holds a state in place: weight[0] + anchor */
-#define LABIAL_PULL_MAX 1073741823       /* the largest right-hand side that equation 3 may have */
+
+/* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */
+#define LABIAL_WEIGHT_SUM_MAX 16383 /* the largest `hold` + twice the largest weight[0] + six times the largest weight[1] */
+#define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
+#define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
+#define LABIAL_PULL_MAX 65535       /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over the least `hold` */
 
 /* A phoneme: which mixture components are its own and which viseme class its neighbours see. */
 typedef struct {
@@ -63,19 +66,21 @@ typedef struct {
     int16_t mean;    /* position */
     uint16_t gain;   /* gain of the standard deviation in positions */
     uint8_t cost;    /* log sigma, cost, less the least of its channel */
-    uint8_t initial; /* cost of starting a unit here */
+    uint8_t initial; /* cost of starting here */
 } labial_emission_t;
 
-/* What a codebook entry asks of the trajectory (equation 3): means of m, its delta and its delta-delta, per frame. */
+/* What a codebook entry asks of the trajectory (equation 3): means of m, its delta and its delta-delta, per frame, and
+ * an anchor that ties the frame to its target, which the published method does not have. */
 typedef struct {
     int16_t mean[3];   /* Q4: position; positions per frame; positions per frame squared */
-    uint8_t weight[3]; /* precisions: static; a quarter of delta's; delta-delta's */
-    uint8_t anchor;    /* precision that ties the frame to its target; 0 in the published method */
+    uint8_t hold;      /* weight of static feature and anchor together */
+    uint8_t share;     /* the anchor's share of it, in 1/256; from 128 on one more, so that 255 is all of it */
+    uint8_t weight[2]; /* a quarter of delta's; delta-delta's */
 } labial_state_t;
 
-/* One channel's scales and its hidden Markov model. Each state has as many possible predecessors as the model says, in
- * ascending order, repeated where there are fewer: four times the predecessor in the low byte of an edge, the
- * transition's cost in the high one. */
+/* One channel's scales and its hidden Markov model. States are in the order of their emissions' means. Each has as many
+ * possible predecessors as the model says, in ascending order, the last repeated where there are fewer: the predecessor
+ * in the low byte of an edge, the transition's cost in the high one. */
 typedef struct {
     int16_t centre;        /* Q4 FAP: added to every position on output */
     uint16_t shape_scale;  /* positions per step of `shapes`, Q8; at most 32767 */
@@ -95,10 +100,11 @@ typedef struct {
     uint8_t phoneme_count;      /* P: 1 .. LABIAL_PHONEMES_MAX */
     uint8_t class_count;        /* V: 1 .. LABIAL_CLASSES_MAX */
     uint8_t state_count;        /* Q: 1 .. LABIAL_STATES_MAX */
-    uint8_t predecessors;       /* K: a multiple of four, 4 .. LABIAL_STATES_MAX */
-    uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the targets of the middle
-                                 * one, or of the later of two, are what the search sees */
-    uint8_t silence;            /* the phoneme that stands before, after and for what is another model's */
+    uint8_t predecessors;       /* K: 1 .. LABIAL_STATES_MAX */
+    uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the target of the middle
+                                 * one, or of the later of two, is what the search sees */
+    uint8_t silence;            /* the phoneme that stands before, after and for what is another model's; long ones are
+                                 * taken as two (lib/units.h) */
     uint8_t soft;               /* 1: shapes are the mixture's mean; 0: those of its best component (equation 2) */
     uint8_t kernel_taps;        /* L: 0 .. LABIAL_KERNEL_TAPS_MAX; 0 without temporal kernels */
     uint8_t kernel_stride;      /* frames from tap to tap */

@@ -9,8 +9,12 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-#if LABIAL_MODEL_FORMAT != 2
+#if LABIAL_MODEL_FORMAT != 3
 #error "laughter_synthetic was exported for another version of Labial: run labial export again."
+#endif
+
+#if LABIAL_REACH < 18
+#error "laughter_synthetic needs LABIAL_REACH of 18 at least: its kernels reach so far."
 #endif
 
 #ifdef __cplusplus
@@ -20,7 +24,7 @@ extern "C" {
 #define LAUGHTER_SYNTHETIC_FPS 50
 #define LAUGHTER_SYNTHETIC_PHONEMES 12
 #define LAUGHTER_SYNTHETIC_STATES 50
-#define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(LAUGHTER_SYNTHETIC_STATES, 3)
+#define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(3)
 
 /* Phoneme numbers. */
 enum {
@@ -38,7 +42,7 @@ enum {
     LAUGHTER_SYNTHETIC_A = 11
 };
 
-/* The model, 27318 bytes on a 32-bit target. */
+/* The model, 22118 bytes on a 32-bit target. */
 extern const labial_model_t laughter_synthetic;
 
 /* Its labels and aliases; linked only when used. */

@@ -8,8 +8,12 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-#if LABIAL_MODEL_FORMAT != 2
+#if LABIAL_MODEL_FORMAT != 3
 #error "speech_en was exported for another version of Labial: run labial export again."
+#endif
+
+#if LABIAL_REACH < 18
+#error "speech_en needs LABIAL_REACH of 18 at least: its kernels reach so far."
 #endif
 
 #ifdef __cplusplus
@@ -19,7 +23,7 @@ extern "C" {
 #define SPEECH_EN_FPS 50
 #define SPEECH_EN_PHONEMES 40
 #define SPEECH_EN_STATES 50
-#define SPEECH_EN_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(SPEECH_EN_STATES, 3)
+#define SPEECH_EN_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(3)
 
 /* Phoneme numbers. */
 enum {
@@ -65,7 +69,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 43160 bytes on a 32-bit target. */
+/* The model, 37960 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

@@ -67,7 +67,7 @@ int32_t fixture_target(unsigned phoneme, unsigned channel)
 /* Every state is entered from itself and from those up to `reach` away, 1 or 3; those at the ends have fewer. */
 static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned reach)
 {
-    const unsigned predecessors = 2 * reach + 2; /* a multiple of four: one at least is repeated */
+    const unsigned predecessors = 2 * reach + 2; /* one at least is repeated */
     unsigned q, p;
     for (q = 0; q < count; q++) {
         uint16_t *edges = f->edges[c] + q * predecessors;
@@ -76,12 +76,24 @@ static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned rea
             const unsigned away = p > q ? p - q : q - p;
             const unsigned cost = away == 0 ? 4 : away == 1 ? 60 : 90;
             if (away <= reach)
-                edges[n++] = (uint16_t)(4 * p | cost << 8);
+                edges[n++] = (uint16_t)(p | cost << 8);
         }
         for (; n < predecessors; n++)
             edges[n] = edges[n - 1];
     }
     f->model.predecessors = (uint8_t)predecessors;
+}
+
+/* Puts the first `count` numbers in ascending order. */
+static void sort(int *numbers, unsigned count)
+{
+    unsigned i, j;
+    for (i = 1; i < count; i++)
+        for (j = i; j > 0 && numbers[j] < numbers[j - 1]; j--) {
+            const int other = numbers[j];
+            numbers[j] = numbers[j - 1];
+            numbers[j - 1] = other;
+        }
 }
 
 /* gain = 2^18 / (sigma * sqrt 2) */
@@ -93,6 +105,7 @@ static uint16_t gain_of(double sigma)
 /* Tables that all fixtures share; `count` phonemes of two components each. */
 static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned silence, unsigned reach)
 {
+    int means[LABIAL_STATES_MAX];
     unsigned p, k, c, q;
     memset(f, 0, sizeof *f);
     f->model.format = LABIAL_MODEL_FORMAT;
@@ -130,20 +143,21 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
         channel->emissions = f->emissions[c];
         channel->states = f->states[c];
         channel->edges = f->edges[c];
+        /* The shapes of the phonemes, and the rest spread over +-300 FAP units. */
+        for (q = 0; q < states; q++)
+            means[q] = q < count ? position_of_steps(shape_steps(q, 0, c))
+                                 : -4800 + (int)(9600u * (q - count) / (states > count + 1 ? states - count - 1 : 1));
+        sort(means, states);
         for (q = 0; q < states; q++) {
             labial_emission_t *emission = &f->emissions[c][q];
             labial_state_t *state = &f->states[c][q];
-            /* The shapes of the phonemes first; the rest are spread over +-300 FAP units. */
-            const unsigned gaps = states > count + 1 ? states - count - 1 : 1;
-            const int mean = q < count ? position_of_steps(shape_steps(q, 0, c))
-                                       : -4800 + (int)(9600u * (q - count) / gaps);
-            emission->mean = (int16_t)mean;
+            emission->mean = (int16_t)means[q];
             emission->gain = gain_of(240.0); /* 15 FAP units; the nearest state is the likeliest */
             emission->initial = (uint8_t)(60 + q % 5);
-            state->mean[0] = (int16_t)mean;
-            state->weight[0] = fixture_weight_code(64);
-            state->weight[1] = fixture_weight_code(90);
-            state->weight[2] = fixture_weight_code(200);
+            state->mean[0] = (int16_t)means[q];
+            state->hold = fixture_weight_code(64);
+            state->weight[0] = fixture_weight_code(90);
+            state->weight[1] = fixture_weight_code(200);
         }
         connect(f, c, states, reach);
     }
@@ -200,8 +214,8 @@ static void enrich(fixture_model_t *f)
             f->emissions[c][q].cost = (uint8_t)(q % 3 * 3);
             state->mean[1] = (int16_t)((int)fixture_below(&random, 161) - 80);
             state->mean[2] = (int16_t)((int)fixture_below(&random, 41) - 20);
-            state->weight[0] = fixture_weight_code(20.0 + (double)fixture_below(&random, 100));
-            state->anchor = fixture_weight_code(100.0 + (double)fixture_below(&random, 300));
+            state->hold = fixture_weight_code(120.0 + (double)fixture_below(&random, 400));
+            state->share = (uint8_t)(160 + fixture_below(&random, 90));
         }
     }
 }
