@@ -144,6 +144,7 @@ def check(model: Model) -> None:
     for name in ("duration_variance", "decode_variance", "state_precision"):
         _expect((getattr(model, name) > 0).all(), f"{name} must be positive")
     _expect((model.state_anchor >= 0).all(), "state_anchor must not be negative")
+    _expect((np.diff(model.decode_mean, axis=1) >= 0).all(), "decode_mean is not ascending, states are not in order")
     _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
     _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
     if taps > 1:

@@ -307,21 +307,22 @@ def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.
     """Codes of what holds the states (13, Q) and of their moving weights (13, Q, 2), a quarter of delta's and
     delta-delta's; `state_mean` (13, Q, 3) in positions.
 
-    Each channel's precisions are scaled as high as the largest diagonal element allows; states that then exceed another
-    of equation 3's bounds are brought within it, one by one.
+    Each channel's precisions are scaled as high as the largest diagonal element allows, when states that exceed another
+    of equation 3's bounds have been brought within it one by one.
     """
     hold = np.zeros(model.state_anchor.shape, dtype=np.int64)
     moving = np.zeros((*hold.shape, 2), dtype=np.int64)
     for k in range(CHANNELS):
         held = model.state_precision[k, :, 0] + model.state_anchor[k]
         tied = model.state_precision[k, :, 1:] * np.array([0.25, 1.0])
-        scale = WEIGHT_SUM_MAX / _diagonal(held, tied)
+        scale = WEIGHT_SUM_MAX / float(held.max())
         while True:
             hold[k] = np.maximum(weight_code(held * scale), weight_code(np.array(WEIGHT_MIN)))
             moving[k] = _within(weight_value(hold[k]), weight_code(tied * scale), np.abs(state_mean[k, :, 1:]))
-            if _diagonal(weight_value(hold[k]), weight_value(moving[k])) <= WEIGHT_SUM_MAX:
+            most = _diagonal(weight_value(hold[k]), weight_value(moving[k]))
+            if most <= WEIGHT_SUM_MAX:
                 break
-            scale *= 0.99
+            scale *= min(WEIGHT_SUM_MAX / most, 0.99)
     return hold, moving
 
 
@@ -339,8 +340,9 @@ def _within(hold: np.ndarray, codes: np.ndarray, mean: np.ndarray) -> np.ndarray
     excess = 4 * pull.max(axis=0).sum() / (PULL_MAX * hold.min())
     if excess <= 1.0:
         return codes
-    most = pull.max(axis=0) / excess
-    return _lowered(codes, (most / np.maximum(pull, 1e-9)).min(axis=1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(pull > 0, pull.max(axis=0) / excess / pull, np.inf)
+    return _lowered(codes, share.min(axis=1))
 
 
 def _lowered(codes: np.ndarray, share: np.ndarray) -> np.ndarray:

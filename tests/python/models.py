@@ -19,7 +19,7 @@ def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: i
     classes = 4
     count = phonemes * components
     reach = 300.0 * rng.uniform(0.1, 1.0, CHANNELS)
-    mean = rng.uniform(-1.0, 1.0, (CHANNELS, states)) * reach[:, None]
+    mean = np.sort(rng.uniform(-1.0, 1.0, (CHANNELS, states)) * reach[:, None], axis=1)
     variance = (reach[:, None] * rng.uniform(0.05, 0.3, (CHANNELS, states))) ** 2
     state_mean = np.stack([mean, rng.normal(0, 0.05, mean.shape) * reach[:, None],
                            rng.normal(0, 0.02, mean.shape) * reach[:, None]], axis=-1)
