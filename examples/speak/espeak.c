@@ -82,7 +82,7 @@ int main(int argc, char **argv)
     } else if (select_voice(voice) != 0) {
         fprintf(stderr, "labial-say-espeak: espeak-ng has no voice '%s'\n", voice);
         result = -1;
-    } else if (speak_begin(&run.speak, &options, (unsigned)rate) != 0) {
+    } else if (speak_begin(&run.speak, &options, (unsigned)rate, LABIAL_LABELS_IPA) != 0) {
         result = -1;
     } else {
         espeak_SetSynthCallback(on_sound);
