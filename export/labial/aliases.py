@@ -43,12 +43,12 @@ _ARPABET = {
 _IPA = {
     "SIL": _SILENCE,
     # Vowels. ä ã õ ... are single characters here; as letters with a combining mark they lose it.
-    "IY": "i ĩ iɪ iu iʊ iw iy iə iɐ ie iɛ", "IH": "ɪ ᵻ ɨ ɯ ɪə ɪɐ ɪʊ ɪɹ iɹ ɪ^",
+    "IY": "i i? ĩ iɪ iu iʊ iw iy iə iɐ ie iɛ", "IH": "ɪ ᵻ ɨ ɯ ɪə ɪɐ ɪʊ ɪɹ iɹ ɪ^",
     "EH": "e ɛ ε ẽ eə ɛə eɐ ɛɐ eɹ ɛɹ eu eʊ ew ɛʊ ɛu ey je",
     "AE": "æ a ä ã ea ia ja yæ oæ", "AA": "ɑ ɑɹ ua uɑ uai iɑ jɑ oa ɔa", "AH": "ə ʌ ɐ ɘ ɤ",
-    "ER": "ɜ ɝ ɚ ɜɹ əɹ ər ʌɹ ɚɹ ɹ̩ ɻ̩ ə˞ ɜ˞ ɜr", "AO": "ɔ ɒ ɶ oɹ ɔɹ",
+    "ER": "ɜ ɝ ɚ ɜɹ əɹ ər ʌɹ ɚɹ ɹ̩ ɻ̩ ə˞ ɜ˞ ɜr", "AO": "ɔ ɔ+ ɒ ɶ oɹ ɔɹ",
     "UH": "ʊ ʏ ɵ ɞ ʊə ʊɐ ʊɹ uɹ uə uɐ ɯᵝ", "UW": "u ʉ y yː ø ũ ui uɪ ʊi ʊɪ uj ʉɪ uo uɔ yə yɛ yɪ yʊ yi yu yø ju øi øy øɪ",
-    "OW": "o œ õ oʊ ou ow əʊ əw oə œy œʏ œi onɡ iou jo eo",
+    "OW": "o œ õ oʊ ou ow əʊ əw oə œy œʏ œi onɡ io iou jo eo",
     # Diphthongs with an English relative.
     "EY": "eɪ ei ej ɛɪ ɛi ɛj əɪ əi əj uei",
     "AY": "aɪ ai aj ae aɛ äi ɑɪ ɑi ɑj aɪə aɪɚ aɪɜ aɪʊɹ aɪɐ ɐɪ ɐi ʌɪ æi æɪ",

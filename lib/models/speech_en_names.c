@@ -10,7 +10,7 @@
 #endif
 
 /* Phoneme, bytes of the name and its sets of labels, name. */
-static const uint8_t entries[3003] = {
+static const uint8_t entries[3016] = {
     31, 0x82, '!', 92,
     0, 0xe1, '#',
     4, 0x81, '&',
@@ -323,6 +323,7 @@ static const uint8_t entries[3003] = {
     16, 0x22, 'h', 'v',
     18, 0xc1, 'i',
     18, 0x82, 'i', '3',
+    18, 0x42, 'i', '?',
     18, 0x82, 'i', '@',
     18, 0x83, 'i', '@', '3',
     18, 0x82, 'i', 'E',
@@ -330,6 +331,7 @@ static const uint8_t entries[3003] = {
     2, 0xc2, 'i', 'a',
     18, 0xc2, 'i', 'e',
     17, 0x22, 'i', 'h',
+    25, 0x42, 'i', 'o',
     25, 0x43, 'i', 'o', 'u',
     18, 0xc2, 'i', 'u',
     18, 0x42, 'i', 'w',
@@ -529,6 +531,7 @@ static const uint8_t entries[3003] = {
     26, 0x44, 201, 146, 201, 170,
     7, 0x42, 201, 147,
     4, 0x42, 201, 148,
+    4, 0x43, 201, 148, '+',
     1, 0x43, 201, 148, 'a',
     26, 0x43, 201, 148, 'i',
     26, 0x43, 201, 148, 'j',
@@ -665,4 +668,4 @@ static const char *const labels[40] = {
     "JH", "K", "L", "M", "N", "NG", "OW", "OY", "P", "R", "S", "SH", "T", "TH", "UH", "UW", "V", "W", "Y", "Z", "ZH"
 };
 
-const labial_names_t speech_en_names = { 3003, 40, entries, labels };
+const labial_names_t speech_en_names = { 3016, 40, entries, labels };

@@ -149,3 +149,47 @@ def test_redundant_names_are_found_without_their_entry(phone_set) -> None:  # no
     known = phone_set.names()
     assert all(find(first, name) == known[name] for name in known)
     assert len(table) < sum(map(len, names.values())) / 1.4
+
+
+def espeak_labels() -> dict[str, str]:
+    """Every label that espeak-ng emits, and its phoneme or - (tests/labels/README.md)."""
+    lines = (SOURCE / "tests/labels/espeak.tsv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "label\tphoneme\tlanguages"
+    rows = [line.split("\t") for line in lines[1:]]
+    assert len({label for label, *_ in rows}) == len(rows) > 300 and all(len(row) == 3 for row in rows)
+    return {label: phoneme for label, phoneme, _ in rows}
+
+
+def test_every_label_of_espeak_is_known(library: ctypes.CDLL) -> None:
+    """Catches a sound of any language that another one's lips are given, in the library or the exporter, and one that
+    nobody knows."""
+    names = Names(library, "speech_en")
+    for label, phoneme in espeak_labels().items():
+        expected = None if phoneme == "-" else phoneme
+        assert SPEECH.resolve(label, "ipa") == expected, label
+        assert names("labial_find_in", label, SETS["ipa"]) == expected, label
+
+
+#: What the first symbol of a label asks of the lips, as the chart of the International Phonetic Association has it,
+#: and the viseme classes that do.
+CHART = {
+    "pbmɸβɓʙ": {"bilabial"}, "fvʋɱⱱ": {"labiodental"}, "yʏøœuʊʉɵoɔɞ": {"close_rounded", "mid_rounded"},
+    "θð": {"dental"}, "iɪeɛæaɑəɐʌɜɨɯɤ": {"spread", "mid", "open", "rhotic"},
+    "tdnlrɾɽɖʈɳɭɫɬ": {"alveolar", "sibilant", "postalveolar"},
+    "sz": {"sibilant", "postalveolar"}, "ʃʒɕʑʂʐ": {"postalveolar"}, "kgɡqxɣŋhħχʁʀɢ": {"velar"}, "w": {"close_rounded"},
+}  # fmt: skip
+#: Labels whose lips are not those of their first symbol: a rising diphthong, a rounded end, a syllabic l, Swedish sj.
+OTHERWISE = set("əl oæ ua uai uei uɑ ɔa iou io eo yæ ɯᵝ əʊ əːʊ ɐ̃ʊ̃ au aʊ aʊə aːʊ ɑu ʌʊ iɑu sx".split())
+
+
+def test_labels_of_espeak_look_as_the_chart_says() -> None:
+    """Catches a slip in the table itself: lips that part in a p, spread in a y, or round in an i."""
+    checked = 0
+    for label, phoneme in espeak_labels().items():
+        symbol = label.lstrip("ʔ?ʰ")[:1] or label[:1]
+        for symbols, classes in CHART.items():
+            if symbol in symbols and phoneme != "-" and label not in OTHERWISE:
+                name = SPEECH.classes[SPEECH.phoneme_class[SPEECH.phonemes.index(phoneme)]]
+                assert name in classes, (label, phoneme)
+                checked += 1
+    assert checked > 230
