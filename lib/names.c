@@ -81,7 +81,7 @@ static size_t mark_length(const char *at, size_t left)
     return 0;
 }
 
-/* Bytes of the mark before a symbol at `at`: U+02C8, U+02CC, ASCII's stress marks, and the glottal stop, U+0294 or ?. */
+/* Bytes of the mark before a symbol at `at`: U+02C8, U+02CC, ASCII's stress marks, the glottal stop (U+0294 or ?). */
 static size_t leading_length(const char *at, size_t left)
 {
     if (left > 1u && at[0] == '\xcb' && is_one_of(at[1], "\x88\x8c"))
@@ -91,7 +91,7 @@ static size_t leading_length(const char *at, size_t left)
     return left > 0u && is_one_of(at[0], "'\",%?") ? 1u : 0u;
 }
 
-/* Bytes of X-SAMPA's, Kaldi's and eSpeak's marks at the end of the `length` bytes at `text`; what is left is not empty. */
+/* Bytes of X-SAMPA's, Kaldi's and eSpeak's marks at the end of `length` bytes; what is left is not empty. */
 static size_t trailing_length(const char *text, size_t length)
 {
     char last;

@@ -28,9 +28,9 @@ void closure_sound(closure_t *closure, const short *samples, size_t count);
 
 /*
  * Where the silence before a burst begins, milliseconds. The burst is `burst` milliseconds into the sound, which was
- * taken up to there; the phoneme before it begins at `before`. Silent are frames of at most a sixteenth (-24 dB) of that
- * phoneme's loudest, so that a voiced stop, whose voicing goes on, begins where it is reported. At most 100 ms are taken
- * from the phoneme before, which keeps 20 ms. Returns `burst` where there is no silence.
+ * taken up to there; the phoneme before it begins at `before`. Silent are frames of at most a sixteenth (-24 dB) of
+ * that phoneme's loudest, so that a voiced stop, whose voicing goes on, begins where it is reported. At most 100 ms are
+ * taken from the phoneme before, which keeps 20 ms. Returns `burst` where there is no silence.
  */
 uint64_t closure_begin(const closure_t *closure, uint64_t before, uint64_t burst);
 

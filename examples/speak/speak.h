@@ -37,8 +37,8 @@ typedef struct {
  * 0, or the exit status plus 1 after --help or an error, which it prints. `usage` is what --help prints. */
 int speak_options(int argc, char **argv, const char *program, const char *usage, speak_options_t *options);
 
-/* Opens the sound file, of one channel and 16 bits, and prepares the mouth for phonemes of the set `labels`. Returns 0, or -1 after the error was
- * printed. */
+/* Opens the sound file, of one channel and 16 bits, and prepares the mouth for phonemes of the set `labels`. Returns 0,
+ * or -1 after the error was printed. */
 int speak_begin(speak_t *speak, const speak_options_t *options, unsigned samples_per_second, labial_labels_t labels);
 
 /* Appends sound. Returns as speak_begin() does. */

@@ -17,8 +17,8 @@ extern "C" {
 
 /*
  * Sets of labels. Some labels mean different sounds in different sets: `y` is the first sound of "yes" in ARPABET and
- * the rounded vowel of German "ue" in the IPA, `th` one fricative in ARPABET and an aspirated stop in the IPA, `N S T D Z
- * V` other sounds in X-SAMPA. Whoever knows which set the labels are of should say so.
+ * the rounded vowel of German "ue" in the IPA, `th` one fricative in ARPABET and an aspirated stop in the IPA,
+ * `N S T D Z V` other sounds in X-SAMPA. Whoever knows which set the labels are of should say so.
  */
 typedef enum {
     LABIAL_LABELS_ARPABET = 0x20, /* also flite's, CMU Sphinx's and TIMIT's */
@@ -29,9 +29,9 @@ typedef enum {
 
 /*
  * The names of one model. Labels and aliases stand one behind the other, without pointers, which would take more room
- * than they do: for each the phoneme's number, a byte of the name's length (1 .. 31) and the sets in which it means this
- * phoneme (the bits of labial_labels_t), and the name in UTF-8. A look-up reads them all, 3 KB for English, which is
- * little beside the work of one frame.
+ * than they do: for each the phoneme's number, a byte of the name's length (1 .. 31) and the sets in which it means
+ * this phoneme (the bits of labial_labels_t), and the name in UTF-8. A look-up reads them all, 3 KB for English, which
+ * is little beside the work of one frame.
  */
 typedef struct {
     uint16_t size;             /* of `entries`, bytes */
@@ -48,8 +48,8 @@ typedef struct {
  * variants (`-`, `.`, `^`, `"`) behind it; an ARPABET stress digit behind two letters. The labels of the model's own
  * phonemes are known in every set, unless that means another sound by them.
  *
- * Returns the phoneme's number, LABIAL_ERROR_NULL, or LABIAL_ERROR_NAME: also for an empty name, for marks alone, and for
- * `labels` that is none of the above.
+ * Returns the phoneme's number, LABIAL_ERROR_NULL, or LABIAL_ERROR_NAME: also for an empty name, for marks alone, and
+ * for `labels` that is none of the above.
  */
 int labial_find_in(const labial_names_t *names, labial_labels_t labels, const char *name, size_t length);
 
@@ -57,10 +57,10 @@ int labial_find_in(const labial_names_t *names, labial_labels_t labels, const ch
 int labial_find(const labial_names_t *names, const char *name, size_t length);
 
 /*
- * A phoneme for any label: the one that labial_find_in() finds; `silence` (the model's) for what is in brackets or between
- * + * #, as noises are written, and where nothing is left without marks, digits and ASCII's punctuation; else the longest
- * known beginning of the label, its first letters being passed over while there is none; else the neutral vowel, else
- * `silence`. A program that wants to know of unknown labels asks labial_find_in() first.
+ * A phoneme for any label: the one that labial_find_in() finds; `silence` (the model's) for what is in brackets or
+ * between + * #, as noises are written, and where nothing is left without marks, digits and ASCII's punctuation; else
+ * the longest known beginning of the label, its first letters being passed over while there is none; else the neutral
+ * vowel, else `silence`. A program that wants to know of unknown labels asks labial_find_in() first.
  *
  * Returns the phoneme's number or LABIAL_ERROR_NULL.
  */
