@@ -56,6 +56,7 @@ def parser() -> argparse.ArgumentParser:
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
                        help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
+    _add_labels(synth)
     synth.add_argument("--whole", action="store_true",
                        help="search and solve the whole utterance at once, not as the run-time does")
     synth.set_defaults(run=_synth)
@@ -72,6 +73,7 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("model", metavar="MODEL.npz")
     check.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
     check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
+    _add_labels(check)
     _add_export_options(check)
     check.set_defaults(run=_check)
 
@@ -105,6 +107,7 @@ def parser() -> argparse.ArgumentParser:
     plot = commands.add_parser("plot", help="draw trajectories with their phonemes")
     plot.add_argument("frames", metavar="FRAMES", nargs="+", help="frames files (.csv) or .fap; several are overlaid")
     plot.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_labels(plot)
     plot.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
     plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel "
                       "each (fap3,opening,stretch,fap17)")
@@ -113,6 +116,7 @@ def parser() -> argparse.ArgumentParser:
     page = commands.add_parser("page", help="write a page that plays motion")
     page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv) or .fap")
     page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_labels(page)
     page.add_argument("--audio", metavar="WAV", help="sound that is played in step")
     page.add_argument("--title", help="the file's name without it")
     page.add_argument("-o", "--output", required=True, metavar="OUT.html")
@@ -130,6 +134,12 @@ def parser() -> argparse.ArgumentParser:
                         help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
     record.set_defaults(run=_record)
     return top
+
+
+def _add_labels(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--labels", choices=("auto", "arpabet", "ipa", "xsampa"), default="auto",
+                         help="what set the phonemes' labels are of; auto takes any, and where they differ X-SAMPA "
+                         "in .pho and MaryTTS, elsewhere ARPABET (auto)")
 
 
 def _add_export_options(command: argparse.ArgumentParser) -> None:
@@ -175,7 +185,7 @@ def _synth(options: argparse.Namespace) -> int:
     from labial.reference.tables import FloatTables
 
     model = load(options.model)
-    tables, phonemes = FloatTables(model), read_stream(options.phones, model)
+    tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels)
     whole = options.whole
     frames = published.synthesise(tables, phonemes, whole=True) if whole else stream.synthesise(tables, phonemes)
     name = Path(options.model).stem
@@ -221,7 +231,8 @@ def _check(options: argparse.Namespace) -> int:
 
     model = _widened(load(options.model), options.amplitude)
     exported = quantise(model, "checked_model", predecessors=options.predecessors)
-    comparison = compare(model, exported, [read_stream(path, model) for path in options.phones], options.library)
+    streams = [read_stream(path, model, options.labels) for path in options.phones]
+    comparison = compare(model, exported, streams, options.library)
     print(comparison.table())
     failures = comparison.failures()
     for failure in failures:
@@ -267,7 +278,7 @@ def _plot(options: argparse.Namespace) -> int:
         raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
     from labial.see.motion import read_bands, read_motions
 
-    plot(read_motions(options.frames), read_bands(options.phones), options.output,
+    plot(read_motions(options.frames), read_bands(options.phones, options.labels), options.output,
          options.channels or DEFAULT)
     return 0
 
@@ -276,7 +287,7 @@ def _page(options: argparse.Namespace) -> int:
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
-    text = page(read_motion(options.frames), read_bands(options.phones), options.audio, options.title)
+    text = page(read_motion(options.frames), read_bands(options.phones, options.labels), options.audio, options.title)
     with open(options.output, "w", encoding="utf-8", newline="\n") as out:
         out.write(text)
     return 0
