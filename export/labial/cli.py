@@ -32,7 +32,8 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     train = commands.add_parser("train", help="train a model on a corpus")
-    train.add_argument("corpus", help="Labial corpus folder, IEMOCAP or AVLaughterCycle")
+    train.add_argument("corpus", nargs="+", help="Labial corpus folder, IEMOCAP or AVLaughterCycle; of several, all "
+                       "talkers are brought to the first one's mean and scale, and corpus.toml in a folder tells more")
     train.add_argument("-o", "--output", required=True, metavar="MODEL.npz")
     train.add_argument("--kind", choices=("speech", "laughter"), default="speech")
     train.add_argument("--method", choices=("paper", "labial"), default="labial")
@@ -145,7 +146,7 @@ def _train(options: argparse.Namespace) -> int:
         from labial.train.train import train
     except ModuleNotFoundError as error:
         raise LabialError(f"training needs the package {error.name}: install labial[train]") from None
-    from labial.corpus import read_corpus
+    from labial.corpus import read_corpora
     from labial.model import save
 
     own = {}  # what only --method labial has
@@ -156,7 +157,8 @@ def _train(options: argparse.Namespace) -> int:
     if own and options.method == "paper":
         names = " and ".join("--" + name.replace("_", "-") for name in own)
         warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)
-    model = train(read_corpus(options.corpus, options.kind), kind=options.kind, method=options.method, fps=options.fps,
+    episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
+    model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
                   progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution,
                   **own)

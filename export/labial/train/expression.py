@@ -29,15 +29,23 @@ def restored(model: Model, material: SequenceOf[Sequence], workers: Workers) -> 
     step = max(len(material) // EPISODES, 1)
     chosen = material[::step][:EPISODES]
     silence = model.phonemes.index(model.silence)
-    voiced = np.concatenate([item.phoneme_at() != silence for item in chosen])
-    human = np.concatenate([item.frames for item in chosen])[voiced].std(axis=0)
+    sounding = np.concatenate([item.phoneme_at() != silence for item in chosen])
+    weight = sounding[:, None] * np.concatenate([item.weights for item in chosen])
+    human = _deviation(np.concatenate([item.frames for item in chosen]), weight)
     gain = np.ones(human.shape)
     for _ in range(2):  # the state tables resist the gain, so that one step falls short
         current = widened(model, gain)
         motion = np.concatenate(workers.run("amplitude", _motion, [(current, item) for item in chosen]))
-        reached = motion[voiced].std(axis=0) / human
+        reached = _deviation(motion, weight) / human
         gain = np.clip(gain * AMPLITUDE / np.maximum(reached, 1e-9), 1.0, LARGEST_GAIN)
     return widened(model, gain)
+
+
+def _deviation(frames: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(13,) standard deviations of frames (T, 13) that count by weights (T, 13)."""
+    total = weight.sum(axis=0)
+    mean = (weight * frames).sum(axis=0) / total
+    return np.sqrt((weight * (frames - mean) ** 2).sum(axis=0) / total)
 
 
 def _motion(task: tuple[Model, Sequence]) -> np.ndarray:
