@@ -1,4 +1,8 @@
-"""Amplitude: the gain of each channel that makes the trained model move as far as people do."""
+"""Amplitude: the gain of each channel that makes the trained model move as far as people do.
+
+The channel is widened about the middle of its range, not about its mean: protrusion rests at 0 for most of the time and
+goes far in a few phonemes, which widening about the mean takes beyond people's.
+"""
 
 from __future__ import annotations
 
@@ -20,30 +24,38 @@ AMPLITUDE = 0.82
 #: Episodes that it is measured on.
 EPISODES = 160
 
+#: The percentiles that the middle of a channel's range lies between.
+RANGE = (5.0, 95.0)
+
 #: Gains are not taken beyond this, nor below 1.
 LARGEST_GAIN = 1.6
 
 
 def restored(model: Model, material: SequenceOf[Sequence], workers: Workers) -> Model:
     """The model widened, channel by channel, until its motion outside silence reaches AMPLITUDE."""
-    step = max(len(material) // EPISODES, 1)
-    chosen = material[::step][:EPISODES]
+    count = min(len(material), EPISODES)
+    chosen = [material[index] for index in np.linspace(0, len(material) - 1, count).round().astype(int)]
     silence = model.phonemes.index(model.silence)
     sounding = np.concatenate([item.phoneme_at() != silence for item in chosen])
     weight = sounding[:, None] * np.concatenate([item.weights for item in chosen])
-    human = _deviation(np.concatenate([item.frames for item in chosen]), weight)
+    frames = np.concatenate([item.frames for item in chosen])
+    human = _deviation(frames, weight)
+    taught = (weight > 0).any(axis=0)  # by the episodes chosen
+    middle = np.array([np.mean(np.percentile(values[of > 0], RANGE)) if any_of else 0.0
+                       for values, of, any_of in zip(frames.T, weight.T, taught)])
     gain = np.ones(human.shape)
     for _ in range(2):  # the state tables resist the gain, so that one step falls short
-        current = widened(model, gain)
+        current = widened(model, gain, middle)
         motion = np.concatenate(workers.run("amplitude", _motion, [(current, item) for item in chosen]))
-        reached = _deviation(motion, weight) / human
-        gain = np.clip(gain * AMPLITUDE / np.maximum(reached, 1e-9), 1.0, LARGEST_GAIN)
-    return widened(model, gain)
+        reached = _deviation(motion, weight) / np.maximum(human, 1e-9)
+        wanted = np.clip(gain * AMPLITUDE / np.maximum(reached, 1e-9), 1.0, LARGEST_GAIN)
+        gain = np.where(taught, wanted, 1.0)
+    return widened(model, gain, middle)
 
 
 def _deviation(frames: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(13,) standard deviations of frames (T, 13) that count by weights (T, 13)."""
-    total = weight.sum(axis=0)
+    total = np.maximum(weight.sum(axis=0), 1e-9)
     mean = (weight * frames).sum(axis=0) / total
     return np.sqrt((weight * (frames - mean) ** 2).sum(axis=0) / total)
 

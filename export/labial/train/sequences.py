@@ -10,7 +10,7 @@ import numpy as np
 from labial.corpus import resample
 from labial.corpus.episode import Episode, Source
 from labial.errors import LabialError
-from labial.faps import CHANNELS, FAP_COLUMNS
+from labial.faps import CHANNELS
 from labial.phonesets import PhoneSet
 
 
@@ -73,10 +73,6 @@ def sequences(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[
         )
     if not result:
         raise LabialError("the corpus holds no episode that is long enough to train on")
-    untaught = ~np.any([item.weights.any(axis=0) for item in result], axis=0)
-    if untaught.any():
-        names = ", ".join(np.array(FAP_COLUMNS)[untaught])
-        raise LabialError(f"no episode is left to learn {names} from: every corpus leaves these channels out")
     return result
 
 

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from labial.corpus.episode import Episode
 from labial.errors import LabialError
-from labial.faps import CHANNELS
+from labial.faps import CHANNELS, FAP_COLUMNS
 from labial.model import KINDS, METHODS, Model
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.quantise import LIMITS
@@ -131,6 +131,13 @@ def _check(
         raise LabialError("the corpus is empty")
 
 
+def _check_taught(material: SequenceOf[Sequence]) -> None:
+    untaught = ~np.any([item.weights.any(axis=0) for item in material], axis=0)
+    if untaught.any():
+        names = ", ".join(np.array(FAP_COLUMNS)[untaught])
+        raise LabialError(f"nothing is left to learn {names} from: every corpus leaves this out")
+
+
 def _extent(material: SequenceOf[Sequence], silence: int) -> Dict[str, object]:
     """How far the channels reach, from their 1st to their 99th percentile, and their mean pose outside silence."""
     everything = np.concatenate([item.frames for item in material])
@@ -196,6 +203,7 @@ def train(
     stride = search_stride if extended else 1
 
     material = sequences(corpus, phone_set, fps)
+    _check_taught(material)
     items = occurrences(material, phone_set)
     counts = np.bincount(items.phoneme[items.learnt], minlength=phonemes)
     plan = back_off(counts, phone_set)
