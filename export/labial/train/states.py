@@ -113,7 +113,7 @@ def match_states(
     for channel in range(CHANNELS):
         states = path[:, channel]
         rows = np.concatenate([features(item[:, channel]) for item in human])
-        floor = np.maximum(VARIANCE_FLOOR * rows.var(axis=0), 1e-6)
+        floor = np.maximum(VARIANCE_FLOOR * rows[weight[:, channel] > 0].var(axis=0), 1e-6)
         for feature in range(3):
             prior = tables.state_mean[channel, :, feature]
             mean[channel, :, feature], spread = _state_moments(rows[:, feature], weight[:, channel], states, prior)
