@@ -66,7 +66,7 @@ def test_the_file_tells_talkers_weights_and_what_is_left_out(tmp_path) -> None:
     ("weight = 3", 'weight = "3"', ": weight: '3' is not a number"),
     ("silences = false", "silences = 0", ": silences: 0 is neither true nor false"),
     ('["fap16", "fap17"]', '"fap16"', ": leave_out: is not a list of channels"),
-    ('"fap16"', '"fap18"', ": leave_out: no channel is called 'fap18'; did you mean fap1"),
+    ('"fap16"', '"fap18"', ": leave_out: no channel is called 'fap18'; did you mean fap"),
     ('"fap16"', "16", ": leave_out: no channel is called 16"),
     ('"fap16"', "[1]", ": leave_out: no channel is called [1]"),
     ('["fap16", "fap17"]', str([f"fap{n}" for n in (3, 16, 17, *range(51, 61))]), ": leave_out: nothing is left"),
@@ -134,15 +134,14 @@ def test_what_is_left_out_does_not_reach_the_model() -> None:
 
     def spoilt(item: Episode) -> Episode:
         frames = item.frames.copy()
-        frames[~item.sounding("SIL")] += 5000.0
+        near = np.convolve(item.sounding("SIL"), np.ones(13), "same")  # frames and velocities may reach across
+        frames[near < 0.5] += 5000.0
         return replace(item, frames=frames)
 
     one, other = (train([*first, *more], method="labial", jobs=1, **OPTIONS)
                   for more in (second, [spoilt(item) for item in second]))
-    # The first frame of a phoneme may be sampled between silence and speech.
-    for name in ("kernel", "pair_shape", "state_mean", "floor"):
-        a, b = getattr(one, name), getattr(other, name)
-        assert np.abs(a - b).max() < 0.05 * np.ptp(a[np.isfinite(a)]), name
+    for name in ("kernel", "pair_shape", "state_mean", "state_anchor", "floor"):
+        np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-6, atol=1e-6, err_msg=name)
     assert one.training["occurrences"]["SIL"] == 32
 
 
