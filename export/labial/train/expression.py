@@ -48,7 +48,7 @@ def restored(model: Model, material: SequenceOf[Sequence], workers: Workers) -> 
     middle = np.array([np.mean(np.percentile(values[of], RANGE)) if of.any() else 0.0
                        for values, of in zip(frames.T, learnt.T)])
     gain = np.ones(human.shape)
-    for _ in range(2):  # the state tables resist the gain, so that one step falls short
+    for _ in range(3):  # the state tables and the floors resist the gain, so that one step falls short
         current = widened(model, gain, middle)
         motion = np.concatenate(workers.run("amplitude", _motion, [(current, item) for item in chosen]))
         reached = _deviation(motion, learnt) / np.maximum(human, 1e-9)
