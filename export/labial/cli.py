@@ -32,7 +32,8 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     train = commands.add_parser("train", help="train a model on a corpus")
-    train.add_argument("corpus", help="Labial corpus folder, IEMOCAP or AVLaughterCycle")
+    train.add_argument("corpus", nargs="+", help="Labial corpus folder, IEMOCAP or AVLaughterCycle; of several, all "
+                       "talkers are brought to the first one's mean and scale, and corpus.toml in a folder tells more")
     train.add_argument("-o", "--output", required=True, metavar="MODEL.npz")
     train.add_argument("--kind", choices=("speech", "laughter"), default="speech")
     train.add_argument("--method", choices=("paper", "labial"), default="labial")
@@ -78,7 +79,8 @@ def parser() -> argparse.ArgumentParser:
     check.set_defaults(run=_check)
 
     evaluate = commands.add_parser("evaluate", help="compare all methods with the human's motion on held-out episodes")
-    evaluate.add_argument("corpus", help="as for train")
+    evaluate.add_argument("corpus", nargs="+", help="as for train; episodes of the first are held out, and Labial's "
+                          "models are trained on all of the others too")
     evaluate.add_argument("-o", "--output", required=True, metavar="REPORT", help="folder for tables and plots")
     evaluate.add_argument("--kind", choices=("speech", "laughter"), default="speech")
     evaluate.add_argument("--splits", type=_positive, default=20, help="random 80/20 splits by episode (20)")
@@ -88,6 +90,8 @@ def parser() -> argparse.ArgumentParser:
     evaluate.add_argument("--jobs", type=_positive, default=2, help="splits at a time (2); the result is the same")
     evaluate.add_argument("--hold-out-words", default="", metavar="W1,W2,...",
                           help="train without the episodes that hold these words, judge these words' frames alone")
+    evaluate.add_argument("--leave-out-talkers", action="store_true", help="train without each talker of the second "
+                          "and further corpora in turn, judge that talker, in place of random splits")
     evaluate.add_argument("--quiet", action="store_true", help="no progress bar")
     evaluate.set_defaults(run=_evaluate)
 
@@ -156,7 +160,7 @@ def _train(options: argparse.Namespace) -> int:
         from labial.train.train import train
     except ModuleNotFoundError as error:
         raise LabialError(f"training needs the package {error.name}: install labial[train]") from None
-    from labial.corpus import read_corpus
+    from labial.corpus import read_corpora
     from labial.model import save
 
     own = {}  # what only --method labial has
@@ -167,7 +171,8 @@ def _train(options: argparse.Namespace) -> int:
     if own and options.method == "paper":
         names = " and ".join("--" + name.replace("_", "-") for name in own)
         warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)
-    model = train(read_corpus(options.corpus, options.kind), kind=options.kind, method=options.method, fps=options.fps,
+    episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
+    model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
                   progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution,
                   **own)
@@ -248,7 +253,10 @@ def _evaluate(options: argparse.Namespace) -> int:
         raise LabialError(f"evaluating needs the package {error.name}: install labial[train,evaluate]") from None
 
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
-    asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words)
+    if words and options.leave_out_talkers:
+        raise LabialError("--hold-out-words and --leave-out-talkers do not go together")
+    asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
+                    options.leave_out_talkers)
     for path in run(options.corpus, options.output, asked, jobs=options.jobs,
                     progress=not options.quiet and sys.stderr.isatty()):
         print(path)

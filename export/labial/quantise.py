@@ -115,7 +115,9 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
     slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
     kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
-    pairs, pair_scale = _steps(model.pair_shape, 65535, "pairs")
+    if model.pair_shape.shape[1] != 1:
+        raise ModelError("pairs of two knots cannot be exported")
+    pairs, pair_scale = _steps(model.pair_shape[:, 0], 65535, "pairs")
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
