@@ -157,6 +157,10 @@ def _spellings(phoneme: str) -> str:
     return " ".join(bare + [f"{name}{stress}" for name in bare if phoneme in VOWELS.split() for stress in (0, 1, 2)])
 
 
+#: What is laughed softly, lips nearly closed, and loudly, mouth wide open, has phonemes of its own: by the phoneme of
+#: middle loudness, which is what every label without a grade means.
+LAUGHTER_GRADES = {label: (f"{label}_soft", f"{label}_loud") for label in "fricative ic e o cackle a".split()}
+
 _LAUGHTER_CLASSES = {
     "silence": "silence",
     "nose": "ne nasal",  # air goes through the nose, lips rest on each other
@@ -166,6 +170,8 @@ _LAUGHTER_CLASSES = {
     "open": "a cackle",
     "rounded": "o",
     "throat": "grunt",
+    "soft": " ".join(soft for soft, _ in LAUGHTER_GRADES.values()),
+    "loud": " ".join(loud for _, loud in LAUGHTER_GRADES.values()),
 }
 
 #: Symbols of the AVLaughterCycle annotation: words, IPA, and IPA as Praat's backslash sequences. Vowels go to the
@@ -192,10 +198,12 @@ SPEECH = _phone_set(
     {label: f"{_spellings(label)} {_SPEECH_ALIASES[label]}" for label in ("SIL", *ARPABET)},
 )  # fmt: skip
 
-#: The twelve laughter phonemes.
+#: The twelve laughter phonemes, and the soft and loud grades of six of them.
 LAUGHTER = _phone_set(
-    "laughter", _LAUGHTER_CLASSES, "a e o ic cackle",
-    "silence ne click nasal plosive fricative ic e o grunt cackle a", _LAUGHTER_ALIASES,
+    "laughter", _LAUGHTER_CLASSES,
+    " ".join(item for label in "a e o ic cackle".split() for item in (label, *LAUGHTER_GRADES[label])),
+    " ".join(["silence ne click nasal plosive fricative ic e o grunt cackle a",
+              *(item for grades in LAUGHTER_GRADES.values() for item in grades)]), _LAUGHTER_ALIASES,
 )  # fmt: skip
 
 #: Phone set of each kind of model.
