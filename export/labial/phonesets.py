@@ -16,8 +16,8 @@ from typing import Collection, Dict, List, Optional, Sequence, Tuple
 
 from labial.labels import find, nearest, normalise
 
-__all__ = ["ARPABET", "LAUGHTER", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet", "aliases_for", "candidates_for",
-           "normalise", "substitute_for"]
+__all__ = ["ARPABET", "LAUGHTER", "LAUGHTER_GRADES", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet", "aliases_for",
+           "candidates_for", "normalise", "substitute_for"]
 
 
 @dataclass(frozen=True)
@@ -116,6 +116,10 @@ _SPEECH_CLASSES = {
     "spread": "IY IH EY Y",
 }
 
+#: What is laughed softly, lips nearly closed, and loudly, mouth wide open, has phonemes of its own: by the phoneme of
+#: middle loudness, which is what every label without a grade means.
+LAUGHTER_GRADES = {label: (f"{label}_soft", f"{label}_loud") for label in "fricative ic e o cackle a".split()}
+
 #: Declared substitutes, closest first. Vowels look for vowels and /p b m/ for each other, so that units stay units.
 _ALIKE = {
     "AA": "AO AY AE AH AW", "AE": "EH AA AY AH", "AH": "EH AA UH ER AE IH", "AO": "OW AA OY UH", "AW": "AA OW AE AO",
@@ -127,6 +131,7 @@ _ALIKE = {
     "R": "ER W L", "W": "UW UH R OW", "Y": "IY IH EY",
     "ne": "nasal", "nasal": "ne silence", "click": "plosive", "plosive": "click fricative", "fricative": "e plosive",
     "ic": "e a", "e": "a ic", "a": "e cackle ic", "o": "e a", "cackle": "a e ic", "grunt": "nasal e",
+    **{graded: f"{label} e" for label, grades in LAUGHTER_GRADES.items() for graded in grades},
 }  # fmt: skip
 
 _FILLERS = "BREATHING BREATH LAUGHTER GARBAGE LIPSMACK SMACK NOISE COUGH NSN SPN SIL INHALE EXHALE".split()
@@ -156,10 +161,6 @@ def _spellings(phoneme: str) -> str:
     bare = [phoneme, phoneme.lower()]
     return " ".join(bare + [f"{name}{stress}" for name in bare if phoneme in VOWELS.split() for stress in (0, 1, 2)])
 
-
-#: What is laughed softly, lips nearly closed, and loudly, mouth wide open, has phonemes of its own: by the phoneme of
-#: middle loudness, which is what every label without a grade means.
-LAUGHTER_GRADES = {label: (f"{label}_soft", f"{label}_loud") for label in "fricative ic e o cackle a".split()}
 
 _LAUGHTER_CLASSES = {
     "silence": "silence",

@@ -12,11 +12,11 @@ where:
   the corners stay drawn back and up through the bout while the jaw quivers with the pulses.
 * **Amplitudes are design choices:** every number of FAP units below, the speed of the smile, the asymmetry, the noise.
   So are the shares of the phonemes and the durations of "o", "grunt" and of the pauses between trains.
-* **Loudness is a design choice, too.** A bout has an intensity from 0, a hum behind nearly closed lips, to 1, a mouth as
-  wide open as in loud speech. Jaw and opening go straight with a pulse's loudness, which is the bout's intensity, falling
-  along the train and from train to train; the lips part over its first third, and the smile follows it slowly. What a
-  model is told of it are *grades*: phonemes that carry a bout's amplitude are labelled soft, plain or loud, between two
-  grades by chance, in the proportion of the loudness.
+* **Loudness is a design choice, too.** A bout has an intensity from 0, a hum behind nearly closed lips, to 1, a mouth
+  as wide open as in loud speech. A pulse's loudness is that, falling along the train and from train to train. The jaw
+  goes straight with it, the lips part over its first third, and the smile follows slowly. What a model is told of it
+  are *grades*: the phonemes that carry a bout's amplitude are labelled soft, plain or loud, between two grades by
+  chance, in the proportion that the loudness has between theirs.
 
 The bottom lip follows the jaw, the top lip rises a little with the smile, and both meet when the lips are closed.
 """
