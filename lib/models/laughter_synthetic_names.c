@@ -6,7 +6,7 @@
 #include "laughter_synthetic.h"
 
 /* Phoneme, bytes of the name, name. */
-static const uint8_t entries[914] = {
+static const uint8_t entries[1038] = {
     0, 1, '#',
     0, 5, '<', 's', 'i', 'l', '>',
     7, 1, '@',
@@ -83,15 +83,23 @@ static const uint8_t entries[914] = {
     2, 3, 92, '|', '2',
     0, 1, '_',
     11, 1, 'a',
+    23, 6, 'a', '_', 'l', 'o', 'u', 'd',
+    22, 6, 'a', '_', 's', 'o', 'f', 't',
     4, 1, 'b',
     4, 1, 'c',
     10, 6, 'c', 'a', 'c', 'k', 'l', 'e',
+    21, 11, 'c', 'a', 'c', 'k', 'l', 'e', '_', 'l', 'o', 'u', 'd',
+    20, 11, 'c', 'a', 'c', 'k', 'l', 'e', '_', 's', 'o', 'f', 't',
     2, 5, 'c', 'l', 'i', 'c', 'k',
     9, 5, 'c', 'r', 'e', 'a', 'k',
     4, 1, 'd',
     7, 1, 'e',
+    17, 6, 'e', '_', 'l', 'o', 'u', 'd',
+    16, 6, 'e', '_', 's', 'o', 'f', 't',
     5, 1, 'f',
     5, 9, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e',
+    13, 14, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e', '_', 'l', 'o', 'u', 'd',
+    12, 14, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e', '_', 's', 'o', 'f', 't',
     5, 10, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e', 's',
     9, 3, 'f', 'r', 'y',
     4, 1, 'g',
@@ -101,6 +109,8 @@ static const uint8_t entries[914] = {
     3, 3, 'h', 'u', 'm',
     6, 1, 'i',
     6, 2, 'i', 'c',
+    15, 7, 'i', 'c', '_', 'l', 'o', 'u', 'd',
+    14, 7, 'i', 'c', '_', 's', 'o', 'f', 't',
     6, 1, 'j',
     4, 1, 'k',
     7, 1, 'l',
@@ -117,6 +127,8 @@ static const uint8_t entries[914] = {
     1, 2, 'n', 'i',
     1, 3, 'n', 'i', '?',
     8, 1, 'o',
+    19, 6, 'o', '_', 'l', 'o', 'u', 'd',
+    18, 6, 'o', '_', 's', 'o', 'f', 't',
     4, 1, 'p',
     0, 3, 'p', 'a', 'u',
     4, 7, 'p', 'l', 'o', 's', 'i', 'v', 'e',
@@ -200,8 +212,10 @@ static const uint8_t entries[914] = {
     5, 2, 207, 135
 };
 
-static const char *const labels[12] = {
-    "silence", "ne", "click", "nasal", "plosive", "fricative", "ic", "e", "o", "grunt", "cackle", "a"
+static const char *const labels[24] = {
+    "silence", "ne", "click", "nasal", "plosive", "fricative", "ic", "e", "o", "grunt", "cackle", "a",
+    "fricative_soft", "fricative_loud", "ic_soft", "ic_loud", "e_soft", "e_loud", "o_soft", "o_loud", "cackle_soft",
+    "cackle_loud", "a_soft", "a_loud"
 };
 
-const labial_names_t laughter_synthetic_names = { 914, 12, entries, labels };
+const labial_names_t laughter_synthetic_names = { 1038, 24, entries, labels };
