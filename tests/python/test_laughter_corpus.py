@@ -69,7 +69,7 @@ def test_pulses_and_trains_have_the_published_rhythm(episodes):
     assert 195 <= np.median(intervals) <= 225 and 15 <= np.percentile(intervals, 84) - np.median(intervals) <= 50
     lengths = [len(train) for train in groups]
     assert np.median(lengths) == 3 and 10 <= max(lengths)
-    quiet = sum(s.duration for e in episodes for s in e.segments 
+    quiet = sum(s.duration for e in episodes for s in e.segments
                 if s.label in ("silence", "ne", "fricative", *LAUGHTER_GRADES["fricative"]))
     assert quiet > 0.5 * sum(e.segments[-1].end for e in episodes)
 
