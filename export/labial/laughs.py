@@ -7,8 +7,8 @@ with an inhalation between them. All arithmetic is in integers, so that both giv
 Loudness is the corpus's too: the intensity, less from pulse to pulse and from train to train, asks for soft, plain or
 loud grades of the phonemes that have some. The rhythm does not depend on it.
 
-At intensity 0.5 the rhythm is the corpus's. Towards 1 trains become longer, pauses shorter, vowels longer and more often open, and
-cackles more frequent; towards 0 it is the other way round and more pulses are hummed with closed lips.
+At intensity 0.5 the rhythm is the corpus's. Towards 1 trains become longer, pauses shorter, vowels longer and more
+often open, and cackles more frequent; towards 0 it is the other way round and more pulses are hummed with closed lips.
 """
 
 from __future__ import annotations
