@@ -17,7 +17,8 @@ from typing import Collection, Dict, List, Optional, Sequence, Tuple
 from labial.aliases import LABEL_SETS, LAUGHTER_LABELS, SPEECH_LABELS
 from labial.labels import AUTO, find, nearest, normalise
 
-__all__ = ["ARPABET", "AUTO", "LABEL_SETS", "LAUGHTER", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet", "aliases_for",
+__all__ = ["ARPABET", "AUTO", "LABEL_SETS", "LAUGHTER", "LAUGHTER_GRADES", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet",
+           "aliases_for",
            "candidates_for", "normalise", "substitute_for"]
 
 
@@ -143,6 +144,10 @@ _SPEECH_CLASSES = {
     "spread": "IY IH EY Y",
 }
 
+#: What is laughed softly, lips nearly closed, and loudly, mouth wide open, has phonemes of its own: by the phoneme of
+#: middle loudness, which is what every label without a grade means.
+LAUGHTER_GRADES = {label: (f"{label}_soft", f"{label}_loud") for label in "fricative ic e o cackle a".split()}
+
 #: Declared substitutes, closest first. Vowels look for vowels and /p b m/ for each other, so that units stay units.
 _ALIKE = {
     "AA": "AO AY AE AH AW", "AE": "EH AA AY AH", "AH": "EH AA UH ER AE IH", "AO": "OW AA OY UH", "AW": "AA OW AE AO",
@@ -154,6 +159,7 @@ _ALIKE = {
     "R": "ER W L", "W": "UW UH R OW", "Y": "IY IH EY",
     "ne": "nasal", "nasal": "ne silence", "click": "plosive", "plosive": "click fricative", "fricative": "e plosive",
     "ic": "e a", "e": "a ic", "a": "e cackle ic", "o": "e a", "cackle": "a e ic", "grunt": "nasal e",
+    **{graded: f"{label} e" for label, grades in LAUGHTER_GRADES.items() for graded in grades},
 }  # fmt: skip
 
 
@@ -171,6 +177,8 @@ _LAUGHTER_CLASSES = {
     "open": "a cackle",
     "rounded": "o",
     "throat": "grunt",
+    "soft": " ".join(soft for soft, _ in LAUGHTER_GRADES.values()),
+    "loud": " ".join(loud for _, loud in LAUGHTER_GRADES.values()),
 }
 
 _ARPABET_LABELS = {label: f"{_spellings(label)} {SPEECH_LABELS['arpabet'].get(label, '')}"
@@ -180,10 +188,13 @@ _ARPABET_LABELS = {label: f"{_spellings(label)} {SPEECH_LABELS['arpabet'].get(la
 SPEECH = _phone_set("speech", _SPEECH_CLASSES, f"{VOWELS} P B M", " ".join(("SIL", *ARPABET)),
                     {**SPEECH_LABELS, "arpabet": _ARPABET_LABELS})
 
-#: The twelve laughter phonemes, whose labels are the same in every set.
+#: The twelve laughter phonemes, whose labels are the same in every set, and the soft and loud grades of six of them.
 LAUGHTER = _phone_set(
-    "laughter", _LAUGHTER_CLASSES, "a e o ic cackle",
-    "silence ne click nasal plosive fricative ic e o grunt cackle a", dict.fromkeys(LABEL_SETS, LAUGHTER_LABELS),
+    "laughter", _LAUGHTER_CLASSES,
+    " ".join(item for label in "a e o ic cackle".split() for item in (label, *LAUGHTER_GRADES[label])),
+    " ".join(["silence ne click nasal plosive fricative ic e o grunt cackle a",
+              *(item for grades in LAUGHTER_GRADES.values() for item in grades)]),
+    dict.fromkeys(LABEL_SETS, LAUGHTER_LABELS),
 )  # fmt: skip
 
 #: Phone set of each kind of model.

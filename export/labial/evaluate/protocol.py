@@ -20,6 +20,7 @@ from labial.evaluate.material import Utterance, utterances
 from labial.evaluate.measures import Judge, judged_frames, silence_of
 from labial.evaluate.methods import predict_all, select
 from labial.evaluate.pulses import has_pulses, longest_train
+from labial.evaluate.readability import LipReader
 from labial.evaluate.splits import Split, leave_talkers_out, make_splits
 from labial.evaluate.training import Training
 from labial.phonesets import PHONE_SETS, PhoneSet
@@ -100,14 +101,19 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
         raise LabialError(f"split {split.number}: no frame to judge")
     test, kept = [item for item, _ in judged], [mask for _, mask in judged]
     judge = Judge(test, kept, training.scale, phone_set, options.fps)
-    measures = {HUMAN: judge.measure([item.human for item in test])}
+    reader = LipReader(training, test, split.words)
+
+    def measured(made: Sequence[np.ndarray]) -> Dict[str, float]:
+        return {**judge.measure(made), **reader.measure(made)}
+
+    measures = {HUMAN: measured([item.human for item in test])}
     shown = _most_shown(test, phone_set, split)
     motion: Dict[str, np.ndarray] = {}
     seconds: Dict[str, float] = {}
     for method in select(options.methods):
         begun = _processor_seconds()
         made = predict_all(method.fit(training), [item.timeline for item in test])
-        measures[method.name] = judge.measure(made)
+        measures[method.name] = measured(made)
         seconds[method.name] = _processor_seconds() - begun
         motion[method.name] = made[shown]
         tell()

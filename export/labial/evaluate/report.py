@@ -33,6 +33,8 @@ TABLE_2: Dict[str, Columns] = {
         ("of human", "closure/of human"),
         ("firm closure", "firm closure/rate"),
         ("of human", "firm closure/of human"),
+        ("readability", "readability"),
+        ("with residual", "readability/with residual"),
         *_LAST,
     ],
     "laughter": [
@@ -56,7 +58,11 @@ _NOTE_2 = {
 Correlation and amplitude (standard deviation over the human's): mean over open_jaw, raise_b_midlip_o,
 stretch_l_cornerlip_o and push_t_lip, each over all judged frames. Closure: share of p, b, m whose least openness
 within the segment and 40 ms around it is below the 20th percentile of the training part's speech frames; firm closure:
-below the median of the human's own least openness in the training part's p, b, m. Jitter: RMS third difference over
+below the median of the human's own least openness in the training part's p, b, m. Readability: share of the words that
+a lip-reader reads, the mean over classes of words that stand for each other; it is a linear discriminant analysis of
+time-normalised words, trained on human motion of the training part or, of unseen words, on human motion of other
+utterances than those that it reads. With residual: the same with the residual of another utterance's human word added,
+for synthetic motion lacks what people vary; to be held to the human's without. Jitter: RMS third difference over
 the human's. Seam: |second difference| where units join over that elsewhere, of the means and of the largest values;
 methods without units, and the human, are measured at the same frames.""",
     "laughter": """\
