@@ -24,9 +24,10 @@ from labial.fixed import (
     weight_code_below,
     weight_value,
 )
-from labial.labels import without_redundant
+from labial.labels import entries
 from labial.model import Model
-from labial.phonesets import aliases_for
+from labial.phones import phone_set
+from labial.phonesets import LABEL_SETS
 
 #: Version of the tables' meaning.
 FORMAT = 3
@@ -55,7 +56,7 @@ class ExportedModel:
     attribution: str
     fps: int
     phonemes: Tuple[str, ...]
-    aliases: Tuple[Tuple[str, int], ...]  #: labels and aliases with phoneme numbers, but for those that lose marks only
+    names: Tuple[Tuple[str, int, Tuple[str, ...]], ...]  #: labels and aliases, phoneme numbers, sets of labels
     silence: int
     soft: bool
     first_component: np.ndarray  #: (P,)
@@ -114,7 +115,9 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
     slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
     kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
-    pairs, pair_scale = _steps(model.pair_shape, 65535, "pairs")
+    if model.pair_shape.shape[1] != 1:
+        raise ModelError("pairs of two knots cannot be exported")
+    pairs, pair_scale = _steps(model.pair_shape[:, 0], 65535, "pairs")
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
@@ -122,8 +125,7 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
     )
     hold, weights = state_weights(model, state_mean)
-    aliases = aliases_for(model.kind, model.phonemes, model.aliases)
-    names = without_redundant({**aliases, **{label: label for label in model.phonemes}})
+    names = phone_set(model)
     return ExportedModel(
         name=name,
         kind=model.kind,
@@ -131,8 +133,8 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         attribution=model.attribution,
         fps=model.fps,
         phonemes=model.phonemes,
-        aliases=tuple(sorted(((text, model.phonemes.index(label)) for text, label in names.items()),
-                             key=lambda item: item[0].encode())),
+        names=tuple((text, model.phonemes.index(label), sets) for text, label, sets in entries(
+            {labels: names.names(labels) for labels in LABEL_SETS})),
         silence=model.phonemes.index(model.silence),
         soft=model.soft,
         first_component=first,
@@ -307,21 +309,22 @@ def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.
     """Codes of what holds the states (13, Q) and of their moving weights (13, Q, 2), a quarter of delta's and
     delta-delta's; `state_mean` (13, Q, 3) in positions.
 
-    Each channel's precisions are scaled as high as the largest diagonal element allows; states that then exceed another
-    of equation 3's bounds are brought within it, one by one.
+    Each channel's precisions are scaled as high as the largest diagonal element allows, when states that exceed another
+    of equation 3's bounds have been brought within it one by one.
     """
     hold = np.zeros(model.state_anchor.shape, dtype=np.int64)
     moving = np.zeros((*hold.shape, 2), dtype=np.int64)
     for k in range(CHANNELS):
         held = model.state_precision[k, :, 0] + model.state_anchor[k]
         tied = model.state_precision[k, :, 1:] * np.array([0.25, 1.0])
-        scale = WEIGHT_SUM_MAX / _diagonal(held, tied)
+        scale = WEIGHT_SUM_MAX / float(held.max())
         while True:
             hold[k] = np.maximum(weight_code(held * scale), weight_code(np.array(WEIGHT_MIN)))
             moving[k] = _within(weight_value(hold[k]), weight_code(tied * scale), np.abs(state_mean[k, :, 1:]))
-            if _diagonal(weight_value(hold[k]), weight_value(moving[k])) <= WEIGHT_SUM_MAX:
+            most = _diagonal(weight_value(hold[k]), weight_value(moving[k]))
+            if most <= WEIGHT_SUM_MAX:
                 break
-            scale *= 0.99
+            scale *= min(WEIGHT_SUM_MAX / most, 0.99)
     return hold, moving
 
 
@@ -339,8 +342,9 @@ def _within(hold: np.ndarray, codes: np.ndarray, mean: np.ndarray) -> np.ndarray
     excess = 4 * pull.max(axis=0).sum() / (PULL_MAX * hold.min())
     if excess <= 1.0:
         return codes
-    most = pull.max(axis=0) / excess
-    return _lowered(codes, (most / np.maximum(pull, 1e-9)).min(axis=1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(pull > 0, pull.max(axis=0) / excess / pull, np.inf)
+    return _lowered(codes, share.min(axis=1))
 
 
 def _lowered(codes: np.ndarray, share: np.ndarray) -> np.ndarray:

@@ -8,9 +8,24 @@ import numpy as np
 import pytest
 
 from labial.errors import ModelError
-from labial.fixed import PULL_MAX, WEIGHT_MIN, WEIGHT_SUM_MAX, WEIGHTS, gain, weight_code, weight_value, z_cost
+from labial.faps import CHANNELS
+from labial.fixed import (
+    PULL_MAX,
+    STIFFNESS_MAX,
+    WEIGHT_MIN,
+    WEIGHT_SUM_MAX,
+    WEIGHTS,
+    gain,
+    share_code,
+    share_value,
+    weight_code,
+    weight_code_below,
+    weight_value,
+    z_cost,
+)
 from labial.loss import measure
-from labial.quantise import quantise
+from labial.model import Model
+from labial.quantise import ExportedModel, quantise
 from models import random_model, streams
 
 
@@ -23,6 +38,24 @@ def test_weights_are_ascending_and_codes_are_the_nearest() -> None:
     assert np.allclose(np.abs(weight_value(weight_code(values)) - values), nearest)
 
 
+def test_codes_below_never_exceed() -> None:
+    """What is lowered to a bound must not be rounded up beyond it."""
+    values = np.concatenate([WEIGHTS, WEIGHTS[1:] - 0.5, WEIGHTS + 0.5])
+    below = weight_value(weight_code_below(values))
+    assert (below <= values).all() and (weight_value(np.minimum(weight_code_below(values), 254) + 1)[:-1] > 0).all()
+    assert np.array_equal(below, [WEIGHTS[WEIGHTS <= value].max() for value in values])
+
+
+def test_share_codes_are_the_nearest_and_reach_both_ends() -> None:
+    """All of the anchor and none of it must be exact: the published method has no anchors."""
+    meant = share_value(np.arange(256))
+    assert meant[0] == 0 and meant[255] == 256 and (np.diff(meant) >= 1).all()
+    assert np.array_equal(share_code(meant / 256.0), np.arange(256))
+    values = np.random.default_rng(1).uniform(0, 1, 3000)
+    found = share_value(share_code(values)) / 256.0
+    assert np.allclose(np.abs(found - values), np.abs(meant[None, :] / 256.0 - values[:, None]).min(axis=1))
+
+
 @pytest.mark.parametrize("deviation", [10.0, 33.3, 400.0])
 def test_gaussian_cost_is_the_exponent(deviation: float) -> None:
     """z^2 / 2^7 with z = x gain / 2^12 must be 32 x^2 / (2 s^2), to the resolution of z."""
@@ -31,16 +64,139 @@ def test_gaussian_cost_is_the_exponent(deviation: float) -> None:
         assert abs(z_cost(z) / 32 - (int(distance) / deviation) ** 2 / 2) < 0.06 + 0.02 * distance / deviation
 
 
+def used(exported: ExportedModel) -> dict:
+    """How much of each of equation 3's bounds every channel uses, (13,) by name; above 1 the library refuses it."""
+    hold, moving = weight_value(exported.state_hold), weight_value(exported.state_weight)
+    pull = 4 * (moving * np.abs(exported.state_mean[..., 1:])).max(axis=1).sum(axis=1)
+    return {
+        "least": WEIGHT_MIN / hold.min(axis=1),
+        "sum": (hold.max(axis=1) + 2 * moving[..., 0].max(axis=1) + 6 * moving[..., 1].max(axis=1)) / WEIGHT_SUM_MAX,
+        "order": (moving[..., 0] > moving[..., 1]).any(axis=1) * 2.0,
+        "stiffness": (moving[..., 1] / (STIFFNESS_MAX * hold)).max(axis=1),
+        "pull": pull / (PULL_MAX * hold.min(axis=1)),
+    }
+
+
+def assert_within(exported: ExportedModel) -> None:
+    for name, share in used(exported).items():
+        assert (share <= 1.0).all(), name
+
+
 @pytest.mark.parametrize("method", ["paper", "labial"])
-def test_equation_3_stays_within_the_solvers_bounds(method: str) -> None:
-    """Beyond them the library's 32-bit numbers overflow."""
-    exported = quantise(random_model(3, method), "model")
-    weight, anchor = weight_value(exported.state_weight), weight_value(exported.state_anchor)
-    held = (weight[..., 0] + anchor).max(axis=1)
-    pulls = (weight * np.abs(exported.state_mean)).max(axis=1)
-    assert ((weight[..., 0] + anchor) >= WEIGHT_MIN).all()
-    assert (held + 2 * weight[..., 1].max(axis=1) + 6 * weight[..., 2].max(axis=1) <= WEIGHT_SUM_MAX).all()
-    assert (held * 16383 + 4 * pulls[:, 1] + 4 * pulls[:, 2] <= PULL_MAX).all()
+@pytest.mark.parametrize("seed", range(4))
+def test_equation_3_stays_within_the_solvers_bounds(method: str, seed: int) -> None:
+    """Beyond them the library's 32-bit numbers overflow. Of the sum no more than a step of the codes is given away."""
+    exported = quantise(random_model(seed, method), "model")
+    assert_within(exported)
+    assert used(exported)["sum"].min() > 0.9
+
+
+def plain(**tables: np.ndarray) -> Model:
+    """A model of four states whose channels are all alike: hold 100, half of it the anchor's; deltas 20 and 40."""
+    values = {
+        "state_precision": np.tile([50.0, 4 * 20.0, 40.0], (CHANNELS, 4, 1)),
+        "state_anchor": np.full((CHANNELS, 4), 50.0),
+        "state_mean": np.zeros((CHANNELS, 4, 3)),
+        **tables,
+    }
+    return dataclasses.replace(random_model(2, states=4), **values)
+
+
+def weights_of(model: Model) -> np.ndarray:
+    """(4, 4) hold, the anchor's share, a quarter of delta's and delta-delta's weight of channel 5 as exported."""
+    exported = quantise(model, "model")
+    assert_within(exported)
+    hold, share = weight_value(exported.state_hold[5]), share_value(exported.state_share[5]) / 256.0
+    return np.concatenate([np.stack([hold, share], axis=1), weight_value(exported.state_weight[5])], axis=1)
+
+
+def test_what_is_within_all_bounds_only_changes_its_scale() -> None:
+    """100 + 2 * 20 + 6 * 40 is 380, scaled to 16383: 43 times, and the nearest codes."""
+    expected = WEIGHT_SUM_MAX / 380 * np.array([100, 20, 40])
+    for found in weights_of(plain()):
+        np.testing.assert_allclose(found[[0, 2, 3]], expected, rtol=1 / 16)
+        assert abs(found[1] - 0.5) <= 1 / 256
+
+
+def test_a_state_that_is_too_stiff_is_loosened_alone() -> None:
+    """Delta-delta at 100 times what holds the state becomes 16 times that; delta goes with it, the others stay."""
+    model = plain()
+    precision, anchor = model.state_precision.copy(), model.state_anchor.copy()
+    precision[:, 2, 0], anchor[:, 2] = 0.2, 0.2  # hold .4 of 100
+    found = weights_of(dataclasses.replace(model, state_precision=precision, state_anchor=anchor))
+    hold, _, delta, bend = found[2]
+    assert 15.0 * hold <= bend <= 16.0 * hold and delta == pytest.approx(bend / 2, rel=1 / 8)
+    np.testing.assert_allclose(found[[0, 1, 3]], weights_of(model)[[0, 1, 3]])
+
+
+def test_a_state_that_is_hardly_held_is_held_by_the_least() -> None:
+    """Hold of a hundred-thousandth would be rounded to nothing, and the system would have no solution."""
+    model = plain()
+    precision, anchor = model.state_precision.copy(), model.state_anchor.copy()
+    precision[:, 1, 0], anchor[:, 1] = 1e-3, 0.0
+    found = weights_of(dataclasses.replace(model, state_precision=precision, state_anchor=anchor))
+    assert found[1, 0] == WEIGHT_MIN and found[1, 1] == 0.0 and found[1, 3] == 16 * WEIGHT_MIN
+    np.testing.assert_allclose(found[[0, 2, 3]], weights_of(model)[[0, 2, 3]])
+
+
+def test_delta_never_outweighs_delta_delta() -> None:
+    """A quarter of delta's precision above delta-delta's would make kappa negative."""
+    model = plain()
+    precision = model.state_precision.copy()
+    precision[:, 3, 1] = 4 * 60.0
+    found = weights_of(dataclasses.replace(model, state_precision=precision))
+    assert found[3, 2] == found[3, 3] and (found[:3, 2] < found[:3, 3]).all()
+
+
+@pytest.mark.parametrize("feature", [1, 2])
+def test_means_that_pull_too_far_lose_weight(feature: int) -> None:
+    """One state's delta or delta-delta mean of 900 FAP units, 14,400 positions: 4 weights times that may be 131,071
+    times what holds the least held state."""
+    model = plain()
+    mean, precision = model.state_mean.copy(), model.state_precision.copy()
+    mean[:, 1, feature] = 900.0
+    precision[:, 1, 1:] = [4 * 300.0, 600.0]
+    found = weights_of(dataclasses.replace(model, state_mean=mean, state_precision=precision))
+    others = weights_of(dataclasses.replace(model, state_precision=precision))
+    pull = 4 * found[1, 1 + feature] * 14400
+    assert 0.85 * PULL_MAX * found[:, 0].min() < pull <= PULL_MAX * found[:, 0].min()
+    assert found[1, 2] <= found[1, 3] and found[1, 3] / found[1, 0] < 0.9 * others[1, 3] / others[1, 0]
+    rest = [0, 2, 3]  # by another scale, as they were
+    np.testing.assert_allclose(found[rest, 3] / found[rest, 0], others[rest, 3] / others[rest, 0], rtol=1 / 8)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_wild_models_are_brought_within_all_bounds_together(seed: int) -> None:
+    """Precisions over nine decades and any means: each rule by itself could push a state beyond another's bound."""
+    model = random_model(seed)
+    rng = np.random.default_rng(seed)
+    mean = model.state_mean.copy()
+    mean[..., 1:] = rng.uniform(-1000, 1000, mean[..., 1:].shape)
+    wild = dataclasses.replace(
+        model,
+        state_mean=mean,
+        state_precision=10 ** rng.uniform(-5, 4, model.state_precision.shape),
+        state_anchor=10 ** rng.uniform(-5, 4, model.state_anchor.shape),
+    )
+    assert_within(quantise(wild, "model"))
+
+
+def test_share_is_the_anchors() -> None:
+    """Static and anchor, swapped, would pull each state to its mean instead of its target."""
+    anchor = np.full((CHANNELS, 4), 90.0)
+    model = plain(state_precision=np.tile([10.0, 80.0, 40.0], (CHANNELS, 4, 1)), state_anchor=anchor)
+    np.testing.assert_allclose(weights_of(model)[:, 1], 0.9, atol=1 / 256)
+    assert not quantise(random_model(3, "paper"), "model").state_share.any()
+
+
+def test_states_must_be_sorted() -> None:
+    """The search looks for the nearest state by halves."""
+    model = random_model(6)
+    mean = model.decode_mean.copy()
+    mean[4, [2, 3]] = mean[4, [3, 2]]
+    with pytest.raises(ModelError, match="decode_mean is not ascending"):
+        dataclasses.replace(model, decode_mean=mean)
+    assert (np.diff(quantise(model, "model").emission_mean, axis=1) >= 0).all()
 
 
 def test_every_table_fits_its_c_type() -> None:
@@ -52,7 +208,8 @@ def test_every_table_fits_its_c_type() -> None:
         "kernels": (-127, 127), "slope_scale": (0, 16383),
         "kernel_scale": (0, 65535), "centre": (-16383, 16383), "emission_mean": (-16383, 16383),
         "emission_gain": (1, 65535), "emission_cost": (0, 255), "initial": (0, 255), "state_mean": (-16383, 16383),
-        "state_weight": (0, 255), "state_anchor": (0, 255), "shapes": (-127, 127), "shape_scale": (0, 32767),
+        "state_weight": (0, 255), "state_hold": (0, 255), "state_share": (0, 255), "shapes": (-127, 127),
+        "shape_scale": (0, 32767),
     }  # fmt: skip
     for name, (low, high) in ranges.items():
         values = np.asarray(getattr(exported, name))
@@ -75,9 +232,10 @@ def test_substitutes_share_components() -> None:
 
 def test_keeps_the_asked_number_of_predecessors_and_always_the_state_itself() -> None:
     """Without its own state as predecessor a state could not be held."""
-    exported = quantise(random_model(6), "model", predecessors=4)
-    assert exported.edges.shape == (13, 12, 4) and not (exported.edges & 3).any()
-    predecessor = (exported.edges & 255) >> 2
+    assert quantise(random_model(6), "model").edges.shape == (13, 12, 4)  # the default
+    exported = quantise(random_model(6), "model", predecessors=5)
+    assert exported.edges.shape == (13, 12, 5)
+    predecessor = exported.edges & 255
     assert (predecessor == np.arange(12)[:, None]).any(axis=2).all() and (np.diff(predecessor) > 0).all()
 
 
@@ -99,7 +257,7 @@ def test_keeps_the_predecessors_that_are_used_most() -> None:
     with np.errstate(divide="ignore"):
         logs = np.broadcast_to(np.log(step), (13, 3, 3))
     exported = quantise(dataclasses.replace(model, log_transition=logs), "model", predecessors=2)
-    np.testing.assert_array_equal((exported.edges[0, 2] & 255) >> 2, [0, 2, 2, 2])
+    np.testing.assert_array_equal(exported.edges[0, 2] & 255, [0, 2])
 
 
 def test_quantisation_loss_is_small_where_paths_agree() -> None:
@@ -107,7 +265,7 @@ def test_quantisation_loss_is_small_where_paths_agree() -> None:
     model = random_model(7)
     exported = quantise(model, "model", predecessors=12)
     loss = measure(model, exported, [streams(9, model.boundary, 7)["ordinary"]])
-    assert (loss.path >= -1e-9).all() and loss.path.mean() < 0.2
+    assert (loss.path >= -1e-9).all() and loss.path.mean() < 0.4  # .27, of which deciding at once takes most
     assert np.median(loss.share) < 3.0
 
 

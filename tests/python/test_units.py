@@ -1,80 +1,19 @@
-"""Segmentation into units, worked by hand, and its invariants over many streams."""
+"""Phonemes to frames, pauses and the ends of units, worked by hand, and their invariants over many streams."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from labial.reference.stream import frame_counts
-from labial.reference.units import OVERLAP, PIECE, Piece, pieces, whole
+from labial.quantise import quantise
+from labial.reference.published import OVERLAP, PIECE_MAX, Piece, pieces, whole_piece
+from labial.reference.stream import aims, synthesise
+from labial.reference.tables import ExportedTables, FloatTables
+from labial.reference.units import Segment, frame_counts, segments, unit_ends
 from models import random_model, streams
 
-
-def test_units_run_from_boundary_to_boundary_inclusive() -> None:
-    """V-C-V: each vowel belongs to the unit that it ends and to the one that it begins."""
-    assert pieces([4, 9, 5, 2, 6], [True, False, True, False, True]) == [Piece(0, 18, 0, 5), Piece(13, 26, 5, 0)]
-
-
-def test_short_units_are_decoded_together() -> None:
-    """A piece ends with the first unit that gives it PIECE frames; every unit by itself would join twice as often."""
-    assert PIECE == 16
-    found = pieces([4, 3, 4, 3, 4, 3, 5, 20], [True, False] * 4)
-    assert found == [Piece(0, 18, 0, 4), Piece(14, 46, 4, 0)]
-
-
-def test_a_piece_ends_with_the_last_unit_that_fits() -> None:
-    """Eleven frames are few, but with the next unit it would be more than the window, and that one would be cut."""
-    found = pieces([4, 3, 4, 35, 5], [True, False, True, False, True])
-    assert found[0] == Piece(0, 11, 0, 4) and found[1].begin == 7
-
-
-def test_all_that_is_left_is_one_piece() -> None:
-    """The end of the stream ends the piece, not a short unit before it."""
-    assert pieces([4, 3, 4, 3, 2], [True, False, True, False, False]) == [Piece(0, 16, 0, 0)]
-
-
-def test_consonant_clusters_stay_in_one_unit() -> None:
-    """V-CC-V is one unit; cutting at every consonant would give three."""
-    assert pieces([4, 3, 3, 5], [True, False, False, True]) == [Piece(0, 15, 0, 0)]
-
-
-def test_first_and_last_phoneme_are_boundaries() -> None:
-    """A stream of consonants is one unit, whatever it begins and ends with."""
-    assert pieces([4, 3, 3], [False, False, False]) == [Piece(0, 10, 0, 0)]
-
-
-def test_a_long_pause_is_cut_into_chained_pieces() -> None:
-    """Nothing is dropped: the pieces cover the pause and share OVERLAP frames."""
-    found = pieces([100], [False])
-    assert found == [Piece(0, 40, 0, 8), Piece(32, 72, 8, 8), Piece(64, 100, 8, 0)]
-
-
-def test_a_long_boundary_phoneme_is_shared_in_its_last_frames_only() -> None:
-    """Sharing all of it would leave frames that belong to three pieces."""
-    assert pieces([2, 30, 4, 5], [False, True, False, True])[0] == Piece(0, 32, 0, OVERLAP)
-
-
-def test_phonemes_without_frames_leave_no_trace() -> None:
-    """A unit boundary of no length would be an empty piece."""
-    assert pieces([4, 0, 3, 0], [False, True, False, True]) == [Piece(0, 7, 0, 0)]
-    assert pieces([0, 0], [True, True]) == [] and whole([0]) == []
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_pieces_cover_every_frame_once_or_twice(seed: int) -> None:
-    """For any stream: no gap, no frame in three pieces, no piece beyond the window, shared frames agree."""
-    model = random_model(seed)
-    for stream in streams(len(model.phonemes), model.boundary, seed).values():
-        counts = frame_counts([ms for _, ms in stream], 50)
-        cut = pieces(counts, [bool(model.boundary[p]) for p, _ in stream])
-        cover = np.zeros(sum(counts), dtype=int)
-        for before, after in zip([None, *cut], cut):
-            cover[after.begin : after.end] += 1
-            assert 0 < after.end - after.begin <= 40
-            assert after.fade_in + after.fade_out <= after.end - after.begin
-            assert after.fade_in == (before.end - after.begin if before else 0)
-            assert after.fade_in == (before.fade_out if before else 0) <= OVERLAP
-        assert cover.size == 0 or (cover.min() >= 1 and cover.max() <= 2)
+SIL, VOWEL, REST = 0, 1, 2
+BOUNDARY = np.array([False, True, False])
 
 
 @pytest.mark.parametrize("fps", [25, 50, 60, 100])
@@ -84,3 +23,116 @@ def test_frames_amount_to_the_rounded_sum(fps: int) -> None:
     for durations in ([1] * 300, [0, 0, 3], [3_600_000, 1], list(rng.integers(0, 400, 500))):
         total = sum(int(d) for d in durations) * fps
         assert sum(frame_counts(durations, fps)) == (total + 500) // 1000
+
+
+def test_a_pause_is_cut_where_the_kernels_begin_to_see_what_ends_it() -> None:
+    """500 ms are 25 frames; the last six, 120 ms, may depend on the vowel behind, the others must not wait for it."""
+    found = segments([(VOWEL, 100), (SIL, 500), (VOWEL, 60)], SIL, 6, 50)
+    assert found == [Segment(VOWEL, 100, 5), Segment(SIL, 380, 19), Segment(SIL, 120, 6), Segment(VOWEL, 60, 3)]
+
+
+def test_what_is_not_cut() -> None:
+    """A pause that the kernels span, phonemes that are no pause, and everything where nothing looks ahead."""
+    stream = [(SIL, 120), (VOWEL, 500), (SIL, 140)]
+    assert [item.frames for item in segments(stream, SIL, 6, 50)] == [6, 25, 1, 6]
+    assert [item.milliseconds for item in segments(stream, SIL, 6, 50)] == [120, 500, 20, 120]
+    assert [item.frames for item in segments(stream, SIL, 0, 50)] == [6, 25, 7]
+
+
+def test_the_parts_of_a_pause_that_no_millisecond_fits() -> None:
+    """At 60 frames a second five frames are 83.3 ms: the tail has 83, the head the rest, frames are what they were."""
+    assert segments([(SIL, 200)], SIL, 5, 60) == [Segment(SIL, 117, 7), Segment(SIL, 83, 5)]
+
+
+def test_milliseconds_are_capped_before_the_cut() -> None:
+    """The device keeps them in 16 bits; a head of 65,535 ms less its tail is what it sees of an hour."""
+    assert segments([(SIL, 3_600_000)], SIL, 6, 50) == [Segment(SIL, 65415, 179994), Segment(SIL, 120, 6)]
+    assert segments([(VOWEL, 70_000)], SIL, 6, 50) == [Segment(VOWEL, 65535, 3500)]
+
+
+def test_phonemes_without_frames_leave_no_trace_but_their_time() -> None:
+    """9 ms are no frame, but with 11 more they are one."""
+    assert segments([(VOWEL, 9), (REST, 11), (VOWEL, 0)], SIL, 6, 50) == [Segment(REST, 11, 1)]
+    assert segments([(VOWEL, 0)], SIL, 6, 50) == []
+
+
+def test_a_unit_ends_with_its_boundary_phoneme_and_with_the_stream() -> None:
+    """The boundary phoneme's last frame, not its first, and no frame of what follows."""
+    held = [Segment(REST, 40, 2), Segment(VOWEL, 60, 3), Segment(SIL, 20, 1), Segment(SIL, 20, 1), Segment(REST, 40, 2)]
+    assert np.flatnonzero(unit_ends(held, BOUNDARY)).tolist() == [4, 8]
+    assert unit_ends([], BOUNDARY).shape == (0,)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_frame_of_every_stream_has_a_target_and_a_unit(seed: int) -> None:
+    """Whatever is pushed: as many frames as its time, no more and no fewer, and a unit's end at the last one."""
+    model = random_model(seed)
+    for tables in (FloatTables(model), ExportedTables(quantise(model, "model"))):
+        for stream in streams(len(model.phonemes), model.boundary, seed).values():
+            total = (50 * sum(ms for _, ms in stream) + 500) // 1000
+            target, ends = aims(tables, stream)
+            assert target.shape == (total, 13) and ends.shape == (total,)
+            assert not total or ends[-1]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_head_of_a_pause_does_not_depend_on_what_ends_it(seed: int) -> None:
+    """What the cut is for: all but the last frames of a pause are the same whichever phonemes follow."""
+    model = random_model(seed)
+    tables = ExportedTables(quantise(model, "model"))
+    assert tables.ahead == 6
+    one, other = ([(3, 100), (0, 1000), (p, 200), (5, 90)] for p in (4, 7))
+    first, second = aims(tables, one)[0], aims(tables, other)[0]
+    assert (first[: 5 + 44] == second[: 5 + 44]).all() and (first[5 + 44 :] != second[5 + 44 :]).any()
+
+
+def test_nothing_in_is_nothing_out() -> None:
+    """A stream may end before it began."""
+    tables = FloatTables(random_model(1))
+    for stream in ([], [(1, 0)], [(1, 9)]):
+        assert synthesise(tables, stream).shape == (0, 13)
+
+
+# ---- The published method's units, which the evaluation's row is decoded by.
+
+
+def test_published_units_run_from_boundary_to_boundary_inclusive() -> None:
+    """V-C-V: each vowel belongs to the unit that it ends and to the one that it begins; V-CC-V is one unit."""
+    assert pieces([4, 9, 5, 2, 6], [True, False, True, False, True]) == [Piece(0, 18, 0, 5), Piece(13, 26, 5, 0)]
+    assert pieces([4, 3, 3, 5], [True, False, False, True]) == [Piece(0, 15, 0, 0)]
+    found = pieces([4, 3, 4, 3, 4], [True, False, True, False, True])
+    assert found == [Piece(0, 11, 0, 4), Piece(7, 18, 4, 0)]
+
+
+def test_short_units_can_be_taken_together() -> None:
+    """Where seams are measured: a piece ends with the first unit that gives it so many frames, if that fits."""
+    assert pieces([4, 3, 4, 3, 4, 3, 5, 20], [True, False] * 4, 16) == [Piece(0, 18, 0, 4), Piece(14, 46, 4, 0)]
+    found = pieces([4, 3, 4, 35, 5], [True, False, True, False, True], 16)
+    assert found[0] == Piece(0, 11, 0, 4) and found[1].begin == 7
+
+
+def test_published_edges() -> None:
+    """A stream's first and last phoneme are boundaries; long units are cut and chained; no frames are no piece."""
+    assert pieces([4, 3, 3], [False, False, False]) == [Piece(0, 10, 0, 0)]
+    assert pieces([100], [False]) == [Piece(0, 40, 0, 8), Piece(32, 72, 8, 8), Piece(64, 100, 8, 0)]
+    assert pieces([2, 30, 4, 5], [False, True, False, True])[0] == Piece(0, 32, 0, OVERLAP)
+    assert pieces([4, 0, 3, 0], [False, True, False, True]) == [Piece(0, 7, 0, 0)]
+    assert pieces([0, 0], [True, True]) == [] and whole_piece([0]) == []
+    assert whole_piece([3, 0, 4]) == [Piece(0, 7, 0, 0)]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_pieces_cover_every_frame_once_or_twice(seed: int) -> None:
+    """For any stream: no gap, no frame in three pieces, no piece that is too long, shared frames agree."""
+    model = random_model(seed)
+    for stream in streams(len(model.phonemes), model.boundary, seed).values():
+        counts = frame_counts([ms for _, ms in stream], 50)
+        cut = pieces(counts, [bool(model.boundary[p]) for p, _ in stream])
+        cover = np.zeros(sum(counts), dtype=int)
+        for before, after in zip([None, *cut], cut):
+            cover[after.begin : after.end] += 1
+            assert 0 < after.end - after.begin <= PIECE_MAX
+            assert after.fade_in + after.fade_out <= after.end - after.begin
+            assert after.fade_in == (before.end - after.begin if before else 0)
+            assert after.fade_in == (before.fade_out if before else 0) <= OVERLAP
+        assert cover.size == 0 or (cover.min() >= 1 and cover.max() <= 2)
