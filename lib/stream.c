@@ -413,7 +413,7 @@ static int deliver_due(labial_t *stream)
             const int32_t held = stream->held[k] + stream->earlier[k] - (stream->earlier[k] >> stream->fade_step);
             value = held + (((value - held) * labial_ease(stream->fade_step, FADE + 1u) + 8192) >> 14);
         } else {
-            stream->earlier[k] = stream->pose[k];
+            stream->earlier[k] = stream->begun ? stream->pose[k] : (int16_t)value; /* nothing moved to a first frame */
         }
         stream->pose[k] = (int16_t)labial_clamp(value, INT16_MAX);
     }

@@ -117,8 +117,8 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     return from < head || i + 1u < units->count || ended;
 }
 
-/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` behind it; silence where there is
- * none. */
+/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` behind it; silence from where the
+ * solution ends. */
 static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsigned ahead)
 {
     uint8_t *label = units->labels + LABIAL_REACH;
@@ -128,14 +128,14 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
         memset(units->labels, silence, LABIAL_REACH);
     else
         memmove(units->labels, units->labels + 1, LABIAL_REACH);
-    for (ahead++; ahead > 0 && i < units->count;) {
+    for (ahead++; ahead > 0 && i < units->count; i++) {
         const labial_segment_t *segment = segment_at(units, i);
-        const uint8_t phoneme = phoneme_in(segment, slot, silence);
+        if (segment->slot != slot)
+            break;
         if (i > 0)
             left = segment->frames;
         for (; left > 0 && ahead > 0; left--, ahead--)
-            *label++ = phoneme;
-        i++;
+            *label++ = segment->phoneme;
     }
     for (; ahead > 0; ahead--)
         *label++ = silence;
