@@ -1,4 +1,4 @@
-"""The command ``labial``: train, synth, export, check, evaluate, laughter-corpus, rig, plot, page, record."""
+"""The command ``labial``: train, synth, timings, export, check, evaluate, laughter-corpus, rig, plot, page, record."""
 
 from __future__ import annotations
 
@@ -52,12 +52,20 @@ def parser() -> argparse.ArgumentParser:
     synth = commands.add_parser("synth", help="synthesise frames with the float64 reference")
     synth.add_argument("model", metavar="MODEL.npz")
     synth.add_argument("phones", metavar="PHONES",
-                       help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur")
+                       help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur, JSON of "
+                       "Piper, Azure, Polly, HeadTTS or Kokoro")
+    _add_source(synth)
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
                        help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
     synth.add_argument("--whole", action="store_true", help="decode the whole utterance at once, not unit by unit")
     synth.set_defaults(run=_synth)
+
+    timings = commands.add_parser("timings", help="turn phoneme timings of any format into a .lab")
+    timings.add_argument("phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_source(timings)
+    timings.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
+    timings.set_defaults(run=_timings)
 
     export = commands.add_parser("export", help="write a model as C tables")
     export.add_argument("model", metavar="MODEL.npz")
@@ -70,6 +78,7 @@ def parser() -> argparse.ArgumentParser:
     check = commands.add_parser("check", help="compare the C library with the float64 reference")
     check.add_argument("model", metavar="MODEL.npz")
     check.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
+    _add_source(check)
     check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
     _add_export_options(check)
     check.set_defaults(run=_check)
@@ -104,6 +113,7 @@ def parser() -> argparse.ArgumentParser:
     plot = commands.add_parser("plot", help="draw trajectories with their phonemes")
     plot.add_argument("frames", metavar="FRAMES", nargs="+", help="frames files (.csv) or .fap; several are overlaid")
     plot.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_source(plot)
     plot.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
     plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel "
                       "each (fap3,opening,stretch,fap17)")
@@ -112,6 +122,7 @@ def parser() -> argparse.ArgumentParser:
     page = commands.add_parser("page", help="write a page that plays motion")
     page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv) or .fap")
     page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_source(page)
     page.add_argument("--audio", metavar="WAV", help="sound that is played in step")
     page.add_argument("--title", help="the file's name without it")
     page.add_argument("-o", "--output", required=True, metavar="OUT.html")
@@ -129,6 +140,13 @@ def parser() -> argparse.ArgumentParser:
                         help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
     record.set_defaults(run=_record)
     return top
+
+
+def _add_source(command: argparse.ArgumentParser) -> None:
+    from labial.corpus.formats import READERS
+
+    command.add_argument("--from", dest="source", choices=tuple(READERS), metavar="FORMAT",
+                         help=f"format of the timings: {', '.join(READERS)} (told by the file)")
 
 
 def _add_export_options(command: argparse.ArgumentParser) -> None:
@@ -174,13 +192,25 @@ def _synth(options: argparse.Namespace) -> int:
     from labial.reference.tables import FloatTables
 
     model = load(options.model)
-    frames = synthesise(FloatTables(model), read_stream(options.phones, model), whole=options.whole)
+    frames = synthesise(FloatTables(model), read_stream(options.phones, model, options.source), whole=options.whole)
     name = Path(options.model).stem
     if options.output:
         with open(options.output, "w", encoding="ascii", newline="\n") as out:
             WRITERS[options.to](out, frames, model.fps, name)
     else:
         WRITERS[options.to](sys.stdout, frames, model.fps, name)
+    return 0
+
+
+def _timings(options: argparse.Namespace) -> int:
+    from labial.corpus.formats import as_lab
+
+    text = as_lab(options.phones, options.source)
+    if options.output:
+        with open(options.output, "w", encoding="utf-8", newline="\n") as out:
+            out.write(text)
+    else:
+        sys.stdout.write(text)
     return 0
 
 
@@ -218,7 +248,8 @@ def _check(options: argparse.Namespace) -> int:
 
     model = _widened(load(options.model), options.amplitude)
     exported = quantise(model, "checked_model", predecessors=options.predecessors)
-    comparison = compare(model, exported, [read_stream(path, model) for path in options.phones], options.library)
+    streams = [read_stream(path, model, options.source) for path in options.phones]
+    comparison = compare(model, exported, streams, options.library)
     print(comparison.table())
     failures = comparison.failures()
     for failure in failures:
@@ -264,7 +295,7 @@ def _plot(options: argparse.Namespace) -> int:
         raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
     from labial.see.motion import read_bands, read_motions
 
-    plot(read_motions(options.frames), read_bands(options.phones), options.output,
+    plot(read_motions(options.frames), read_bands(options.phones, options.source), options.output,
          options.channels or DEFAULT)
     return 0
 
@@ -273,7 +304,7 @@ def _page(options: argparse.Namespace) -> int:
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
-    text = page(read_motion(options.frames), read_bands(options.phones), options.audio, options.title)
+    text = page(read_motion(options.frames), read_bands(options.phones, options.source), options.audio, options.title)
     with open(options.output, "w", encoding="utf-8", newline="\n") as out:
         out.write(text)
     return 0

@@ -10,7 +10,8 @@ from typing import List, Tuple
 
 import pytest
 
-from labial.corpus.timings import phoneme_segments, read_timings
+from labial.corpus.formats import read_timings
+from labial.corpus.timings import phoneme_segments
 from labial.errors import DataError
 from labial.phonesets import SPEECH
 from test_say import motion, pytestmark, say

@@ -11,8 +11,9 @@ from typing import List, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from labial.corpus.folder import read_frames
+from labial.corpus.formats import read_timings
 from labial.corpus.lines import read_lines
-from labial.corpus.timings import read_timings
+from labial.corpus.timings import phone_set_of
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.phonesets import LAUGHTER, SPEECH, VOWELS, PhoneSet
@@ -105,7 +106,7 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return np.arange(count) / fps, frames
 
 
-def read_bands(path: Optional[PathLike]) -> List[Band]:
+def read_bands(path: Optional[PathLike], source: Optional[str] = None) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
     Labels are those of speech or of laughter, whichever knows more of them. A label that it does not know is no error,
@@ -113,10 +114,8 @@ def read_bands(path: Optional[PathLike]) -> List[Band]:
     """
     if path is None:
         return []
-    segments = [segment for segment in read_timings(path) if segment.end > segment.start]
-    labels = [segment.label for segment in segments if segment.label]
-    known = [sum(phones.resolve(label) is not None for label in labels) for phones in (SPEECH, LAUGHTER)]
-    phones = LAUGHTER if known[1] > known[0] else SPEECH
+    segments = [segment for segment in read_timings(path, source) if segment.end > segment.start]
+    phones = phone_set_of(segments)
     return [Band(segment.start, segment.end, *_named(segment.label, phones)) for segment in segments]
 
 
