@@ -1,4 +1,5 @@
-"""The command ``labial``: train, synth, timings, export, check, evaluate, laughter-corpus, rig, plot, page, record."""
+"""The command ``labial``: train, synth, timings, align, export, check, evaluate, laughter-corpus, rig, plot,
+page, record."""
 
 from __future__ import annotations
 
@@ -66,6 +67,15 @@ def parser() -> argparse.ArgumentParser:
     _add_source(timings)
     timings.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
     timings.set_defaults(run=_timings)
+
+    align = commands.add_parser("align", help="find the phonemes of a recording (English)")
+    align.add_argument("sound", metavar="SOUND", help="WAV, FLAC, Ogg, MP3; any rate and number of channels")
+    said = align.add_mutually_exclusive_group()
+    said.add_argument("--text", help="what is said; without it the likeliest words are looked for, which is less sure")
+    said.add_argument("--text-file", metavar="FILE", help="a file with the text, UTF-8")
+    align.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
+    align.add_argument("--quiet", action="store_true", help="no progress bar")
+    align.set_defaults(run=_align)
 
     export = commands.add_parser("export", help="write a model as C tables")
     export.add_argument("model", metavar="MODEL.npz")
@@ -205,13 +215,29 @@ def _synth(options: argparse.Namespace) -> int:
 def _timings(options: argparse.Namespace) -> int:
     from labial.corpus.formats import as_lab
 
-    text = as_lab(options.phones, options.source)
-    if options.output:
-        with open(options.output, "w", encoding="utf-8", newline="\n") as out:
+    _put(as_lab(options.phones, options.source), options.output)
+    return 0
+
+
+def _align(options: argparse.Namespace) -> int:
+    try:
+        from labial.align.command import run
+    except ModuleNotFoundError as error:
+        raise LabialError(f"aligning needs the package {error.name}: install labial[align]") from None
+
+    text = run(options.sound, options.text, options.text_file,
+               progress=not options.quiet and sys.stderr.isatty())
+    _put(text, options.output)
+    return 0
+
+
+def _put(text: str, path: Optional[str]) -> None:
+    """Writes to a file, or to standard output without one."""
+    if path:
+        with open(path, "w", encoding="utf-8", newline="\n") as out:
             out.write(text)
     else:
         sys.stdout.write(text)
-    return 0
 
 
 def _widened(model: Model, factor: float) -> Model:

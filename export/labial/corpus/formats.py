@@ -11,6 +11,7 @@ from labial.corpus.timings import (
     PathLike,
     SourceSegment,
     is_number,
+    lab_of,
     phone_set_of,
     phoneme_segments,
     read_flite,
@@ -56,8 +57,7 @@ def as_lab(path: PathLike, source: Optional[str] = None) -> str:
     """Timings of any format as lines of ``start end phoneme``, seconds: phonemes of speech, or of laughter where that
     knows more of the labels. They follow each other without gaps from time 0."""
     segments = read_timings(path, source)
-    phonemes = phoneme_segments(path, segments, phone_set_of(segments), strict=False)
-    return "".join(f"{item.start:.4f} {item.end:.4f} {item.label}\n" for item in phonemes)
+    return lab_of(phoneme_segments(path, segments, phone_set_of(segments), strict=False))
 
 
 def _told_by_content(path: PathLike) -> str:

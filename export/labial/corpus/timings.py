@@ -13,7 +13,7 @@ import re
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Optional, Sequence, Set, Tuple, Union
+from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
@@ -256,6 +256,11 @@ def text_of(path: PathLike, encodings: Sequence[str] = ("utf-8-sig",)) -> str:
         except UnicodeError:
             continue
     raise DataError(path, None, f"not {' or '.join(encodings)} text")
+
+
+def lab_of(segments: Iterable[Segment]) -> str:
+    """Segments as lines of ``start end label``, seconds."""
+    return "".join(f"{item.start:.4f} {item.end:.4f} {item.label}\n" for item in segments)
 
 
 def _rows(path: PathLike, comment: str = "") -> List[Tuple[int, List[str]]]:
