@@ -26,6 +26,8 @@ _FASTEST = 7.0
 #: Mean score of a frame below which phonemes are not those of the sound. Of speech by synthesisers that the text fits,
 #: -9 .. -32 were measured, of texts of other sentences -56 .. -87.
 MISFIT = -45.0
+#: The part of what is heard that words take up at least, where the sound is nothing but speech with its noises.
+LEAST_SPOKEN = 1 / 3
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ def align(
             raise LabialError("the text has no words")
         _learn(recogniser, words)
         pieces = _followed(path, sound, words, recogniser, progress)
-    _judge(path, pieces, text is not None)
+    _judge(path, sound, pieces, text is not None)
     segments = [segment for piece in pieces for segment in piece.segments]
     return tuple(_joined(segments))
 
@@ -170,17 +172,21 @@ def _next_piece(sound: Sound, start: float, words: Sequence[str], recogniser: Re
     return best
 
 
-def _judge(path: PathLike, pieces: Sequence[Piece], has_text: bool) -> None:
-    """Warns where phonemes do not sound like what they are called."""
-    spoken = [piece for piece in pieces if any(segment.label != "SIL" for segment in piece.segments)]
+def _judge(path: PathLike, sound: Sound, pieces: Sequence[Piece], has_text: bool) -> None:
+    """Warns where phonemes do not sound like what they are called, or are few for what is heard."""
+    name = os.fspath(path)
+    spoken = sum(segment.duration for piece in pieces for segment in piece.segments if segment.label != "SIL")
+    heard = sound.length - sum(end - begin for begin, end in sound.silences)
     if not spoken:
-        warnings.warn(f"{os.fspath(path)}: no speech is found in the sound", stacklevel=3)
+        warnings.warn(f"{name}: no speech is found in the sound", stacklevel=3)
         return
-    worst = min(spoken, key=lambda piece: piece.score)
+    what = "the text does not fit the sound" if has_text else "the sound is hardly clear English speech"
+    worst = min(pieces, key=lambda piece: piece.score)
     if worst.score < MISFIT:
-        where = "" if len(spoken) == 1 else f" from {worst.start:.1f} to {worst.end:.1f} s"
-        what = "the text does not fit the sound" if has_text else "the sound is hardly English speech"
-        warnings.warn(f"{os.fspath(path)}: {what}{where}; the mouth will not match what is heard", stacklevel=3)
+        where = "" if len(pieces) == 1 else f" from {worst.start:.1f} to {worst.end:.1f} s"
+        warnings.warn(f"{name}: {what}{where}; the mouth will not match what is heard", stacklevel=3)
+    elif spoken < LEAST_SPOKEN * heard:
+        warnings.warn(f"{name}: {what}: words are in {spoken:.1f} of {heard:.1f} s that are not silent", stacklevel=3)
 
 
 def _united(spans: Sequence[Tuple[float, float]]) -> List[Tuple[float, float]]:

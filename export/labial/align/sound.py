@@ -38,7 +38,8 @@ def read_sound(path: PathLike) -> np.ndarray:
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
     except (RuntimeError, ValueError) as error:  # of either library
-        raise DataError(path, None, f"not a sound that can be read: {' '.join(str(error).split())}") from None
+        problem = getattr(error, "error_string", str(error))
+        raise DataError(path, None, f"not a sound that can be read: {' '.join(problem.split())}") from None
     samples = np.concatenate(blocks)
     if not np.isfinite(samples).all():
         raise DataError(path, None, "a sample is not finite")

@@ -7,6 +7,7 @@ import unicodedata
 from typing import Callable, Dict, List, Optional, Tuple
 
 from labial.errors import LabialError
+from labial.phonesets import VOWELS
 
 #: What a word may consist of; whatever else stands between words is punctuation.
 _WORD = re.compile(r"[^\W_]+(?:['\u2019][^\W_]+)*['\u2019]?")
@@ -71,16 +72,17 @@ def pronunciations(words: List[str], lookup: Lookup) -> Tuple[Dict[str, str], Li
 
 def spelt(word: str) -> str:
     """A pronunciation of `word` by English spelling; near enough for lips, not for ears."""
+    vowels = VOWELS.split()
     phonemes: List[str] = []
     at = 0
     while at < len(word):
         rest = word[at:]
         if len(rest) in (3, 4) and rest[0] in _LONG and rest[1] not in "aeiouywxr" and rest[2:] in ("e", "es"):
             sound, taken = _LONG[rest[0]], 1
-        elif phonemes and rest in _ENDINGS:
+        elif rest in _ENDINGS and any(phoneme in vowels for phoneme in phonemes):
             sound, taken = _ENDINGS[rest], len(rest)
         else:
-            taken = next(n for n in (5, 4, 3, 2, 1) if rest[:n] in _RULES)
+            taken = next(n for n in range(min(5, len(rest)), 0, -1) if rest[:n] in _RULES)
             sound = _RULES[rest[:taken]]
             if taken > 1 and rest[0] in "cg" and rest[1] in "eiy":
                 sound, taken = sound.split()[0], 1  # a soft c or g; the vowel counts again
