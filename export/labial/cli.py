@@ -59,12 +59,14 @@ def parser() -> argparse.ArgumentParser:
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
                        help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
+    _add_labels(synth)
     synth.add_argument("--whole", action="store_true", help="decode the whole utterance at once, not unit by unit")
     synth.set_defaults(run=_synth)
 
     timings = commands.add_parser("timings", help="turn phoneme timings of any format into a .lab")
     timings.add_argument("phones", metavar="FILE", help="phoneme timings, as for synth")
     _add_source(timings)
+    _add_labels(timings)
     timings.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
     timings.set_defaults(run=_timings)
 
@@ -88,8 +90,9 @@ def parser() -> argparse.ArgumentParser:
     check = commands.add_parser("check", help="compare the C library with the float64 reference")
     check.add_argument("model", metavar="MODEL.npz")
     check.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
-    _add_source(check)
     check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
+    _add_source(check)
+    _add_labels(check)
     _add_export_options(check)
     check.set_defaults(run=_check)
 
@@ -124,6 +127,7 @@ def parser() -> argparse.ArgumentParser:
     plot.add_argument("frames", metavar="FRAMES", nargs="+", help="frames files (.csv) or .fap; several are overlaid")
     plot.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
     _add_source(plot)
+    _add_labels(plot)
     plot.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
     plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel "
                       "each (fap3,opening,stretch,fap17)")
@@ -133,6 +137,7 @@ def parser() -> argparse.ArgumentParser:
     page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv) or .fap")
     page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
     _add_source(page)
+    _add_labels(page)
     page.add_argument("--audio", metavar="WAV", help="sound that is played in step")
     page.add_argument("--title", help="the file's name without it")
     page.add_argument("-o", "--output", required=True, metavar="OUT.html")
@@ -157,6 +162,12 @@ def _add_source(command: argparse.ArgumentParser) -> None:
 
     command.add_argument("--from", dest="source", choices=tuple(READERS), metavar="FORMAT",
                          help=f"format of the timings: {', '.join(READERS)} (told by the file)")
+
+
+def _add_labels(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--labels", choices=("auto", "arpabet", "ipa", "xsampa"), default="auto",
+                         help="what set the phonemes' labels are of; auto takes any, and where they differ X-SAMPA "
+                         "in .pho and MaryTTS, the IPA of Piper, HeadTTS and Kokoro, elsewhere ARPABET (auto)")
 
 
 def _add_export_options(command: argparse.ArgumentParser) -> None:
@@ -202,7 +213,8 @@ def _synth(options: argparse.Namespace) -> int:
     from labial.reference.tables import FloatTables
 
     model = load(options.model)
-    frames = synthesise(FloatTables(model), read_stream(options.phones, model, options.source), whole=options.whole)
+    stream = read_stream(options.phones, model, options.labels, options.source)
+    frames = synthesise(FloatTables(model), stream, whole=options.whole)
     name = Path(options.model).stem
     if options.output:
         with open(options.output, "w", encoding="ascii", newline="\n") as out:
@@ -215,7 +227,7 @@ def _synth(options: argparse.Namespace) -> int:
 def _timings(options: argparse.Namespace) -> int:
     from labial.corpus.formats import as_lab
 
-    _put(as_lab(options.phones, options.source), options.output)
+    _put(as_lab(options.phones, options.labels, options.source), options.output)
     return 0
 
 
@@ -274,7 +286,7 @@ def _check(options: argparse.Namespace) -> int:
 
     model = _widened(load(options.model), options.amplitude)
     exported = quantise(model, "checked_model", predecessors=options.predecessors)
-    streams = [read_stream(path, model, options.source) for path in options.phones]
+    streams = [read_stream(path, model, options.labels, options.source) for path in options.phones]
     comparison = compare(model, exported, streams, options.library)
     print(comparison.table())
     failures = comparison.failures()
@@ -321,7 +333,7 @@ def _plot(options: argparse.Namespace) -> int:
         raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
     from labial.see.motion import read_bands, read_motions
 
-    plot(read_motions(options.frames), read_bands(options.phones, options.source), options.output,
+    plot(read_motions(options.frames), read_bands(options.phones, options.labels, options.source), options.output,
          options.channels or DEFAULT)
     return 0
 
@@ -330,7 +342,8 @@ def _page(options: argparse.Namespace) -> int:
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
-    text = page(read_motion(options.frames), read_bands(options.phones, options.source), options.audio, options.title)
+    bands = read_bands(options.phones, options.labels, options.source)
+    text = page(read_motion(options.frames), bands, options.audio, options.title)
     with open(options.output, "w", encoding="utf-8", newline="\n") as out:
         out.write(text)
     return 0

@@ -69,7 +69,7 @@ class Model:
     state_anchor: np.ndarray  #: (13, Q) precision that ties a frame to its target; 0 in the published method
     log_transition: np.ndarray  #: (13, Q, Q) [from, to]
     log_initial: np.ndarray  #: (13, Q)
-    aliases: Dict[str, str] = field(default_factory=dict)  #: label in some phone set -> label in `phonemes`
+    aliases: Dict[str, str] = field(default_factory=dict)  #: labels of its own -> label in `phonemes`
     substitutes: Dict[str, str] = field(default_factory=dict)  #: phoneme without samples -> what stands in for it
     attribution: str = ""  #: what whoever passes the model on must say
     training: Dict[str, object] = field(default_factory=dict)  #: options and counts of the training, JSON values

@@ -21,9 +21,10 @@ from labial.fixed import (
     weight_code,
     weight_value,
 )
-from labial.labels import without_redundant
+from labial.labels import entries
 from labial.model import Model
-from labial.phonesets import aliases_for
+from labial.phones import phone_set
+from labial.phonesets import LABEL_SETS
 
 #: Version of the tables' meaning.
 FORMAT = 2
@@ -52,7 +53,7 @@ class ExportedModel:
     attribution: str
     fps: int
     phonemes: Tuple[str, ...]
-    aliases: Tuple[Tuple[str, int], ...]  #: labels and aliases with phoneme numbers, but for those that lose marks only
+    names: Tuple[Tuple[str, int, Tuple[str, ...]], ...]  #: labels and aliases, phoneme numbers, sets of labels
     silence: int
     soft: bool
     first_component: np.ndarray  #: (P,)
@@ -115,8 +116,7 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
     weights, anchors = _weights(model)
-    aliases = aliases_for(model.kind, model.phonemes, model.aliases)
-    names = without_redundant({**aliases, **{label: label for label in model.phonemes}})
+    names = phone_set(model)
     return ExportedModel(
         name=name,
         kind=model.kind,
@@ -124,8 +124,8 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         attribution=model.attribution,
         fps=model.fps,
         phonemes=model.phonemes,
-        aliases=tuple(sorted(((text, model.phonemes.index(label)) for text, label in names.items()),
-                             key=lambda item: item[0].encode())),
+        names=tuple((text, model.phonemes.index(label), sets) for text, label, sets in entries(
+            {labels: names.names(labels) for labels in LABEL_SETS})),
         silence=model.phonemes.index(model.silence),
         soft=model.soft,
         first_component=first,

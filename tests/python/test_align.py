@@ -93,11 +93,11 @@ def test_long_sounds_go_piece_by_piece(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(module, "LONGEST_PIECE", 6.0)
     monkeypatch.setattr(module, "OVERLAP", 1.5)
     cut = module.align(tmp_path / "long.wav", text, lambda done, length: told.append((done, length)))
-    labels = [[item.label for item in found if item.label != "SIL"] for found in (whole, cut)]
     assert len(told) >= 4 and told[-1][0] == told[-1][1] == pytest.approx(len(samples) / RATE)
-    assert len(labels[0]) == len(labels[1])
-    starts = [np.array([item.start for item in found if item.label != "SIL"]) for found in (whole, cut)]
-    assert np.median(np.abs(starts[0] - starts[1])) <= 0.01 and np.abs(starts[0] - starts[1]).max() < 0.15
+    moments = np.arange(0, told[-1][1], 0.01)
+    at = [np.array([item.label for item in found])[np.searchsorted([item.end for item in found], moments)]
+          for found in (whole, cut)]
+    assert np.mean(at[0] == at[1]) > 0.95
     for found in (whole, cut):
         assert all(before.end == after.start for before, after in zip(found, found[1:])) and found[0].start == 0
 

@@ -14,8 +14,12 @@ def test_every_phoneme_has_a_class_and_every_alias_a_phoneme(phone_set):
     assert len(set(phone_set.phonemes)) == len(phone_set.phonemes)
     assert len(phone_set.phoneme_class) == len(phone_set.boundary) == len(phone_set.phonemes)
     assert set(phone_set.phoneme_class) == set(range(len(phone_set.classes)))
-    assert set(phone_set.aliases.values()) <= set(phone_set.phonemes)
-    assert not set(phone_set.aliases) & set(phone_set.phonemes)
+    assert set(phone_set.aliases) == {"arpabet", "ipa", "xsampa"}
+    for aliases in phone_set.aliases.values():
+        assert set(aliases.values()) <= set(phone_set.phonemes)
+    assert not set(phone_set.aliases["arpabet"]) & set(phone_set.phonemes)
+    if phone_set is SPEECH:  # what X-SAMPA means by them is another sound
+        assert set(phone_set.aliases["xsampa"]) & set(phone_set.phonemes) == set("DFKMNPRSTVYZ")
 
 
 def test_inventories_are_those_of_the_method():
@@ -40,7 +44,7 @@ def test_arpabet_in_either_case_with_or_without_stress():
     ("pau", "SIL"), ("ax", "AH"), ("axr", "ER"), ("KD", "K"), ("TS", "S"), ("+BREATHING+", "SIL"), ("<sil>", "SIL"),
     ("++LAUGHTER++", "SIL"), ("</s>", "SIL"), ("_", "SIL"), ("_:", "SIL"), ("ˈaɪ", "AY"), ("t͡ʃ", "CH"), ("dʒ", "JH"),
     ("əʊ", "OW"), ("oʊ", "OW"), ("iː", "IY"), ("ɝ", "ER"), ("ɜː", "ER"), ("n̩", "N"), ("tʰ", "T"), ("ŋ", "NG"),
-    ("@U", "OW"), ("tS", "CH"), ("i:", "IY"), ("'eI", "EY"), ("3:", "ER"), ("N", "N"), ("S", "S"), ("ç", "HH"),
+    ("@U", "OW"), ("tS", "CH"), ("i:", "IY"), ("'eI", "EY"), ("N", "N"), ("S", "S"), ("ç", "HH"),
     ("axr1", "ER"), ("spn", "SIL"),
 ])  # fmt: skip
 def test_labels_of_front_ends(label, phoneme):

@@ -32,7 +32,7 @@ WORDS = {
 
 def phonemes(path: Path, source: Any = None) -> List[Tuple[float, float, str]]:
     """Start, end and phoneme, as `labial timings` tells them."""
-    rows = [line.split() for line in as_lab(path, source).splitlines()]
+    rows = [line.split() for line in as_lab(path, source=source).splitlines()]
     return [(float(start), float(end), label) for start, end, label in rows]
 
 

@@ -6,8 +6,9 @@ from typing import List, Sequence, Tuple
 
 from labial.corpus.episode import Segment
 
-#: A stop's lips or tongue close before it is heard; what is longer than that, in seconds, is a pause.
-LONGEST_CLOSURE = 0.12
+#: A stop's lips or tongue close before it is heard; what is longer than that, in seconds, is a pause. The same as where
+#: espeak-ng's stops begin (examples/speak/closure.c).
+LONGEST_CLOSURE = 0.1
 #: What a recogniser alone takes for a pause, although the sound is not silent, is one from here on, in seconds.
 LONGEST_PAUSE_UNHEARD = 0.15
 #: A gap between phonemes that is shorter, in seconds, is none.

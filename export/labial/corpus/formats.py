@@ -24,6 +24,7 @@ from labial.corpus.timings import (
     text_of,
 )
 from labial.errors import DataError
+from labial.phonesets import AUTO
 
 Reader = Callable[[PathLike], List[SourceSegment]]
 
@@ -53,11 +54,11 @@ def read_timings(path: PathLike, source: Optional[str] = None) -> List[SourceSeg
     return READERS[_told_by_content(path)](path)
 
 
-def as_lab(path: PathLike, source: Optional[str] = None) -> str:
+def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None) -> str:
     """Timings of any format as lines of ``start end phoneme``, seconds: phonemes of speech, or of laughter where that
     knows more of the labels. They follow each other without gaps from time 0."""
     segments = read_timings(path, source)
-    return lab_of(phoneme_segments(path, segments, phone_set_of(segments), strict=False))
+    return lab_of(phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels))
 
 
 def _told_by_content(path: PathLike) -> str:

@@ -226,7 +226,7 @@ def service_of(path: PathLike) -> Optional[str]:
 
 
 def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
-    """Phonemes of characters that follow each other (see above); "" is silence, and so is every gap."""
+    """Phonemes, in the IPA, of characters that follow each other (see above); "" is silence, and so is every gap."""
     result: List[SourceSegment] = []
     begin: Optional[float] = None  # of the stress mark before the next phoneme
     joins = False  # the next character may be the second half of the phoneme before it
@@ -249,13 +249,14 @@ def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
                 result.append(SourceSegment(token.start, token.end, "", line=token.line))
             begin = None
         else:
-            result.append(SourceSegment(token.start if begin is None else begin, token.end, label, line=token.line))
+            start = token.start if begin is None else begin
+            result.append(SourceSegment(start, token.end, label, line=token.line, labels="ipa"))
             begin, joins = None, True
     return result
 
 
 def _grown(segment: SourceSegment, token: SourceSegment, label: str) -> SourceSegment:
-    return SourceSegment(segment.start, token.end, label, line=segment.line)
+    return SourceSegment(segment.start, token.end, label, line=segment.line, labels=segment.labels)
 
 
 def _is_mark(label: str) -> bool:
@@ -305,7 +306,7 @@ def _from_visemes(
     ends = [start for start, _, _ in marks[1:]] + [marks[-1][0] + LAST_VISEME] if marks else []
     segments: List[SourceSegment] = []
     for (first, last), phoneme in stand_ins([name for _, name, _ in marks], table, pairs):
-        segments.append(SourceSegment(marks[first][0], ends[last], phoneme, line=marks[first][2]))
+        segments.append(SourceSegment(marks[first][0], ends[last], phoneme, line=marks[first][2], labels="arpabet"))
     return checked(path, segments)
 
 

@@ -17,7 +17,7 @@ from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
-from labial.phonesets import LAUGHTER, SPEECH, PhoneSet
+from labial.phonesets import AUTO, LAUGHTER, SPEECH, PhoneSet
 
 PathLike = Union[str, os.PathLike]
 
@@ -44,7 +44,7 @@ class SourceSegment(Segment):
     """A segment with the line it was read from; None in a TextGrid, whose intervals are numbered instead."""
 
     line: Optional[int] = None
-    sampa: bool = False  #: the format's labels are X-SAMPA
+    labels: str = AUTO  #: the set that the format's labels are of
 
 
 def read_lab(path: PathLike) -> List[SourceSegment]:
@@ -90,7 +90,8 @@ def read_mary(path: PathLike) -> List[SourceSegment]:
             raise DataError(path, line, f"expected 'end number label', found {len(fields)} columns")
         _number(path, line, fields[1], "second field")
         start = segments[-1].end if segments else 0.0
-        segments.append(SourceSegment(start, _number(path, line, fields[0], "end"), fields[2], line=line, sampa=True))
+        end = _number(path, line, fields[0], "end")
+        segments.append(SourceSegment(start, end, fields[2], line=line, labels="xsampa"))
     return checked(path, segments)
 
 
@@ -149,8 +150,8 @@ def read_pho(path: PathLike) -> List[SourceSegment]:
         duration, *_pitch = [_number(path, line, text, "value") for text in fields[1:]]
         if duration < 0:
             raise DataError(path, line, f"the duration {fields[1]} is negative")
-        segments.append(SourceSegment(elapsed / 1000, (elapsed + duration) / 1000, fields[0], line=line, sampa=True))
-        elapsed += duration
+        start, elapsed = elapsed, elapsed + duration
+        segments.append(SourceSegment(start / 1000, elapsed / 1000, fields[0], line=line, labels="xsampa"))
     return checked(path, segments)
 
 
@@ -204,17 +205,28 @@ def read_textgrid_tiers(path: PathLike) -> Dict[str, List[SourceSegment]]:
     return result
 
 
-def phone_set_of(segments: Sequence[SourceSegment]) -> PhoneSet:
+def phone_set_of(segments: Sequence[SourceSegment], labels: str = AUTO) -> PhoneSet:
     """Speech or laughter, whichever knows more of the segments' labels; speech where both know as many."""
-    labels = [segment.label for segment in segments if segment.label]
-    known = [sum(phones.resolve(label) is not None for label in labels) for phones in (SPEECH, LAUGHTER)]
+    known = [sum(meaning(segment, phones, labels) is not None for segment in segments) for phones in (SPEECH, LAUGHTER)]
     return LAUGHTER if known[1] > known[0] else SPEECH
 
 
+def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> Optional[str]:
+    """The phoneme of `phone_set` that a segment's label means in the set `labels`, or None; silence where it has none.
+
+    Where `labels` is "auto", labels of a format that has one set are of that first.
+    """
+    if not segment.label:
+        return phone_set.silence
+    known = phone_set.resolve(segment.label, segment.labels) if labels == AUTO else None
+    return phone_set.resolve(segment.label, labels) if known is None else known
+
+
 def phoneme_segments(
-    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True
+    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True, labels: str = AUTO
 ) -> Tuple[Segment, ...]:
-    """Maps labels to `phone_set` and joins the segments without gaps from time 0; `path` is for the error message.
+    """Maps labels of the set `labels` to `phone_set` and joins the segments without gaps from time 0; `path` is for the
+    error message.
 
     An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment.
     Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
@@ -224,13 +236,13 @@ def phoneme_segments(
     unknown: Set[str] = set()
     previous = min(0.0, segments[0].start) if segments else 0.0
     for number, item in enumerate(segments, 1):
-        label = phone_set.resolve(item.label, item.sampa) if item.label else phone_set.silence
+        label = meaning(item, phone_set, labels)
         if label is None:
             where = f"interval {number}: " if item.line is None else ""
             problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}")
             if strict:
                 raise problem
-            label = phone_set.nearest(item.label)
+            label = phone_set.nearest(item.label, labels)
             if item.label not in unknown:
                 warnings.warn(f"{problem}; it moves as {label}", stacklevel=2)
                 unknown.add(item.label)

@@ -13,10 +13,10 @@ import numpy as np
 from labial.corpus.folder import read_frames
 from labial.corpus.formats import read_timings
 from labial.corpus.lines import read_lines
-from labial.corpus.timings import phone_set_of
+from labial.corpus.timings import SourceSegment, meaning, phone_set_of
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
-from labial.phonesets import LAUGHTER, SPEECH, VOWELS, PhoneSet
+from labial.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
 
 PathLike = Union[str, os.PathLike]
 
@@ -106,17 +106,17 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return np.arange(count) / fps, frames
 
 
-def read_bands(path: Optional[PathLike], source: Optional[str] = None) -> List[Band]:
+def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
-    Labels are those of speech or of laughter, whichever knows more of them. A label that it does not know is no error,
-    for nothing but its band's colour depends on it: it stays as it is, of kind "other".
+    Labels are of the set `labels`, and those of speech or of laughter, whichever knows more of them. A label that it
+    does not know is no error, for nothing but its band's colour depends on it: it stays as it is, of kind "other".
     """
     if path is None:
         return []
     segments = [segment for segment in read_timings(path, source) if segment.end > segment.start]
-    phones = phone_set_of(segments)
-    return [Band(segment.start, segment.end, *_named(segment.label, phones)) for segment in segments]
+    phones = phone_set_of(segments, labels)
+    return [Band(segment.start, segment.end, *_named(segment, phones, labels)) for segment in segments]
 
 
 def laughs(bands: Sequence[Band]) -> bool:
@@ -136,6 +136,6 @@ def kind_of(label: str, phones: PhoneSet) -> str:
     return "vowel" if phones.boundary[phones.phonemes.index(label)] else "other"
 
 
-def _named(label: str, phones: PhoneSet) -> Tuple[str, str]:
-    name = phones.resolve(label) if label else phones.silence
-    return (label, "other") if name is None else (name, kind_of(name, phones))
+def _named(segment: SourceSegment, phones: PhoneSet, labels: str) -> Tuple[str, str]:
+    name = meaning(segment, phones, labels)
+    return (segment.label, "other") if name is None else (name, kind_of(name, phones))

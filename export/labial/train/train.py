@@ -239,7 +239,6 @@ def train(
         state_anchor=states.state_anchor,
         log_transition=states.log_transition,
         log_initial=states.log_initial,
-        aliases=dict(phone_set.aliases),
         substitutes=dict(plan.substitutes),
         attribution=attribution,
         training=training,
