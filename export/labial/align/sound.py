@@ -50,10 +50,12 @@ def read_sound(path: PathLike) -> np.ndarray:
 
 def prepared(samples: np.ndarray) -> np.ndarray:
     """(N,) int16: `samples` at `SPEECH_LEVEL`, with noise under them, the same for the same sound."""
-    power = float(np.mean(np.square(samples, dtype=np.float64)))
+    blocks = np.array_split(samples, range(_BLOCK * RATE, len(samples), _BLOCK * RATE))
+    power = sum(float(np.dot(block, block)) for block in blocks) / len(samples)
     gain = 10 ** (SPEECH_LEVEL / 20) / np.sqrt(power) if power > 0 else 0.0
-    noise = np.random.default_rng(0).normal(0.0, 10 ** (NOISE_LEVEL / 20), len(samples))
-    return np.clip((samples * gain + noise) * 32767, -32768, 32767).astype("<i2")
+    rng = np.random.default_rng(0)
+    noisy = (block * gain + rng.normal(0.0, 10 ** (NOISE_LEVEL / 20), len(block)) for block in blocks)
+    return np.concatenate([np.clip(block * 32767, -32768, 32767).astype("<i2") for block in noisy])
 
 
 def silences(samples: np.ndarray, rate: float = RATE) -> List[Tuple[float, float]]:
@@ -63,7 +65,7 @@ def silences(samples: np.ndarray, rate: float = RATE) -> List[Tuple[float, float
     frames = samples[: len(samples) // hop * hop].reshape(-1, hop)
     if not len(frames):
         return []
-    level = 10 * np.log10(np.mean(np.square(frames, dtype=np.float64), axis=1) + _FLOOR)
+    level = 10 * np.log10(np.einsum("ij,ij->i", frames, frames) / hop + _FLOOR)
     quiet = np.concatenate([[False], level < np.percentile(level, 95) - DEPTH, [False]])
     edges = np.flatnonzero(quiet[1:] != quiet[:-1]) * _HOP
     return [(float(a), float(b)) for a, b in zip(edges[::2], edges[1::2]) if b - a >= SHORTEST_SILENCE - 1e-9]
