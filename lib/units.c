@@ -125,7 +125,7 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
     uint32_t left = segment_at(units, 0)->frames - units->taken;
     unsigned i = 0;
     if (units->begins)
-        memset(units->labels, silence, LABIAL_REACH);
+        memset(units->labels, silence, sizeof units->labels);
     else
         memmove(units->labels, units->labels + 1, LABIAL_REACH);
     for (ahead++; ahead > 0 && i < units->count; i++) {
