@@ -176,7 +176,7 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     frames = (units->taken < head ? head : segment->frames) - begin;
     taken->share = share_of(units->taken - begin, frames);
     taken->rest = 0;
-    if (units->taken < head)
+    if (head > 0 && (units->taken < head || !next || next->slot != segment->slot))
         taken->rest = (uint8_t)(units->taken < LABIAL_REST_FRAMES ? units->taken + 1u : LABIAL_REST_FRAMES);
     taken->is_open = frames >= LABIAL_CONTACT_LONG && segment->frames - units->taken > LABIAL_CONTACT_LAST;
     taken->marks = (uint8_t)(units->begins ? LABIAL_BEGINS : 0);

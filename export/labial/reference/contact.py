@@ -23,15 +23,15 @@ def raised(
     target: np.ndarray,
     labels: np.ndarray,
     length: np.ndarray,
+    rest: np.ndarray,
     silence: int,
-    ahead: int,
     floor: np.ndarray,
     contact: np.ndarray,
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Targets (T, 13) that keep the floors, and where they are in contact, (T, 13) bool.
 
-    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme, pauses cut in two where their last
-    `ahead` frames begin. `floor` (P, 13) is what a phoneme's targets do not fall below, in the unit of `target`;
+    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme, `rest` (T,) how far the mouth has
+    come to rest, of REST. `floor` (P, 13) is what a phoneme's targets do not fall below, in the unit of `target`;
     `contact` (P, 13) bool says where it is contact, or for silence where the mouth comes to rest.
     """
     frames = len(labels)
@@ -49,30 +49,16 @@ def raised(
     before = contact[label(1)] & short[:, None]
     after = contact[label(-1)] & single[:, None]
     target = np.where(contact[labels] & ~own, target, np.maximum(target, floor[labels]))
-    target = _at_rest(target, labels, length, silence, ahead, floor, contact)
+    target = np.where(contact[silence] & (rest > 0)[:, None], _part_of_way(target, floor[silence], rest), target)
     target = np.where(before, np.maximum(target, floor[label(1)]), target)
     target = np.where(after, np.maximum(target, floor[label(-1)]), target)
     return target, own | before | after
 
 
-def _at_rest(
-    target: np.ndarray,
-    labels: np.ndarray,
-    length: np.ndarray,
-    silence: int,
-    ahead: int,
-    floor: np.ndarray,
-    contact: np.ndarray,
-) -> np.ndarray:
-    """The targets (T, 13) with pauses brought to rest within REST frames; see :func:`raised`."""
-    number = np.repeat(np.arange(len(length)), length)
-    frame = np.arange(len(labels)) - np.repeat(np.cumsum(length) - length, length)
-    silent = np.append(labels[np.cumsum(length) - 1] == silence, False)
-    head = silent[:-1] & silent[1:] & (np.append(length[1:], 0) == ahead)  # what is cut off stands behind it
-    share = np.where(head[number], np.minimum(frame + 1, REST), 0)[:, None]
-    way = (floor[silence] - target) * share
+def _part_of_way(target: np.ndarray, pose: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """(T, 13) `rest` (T,) of REST of the way from targets (T, 13) to a pose (13,); integers are divided as in C."""
+    with np.errstate(invalid="ignore"):
+        way = (pose - target) * rest[:, None]
     if np.issubdtype(target.dtype, np.integer):
-        way = np.where(way < 0, -(-way // REST), way // REST)  # towards zero, as C divides
-    else:
-        way = way / REST
-    return np.where(contact[silence] & (share > 0), target + way, target)
+        return target + np.sign(way) * (np.abs(way) // REST)
+    return target + way / REST

@@ -12,7 +12,7 @@ from labial.reference import trajectory
 from labial.reference.shape import targets_and_contact
 from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
-from labial.reference.units import segments, unit_ends
+from labial.reference.units import rest, segments, unit_ends
 from labial.reference.viterbi import LAG
 
 #: Longest duration of one phoneme, milliseconds.
@@ -51,7 +51,8 @@ def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> Tuple[np.ndarra
     check(tables, phonemes)
     held = segments(phonemes, tables.silence, tables.ahead, tables.fps)
     target, contact = targets_and_contact(tables, [item.phoneme for item in held],
-                                          [item.milliseconds for item in held], [item.frames for item in held])
+                                          [item.milliseconds for item in held], [item.frames for item in held],
+                                          rest(held))
     return target, contact, unit_ends(held, tables.boundary)
 
 

@@ -33,7 +33,7 @@ RESTING = (3, 51, 52, 55, 56, 57, 58)
 AWAY = 0.2
 
 #: How firmly a frame in contact is held: times the median over a channel's states.
-FIRMNESS = 4.0
+FIRMNESS = 1.5
 
 #: The share of a class's occurrences, those that close most, whose mean pose is the floor: people's mean, but for the
 #: tenth whose lips the timings hardly meet.

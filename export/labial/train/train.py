@@ -116,7 +116,6 @@ def _targets(
     fitted: Kernels,
     material: SequenceOf[Sequence],
     silence: int,
-    ahead: int,
     floor: np.ndarray,
     contact: np.ndarray,
 ) -> List[np.ndarray]:
@@ -126,7 +125,7 @@ def _targets(
     for shape, item in zip(selected, material):
         held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
         moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
-        result.append(raised(moving, item.phoneme_at(), item.length, silence, ahead, floor, contact)[0])
+        result.append(raised(moving, item.phoneme_at(), item.length, item.rest, silence, floor, contact)[0])
     return result
 
 
@@ -221,7 +220,6 @@ def train(
     stride = search_stride if extended else 1
 
     material = sequences(corpus, phone_set, fps)
-    ahead = 0
     if extended:
         ahead = max(int(lags(fps, look_ahead)[-1]), FRAMES)
         material = [with_pauses_cut(item, silence, ahead, fps) for item in material]
@@ -250,12 +248,13 @@ def train(
             )
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
             pair_key, pair_shape = fitted.pair_key, fitted.pair_shape
-            targets = _targets(choice, fitted, material, silence, ahead, floor, contact)
+            targets = _targets(choice, fitted, material, silence, floor, contact)
             ends = [_unit_ends(item, boundary) for item in material]
             batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
             tasks = [(targets[batch], ends[batch], states) for batch in batches]
             paths = [path for batch in workers.run("matched states", _decode, tasks) for path in batch]
-            human, weights = [item.frames for item in material], [item.weights for item in material]
+            human = [item.frames for item in material]
+            weights = [item.weights * (item.rest == 0)[:, None] for item in material]  # people part their lips there
             states = match_states(states, paths, targets, human, weights, scales)
 
     training: Dict[str, object] = {
