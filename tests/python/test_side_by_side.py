@@ -11,7 +11,7 @@ import pytest
 
 from labial.evaluate import side_by_side
 from labial.model import save
-from labial.reference.stream import frame_counts
+from labial.reference.units import frame_counts
 from models import random_model
 
 TIMINGS = "0.000 0.200 SIL\n0.200 0.300 P1\n0.300 0.400 P2\n0.400 0.520 P1\n0.520 0.900 P4\n"

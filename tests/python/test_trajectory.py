@@ -118,6 +118,7 @@ def test_starts_by_hand() -> None:
     assert starts(20, 3, 4)[:8, 4].tolist() == [6, 6, 6, 9, 9, 9, 12, 12]  # its blocks end with 1, 4, 7, 10, 13
     assert starts(10, 3, 4)[:, 0].tolist() == [5, 5, 9, 9, 9, 9, 9, 9, 9, 9]
     assert starts(11, 3, 4)[:, 0].tolist() == [5, 5, 8, 8, 8, 10, 10, 10, 10, 10, 10]
+    assert starts(20, 3, 4, 2)[:8, 0].tolist() == starts(20, 3, 4)[:8, 4].tolist()  # blocks that end with 3 decide 1
     assert starts(20, 1, 4)[:4, 7].tolist() == [4, 5, 6, 7] and starts(1, 3, 4).tolist() == [[0] * 13]
 
 
