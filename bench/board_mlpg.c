@@ -1,12 +1,13 @@
 /*
- * board_mlpg.c - equation 3 alone: prints the instructions that a unit of each channel takes together, forwards,
- * backwards and clearing the solver's state included, and the frames.
+ * board_mlpg.c - equation 3 alone: prints the instructions that a unit of each channel takes together, as a stream
+ * solves it, and the frames.
  */
 #include "board.h"
 #include "speech_en.h"
 #include "unit.h"
 
 static bench_unit_t unit;
+static int16_t motion[BENCH_HOLD][LABIAL_CHANNELS];
 
 int main(void)
 {
@@ -15,7 +16,7 @@ int main(void)
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         bench_unit_fill(&unit, &speech_en, k);
         board_count_start();
-        bench_unit_solve(&unit, &speech_en, k);
+        bench_unit_solve(&unit, &speech_en, k, motion);
         instructions += board_count();
     }
     board_print("instructions ");

@@ -15,8 +15,8 @@
 #include "speech_en.h"
 #include "unit.h"
 
-static uint8_t path[LABIAL_WINDOW];
-static int16_t line[LABIAL_WINDOW], positions[LABIAL_WINDOW][LABIAL_CHANNELS];
+static uint8_t path[BENCH_SOLVE];
+static int16_t line[BENCH_SOLVE], positions[BENCH_SOLVE][LABIAL_CHANNELS];
 
 /* One channel; false when the input ends early. */
 static int solve(const labial_model_t *model, unsigned k, unsigned frames)
@@ -49,7 +49,7 @@ int main(int argc, char **argv)
     }
     while (fread(&frames, sizeof frames, 1, stdin) == 1) {
         unsigned k;
-        if (frames < 1 || frames > LABIAL_WINDOW) {
+        if (frames < 1 || frames > BENCH_SOLVE) {
             fprintf(stderr, "labial-bench-solve: a unit of %u frames\n", frames);
             return 1;
         }

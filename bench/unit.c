@@ -2,8 +2,9 @@
 
 #include "labial/labial.h"
 #include "trajectory.h"
+#include "units.h"
 
-#define HOLD 4u /* frames that a state lasts */
+#define HOLD BENCH_HOLD
 
 static unsigned state_of(const labial_model_t *model, unsigned k, unsigned t)
 {
@@ -22,16 +23,44 @@ void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k
     }
 }
 
-void bench_unit_solve(bench_unit_t *unit, const labial_model_t *model, unsigned k)
+static unsigned marks_of(unsigned t, unsigned length)
 {
-    bench_solve(model, k, unit->path, BENCH_UNIT, &unit->targets[0][k]);
+    return (t == 0 ? (unsigned)LABIAL_BEGINS : 0u) | (t + 1u == length ? (unsigned)LABIAL_ENDS : 0u);
+}
+
+void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, unsigned k,
+                      int16_t motion[HOLD][LABIAL_CHANNELS])
+{
+    static labial_factors_t factors[LABIAL_FACTORS_(HOLD)];
+    static labial_solver_t solver;
+    const unsigned size = LABIAL_FACTORS_(HOLD);
+    unsigned t, place = 0, before = 0, turn = 0;
+    labial_ask_t ask;
+    for (t = 0; t < BENCH_UNIT; t++) {
+        if (turn == 0)
+            labial_trajectory_ask(&model->channels[k], unit->path[t], &ask);
+        labial_trajectory_row(&solver, &ask, unit->targets[t][k], marks_of(t, BENCH_UNIT), &factors[before],
+                              &factors[place]);
+        turn = turn + 1u < HOLD ? turn + 1u : 0u;
+        if (turn == 0 && t >= LABIAL_WINDOW + HOLD)
+            labial_trajectory_back(factors, size, before, LABIAL_WINDOW + HOLD, HOLD, HOLD - 1u, HOLD, &motion[0][k]);
+        before = place;
+        place = place + 1u < size ? place + 1u : 0u;
+    }
 }
 
 void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, unsigned length, int16_t *positions)
 {
-    static int32_t factors[LABIAL_FACTORS * LABIAL_WINDOW];
-    static const labial_solver_t zero;
-    labial_solver_t solver = zero;
-    labial_trajectory_forward(&solver, &model->channels[k], path, length, positions, 0, length + 1u, factors);
-    labial_trajectory_backward(&solver, factors, length, 0, positions);
+    static labial_factors_t factors[BENCH_SOLVE];
+    static labial_solver_t solver;
+    unsigned t;
+    labial_ask_t ask;
+    for (t = 0; t < length; t++) {
+        labial_trajectory_ask(&model->channels[k], path[t], &ask);
+        labial_trajectory_row(&solver, &ask, positions[t * LABIAL_CHANNELS], marks_of(t, length),
+                              &factors[t > 0 ? t - 1u : 0u], &factors[t]);
+    }
+    labial_trajectory_back(factors, BENCH_SOLVE, length - 1u, length, length, length - 1u, length, positions);
+    for (t = 0; t < length; t++)
+        positions[t * LABIAL_CHANNELS] = (int16_t)(positions[t * LABIAL_CHANNELS] - model->channels[k].centre);
 }

@@ -6,7 +6,9 @@
 
 #include "labial/model.h"
 
-#define BENCH_UNIT 40 /* frames */
+#define BENCH_UNIT 42  /* frames */
+#define BENCH_HOLD 3u  /* frames that a state lasts, and that a channel's turn takes */
+#define BENCH_SOLVE 400 /* frames that bench_solve() takes at most */
 
 /* A unit of one channel: where its states are and where its frames are drawn to. */
 typedef struct {
@@ -14,15 +16,17 @@ typedef struct {
     int16_t targets[BENCH_UNIT][LABIAL_CHANNELS]; /* every channel's, so that the solver's stride is the library's */
 } bench_unit_t;
 
-/* Channel k of the unit: ten states of four frames each, spread over the codebook, and targets on straight lines from
- * one state's mean to the next. */
+/* Channel k of the unit: states of three frames each, spread over the codebook, and targets on straight lines from one
+ * state's mean to the next. */
 void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k);
 
-/* The library's solution of channel k, which takes the targets' place. */
-void bench_unit_solve(bench_unit_t *unit, const labial_model_t *model, unsigned k);
+/* Solves channel k as a stream does, a turn of three frames at a time, each with its way back. `motion` receives what a
+ * turn delivers. */
+void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, unsigned k,
+                      int16_t motion[BENCH_HOLD][LABIAL_CHANNELS]);
 
-/* The same for a unit of up to LABIAL_WINDOW frames from elsewhere; `positions` holds a target every LABIAL_CHANNELS.
- * All that measures the solver calls it here: the solver's state zeroed, all rows forwards, all frames backwards. */
+/* The whole solution of up to BENCH_SOLVE frames, with the way back from the last one. `positions` holds a target every
+ * LABIAL_CHANNELS; the solution takes its place. */
 void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, unsigned length, int16_t *positions);
 
 #endif

@@ -23,6 +23,33 @@ typedef char labial_int_of_32_bits_is_required[sizeof(int) >= 4 && sizeof(unsign
 #endif
 #endif
 
+/* a + b and a - b, modulo 2^32. */
+static inline int32_t labial_add(int32_t a, int32_t b)
+{
+    return (int32_t)((uint32_t)a + (uint32_t)b);
+}
+
+static inline int32_t labial_sub(int32_t a, int32_t b)
+{
+    return (int32_t)((uint32_t)a - (uint32_t)b);
+}
+
+/* a * b / 2^shift, rounded down, modulo 2^32. 16 <= shift <= 31. */
+static inline int32_t labial_mulshift(int32_t a, int32_t b, unsigned shift)
+{
+#if LABIAL_NARROW_MULTIPLY
+    /* a = ah * 2^16 + al with al unsigned, likewise b. No sum overflows: 32767 * 65535 + 65535 < 2^31. */
+    const int32_t al = (int32_t)((uint32_t)a & 0xffffu), bl = (int32_t)((uint32_t)b & 0xffffu);
+    const int32_t ah = a >> 16, bh = b >> 16;
+    const int32_t cross_a = ah * bl + (int32_t)(((uint32_t)al * (uint32_t)bl) >> 16);
+    const int32_t cross_b = al * bh + (int32_t)((uint32_t)cross_a & 0xffffu);
+    const int32_t high = ah * bh + (cross_a >> 16) + (cross_b >> 16);
+    return (int32_t)(((uint32_t)high << (32u - shift)) | (((uint32_t)cross_b & 0xffffu) >> (shift - 16u)));
+#else
+    return (int32_t)(uint32_t)(uint64_t)(((int64_t)a * b) >> shift);
+#endif
+}
+
 /* x * f / 2^16, rounded down, for f up to 65536. The result has the size of x. */
 static inline int32_t labial_part16(int32_t x, uint32_t f)
 {

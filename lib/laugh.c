@@ -83,6 +83,22 @@ static void add(labial_laugh_t *laugh, unsigned phoneme, uint32_t milliseconds)
     laugh->count++;
 }
 
+/* The same in the grade that `loudness`, 0 to 255 of the intensity, asks for; between two grades by turns. */
+static void add_graded(labial_laugh_t *laugh, unsigned phoneme, uint32_t milliseconds, uint32_t loudness)
+{
+    const unsigned soft = soft_grades[phoneme];
+    uint32_t louder, grade;
+    if (soft != 0u) {
+        laugh->turn = (uint8_t)(laugh->turn + TURN);
+        louder = (laugh->intensity * (loudness + 1u)) >> 8;
+        grade = louder < SOFT ? 0u : ((louder - SOFT) * GRADES) >> 8;
+        grade = ((grade < 512u ? grade : 512u) + laugh->turn) >> 8;
+        if (grade != 1u)
+            phoneme = grade == 0u ? soft : soft + 1u;
+    }
+    add(laugh, phoneme, milliseconds);
+}
+
 static void choose_kind(labial_laugh_t *laugh)
 {
     laugh->kind = choose(laugh, pulse_shares, pulse_tilts, KINDS);
@@ -101,6 +117,7 @@ static void begin_train(labial_laugh_t *laugh)
     if (count < 1u)
         count = 1;
     laugh->pulses = (uint8_t)(count > TRAIN_LONGEST ? TRAIN_LONGEST : count);
+    laugh->loudness = laugh->train_loudness;
     choose_kind(laugh);
     choose_vowel(laugh);
 }
@@ -133,19 +150,20 @@ static void pulse(labial_laugh_t *laugh, uint32_t room)
         sound = period - 40u;
     rest = period - sound;
     if (laugh->kind == BREATH_FIRST) {
-        add(laugh, LABIAL_LAUGH_FRICATIVE, rest);
-        add(laugh, note, sound);
+        add_graded(laugh, LABIAL_LAUGH_FRICATIVE, rest, laugh->loudness);
+        add_graded(laugh, note, sound, laugh->loudness);
     } else if (laugh->kind == STOP_FIRST) {
         stop = duration(laugh, LABIAL_LAUGH_PLOSIVE);
         if (stop > rest - 20u)
             stop = rest - 20u;
         add(laugh, LABIAL_LAUGH_PLOSIVE, stop);
-        add(laugh, note, sound);
+        add_graded(laugh, note, sound, laugh->loudness);
         add(laugh, LABIAL_LAUGH_SILENCE, rest - stop);
     } else {
-        add(laugh, note, sound);
+        add_graded(laugh, note, sound, laugh->loudness);
         add(laugh, LABIAL_LAUGH_SILENCE, rest);
     }
+    laugh->loudness = (uint8_t)((laugh->loudness * PULSE_DECAY) >> 8);
 }
 
 static void pause_between_trains(labial_laugh_t *laugh, uint32_t room)
@@ -157,7 +175,7 @@ static void pause_between_trains(labial_laugh_t *laugh, uint32_t room)
         if (chance(laugh, CLICKED))
             add(laugh, LABIAL_LAUGH_CLICK, duration(laugh, LABIAL_LAUGH_CLICK));
         inhaled = chance(laugh, BY_NOSE) ? LABIAL_LAUGH_NE : LABIAL_LAUGH_FRICATIVE;
-        add(laugh, inhaled, duration(laugh, inhaled));
+        add_graded(laugh, inhaled, duration(laugh, inhaled), (laugh->train_loudness * INHALED_LOUDNESS) >> 8);
     }
     if (chance(laugh, GRUNTED))
         add(laugh, LABIAL_LAUGH_GRUNT, duration(laugh, LABIAL_LAUGH_GRUNT));
@@ -178,6 +196,9 @@ static void pause_between_trains(labial_laugh_t *laugh, uint32_t room)
             return;
         }
     }
+    laugh->train_loudness = (uint8_t)((laugh->train_loudness * TRAIN_DECAY) >> 8);
+    if (laugh->train_loudness < SOFTEST) /* a laugh that is longer than a bout is several */
+        laugh->train_loudness = 255;
     begin_train(laugh);
 }
 
@@ -205,7 +226,7 @@ static void compose(labial_laugh_t *laugh)
     if (room < SHORTEST) {
         add(laugh, LABIAL_LAUGH_SILENCE, laugh->left);
     } else if (room < PERIOD_SHORTEST) {
-        add(laugh, LABIAL_LAUGH_FRICATIVE, room);
+        add_graded(laugh, LABIAL_LAUGH_FRICATIVE, room, laugh->loudness);
     } else if (laugh->pulses == 0) {
         pause_between_trains(laugh, room);
     } else {
@@ -227,6 +248,8 @@ int labial_laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned in
     laugh->random = seed * 2654435761u + 2654435769u;
     if (laugh->random == 0u)
         laugh->random = 1;
+    laugh->turn = (uint8_t)(laugh->random >> 24);
+    laugh->train_loudness = 255;
     onset(laugh, milliseconds - laugh->tail);
     return LABIAL_OK;
 }

@@ -15,6 +15,17 @@
 #define TRAIN_LONGEST 17
 #define SHORTEST 20
 
+/* Of 256: how loud the next pulse, the next train and air drawn in are; the softest train. */
+#define PULSE_DECAY 238u
+#define TRAIN_DECAY 236u
+#define INHALED_LOUDNESS 179u
+#define SOFTEST 154u
+
+/* Up to which loudness of 256 all is soft; 1/256 grades for each 1/256 more; how the turn moves on. */
+#define SOFT 20u
+#define GRADES 582u
+#define TURN 158u
+
 /* Of 256: what a pause between trains has. */
 #define INHALED 192
 #define CLICKED 51
@@ -69,6 +80,10 @@ static const uint8_t onsets[4] = {
 /* The shares, of 256; mostly it starts with a pulse. */
 static const uint8_t onset_shares[4] = {
     64, 38, 51, 38
+};
+/* The soft grade of each phoneme that has one, 0 for the others; the loud grade is the next number. */
+static const uint8_t soft_grades[12] = {
+    0, 0, 0, 0, 0, 12, 14, 16, 18, 0, 20, 22
 };
 
 #endif

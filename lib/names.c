@@ -7,13 +7,23 @@
 /* Labels are compared without their marks up to this many bytes; no alias of a phone set is longer. */
 #define LABEL_MAX 32
 
-static int find_exactly(const labial_names_t *names, const char *name, size_t length)
+/* A length and the sets of labels share a byte of an entry. */
+#define LENGTH_MASK 31u
+
+static int is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+static int find_exactly(const labial_names_t *names, unsigned labels, const char *name, size_t length)
 {
     const uint8_t *entry = names->entries;
     const uint8_t *const end = entry + names->size;
     size_t i;
-    for (; end - entry >= 2; entry += 2 + entry[1]) {
-        if (entry[1] != length)
+    if (labels == LABIAL_LABELS_AUTO && length == 1u && is_digit(name[0]))
+        return LABIAL_ERROR_NAME;
+    for (; end - entry >= 2; entry += 2u + (entry[1] & LENGTH_MASK)) {
+        if ((entry[1] & LENGTH_MASK) != length || (entry[1] & labels & LABIAL_LABELS_AUTO) == 0u)
             continue;
         for (i = 0; i < length && entry[2 + i] == (uint8_t)name[i]; i++)
             ;
@@ -71,15 +81,17 @@ static size_t mark_length(const char *at, size_t left)
     return 0;
 }
 
-/* Bytes of the mark before a symbol at `at`: U+02C8, U+02CC and ASCII's stress marks. */
+/* Bytes of the mark before a symbol at `at`: U+02C8, U+02CC, ASCII's stress marks, the glottal stop (U+0294 or ?). */
 static size_t leading_length(const char *at, size_t left)
 {
     if (left > 1u && at[0] == '\xcb' && is_one_of(at[1], "\x88\x8c"))
         return 2;
-    return left > 0u && is_one_of(at[0], "'\",%") ? 1u : 0u;
+    if (left > 1u && at[0] == '\xca' && at[1] == '\x94')
+        return 2;
+    return left > 0u && is_one_of(at[0], "'\",%?") ? 1u : 0u;
 }
 
-/* Bytes of X-SAMPA's and Kaldi's marks at the end of the `length` bytes at `text`; what is left is not empty. */
+/* Bytes of X-SAMPA's, Kaldi's and eSpeak's marks at the end of `length` bytes; what is left is not empty. */
 static size_t trailing_length(const char *text, size_t length)
 {
     char last;
@@ -87,19 +99,25 @@ static size_t trailing_length(const char *text, size_t length)
         return 0;
     last = text[length - 1u];
     if (length > 2u && text[length - 2u] == '_' && text[length - 3u] != ' ' &&
-        (is_letter(last) || (last >= '0' && last <= '9') || is_one_of(last, "=~^")))
+        (is_letter(last) || is_digit(last) || is_one_of(last, "=~^")))
         return 2;
-    return is_one_of(last, ":=~;") && text[length - 2u] != ' ' ? 1u : 0u;
+    return is_one_of(last, ":=~;.^\"-") && text[length - 2u] != ' ' ? 1u : 0u;
 }
 
-/* Writes `name` without its marks to `text`. Returns its length, or 0 when it is empty or too long. */
-static size_t normalise(const char *name, size_t length, char text[LABEL_MAX])
+/* `name` without the blanks around it; `length` becomes what is left. */
+static const char *trim(const char *name, size_t *length)
+{
+    for (; *length > 0u && is_blank(name[0]); (*length)--)
+        name++;
+    while (*length > 0u && is_blank(name[*length - 1u]))
+        (*length)--;
+    return name;
+}
+
+/* Writes `name` without its marks to `text`. Returns its length: 0 when it is empty, marks alone or too long. */
+static size_t without_marks(const char *name, size_t length, char text[LABEL_MAX])
 {
     size_t count = 0, skip, i;
-    for (; length > 0u && is_blank(name[0]); length--)
-        name++;
-    while (length > 0u && is_blank(name[length - 1u]))
-        length--;
     for (i = 0; i < length;) {
         skip = mark_length(name + i, length - i);
         if (skip == 0u && count == 0u)
@@ -117,42 +135,29 @@ static size_t normalise(const char *name, size_t length, char text[LABEL_MAX])
     if (count > 2u && text[count - 1u] >= '0' && text[count - 1u] <= '2' && is_letter(text[count - 2u]) &&
         is_letter(text[count - 3u]))
         count--;
-    if (count == 0u && length <= LABEL_MAX) { /* marks alone are a label of their own */
-        memcpy(text, name, length);
-        count = length;
-    }
     return count;
 }
 
 /* ---- Looking up ------------------------------------------------------------------------------------------------ */
 
-int labial_find(const labial_names_t *names, const char *name, size_t length)
+int labial_find_in(const labial_names_t *names, labial_labels_t labels, const char *name, size_t length)
 {
     char text[LABEL_MAX];
     int phoneme;
     if (!names || !name || !names->entries)
         return LABIAL_ERROR_NULL;
-    phoneme = find_exactly(names, name, length);
-    if (phoneme < 0)
-        phoneme = find_exactly(names, text, normalise(name, length, text));
+    name = trim(name, &length);
+    phoneme = find_exactly(names, labels, name, length);
+    if (phoneme < 0) {
+        length = without_marks(name, length, text);
+        phoneme = length > 0u ? find_exactly(names, labels, text, length) : LABIAL_ERROR_NAME;
+    }
     return phoneme;
 }
 
-int labial_find_sampa(const labial_names_t *names, const char *name, size_t length)
+int labial_find(const labial_names_t *names, const char *name, size_t length)
 {
-    /* X-SAMPA's letter and the IPA's two bytes: eng, esh, theta, eth, ezh, turned v, turned h, small capital y, barred
-     * u (which stands for y: both are rounded). */
-    static const char other[][4] = { "N\xc5\x8b", "S\xca\x83", "T\xce\xb8", "D\xc3\xb0", "Z\xca\x92",
-                                     "V\xca\x8c", "H\xc9\xa5", "Y\xca\x8f", "y\xca\x89" };
-    char text[LABEL_MAX];
-    unsigned i;
-    if (!names || !name || !names->entries)
-        return LABIAL_ERROR_NULL;
-    if (normalise(name, length, text) == 1u)
-        for (i = 0; i < sizeof other / sizeof other[0]; i++)
-            if (other[i][0] == text[0])
-                return find_exactly(names, other[i] + 1, 2);
-    return labial_find(names, name, length);
+    return labial_find_in(names, LABIAL_LABELS_AUTO, name, length);
 }
 
 /* Whether a label is set in brackets or between signs, as noises are. */
@@ -167,22 +172,35 @@ static int is_bracketed(const char *text, size_t length)
     return 0;
 }
 
-int labial_find_nearest(const labial_names_t *names, const char *name, size_t length, unsigned silence)
+/* Whether there is a letter of any alphabet, or something else that is not ASCII. */
+static int has_letter(const char *text, size_t length)
+{
+    for (; length > 0u; length--, text++)
+        if (is_letter(*text) || (unsigned char)*text >= 0x80u)
+            return 1;
+    return 0;
+}
+
+int labial_find_nearest(const labial_names_t *names, labial_labels_t labels, const char *name, size_t length,
+                        unsigned silence)
 {
     char text[LABEL_MAX];
     size_t start, end;
-    int phoneme = labial_find(names, name, length);
+    int phoneme = labial_find_in(names, labels, name, length);
     if (phoneme >= 0 || phoneme == LABIAL_ERROR_NULL)
         return phoneme;
+    name = trim(name, &length);
     if (is_bracketed(name, length))
         return (int)silence;
-    length = normalise(name, length < LABEL_MAX ? length : LABEL_MAX, text);
+    length = without_marks(name, length < LABEL_MAX ? length : LABEL_MAX, text);
+    if (!has_letter(text, length))
+        return (int)silence;
     for (start = 0; start < length; start++)
         for (end = length; end > start; end--) {
-            phoneme = find_exactly(names, text + start, end - start);
+            phoneme = find_exactly(names, labels, text + start, end - start);
             if (phoneme >= 0)
                 return phoneme;
         }
-    phoneme = find_exactly(names, "\xc9\x99", 2); /* schwa */
+    phoneme = find_exactly(names, LABIAL_LABELS_AUTO, "\xc9\x99", 2); /* schwa */
     return phoneme >= 0 ? phoneme : (int)silence;
 }

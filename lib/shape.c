@@ -133,24 +133,19 @@ void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t
 void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL_CHANNELS], const uint8_t *labels,
                          int16_t target[LABIAL_CHANNELS])
 {
-    int32_t sum[LABIAL_CHANNELS] = { 0 };
+    const int8_t *rows[LABIAL_KERNEL_TAPS_MAX]; /* what each tap's phoneme adds */
+    const unsigned taps = model->kernel_taps, floor = model->phonemes[*labels].floor;
+    const int16_t *least = floor ? model->floors + (floor - 1u) * LABIAL_CHANNELS : NULL;
+    int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, as no pointer may pass the array's end */
     unsigned k, tap;
-    const unsigned stride = model->kernel_stride, taps = model->kernel_taps;
-    int lag = -(int)(model->kernel_behind * stride); /* an index, as no pointer may go past the array's end */
-    const unsigned floor = model->phonemes[*labels].floor;
-
-    for (tap = 0; tap < taps; tap++, lag += (int)stride) {
-        const int8_t *kernel = model->kernels + ((size_t)labels[lag] * taps + tap) * LABIAL_CHANNELS;
-        for (k = 0; k < LABIAL_CHANNELS; k++)
-            sum[k] += kernel[k];
-    }
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        target[k] = (int16_t)labial_clamp(shape[k] + scaled(sum[k], model->channels[k].kernel_scale),
-                                          LABIAL_POSITION_MAX);
-    if (floor) {
-        const int16_t *least = model->floors + (floor - 1u) * LABIAL_CHANNELS;
-        for (k = 0; k < LABIAL_CHANNELS; k++)
-            if (target[k] < least[k])
-                target[k] = least[k];
+    for (tap = 0; tap < taps; tap++, lag += model->kernel_stride)
+        rows[tap] = model->kernels + ((size_t)labels[lag] * taps + tap) * LABIAL_CHANNELS;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        int32_t sum = 0;
+        const int8_t *const *row = rows;
+        for (tap = taps; tap > 0; tap--)
+            sum += (*row++)[k];
+        sum = labial_clamp(shape[k] + scaled(sum, model->channels[k].kernel_scale), LABIAL_POSITION_MAX);
+        target[k] = (int16_t)(least && sum < least[k] ? least[k] : sum);
     }
 }

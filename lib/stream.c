@@ -85,7 +85,7 @@ static void forget_input(labial_t *stream)
     labial_units_forget(&stream->units);
     stream->pending = 0;
     stream->begins[0] = stream->begins[1] = 0;
-    stream->ended = stream->begun = stream->resumed = 0;
+    stream->ended = stream->begun = stream->resumed = stream->selected = 0;
     stream->entered = stream->beyond = 0;
     stream->phase = (uint8_t)(stride - 1u);
     stream->frame_place = stream->factor_place = 0;
@@ -195,20 +195,30 @@ int labial_end(labial_t *stream)
 
 /* ---- One frame in -------------------------------------------------------------------------------------------------- */
 
+/* Selects the shape of the phoneme that begins next, if it is known. */
+static void select(labial_t *stream)
+{
+    labial_spoken_t spoken;
+    if (!stream->selected && labial_units_next(&stream->units, stream->models, stream->ended, &spoken)) {
+        labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
+                            stream->next_shape);
+        stream->selected = 1;
+    }
+}
+
 /* Puts the target of a frame that was taken into the ring. */
 static void enter(labial_t *stream, const labial_taken_t *taken)
 {
-    const labial_model_t *model = stream->models[taken->slot];
     labial_frame_t *frame = &lay_out(stream).frames[stream->frame_place];
-    if (taken->is_first)
-        labial_shape_select(model, *taken->labels, taken->ms, taken->previous, taken->next, stream->shape);
-    labial_shape_target(model, stream->shape, taken->labels, frame->target);
+    if (taken->is_first) {
+        memcpy(stream->shape, stream->next_shape, sizeof stream->shape);
+        stream->selected = 0;
+    }
+    labial_shape_target(stream->models[taken->slot], stream->shape, taken->labels, frame->target);
     frame->slot = taken->slot;
     frame->marks = taken->marks;
     if ((taken->marks & LABIAL_BEGINS) && (stream->entered || stream->resumed))
         stream->begins[0] |= 1u;
-    if (stream->entered < 255u)
-        stream->entered++;
 }
 
 /* Moves on by a tick: takes a frame, or lets those that were taken run out. Returns LABIAL_OK, LABIAL_STARVED, or
@@ -217,7 +227,10 @@ static int advance(labial_t *stream)
 {
     labial_taken_t taken;
     const unsigned stride = stream->stride;
-    const int result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
+    int result;
+    if (labial_units_at_first(&stream->units, stream->models))
+        select(stream);
+    result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
     if (result == LABIAL_STARVED || (result == LABIAL_DONE && stream->pending == 0))
         return result;
     stream->phase = after(stream->phase, stride);
@@ -226,13 +239,12 @@ static int advance(labial_t *stream)
     stream->frame_place = after(stream->frame_place, stride + LABIAL_LAG);
     stream->begins[1] = stream->begins[1] << 1 | stream->begins[0] >> 31;
     stream->begins[0] <<= 1;
-    if (result == LABIAL_OK) {
+    if (result == LABIAL_OK)
         enter(stream, &taken);
-    } else {
+    else
         stream->beyond++;
-        if (stream->entered < 255u)
-            stream->entered++;
-    }
+    if (stream->entered < 255u)
+        stream->entered++;
     return LABIAL_OK;
 }
 
@@ -288,17 +300,29 @@ static int search(const turn_t *turn, int age)
 static void solve(const turn_t *turn, int age, int last, int searched)
 {
     const labial_t *stream = turn->stream;
+    const unsigned size = LABIAL_FACTORS_(stream->stride);
+    const labial_frame_t *frame;
+    labial_factors_t *before, *own;
     unsigned asked = LABIAL_STATES_MAX;
     labial_ask_t ask;
-    for (; age >= last; age--) {
-        const labial_frame_t *frame = frame_of(turn, age);
+    if (age < last)
+        return;
+    frame = frame_of(turn, age);
+    before = &turn->factors[factor_place(stream, age + 1)];
+    own = &turn->factors[factor_place(stream, age)];
+    for (;; age--) {
         const unsigned state = labial_viterbi_state(&turn->track->search, (unsigned)(age - searched));
         if (state != asked || (frame->marks & LABIAL_BEGINS))
             labial_trajectory_ask(&stream->models[frame->slot]->channels[turn->channel], state, &ask);
         asked = state;
-        labial_trajectory_row(&turn->track->solver, &ask, frame->target[turn->channel], frame->marks,
-                              &turn->factors[factor_place(stream, age + 1)],
-                              &turn->factors[factor_place(stream, age)]);
+        labial_trajectory_row(&turn->track->solver, &ask, frame->target[turn->channel], frame->marks, before, own);
+        if (age == last)
+            return;
+        before = own;
+        if (++own == turn->factors + size)
+            own = turn->factors;
+        if (++frame == turn->frames + stream->stride + LABIAL_LAG)
+            frame = turn->frames;
     }
 }
 
@@ -435,6 +459,8 @@ int labial_tick(labial_t *stream)
     result = advance(stream);
     if (result == LABIAL_OK) {
         take_turns(stream);
+        if (stream->phase > 0) /* the first turn has most channels; what is selected is the same at any time */
+            select(stream);
         if (deliver_due(stream))
             return LABIAL_OK;
     }

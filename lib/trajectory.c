@@ -25,8 +25,6 @@
 #include "fixed.h"
 #include "units.h"
 
-#define ONE ((uint32_t)1 << 24)
-
 /* A quotient that may be as large as 2^BEND_BITS has so many bits less. */
 #define BEND_BITS 4
 
@@ -68,61 +66,49 @@ static unsigned headroom(uint32_t d)
 #endif
 }
 
-/* A divisor: 2^54 / (d << shift), and that shift. */
-typedef struct {
-    uint32_t inverse;
-    unsigned shift;
-} divisor_t;
-
-static divisor_t divisor(uint32_t d)
+/* scaled / 2^(6 - shift) */
+static inline uint32_t unscaled(int32_t scaled, unsigned shift)
 {
-    divisor_t result;
-    result.shift = headroom(d);
-    result.inverse = reciprocal(d << result.shift);
-    return result;
+    return shift < 6u ? (uint32_t)scaled >> (6u - shift) : (uint32_t)scaled << (shift - 6u);
 }
 
-/* a / d in Q24, for 0 <= a < 2^30, a / d < 2^7. */
-static uint32_t quotient(int32_t a, divisor_t d)
-{
-    const uint32_t scaled = (uint32_t)labial_part24(a, d.inverse); /* Q(30 - shift) */
-    return d.shift < 6u ? scaled >> (6u - d.shift) : scaled << (d.shift - 6u);
-}
-
-/* 0 .. 2^24 as 16 bits: what is above one half is kept less one, so that one fits. */
+/* 0 .. 2^24 as 16 bits; one is a little less. */
 static uint16_t short_part(uint32_t part)
 {
     const uint32_t rounded = (part + 128u) >> 8;
-    return (uint16_t)(rounded - (rounded > 32768u));
+    return (uint16_t)(rounded - (rounded >> 16));
 }
 
-/* x times such a part. */
-static int32_t short_product(int32_t x, uint16_t part)
+/* The position of the pending frame given all before it; `g` is what holds it. */
+static int32_t filtered(const labial_solver_t *solver, int32_t g)
 {
-    return labial_part16(x, (uint32_t)part + (part >> 15));
+    const unsigned shift = headroom((uint32_t)g);
+    const uint32_t inverse = reciprocal((uint32_t)g << shift);
+    const uint32_t hold = (uint32_t)solver->hold << (shift + 1u);        /* below 2^16 */
+    const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
+    const int32_t q = solver->q1, moved = (q - solver->q2) * (1 << BEND_BITS);
+    const int32_t pull = shift < 7u ? solver->pull >> (7u - shift) : solver->pull * (1 << (shift - 7u));
+    return q + 2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
 }
 
 /* Factors the pending frame; c is its second off-diagonal, `delta` the weight of the row after it. */
 static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_factors_t *factors)
 {
-    const int32_t hold = (int32_t)solver->hold << 16, k1 = solver->k1, k2 = solver->k2;
+    const int32_t hold = (int32_t)solver->hold << 16, k1 = solver->k1;
     const int32_t f = 2 * (((int32_t)solver->delta + delta) * 65536 + k1) + solver->kappa_f;
-    int32_t g = hold + solver->rho_f + 2 * k1 - k2, q = solver->q1;
-    uint32_t rho, kappa, bend;
-    divisor_t d;
+    int32_t g = hold + solver->rho_f + 2 * k1 - solver->k2, q;
+    uint32_t d, inverse, rho, kappa;
+    unsigned shift;
     if (g < hold) /* by rounding */
         g = hold;
-    c *= 65536;
-    d = divisor((uint32_t)(g + f + c));
-    rho = quotient(g, d);
-    kappa = quotient(c, d);
+    q = filtered(solver, g);
 
-    d = divisor((uint32_t)g);
-    bend = quotient(k2, d) >> BEND_BITS; /* k2 / g, which may exceed one */
-    q += labial_part24(solver->position - q, quotient(hold, d)) +
-         labial_part24((q - solver->q2) * (1 << BEND_BITS), bend < ONE ? bend : ONE);
-    q += d.shift < 6u ? labial_part24(solver->pull, d.inverse) >> (6u - d.shift)
-                      : labial_part24(solver->pull, d.inverse) * (1 << (d.shift - 6u));
+    d = (uint32_t)(g + f + c * 65536);
+    shift = headroom(d);
+    d <<= shift;
+    inverse = reciprocal(d);
+    rho = unscaled(labial_part24(g, inverse), shift);
+    kappa = unscaled(labial_part24(c * 65536, inverse), shift);
 
     factors->q = q;
     factors->rho = short_part(rho);
@@ -130,7 +116,7 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     solver->q2 = solver->q1;
     solver->q1 = q;
     solver->k2 = k1;
-    solver->k1 = labial_part24(c, rho);
+    solver->k1 = labial_part24(c * 65536, rho);
     solver->rho_f = labial_part24(f, rho);
     solver->kappa_f = labial_part24(f, kappa);
 }
@@ -173,19 +159,27 @@ void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int
         factor(solver, 0, 0, own);
 }
 
+/* One frame of the way back: `moved` is how far the one after it lies from the next. */
+static inline int32_t step_back(const labial_factors_t *at, int32_t m, int32_t moved)
+{
+    return labial_part16(at->q - m, at->rho) + labial_part16(moved, at->kappa);
+}
+
 void labial_trajectory_back(const labial_factors_t *factors, unsigned size, unsigned newest, unsigned count,
                             unsigned wanted, unsigned place, unsigned places, int16_t *motion)
 {
-    int32_t m1 = factors[newest].q, m2 = m1;
-    for (; count > 0; count--) {
-        const labial_factors_t *at = &factors[newest];
-        const int32_t m = m1 + short_product(at->q - m1, at->rho) + short_product(m1 - m2, at->kappa);
-        m2 = m1;
-        m1 = m;
-        newest = newest > 0 ? newest - 1u : size - 1u;
-        if (count <= wanted) {
-            motion[place * LABIAL_CHANNELS] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
-            place = place > 0 ? place - 1u : places - 1u;
-        }
+    const labial_factors_t *at = factors + newest, *const last = factors + size - 1;
+    int32_t m = at->q, moved = 0;
+    for (count -= wanted; count > 0; count--) {
+        moved = step_back(at, m, moved);
+        m += moved;
+        at = at > factors ? at - 1 : last;
+    }
+    for (; wanted > 0; wanted--) {
+        moved = step_back(at, m, moved);
+        m += moved;
+        at = at > factors ? at - 1 : last;
+        motion[place * LABIAL_CHANNELS] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
+        place = place > 0 ? place - 1u : places - 1u;
     }
 }

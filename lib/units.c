@@ -57,6 +57,55 @@ static unsigned look_ahead(const labial_model_t *model)
     return model->kernel_taps ? (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride : 0u;
 }
 
+/* Frames of the first of the two phonemes that a long silence is taken as; 0 for all others. */
+static uint32_t head_of(const labial_segment_t *segment, const labial_model_t *model)
+{
+    const unsigned ahead = look_ahead(model);
+    return segment->phoneme == model->silence && ahead > 0 && segment->frames > ahead ? segment->frames - ahead : 0u;
+}
+
+int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
+{
+    const labial_segment_t *segment = segment_at(units, 0);
+    return units->count > 0 &&
+           (units->taken == 0 || units->taken == head_of(segment, models[segment->slot]));
+}
+
+int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
+                      labial_spoken_t *spoken)
+{
+    const labial_segment_t *segment = segment_at(units, 0);
+    const labial_model_t *model;
+    uint32_t from = units->taken, head;
+    unsigned i = 0, slot;
+    if (units->count > 0 && !labial_units_at_first(units, models)) { /* the rest of a silence, or the next segment */
+        head = head_of(segment, models[segment->slot]);
+        i = from > head;
+        from = i ? 0u : head;
+    }
+    if (i >= units->count)
+        return 0;
+    segment = segment_at(units, i);
+    slot = segment->slot;
+    model = models[slot];
+    head = head_of(segment, model);
+    spoken->slot = (uint8_t)slot;
+    spoken->phoneme = segment->phoneme;
+    spoken->previous = spoken->next = model->silence;
+    spoken->ms = segment->ms;
+    if (head > 0) {
+        const uint16_t tail = (uint16_t)(look_ahead(model) * 1000u / model->frames_per_second);
+        spoken->ms = (uint16_t)(from < head ? segment->ms - tail : tail);
+    }
+    if (from == 0 && i > 0)
+        spoken->previous = phoneme_in(segment_at(units, i - 1u), slot, model->silence);
+    else if (from == 0 && !units->begins)
+        spoken->previous = units->before;
+    if (from >= head && i + 1u < units->count)
+        spoken->next = phoneme_in(segment_at(units, i + 1u), slot, model->silence);
+    return from < head || i + 1u < units->count || ended;
+}
+
 /* Moves the labels by a frame and writes those of the frame itself and of the `ahead` behind it; silence where there is
  * none. */
 static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsigned ahead)
@@ -95,43 +144,28 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
 {
     const labial_segment_t *segment = segment_at(units, 0), *next = NULL;
     const labial_model_t *model;
-    uint32_t left, head = 0;
+    uint32_t head;
     unsigned ahead;
-    uint8_t silence;
 
     if (units->count == 0)
         return ended ? LABIAL_DONE : LABIAL_STARVED;
     model = models[segment->slot];
-    silence = model->silence;
     ahead = look_ahead(model);
-    left = segment->frames - units->taken;
+    head = head_of(segment, model);
     if (units->count > 1u)
         next = segment_at(units, 1);
-    if (segment->phoneme == silence && ahead > 0 && segment->frames > ahead)
-        head = segment->frames - ahead; /* a long silence: two phonemes */
     if (!ended && units->taken >= head && (!next || units->frames <= ahead))
         return LABIAL_STARVED;
 
-    relabel(units, segment->slot, silence, ahead);
-    taken->slot = segment->slot;
+    relabel(units, segment->slot, model->silence, ahead);
     taken->labels = units->labels + LABIAL_REACH;
-    taken->previous = units->begins ? silence : units->before;
-    taken->next = next ? phoneme_in(next, segment->slot, silence) : silence;
-    taken->ms = segment->ms;
+    taken->slot = segment->slot;
     taken->is_first = units->taken == 0 || units->taken == head;
-    if (head > 0) {
-        const uint16_t tail_ms = (uint16_t)(ahead * 1000u / model->frames_per_second);
-        taken->ms = (uint16_t)(units->taken < head ? segment->ms - tail_ms : tail_ms);
-        if (units->taken < head)
-            taken->next = silence;
-        else
-            taken->previous = silence;
-    }
     taken->marks = (uint8_t)(units->begins ? LABIAL_BEGINS : 0);
     units->begins = 0;
     units->taken++;
     units->frames--;
-    if (left == 1u) {
+    if (units->taken == segment->frames) {
         if (!next || next->slot != segment->slot) {
             taken->marks |= LABIAL_ENDS | LABIAL_UNIT_ENDS;
             units->begins = 1;

@@ -17,15 +17,20 @@
 
 #include "labial/labial.h"
 
-/* What is to be known of a frame: `taken` is the phoneme it belongs to, `labels` the phoneme of every frame from
- * LABIAL_REACH before it to LABIAL_REACH behind it as its model sees them, of which those that its kernels reach count. */
+/* A phoneme as its model sees it: its neighbours are the model's silence where they are another's, or none. */
 typedef struct {
-    const uint8_t *labels;  /* of the frame itself; valid until the next is taken */
-    uint16_t ms;            /* of its phoneme */
-    uint8_t previous, next; /* the phoneme's neighbours */
-    uint8_t slot;           /* of its model */
-    uint8_t is_first;       /* of its phoneme */
-    uint8_t marks;          /* LABIAL_BEGINS and so on */
+    uint8_t slot; /* its model */
+    uint8_t phoneme, previous, next;
+    uint16_t ms;
+} labial_spoken_t;
+
+/* A frame that was taken. */
+typedef struct {
+    const uint8_t *labels; /* its phoneme, among those of the frames around it, LABIAL_REACH to either side, of which
+                            * those that the kernels reach count; valid until the next is taken */
+    uint8_t slot;          /* its model */
+    uint8_t is_first;      /* of its phoneme */
+    uint8_t marks;
 } labial_taken_t;
 
 enum {
@@ -48,6 +53,13 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
  */
 int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_taken_t *taken);
+
+/* Tells the phoneme that begins next, with the next frame or later; returns whether all is known that it depends on. */
+int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
+                      labial_spoken_t *spoken);
+
+/* Whether the next frame begins a phoneme. */
+int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS]);
 
 /* Whether phonemes of the model in `slot` are held. */
 int labial_units_hold(const labial_units_t *units, unsigned slot);

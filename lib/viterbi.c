@@ -33,11 +33,11 @@ static unsigned first_of_window(const labial_model_t *model, const labial_channe
 }
 
 /* Negative log-likelihood of a position in a state. */
-static inline uint32_t emission(const labial_emission_t *state, int32_t position)
+static inline uint16_t emission(const labial_emission_t *state, int32_t position)
 {
     const int32_t distance = position - state->mean;
     const uint32_t z = labial_z((uint32_t)(distance < 0 ? -distance : distance), state->gain, EMISSION_Z_MAX);
-    return labial_z_cost(z) + state->cost;
+    return (uint16_t)(labial_z_cost(z) + state->cost);
 }
 
 /* The paths so far move back by a step. */
@@ -75,6 +75,33 @@ static void take(labial_search_t *search, unsigned first, unsigned size, const u
 #endif
 }
 
+/* The least cost of entering state `i` of a window, by its edges or from the best state; notes where from. */
+static inline uint32_t enter(labial_search_t *search, unsigned size, const uint16_t *edge, unsigned predecessors,
+                             unsigned i)
+{
+    const unsigned first = search->first;
+    uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
+#if LABIAL_LAG > 0
+    search->back[0][i] = search->best;
+#else
+    (void)i;
+#endif
+    do {
+        const unsigned predecessor = (*edge & 0xffu) - first;
+        if (predecessor < size) {
+            const uint32_t score = search->scores[predecessor] + ((uint32_t)*edge >> 8);
+            if (score < least) {
+                least = score;
+#if LABIAL_LAG > 0
+                search->back[0][i] = (uint8_t)predecessor;
+#endif
+            }
+        }
+        edge++;
+    } while (--predecessors > 0);
+    return least;
+}
+
 void labial_viterbi_begin(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
                           labial_search_t *search)
 {
@@ -98,35 +125,21 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
                          labial_search_t *search)
 {
     const unsigned first = first_of_window(model, channel, position), size = searched(model);
-    const unsigned predecessors = model->predecessors, from = search->first;
+    const unsigned predecessors = model->predecessors;
     const uint16_t *edge = channel->edges + (size_t)first * predecessors;
     uint16_t costs[LABIAL_SEARCHED];
-    unsigned i, j, best = 0;
+    unsigned i, best = 0;
 
     age(search);
-    for (i = 0; i < size; i++) {
-        uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
-#if LABIAL_LAG > 0
-        search->back[0][i] = search->best;
-#endif
-        for (j = predecessors; j > 0; j--, edge++) {
-            const unsigned predecessor = (*edge & 0xffu) - from;
-            if (predecessor < size) {
-                const uint32_t score = search->scores[predecessor] + ((uint32_t)*edge >> 8);
-                if (score < least) {
-                    least = score;
-#if LABIAL_LAG > 0
-                    search->back[0][i] = (uint8_t)predecessor;
-#endif
-                }
-            }
-        }
-        costs[i] = (uint16_t)(least + emission(&channel->emissions[first + i], position));
+    for (i = 0; i < size; i++)
+        costs[i] = emission(&channel->emissions[first + i], position);
+    for (i = 0; i < size; i++, edge += predecessors) {
+        costs[i] = (uint16_t)(costs[i] + enter(search, size, edge, predecessors, i));
         if (costs[i] < costs[best])
             best = i;
     }
 #if LABIAL_LAG > 0
-    search->firsts[0] = (uint8_t)from;
+    search->firsts[0] = search->first;
 #endif
     take(search, first, size, costs, best);
 }

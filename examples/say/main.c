@@ -13,21 +13,18 @@
 #define EXIT_INPUT 1
 #define EXIT_USAGE 2
 
-/* How labels are to be read: as the format says, or as one of the two. */
-enum { LABELS_OF_FORMAT, LABELS_ARPABET, LABELS_SAMPA };
-
 typedef struct {
     timings_format_t from;
     frames_format_t to;
     const mouth_voice_t *voice;
     const char *tier;
-    int labels;
+    labial_labels_t labels;
 } options_t;
 
 typedef struct {
     mouth_t mouth;
     timings_t timings;
-    int labels;
+    labial_labels_t labels;
 } say_t;
 
 /* In the order of timings_format_t. */
@@ -48,8 +45,9 @@ static const char usage_text[] =
     "         textgrid Praat or Montreal Forced Aligner; the tier of phones is found by its name\n"
     "                  (default: told from the first line)\n"
     "  --tier NAME     the tier of a TextGrid\n"
-    "  --labels SET    arpabet or sampa: what N S T D Z V mean (default: sampa in pho and mary). IPA, ARPABET,\n"
-    "                  X-SAMPA and espeak's labels are known; others move as the nearest, with one warning each\n"
+    "  --labels SET    arpabet (also flite's), ipa (also espeak's and Montreal Forced Aligner's) or xsampa (also\n"
+    "                  MBROLA's and MARY's): what labels mean. auto takes any, and where they differ X-SAMPA in pho\n"
+    "                  and mary, elsewhere ARPABET (default). Unknown ones move as the nearest, with one warning each\n"
     "  --to csv        time,fap3,fap16,...: seconds and 13 FAPs per frame (default)\n"
     "       fap        MPEG-4 text, 23 FAPs; its header holds the number of frames, so it is written at the end\n"
     "       livelink   Live Link Face CSV: ARKit's blendshapes, 0 to 1\n"
@@ -96,6 +94,21 @@ static int read_from(options_t *options, const char *value)
     return wrong_usage("--from is flite, lab, htk, pho, mary, phseg or textgrid, not", value);
 }
 
+static int read_labels(options_t *options, const char *value)
+{
+    static const struct {
+        const char *name;
+        labial_labels_t labels;
+    } sets[] = {{"auto", LABIAL_LABELS_AUTO}, {"arpabet", LABIAL_LABELS_ARPABET}, {"ipa", LABIAL_LABELS_IPA},
+                {"xsampa", LABIAL_LABELS_XSAMPA}};
+    for (size_t s = 0; s < sizeof sets / sizeof sets[0]; s++)
+        if (strcmp(value, sets[s].name) == 0) {
+            options->labels = sets[s].labels;
+            return 0;
+        }
+    return wrong_usage("--labels is arpabet, ipa, xsampa or auto, not", value);
+}
+
 static int read_options(int argc, char **argv, options_t *options)
 {
     for (int i = 1; i < argc; i++) {
@@ -114,9 +127,7 @@ static int read_options(int argc, char **argv, options_t *options)
             if (*value == '\0')
                 result = wrong_usage("--tier is the name of a tier, not", value);
         } else if ((value = option_value("--labels", argc, argv, &i)) != NULL) {
-            options->labels = strcmp(value, "sampa") == 0 ? LABELS_SAMPA : LABELS_ARPABET;
-            if (options->labels == LABELS_ARPABET && strcmp(value, "arpabet") != 0)
-                result = wrong_usage("--labels is arpabet or sampa, not", value);
+            result = read_labels(options, value);
         } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
             options->voice = strcmp(value, mouth_speech.name) == 0 ? &mouth_speech : &mouth_laughter;
             if (options->voice == &mouth_laughter && strcmp(value, mouth_laughter.name) != 0)
@@ -132,6 +143,16 @@ static int read_options(int argc, char **argv, options_t *options)
 
 /* ---- The pipe -------------------------------------------------------------------------------------------------- */
 
+/* What was asked for; where that is nothing, labels of a format that has X-SAMPA are that first. */
+static labial_labels_t labels_of(const say_t *say, const timings_phoneme_t *phoneme)
+{
+    const char *label = phoneme->label;
+    if (say->labels == LABIAL_LABELS_AUTO && phoneme->sampa && label &&
+        labial_find_in(say->mouth.voice->names, LABIAL_LABELS_XSAMPA, label, strlen(label)) >= 0)
+        return LABIAL_LABELS_XSAMPA;
+    return say->labels;
+}
+
 static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
 {
     say_t *say = user;
@@ -139,8 +160,7 @@ static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
     (void)snprintf(where, sizeof where, "line %lu: ", say->timings.line);
     if (phoneme->laugh >= 0)
         return mouth_laugh(&say->mouth, where, phoneme->milliseconds, (unsigned)phoneme->laugh);
-    const int sampa = say->labels == LABELS_OF_FORMAT ? phoneme->sampa : say->labels == LABELS_SAMPA;
-    return mouth_say(&say->mouth, where, phoneme->label, sampa, phoneme->milliseconds);
+    return mouth_say(&say->mouth, where, phoneme->label, labels_of(say, phoneme), phoneme->milliseconds);
 }
 
 /* Reads standard input to its end. Returns 0, or -1 after the error was printed. */
@@ -185,7 +205,7 @@ int main(int argc, char **argv)
         printf("labial-say %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
         return 0;
     }
-    options_t options = {TIMINGS_AUTO, FRAMES_CSV, &mouth_speech, NULL, LABELS_OF_FORMAT};
+    options_t options = {TIMINGS_AUTO, FRAMES_CSV, &mouth_speech, NULL, LABIAL_LABELS_AUTO};
     const int result = read_options(argc, argv, &options);
     if (result != 0)
         return result;

@@ -92,15 +92,16 @@ int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, 
     return 0;
 }
 
-int mouth_say(mouth_t *mouth, const char *where, const char *label, int sampa, uint32_t milliseconds)
+int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_labels_t labels,
+              uint32_t milliseconds)
 {
     const mouth_voice_t *voice = mouth->voice;
     int phoneme = voice->model->silence;
     if (label) {
         const size_t length = strlen(label);
-        phoneme = (sampa ? labial_find_sampa : labial_find)(voice->names, label, length);
+        phoneme = labial_find_in(voice->names, labels, label, length);
         if (phoneme < 0) {
-            phoneme = labial_find_nearest(voice->names, label, length, voice->model->silence);
+            phoneme = labial_find_nearest(voice->names, labels, label, length, voice->model->silence);
             if (phoneme < 0)
                 return failed(mouth, where, labial_result_text(phoneme));
             warn(mouth, where, label, (unsigned)phoneme);

@@ -48,7 +48,7 @@ static int say_line(speak_t *speak, const speak_options_t *options, const char *
         result = -1;
     }
     if (result == 0 && !*begun) {
-        result = speak_begin(speak, options, (unsigned)wave->sample_rate);
+        result = speak_begin(speak, options, (unsigned)wave->sample_rate, LABIAL_LABELS_ARPABET);
         *begun = result == 0;
     }
     if (result == 0) {

@@ -117,12 +117,13 @@ static int write_header(speak_t *speak)
     return fwrite(header, 1, sizeof header, speak->sound) == sizeof header ? 0 : sound_failed(speak, "cannot write");
 }
 
-int speak_begin(speak_t *speak, const speak_options_t *options, unsigned samples_per_second)
+int speak_begin(speak_t *speak, const speak_options_t *options, unsigned samples_per_second, labial_labels_t labels)
 {
     memset(speak, 0, sizeof *speak);
     speak->program = options->program;
     speak->path = options->sound;
     speak->rate = samples_per_second;
+    speak->labels = labels;
     speak->sound = fopen(options->sound, "wb");
     if (!speak->sound)
         return sound_failed(speak, "cannot open");
@@ -160,7 +161,7 @@ int speak_phoneme(speak_t *speak, const char *label, uint64_t end)
     while (end > speak->said) {
         const uint64_t left = end - speak->said;
         const uint32_t milliseconds = left < LABIAL_DURATION_MAX ? (uint32_t)left : LABIAL_DURATION_MAX;
-        if (mouth_say(&speak->mouth, "", label, 0, milliseconds) != 0)
+        if (mouth_say(&speak->mouth, "", label, speak->labels, milliseconds) != 0)
             return -1;
         speak->said += milliseconds;
     }

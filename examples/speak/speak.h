@@ -30,15 +30,16 @@ typedef struct {
     unsigned rate;
     uint64_t samples; /* of the sound so far */
     uint64_t said;    /* where the latest phoneme ends, milliseconds */
+    labial_labels_t labels;
 } speak_t;
 
 /* Reads the command line: `[--to FORMAT] [--voice NAME] SOUND.wav TEXT`, where the text `-` is standard input. Returns
  * 0, or the exit status plus 1 after --help or an error, which it prints. `usage` is what --help prints. */
 int speak_options(int argc, char **argv, const char *program, const char *usage, speak_options_t *options);
 
-/* Opens the sound file, of one channel and 16 bits, and prepares the mouth. Returns 0, or -1 after the error was
- * printed. */
-int speak_begin(speak_t *speak, const speak_options_t *options, unsigned samples_per_second);
+/* Opens the sound file, of one channel and 16 bits, and prepares the mouth for phonemes of the set `labels`. Returns 0,
+ * or -1 after the error was printed. */
+int speak_begin(speak_t *speak, const speak_options_t *options, unsigned samples_per_second, labial_labels_t labels);
 
 /* Appends sound. Returns as speak_begin() does. */
 int speak_sound(speak_t *speak, const short *samples, size_t count);

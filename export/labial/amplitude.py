@@ -7,7 +7,7 @@ them mumble. Widening the motion about its mean gives the range back; the averag
 from __future__ import annotations
 
 import dataclasses
-from typing import Union
+from typing import Optional, Union
 
 import numpy as np
 
@@ -23,15 +23,17 @@ def mean_pose(model: Model) -> np.ndarray:
     return model.decode_mean.mean(axis=1)
 
 
-def widened(model: Model, gain: Union[float, np.ndarray]) -> Model:
-    """The model with its targets moved away from the mean pose by a factor, one for all or one per channel (13,).
+def widened(model: Model, gain: Union[float, np.ndarray], centre: Optional[np.ndarray] = None) -> Model:
+    """The model with its targets moved away from `centre` (13,), without it the mean pose, by a factor, one for all or
+    one per channel (13,).
 
     All terms of a target are linear, so that the factor goes into the tables: shape' = c + g (shape - c), slopes,
     kernels and pairs are g times theirs. Floors, which say where lips meet, stay; the search and equation 3 follow the
     targets.
     """
     factor = np.broadcast_to(np.asarray(gain, dtype=np.float64), (CHANNELS,))
-    centre = mean_pose(model)
+    if centre is None:
+        centre = mean_pose(model)
     return dataclasses.replace(
         model,
         shape=centre + (model.shape - centre) * factor,

@@ -32,7 +32,8 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     train = commands.add_parser("train", help="train a model on a corpus")
-    train.add_argument("corpus", help="Labial corpus folder, IEMOCAP or AVLaughterCycle")
+    train.add_argument("corpus", nargs="+", help="Labial corpus folder, IEMOCAP or AVLaughterCycle; of several, all "
+                       "talkers are brought to the first one's mean and scale, and corpus.toml in a folder tells more")
     train.add_argument("-o", "--output", required=True, metavar="MODEL.npz")
     train.add_argument("--kind", choices=("speech", "laughter"), default="speech")
     train.add_argument("--method", choices=("paper", "labial"), default="labial")
@@ -56,6 +57,7 @@ def parser() -> argparse.ArgumentParser:
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
                        help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
+    _add_labels(synth)
     synth.add_argument("--whole", action="store_true",
                        help="search and solve the whole utterance at once, not as the run-time does")
     synth.set_defaults(run=_synth)
@@ -72,11 +74,13 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("model", metavar="MODEL.npz")
     check.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
     check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
+    _add_labels(check)
     _add_export_options(check)
     check.set_defaults(run=_check)
 
     evaluate = commands.add_parser("evaluate", help="compare all methods with the human's motion on held-out episodes")
-    evaluate.add_argument("corpus", help="as for train")
+    evaluate.add_argument("corpus", nargs="+", help="as for train; episodes of the first are held out, and Labial's "
+                          "models are trained on all of the others too")
     evaluate.add_argument("-o", "--output", required=True, metavar="REPORT", help="folder for tables and plots")
     evaluate.add_argument("--kind", choices=("speech", "laughter"), default="speech")
     evaluate.add_argument("--splits", type=_positive, default=20, help="random 80/20 splits by episode (20)")
@@ -86,6 +90,8 @@ def parser() -> argparse.ArgumentParser:
     evaluate.add_argument("--jobs", type=_positive, default=2, help="splits at a time (2); the result is the same")
     evaluate.add_argument("--hold-out-words", default="", metavar="W1,W2,...",
                           help="train without the episodes that hold these words, judge these words' frames alone")
+    evaluate.add_argument("--leave-out-talkers", action="store_true", help="train without each talker of the second "
+                          "and further corpora in turn, judge that talker, in place of random splits")
     evaluate.add_argument("--quiet", action="store_true", help="no progress bar")
     evaluate.set_defaults(run=_evaluate)
 
@@ -105,6 +111,7 @@ def parser() -> argparse.ArgumentParser:
     plot = commands.add_parser("plot", help="draw trajectories with their phonemes")
     plot.add_argument("frames", metavar="FRAMES", nargs="+", help="frames files (.csv) or .fap; several are overlaid")
     plot.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_labels(plot)
     plot.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
     plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel "
                       "each (fap3,opening,stretch,fap17)")
@@ -113,6 +120,7 @@ def parser() -> argparse.ArgumentParser:
     page = commands.add_parser("page", help="write a page that plays motion")
     page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv) or .fap")
     page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_labels(page)
     page.add_argument("--audio", metavar="WAV", help="sound that is played in step")
     page.add_argument("--title", help="the file's name without it")
     page.add_argument("-o", "--output", required=True, metavar="OUT.html")
@@ -132,6 +140,12 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _add_labels(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--labels", choices=("auto", "arpabet", "ipa", "xsampa"), default="auto",
+                         help="what set the phonemes' labels are of; auto takes any, and where they differ X-SAMPA "
+                         "in .pho and MaryTTS, elsewhere ARPABET (auto)")
+
+
 def _add_export_options(command: argparse.ArgumentParser) -> None:
     from labial.quantise import DEFAULT_PREDECESSORS
 
@@ -146,7 +160,7 @@ def _train(options: argparse.Namespace) -> int:
         from labial.train.train import train
     except ModuleNotFoundError as error:
         raise LabialError(f"training needs the package {error.name}: install labial[train]") from None
-    from labial.corpus import read_corpus
+    from labial.corpus import read_corpora
     from labial.model import save
 
     own = {}  # what only --method labial has
@@ -157,7 +171,8 @@ def _train(options: argparse.Namespace) -> int:
     if own and options.method == "paper":
         names = " and ".join("--" + name.replace("_", "-") for name in own)
         warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)
-    model = train(read_corpus(options.corpus, options.kind), kind=options.kind, method=options.method, fps=options.fps,
+    episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
+    model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
                   progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution,
                   **own)
@@ -175,7 +190,7 @@ def _synth(options: argparse.Namespace) -> int:
     from labial.reference.tables import FloatTables
 
     model = load(options.model)
-    tables, phonemes = FloatTables(model), read_stream(options.phones, model)
+    tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels)
     whole = options.whole
     frames = published.synthesise(tables, phonemes, whole=True) if whole else stream.synthesise(tables, phonemes)
     name = Path(options.model).stem
@@ -221,7 +236,8 @@ def _check(options: argparse.Namespace) -> int:
 
     model = _widened(load(options.model), options.amplitude)
     exported = quantise(model, "checked_model", predecessors=options.predecessors)
-    comparison = compare(model, exported, [read_stream(path, model) for path in options.phones], options.library)
+    streams = [read_stream(path, model, options.labels) for path in options.phones]
+    comparison = compare(model, exported, streams, options.library)
     print(comparison.table())
     failures = comparison.failures()
     for failure in failures:
@@ -237,7 +253,10 @@ def _evaluate(options: argparse.Namespace) -> int:
         raise LabialError(f"evaluating needs the package {error.name}: install labial[train,evaluate]") from None
 
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
-    asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words)
+    if words and options.leave_out_talkers:
+        raise LabialError("--hold-out-words and --leave-out-talkers do not go together")
+    asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
+                    options.leave_out_talkers)
     for path in run(options.corpus, options.output, asked, jobs=options.jobs,
                     progress=not options.quiet and sys.stderr.isatty()):
         print(path)
@@ -267,7 +286,7 @@ def _plot(options: argparse.Namespace) -> int:
         raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
     from labial.see.motion import read_bands, read_motions
 
-    plot(read_motions(options.frames), read_bands(options.phones), options.output,
+    plot(read_motions(options.frames), read_bands(options.phones, options.labels), options.output,
          options.channels or DEFAULT)
     return 0
 
@@ -276,7 +295,7 @@ def _page(options: argparse.Namespace) -> int:
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
-    text = page(read_motion(options.frames), read_bands(options.phones), options.audio, options.title)
+    text = page(read_motion(options.frames), read_bands(options.phones, options.labels), options.audio, options.title)
     with open(options.output, "w", encoding="utf-8", newline="\n") as out:
         out.write(text)
     return 0

@@ -9,7 +9,7 @@ import struct
 import textwrap
 import zlib
 from pathlib import Path
-from typing import Dict, Iterable, List, Union
+from typing import Dict, Iterable, List, Sequence, Union
 
 import numpy as np
 
@@ -222,30 +222,45 @@ def _string(text: str) -> str:
         chr(b) if 32 <= b < 127 and b not in (34, 92, 63) else f"\\{b:03o}" for b in text.encode()) + '"'
 
 
-def _packed(name: str, phoneme: int) -> str:
-    """An entry of the names: the phoneme, the name's length and its bytes."""
+#: Format of the names that these files hold: LABIAL_NAMES_FORMAT of include/labial/names.h.
+NAMES_FORMAT = 2
+#: A name's length and its sets of labels share a byte: labial_labels_t of include/labial/names.h.
+_LENGTH_MAX = 31
+_SET_BITS = {"arpabet": 0x20, "ipa": 0x40, "xsampa": 0x80}
+
+
+def _packed(name: str, phoneme: int, sets: Sequence[str]) -> str:
+    """An entry of the names: the phoneme, the name's length and sets of labels, and its bytes."""
     data = name.encode()
     spelled = [f"'{chr(b)}'" if 32 < b < 127 and b not in (39, 92) else str(b) for b in data]
-    return ", ".join([str(phoneme), str(len(data)), *spelled])
+    return ", ".join([str(phoneme), f"0x{len(data) + sum(_SET_BITS[item] for item in sets):02x}", *spelled])
 
 
 def names_bytes(model: ExportedModel) -> int:
     """Flash bytes of the names on a 32-bit target."""
     labels = sum(4 + len(label.encode()) + 1 for label in model.phonemes)
-    return sum(2 + len(name.encode()) for name, _ in model.aliases) + labels + 12
+    return _entries_bytes(model) + labels + 12
+
+
+def _entries_bytes(model: ExportedModel) -> int:
+    return sum(2 + len(name.encode()) for name, *_ in model.names)
 
 
 def names_source(model: ExportedModel) -> str:
     """NAME_names.c: labels and aliases in the order of their bytes. Raises ModelError when there are too many."""
-    size = sum(2 + len(name.encode()) for name, _ in model.aliases)
-    if size > 65535 or any(len(name.encode()) > 255 for name, _ in model.aliases):
-        raise ModelError("names are longer than 255 bytes, or 65,535 together")
-    entries = "\n".join(f"    {_packed(text, number)}," for text, number in model.aliases).rstrip(",")
+    size = _entries_bytes(model)
+    if size > 65535 or any(len(name.encode()) > _LENGTH_MAX for name, *_ in model.names):
+        raise ModelError(f"names are longer than {_LENGTH_MAX} bytes, or 65,535 together")
+    entries = "\n".join(f"    {_packed(*entry)}," for entry in model.names).rstrip(",")
     labels = textwrap.fill(", ".join(_string(label) for label in model.phonemes), width=118, initial_indent="    ",
                            subsequent_indent="    ")
     return f"""{_comment(model, f"{model.name}_names.c - names of the phonemes of the")}#include "{model.name}.h"
 
-/* Phoneme, bytes of the name, name. */
+#if LABIAL_NAMES_FORMAT != {NAMES_FORMAT}
+#error "{model.name} was exported for another version of Labial: run labial export again."
+#endif
+
+/* Phoneme, bytes of the name and its sets of labels, name. */
 static const uint8_t entries[{size}] = {{
 {entries}
 }};

@@ -4,8 +4,11 @@ This is what lib/laugh.c computes, number for number, and the source of its tabl
 and the statistics are those of the synthetic corpus (labial.corpus.laughter): trains of pulses 210 ms apart, pauses
 with an inhalation between them. All arithmetic is in integers, so that both give the same laugh.
 
-Intensity 0.5 is the corpus. Towards 1 trains become longer, pauses shorter, vowels longer and more often open, and
-cackles more frequent; towards 0 it is the other way round and more pulses are hummed with closed lips.
+Loudness is the corpus's too: the intensity, less from pulse to pulse and from train to train, asks for soft, plain or
+loud grades of the phonemes that have some. The rhythm does not depend on it.
+
+At intensity 0.5 the rhythm is the corpus's. Towards 1 trains become longer, pauses shorter, vowels longer and more
+often open, and cackles more frequent; towards 0 it is the other way round and more pulses are hummed with closed lips.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from typing import Iterator, List, Sequence, Tuple, Union
 
 from labial.corpus import laughter
 from labial.corpus.laughter import PERIOD_LONGEST, PERIOD_SHORTEST, PULSES, SHORTEST, TRAIN_LONGEST, VOWELS
-from labial.phonesets import LAUGHTER
+from labial.phonesets import LAUGHTER, LAUGHTER_GRADES
 
 #: Intensity of the heartiest laugh.
 FULL = 256
@@ -52,7 +55,15 @@ STRETCH = [round(128 * math.exp(laughter.SPREAD * z)) for z in _QUANTILES]
 LENGTHS = [round(32 * math.exp(laughter.TRAIN_SPREAD * z)) for z in _QUANTILES]
 PERIOD, PERIOD_SPREAD = round(laughter.PERIOD), round(laughter.PERIOD_SPREAD)
 TRAIN_MEDIAN = round(laughter.TRAIN_MEDIAN)
-MEDIANS = [laughter.MEDIANS.get(label, 0) for label in LAUGHTER.phonemes]
+MEDIANS = [laughter.MEDIANS.get(label, 0) for label in LAUGHTER.phonemes if label in laughter.GESTURES]
+#: Of 256: how loud the next pulse, the next train and air drawn in are; below the softest train all begins anew.
+PULSE_DECAY, TRAIN_DECAY = _of_256(laughter.PULSE_DECAY), _of_256(laughter.TRAIN_DECAY)
+_INHALED_LOUDNESS, _SOFTEST = _of_256(laughter.INHALED_LOUDNESS), _of_256(0.6)
+#: Up to which loudness of 256 all is soft, and how many 1/256 grades (from soft, 0, to loud, 512) 1/256 more make.
+SOFT, GRADES = _of_256(laughter.SOFT), round(512 / (laughter.LOUD - laughter.SOFT))
+#: What the turn between two grades grows by from phoneme to phoneme, of 256: the golden ratio, whose multiples, modulo
+#: 1, are spread as evenly as can be, so that each stretch of a laugh has the share of both grades that it should.
+_TURN = 158
 PULSE_SHARES, VOWEL_SHARES = _shares(laughter.PULSE_SHARES), _shares(laughter.VOWEL_SHARES)
 
 
@@ -66,6 +77,8 @@ class _Laugh:
         self.random = (seed * 2654435761 + 2654435769) % 2**32 or 1
         self.pulses = 0
         self.kind = self.vowel = 0
+        self.train_loudness = self.loudness = 255  # of the train and of its next pulse, at full intensity
+        self.turn = self.random >> 24
         self.queue: List[Tuple[str, int]] = []
 
     def draw(self, count: int) -> int:
@@ -99,6 +112,16 @@ class _Laugh:
     def add(self, label: str, milliseconds: int) -> None:
         self.queue.append((label, milliseconds))
 
+    def add_graded(self, label: str, milliseconds: int, loudness: int) -> None:
+        """Adds `label` in the grade that `loudness` of 256 and the intensity ask for, by turns between two grades."""
+        if label in LAUGHTER_GRADES:
+            soft, loud = LAUGHTER_GRADES[label]
+            self.turn = (self.turn + _TURN) % 256
+            louder = max((self.intensity * (loudness + 1) >> 8) - SOFT, 0)
+            wanted = min(louder * GRADES >> 8, 512)
+            label = (soft, label, loud)[wanted + self.turn >> 8]
+        self.add(label, milliseconds)
+
     def choose_kind(self) -> None:
         self.kind = self.choose(PULSE_SHARES, list(_PULSE_TILT.values()))
 
@@ -108,6 +131,7 @@ class _Laugh:
     def begin_train(self) -> None:
         median = TRAIN_MEDIAN * (256 + self.intensity)  # 2/3 to 4/3 of the corpus's median, in 1/384
         self.pulses = min(max((median * LENGTHS[self.draw(32)] + 6144) // 12288, 1), TRAIN_LONGEST)
+        self.loudness = self.train_loudness
         self.choose_kind()
         self.choose_vowel()
 
@@ -123,16 +147,17 @@ class _Laugh:
         sound = min(self.duration(note), period - 40)
         rest = period - sound
         if kind == "h":
-            self.add("fricative", rest)
-            self.add(note, sound)
+            self.add_graded("fricative", rest, self.loudness)
+            self.add_graded(note, sound, self.loudness)
         elif kind == "stop":
             stop = min(self.duration("plosive"), rest - 20)
             self.add("plosive", stop)
-            self.add(note, sound)
+            self.add_graded(note, sound, self.loudness)
             self.add("silence", rest - stop)
         else:
-            self.add(note, sound)
+            self.add_graded(note, sound, self.loudness)
             self.add("silence", rest)
+        self.loudness = self.loudness * PULSE_DECAY >> 8
 
     def pause(self, room: int) -> None:
         if self.chance(_INHALED):
@@ -140,7 +165,7 @@ class _Laugh:
             if self.chance(_CLICKED):
                 self.add("click", self.duration("click"))
             inhaled = "ne" if self.chance(_BY_NOSE) else "fricative"
-            self.add(inhaled, self.duration(inhaled))
+            self.add_graded(inhaled, self.duration(inhaled), self.train_loudness * _INHALED_LOUDNESS >> 8)
         if self.chance(_GRUNTED):
             self.add("grunt", self.duration("grunt"))
         if self.chance(_SILENT):
@@ -153,6 +178,9 @@ class _Laugh:
             if breath + PERIOD > room:  # no pulse fits behind it: the laugh ends with air drawn in
                 self.tail = self.left - breath
                 return
+        self.train_loudness = self.train_loudness * TRAIN_DECAY >> 8
+        if self.train_loudness < _SOFTEST:  # a laugh that is longer than a bout is several
+            self.train_loudness = 255
         self.begin_train()
 
     def onset(self, room: int) -> None:
@@ -172,7 +200,7 @@ class _Laugh:
         if room < SHORTEST:
             self.add("silence", self.left)
         elif room < PERIOD_SHORTEST:
-            self.add("fricative", room)
+            self.add_graded("fricative", room, self.loudness)
         elif self.pulses == 0:
             self.pause(room)
         else:
@@ -216,6 +244,12 @@ def table_header() -> str:
             ("PERIOD", PERIOD), ("PERIOD_SPREAD", PERIOD_SPREAD), ("PERIOD_SHORTEST", PERIOD_SHORTEST),
             ("PERIOD_LONGEST", PERIOD_LONGEST), ("TRAIN_MEDIAN", TRAIN_MEDIAN), ("TRAIN_LONGEST", TRAIN_LONGEST),
             ("SHORTEST", SHORTEST))),
+        "\n/* Of 256: how loud the next pulse, the next train and air drawn in are; the softest train. */\n",
+        "".join(f"#define {name} {value}u\n" for name, value in (
+            ("PULSE_DECAY", PULSE_DECAY), ("TRAIN_DECAY", TRAIN_DECAY), ("INHALED_LOUDNESS", _INHALED_LOUDNESS),
+            ("SOFTEST", _SOFTEST))),
+        "\n/* Up to which loudness of 256 all is soft; 1/256 grades for each 1/256 more; how the turn moves on. */\n",
+        f"#define SOFT {SOFT}u\n#define GRADES {GRADES}u\n#define TURN {_TURN}u\n",
         "\n/* Of 256: what a pause between trains has. */\n",
         "".join(f"#define {name} {value}\n" for name, value in (
             ("INHALED", _INHALED), ("CLICKED", _CLICKED), ("BY_NOSE", _BY_NOSE), ("GRUNTED", _GRUNTED),
@@ -233,6 +267,9 @@ def table_header() -> str:
         table("int16_t", "vowel_tilts", list(_VOWEL_TILT.values()), "The same."),
         table("uint8_t", "onsets", [number(v) for v in _ONSETS], "What a laugh may start with."),
         table("uint8_t", "onset_shares", list(_ONSETS.values()), "The shares, of 256; mostly it starts with a pulse."),
+        table("uint8_t", "soft_grades", [number(LAUGHTER_GRADES[label][0]) if label in LAUGHTER_GRADES else 0
+                                         for label in LAUGHTER.phonemes[: len(MEDIANS)]],
+              "The soft grade of each phoneme that has one, 0 for the others; the loud grade is the next number."),
         "\n#endif\n",
     ]
     return "".join(parts)

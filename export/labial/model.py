@@ -1,8 +1,8 @@
 """The trained float model: what it holds, and the .npz file it is kept in.
 
-Shapes use P phonemes, N mixture components (of all phonemes), V viseme classes, Q states, L kernel taps and the 13
-channels of :mod:`labial.faps`. Positions are FAP units, durations seconds, probabilities natural logarithms,
-precisions inverse variances.
+Shapes use P phonemes, N mixture components (of all phonemes), V viseme classes, Q states, L kernel taps, K knots of a
+pair and the 13 channels of :mod:`labial.faps`. Positions are FAP units, durations seconds, probabilities natural
+logarithms, precisions inverse variances.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from labial.errors import ModelError
 from labial.faps import CHANNELS
 
 #: Version of the .npz layout.
-FORMAT = 2
+FORMAT = 3
 
 #: Methods a model may be trained with.
 METHODS = ("paper", "labial")
@@ -60,7 +60,8 @@ class Model:
     kernel: np.ndarray  #: (P, L, 13) FAP that a phoneme at a tap's lag adds to the target; L = 0 without kernels
     kernel_lag: np.ndarray  #: (L,) int64, frames from the target to the phoneme (negative: before), evenly spaced
     pair_key: np.ndarray  #: (R, 3) int64: phoneme; 0 for its previous, 1 for its next neighbour; the neighbour
-    pair_shape: np.ndarray  #: (R, 13) FAP that such a neighbour adds to the phoneme's shape
+    pair_shape: np.ndarray  #: (R, K, 13) FAP that such a neighbour adds to the phoneme's shape: all through (K = 1), or
+    #: at its start and at its end, between which frames interpolate (K = 2)
     floor: np.ndarray  #: (P, 13) FAP that the target does not fall below in the phoneme; -inf where none
     decode_mean: np.ndarray  #: (13, Q) static mean that the Viterbi search sees, FAP
     decode_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
@@ -69,7 +70,7 @@ class Model:
     state_anchor: np.ndarray  #: (13, Q) precision that ties a frame to its target; 0 in the published method
     log_transition: np.ndarray  #: (13, Q, Q) [from, to]
     log_initial: np.ndarray  #: (13, Q)
-    aliases: Dict[str, str] = field(default_factory=dict)  #: label in some phone set -> label in `phonemes`
+    aliases: Dict[str, str] = field(default_factory=dict)  #: labels of its own -> label in `phonemes`
     substitutes: Dict[str, str] = field(default_factory=dict)  #: phoneme without samples -> what stands in for it
     attribution: str = ""  #: what whoever passes the model on must say
     training: Dict[str, object] = field(default_factory=dict)  #: options and counts of the training, JSON values
@@ -94,6 +95,7 @@ def check(model: Model) -> None:
     q = np.shape(model.log_initial)[-1]
     taps = len(model.kernel_lag)
     pairs = len(model.pair_key)
+    knots = np.shape(model.pair_shape)[1] if np.ndim(model.pair_shape) == 3 else 0
     context = np.shape(model.log_previous)[-1]
     _expect(model.kind in KINDS, f"kind is {model.kind!r}, not one of {', '.join(KINDS)}")
     _expect(model.method in METHODS, f"method is {model.method!r}, not one of {', '.join(METHODS)}")
@@ -103,6 +105,7 @@ def check(model: Model) -> None:
     _expect(p > 0 and len(set(model.phonemes)) == p, "phoneme labels are missing or not unique")
     _expect(model.silence in model.phonemes, f"the silence phoneme {model.silence!r} is not a phoneme")
     _expect(context in (0, v), f"context tables have {context} classes, the model {v}")
+    _expect(knots in (1, 2), f"pair_shape has shape {np.shape(model.pair_shape)}, not one or two knots")
     shapes = {
         "phoneme_class": (p,),
         "boundary": (p,),
@@ -117,7 +120,7 @@ def check(model: Model) -> None:
         "kernel": (p, taps, CHANNELS),
         "kernel_lag": (taps,),
         "pair_key": (pairs, 3),
-        "pair_shape": (pairs, CHANNELS),
+        "pair_shape": (pairs, knots, CHANNELS),
         "floor": (p, CHANNELS),
         "decode_mean": (CHANNELS, q),
         "decode_variance": (CHANNELS, q),

@@ -10,7 +10,7 @@ import numpy as np
 from labial.corpus.episode import Segment
 from labial.corpus.timings import phoneme_segments, read_timings
 from labial.model import Model
-from labial.phonesets import PhoneSet, aliases_for
+from labial.phonesets import AUTO, PhoneSet, aliases_for
 
 #: A phoneme stream: (phoneme number, milliseconds) pairs.
 Stream = List[Tuple[int, int]]
@@ -29,13 +29,14 @@ def phone_set(model: Model) -> PhoneSet:
     )
 
 
-def read_stream(path: Union[str, os.PathLike], model: Model) -> Stream:
-    """Reads phoneme timings of any format that corpora come in; gaps are silence.
+def read_stream(path: Union[str, os.PathLike], model: Model, labels: str = AUTO) -> Stream:
+    """Reads phoneme timings of any format that corpora come in; gaps are silence. `labels` says what set the labels are
+    of: "arpabet", "ipa", "xsampa" or "auto".
 
     The first phoneme lasts from time 0. Raises DataError, which names the file and the line, for what is malformed;
     labels that the model does not know are the nearest, with one warning each.
     """
-    return stream_of(phoneme_segments(path, read_timings(path), phone_set(model), strict=False), model, 0)
+    return stream_of(phoneme_segments(path, read_timings(path), phone_set(model), False, labels), model, 0)
 
 
 def stream_of(segments: Sequence[Segment], model: Model, begin: int) -> Stream:

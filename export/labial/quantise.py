@@ -24,9 +24,10 @@ from labial.fixed import (
     weight_code_below,
     weight_value,
 )
-from labial.labels import without_redundant
+from labial.labels import entries
 from labial.model import Model
-from labial.phonesets import aliases_for
+from labial.phones import phone_set
+from labial.phonesets import LABEL_SETS
 
 #: Version of the tables' meaning.
 FORMAT = 3
@@ -55,7 +56,7 @@ class ExportedModel:
     attribution: str
     fps: int
     phonemes: Tuple[str, ...]
-    aliases: Tuple[Tuple[str, int], ...]  #: labels and aliases with phoneme numbers, but for those that lose marks only
+    names: Tuple[Tuple[str, int, Tuple[str, ...]], ...]  #: labels and aliases, phoneme numbers, sets of labels
     silence: int
     soft: bool
     first_component: np.ndarray  #: (P,)
@@ -114,7 +115,9 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
     slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
     kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
-    pairs, pair_scale = _steps(model.pair_shape, 65535, "pairs")
+    if model.pair_shape.shape[1] != 1:
+        raise ModelError("pairs of two knots cannot be exported")
+    pairs, pair_scale = _steps(model.pair_shape[:, 0], 65535, "pairs")
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
     floor, floors = _floors(model, centre)
@@ -122,8 +125,7 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
     )
     hold, weights = state_weights(model, state_mean)
-    aliases = aliases_for(model.kind, model.phonemes, model.aliases)
-    names = without_redundant({**aliases, **{label: label for label in model.phonemes}})
+    names = phone_set(model)
     return ExportedModel(
         name=name,
         kind=model.kind,
@@ -131,8 +133,8 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         attribution=model.attribution,
         fps=model.fps,
         phonemes=model.phonemes,
-        aliases=tuple(sorted(((text, model.phonemes.index(label)) for text, label in names.items()),
-                             key=lambda item: item[0].encode())),
+        names=tuple((text, model.phonemes.index(label), sets) for text, label, sets in entries(
+            {labels: names.names(labels) for labels in LABEL_SETS})),
         silence=model.phonemes.index(model.silence),
         soft=model.soft,
         first_component=first,

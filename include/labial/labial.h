@@ -136,7 +136,7 @@ typedef struct {
 } labial_units_t;
 
 /* States that a step of the search looks at; the exporter knows the number too. */
-#define LABIAL_SEARCHED 12
+#define LABIAL_SEARCHED 8
 
 /* Where the search of one channel stands (viterbi.c). */
 typedef struct {
@@ -189,6 +189,7 @@ typedef struct {
     uint8_t ended;       /* no more phonemes will come */
     uint8_t begun;       /* a frame was delivered since the stream was initialised or taken up again */
     uint8_t resumed;     /* the first frame fades in from `pose` */
+    uint8_t selected;    /* `next_shape` is that of the phoneme that begins next */
     uint8_t entered;     /* frames that were taken, 255 for more */
     uint8_t beyond;      /* ticks since the last frame was taken */
     uint8_t phase;       /* channels whose turn it is */
@@ -206,6 +207,7 @@ typedef struct {
     labial_frame_fn callback;
     void *user;
     int16_t shape[LABIAL_CHANNELS];   /* of the phoneme that the latest frame belongs to, positions */
+    int16_t next_shape[LABIAL_CHANNELS];
     int16_t pose[LABIAL_CHANNELS];    /* the frame delivered last, Q4 FAP */
     int16_t earlier[LABIAL_CHANNELS]; /* the one before it; while something fades, how far it moved on */
     int16_t held[LABIAL_CHANNELS];    /* the pose that fades */

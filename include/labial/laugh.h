@@ -24,11 +24,15 @@
 extern "C" {
 #endif
 
-/* The highest intensity. Half of it laughs as the corpus does; more makes trains longer, pauses shorter and vowels more
- * open, less has more pulses hummed with closed lips. How far the mouth moves is not the generator's concern. */
+/* The highest intensity. At 0 a laugh is a hum behind nearly closed lips, at the highest the mouth is wide open, and jaw,
+ * lips and corners go all steps between: the generator yields soft, plain and loud grades of the phonemes, between two
+ * grades both by turns, and the model knows how far each opens. Pulses get softer along a train and from train to train.
+ * Half of it has the corpus's rhythm; more makes trains longer, pauses shorter and vowels longer and more open, less has
+ * more pulses hummed with closed lips. */
 #define LABIAL_LAUGH_FULL 256u
 
-/* The phonemes of every laughter model that the exporter writes, in the order of their numbers. */
+/* The phonemes of every laughter model that the exporter writes, in the order of their numbers: twelve, then the soft and
+ * the loud grade of six of them. A model that was trained on labels without grades has the plain phoneme's shapes there. */
 enum {
     LABIAL_LAUGH_SILENCE,
     LABIAL_LAUGH_NE, /* air through the nose, mostly drawn in */
@@ -42,6 +46,18 @@ enum {
     LABIAL_LAUGH_GRUNT,
     LABIAL_LAUGH_CACKLE,
     LABIAL_LAUGH_A,
+    LABIAL_LAUGH_FRICATIVE_SOFT,
+    LABIAL_LAUGH_FRICATIVE_LOUD,
+    LABIAL_LAUGH_IC_SOFT,
+    LABIAL_LAUGH_IC_LOUD,
+    LABIAL_LAUGH_E_SOFT,
+    LABIAL_LAUGH_E_LOUD,
+    LABIAL_LAUGH_O_SOFT,
+    LABIAL_LAUGH_O_LOUD,
+    LABIAL_LAUGH_CACKLE_SOFT,
+    LABIAL_LAUGH_CACKLE_LOUD,
+    LABIAL_LAUGH_A_SOFT,
+    LABIAL_LAUGH_A_LOUD,
     LABIAL_LAUGH_PHONEMES
 };
 
@@ -56,6 +72,8 @@ typedef struct {
     uint8_t first, count; /* of these, the next one and how many there are */
     uint8_t pulses;       /* to come in the current train */
     uint8_t kind, vowel;  /* of these pulses */
+    uint8_t train_loudness, loudness; /* of the current train's first and of its next pulse, 255 the intensity's own */
+    uint8_t turn;                     /* between two grades, 1/256 */
 } labial_laugh_t;
 
 /*

@@ -12,42 +12,60 @@
 extern "C" {
 #endif
 
+/* Format of the tables; NAME_names.c refuses to be compiled with another one. */
+#define LABIAL_NAMES_FORMAT 2
+
+/*
+ * Sets of labels. Some labels mean different sounds in different sets: `y` is the first sound of "yes" in ARPABET and
+ * the rounded vowel of German "ue" in the IPA, `th` one fricative in ARPABET and an aspirated stop in the IPA,
+ * `N S T D Z V` other sounds in X-SAMPA. Whoever knows which set the labels are of should say so.
+ */
+typedef enum {
+    LABIAL_LABELS_ARPABET = 0x20, /* also flite's, CMU Sphinx's and TIMIT's */
+    LABIAL_LABELS_IPA = 0x40,     /* in UTF-8, as eSpeak NG, the Montreal Forced Aligner and Piper write it */
+    LABIAL_LABELS_XSAMPA = 0x80,  /* also MBROLA's and MARY's */
+    LABIAL_LABELS_AUTO = 0xe0     /* any of them, in this order; but lone digits, vowels in X-SAMPA, are unknown */
+} labial_labels_t;
+
 /*
  * The names of one model. Labels and aliases stand one behind the other, without pointers, which would take more room
- * than they do: for each the phoneme's number, the bytes of the name, and the name in UTF-8. A look-up reads them all,
- * 2 KB for English, which is little beside the work of one frame.
+ * than they do: for each the phoneme's number, a byte of the name's length (1 .. 31) and the sets in which it means
+ * this phoneme (the bits of labial_labels_t), and the name in UTF-8. A look-up reads them all, 3 KB for English, which
+ * is little beside the work of one frame.
  */
 typedef struct {
     uint16_t size;             /* of `entries`, bytes */
     uint8_t phoneme_count;     /* of `labels` */
-    const uint8_t *entries;    /* labels and aliases, no name twice */
+    const uint8_t *entries;    /* labels and aliases; a name of several meanings once for each */
     const char *const *labels; /* the label of each phoneme number */
 } labial_names_t;
 
 /*
- * The phoneme that `name`, `length` bytes, means: the name as it stands or, if that is unknown, without what does not
- * change the mouth's shape - blanks around it; stress marks before it (the IPA's, ' " , %); the IPA's signs of length
- * and secondary articulation, its ties and diacritics; Praat's backslash sequences for these; X-SAMPA's marks (`:`,
- * `=`, `~`, `;`, `_h`) and Kaldi's places (`_B`) behind it; an ARPABET stress digit behind two letters.
+ * The phoneme that `name`, `length` bytes, means in the set `labels`: the name as it stands or, if that is unknown,
+ * without what does not change the mouth's shape - blanks around it; stress marks before it (the IPA's, ' " , %), and a
+ * glottal stop; the IPA's signs of length and secondary articulation, its ties and diacritics; Praat's backslash
+ * sequences for these; X-SAMPA's marks (`:`, `=`, `~`, `;`, `_h`), Kaldi's places (`_B`) and the signs of eSpeak's
+ * variants (`-`, `.`, `^`, `"`) behind it; an ARPABET stress digit behind two letters. The labels of the model's own
+ * phonemes are known in every set, unless that means another sound by them.
  *
- * Returns the phoneme's number, LABIAL_ERROR_NULL or LABIAL_ERROR_NAME.
+ * Returns the phoneme's number, LABIAL_ERROR_NULL, or LABIAL_ERROR_NAME: also for an empty name, for marks alone, and
+ * for `labels` that is none of the above.
  */
+int labial_find_in(const labial_names_t *names, labial_labels_t labels, const char *name, size_t length);
+
+/* The same where nobody knows the set: LABIAL_LABELS_AUTO. */
 int labial_find(const labial_names_t *names, const char *name, size_t length);
 
 /*
- * The same for a label of X-SAMPA, as MBROLA, MARY and eSpeak write them: N S T D Z V H Y y are what X-SAMPA means by
- * them, where labial_find() takes them for ARPABET.
- */
-int labial_find_sampa(const labial_names_t *names, const char *name, size_t length);
-
-/*
- * A phoneme for any label: the one that labial_find() finds; `silence` (the model's) for what is in brackets or between
- * + * #, as noises are written; else the longest known beginning of the label, its first letters being passed over
- * while there is none; else the neutral vowel, else `silence`.
+ * A phoneme for any label: the one that labial_find_in() finds; `silence` (the model's) for what is in brackets or
+ * between + * #, as noises are written, and where nothing is left without marks, digits and ASCII's punctuation; else
+ * the longest known beginning of the label, its first letters being passed over while there is none; else the neutral
+ * vowel, else `silence`. A program that wants to know of unknown labels asks labial_find_in() first.
  *
  * Returns the phoneme's number or LABIAL_ERROR_NULL.
  */
-int labial_find_nearest(const labial_names_t *names, const char *name, size_t length, unsigned silence);
+int labial_find_nearest(const labial_names_t *names, labial_labels_t labels, const char *name, size_t length,
+                        unsigned silence);
 
 #ifdef __cplusplus
 }

@@ -22,7 +22,7 @@ typedef struct {
 static int is_open(unsigned phoneme)
 {
     return phoneme == LABIAL_LAUGH_A || phoneme == LABIAL_LAUGH_E || phoneme == LABIAL_LAUGH_O ||
-           phoneme == LABIAL_LAUGH_IC || phoneme == LABIAL_LAUGH_CACKLE;
+           phoneme == LABIAL_LAUGH_IC || phoneme == LABIAL_LAUGH_CACKLE || phoneme >= LABIAL_LAUGH_IC_SOFT;
 }
 
 static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
@@ -123,7 +123,8 @@ static void intensity_opens_the_mouth(void **state)
             const sum_t sum = sum_of(5000, i * 128, seed);
             open[i] += sum.spoken;
             hummed[i] += sum.per_phoneme[LABIAL_LAUGH_NASAL];
-            a[i] += sum.per_phoneme[LABIAL_LAUGH_A];
+            a[i] += sum.per_phoneme[LABIAL_LAUGH_A] + sum.per_phoneme[LABIAL_LAUGH_A_SOFT] +
+                    sum.per_phoneme[LABIAL_LAUGH_A_LOUD];
         }
     assert_true(open[0] * 5u < open[1] * 4u && open[1] * 8u < open[2] * 7u);
     assert_true(hummed[0] > hummed[1] && hummed[1] > hummed[2]);
@@ -151,23 +152,52 @@ static void errors(void **state)
     assert_int_equal(labial_laugh_next(&laugh, &phoneme, NULL), LABIAL_ERROR_NULL);
 }
 
-static void count_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+/* What a laugh came to, FAP units. */
+typedef struct {
+    int32_t opening, jaw; /* the largest */
+    int32_t corner;       /* the sum of all frames' FAP 53 */
+    uint32_t frames;
+} seen_t;
+
+static void see(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
-    int *widest = (int *)user;
+    seen_t *seen = (seen_t *)user;
+    const int32_t opening = -(faps[3] + faps[4]);
     (void)frame;
-    if (faps[0] > *widest)
-        *widest = faps[0];
+    seen->opening = opening > seen->opening ? opening : seen->opening;
+    seen->jaw = faps[0] > seen->jaw ? faps[0] : seen->jaw;
+    seen->corner += faps[5];
+    seen->frames++;
 }
 
-/* Would catch phoneme numbers that are not the bundled model's, and a laugh that the stream refuses. */
-static void the_bundled_model_laughs(void **state)
+/* Three seconds of laughter by the bundled model, as a program would have them. */
+static seen_t laughed(unsigned intensity, uint32_t seed)
 {
     static labial_t stream;
     static uint32_t workspace[LAUGHTER_SYNTHETIC_WORKSPACE_SIZE / 4];
     labial_laugh_t laugh;
     unsigned phoneme;
-    uint32_t ms, frames = 0;
-    int widest = 0, result;
+    uint32_t ms;
+    seen_t seen;
+    int result;
+    memset(&seen, 0, sizeof seen);
+    assert_int_equal(labial_init(&stream, &laughter_synthetic, workspace, sizeof workspace, see, &seen), 0);
+    assert_int_equal(labial_laugh_begin(&laugh, 3000, intensity, seed), LABIAL_OK);
+    while (labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK) {
+        while (labial_room(&stream) == 0)
+            assert_true(labial_tick(&stream) >= 0);
+        assert_int_equal(labial_push(&stream, phoneme, ms), LABIAL_OK);
+    }
+    assert_int_equal(labial_end(&stream), LABIAL_OK);
+    while ((result = labial_tick(&stream)) != LABIAL_DONE)
+        assert_true(result >= 0);
+    assert_int_equal(seen.frames, 3u * LAUGHTER_SYNTHETIC_FPS);
+    return seen;
+}
+
+/* Would catch phoneme numbers that are not the bundled model's. */
+static void the_numbers_are_the_bundled_models(void **state)
+{
     (void)state;
     assert_int_equal(LABIAL_LAUGH_PHONEMES, LAUGHTER_SYNTHETIC_PHONEMES);
     assert_int_equal(LABIAL_LAUGH_SILENCE, LAUGHTER_SYNTHETIC_SILENCE);
@@ -182,20 +212,46 @@ static void the_bundled_model_laughs(void **state)
     assert_int_equal(LABIAL_LAUGH_GRUNT, LAUGHTER_SYNTHETIC_GRUNT);
     assert_int_equal(LABIAL_LAUGH_CACKLE, LAUGHTER_SYNTHETIC_CACKLE);
     assert_int_equal(LABIAL_LAUGH_A, LAUGHTER_SYNTHETIC_A);
-    assert_int_equal(labial_init(&stream, &laughter_synthetic, workspace, sizeof workspace, count_frame, &widest), 0);
-    assert_int_equal(labial_laugh_begin(&laugh, 3000, LABIAL_LAUGH_FULL, 1), LABIAL_OK);
-    while (labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK) {
-        while (labial_room(&stream) == 0)
-            frames += labial_tick(&stream) == LABIAL_OK;
-        assert_int_equal(labial_push(&stream, phoneme, ms), LABIAL_OK);
+    assert_int_equal(LABIAL_LAUGH_FRICATIVE_SOFT, LAUGHTER_SYNTHETIC_FRICATIVE_SOFT);
+    assert_int_equal(LABIAL_LAUGH_FRICATIVE_LOUD, LAUGHTER_SYNTHETIC_FRICATIVE_LOUD);
+    assert_int_equal(LABIAL_LAUGH_IC_SOFT, LAUGHTER_SYNTHETIC_IC_SOFT);
+    assert_int_equal(LABIAL_LAUGH_IC_LOUD, LAUGHTER_SYNTHETIC_IC_LOUD);
+    assert_int_equal(LABIAL_LAUGH_E_SOFT, LAUGHTER_SYNTHETIC_E_SOFT);
+    assert_int_equal(LABIAL_LAUGH_E_LOUD, LAUGHTER_SYNTHETIC_E_LOUD);
+    assert_int_equal(LABIAL_LAUGH_O_SOFT, LAUGHTER_SYNTHETIC_O_SOFT);
+    assert_int_equal(LABIAL_LAUGH_O_LOUD, LAUGHTER_SYNTHETIC_O_LOUD);
+    assert_int_equal(LABIAL_LAUGH_CACKLE_SOFT, LAUGHTER_SYNTHETIC_CACKLE_SOFT);
+    assert_int_equal(LABIAL_LAUGH_CACKLE_LOUD, LAUGHTER_SYNTHETIC_CACKLE_LOUD);
+    assert_int_equal(LABIAL_LAUGH_A_SOFT, LAUGHTER_SYNTHETIC_A_SOFT);
+    assert_int_equal(LABIAL_LAUGH_A_LOUD, LAUGHTER_SYNTHETIC_A_LOUD);
+}
+
+/* Would catch an intensity that does not reach the mouth: at 0 a hum behind nearly closed lips, at the highest a mouth
+ * wide open, jaw and corners with it, and in each step between more than in the one before. */
+static void intensity_reaches_the_mouth(void **state)
+{
+    enum { SEEDS = 12, STEPS = 4 };
+    seen_t sum[STEPS + 1];
+    unsigned step;
+    uint32_t seed;
+    (void)state;
+    memset(sum, 0, sizeof sum);
+    for (step = 0; step <= STEPS; step++)
+        for (seed = 0; seed < SEEDS; seed++) {
+            const seen_t seen = laughed(step * LABIAL_LAUGH_FULL / STEPS, seed);
+            sum[step].opening += seen.opening;
+            sum[step].jaw += seen.jaw;
+            sum[step].corner += seen.corner;
+            assert_true(step > 0 || seen.opening < 180);
+            assert_true(step < STEPS || seen.opening >= 400);
+        }
+    assert_true(sum[0].opening < 120 * SEEDS && sum[0].jaw < 140 * SEEDS);
+    assert_true(sum[STEPS].jaw > 3 * sum[0].jaw && sum[STEPS].corner > 2 * sum[0].corner);
+    for (step = 1; step <= STEPS; step++) {
+        assert_true(sum[step].opening > sum[step - 1].opening);
+        assert_true(sum[step].jaw > sum[step - 1].jaw);
+        assert_true(sum[step].corner > sum[step - 1].corner);
     }
-    assert_int_equal(labial_end(&stream), LABIAL_OK);
-    while ((result = labial_tick(&stream)) != LABIAL_DONE) {
-        assert_true(result >= 0);
-        frames += result == LABIAL_OK;
-    }
-    assert_int_equal(frames, 3u * LAUGHTER_SYNTHETIC_FPS);
-    assert_true(widest > 60); /* FAP units; at rest it is about 0 */
 }
 
 int main(void)
@@ -203,7 +259,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(totals_are_exact),          cmocka_unit_test(no_piece_fills_the_rest),
         cmocka_unit_test(seeds_give_different_laughs), cmocka_unit_test(intensity_opens_the_mouth),
-        cmocka_unit_test(errors),                    cmocka_unit_test(the_bundled_model_laughs),
+        cmocka_unit_test(errors),                    cmocka_unit_test(the_numbers_are_the_bundled_models),
+        cmocka_unit_test(intensity_reaches_the_mouth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

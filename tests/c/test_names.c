@@ -13,14 +13,21 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-/* "AA1" is a name of its own here, other than "AA" with a stress digit. */
+#define ARPABET LABIAL_LABELS_ARPABET
+#define IPA LABIAL_LABELS_IPA
+#define XSAMPA LABIAL_LABELS_XSAMPA
+#define ANY LABIAL_LABELS_AUTO
+
+/* "AA1" is a name of its own here, other than "AA" with a stress digit; "S" is two. */
 static const struct {
     const char *name;
     uint8_t phoneme;
+    uint8_t sets;
 } entries[] = {
-    {"A", 9},        {"AA", 1},   {"AA1", 2},       {"AE", 3}, {"B", 4}, {"_:", 8}, {"a", 5},
-    {"a\xca\x8a", 6}, {"sil", 0}, {"\xc9\x91", 1}, /* a + upsilon; alpha */
-    {"\xca\x83", 7},                                /* esh, the last entry */
+    {"2", 5, XSAMPA},       {"A", 9, ANY},    {"AA", 1, ARPABET}, {"AA1", 2, ARPABET}, {"AE", 3, ARPABET},
+    {"B", 4, ANY},          {"S", 3, ARPABET}, {"S", 7, XSAMPA},  {"_:", 8, ANY},      {"a", 5, ARPABET | IPA},
+    {"a\xca\x8a", 6, IPA}, {"sil", 0, ANY},  {"\xc9\x91", 1, IPA}, /* a + upsilon; alpha */
+    {"\xca\x83", 7, IPA}, /* esh, the last entry */
 };
 
 static const char *const labels[] = {"sil", "AA", "AA1", "AE", "B", "a", "a\xca\x8a", "\xca\x83", "_:", "A"};
@@ -41,7 +48,7 @@ static uint8_t *pack(labial_names_t *packed, unsigned count)
             const size_t length = strlen(entries[i].name);
             if (pass > 0) {
                 bytes[at] = entries[i].phoneme;
-                bytes[at + 1] = (uint8_t)length;
+                bytes[at + 1] = (uint8_t)(length | entries[i].sets);
                 memcpy(bytes + at + 2, entries[i].name, length);
             }
             at += 2 + length;
@@ -86,8 +93,43 @@ static void every_entry_is_found(void **state)
 {
     unsigned i;
     (void)state;
-    for (i = 0; i < COUNT; i++)
-        assert_int_equal(find(entries[i].name), entries[i].phoneme);
+    for (i = 0; i < COUNT; i++) {
+        const size_t length = strlen(entries[i].name);
+        unsigned set;
+        for (set = ARPABET; set <= XSAMPA; set *= 2)
+            if (entries[i].sets & set)
+                assert_int_equal(labial_find_in(&names, (labial_labels_t)set, entries[i].name, length),
+                                 entries[i].phoneme);
+    }
+}
+
+/* Would catch a set of labels that is not looked at, or the wrong meaning coming first where none is named. */
+static void sets_have_labels_of_their_own(void **state)
+{
+    (void)state;
+    assert_int_equal(labial_find_in(&names, ARPABET, "S", 1), 3);
+    assert_int_equal(labial_find_in(&names, XSAMPA, "S", 1), 7);
+    assert_int_equal(labial_find_in(&names, XSAMPA, "'S:", 3), 7);
+    assert_int_equal(labial_find_in(&names, IPA, "S", 1), LABIAL_ERROR_NAME);
+    assert_int_equal(find("S"), 3);
+    assert_int_equal(labial_find_in(&names, IPA, "AA", 2), LABIAL_ERROR_NAME);
+    assert_int_equal(labial_find_in(&names, XSAMPA, "a", 1), LABIAL_ERROR_NAME);
+    assert_int_equal(labial_find_in(&names, IPA, "sil", 3), 0);
+    assert_int_equal(labial_find_in(&names, (labial_labels_t)0, "B", 1), LABIAL_ERROR_NAME);
+    assert_int_equal(labial_find_in(&names, (labial_labels_t)1, "B", 1), LABIAL_ERROR_NAME); /* a bit of lengths */
+    assert_int_equal(labial_find_in(NULL, IPA, "B", 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_find_in(&names, IPA, NULL, 1), LABIAL_ERROR_NULL);
+}
+
+/* Would catch a slip that becomes a vowel without a word: digits are names only where X-SAMPA is asked for. */
+static void lone_digits_are_of_x_sampa(void **state)
+{
+    (void)state;
+    assert_int_equal(labial_find_in(&names, XSAMPA, "2", 1), 5);
+    assert_int_equal(labial_find_in(&names, XSAMPA, "2:", 2), 5);
+    assert_int_equal(find("2"), LABIAL_ERROR_NAME);
+    assert_int_equal(find("2:"), LABIAL_ERROR_NAME);
+    assert_int_equal(labial_find_in(&names, IPA, "2", 1), LABIAL_ERROR_NAME);
 }
 
 static void length_is_obeyed(void **state)
@@ -200,27 +242,9 @@ static void other_marks_are_dropped(void **state)
     assert_int_equal(find("_h"), LABIAL_ERROR_NAME);
 }
 
-static int find_sampa(const char *name)
-{
-    return labial_find_sampa(&names, name, strlen(name));
-}
-
-/* Would catch X-SAMPA's letters read as ARPABET, in front of marks too, and ARPABET's labels lost. */
-static void sampa_has_its_own_letters(void **state)
-{
-    (void)state;
-    assert_int_equal(find_sampa("S"), 7);
-    assert_int_equal(find_sampa("'S:"), 7);
-    assert_int_equal(find_sampa("T"), LABIAL_ERROR_NAME); /* theta is not in this table */
-    assert_int_equal(find_sampa("AE1"), 3);
-    assert_int_equal(find_sampa(""), LABIAL_ERROR_NAME);
-    assert_int_equal(labial_find_sampa(NULL, "S", 1), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_find_sampa(&names, NULL, 1), LABIAL_ERROR_NULL);
-}
-
 static int find_nearest(const char *name)
 {
-    return labial_find_nearest(&names, name, strlen(name), 77);
+    return labial_find_nearest(&names, ANY, name, strlen(name), 77);
 }
 
 /* Would catch a label that stops the caller, a short beginning taken for a long one, and noise that moves the lips. */
@@ -237,9 +261,13 @@ static void every_label_has_a_nearest_phoneme(void **state)
     assert_int_equal(find_nearest("+AA+"), 77);
     assert_int_equal(find_nearest("zz"), 77); /* this table has no neutral vowel */
     assert_int_equal(find_nearest(""), 77);
+    assert_int_equal(find_nearest("2"), 77);
+    assert_int_equal(find_nearest("\xcb\x90"), 77); /* a length mark alone */
+    assert_int_equal(labial_find_nearest(&names, IPA, "Sa", 2, 77), 5);
+    assert_int_equal(labial_find_nearest(&names, XSAMPA, "Sa", 2, 77), 7);
     memset(longer, 'B', sizeof longer);
-    assert_int_equal(labial_find_nearest(&names, longer, sizeof longer, 77), 4);
-    assert_int_equal(labial_find_nearest(NULL, "B", 1, 77), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_find_nearest(&names, ANY, longer, sizeof longer, 77), 4);
+    assert_int_equal(labial_find_nearest(NULL, ANY, "B", 1, 77), LABIAL_ERROR_NULL);
 }
 
 /* Would catch a search that only works at one size of the table. */
@@ -251,10 +279,11 @@ static void tables_of_every_size(void **state)
     for (count = 1; count <= COUNT; count++) {
         uint8_t *bytes = pack(&part, count);
         for (i = 0; i < COUNT; i++) {
-            const int got = labial_find(&part, entries[i].name, strlen(entries[i].name));
+            const int got = labial_find_in(&part, (labial_labels_t)(entries[i].sets & (0u - entries[i].sets)),
+                                           entries[i].name, strlen(entries[i].name));
             if (i < count)
                 assert_int_equal(got, entries[i].phoneme);
-            else if (got != (i == 2 && count == 2 ? 1 : LABIAL_ERROR_NAME)) /* without its entry, "AA1" is "AA" */
+            else if (got != (i == 3 && count == 3 ? 1 : LABIAL_ERROR_NAME)) /* without its entry, "AA1" is "AA" */
                 fail_msg("entry %u is found beyond a table of %u", i, count);
         }
         free(bytes);
@@ -268,7 +297,8 @@ int main(void)
         cmocka_unit_test(unknown_names_are_refused), cmocka_unit_test(empty_names_are_refused),
         cmocka_unit_test(null_is_an_error), cmocka_unit_test(stress_digits_are_dropped),
         cmocka_unit_test(a_name_as_it_stands_comes_first), cmocka_unit_test(ipa_marks_are_dropped),
-        cmocka_unit_test(other_marks_are_dropped), cmocka_unit_test(sampa_has_its_own_letters),
+        cmocka_unit_test(other_marks_are_dropped), cmocka_unit_test(sets_have_labels_of_their_own),
+        cmocka_unit_test(lone_digits_are_of_x_sampa),
         cmocka_unit_test(every_label_has_a_nearest_phoneme),
         cmocka_unit_test(marks_alone_are_unknown), cmocka_unit_test(tables_of_every_size),
     };

@@ -23,19 +23,22 @@ typedef struct {
     const timings_t *timings;
 } watch_t;
 
-/* A label as every phone set reads it, without the NUL behind it. */
+/* A label as every set of labels reads it, without the NUL behind it. */
 static void look_up(const char *label, size_t length)
 {
+    static const labial_labels_t sets[] = {LABIAL_LABELS_ARPABET, LABIAL_LABELS_IPA, LABIAL_LABELS_XSAMPA,
+                                           LABIAL_LABELS_AUTO};
     char *copy = (char *)malloc(length);
     int found, nearest;
+    size_t i;
     REQUIRE(copy);
     memcpy(copy, label, length);
-    found = labial_find(&speech_en_names, copy, length);
-    REQUIRE(found == LABIAL_ERROR_NAME || (found >= 0 && found < SPEECH_EN_PHONEMES));
-    nearest = labial_find_nearest(&speech_en_names, copy, length, SPEECH_EN_SIL);
-    REQUIRE(nearest >= 0 && nearest < SPEECH_EN_PHONEMES && (found < 0 || nearest == found));
-    found = labial_find_sampa(&speech_en_names, copy, length);
-    REQUIRE(found == LABIAL_ERROR_NAME || (found >= 0 && found < SPEECH_EN_PHONEMES));
+    for (i = 0; i < sizeof sets / sizeof sets[0]; i++) {
+        found = labial_find_in(&speech_en_names, sets[i], copy, length);
+        REQUIRE(found == LABIAL_ERROR_NAME || (found >= 0 && found < SPEECH_EN_PHONEMES));
+        nearest = labial_find_nearest(&speech_en_names, sets[i], copy, length, SPEECH_EN_SIL);
+        REQUIRE(nearest >= 0 && nearest < SPEECH_EN_PHONEMES && (found < 0 || nearest == found));
+    }
     free(copy);
 }
 

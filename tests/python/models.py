@@ -12,7 +12,8 @@ from labial.model import Model
 Stream = List[Tuple[int, int]]
 
 
-def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: int = 12, components: int = 3) -> Model:
+def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: int = 12, components: int = 3,
+                 knots: int = 1) -> Model:
     """A model with every table filled: phoneme 0 is silence, every third phoneme is a boundary."""
     rng = np.random.default_rng(seed)
     own = method == "labial"
@@ -55,7 +56,7 @@ def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: i
         pair_key=np.array([[p, side, n] for p in range(phonemes) for side in (0, 1) for n in range(phonemes)
                            if (p + n + side) % 3 == 0 and own], dtype=np.int64).reshape(-1, 3),
         pair_shape=rng.normal(0, 0.1, (sum((p + n + side) % 3 == 0 and own for p in range(phonemes)
-                                           for side in (0, 1) for n in range(phonemes)), CHANNELS)) * reach,
+                                           for side in (0, 1) for n in range(phonemes)), knots, CHANNELS)) * reach,
         floor=np.where(rng.random((phonemes, CHANNELS)) < (0.15 if own else 0.0), 0.3 * reach, -np.inf),
         decode_mean=mean,
         decode_variance=variance,

@@ -31,16 +31,23 @@ def sequence(phonemes: list, frames: np.ndarray, length: int) -> Sequence:
     )
 
 
-def test_floors_are_the_pose_of_the_firmer_closures() -> None:
-    """B closes firmly (to 40) half of the time, hardly (to -60) otherwise; vowels hang at -300, nothing below."""
+def test_floors_are_the_mean_pose_of_closures() -> None:
+    """B closes firmly (to 40) half of the time, hardly (to -60) otherwise; vowels hang at -300, nothing below. The
+    loosest tenth does not count; those of a recording that counts three times count three times."""
     b, vowel = SPEECH.phonemes.index("B"), SPEECH.phonemes.index("AA")
     lower = FAP_NUMBERS.index(52)
     frames = np.full((200, CHANNELS), -300.0)
     for i in range(10):  # vowels and closures of ten frames each in turn; contact in the middle of the closure
         frames[20 * i + 15, lower] = 40.0 if i % 2 else -60.0
     found = floors([sequence([vowel, b] * 10, frames, 10)], SPEECH, 50)
-    assert found[b, lower] == 40.0
+    assert np.isclose(found[b, lower], (5 * 40.0 + 4 * -60.0) / 9)
     assert np.array_equal(found[b], found[SPEECH.phonemes.index("P")])
+    other = np.where(frames > -300, 100.0, frames)
+    heavy = dataclasses.replace(sequence([vowel, b] * 10, other, 10), weight=np.full(frames.shape, 3.0))
+    both = floors([sequence([vowel, b] * 10, frames, 10), heavy], SPEECH, 50)
+    assert np.isclose(both[b, lower], (5 * 40.0 + 3 * -60.0 + 30 * 100.0) / 38)
+    ignored = dataclasses.replace(heavy, weight=np.zeros(frames.shape))
+    assert np.array_equal(floors([sequence([vowel, b] * 10, frames, 10), ignored], SPEECH, 50), found)
     assert (found[vowel] == -300.0).all() and found[b, FAP_NUMBERS.index(3)] == -300.0
 
 
@@ -53,7 +60,7 @@ def test_laughter_has_no_contact() -> None:
 
 def test_widening_scales_targets_about_the_mean_pose() -> None:
     """Every term of the target has to be scaled; one that is forgotten bends the motion instead of widening it."""
-    model = dataclasses.replace(random_model(4), floor=np.full((9, CHANNELS), -np.inf))
+    model = dataclasses.replace(random_model(4, knots=2), floor=np.full((9, CHANNELS), -np.inf))
     gain = np.linspace(0.5, 2.0, CHANNELS)
     asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
     before = targets(FloatTables(model), *asked)
@@ -77,3 +84,36 @@ def test_amplitude_is_brought_to_its_goal() -> None:
     found = np.concatenate([synthesise(FloatTables(wide), [(int(p), 120) for p in item.phoneme]) for item in material])
     human = np.concatenate([item.frames for item in material])
     assert np.abs(found.std(axis=0) / human.std(axis=0) - AMPLITUDE).max() < 0.06
+
+
+def test_a_channel_is_widened_about_the_middle_of_its_range() -> None:
+    """A pose that stays where it is under the gain lies between the 5th and the 95th percentile of human motion, not at
+    the mean, which in a skewed channel is near the end that it rests at."""
+    model = dataclasses.replace(random_model(6), floor=np.full((9, CHANNELS), -np.inf))
+    rng = np.random.default_rng(6)
+    phonemes = rng.integers(1, 9, 200).tolist()
+    motion = 2.0 * synthesise(FloatTables(model), [(p, 120) for p in phonemes])
+    motion[:, 2] = 4.0 * np.maximum(motion[:, 2], np.percentile(motion[:, 2], 80))
+    with Workers(1, False) as workers:
+        wide = restored(model, [sequence(phonemes, motion, 6)], workers)
+    asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
+    before, after = (targets(FloatTables(item), *asked) for item in (model, wide))
+    gain = np.ptp(after, axis=0) / np.ptp(before, axis=0)
+    still = (after - gain * before)[0] / (1 - gain)
+    low, high = np.percentile(motion, [5, 95], axis=0)
+    assert (gain > 1.2).all() and np.allclose(still, (low + high) / 2)
+
+
+def test_floats_interpolate_between_the_knots_of_pairs() -> None:
+    """One knot is two equal ones; of two, the middle frame of an odd number has the mean."""
+    one, two = random_model(8), random_model(8, knots=2)
+    same = dataclasses.replace(one, pair_shape=np.repeat(one.pair_shape, 2, axis=1))
+    asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
+    assert np.allclose(targets(FloatTables(one), *asked), targets(FloatTables(same), *asked))
+    bare = dataclasses.replace(two, kernel=np.zeros_like(two.kernel), floor=np.full_like(two.floor, -np.inf))
+    found = targets(FloatTables(bare), *asked)[9:19]  # the third phoneme's ten frames
+    steps = np.diff(found, axis=0)
+    assert np.allclose(steps, steps[0]) and np.abs(steps).max() > 1
+    ends = FloatTables(bare).select(2, 200, 4, 7)
+    assert np.allclose(found[0], ends[0] + 0.05 * (ends[1] - ends[0]))
+    assert np.allclose(found[9], ends[0] + 0.95 * (ends[1] - ends[0]))

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from labial.reference.shape import knot_shares
 from labial.train.kernels import (
     PAIR_COUNT,
     Penalties,
@@ -108,34 +110,80 @@ def test_recovers_the_curve_itself():
     assert np.abs(found - true).max() < 0.05 * np.abs(true).max()
 
 
-def test_equals_the_regression_in_two_parts():
-    # Catches a prior that is not that of a class kernel plus a residual: here both are columns of a plain ridge.
+@pytest.mark.parametrize(("intercept", "weighted"), [(np.inf, False), (10.0, False), (10.0, True)])
+def test_equals_the_regression_in_two_parts(monkeypatch: pytest.MonkeyPatch, intercept: float, weighted: bool) -> None:
+    # Catches a prior that is not that of a class kernel plus a residual, intercepts that are not solved for with the
+    # rest, knots and weights in the wrong place: here all are columns and rows of a plain ridge.
+    monkeypatch.setattr("labial.train.kernels.PAIR_COUNT", 9)
     rng = np.random.default_rng(4)
     material = [episode(rng, 25) for _ in range(6)]
     material = [
         Sequence(i.name, i.phoneme, i.duration, i.length, i.apex, rng.normal(0, 50, i.frames.shape)) for i in material
     ]
-    penalties = Penalties(kernel=20.0, residual=6.0, smoothness=0.0, shape=15.0, slope=25.0, silence=0.25)
+    each = np.ones((6, 13))
+    if weighted:
+        each[4:], each[4:, 2] = 3.0, 0.0  # the last two count three times, but for the third channel
+        material = [replace(i, weight=np.tile(row, (len(i.frames), 1))) for i, row in zip(material, each)]
+    penalties = Penalties(kernel=20.0, residual=6.0, smoothness=0.0, shape=15.0, slope=25.0, silence=0.25, pair=8.0,
+                          intercept=intercept)
     fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, penalties)
 
-    lag, classes = lags(FPS), 3
+    lag, classes, pairs = lags(FPS), 3, [tuple(key) for key in fitted.pair_key.tolist()]
+    assert 2 < len(pairs) < 40
     blocks = []
-    for item in material:
+    for number, item in enumerate(material):
         taps = tapped(item.phoneme_at(), lag, 0)
         own = np.eye(PHONEMES)[item.phoneme_at()]
         z = np.repeat(choice_of([item]).offset / 0.02, item.length, axis=0)
         parts = [np.eye(classes)[CLASS[taps]], np.eye(PHONEMES)[taps]]
-        blocks.append(np.hstack([part.transpose(0, 2, 1).reshape(len(taps), -1) for part in parts] + [own, own * z]))
+        knots = np.zeros((len(taps), 2, len(pairs)))
+        starts, around = np.cumsum(item.length) - item.length, neighbours(item.phoneme, 0)
+        for row, (phoneme, side, other) in enumerate(pairs):
+            for i in np.flatnonzero((item.phoneme == phoneme) & (around[side] == other)):
+                for j in range(item.length[i]):
+                    middle = (j + 0.5) / item.length[i]
+                    knots[starts[i] + j, :, row] = 1 - middle, middle
+        alone = np.eye(len(material))[np.full(len(taps), number)] * np.isfinite(intercept)
+        blocks.append(np.hstack([part.transpose(0, 2, 1).reshape(len(taps), -1) for part in parts]
+                                + [own, own * z, knots.reshape(len(taps), -1), alone]))
     x, y = np.concatenate(blocks), np.concatenate([item.frames for item in material])
-    weight = np.where(np.concatenate([item.phoneme_at() for item in material]) == 0, 0.25, 1.0)
-    y = y - np.average(y, axis=0, weights=weight)
-    counts = [classes * len(lag), PHONEMES * len(lag), PHONEMES, PHONEMES]
-    ridge = np.repeat([20.0, 120.0, 15.0, 25.0], counts)
-    solution = np.linalg.solve((x * weight[:, None]).T @ x + np.diag(ridge), (x * weight[:, None]).T @ y)
-    by_class, residual = (item.reshape(-1, len(lag), 13) for item in np.split(solution[: sum(counts[:2])], [counts[0]]))
-    np.testing.assert_allclose(fitted.kernel, by_class[CLASS] + residual, atol=1e-6)
-    np.testing.assert_allclose(fitted.tables.slope * 0.02, solution[-PHONEMES:], atol=1e-6)
-    np.testing.assert_allclose(fitted.kernel[5], by_class[2], atol=1e-6)  # never seen: its class's kernel
+    quiet = np.where(np.concatenate([item.phoneme_at() for item in material]) == 0, 0.25, 1.0)
+    counts = [classes * len(lag), PHONEMES * len(lag), PHONEMES, PHONEMES, 2 * len(pairs), len(material)]
+    last = intercept if np.isfinite(intercept) else 1.0
+    ridge = np.repeat([20.0, 120.0, 15.0, 25.0, 8.0, last], counts)
+    for channel in (0, 2):
+        weight = quiet * np.repeat(each[:, channel], [len(item.frames) for item in material])
+        target = y[:, channel] - np.average(y[:, channel], weights=weight)
+        strength = each[:, channel].max()
+        rows = (x * weight[:, None]).T
+        solution = np.linalg.solve(rows @ x + strength * np.diag(ridge), rows @ target)
+        by_class, residual, _, slope, pair, _ = np.split(solution, np.cumsum(counts)[:-1])
+        kernel = by_class.reshape(-1, len(lag))[CLASS] + residual.reshape(-1, len(lag))
+        np.testing.assert_allclose(fitted.kernel[..., channel], kernel, atol=1e-6)
+        np.testing.assert_allclose(fitted.tables.slope[:, channel] * 0.02, slope, atol=1e-6)
+        np.testing.assert_allclose(fitted.pair_shape[..., channel], pair.reshape(2, -1).T, atol=1e-6)
+    np.testing.assert_allclose(fitted.kernel[5, :, 2], by_class.reshape(-1, len(lag))[2], atol=1e-6)  # never seen
+
+
+def test_a_weight_for_all_changes_nothing_and_makes_no_pair() -> None:
+    # Catches penalties that do not go with the weights, and rows for what is seen often by weight alone.
+    material, _, _ = planted(6, 12)
+    once = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, Penalties())
+    heavy = [replace(item, weight=np.full(item.frames.shape, 7.0)) for item in material]
+    again = fit_kernels(heavy, choice_of(heavy), tables(), CLASS, range(PHONEMES), 0, FPS, Penalties())
+    np.testing.assert_array_equal(again.pair_key, once.pair_key)
+    np.testing.assert_allclose(again.kernel, once.kernel, atol=1e-6)
+    silent = [*material, *(replace(item, weight=np.zeros(item.frames.shape)) for item in planted(7, 12)[0])]
+    without = fit_kernels(silent, choice_of(silent), tables(), CLASS, range(PHONEMES), 0, FPS, Penalties())
+    np.testing.assert_array_equal(without.pair_key, once.pair_key)
+    np.testing.assert_allclose(without.tables.shape, once.tables.shape, atol=1e-6)
+
+
+def test_shares_of_knots_by_hand() -> None:
+    # Catches knots at the middle of the outer frames instead of at the phoneme's ends.
+    np.testing.assert_allclose(knot_shares(np.array([1, 4]), 2)[:, 1], [0.5, 0.125, 0.375, 0.625, 0.875])
+    np.testing.assert_array_equal(knot_shares(np.array([2, 3]), 2).sum(axis=1), np.ones(5))
+    np.testing.assert_array_equal(knot_shares(np.array([2, 3]), 1), np.ones((5, 1)))
 
 
 def test_a_substituted_phoneme_moves_as_its_substitute():
@@ -165,7 +213,7 @@ def test_pairs_are_recovered_and_rare_ones_left_out():
         material.append(replace(item, frames=frames))
     stiff = Penalties(kernel=1e6)
     fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, stiff)
-    row = {tuple(key): value for key, value in zip(fitted.pair_key.tolist(), fitted.pair_shape[:, 0])}
+    row = {tuple(key): value for key, value in zip(fitted.pair_key.tolist(), fitted.pair_shape.mean(axis=1)[:, 0])}
     for key, value in truth.items():
         others = [row[other] for other in row if other[:2] == key[:2] and other != key]
         assert abs(row[key] - np.mean(others) - value) < 0.15 * abs(value)

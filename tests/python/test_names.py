@@ -10,27 +10,45 @@ from pathlib import Path
 
 import pytest
 
-from labial.labels import SAMPA, find, nearest, without_redundant
-from labial.phonesets import LAUGHTER, PHONE_SETS, SPEECH, aliases_for
+from labial.labels import entries, find
+from labial.phonesets import AUTO, LABEL_SETS, LAUGHTER, PHONE_SETS, SPEECH, aliases_for
 
 SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
 MODELS = {"speech_en": SPEECH, "laughter_synthetic": LAUGHTER}
 
-#: Labels as front ends write them, and what they mean as ARPABET or IPA and as X-SAMPA; None where they are unknown.
-LABELS = [
-    ("AA1", "AA", "AA"), ("ax", "AH", "AH"), ("AH0_B", "AH", "AH"), ("SIL_S", "SIL", "SIL"), ("ˈaɪ", "AY", "AY"),
-    ("t͡ʃ", "CH", "CH"), ("n̩", "N", "N"), ("tʰ", "T", "T"), ("ɔ̃", "AO", "AO"), ("ɚː", "ER", "ER"), ("ç", "HH", "HH"),
-    ("ç", "HH", "HH"), ("əl", "L", "L"), ("oːɹ", "AO", "AO"), ("aɪɚ", "AY", "AY"),
-    ("N", "N", "NG"), ("S", "S", "SH"), ("T", "T", "TH"), ("D", "D", "DH"), ("Z", "Z", "ZH"), ("V", "V", "AH"),
-    ("'V", "V", "AH"), ("tS", "CH", "CH"), ("dZ", "JH", "JH"), ("@U", "OW", "OW"), ("r=", "ER", "ER"),
-    ("l=", "L", "L"), ("{", "AE", "AE"), ("3:", "ER", "ER"), ("A:", "AA", "AA"), ("EI", "EY", "EY"), ("i:", "IY", "IY"),
-    ("e~", "EH", "EH"), ("t_h", "T", "T"), ("y", "Y", "UW"), ("n;", "N", "N"), ("I2", "IH", "IH"), ("_:", "SIL", "SIL"),
-    ("xyzzy", None, None), ("AH3", None, None), ("", None, None), ("<unk>", None, None), ("A1", None, None),
-]  # fmt: skip
+#: labial_labels_t of include/labial/names.h.
+SETS = {"arpabet": 0x20, "ipa": 0x40, "xsampa": 0x80, AUTO: 0xE0}
 
-#: Labels that nobody knows, and what they are taken for.
-UNKNOWN = [("<unk>", "SIL"), ("[noise]", "SIL"), ("{LG}", "SIL"), ("+FOO+", "SIL"), ("AXH", "AH"), ("ihr", "IH"),
-           ("æ?!", "AE"), ("⟨ʃ⟩", "SH"), ("$$", "AH"), ("CHX", "CH"), ("", "AH")]  # fmt: skip
+#: Labels as front ends write them, and what they mean in any set, in ARPABET, the IPA and X-SAMPA; - where unknown.
+LABELS = """
+AA1 AA AA AA AA | ax AH AH - - | AH0_B AH AH AH AH | SIL_S SIL SIL SIL SIL | hh HH HH - - | em M M - - | ey EY EY EH -
+ˈaɪ AY - AY - | t͡ʃ CH - CH - | n̩ N N N N | tʰ T T T T | ɔ̃ AO - AO - | ɚː ER - ER - | ç HH - HH - | ç HH - HH -
+əl L - L - | oːɹ AO - AO - | aɪɚ AY - AY - | əʊ OW - OW - | aʊ AW - AW - | ʔe EH - EH EH | ʈʂʰ CH - CH - | s. SH S SH S
+y Y Y UW UW | yː UW Y UW UW | ˈyː Y Y UW UW | Y Y Y Y UH | ʏ UH - UH - | ø UW - UW - | øː UW - UW - | œ OW - OW -
+th TH TH T - | ph P - P - | ch CH CH - - | sh SH SH - - | au AW - AW AW | ua AA - AA AA | ɔɪ OY - OY - | oɪ OY - OY -
+ɔʏ OY - OY - | aw AW AW AW AW | ow OW OW OW - | ej EY - EY EY | ae AE AE AY AY | aa AA AA - - | er ER ER - -
+r R R L R | ɹ R - R - | ʁ G - G - | β B - B - | ɸ P - P - | ʋ V - V - | ɱ V - V - | ɯ IH - IH - | ɯᵝ UH - UH -
+N N N N NG | S S S S SH | T T T T TH | D D D D DH | Z Z Z Z ZH | V V V V AH | 'V V V V AH | P P P P V | M M M M IH
+tS CH - - CH | dZ JH - - JH | @U OW - - OW | r= ER R L ER | l= L L L L | { AE - - AE | 3: - - - ER | A: AA - - AA
+EI EY - - EY | OI OY - - OY | i: IY - IY IY | e~ EH - EH EH | t_h T T T T | n; N N N N | I2 IH - - IH | 2: - - - UW
+9 - - - OW | 6 - - - AH | 1 - - - IH | 0 - - - AO | 4 - - - D | 12 - - - - | _: SIL SIL SIL SIL | _ SIL SIL SIL SIL
+xyzzy - - - - | AH3 - - - - | <unk> - - - - | A1 - - - - | ʲ - - - - | ː - - - - | : - - - - | ˈ - - - - | ʰ - - - -
+"""
+#: Labels that nobody knows, in a set of labels, and what they are taken for.
+UNKNOWN = [("<unk>", AUTO, "SIL"), ("[noise]", AUTO, "SIL"), ("{LG}", AUTO, "SIL"), ("+FOO+", AUTO, "SIL"),
+           ("AXH", AUTO, "AH"), ("ihr", AUTO, "IH"), ("ihr", "ipa", "IY"), ("æ?!", AUTO, "AE"), ("⟨ʃ⟩", AUTO, "SH"),
+           ("CHX", AUTO, "CH"), ("Ж", AUTO, "AH"), ("Ж", "arpabet", "AH"), ("$$", AUTO, "SIL"), ("", AUTO, "SIL"),
+           ("ː", "ipa", "SIL"), ("ʲ", "ipa", "SIL"), ("1", "ipa", "SIL"), ("7", AUTO, "SIL"), ("??", "ipa", "SIL"),
+           ("zɔ̃b", "ipa", "Z")]  # fmt: skip
+
+
+def front_end_labels() -> list[tuple[str, str, str | None]]:
+    """`LABELS` as (label, set of labels, phoneme or None); marks alone and nothing mean nothing."""
+    rows = [item.split() for line in LABELS.strip().splitlines() for item in line.split(" | ")]
+    known = [(label, labels, None if phoneme == "-" else phoneme)
+             for label, *phonemes in rows for labels, phoneme in zip((AUTO, *LABEL_SETS), phonemes)]
+    assert len(known) == 4 * len(rows)
+    return [*known, *(("", labels, None) for labels in SETS)]
 
 
 @pytest.fixture(scope="module")
@@ -50,22 +68,22 @@ class Names:
         self.library, self.phonemes = library, MODELS[model].phonemes
         self.table = ctypes.byref(ctypes.c_byte.in_dll(library, f"{model}_names"))
 
-    def __call__(self, function: str, label: str, *more: int) -> str | None:
+    def __call__(self, function: str, label: str, *before: int, after: tuple[int, ...] = ()) -> str | None:
         data = label.encode()
-        number = getattr(self.library, function)(self.table, data, ctypes.c_size_t(len(data)), *more)
+        number = getattr(self.library, function)(self.table, *before, data, ctypes.c_size_t(len(data)), *after)
         return self.phonemes[number] if number >= 0 else None
 
 
 def every_label() -> list[str]:
     """Every alias with and without marks, what the lists above have, and random strings of letters and marks."""
-    labels = [label for label, *_ in (*LABELS, *UNKNOWN)]
+    labels = [label for label, *_ in (*front_end_labels(), *UNKNOWN)]
     for phone_set in PHONE_SETS.values():
-        labels += [*phone_set.phonemes, *phone_set.aliases]
+        labels += [*phone_set.phonemes, *(alias for aliases in phone_set.aliases.values() for alias in aliases)]
     marks = ["ˈ{}", "ˌ{}ː", "'{}", "{}:", "{}0", "{}1", "{}2", "{}3", "{}_B", "{}_h", "{}=", "{}~", "{}ʰ", "{}̃", " {} ",
-             r"{}\~^", r"{}\:f", r"\'1{}", "%{};"]  # fmt: skip
+             r"{}\~^", r"{}\:f", r"\'1{}", "%{};", "ʔ{}", "?{}", "{}-", "{}.", "{}^", '{}"']  # fmt: skip
     labels += [mark.format(label) for label in list(labels) for mark in marks]
     rng = random.Random(1)
-    pieces = [*"aAbBeEiIkKNsStT@{}<>[]+#_:;=~^'\",%\\|0123 ()vf.-", *"ɑəʃθŋːˑˈˌʰʷⁿçɜ˞", "̃", "̩", "͡", "̧", "̊"]
+    pieces = [*"aAbBeEiIkKNsStT@{}<>[]+#_:;=~^'\",%\\|0123 ()vf.-", *"ɑəʃθŋːˑˈˌʰʷⁿçɜ˞ʔy", "̃", "̩", "͡", "̧", "̊"]
     labels += ["".join(rng.choices(pieces, k=rng.randint(1, 7))) for _ in range(20000)]
     return labels
 
@@ -75,45 +93,103 @@ def test_library_and_exporter_agree_on_every_label(library: ctypes.CDLL, model: 
     """Catches a mark that only one of the two drops, aliases of the bundled table that are not the phone set's, and a
     name that was left out of the table as redundant but is not."""
     names, phone_set = Names(library, model), MODELS[model]
-    for label in every_label():
+    known = {labels: phone_set.names(labels) for labels in SETS}
+    for label in dict.fromkeys(every_label()):
         if len(label.encode()) > 32:
             continue
-        assert names("labial_find", label) == phone_set.resolve(label), label
-        assert names("labial_find_sampa", label) == phone_set.resolve(label, sampa=True), label
-        assert names("labial_find_nearest", label, 0) == phone_set.nearest(label), label
+        assert names("labial_find", label) == find(known[AUTO], label), label
+        for labels, bits in SETS.items():
+            assert names("labial_find_in", label, bits) == find(known[labels], label), (label, labels)
+    for label in random.Random(2).sample(every_label(), 3000):
+        if len(label.encode()) > 32:
+            continue
+        for labels, bits in SETS.items():
+            assert names("labial_find_nearest", label, bits, after=(0,)) == phone_set.nearest(label, labels), label
 
 
-@pytest.mark.parametrize(("label", "plain", "sampa"), LABELS)
-def test_labels_of_front_ends(label: str, plain: str | None, sampa: str | None) -> None:
-    """Catches a label that lost its meaning, or X-SAMPA read where ARPABET was written and the other way round."""
-    assert SPEECH.resolve(label) == plain
-    assert SPEECH.resolve(label, sampa=True) == sampa
+@pytest.mark.parametrize(("label", "labels", "phoneme"), front_end_labels())
+def test_labels_of_front_ends(label: str, labels: str, phoneme: str | None) -> None:
+    """Catches a label that lost its meaning, and one set's label read as another's."""
+    assert SPEECH.resolve(label, labels) == phoneme
 
 
-@pytest.mark.parametrize(("label", "phoneme"), UNKNOWN)
-def test_unknown_labels_have_a_nearest_phoneme(label: str, phoneme: str) -> None:
-    """Catches noise that moves the lips and a look-alike that was found by less than could be."""
-    assert SPEECH.resolve(label) is None and SPEECH.nearest(label) == phoneme
+@pytest.mark.parametrize(("label", "labels", "phoneme"), UNKNOWN)
+def test_unknown_labels_have_a_nearest_phoneme(label: str, labels: str, phoneme: str) -> None:
+    """Catches noise or a mark that moves the lips and a look-alike that was found by less than could be."""
+    assert SPEECH.resolve(label, labels) is None and SPEECH.nearest(label, labels) == phoneme
 
 
-def test_what_x_sampa_means_is_known() -> None:
-    """Catches a letter of X-SAMPA whose meaning no phoneme has."""
-    for letter, meaning in SAMPA.items():
-        assert SPEECH.resolve(letter, sampa=True) == SPEECH.resolve(meaning) is not None
+def test_no_set_of_labels_knows_what_is_another_s_alone() -> None:
+    """Catches sets that are one set under three names."""
+    known = {labels: set(SPEECH.names(labels)) for labels in LABEL_SETS}
+    for labels in LABEL_SETS:
+        assert len(known[labels] - set().union(*(known[other] for other in LABEL_SETS if other != labels))) > 70
 
 
 def test_a_model_learns_labels_from_its_phone_set() -> None:
     """Catches a model that only knows the labels of the day it was trained, and aliases of phonemes it has not."""
-    aliases = aliases_for("speech", ("SIL", "AA", "sil"), {"A": "SIL"})
-    assert aliases["A"] == "SIL" and aliases["ɑ"] == "AA" and "sil" not in aliases and "æ" not in aliases
-    assert aliases_for("other", ("SIL",), {}) == {}
+    aliases = aliases_for("speech", ("SIL", "AA", "sil"), {"A": "SIL", "ɑ": "SIL", "my:": "SIL", "aa": "SIL"})
+    for labels in LABEL_SETS:
+        assert aliases[labels]["my:"] == "SIL" and "æ" not in aliases[labels]
+    assert aliases["ipa"]["ɑ"] == "AA" == aliases["xsampa"]["A"] and "A" not in aliases["ipa"]
+    assert aliases_for("other", ("SIL",), {}) == dict.fromkeys(LABEL_SETS, {})
 
 
 @pytest.mark.parametrize("phone_set", PHONE_SETS.values(), ids=PHONE_SETS)
 def test_redundant_names_are_found_without_their_entry(phone_set) -> None:  # noqa: ANN001
-    """Catches a name that is left out of the table and then means something else."""
-    names = phone_set.names()
-    fewer = without_redundant(names)
-    for name in names:
-        assert find(fewer, name) == names[name], name
-        assert nearest(fewer, name + "§", "?") == nearest(names, name + "§", "?"), name
+    """Catches a name that is left out of the table and then means something else, in a set or where none is named."""
+    names = {labels: phone_set.names(labels) for labels in LABEL_SETS}
+    table = entries(names)
+    for labels in LABEL_SETS:
+        fewer = {name: phoneme for name, phoneme, sets in table if labels in sets}
+        assert all(find(fewer, name) == names[labels][name] for name in names[labels])
+    first: dict[str, str] = {}
+    for name, phoneme, _ in table:
+        first.setdefault(name, phoneme)
+    known = phone_set.names()
+    assert all(find(first, name) == known[name] for name in known)
+    assert len(table) < sum(map(len, names.values())) / 1.4
+
+
+def espeak_labels() -> dict[str, str]:
+    """Every label that espeak-ng emits, and its phoneme or - (tests/labels/README.md)."""
+    lines = (SOURCE / "tests/labels/espeak.tsv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "label\tphoneme\tlanguages"
+    rows = [line.split("\t") for line in lines[1:]]
+    assert len({label for label, *_ in rows}) == len(rows) > 300 and all(len(row) == 3 for row in rows)
+    return {label: phoneme for label, phoneme, _ in rows}
+
+
+def test_every_label_of_espeak_is_known(library: ctypes.CDLL) -> None:
+    """Catches a sound of any language that another one's lips are given, in the library or the exporter, and one that
+    nobody knows."""
+    names = Names(library, "speech_en")
+    for label, phoneme in espeak_labels().items():
+        expected = None if phoneme == "-" else phoneme
+        assert SPEECH.resolve(label, "ipa") == expected, label
+        assert names("labial_find_in", label, SETS["ipa"]) == expected, label
+
+
+#: What the first symbol of a label asks of the lips, as the chart of the International Phonetic Association has it,
+#: and the viseme classes that do.
+CHART = {
+    "pbmɸβɓʙ": {"bilabial"}, "fvʋɱⱱ": {"labiodental"}, "yʏøœuʊʉɵoɔɞ": {"close_rounded", "mid_rounded"},
+    "θð": {"dental"}, "iɪeɛæaɑəɐʌɜɨɯɤ": {"spread", "mid", "open", "rhotic"},
+    "tdnlrɾɽɖʈɳɭɫɬ": {"alveolar", "sibilant", "postalveolar"},
+    "sz": {"sibilant", "postalveolar"}, "ʃʒɕʑʂʐ": {"postalveolar"}, "kgɡqxɣŋhħχʁʀɢ": {"velar"}, "w": {"close_rounded"},
+}  # fmt: skip
+#: Labels whose lips are not those of their first symbol: a rising diphthong, a rounded end, a syllabic l, Swedish sj.
+OTHERWISE = set("əl oæ ua uai uei uɑ ɔa iou io eo yæ ɯᵝ əʊ əːʊ ɐ̃ʊ̃ au aʊ aʊə aːʊ ɑu ʌʊ iɑu sx".split())
+
+
+def test_labels_of_espeak_look_as_the_chart_says() -> None:
+    """Catches a slip in the table itself: lips that part in a p, spread in a y, or round in an i."""
+    checked = 0
+    for label, phoneme in espeak_labels().items():
+        symbol = label.lstrip("ʔ?ʰ")[:1] or label[:1]
+        for symbols, classes in CHART.items():
+            if symbol in symbols and phoneme != "-" and label not in OTHERWISE:
+                name = SPEECH.classes[SPEECH.phoneme_class[SPEECH.phonemes.index(phoneme)]]
+                assert name in classes, (label, phoneme)
+                checked += 1
+    assert checked > 230

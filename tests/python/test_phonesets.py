@@ -14,17 +14,31 @@ def test_every_phoneme_has_a_class_and_every_alias_a_phoneme(phone_set):
     assert len(set(phone_set.phonemes)) == len(phone_set.phonemes)
     assert len(phone_set.phoneme_class) == len(phone_set.boundary) == len(phone_set.phonemes)
     assert set(phone_set.phoneme_class) == set(range(len(phone_set.classes)))
-    assert set(phone_set.aliases.values()) <= set(phone_set.phonemes)
-    assert not set(phone_set.aliases) & set(phone_set.phonemes)
+    assert set(phone_set.aliases) == {"arpabet", "ipa", "xsampa"}
+    for aliases in phone_set.aliases.values():
+        assert set(aliases.values()) <= set(phone_set.phonemes)
+    assert not set(phone_set.aliases["arpabet"]) & set(phone_set.phonemes)
+    if phone_set is SPEECH:  # what X-SAMPA means by them is another sound
+        assert set(phone_set.aliases["xsampa"]) & set(phone_set.phonemes) == set("DFKMNPRSTVYZ")
 
 
 def test_inventories_are_those_of_the_method():
     """Catches a lost phoneme, a changed order of the interface, or units that break at other places."""
     assert SPEECH.phonemes == ("SIL", *ARPABET) and len(ARPABET) == 39
-    assert LAUGHTER.phonemes == tuple("silence ne click nasal plosive fricative ic e o grunt cackle a".split())
+    assert LAUGHTER.phonemes[:12] == tuple("silence ne click nasal plosive fricative ic e o grunt cackle a".split())
+    graded = "fricative ic e o cackle a".split()
+    assert LAUGHTER.phonemes[12:] == tuple(f"{label}_{grade}" for label in graded for grade in ("soft", "loud"))
     boundaries = {p for p, b in zip(SPEECH.phonemes, SPEECH.boundary) if b}
     assert boundaries == {*VOWELS.split(), "P", "B", "M"} and len(VOWELS.split()) == 15
-    assert {p for p, b in zip(LAUGHTER.phonemes, LAUGHTER.boundary) if b} == set("a e o ic cackle".split())
+    vowels = [p for p in LAUGHTER.phonemes if p.split("_")[0] in "a e o ic cackle".split()]
+    assert [p for p, b in zip(LAUGHTER.phonemes, LAUGHTER.boundary) if b] == vowels and len(vowels) == 15
+
+
+def test_grades_that_a_corpus_lacks_are_the_plain_phoneme():
+    """Catches a model of labels without grades (AVLaughterCycle's) whose loud vowels look like anything else."""
+    plain = LAUGHTER.phonemes[:12]
+    for label in LAUGHTER.phonemes[12:]:
+        assert substitute_for(label, plain) == label.split("_")[0]
 
 
 def test_arpabet_in_either_case_with_or_without_stress():
@@ -40,7 +54,7 @@ def test_arpabet_in_either_case_with_or_without_stress():
     ("pau", "SIL"), ("ax", "AH"), ("axr", "ER"), ("KD", "K"), ("TS", "S"), ("+BREATHING+", "SIL"), ("<sil>", "SIL"),
     ("++LAUGHTER++", "SIL"), ("</s>", "SIL"), ("_", "SIL"), ("_:", "SIL"), ("ˈaɪ", "AY"), ("t͡ʃ", "CH"), ("dʒ", "JH"),
     ("əʊ", "OW"), ("oʊ", "OW"), ("iː", "IY"), ("ɝ", "ER"), ("ɜː", "ER"), ("n̩", "N"), ("tʰ", "T"), ("ŋ", "NG"),
-    ("@U", "OW"), ("tS", "CH"), ("i:", "IY"), ("'eI", "EY"), ("3:", "ER"), ("N", "N"), ("S", "S"), ("ç", "HH"),
+    ("@U", "OW"), ("tS", "CH"), ("i:", "IY"), ("'eI", "EY"), ("N", "N"), ("S", "S"), ("ç", "HH"),
     ("axr1", "ER"), ("spn", "SIL"),
 ])  # fmt: skip
 def test_labels_of_front_ends(label, phoneme):

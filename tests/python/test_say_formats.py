@@ -10,14 +10,17 @@ from typing import List, Tuple
 
 import pytest
 
+from labial.cli import main
 from labial.corpus.timings import phoneme_segments, read_timings
 from labial.errors import DataError
 from labial.phonesets import SPEECH
+from labial.see.motion import read_bands
 from test_say import motion, pytestmark, say
 
 __all__ = ["pytestmark"]
 
-SEEDS = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2])) / "tests/fuzz/seeds/fuzz_timings"
+SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
+SEEDS = SOURCE / "tests/fuzz/seeds/fuzz_timings"
 #: The same sentence in every format.
 SENTENCE = ["sentence.psdur", "sentence.lab", "sentence.pho", "sentence.realised_durations", "sentence.phseg",
             "htk.lab", "hts.lab", "aligned.TextGrid", "short.TextGrid", "utf16.TextGrid", "points.TextGrid"]
@@ -120,12 +123,11 @@ def test_broken_encodings_are_errors(data: bytes) -> None:
 
 def test_labels_are_read_as_the_format_means_them() -> None:
     """Catches X-SAMPA's S and N read as ARPABET's in a format of X-SAMPA, or the other way round."""
+    phrase = [("a", 100), ("S", 90), ("N", 100), ("i", 100)]
     sampa = motion("a 100\nS 90\nN 100\ni 100\n")
     assert sampa == motion(lab([("AE", 100), ("SH", 90), ("NG", 100), ("IY", 100)]))
-    assert motion("a 100\nS 90\nN 100\ni 100\n", "--labels", "arpabet") == motion(
-        lab([("AE", 100), ("S", 90), ("N", 100), ("IY", 100)]))
-    assert motion(lab([("a", 100), ("S", 90), ("N", 100), ("i", 100)]), "--labels=sampa") == sampa
-    assert motion(lab([("a", 100), ("S", 90), ("N", 100), ("i", 100)])) != sampa
+    assert motion(lab(phrase), "--labels=xsampa") == sampa != motion(lab(phrase))
+    assert motion("pau 100\nay 90\n") == motion(lab([("pau", 100), ("ay", 90)])), "what is no X-SAMPA is any set's"
 
 
 def jaw(rows: List[List[str]], start: float, end: float) -> List[int]:
@@ -213,3 +215,28 @@ def test_damaged_files_are_data_errors(name: str, tmp_path: Path) -> None:
             assert done.returncode in (0, 1)
             if done.returncode == 1:
                 assert done.stderr.splitlines()[-1].startswith(b"labial-say: line ")
+
+
+def test_a_label_means_what_its_set_means() -> None:
+    """Catches an option that changes nothing, and a set that takes another one's labels without a word."""
+    rows = lab([("sil", 100), ("y", 150), ("th", 90), ("sil", 100)])
+    assert motion(rows, "--labels", "ipa") == motion(rows.replace("y", "uw").replace("th", "t"))
+    assert motion(rows, "--labels", "arpabet") == motion(rows, "--labels", "auto") == motion(rows)
+    for labels, label in (("ipa", "hh"), ("ipa", "2"), ("ipa", "ʲ"), ("ipa", "@"), ("arpabet", "ə"), ("xsampa", "ʃ"),
+                          ("auto", "2"), ("auto", "ː")):
+        done = say(lab([("sil", 100), (label, 100), ("sil", 100)]), "--labels", labels)
+        assert done.returncode == 0 and f"no phoneme '{label}'" in done.stderr.decode(), (labels, label)
+    assert say(rows, "--labels", "sampa").returncode == 2
+
+
+def test_the_exporter_reads_labels_as_labial_say_does(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Catches a set of labels that only one of the two knows, and an option of `labial` that is not handed on."""
+    model, phones = SOURCE / "export/models/speech_en.npz", tmp_path / "a.lab"
+    phones.write_text("0 0.1 sil\n0.1 0.3 y\n0.3 0.4 sil\n", encoding="utf-8")
+    moved = {}
+    for labels in ("auto", "arpabet", "ipa", "xsampa"):
+        assert main(["synth", str(model), str(phones), "--labels", labels]) == 0
+        moved[labels] = capsys.readouterr().out
+    assert moved["auto"] == moved["arpabet"] != moved["ipa"] == moved["xsampa"]
+    assert [band.label for band in read_bands(phones, "ipa")] == ["SIL", "UW", "SIL"]
+    assert [band.label for band in read_bands(phones)] == ["SIL", "Y", "SIL"]

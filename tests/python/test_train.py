@@ -145,7 +145,10 @@ def test_matched_states_follow_the_human_under_them():
     tables = codebook_tables(books, 2)
     path = (human > 0).astype(np.int64)
     target = np.where(human > 0, 90.0, -90.0)
-    matched = match_states(tables, [path], [target], [human], Scales(static=0.5, anchor=2.0))
+    weight = np.full(human.shape, 3.0)
+    weight[1000:2000] = 0.0  # what does not count may be anything
+    human[1000:2000] = 1e3
+    matched = match_states(tables, [path], [target], [human], [weight], Scales(static=0.5, anchor=2.0))
     np.testing.assert_allclose(matched.state_mean[:, :, 0], np.tile([-100.0, 100.0], (13, 1)), atol=2)
     np.testing.assert_allclose(0.5 / matched.state_precision[0, :, 0], 25, rtol=0.2)
     np.testing.assert_allclose(2.0 / matched.state_anchor[12], 400, rtol=0.2)

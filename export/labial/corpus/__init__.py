@@ -6,18 +6,19 @@ import os
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Tuple, Union
+from typing import List, Sequence, Tuple, Union
 
 import numpy as np
 
 from labial.corpus.avlaughter import laugh_files, read_avlaughter
-from labial.corpus.episode import Episode, Segment
+from labial.corpus.episode import Episode, Segment, Source
 from labial.corpus.folder import read_folder
 from labial.corpus.iemocap import read_iemocap
+from labial.corpus.talkers import brought_together, with_sources
 from labial.errors import DataError, LabialError
 from labial.phonesets import PHONE_SETS
 
-__all__ = ["Episode", "Segment", "Timeline", "read_corpus", "resample"]
+__all__ = ["Episode", "Segment", "Source", "Timeline", "read_corpora", "read_corpus", "resample"]
 
 #: Samples that are averaged over a frame's duration when the recording's rate is higher.
 _OVERSAMPLING = 16
@@ -44,8 +45,8 @@ def read_corpus(path: Union[str, os.PathLike], kind: str = "speech") -> List[Epi
     """Reads a corpus, whichever kind of files it has; episodes are sorted by name, labels are phonemes of `kind`.
 
     Recognised: IEMOCAP by its folders ``Session*/sentences``, AVLaughterCycle (laughter only) by its file names,
-    anything else as a Labial corpus folder. Raises DataError for what is malformed; recordings that are well-formed but
-    cannot be used are counted in a warning.
+    anything else as a Labial corpus folder; ``corpus.toml`` tells the talkers (:mod:`labial.corpus.talkers`). Raises
+    DataError for what is malformed; recordings that are well-formed but cannot be used are counted in a warning.
     """
     if kind not in PHONE_SETS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(PHONE_SETS)}")
@@ -62,7 +63,13 @@ def read_corpus(path: Union[str, os.PathLike], kind: str = "speech") -> List[Epi
     if refused:
         count = f"{len(refused)} of {len(refused) + len(episodes)}"
         warnings.warn(f"{count} recordings were left out, the first for this reason: {refused[0]}", stacklevel=2)
-    return episodes
+    return with_sources(path, episodes)
+
+
+def read_corpora(paths: Sequence[Union[str, os.PathLike]], kind: str = "speech") -> List[List[Episode]]:
+    """Reads several corpora as :func:`read_corpus` does, and brings every recording's mean and scale, channel by
+    channel, to those of the first."""
+    return brought_together([read_corpus(path, kind) for path in paths], PHONE_SETS[kind].silence)
 
 
 def resample(episode: Episode, fps: int) -> Timeline:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Tuple
+from typing import FrozenSet, Optional, Tuple
 
 import numpy as np
 
@@ -26,6 +26,17 @@ class Segment:
 
 
 @dataclass(frozen=True)
+class Source:
+    """Where an episode is from, and what of it is learnt."""
+
+    talker: str = ""
+    recording: str = ""  #: what was recorded and measured together, so that means and scales are its own
+    weight: float = 1.0  #: how much each frame counts beside those of other episodes
+    left_out: FrozenSet[int] = frozenset()  #: channels that are not learnt from
+    silences: bool = True  #: whether silences are
+
+
+@dataclass(frozen=True)
 class Episode:
     """One utterance or bout of laughter.
 
@@ -37,3 +48,12 @@ class Episode:
     times: np.ndarray
     frames: np.ndarray
     segments: Tuple[Segment, ...]
+    source: Source = Source()
+
+    def sounding(self, silence: str) -> np.ndarray:
+        """(T,) bool: frames within phonemes other than `silence`."""
+        ends = np.array([segment.end for segment in self.segments])
+        voiced = np.array([segment.label != silence for segment in self.segments])
+        at = np.searchsorted(ends, self.times, side="right")
+        inside = (at < len(ends)) & (self.times >= self.segments[0].start)
+        return inside & voiced[np.minimum(at, len(ends) - 1)]

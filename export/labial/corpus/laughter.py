@@ -12,12 +12,18 @@ where:
   the corners stay drawn back and up through the bout while the jaw quivers with the pulses.
 * **Amplitudes are design choices:** every number of FAP units below, the speed of the smile, the asymmetry, the noise.
   So are the shares of the phonemes and the durations of "o", "grunt" and of the pauses between trains.
+* **Loudness is a design choice, too.** A bout has an intensity from 0, a hum behind nearly closed lips, to 1, a mouth
+  as wide open as in loud speech. A pulse's loudness is that, falling along the train and from train to train. The jaw
+  goes straight with it, the lips part over its first third, and the smile follows slowly. What a model is told of it
+  are *grades*: the phonemes that carry a bout's amplitude are labelled soft, plain or loud, between two grades by
+  chance, in the proportion that the loudness has between theirs.
 
 The bottom lip follows the jaw, the top lip rises a little with the smile, and both meet when the lips are closed.
 """
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import List, Tuple, Union
@@ -27,6 +33,7 @@ import numpy as np
 from labial.corpus.folder import HEADER
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
+from labial.phonesets import LAUGHTER_GRADES
 
 #: Frames per second of the corpus; a frame is the motion at its centre.
 FPS = 50
@@ -44,21 +51,23 @@ TRAIN_MEDIAN, TRAIN_SPREAD, TRAIN_LONGEST = 3.0, 0.6, 17
 SHORTEST = 20
 
 #: What a phoneme asks of the mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
-_GESTURES = {
+GESTURES = {
     "silence": (0.16, 0.60, 0.0),
     "ne": (0.04, 0.15, 0.0),
     "nasal": (0.10, 0.05, 0.0),
     "click": (0.22, 0.60, 0.1),
     "plosive": (0.16, 0.50, 0.0),
-    "fricative": (0.34, 0.90, 0.0),
-    "ic": (0.62, 1.00, -0.2),
-    "e": (0.74, 1.00, 0.0),
-    "o": (0.72, 1.00, 1.0),
+    "fricative": (0.36, 0.90, 0.0),
+    "ic": (0.90, 1.00, -0.2),
+    "e": (0.94, 1.00, 0.0),
+    "o": (0.92, 1.00, 1.0),
     "grunt": (0.20, 0.45, 0.1),
-    "cackle": (0.80, 1.00, 0.0),
-    "a": (0.90, 1.00, 0.0),
+    "cackle": (1.50, 1.00, 0.0),
+    "a": (1.00, 1.00, 0.0),
 }
-_JAW = 330.0  # FAP 3 of the widest opening: about 10 mm of an adult's face
+_JAW = 600.0  # FAP 3 of the widest opening: about 18 mm of an adult's face
+#: Of the jaw's opening and of the smile: what the softest laugh, a hum, has. From which loudness the lips part freely.
+_HUMMED, _FAINT, _PARTED = 0.06, 0.12, 0.35
 _STEP = 5  # ms between samples of the motion before it is sampled at FPS
 
 #: Kinds of a pulse and their shares: vowel after breath, vowel and silence, cackle, closed lips, glottal stop first.
@@ -71,6 +80,15 @@ ONSETS = {"ne": 0.25, "click": 0.15, "grunt": 0.20, "plosive": 0.15}
 #: How often a pause between trains has an inhalation, that inhalation a click before it, and is by the nose; and how
 #: often the pause has a grunt, a silence and a longer rest.
 INHALED, CLICKED, BY_NOSE, GRUNTED, SILENT, RESTED = 0.75, 0.2, 0.75, 0.18, 0.5, 0.15
+
+#: How much softer a pulse is than the one before it, and a train than the one before.
+PULSE_DECAY, TRAIN_DECAY = 0.93, 0.92
+#: How loud air is drawn in after a train, of the train's loudness.
+INHALED_LOUDNESS = 0.7
+#: Loudness up to which every phoneme that has grades is a soft one, and from which it is a loud one; half way between
+#: the two all are of middle grade.
+SOFT, LOUD = 0.08, 0.96
+_UNGRADED = {graded: label for label, grades in LAUGHTER_GRADES.items() for graded in grades}
 
 _Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
 
@@ -103,8 +121,8 @@ def is_synthetic(path: Union[str, os.PathLike]) -> bool:
 
 
 def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
-    """A bout's phonemes and its intensity, 0.35 to 1."""
-    intensity = float(random.uniform(0.35, 1.0))
+    """A bout's phonemes and its intensity, 0 to 1."""
+    intensity = 0.5 - 0.5 * math.cos(math.pi * random.random())  # faint and hearty laughs more often than others
     bout: List[_Phoneme] = [("silence", int(random.uniform(200, 500)), 0.0)]
     for label, share in ONSETS.items():
         if random.random() < share:
@@ -112,14 +130,14 @@ def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
             break
     trains = 2 + int(random.binomial(4, intensity))
     for train in range(trains):
-        loudness = intensity * 0.88**train
+        loudness = intensity * TRAIN_DECAY**train
         bout += _train(random, loudness)
         if random.random() < INHALED:  # air runs out and is drawn in again
             bout.append(("silence", _duration(random, "silence"), 0.25 * loudness))
             if random.random() < CLICKED:
                 bout.append(("click", _duration(random, "click"), 0.6 * loudness))
             inhaled = "ne" if random.random() < BY_NOSE else "fricative"
-            bout.append((inhaled, _duration(random, inhaled), 0.7 * loudness))
+            bout.append((inhaled, _duration(random, inhaled), INHALED_LOUDNESS * loudness))
         if random.random() < GRUNTED:
             bout.append(("grunt", _duration(random, "grunt"), 0.5 * loudness))
         if random.random() < SILENT:
@@ -130,7 +148,16 @@ def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
     if random.random() < 0.5:
         bout.append(("ne", _duration(random, "ne"), 0.3 * intensity))
     bout.append(("silence", int(random.uniform(700, 1600)), 0.0))
-    return bout, intensity
+    return [(_graded(random, label, loudness), length, loudness) for label, length, loudness in bout], intensity
+
+
+def _graded(random: np.random.Generator, label: str, loudness: float) -> str:
+    """The phoneme of the grade that `loudness` asks for, drawn between the two nearest."""
+    if label not in LAUGHTER_GRADES:
+        return label
+    soft, loud = LAUGHTER_GRADES[label]
+    wanted = float(np.clip(2 * (loudness - SOFT) / (LOUD - SOFT), 0, 2))
+    return (soft, label, loud)[min(int(wanted + random.random()), 2)]
 
 
 def _train(random: np.random.Generator, loudness: float) -> List[_Phoneme]:
@@ -143,7 +170,7 @@ def _train(random: np.random.Generator, loudness: float) -> List[_Phoneme]:
             kind = random.choice(PULSES, p=PULSE_SHARES)
         if random.random() < CHANGED:
             vowel = random.choice(VOWELS, p=VOWEL_SHARES)
-        loud = loudness * 0.93**pulse * float(np.exp(random.normal(0, 0.10)))
+        loud = loudness * PULSE_DECAY**pulse * float(np.exp(random.normal(0, 0.10)))
         period = int(np.clip(random.normal(PERIOD, PERIOD_SPREAD), PERIOD_SHORTEST, PERIOD_LONGEST))
         note = str({"cackle": "cackle", "nasal": "nasal"}.get(str(kind), vowel))
         sound = min(_duration(random, note), period - 40)
@@ -175,13 +202,14 @@ def _motion(random: np.random.Generator, phonemes: List[_Phoneme], intensity: fl
     begin = 0
     for label, milliseconds, loudness in phonemes:
         span = slice(begin // _STEP, max((begin + milliseconds) // _STEP, begin // _STEP + 1))
-        wide, free, rounded = _GESTURES[label]
-        vigour = loudness**0.7 * float(np.exp(random.normal(0, 0.10)))
-        jaw[span], rounding[span], effort[span] = wide * vigour, rounded * vigour, loudness
-        apart[span] = free if loudness > 0 else 0.0
+        wide, free, rounded = GESTURES[_UNGRADED.get(label, label)]
+        laughing = loudness > 0
+        vigour = laughing * (_HUMMED + (1 - _HUMMED) * loudness) * float(np.exp(random.normal(0, 0.10)))
+        jaw[span], rounding[span], effort[span] = wide * vigour, rounded * vigour, max(loudness, laughing * _FAINT)
+        apart[span] = laughing * free * (0.25 + 0.75 * min(loudness / _PARTED, 1.0))
         begin += milliseconds
     smile = _follow(_smooth(effort, 150), intensity)
-    jaw = np.clip(_smooth(jaw, 34), 0, None) * _JAW + 14 * smile
+    jaw = np.clip(_smooth(jaw, 34), 0, 1) * _JAW + 14 * smile
     # Lips part by the jaw's opening and the teeth that a smile bares; at rest they close as the smile fades.
     seal = np.clip(_smooth(apart, 38), 0, 1)
     seal = np.maximum(seal, 0.35 * np.clip(smile - 0.3, 0, 1))
@@ -223,7 +251,7 @@ def _smooth(signal: np.ndarray, sigma: float) -> np.ndarray:
 
 def _follow(effort: np.ndarray, intensity: float) -> np.ndarray:
     """The smile, 0..1: rises with the loudness of laughing within 0.2 s, sinks over 2.5 s, never below a faint one."""
-    target = np.maximum(effort**0.6, 0.12 * intensity)
+    target = np.maximum(effort**0.8, 0.12 * intensity)
     smile = np.empty_like(target)
     level = 0.5 * target[0]
     for index, goal in enumerate(target):

@@ -17,7 +17,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
-from labial.phonesets import PhoneSet
+from labial.phonesets import AUTO, PhoneSet
 
 PathLike = Union[str, os.PathLike]
 
@@ -228,10 +228,22 @@ def read_timings(path: PathLike) -> List[SourceSegment]:
                     "flite -psdur)")
 
 
+def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> Optional[str]:
+    """The phoneme of `phone_set` that a segment's label means in the set `labels`, or None; silence where it has none.
+
+    Where `labels` is "auto", labels of a format that has X-SAMPA are that first.
+    """
+    if not segment.label:
+        return phone_set.silence
+    known = phone_set.resolve(segment.label, "xsampa") if labels == AUTO and segment.sampa else None
+    return phone_set.resolve(segment.label, labels) if known is None else known
+
+
 def phoneme_segments(
-    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True
+    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True, labels: str = AUTO
 ) -> Tuple[Segment, ...]:
-    """Maps labels to `phone_set` and joins the segments without gaps from time 0; `path` is for the error message.
+    """Maps labels of the set `labels` to `phone_set` and joins the segments without gaps from time 0; `path` is for the
+    error message.
 
     An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment.
     Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
@@ -241,13 +253,13 @@ def phoneme_segments(
     unknown: Set[str] = set()
     previous = min(0.0, segments[0].start) if segments else 0.0
     for number, item in enumerate(segments, 1):
-        label = phone_set.resolve(item.label, item.sampa) if item.label else phone_set.silence
+        label = meaning(item, phone_set, labels)
         if label is None:
             where = f"interval {number}: " if item.line is None else ""
             problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}")
             if strict:
                 raise problem
-            label = phone_set.nearest(item.label)
+            label = phone_set.nearest(item.label, labels)
             if item.label not in unknown:
                 warnings.warn(f"{problem}; it moves as {label}", stacklevel=2)
                 unknown.add(item.label)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Sequence
 
-from labial.corpus import read_corpus
+from labial.corpus import read_corpora
 from labial.corpus.laughter import is_synthetic
 from labial.evaluate import plots, report
 from labial.evaluate.methods import select
@@ -23,15 +23,19 @@ def processor_time(outcomes: Sequence[Outcome]) -> str:
     return f"processor time per split: {sum(total.values()):.1f} s ({each})"
 
 
-def run(corpus: str, output: str, options: Options, *, jobs: int, progress: bool) -> List[Path]:
+def run(corpora: Sequence[str], output: str, options: Options, *, jobs: int, progress: bool) -> List[Path]:
     """Evaluates and writes the report into the folder `output`; returns what was written."""
-    select(options.methods)  # before the corpus is read
-    options = replace(options, synthetic=is_synthetic(corpus))
-    outcomes = evaluate(read_corpus(corpus, options.kind), options, jobs=jobs, progress=progress)
+    select(options.methods)  # before the corpora are read
+    options = replace(options, synthetic=is_synthetic(corpora[0]))
+    first, *others = read_corpora(corpora, options.kind)
+    further = [episode for corpus in others for episode in corpus]
+    outcomes = evaluate(first, options, further=further, jobs=jobs, progress=progress)
     folder = Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     drawn = plots.write(outcomes, options, folder)
     written = report.write(outcomes, options, folder, drawn)
+    if options.leave_out_talkers:
+        print(report.talkers_table(outcomes, report.methods_of(outcomes)))
     print(report.caption("Table 1", "diff", options))
     print(report.markdown_table(outcomes, report.methods_of(outcomes), report.TABLE_1))
     print(processor_time(outcomes))

@@ -12,12 +12,14 @@ from labial.evaluate.pulses import SEEN_PERCENTILE, has_pulses, rises
 from labial.evaluate.trajectories import (
     JUDGED,
     JUDGED_NAMES,
+    LIPS,
     PARAMETERS,
     amplitude,
     correlation,
     differences,
     joins,
     labial_parameters,
+    lips,
 )
 from labial.phonesets import PhoneSet
 from labial.reference.published import pieces
@@ -209,6 +211,7 @@ class Judge:
         result = _named("diff", PARAMETERS, apart.mean(axis=0))
         result.update(_named("correlation", JUDGED_NAMES, correlation(human, judged)))
         result.update(_named("amplitude", JUDGED_NAMES, amplitude(human, judged)))
+        result.update(_named("lips", LIPS, correlation(lips(self._human), lips(found))))
         result.update(self._closures(motion))
         if self._pulsing:
             result.update(self._pulses(motion))

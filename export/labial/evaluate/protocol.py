@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from queue import Empty
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
@@ -20,7 +20,8 @@ from labial.evaluate.material import Utterance, utterances
 from labial.evaluate.measures import Judge, judged_frames, silence_of
 from labial.evaluate.methods import predict_all, select
 from labial.evaluate.pulses import has_pulses, longest_train
-from labial.evaluate.splits import Split, make_splits
+from labial.evaluate.readability import LipReader
+from labial.evaluate.splits import Split, leave_talkers_out, make_splits
 from labial.evaluate.training import Training
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.train.workers import usable_jobs
@@ -39,6 +40,7 @@ class Options:
     seed: int = 0
     fps: int = 50
     held_out: Tuple[str, ...] = ()
+    leave_out_talkers: bool = False  #: in place of random splits
     synthetic: bool = False  #: the motion was computed, not recorded; every table and plot says so
 
 
@@ -91,21 +93,27 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
     """Fits and measures all methods on one split. `tell` is called after each method."""
     phone_set = PHONE_SETS[options.kind]
     learnt = [corpus[i] for i in split.training]
-    training = Training(learnt, phone_set, options.fps, options.seed + split.number, unseen_words=bool(split.words))
+    training = Training(learnt, phone_set, options.fps, options.seed + split.number, unseen_words=bool(split.words),
+                        added=[corpus[i].episode for i in split.added])
     masks = judged_frames([corpus[i] for i in split.test], phone_set, split.words or ())
     judged = [(corpus[i], mask) for i, mask in zip(split.test, masks) if mask.any()]
     if not judged:
         raise LabialError(f"split {split.number}: no frame to judge")
     test, kept = [item for item, _ in judged], [mask for _, mask in judged]
     judge = Judge(test, kept, training.scale, phone_set, options.fps)
-    measures = {HUMAN: judge.measure([item.human for item in test])}
+    reader = LipReader(training, test, split.words)
+
+    def measured(made: Sequence[np.ndarray]) -> Dict[str, float]:
+        return {**judge.measure(made), **reader.measure(made)}
+
+    measures = {HUMAN: measured([item.human for item in test])}
     shown = _most_shown(test, phone_set, split)
     motion: Dict[str, np.ndarray] = {}
     seconds: Dict[str, float] = {}
     for method in select(options.methods):
         begun = _processor_seconds()
         made = predict_all(method.fit(training), [item.timeline for item in test])
-        measures[method.name] = judge.measure(made)
+        measures[method.name] = measured(made)
         seconds[method.name] = _processor_seconds() - begun
         motion[method.name] = made[shown]
         tell()
@@ -132,11 +140,21 @@ def _run(task: Tuple[Split, Options]) -> Outcome:
 
 
 def evaluate(
-    episodes: Sequence[Episode], options: Options, *, jobs: int = 1, progress: bool = True
+    episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
+    progress: bool = True,
 ) -> List[Outcome]:
-    """All splits in order. The outcomes do not depend on `jobs`, the number of processes."""
-    corpus = utterances(episodes, PHONE_SETS[options.kind], options.fps)
-    splits = make_splits(corpus, options.splits, options.seed, options.held_out)
+    """All splits of `episodes` in order; Labial's models are trained on `further` ones too, of whose talkers one after
+    the other is left out and judged where the options say so. The outcomes do not depend on `jobs`, the number of
+    processes."""
+    phone_set = PHONE_SETS[options.kind]
+    corpus = utterances(episodes, phone_set, options.fps)
+    first = len(corpus)
+    corpus += utterances(further, phone_set, options.fps)
+    if options.leave_out_talkers:
+        splits = leave_talkers_out(corpus, first)
+    else:
+        splits = [replace(split, added=tuple(range(first, len(corpus))))
+                  for split in make_splits(corpus[:first], options.splits, options.seed, options.held_out)]
     total = len(splits) * len(select(options.methods))
     jobs = usable_jobs(jobs)
     with tqdm(total=total, desc="methods", disable=not progress, leave=False) as bar:

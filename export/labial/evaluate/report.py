@@ -12,7 +12,7 @@ import numpy as np
 from labial.evaluate.measures import groups
 from labial.evaluate.methods import METHODS
 from labial.evaluate.protocol import HUMAN, Options, Outcome
-from labial.evaluate.trajectories import JUDGED_NAMES, PARAMETERS
+from labial.evaluate.trajectories import JUDGED_NAMES, LIPS, PARAMETERS
 from labial.phonesets import PHONE_SETS
 
 #: Column title and measure.
@@ -33,6 +33,8 @@ TABLE_2: Dict[str, Columns] = {
         ("of human", "closure/of human"),
         ("firm closure", "firm closure/rate"),
         ("of human", "firm closure/of human"),
+        ("readability", "readability"),
+        ("with residual", "readability/with residual"),
         *_LAST,
     ],
     "laughter": [
@@ -56,7 +58,11 @@ _NOTE_2 = {
 Correlation and amplitude (standard deviation over the human's): mean over open_jaw, raise_b_midlip_o,
 stretch_l_cornerlip_o and push_t_lip, each over all judged frames. Closure: share of p, b, m whose least openness
 within the segment and 40 ms around it is below the 20th percentile of the training part's speech frames; firm closure:
-below the median of the human's own least openness in the training part's p, b, m. Jitter: RMS third difference over
+below the median of the human's own least openness in the training part's p, b, m. Readability: share of the words that
+a lip-reader reads, the mean over classes of words that stand for each other; it is a linear discriminant analysis of
+time-normalised words, trained on human motion of the training part or, of unseen words, on human motion of other
+utterances than those that it reads. With residual: the same with the residual of another utterance's human word added,
+for synthetic motion lacks what people vary; to be held to the human's without. Jitter: RMS third difference over
 the human's. Seam: |second difference| where units join over that elsewhere, of the means and of the largest values;
 methods without units, and the human, are measured at the same frames.""",
     "laughter": """\
@@ -69,6 +75,11 @@ below the 20th percentile of the training part's frames of laughing. Jitter: RMS
 Seam: |second difference| where units join over that elsewhere, of the means and of the largest values; methods without
 units, and the original, are measured at the same frames.""",
 }
+
+_NOTE_TALKERS = """\
+Correlation with the talker who was left out: mean over open_jaw, lower_t_midlip_o, raise_b_midlip_o,
+stretch_l_cornerlip_o and openness, each over all judged frames; then each of these, mean over the talkers. Every
+recording's mean and scale are brought to the first corpus's, those of the talker who is judged too."""
 
 _SYNTHETIC = """\
 **Synthetic data.** Nobody laughed: `labial laughter-corpus` computed the motion that all methods are trained on and
@@ -141,12 +152,32 @@ def markdown_table(
     return "\n".join(lines)
 
 
+def talkers_table(outcomes: Sequence[Outcome], methods: Sequence[str]) -> str:
+    """Methods down; the correlation with each talker left out, their mean, and that of each of the LIPS across."""
+    talkers = [item.split.talker for item in outcomes]
+    rows = [f"| method | {' | '.join([*talkers, 'mean', *LIPS])} |", "|---" * (len(talkers) + len(LIPS) + 2) + "|"]
+    for method in methods:
+        each = [item.measures[method]["lips/mean"] for item in outcomes]
+        apart = [np.mean([item.measures[method][f"lips/{name}"] for item in outcomes]) for name in LIPS]
+        cells = " | ".join(f"{value:.3f}" for value in [*each, np.mean(each), *apart])
+        rows.append(f"| {title(method)} | {cells} |")
+    return "\n".join(rows)
+
+
 def _heading(outcomes: Sequence[Outcome], options: Options) -> str:
     frames = round(float(np.mean([item.frames for item in outcomes])))
     first = outcomes[0].split
+    if options.leave_out_talkers:
+        talkers = ", ".join(f"{item.split.talker} ({len(item.split.test)} episodes)" for item in outcomes)
+        return (f"Each talker in turn left out and judged: {talkers}; {len(first.training)} episodes of the first "
+                f"corpus trained on, Labial's models on those of the other talkers too; {frames} frames judged per "
+                f"talker, silence excluded, {options.fps} frames per second. Mean (standard deviation) over the "
+                f"talkers.")
     part = f"{len(first.training)} episodes trained on, {len(first.test)} held out"
     if options.held_out:
         part += f"; judged on the words {', '.join(sorted(set(options.held_out)))}, which no training episode holds"
+    if first.added:
+        part += f"; Labial's models are also trained on {len(first.added)} episodes of further corpora"
     splits = f"{len(outcomes)} split{'s' if len(outcomes) > 1 else ''}"
     return (f"{splits} (seed {options.seed}), {part}; {frames} frames judged per split, silence excluded, "
             f"{options.fps} frames per second. Mean (standard deviation) over the splits.")
@@ -165,6 +196,8 @@ def markdown(outcomes: Sequence[Outcome], options: Options, plots: Sequence[str]
         f"# Evaluation: {options.kind}" + (", synthetic data" if synthetic else ""),
         *([_SYNTHETIC] if synthetic else []),
         _heading(outcomes, options),
+        *([f"## {caption('Table 0', 'correlation, talker by talker', options)}", talkers_table(outcomes, methods),
+           _NOTE_TALKERS] if options.leave_out_talkers else []),
         table(1, "diff, |original - synthetic| / maximum", methods, TABLE_1),
         table(2, "other measures", [HUMAN, *methods], TABLE_2[options.kind], _NOTE_2[options.kind]),
         table(3, "correlation and amplitude per channel", methods, TABLE_3),

@@ -22,6 +22,8 @@ class Split:
     training: Tuple[int, ...]
     test: Tuple[int, ...]
     words: Optional[Tuple[str, ...]] = None
+    added: Tuple[int, ...] = ()  #: of further corpora, which Labial's models are trained on too
+    talker: str = ""  #: who is left out
 
 
 def _draw(candidates: np.ndarray, seed: int, number: int) -> np.ndarray:
@@ -57,4 +59,23 @@ def make_splits(
     test = tuple(int(index) for index in everyone[contains])
     return [
         Split(n, tuple(int(index) for index in _draw(everyone[~contains], seed, n)), test, words) for n in range(count)
+    ]
+
+
+def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:
+    """One split for each talker of the further corpora, who is judged by what the first corpus, the `first` utterances,
+    and the other talkers teach."""
+    talkers = list(dict.fromkeys(item.episode.source.talker for item in corpus[first:]))
+    if not talkers:
+        raise LabialError("a talker is left out of a second corpus, but there is only one")
+    further = range(first, len(corpus))
+    return [
+        Split(
+            number,
+            tuple(range(first)),
+            tuple(index for index in further if corpus[index].episode.source.talker == talker),
+            added=tuple(index for index in further if corpus[index].episode.source.talker != talker),
+            talker=talker,
+        )
+        for number, talker in enumerate(talkers)
     ]

@@ -11,6 +11,7 @@ from typing import Callable, Dict, List, Protocol, Sequence, Set, Tuple, TypeVar
 
 import numpy as np
 
+from labial.corpus.episode import Episode
 from labial.evaluate.material import Timeline, Utterance
 from labial.evaluate.measures import Scale, judged_frames, mean_difference, measure_scale, silence_of
 from labial.model import Model
@@ -42,12 +43,15 @@ class Training:
     """A training part: utterances, and models that are trained on them when first asked for.
 
     `unseen_words` says that the fitted methods will be judged on words that the part does not hold, so that settings
-    are to be chosen on such words too.
+    are to be chosen on such words too. `added` episodes of further corpora go into the trained models, and into nothing
+    else: other methods have no weights.
     """
 
     def __init__(
-        self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int, unseen_words: bool = False
+        self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int, unseen_words: bool = False,
+        added: Sequence[Episode] = (),
     ) -> None:
+        self.added = list(added)
         self.unseen_words = unseen_words
         self.utterances = list(utterances)
         self.phone_set = phone_set
@@ -115,7 +119,7 @@ class Training:
         if method not in self._models:
             with contextlib.redirect_stdout(io.StringIO()):
                 self._models[method] = train(
-                    [item.episode for item in self.utterances],
+                    [*(item.episode for item in self.utterances), *self.added],
                     kind=self.phone_set.kind,
                     method=method,
                     fps=self.fps,

@@ -16,6 +16,15 @@ JUDGED_NAMES = ("open_jaw", "raise_b_midlip_o", "stretch_l_cornerlip_o", "push_t
 JUDGED = tuple(FAP_NAMES.index(name) for name in JUDGED_NAMES)
 
 
+#: What connected speech is judged on, which needs no scale that talkers share: jaw, lips, a corner, and openness.
+LIPS = ("open_jaw", "lower_t_midlip_o", "raise_b_midlip_o", "stretch_l_cornerlip_o", "openness")
+
+
+def lips(frames: np.ndarray) -> np.ndarray:
+    """(T, 5) the LIPS of frames (T, 13)."""
+    return np.column_stack([frames[:, [FAP_NAMES.index(name) for name in LIPS[:-1]]], labial_parameters(frames)[:, 0]])
+
+
 def labial_parameters(frames: np.ndarray) -> np.ndarray:
     """(T, 4) openness -(fap51 + fap52), extension fap53 + fap54, top protrusion fap17, bottom protrusion fap16."""
     channel = {name: frames[:, index] for index, name in enumerate(FAP_NAMES)}

@@ -10,6 +10,16 @@ from labial.faps import CHANNELS
 from labial.reference.tables import Tables
 
 
+def knot_shares(length: np.ndarray, knots: int) -> np.ndarray:
+    """(T, K) the shares of K knots in each frame of phonemes of `length` (S,) frames: all of the one knot there is, or
+    of the first of two 1 - w, of the second w = (2 j + 1) / (2 n) in frame j of n, which is linear in time."""
+    if knots == 1:
+        return np.ones((int(np.sum(length)), 1))
+    frame = np.arange(int(np.sum(length))) - np.repeat(np.cumsum(length) - length, length)
+    share = (2 * frame + 1) / (2 * np.repeat(length, length))
+    return np.stack([1.0 - share, share], axis=1)
+
+
 def targets(
     tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int], frames: Sequence[int]
 ) -> np.ndarray:
@@ -17,12 +27,13 @@ def targets(
     silence is before and after."""
     held = [i for i, count in enumerate(frames) if count]
     seen = [tables.silence] + [phonemes[i] for i in held] + [tables.silence]
-    shapes = np.zeros((len(held), CHANNELS), dtype=tables.dtype)
+    length = np.array([frames[i] for i in held], dtype=np.int64)
+    shapes = np.zeros((len(held), tables.knots, CHANNELS), dtype=tables.dtype)
     for j, i in enumerate(held):
         shapes[j] = tables.select(phonemes[i], min(milliseconds[i], 65535), seen[j], seen[j + 2])
-    index = np.repeat(np.arange(len(held)), [frames[i] for i in held])
+    index = np.repeat(np.arange(len(held)), length)
     labels = np.array([phonemes[i] for i in held], dtype=np.int64)[index]
     reach = int(np.abs(tables.lags).max()) if len(tables.lags) else 0
     padded = np.concatenate([np.full(reach, tables.silence), labels, np.full(reach, tables.silence)]).astype(np.int64)
     at = np.arange(len(labels))[:, None] + reach + tables.lags[None, :]
-    return tables.targets(shapes[index], labels, padded[at])
+    return tables.targets(tables.interpolated(shapes[index], knot_shares(length, tables.knots)), labels, padded[at])

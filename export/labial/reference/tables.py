@@ -60,10 +60,12 @@ class FloatTables:
         self.stride = model.search_stride
         self.chains = normal_chains(model.decode_mean, model.decode_variance, model.log_transition, model.log_initial)
         self._first = model.first_component()
+        self.knots = model.pair_shape.shape[1]  #: K, of the shapes of a phoneme
         self._pair = {tuple(key): row for row, key in enumerate(np.asarray(model.pair_key).tolist())}
 
     def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
-        """(13,) shape of a phoneme of this duration between these neighbours."""
+        """(K, 13) shapes of a phoneme of this duration between these neighbours: the one that it holds, or those at
+        its start and at its end."""
         model = self.model
         own = slice(self._first[phoneme], self._first[phoneme + 1])
         deviation = milliseconds / 1000.0 - model.duration_mean[own]
@@ -77,12 +79,17 @@ class FloatTables:
         share = share / share.sum()
         limit = SLOPE_LIMIT * np.sqrt(variance)
         shapes = model.shape[own] + model.slope[own] * np.clip(deviation, -limit, limit)[:, None]
-        shape = share @ shapes
+        shape = np.repeat((share @ shapes)[None], self.knots, axis=0)
         for side, neighbour in enumerate((previous, following)):
             row = self._pair.get((phoneme, side, neighbour))
             if row is not None:
                 shape = shape + model.pair_shape[row]
         return shape
+
+    @staticmethod
+    def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
+        """(T, 13) the shapes of frames between knots (T, K, 13) of `share` (T, K)."""
+        return np.einsum("tk,tkc->tc", share, knots)
 
     def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """(T, 13) targets: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to them, but not
@@ -128,6 +135,7 @@ class ExportedTables:
         self.stride = exported.search_stride
         self.chains = Chains(exported.emission_mean, exported.dense_transitions(), exported.initial, LEAP,
                              self.emission)
+        self.knots = 1
 
     def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
         """As :meth:`FloatTables.select`, in positions."""
@@ -156,7 +164,12 @@ class ExportedTables:
             if row < len(model.pair_keys) and model.pair_keys[row] == key:
                 added = rounded_shift(model.pairs[row] * model.pair_scale, 8)
                 position = np.clip(position + added, -POSITION_MAX, POSITION_MAX)
-        return position
+        return position[None]
+
+    @staticmethod
+    def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
+        """As :meth:`FloatTables.interpolated`: exported models have one knot."""
+        return knots[:, 0]
 
     def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.targets`, in positions."""

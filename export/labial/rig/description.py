@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import difflib
-import math
 import os
 import re
-import sys
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Dict, Iterable, List, Mapping, Tuple, Union
+from typing import Any, Dict, List, Mapping, Tuple, Union
 
 import numpy as np
 
-from labial.errors import DataError, LabialError
+from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.rig.gestures import SOURCES
 from labial.rig.units import UNITS, Unit, make_unit
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:  # pragma: no cover - the same parser under the name it had before it became a part of Python
-    import tomli as tomllib
+from labial.toml import Table, meant, read_toml
 
 #: Pulses that a description may ask of a servo, microseconds: wider than any common servo's range, narrow enough for a
 #: slip of the finger to be noticed.
@@ -56,55 +48,11 @@ class Rig:
     path: str
 
 
-class _Table:
-    """A table of the file, with errors that name the file and the key."""
-
-    def __init__(self, path: str, prefix: str, content: Mapping[str, Any], known: Iterable[str]) -> None:
-        self.path, self.prefix, self.content = path, prefix, content
-        known = list(known)
-        for key in content:
-            if key not in known:
-                near = difflib.get_close_matches(key, known, n=1)
-                hint = f"; did you mean {near[0]}?" if near else f"; known are {', '.join(known)}"
-                raise self.error(key, f"unknown key{hint}")
-
-    def error(self, key: str, message: str) -> DataError:
-        return DataError(self.path, None, f"{self.prefix}{key}: {message}")
-
-    def number(self, key: str) -> float:
-        """A finite number; the key must be there."""
-        if key not in self.content:
-            raise self.error(key, "is missing")
-        return _number(self, key, self.content[key])
-
-
-def _number(table: _Table, key: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise table.error(key, f"{value!r} is not a number")
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise table.error(key, f"{number} is not a finite number")
-    return number
-
-
 def read(path: Union[str, os.PathLike], name: str) -> Rig:
     """The rig that the file describes, to be called `name`. Raises DataError naming the file and the line or key."""
     where = os.fspath(path)
-    try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except UnicodeDecodeError as error:
-        raise DataError(where, None, f"not UTF-8 text: byte {error.start}") from None
-    except ValueError as error:  # TOMLDecodeError, or a number of more digits than Python takes
-        found = re.fullmatch(r"(.*?)(?: \(at line (\d+), column (\d+)\))?", str(error), re.DOTALL)
-        line = int(found[2]) if found and found[2] else None
-        column = f" (column {found[3]})" if found and found[3] else ""
-        raise DataError(where, line, f"not TOML: {found[1] if found else error}{column}") from None
-    except RecursionError:
-        raise DataError(where, None, "not TOML: nested too deeply") from None
-    top = _Table(where, "", content, _TOP_KEYS)
+    content = read_toml(path)
+    top = Table(where, "", content, _TOP_KEYS)
     unit = _unit(top)
     outputs = content.get("output")
     if not isinstance(outputs, dict) or not outputs:
@@ -112,7 +60,7 @@ def read(path: Union[str, os.PathLike], name: str) -> Rig:
     return Rig(name, unit, tuple(_output(where, key, table, unit) for key, table in _named(top, outputs)), where)
 
 
-def _unit(top: _Table) -> Unit:
+def _unit(top: Table) -> Unit:
     name = top.content.get("unit", "us")
     if name not in UNITS:
         raise top.error("unit", f"{name!r} is none of {', '.join(UNITS)}")
@@ -129,7 +77,7 @@ def _unit(top: _Table) -> Unit:
         raise top.error(wanted or "unit", str(error)) from None
 
 
-def _named(top: _Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mapping[str, Any]]]:
+def _named(top: Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mapping[str, Any]]]:
     spelled: Dict[str, str] = {}
     for name, table in outputs.items():
         if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,31}", name):
@@ -145,7 +93,7 @@ def _named(top: _Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mappin
     return list(outputs.items())  # type: ignore[arg-type]
 
 
-def _source(table: _Table) -> Tuple[np.ndarray, Union[float, None]]:
+def _source(table: Table) -> Tuple[np.ndarray, Union[float, None]]:
     """The weights of ``from`` and, if it is one name, the reach that is usual for it."""
     given = table.content.get("from")
     if isinstance(given, str):
@@ -157,10 +105,8 @@ def _source(table: _Table) -> Tuple[np.ndarray, Union[float, None]]:
     weights, reach = np.zeros(CHANNELS), None
     for name, weight in given.items():
         if name not in SOURCES:
-            near = difflib.get_close_matches(name, list(SOURCES), n=1)
-            hint = f"; did you mean {near[0]}?" if near else ""
-            raise table.error("from", f"no gesture or FAP is called {name!r}{hint}")
-        number = _number(table, f"from.{name}", weight)
+            raise table.error("from", f"no gesture or FAP is called {name!r}{meant(name, SOURCES)}")
+        number = table.as_number(f"from.{name}", weight)
         if abs(number) > 1000:
             raise table.error(f"from.{name}", f"{number:g} is not within -1000 .. 1000")
         weights += number * SOURCES[name].weights
@@ -171,15 +117,13 @@ def _source(table: _Table) -> Tuple[np.ndarray, Union[float, None]]:
 
 
 def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Output:
-    table = _Table(path, f"output.{name}.", content, _OUTPUT_KEYS)
+    table = Table(path, f"output.{name}.", content, _OUTPUT_KEYS)
     weights, reach = _source(table)
     neutral = table.number("neutral")
     if ("full" in content) == ("gain" in content):
         raise table.error("full", "either full (the value at full extent) or gain (units per FAP unit) is needed"
                                   + (", not both" if "full" in content else ""))
-    invert = content.get("invert", False)
-    if not isinstance(invert, bool):
-        raise table.error("invert", f"{invert!r} is neither true nor false")
+    invert = table.flag("invert", False)
     if "full" in content:
         if invert:
             raise table.error("invert", "goes with gain; with full, say where full lies instead")
@@ -209,7 +153,7 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
     return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content)
 
 
-def _check_values(table: _Table, unit: Unit, **values: float) -> None:
+def _check_values(table: Table, unit: Unit, **values: float) -> None:
     if values["minimum"] > values["maximum"]:
         raise table.error("minimum", f"{values['minimum']:g} is above the maximum, {values['maximum']:g}")
     if not unit.servo:

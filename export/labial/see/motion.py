@@ -12,10 +12,10 @@ import numpy as np
 
 from labial.corpus.folder import read_frames
 from labial.corpus.lines import read_lines
-from labial.corpus.timings import read_timings
+from labial.corpus.timings import SourceSegment, meaning, read_timings
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
-from labial.phonesets import LAUGHTER, SPEECH, VOWELS, PhoneSet
+from labial.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
 
 PathLike = Union[str, os.PathLike]
 
@@ -105,19 +105,18 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return np.arange(count) / fps, frames
 
 
-def read_bands(path: Optional[PathLike]) -> List[Band]:
+def read_bands(path: Optional[PathLike], labels: str = AUTO) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
-    Labels are those of speech or of laughter, whichever knows more of them. A label that it does not know is no error,
-    for nothing but its band's colour depends on it: it stays as it is, of kind "other".
+    Labels are of the set `labels`, and those of speech or of laughter, whichever knows more of them. A label that it
+    does not know is no error, for nothing but its band's colour depends on it: it stays as it is, of kind "other".
     """
     if path is None:
         return []
     segments = [segment for segment in read_timings(path) if segment.end > segment.start]
-    labels = [segment.label for segment in segments if segment.label]
-    known = [sum(phones.resolve(label) is not None for label in labels) for phones in (SPEECH, LAUGHTER)]
+    known = [sum(meaning(segment, phones, labels) is not None for segment in segments) for phones in (SPEECH, LAUGHTER)]
     phones = LAUGHTER if known[1] > known[0] else SPEECH
-    return [Band(segment.start, segment.end, *_named(segment.label, phones)) for segment in segments]
+    return [Band(segment.start, segment.end, *_named(segment, phones, labels)) for segment in segments]
 
 
 def laughs(bands: Sequence[Band]) -> bool:
@@ -137,6 +136,6 @@ def kind_of(label: str, phones: PhoneSet) -> str:
     return "vowel" if phones.boundary[phones.phonemes.index(label)] else "other"
 
 
-def _named(label: str, phones: PhoneSet) -> Tuple[str, str]:
-    name = phones.resolve(label) if label else phones.silence
-    return (label, "other") if name is None else (name, kind_of(name, phones))
+def _named(segment: SourceSegment, phones: PhoneSet, labels: str) -> Tuple[str, str]:
+    name = meaning(segment, phones, labels)
+    return (segment.label, "other") if name is None else (name, kind_of(name, phones))

@@ -3,12 +3,17 @@
 The target of a frame is the shape of its phoneme plus one tap of the kernel of the phoneme at each of L lags:
 
     x(t) = sum over components c of p_c (shape_c + slope_c (d - mu_c))
-         + pair[phoneme, previous phoneme] + pair[phoneme, next phoneme]
+         + pair[phoneme, previous phoneme](t) + pair[phoneme, next phoneme](t)
          + sum over taps i of kernel[phoneme(t + lag_i), i]
 
 The shares p_c come from the context-aware mixtures; shapes, slopes, pairs and kernels are then fitted jointly to the
 human motion by ridge regression, for a shape that was taken at the apex without regard to kernels says the same twice.
-Pairs are kept for what occurs often enough; all others are left to the classes and the kernels.
+Pairs are kept for what occurs often enough; all others are left to the classes and the kernels. A pair holds K knots,
+shapes at even distances from the phoneme's start to its end, between which its frames interpolate.
+
+Where a talker's lips rest in an utterance no phoneme tells: each training utterance has an intercept in the regression,
+shrunk towards 0, which is dropped afterwards. Values count by their weight; penalties are multiplied by the largest
+weight of the channel, so that what counts more must say as much to be believed.
 
 A phoneme's kernel is its viseme class's kernel plus a residual of its own, with penalties 1 : RESIDUAL_PENALTY on their
 squares. Summed over both parts that is one Gaussian prior on the phonemes' kernels, with covariance M M' + I /
@@ -19,6 +24,7 @@ comes out with its class's kernel. Along the taps the prior is a first-order pro
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import List
 from typing import Sequence as SequenceOf
 
 import numpy as np
@@ -26,6 +32,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_matrix, diags, hstack
 
 from labial.quantise import LIMITS
+from labial.reference.shape import knot_shares
 from labial.train.selection import Choice
 from labial.train.sequences import Sequence, neighbours
 from labial.train.shapes import ShapeTables
@@ -40,8 +47,11 @@ SPACING = 0.04
 #: But never farther than the device's memory of phonemes, in frames.
 REACH_FRAMES = LIMITS["reach"]
 
-#: Occurrences from which on a phoneme beside a certain neighbour has a shape of its own.
+#: Occurrences from which on a phoneme beside a certain neighbour has a shape of its own, whatever they weigh.
 PAIR_COUNT = 20
+
+#: Knots of a pair: one for a shape that stands still, two for one that moves from the phoneme's start to its end.
+PAIR_KNOTS = 2
 
 
 @dataclass(frozen=True)
@@ -56,6 +66,7 @@ class Penalties:
     slope: float = 30.0  #: of a component's slope per standard deviation of its duration
     pair: float = 10.0  #: of what a neighbour adds to a phoneme's shape
     silence: float = 0.1  #: weight of a frame of silence
+    intercept: float = 10.0  #: of where an utterance's motion lies, each channel
 
 
 def lags(fps: int, look_ahead: float = LOOK_AHEAD) -> np.ndarray:
@@ -109,9 +120,10 @@ def _design(
     lag: np.ndarray,
     silence: int,
     pairs: np.ndarray,
+    knots: int,
 ) -> csr_matrix:
-    """(T, P L + 2 N + R) of all frames: one-hot taps, shares of the components, those times (d - mu_c) / sigma_c, and
-    which of the `pairs` (R,), codes, the phoneme and its neighbours are.
+    """(T, P L + 2 N + R K) of all frames: one-hot taps, shares of the components, those times (d - mu_c) / sigma_c, and
+    the shares of the knots of those `pairs` (R,), codes, that the phoneme and its neighbours are.
 
     `deviation` is (N,), sigma_c in seconds.
     """
@@ -136,7 +148,38 @@ def _design(
     known = pairs[at] == codes if len(pairs) else np.zeros(codes.shape, dtype=bool)
     occurrence, _ = np.nonzero(known)
     beside = csr_matrix((np.ones(len(occurrence)), (occurrence, at[known])), shape=(occurrences, len(pairs)))[segment]
-    return hstack([onehot, share, slope, beside]).tocsr()
+    part = knot_shares(lengths, knots)
+    between = [diags(part[:, knot]) @ beside for knot in range(knots)]
+    return hstack([onehot, share, slope, *between]).tocsr()
+
+
+def _columns_alike(weight: np.ndarray) -> List[np.ndarray]:
+    """The channels of (T, 13) weights in groups of equal columns."""
+    _, group = np.unique(weight, axis=1, return_inverse=True)
+    return [np.flatnonzero(group.ravel() == number) for number in range(int(group.max()) + 1)]
+
+
+def _regression(
+    design: csr_matrix, motion: np.ndarray, weight: np.ndarray, utterance: np.ndarray, prior: np.ndarray,
+    intercept: float,
+) -> np.ndarray:
+    """(D, C) the coefficients of the ridge regression of `motion` (T, C) on `design` (T, D), frames counting by
+    `weight` (T,), with inverse prior covariance `prior` (D, D) and an intercept for each utterance, (T,) numbers, of
+    penalty `intercept`.
+
+    The intercepts u are solved for first: with S the utterances' weighted sums of the design, s their weights,
+    (X' W X + prior - S' (s + intercept)^-1 S) b = X' W y - S' (s + intercept)^-1 (weighted sums of y).
+    """
+    weighted = (diags(weight) @ design).tocsr()
+    normal = (weighted.T @ design).toarray() + prior
+    right = weighted.T @ motion
+    if np.isfinite(intercept):
+        sums = csr_matrix((np.ones(len(weight)), (utterance, np.arange(len(weight)))))
+        design_sums, motion_sums = (sums @ weighted).toarray(), sums @ (weight[:, None] * motion)
+        shrunk = design_sums / ((sums @ weight) + intercept)[:, None]
+        normal -= design_sums.T @ shrunk
+        right -= shrunk.T @ motion_sums
+    return cho_solve(cho_factor(normal), right)
 
 
 @dataclass(frozen=True)
@@ -147,17 +190,18 @@ class Kernels:
     lag: np.ndarray  #: (L,) int64 frames
     tables: ShapeTables  #: with shapes and slopes fitted jointly
     pair_key: np.ndarray  #: (R, 3) int64: phoneme, side, neighbour
-    pair_shape: np.ndarray  #: (R, 13) FAP
+    pair_shape: np.ndarray  #: (R, K, 13) FAP
 
     def pairs_at(self, item: Sequence, silence: int) -> np.ndarray:
-        """(S, 13) FAP: what the neighbours of each phoneme of an utterance add to its shape."""
+        """(T, 13) FAP: what the neighbours of each phoneme of an utterance add to its shape, frame by frame."""
         rows = {tuple(key): row for row, key in enumerate(self.pair_key.tolist())}
-        added = np.zeros((len(item.phoneme), self.pair_shape.shape[1]))
+        added = np.zeros((len(item.phoneme), *self.pair_shape.shape[1:]))
         for side, others in enumerate(neighbours(item.phoneme, silence)):
             for i, key in enumerate(zip(item.phoneme.tolist(), [side] * len(others), others.tolist())):
                 if key in rows:
                     added[i] += self.pair_shape[rows[key]]
-        return added
+        shares = knot_shares(item.length, self.pair_shape.shape[1])
+        return np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
 
 
 def fit_kernels(
@@ -170,32 +214,41 @@ def fit_kernels(
     fps: int,
     penalties: Penalties,
     look_ahead: float = LOOK_AHEAD,
+    knots: int = PAIR_KNOTS,
 ) -> Kernels:
     """Fits kernels, shapes and slopes to the human motion of `material`; `choice` are its occurrences' components.
 
     `phoneme_class` is (P,), `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is
-    in seconds.
+    in seconds; `knots` is K.
     """
     lag = lags(fps, look_ahead)
-    phonemes, taps = len(phoneme_class), len(lag)
+    phonemes, taps, components = len(phoneme_class), len(lag), len(tables.shape)
     deviation = np.sqrt(tables.duration_variance)
-    code, count = np.unique(pair_codes(material, phonemes, silence), return_counts=True)
+    learnt = np.concatenate([item.learnt() for item in material])
+    code, count = np.unique(pair_codes(material, phonemes, silence)[learnt], return_counts=True)
     pairs = code[count >= PAIR_COUNT]
-    design = _design(material, choice, deviation, phonemes, lag, silence, pairs)
+    design = _design(material, choice, deviation, phonemes, lag, silence, pairs, knots)
     phoneme_at = np.concatenate([item.phoneme_at() for item in material])
-    weight = np.where(phoneme_at == silence, penalties.silence, 1.0) * 50.0 / fps
+    utterance = np.repeat(np.arange(len(material)), [len(item.frames) for item in material])
+    each = np.concatenate([item.weights for item in material])
+    weight = each * np.where(phoneme_at == silence, penalties.silence, 1.0)[:, None] * 50.0 / fps
     motion = np.concatenate([item.frames for item in material])
     base = np.average(motion, axis=0, weights=weight)
 
-    weighted = (diags(weight) @ design).T.tocsr()
-    normal = (weighted @ design).toarray()
+    prior = np.zeros((design.shape[1], design.shape[1]))
     kernels = slice(0, phonemes * taps)
-    normal[kernels, kernels] += penalties.kernel * kernel_prior(phoneme_class, taps, penalties)
-    components = len(deviation)
-    ridge = np.repeat([penalties.shape, penalties.slope, penalties.pair], [components, components, len(pairs)])
-    index = np.arange(phonemes * taps, len(normal))
-    normal[index, index] += ridge
-    solution = cho_solve(cho_factor(normal), weighted @ (motion - base))
+    prior[kernels, kernels] = penalties.kernel * kernel_prior(phoneme_class, taps, penalties)
+    index = np.arange(phonemes * taps, len(prior))
+    prior[index, index] = np.repeat(
+        [penalties.shape, penalties.slope, penalties.pair], [components, components, knots * len(pairs)]
+    )
+    solution = np.empty((len(prior), motion.shape[1]))
+    for channels in _columns_alike(weight):
+        strength = float(each[:, channels[0]].max())
+        solution[:, channels] = _regression(
+            design, motion[:, channels] - base[channels], weight[:, channels[0]], utterance, strength * prior,
+            strength * penalties.intercept,
+        )
 
     shape, slope, pair = np.split(solution[phonemes * taps :], [components, 2 * components])
     fitted = Kernels(
@@ -203,7 +256,7 @@ def fit_kernels(
         lag=lag,
         tables=replace(tables, shape=base + shape, slope=slope / deviation[:, None]),
         pair_key=np.stack([pairs // (2 * phonemes), pairs // phonemes % 2, pairs % phonemes], axis=1),
-        pair_shape=pair,
+        pair_shape=pair.reshape(knots, len(pairs), motion.shape[1]).transpose(1, 0, 2),
     )
     return substitute(fitted, stand_in)
 

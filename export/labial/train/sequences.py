@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Iterable, List, Tuple
+from typing import Iterable, List, Optional, Tuple
 
 import numpy as np
 
 from labial.corpus import resample
-from labial.corpus.episode import Episode
+from labial.corpus.episode import Episode, Source
 from labial.errors import LabialError
+from labial.faps import CHANNELS
 from labial.phonesets import PhoneSet
 from labial.reference.units import pause_cut
 
@@ -25,6 +26,16 @@ class Sequence:
     length: np.ndarray  #: (S,) int64, frames of each phoneme; sums to T
     apex: np.ndarray  #: (S,) int64, the frame of the audio envelope's maximum, or of the middle
     frames: np.ndarray  #: (T, 13) human motion, FAP
+    weight: Optional[np.ndarray] = None  #: (T, 13) how much each value counts, 0 for not at all; None: 1 everywhere
+
+    @property
+    def weights(self) -> np.ndarray:
+        """(T, 13): how much each value counts."""
+        return np.ones(self.frames.shape) if self.weight is None else self.weight
+
+    def learnt(self) -> np.ndarray:
+        """(S,) bool: whether anything of a phoneme's occurrence is learnt."""
+        return np.maximum.reduceat(self.weights.max(axis=1), np.cumsum(self.length) - self.length) > 0
 
     def segment_at(self) -> np.ndarray:
         """(T,) int64: the phoneme occurrence that each frame belongs to."""
@@ -38,6 +49,7 @@ class Sequence:
 def sequences(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Sequence]:
     """Brings every episode to `fps` frames per second and its labels to numbers."""
     number = {label: index for index, label in enumerate(phone_set.phonemes)}
+    silence = number[phone_set.silence]
     result = []
     for episode in corpus:
         timeline = resample(episode, fps)
@@ -47,14 +59,17 @@ def sequences(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[
         if unknown:
             raise LabialError(f"{episode.name}: labels {', '.join(unknown)} are not in the {phone_set.kind} phone set")
         seen = np.flatnonzero(np.asarray(timeline.frames_per_segment) > 0)  # the run-time skips phonemes of no frame
+        phoneme = np.array([number[timeline.labels[index]] for index in seen], dtype=np.int64)
+        length = np.asarray(timeline.frames_per_segment, dtype=np.int64)[seen]
         result.append(
             Sequence(
                 name=episode.name,
-                phoneme=np.array([number[timeline.labels[index]] for index in seen], dtype=np.int64),
+                phoneme=phoneme,
                 duration=np.asarray(timeline.durations, dtype=np.float64)[seen],
-                length=np.asarray(timeline.frames_per_segment, dtype=np.int64)[seen],
+                length=length,
                 apex=np.asarray(timeline.apex_frame, dtype=np.int64)[seen],
                 frames=np.asarray(timeline.frames, dtype=np.float64),
+                weight=_weights(episode.source, np.repeat(phoneme, length) == silence),
             )
         )
     if not result:
@@ -85,6 +100,17 @@ def with_pauses_cut(item: Sequence, silence: int, ahead: int, fps: int) -> Seque
     )
 
 
+def _weights(source: Source, silent: np.ndarray) -> Optional[np.ndarray]:
+    """(T, 13) how much the values of an episode count, of which `silent` (T,) are silence; None where all count 1."""
+    if source == replace(source, weight=1.0, left_out=frozenset(), silences=True):
+        return None
+    weight = np.full((len(silent), CHANNELS), source.weight)
+    weight[:, sorted(source.left_out)] = 0.0
+    if not source.silences:
+        weight[silent] = 0.0
+    return weight
+
+
 @dataclass(frozen=True)
 class Occurrences:
     """All S phoneme occurrences of a set of sequences, one after the other."""
@@ -95,6 +121,7 @@ class Occurrences:
     previous: np.ndarray  #: (S,) int64, viseme class of the phoneme before; that of silence at the start
     next: np.ndarray  #: (S,) int64, viseme class of the phoneme after; that of silence at the end
     apex_shape: np.ndarray  #: (S, 13) human motion at the apex, FAP
+    learnt: np.ndarray  #: (S,) bool, whether anything of it is learnt
 
     def vectors(self) -> np.ndarray:
         """(S, 14): the training vectors of section 2, shape (FAP) at the apex joined with the duration (seconds)."""
@@ -125,4 +152,5 @@ def occurrences(material: List[Sequence], phone_set: PhoneSet) -> Occurrences:
         previous=np.concatenate([before for before, _ in around]),
         next=np.concatenate([after for _, after in around]),
         apex_shape=np.concatenate([item.frames[item.apex] for item in material]),
+        learnt=np.concatenate([item.learnt() for item in material]),
     )

@@ -79,12 +79,16 @@ def decode(targets: SequenceOf[np.ndarray], ends: SequenceOf[np.ndarray], tables
     return viterbi.decode(viterbi.normal_chains(*hidden), targets, ends, tables.stride)
 
 
-def _state_moments(values: np.ndarray, path: np.ndarray, prior_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Means and variances (Q,) of the values (n,) under each state of the path (n,), with PRIOR_FRAMES."""
+def _state_moments(
+    values: np.ndarray, weight: np.ndarray, path: np.ndarray, prior_mean: np.ndarray
+) -> Tuple[np.ndarray, np.ndarray]:
+    """Means and variances (Q,) of the values (n,), counting by weight (n,), under each state of the path (n,), with
+    PRIOR_FRAMES."""
     size = len(prior_mean)
-    count = np.bincount(path, minlength=size)
-    mean = (np.bincount(path, weights=values, minlength=size) + PRIOR_FRAMES * prior_mean) / (count + PRIOR_FRAMES)
-    squares = np.bincount(path, weights=(values - mean[path]) ** 2, minlength=size)
+    count = np.bincount(path, weights=weight, minlength=size)
+    total = np.bincount(path, weights=weight * values, minlength=size)
+    mean = (total + PRIOR_FRAMES * prior_mean) / (count + PRIOR_FRAMES)
+    squares = np.bincount(path, weights=weight * (values - mean[path]) ** 2, minlength=size)
     pooled = squares.sum() / count.sum()
     return mean, (squares + PRIOR_FRAMES * pooled) / (count + PRIOR_FRAMES)
 
@@ -94,11 +98,13 @@ def match_states(
     paths: SequenceOf[np.ndarray],
     targets: SequenceOf[np.ndarray],
     human: SequenceOf[np.ndarray],
+    weights: SequenceOf[np.ndarray],
     scales: Scales,
 ) -> StateTables:
     """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, 13) of targets and
-    human motion (T, 13) in FAP. What the search sees of a target stays as it is."""
-    path, target, motion = (np.concatenate(items) for items in (paths, targets, human))
+    human motion (T, 13) in FAP, whose values count by `weights` (T, 13). What the search sees of a target stays as it
+    is."""
+    path, target, motion, weight = (np.concatenate(items) for items in (paths, targets, human, weights))
     size = tables.decode_mean.shape[1]
     mean = np.empty((CHANNELS, size, 3))
     variance = np.empty((CHANNELS, size, 3))
@@ -106,16 +112,16 @@ def match_states(
     for channel in range(CHANNELS):
         states = path[:, channel]
         rows = np.concatenate([features(item[:, channel]) for item in human])
-        floor = np.maximum(VARIANCE_FLOOR * rows.var(axis=0), 1e-6)
+        floor = np.maximum(VARIANCE_FLOOR * rows[weight[:, channel] > 0].var(axis=0), 1e-6)
         for feature in range(3):
             prior = tables.state_mean[channel, :, feature]
-            mean[channel, :, feature], spread = _state_moments(rows[:, feature], states, prior)
+            mean[channel, :, feature], spread = _state_moments(rows[:, feature], weight[:, channel], states, prior)
             variance[channel, :, feature] = np.maximum(spread, floor[feature])
         stray = motion[:, channel] - target[:, channel]
-        _, residual = _state_moments(stray, states, np.zeros(size))
+        _, residual = _state_moments(stray, weight[:, channel], states, np.zeros(size))
         anchor[channel] = scales.anchor / np.maximum(residual, floor[0])
-    weight = np.array([scales.static, scales.delta, scales.acceleration])
-    precision, anchor = limit_range(weight / variance, anchor)
+    scale = np.array([scales.static, scales.delta, scales.acceleration])
+    precision, anchor = limit_range(scale / variance, anchor)
     return StateTables(
         decode_mean=tables.decode_mean,
         decode_variance=tables.decode_variance,

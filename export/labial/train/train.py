@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from labial.corpus.episode import Episode
 from labial.errors import LabialError
-from labial.faps import CHANNELS
+from labial.faps import CHANNELS, FAP_COLUMNS
 from labial.model import KINDS, METHODS, Model
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.quantise import LIMITS
@@ -19,7 +19,7 @@ from labial.train.closures import floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
-from labial.train.kernels import LOOK_AHEAD, REACH, Kernels, Penalties, add_kernels, fit_kernels, lags
+from labial.train.kernels import LOOK_AHEAD, PAIR_KNOTS, REACH, Kernels, Penalties, add_kernels, fit_kernels, lags
 from labial.train.selection import Choice, choose, shapes
 from labial.train.sequences import Occurrences, Sequence, occurrences, sequences, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
@@ -51,12 +51,14 @@ def _mixture(task: _MixtureTask) -> Mixture:
 def _mixture_tasks(
     items: Occurrences, plan: Plan, classes: int, components: int, seed: int
 ) -> List[_MixtureTask]:
-    vectors = items.vectors()
-    scale = corpus_scale(vectors)
+    """The mixtures to fit. Their samples count once each, whatever they weigh: what they say, and the regression that
+    follows does not, is how durations and neighbours go together, which weights did not better."""
+    vectors, learnt = items.vectors(), items.learnt
+    scale = corpus_scale(vectors[learnt])
     tasks = []
     for members in plan.members:
         if members is not None:
-            rows = np.flatnonzero(np.isin(items.phoneme, members))
+            rows = np.flatnonzero(np.isin(items.phoneme, members) & learnt)
             tasks.append(
                 _MixtureTask(vectors[rows], items.previous[rows], items.next[rows], scale, components, classes, seed)
             )
@@ -94,6 +96,20 @@ def _unit_starts(item: Sequence, boundary: np.ndarray) -> np.ndarray:
     return starts[begins & (item.length > 0)]
 
 
+def _stretches(
+    material: SequenceOf[Sequence], starts: SequenceOf[np.ndarray], channel: int
+) -> Tuple[List[np.ndarray], List[np.ndarray]]:
+    """The stretches of one channel's motion (T,) that are learnt from, and the frames at which units begin in each."""
+    motion, begins = [], []
+    for item, start in zip(material, starts):
+        learnt = np.concatenate([[False], item.weights[:, channel] > 0, [False]])
+        edges = np.flatnonzero(learnt[1:] != learnt[:-1]).reshape(-1, 2)
+        for first, end in edges:
+            motion.append(item.frames[first:end, channel])
+            begins.append(start[(start >= first) & (start < end)] - first)
+    return motion, begins
+
+
 def _targets(
     choice: Choice, fitted: Kernels, material: SequenceOf[Sequence], silence: int, floor: np.ndarray
 ) -> List[np.ndarray]:
@@ -101,7 +117,7 @@ def _targets(
     selected = np.split(shapes(fitted.tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
     result = []
     for shape, item in zip(selected, material):
-        held = np.repeat(shape + fitted.pairs_at(item, silence), item.length, axis=0)
+        held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
         moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
         result.append(np.maximum(moving, floor[item.phoneme_at()]))
     return result
@@ -126,6 +142,25 @@ def _check(
         raise LabialError("the corpus is empty")
 
 
+def _check_taught(material: SequenceOf[Sequence]) -> None:
+    untaught = ~np.any([item.weights.any(axis=0) for item in material], axis=0)
+    if untaught.any():
+        names = ", ".join(np.array(FAP_COLUMNS)[untaught])
+        raise LabialError(f"nothing is left to learn {names} from: every corpus leaves this out")
+
+
+def _extent(material: SequenceOf[Sequence], silence: int) -> Dict[str, object]:
+    """How far the channels reach, from their 1st to their 99th percentile, and their mean pose outside silence."""
+    everything = np.concatenate([item.frames for item in material])
+    weight = np.concatenate([item.weights for item in material])
+    reach = [np.ptp(np.percentile(values[of > 0], [1, 99])) for values, of in zip(everything.T, weight.T)]
+    sounding = np.concatenate([item.phoneme_at() != silence for item in material])
+    if sounding.any():
+        everything, weight = everything[sounding], weight[sounding]
+    pose = np.average(everything, axis=0, weights=weight)
+    return {"channel_range": np.round(reach, 3).tolist(), "mean_pose": np.round(pose, 3).tolist()}
+
+
 def _report(plan: Plan, phone_set: PhoneSet, counts: np.ndarray) -> None:
     """Says which phonemes had too few samples, and what they use instead."""
     for label, name in plan.pooled.items():
@@ -148,6 +183,7 @@ def train(
     attribution: str = "",
     look_ahead: float = LOOK_AHEAD,
     search_stride: int = SEARCH_STRIDE,
+    pair_knots: int = PAIR_KNOTS,
     penalties: Penalties = Penalties(),  # noqa: B008 - immutable
     scales: Scales = Scales(),  # noqa: B008 - immutable
     divide: Division = lbg,
@@ -157,6 +193,7 @@ def train(
     `method` is "paper", the published one, or "labial": context-aware mixtures (section 2), temporal kernels, matched
     states and anchors on top. `codebook` is Q, the states of each channel, `components` C of each phoneme's mixture.
     `look_ahead` is how far the temporal kernels reach into what follows, seconds; less makes a stream's frames earlier.
+    `pair_knots` is 2 for pairs that move from the phoneme's start to its end, 1 for such as stand still.
     `search_stride` is how many frames share a state of the decoded path. The published method has neither.
     `divide` makes the codebooks' cells; with more than one job it must be a module's own function.
     `attribution` is kept in the model for whoever passes it on. The same arguments give the same model, whatever
@@ -180,8 +217,9 @@ def train(
     if extended:
         ahead = int(lags(fps, look_ahead)[-1])
         material = [with_pauses_cut(item, silence, ahead, fps) for item in material]
+    _check_taught(material)
     items = occurrences(material, phone_set)
-    counts = np.bincount(items.phoneme, minlength=phonemes)
+    counts = np.bincount(items.phoneme[items.learnt], minlength=phonemes)
     plan = back_off(counts, phone_set)
     _report(plan, phone_set, counts)
 
@@ -190,16 +228,15 @@ def train(
         tasks = _mixture_tasks(items, plan, classes if extended else 0, components, seed)
         tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), extended)
         starts = [_unit_starts(item, boundary) for item in material]
-        motion = [
-            ([item.frames[:, c] for item in material], starts, codebook, stride, divide) for c in range(CHANNELS)
-        ]
+        motion = [(*_stretches(material, starts, c), codebook, stride, divide) for c in range(CHANNELS)]
         states = codebook_tables(workers.run("codebooks", _channel, motion), stride)
         kernel, lag = np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64)
-        pair_key, pair_shape = np.zeros((0, 3), dtype=np.int64), np.zeros((0, CHANNELS))
+        pair_key, pair_shape = np.zeros((0, 3), dtype=np.int64), np.zeros((0, 1, CHANNELS))
         if extended:
             choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
             fitted = fit_kernels(
-                material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties, look_ahead
+                material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties, look_ahead,
+                pair_knots,
             )
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
             pair_key, pair_shape = fitted.pair_key, fitted.pair_shape
@@ -208,13 +245,11 @@ def train(
             batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
             tasks = [(targets[batch], ends[batch], states) for batch in batches]
             paths = [path for batch in workers.run("matched states", _decode, tasks) for path in batch]
-            states = match_states(states, paths, targets, [item.frames for item in material], scales)
+            human, weights = [item.frames for item in material], [item.weights for item in material]
+            states = match_states(states, paths, targets, human, weights, scales)
 
-    everything = np.concatenate([item.frames for item in material])
-    voiced = np.concatenate([item.phoneme_at() != silence for item in material])
     training: Dict[str, object] = {
-        "channel_range": np.round(np.diff(np.percentile(everything, [1, 99], axis=0), axis=0)[0], 3).tolist(),
-        "mean_pose": np.round(everything[voiced if voiced.any() else slice(None)].mean(axis=0), 3).tolist(),
+        **_extent(material, silence),
         "codebook": codebook,
         "components": components,
         "seed": seed,
@@ -256,7 +291,6 @@ def train(
         state_anchor=states.state_anchor,
         log_transition=states.log_transition,
         log_initial=states.log_initial,
-        aliases=dict(phone_set.aliases),
         substitutes=dict(plan.substitutes),
         attribution=attribution,
         training=training,

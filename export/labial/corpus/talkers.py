@@ -1,0 +1,132 @@
+"""Whose mouths a corpus holds: the file ``corpus.toml`` in its folder, and several talkers on one scale.
+
+Two faces differ in what their channels rest at and how far they go, and so do two recordings of one face. What they
+share is how they move: so every recording's motion is brought to the first corpus's mean and standard deviation,
+channel by channel, both taken outside silence.
+
+``corpus.toml`` may hold, all of it optional::
+
+    weight = 3                          # how much a frame counts beside those of a corpus without this key
+    leave_out = ["fap16", "fap17"]      # channels that are not learnt from
+    silences = false                    # nor are the silences
+
+    [talkers]                           # who speaks in which episodes: names, or patterns with * and ?;
+    anna = ["anna_*"]                   # each pattern is one recording, with a mean and a scale of its own
+    bert = ["bert_studio_*", "bert_street_*"]
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple, Union
+
+import numpy as np
+
+from labial.corpus.episode import Episode, Source
+from labial.faps import FAP_COLUMNS
+from labial.toml import Table, meant, read_toml
+
+PathLike = Union[str, os.PathLike]
+
+#: The name of the file.
+FILE = "corpus.toml"
+
+#: The largest weight: beyond it the other corpora count for nothing.
+LARGEST_WEIGHT = 1000.0
+
+_KEYS = ("weight", "leave_out", "silences", "talkers")
+
+
+def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]:
+    """The episodes with what ``corpus.toml`` says of them; without that file they are one talker's, in one recording.
+
+    Raises DataError, which names the file and the line or the key.
+    """
+    where, path = Path(folder).resolve(), Path(folder) / FILE
+    if not path.is_file():
+        return [replace(item, source=Source(where.name, str(where))) for item in episodes]
+    table = Table(path, "", read_toml(path), _KEYS)
+    weight = table.number("weight") if "weight" in table.content else 1.0
+    if not 0.0 < weight <= LARGEST_WEIGHT:
+        raise table.error("weight", f"{weight:g} is not above 0 and at most {LARGEST_WEIGHT:g}")
+    common = Source(where.name, str(where), weight, _left_out(table), table.flag("silences", True))
+    if "talkers" not in table.content:
+        return [replace(item, source=common) for item in episodes]
+    told = _talkers(table, [item.name for item in episodes])
+    return [
+        replace(item, source=replace(common, talker=told[item.name][0], recording=str(where / told[item.name][1])))
+        for item in episodes
+    ]
+
+
+def _left_out(table: Table) -> FrozenSet[int]:
+    given = table.content.get("leave_out", [])
+    if not isinstance(given, list):
+        raise table.error("leave_out", "is not a list of channels, such as [\"fap17\"]")
+    for name in given:
+        if name not in FAP_COLUMNS:
+            raise table.error("leave_out", f"no channel is called {name!r}{meant(str(name), FAP_COLUMNS)}")
+    if len(set(given)) == len(FAP_COLUMNS):
+        raise table.error("leave_out", "nothing is left to learn from")
+    return frozenset(FAP_COLUMNS.index(name) for name in given)
+
+
+def _talkers(table: Table, names: Iterable[str]) -> Dict[str, Tuple[str, str]]:
+    """Talker and pattern by the episode's name."""
+    given = table.content["talkers"]
+    if not isinstance(given, dict) or not given:
+        raise table.error("talkers", "is not a table of talkers, NAME = [PATTERN, ...]")
+    told: Dict[str, Tuple[str, str]] = {}
+    for talker, patterns in given.items():
+        if not isinstance(patterns, list) or not patterns or not all(isinstance(item, str) for item in patterns):
+            raise table.error(f"talkers.{talker}", "is not a list of names or patterns of episodes")
+        for pattern in patterns:
+            held = [name for name in names if fnmatchcase(name, pattern)]
+            if not held:
+                raise table.error(f"talkers.{talker}", f"no episode is called {pattern!r}")
+            for name in held:
+                if name in told:
+                    raise table.error(f"talkers.{talker}",
+                                      f"{name} is {pattern!r}, but also {told[name][1]!r} of {told[name][0]}")
+                told[name] = (talker, pattern)
+    nobody = next((name for name in names if name not in told), None)
+    if nobody is not None:
+        raise table.error("talkers", f"nobody is told to speak in {nobody}")
+    return told
+
+
+def brought_together(corpora: Sequence[Sequence[Episode]], silence: str) -> List[List[Episode]]:
+    """The corpora with each recording's mean and standard deviation per channel, outside `silence`, brought to those of
+    the first corpus: the means over its recordings' frames. One recording alone stays as it is."""
+    values: Dict[str, List[np.ndarray]] = {}
+    for item in (item for corpus in corpora for item in corpus):
+        values.setdefault(item.source.recording, []).append(item.frames[item.sounding(silence)])
+    if len(values) < 2:
+        return [list(corpus) for corpus in corpora]
+    moments = {name: _moments(np.concatenate(frames)) for name, frames in values.items()}
+    first = dict.fromkeys(item.source.recording for item in corpora[0])
+    share = [sum(map(len, values[name])) for name in first]
+    if not sum(share):
+        return [list(corpus) for corpus in corpora]
+    mean = np.average([moments[name][0] for name in first], axis=0, weights=share)
+    deviation = np.sqrt(np.average([moments[name][1] ** 2 for name in first], axis=0, weights=share))
+
+    def brought(item: Episode) -> Episode:
+        own_mean, own_deviation = moments[item.source.recording]
+        if len(first) == 1 and item.source.recording in first:
+            return item
+        moves = own_deviation > 1e-9
+        scale = np.where(moves, deviation / np.where(moves, own_deviation, 1.0), 1.0)
+        return replace(item, frames=mean + (item.frames - own_mean) * scale)
+
+    return [[brought(item) for item in corpus] for corpus in corpora]
+
+
+def _moments(frames: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """(13,) mean and standard deviation of (T, 13) frames; 0 without frames."""
+    if not len(frames):
+        return np.zeros(frames.shape[1]), np.zeros(frames.shape[1])
+    return frames.mean(axis=0), frames.std(axis=0)

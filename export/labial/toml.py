@@ -1,0 +1,81 @@
+"""TOML files that people write, read with errors that name the file and the line or the key."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import os
+import re
+import sys
+from pathlib import Path
+from typing import Any, Dict, Iterable, Mapping, Union
+
+from labial.errors import DataError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:  # pragma: no cover - the same parser under the name it had before it became a part of Python
+    import tomli as tomllib
+
+
+class Table:
+    """A table of a file: `content` by key, of which only `known` ones may occur. `prefix` is what errors put before a
+    key."""
+
+    def __init__(self, path: Union[str, os.PathLike], prefix: str, content: Mapping[str, Any],
+                 known: Iterable[str]) -> None:
+        self.path, self.prefix, self.content = path, prefix, content
+        known = list(known)
+        for key in content:
+            if key not in known:
+                raise self.error(key, f"unknown key{meant(key, known) or '; known are ' + ', '.join(known)}")
+
+    def error(self, key: str, message: str) -> DataError:
+        """An error that names the file and the key."""
+        return DataError(self.path, None, f"{self.prefix}{key}: {message}")
+
+    def number(self, key: str) -> float:
+        """A finite number; the key must be there."""
+        if key not in self.content:
+            raise self.error(key, "is missing")
+        return self.as_number(key, self.content[key])
+
+    def as_number(self, key: str, value: object) -> float:
+        """`value`, which `key` says where it is from, as a finite number."""
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise self.error(key, f"{value!r} is not a number")
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise self.error(key, f"{number} is not a finite number")
+        return number
+
+    def flag(self, key: str, default: bool) -> bool:
+        """True or false; `default` where the key is not there."""
+        value = self.content.get(key, default)
+        if not isinstance(value, bool):
+            raise self.error(key, f"{value!r} is neither true nor false")
+        return value
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """``; did you mean NAME?`` with the one of `known` that is spelled most like `name`, or nothing."""
+    near = difflib.get_close_matches(name, list(known), n=1)
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def read_toml(path: Union[str, os.PathLike]) -> Dict[str, Any]:
+    """The content of a TOML file. Raises DataError, which names the file and the line, for what is not TOML."""
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except UnicodeDecodeError as error:
+        raise DataError(path, None, f"not UTF-8 text: byte {error.start}") from None
+    except ValueError as error:  # TOMLDecodeError, or a number of more digits than Python takes
+        found = re.fullmatch(r"(.*?)(?: \(at line (\d+), column (\d+)\))?", str(error), re.DOTALL)
+        line = int(found[2]) if found and found[2] else None
+        column = f" (column {found[3]})" if found and found[3] else ""
+        raise DataError(path, line, f"not TOML: {found[1] if found else error}{column}") from None
+    except RecursionError:
+        raise DataError(path, None, "not TOML: nested too deeply") from None

@@ -1,0 +1,183 @@
+"""Several corpora and talkers: what ``corpus.toml`` says, one scale for all, and what is learnt of whom."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from labial.cli import main
+from labial.corpus import Episode, Segment, Source, read_corpora, read_corpus
+from labial.corpus.folder import HEADER
+from labial.errors import DataError, LabialError
+from labial.evaluate import protocol
+from labial.evaluate.trajectories import lips
+from labial.model import load
+from labial.phonesets import SPEECH
+from labial.train import train
+from labial.train.sequences import sequences
+from test_train import OPTIONS, episode
+
+TOML = """weight = 3
+leave_out = ["fap16", "fap17"]
+silences = false
+[talkers]
+anna = ["anna_*"]
+bert = ["bert_in_?", "bert_out"]
+"""
+NAMES = ("anna_1", "anna_2", "bert_in_1", "bert_out")
+
+
+def corpus(folder: Path, names=NAMES, toml: str = "", scale: float = 1.0, offset: float = 0.0) -> Path:
+    """A folder of episodes of a second of silence and a second of AA, at 50 frames/s."""
+    folder.mkdir()
+    for number, name in enumerate(names):
+        values = np.random.default_rng([len(names), number]).normal(0, 10, (100, 13)) * scale + offset
+        values[:50] += 1000.0
+        rows = [f"{0.01 + 0.02 * t:.2f}," + ",".join(f"{v:.4f}" for v in row) for t, row in enumerate(values)]
+        (folder / f"{name}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
+        (folder / f"{name}.lab").write_text("0 1 SIL\n1 2 AA\n")
+    if toml:
+        (folder / "corpus.toml").write_text(toml)
+    return folder
+
+
+def test_the_file_tells_talkers_weights_and_what_is_left_out(tmp_path) -> None:
+    # Catches a key that is read but lost on the way to the training.
+    found = read_corpus(corpus(tmp_path / "c", toml=TOML))
+    assert [item.source.talker for item in found] == ["anna", "anna", "bert", "bert"]
+    assert len({item.source.recording for item in found}) == 3
+    assert {(item.source.weight, item.source.left_out, item.source.silences) for item in found} == {
+        (3.0, frozenset({1, 2}), False)}
+    first = sequences(found, SPEECH, 50)[0]
+    assert not first.weights[:50].any() and not first.weights[:, 1:3].any()
+    assert (first.weights[50:, 3:] == 3.0).all() and first.learnt().tolist() == [False, True]
+    plain = read_corpus(corpus(tmp_path / "plain"))
+    assert {(item.source.talker, item.source.weight) for item in plain} == {("plain", 1.0)}
+    assert sequences(plain, SPEECH, 50)[0].weight is None
+
+
+@pytest.mark.parametrize(("old", "new", "message"), [
+    ("weight = 3", "weight = = 3", ":1: not TOML: "),
+    ("weight = 3", "wait = 3", ": wait: unknown key; did you mean weight?"),
+    ("weight = 3", "weight = 0", ": weight: 0 is not above 0 and at most 1000"),
+    ("weight = 3", 'weight = "3"', ": weight: '3' is not a number"),
+    ("silences = false", "silences = 0", ": silences: 0 is neither true nor false"),
+    ('["fap16", "fap17"]', '"fap16"', ": leave_out: is not a list of channels"),
+    ('"fap16"', '"fap18"', ": leave_out: no channel is called 'fap18'; did you mean fap"),
+    ('"fap16"', "16", ": leave_out: no channel is called 16"),
+    ('"fap16"', "[1]", ": leave_out: no channel is called [1]"),
+    ('["fap16", "fap17"]', str([f"fap{n}" for n in (3, 16, 17, *range(51, 61))]), ": leave_out: nothing is left"),
+    ('["anna_*"]', '"anna_*"', ": talkers.anna: is not a list of names or patterns"),
+    ('["anna_*"]', "[3]", ": talkers.anna: is not a list of names or patterns"),
+    ('"anna_*"', '"emma_*"', ": talkers.anna: no episode is called 'emma_*'"),
+    ('"anna_*"', '"*"', ": talkers.bert: bert_in_1 is 'bert_in_?', but also '*' of anna"),
+    ('"bert_in_?", ', "", ": talkers: nobody is told to speak in bert_in_1"),
+    ("[talkers]\nanna", "talkers = 3\n[other]\nanna", ": "),
+])
+def test_errors_name_the_file_and_the_line_or_key(tmp_path, old: str, new: str, message: str) -> None:
+    # Catches a slip that is passed over, so that a talker counts twice or not at all.
+    assert old in TOML
+    folder = corpus(tmp_path / "c", toml=TOML.replace(old, new))
+    with pytest.raises(DataError) as caught:
+        read_corpus(folder)
+    assert str(caught.value).startswith(f"{folder / 'corpus.toml'}{message}")
+    assert "\n" not in str(caught.value)
+
+
+def test_recordings_are_brought_to_the_first_corpus(tmp_path) -> None:
+    # Catches means or scales taken over silence, per corpus instead of per recording, or the wrong way round.
+    first = corpus(tmp_path / "first", ["x"], scale=2.0, offset=30.0)
+    second = corpus(tmp_path / "second", toml=TOML, scale=0.5, offset=-300.0)
+    (alone,) = read_corpora([first])
+    (one, others) = read_corpora([first, second])
+    np.testing.assert_array_equal(one[0].frames, alone[0].frames)
+    goal = one[0].frames[50:]
+    for talker, members in (("anna", others[:2]), ("in", others[2:3]), ("out", others[3:])):
+        speech = np.concatenate([item.frames[50:] for item in members])
+        np.testing.assert_allclose(speech.mean(axis=0), goal.mean(axis=0), err_msg=talker)
+        np.testing.assert_allclose(speech.std(axis=0), goal.std(axis=0), err_msg=talker)
+    still = read_corpus(second)[3]
+    moved = others[3].frames
+    np.testing.assert_allclose(np.corrcoef(moved[:, 4], still.frames[:, 4])[0, 1], 1.0)
+
+
+def test_a_recording_that_does_not_move_is_only_shifted(tmp_path) -> None:
+    # Catches a division by a standard deviation of 0.
+    first, second = corpus(tmp_path / "a", ["x"]), corpus(tmp_path / "b", ["y"], scale=0.0, offset=7.0)
+    one, others = read_corpora([first, second])
+    np.testing.assert_allclose(others[0].frames[50:], np.tile(one[0].frames[50:].mean(axis=0), (50, 1)))
+
+
+def test_frames_within_phonemes() -> None:
+    # Catches boundaries a frame off, and frames before or after all phonemes.
+    times = np.array([-0.1, 0.0, 0.1, 0.19, 0.2, 0.25, 0.3, 0.4])
+    segments = (Segment(0.0, 0.1, "AA"), Segment(0.1, 0.2, "SIL"), Segment(0.2, 0.3, "T"))
+    found = Episode("e", times, np.zeros((8, 13)), segments).sounding("SIL")
+    assert found.tolist() == [False, True, False, False, True, True, False, False]
+
+
+def test_channels_that_nobody_teaches_are_refused() -> None:
+    # Catches a division by a weight of 0 in the middle of the training.
+    source = Source(left_out=frozenset({1}))
+    with pytest.raises(LabialError, match="fap16"):
+        train([replace(episode(1), source=source)], method="paper", **OPTIONS)
+
+
+def test_what_is_left_out_does_not_reach_the_model() -> None:
+    # Catches silences and channels that are learnt from all the same: here they hold nonsense.
+    first = [episode(seed) for seed in range(16)]
+    source = Source(weight=2.0, left_out=frozenset({1, 2}), silences=False)
+    second = [replace(episode(seed), source=source) for seed in range(16, 22)]
+
+    def spoilt(item: Episode) -> Episode:
+        frames = item.frames.copy()
+        near = np.convolve(item.sounding("SIL"), np.ones(13), "same")  # frames and velocities may reach across
+        frames[near < 0.5] += 5000.0
+        return replace(item, frames=frames)
+
+    one, other = (train([*first, *more], method="labial", jobs=1, **OPTIONS)
+                  for more in (second, [spoilt(item) for item in second]))
+    for name in ("kernel", "pair_shape", "state_mean", "state_anchor", "floor"):
+        np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-6, atol=1e-6, err_msg=name)
+    assert one.training["occurrences"]["SIL"] == 32
+
+
+def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
+    # Catches a command that reads the first corpus alone; the talkers' table is held to the correlation itself.
+    def write(folder: Path, seeds) -> Path:
+        folder.mkdir()
+        for seed in seeds:
+            item = episode(seed)
+            rows = [f"{t:.3f}," + ",".join(f"{v:.2f}" for v in row) for t, row in zip(item.times, item.frames)]
+            (folder / f"e{seed:02}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
+            (folder / f"e{seed:02}.lab").write_text(
+                "".join(f"{s.start:.4f} {s.end:.4f} {s.label}\n" for s in item.segments))
+        return folder
+
+    first, second = write(tmp_path / "one", range(12)), write(tmp_path / "two", range(12, 16))
+    (second / "corpus.toml").write_text('weight = 2\n[talkers]\nx = ["e12", "e13"]\ny = ["e14", "e15"]\n')
+    model = tmp_path / "m.npz"
+    arguments = ["train", str(first), str(second), "-o", str(model), "--quiet", "--jobs", "1", "--codebook", "12",
+                 "--components", "2"]  # fmt: skip
+    assert main(arguments) == 0
+    assert load(model).training["episodes"] == 16
+    report = tmp_path / "report"
+    arguments = ["evaluate", str(first), str(second), "-o", str(report), "--quiet", "--methods", "mean,labial"]
+    assert main([*arguments, "--jobs", "2", "--leave-out-talkers"]) == 0
+    text = (report / "report.md").read_text()
+    assert "| method | x | y | mean | open_jaw |" in text and "x (2 episodes), y (2 episodes)" in text
+    assert main([*arguments, "--splits", "1"]) == 0
+    assert "4 episodes of further corpora" in (report / "report.md").read_text()
+    assert main([*arguments[:2], *arguments[3:], "--leave-out-talkers"]) == 1
+    assert "only one" in capsys.readouterr().err
+    assert main([*arguments, "--leave-out-talkers", "--hold-out-words", "w"]) == 1
+    (a, b) = read_corpora([first, second])
+    asked = protocol.Options(methods="labial", leave_out_talkers=True)
+    outcomes = protocol.evaluate(a, asked, further=b, progress=False)
+    assert [item.split.talker for item in outcomes] == ["x", "y"]
+    assert [len(item.split.added) for item in outcomes] == [2, 2]
+    assert all(item.measures["labial"]["lips/mean"] > 0.9 for item in outcomes)
+    assert np.allclose(lips(b[0].frames)[:, 4], -(b[0].frames[:, 3] + b[0].frames[:, 4]))
