@@ -17,7 +17,7 @@ NO_FLOOR = -16384
 WEIGHT_SUM_MAX = 16383
 WEIGHT_MIN = 8
 STIFFNESS_MAX = 16
-PULL_MAX = 131071
+PULL_MAX = 65535
 
 #: The largest z, Q6, of a duration and of an emission; beyond it a Gaussian's cost no longer grows.
 DURATION_Z_MAX = 65535
@@ -25,7 +25,7 @@ EMISSION_Z_MAX = 1023
 
 #: The search scores so many states, those around the one nearest to the target. Any of them can be entered from the
 #: best one of the step before at the highest cost of a transition; scores are held to that too, above the best.
-SEARCHED = 12
+SEARCHED = 8
 LEAP = 255
 
 #: Numbers that the 256 codes of the minifloat weight stand for.

@@ -6,7 +6,7 @@ import numpy as np
 
 from labial import emit
 from labial.faps import CHANNELS, FAP_NAMES
-from labial.fixed import WEIGHT_MIN, weight_value
+from labial.fixed import SEARCHED, WEIGHT_MIN, weight_value
 from labial.loss import Loss
 from labial.model import Model
 from labial.quantise import ExportedModel
@@ -15,7 +15,8 @@ from labial.reference.trajectory import WINDOW
 
 def workspace_bytes(stride: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
-    return CHANNELS * (8 * (WINDOW + stride + 1) + 56) + (stride * (28 + 2 * CHANNELS) + 3) // 4 * 4
+    track = (40 + 3 + SEARCHED + 3) // 4 * 4
+    return CHANNELS * (8 * (WINDOW + stride + 1) + track) + (stride * (28 + 2 * CHANNELS) + 3) // 4 * 4
 
 
 def memory(exported: ExportedModel) -> str:
