@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from labial.reference import published
-from labial.reference.published import Piece, join
 from labial.reference.tables import Equation
 from labial.reference.trajectory import forward, solve, solve_whole, starts
 from oracles import sptk
@@ -150,10 +149,3 @@ def test_rows_sum_to_what_holds_them() -> None:
     settled, rho, kappa = forward(item)
     assert np.allclose(settled, item.mean[0, :, 0]) and np.allclose(solve_whole(item), item.mean[0, :, 0])
     assert np.allclose(rho[-1], 1.0) and not kappa[-2:].any()  # nothing lies beyond the last frame
-
-
-def test_join_crosses_shared_frames_linearly() -> None:
-    """Frames of one unit are its own; shared ones go from the old to the new in even steps, as it is published."""
-    pieces = [Piece(0, 6, 0, 3), Piece(3, 9, 3, 0)]
-    joined = join(pieces, [np.zeros((6, 1)), np.full((6, 1), 4.0)])
-    assert joined[:, 0].tolist() == [0, 0, 0, 1, 2, 3, 4, 4, 4]

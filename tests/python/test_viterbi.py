@@ -11,8 +11,7 @@ from hmmlearn.hmm import GaussianHMM
 
 from labial.fixed import LEAP, SEARCHED
 from labial.quantise import ExportedModel, quantise
-from labial.reference.published import looked_at as published_looked_at
-from labial.reference.published import path_cost, viterbi
+from labial.reference.published import path_cost
 from labial.reference.stream import aims
 from labial.reference.tables import ExportedTables
 from labial.reference.viterbi import Chains, block_at, block_ends, decode, looked_at, normal_chains, window
@@ -249,44 +248,3 @@ def test_utterances_are_searched_as_if_alone() -> None:
         together = decode(chains, targets, ends, 3, lag=lag)
         for target, end, path in zip(targets, ends, together):
             np.testing.assert_array_equal(path, decode(chains, [target], [end], 3, lag=lag)[0])
-
-
-# ---- The published method's search.
-
-
-def random_tables(rng: np.random.Generator, frames: int, channels: int, states: int):
-    transition = -np.log(rng.dirichlet(np.ones(states), (channels, states)))
-    return rng.exponential(2.0, (frames, channels, states)), transition, rng.exponential(1.0, (channels, states))
-
-
-def test_published_search_by_every_path_of_small_cases() -> None:
-    """Catches transitions read [to, from], a forgotten start or last frame, channels that mix."""
-    rng = np.random.default_rng(0)
-    for frames, states in ((1, 3), (2, 4), (5, 3)):
-        emission, transition, initial = random_tables(rng, frames, 4, states)
-        transition[rng.random(transition.shape) < 0.3] = np.inf
-        transition[:, np.arange(states), np.arange(states)] = 1.0
-        path = viterbi(emission, transition, initial)
-        for k in range(4):
-            assert tuple(path[:, k]) == likeliest(emission[:, k], transition[k], initial[k])
-
-
-def test_published_search_agrees_with_hmmlearn() -> None:
-    """hmmlearn's search is another program."""
-    model = hidden_markov_model(1, 12, 0.3)
-    x, _ = model.sample(200, random_state=2)
-    likelihood, expected = model.decode(x)
-    variance = model.covars_[:, 0, 0]
-    emission = 0.5 * ((x - model.means_[:, 0]) ** 2 / variance + np.log(2 * np.pi * variance))
-    with np.errstate(divide="ignore"):
-        transition, initial = -np.log(model.transmat_), -np.log(model.startprob_)
-    path = viterbi(emission, transition, initial)
-    np.testing.assert_array_equal(path, expected)
-    np.testing.assert_allclose(-path_cost(path, emission, transition, initial), likelihood)
-
-
-def test_published_ties_and_edges() -> None:
-    """Equal paths must not depend on the platform; the middle frame of a stride is looked at; no frames are no path."""
-    assert not viterbi(np.zeros((6, 2, 3)), np.zeros((2, 3, 3)), np.zeros((2, 3))).any()
-    assert viterbi(np.zeros((0, 2, 3)), np.zeros((2, 3, 3)), np.zeros((2, 3))).shape == (0, 2)
-    assert published_looked_at(7, 3).tolist() == [1, 4, 6] and published_looked_at(4, 2).tolist() == [1, 3]
