@@ -29,6 +29,13 @@ def memory(exported: ExportedModel) -> str:
     return "\n".join(lines)
 
 
+def loosened(model: Model, exported: ExportedModel) -> int:
+    """States whose delta-delta weight is less of what holds them than trained by more than codes are rounded."""
+    trained = model.state_precision[..., 2] / (model.state_precision[..., 0] + model.state_anchor)
+    kept = weight_value(exported.state_weight[..., 1]) / weight_value(exported.state_hold)
+    return int((kept < 0.85 * trained).sum())
+
+
 def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
     """The loss per channel, and what was dropped or held to a limit."""
     lines = [f"{'quantisation loss, FAP units':<32}{'rms':>8}{'max':>8}{'% of range':>12}{'nats per state':>15}"]
@@ -40,4 +47,6 @@ def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
                  "on average")
     floor = int((weight_value(exported.state_hold) <= WEIGHT_MIN).sum())
     lines.append(f"states held by no more than the least weight: {floor} of {exported.state_hold.size}")
+    lines.append(f"states that are less stiff than trained, within the solver's bounds: {loosened(model, exported)} "
+                 f"of {exported.state_hold.size}")
     return "\n".join(lines)

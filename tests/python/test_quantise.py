@@ -32,6 +32,7 @@ from labial.quantise import FORMAT, LIMITS, ExportedModel, quantise
 from labial.reference.stream import DURATION_MAX
 from labial.reference.trajectory import WINDOW
 from labial.reference.viterbi import LAG
+from labial.report import loosened
 from models import random_model, streams
 
 
@@ -147,6 +148,9 @@ def test_a_state_that_is_too_stiff_is_loosened_alone() -> None:
     precision, anchor = model.state_precision.copy(), model.state_anchor.copy()
     precision[:, 2, 0], anchor[:, 2] = 0.2, 0.2  # hold .4 of 100
     found = weights_of(dataclasses.replace(model, state_precision=precision, state_anchor=anchor))
+    assert loosened(model, quantise(model, "model")) == 0
+    stiff = dataclasses.replace(model, state_precision=precision, state_anchor=anchor)
+    assert loosened(stiff, quantise(stiff, "model")) == CHANNELS  # and the exporter says so
     hold, _, delta, bend = found[2]
     assert 15.0 * hold <= bend <= 16.0 * hold and delta == pytest.approx(bend / 2, rel=1 / 8)
     np.testing.assert_allclose(found[[0, 1, 3]], weights_of(model)[[0, 1, 3]])
