@@ -5,7 +5,7 @@
 #define HEADER_SIZE 32u
 #define CHECKED_FROM 12u /* first byte that the checksum covers */
 
-enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2 };
+enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_TWO_KNOTS = 4 };
 
 typedef char labial_tables_are_packed[sizeof(labial_phoneme_t) == 6 && sizeof(labial_component_t) == 6 &&
                                               sizeof(labial_emission_t) == 6 && sizeof(labial_state_t) == 10
@@ -72,6 +72,7 @@ static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessor
     channel->slope_scale = u16(scales + 4);
     channel->kernel_scale = u16(scales + 6);
     channel->pair_scale = u16(scales + 8);
+    channel->firm = scales[10];
     channel->emissions = (const labial_emission_t *)table(reader, states, sizeof(labial_emission_t));
     channel->states = (const labial_state_t *)table(reader, states, sizeof(labial_state_t));
     channel->edges = (const uint16_t *)table(reader, states * predecessors, 2u);
@@ -89,6 +90,7 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     model->pair_keys = NULL;
     model->pairs = NULL;
     model->floors = NULL;
+    model->contacts = NULL;
     if (optional & HAS_CONTEXTS)
         model->contexts = (const uint8_t *)table(reader, components, 2u * model->class_count);
     model->shapes = (const int8_t *)table(reader, shape, 1u);
@@ -99,10 +101,13 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
             reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
     if (model->pair_count) {
         model->pair_keys = (const uint16_t *)table(reader, model->pair_count, 2u);
-        model->pairs = (const int8_t *)table(reader, (uint32_t)model->pair_count * LABIAL_CHANNELS, 1u);
+        model->pairs = (const int8_t *)table(reader, (uint32_t)model->pair_count * model->pair_knots * LABIAL_CHANNELS,
+                                               1u);
     }
-    if (model->floor_count)
+    if (model->floor_count) {
         model->floors = (const int16_t *)table(reader, (uint32_t)model->floor_count * LABIAL_CHANNELS, 2u);
+        model->contacts = (const uint16_t *)table(reader, model->floor_count, 2u);
+    }
     for (k = 0; k < LABIAL_CHANNELS; k++)
         read_channel(reader, model->state_count, model->predecessors, &channels[k]);
     model->channels = channels;
@@ -123,7 +128,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
         return LABIAL_ERROR_MODEL;
     if (u16(header + 12) != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
-    if (header[28] > (HAS_CONTEXTS | HAS_SLOPES))
+    if (header[28] > (HAS_CONTEXTS | HAS_SLOPES | HAS_TWO_KNOTS))
         return LABIAL_ERROR_MODEL;
     if (u32(header + 8) != checksum(header + CHECKED_FROM, size - CHECKED_FROM))
         return LABIAL_ERROR_MODEL;
@@ -142,6 +147,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     model->kernel_taps = header[25];
     model->kernel_stride = header[26];
     model->kernel_behind = header[27];
+    model->pair_knots = (header[28] & HAS_TWO_KNOTS) ? 2u : 1u;
     model->floor_count = header[29];
     model->pair_count = u16(header + 30);
     reader.data = header;

@@ -41,7 +41,7 @@ static uint32_t pull(uint32_t weight, int32_t mean)
 /* States are in order and in range, and equation 3 is within the limits that lib/trajectory.c needs. */
 static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel)
 {
-    uint32_t least = UINT32_MAX, most = 0, delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
+    uint32_t least = UINT32_MAX, most = labial_weight(channel->firm), delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
     unsigned q, i;
     for (q = 0; q < model->state_count; q++) {
         const labial_state_t *state = &channel->states[q];
@@ -93,7 +93,7 @@ int labial_model_check(const labial_model_t *model)
     if (model->format != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
     if (!model->phonemes || !model->components || !model->shapes || !model->channels ||
-        (model->kernel_taps && !model->kernels) || (model->floor_count && !model->floors) ||
+        (model->kernel_taps && !model->kernels) || (model->floor_count && (!model->floors || !model->contacts)) ||
         (model->pair_count && (!model->pair_keys || !model->pairs)))
         return LABIAL_ERROR_NULL;
     if (model->frames_per_second == 0 || model->frames_per_second > 250u || model->component_count == 0 ||
@@ -118,6 +118,11 @@ int labial_model_check(const labial_model_t *model)
     }
     for (i = 1; i < model->pair_count; i++)
         if (model->pair_keys[i] <= model->pair_keys[i - 1u])
+            return LABIAL_ERROR_MODEL;
+    if (model->pair_knots < 1u || model->pair_knots > 2u || (model->floor_count && LABIAL_REACH < LABIAL_CONTACT_FRAMES))
+        return LABIAL_ERROR_MODEL;
+    for (i = 0; i < model->floor_count; i++)
+        if (model->contacts[i] >> LABIAL_CHANNELS)
             return LABIAL_ERROR_MODEL;
     for (i = 0; i < (size_t)model->floor_count * LABIAL_CHANNELS; i++)
         if (model->floors[i] > LABIAL_POSITION_MAX || model->floors[i] < LABIAL_NO_FLOOR)

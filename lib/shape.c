@@ -1,6 +1,7 @@
 #include "shape.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "fixed.h"
 
@@ -103,9 +104,11 @@ static int32_t scaled(int32_t steps, uint16_t scale)
 
 /* Adds what a neighbour adds to the shape of a phoneme; nothing for pairs that the model does not know. `key` is theirs
  * in `pair_keys`. */
-static void add_pair(const labial_model_t *model, unsigned key, int16_t shape[LABIAL_CHANNELS])
+static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *shape)
 {
-    unsigned low = 0, high = model->pair_count, k;
+    const unsigned knots = model->pair_knots;
+    unsigned low = 0, high = model->pair_count, j, k;
+    const int8_t *row;
     while (low < high) {
         const unsigned middle = low + (high - low) / 2u;
         if (model->pair_keys[middle] < key)
@@ -115,37 +118,83 @@ static void add_pair(const labial_model_t *model, unsigned key, int16_t shape[LA
     }
     if (low == model->pair_count || model->pair_keys[low] != key)
         return;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
-        const int32_t added = scaled(model->pairs[(size_t)low * LABIAL_CHANNELS + k], model->channels[k].pair_scale);
-        shape[k] = (int16_t)labial_clamp(shape[k] + added, LABIAL_POSITION_MAX);
-    }
+    row = model->pairs + (size_t)low * knots * LABIAL_CHANNELS;
+    for (j = 0; j < knots; j++)
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const int32_t added = scaled(*row++, model->channels[k].pair_scale);
+            shape->knots[j][k] = (int16_t)labial_clamp(shape->knots[j][k] + added, LABIAL_POSITION_MAX);
+        }
 }
 
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
-                         int16_t shape[LABIAL_CHANNELS])
+                         labial_shape_t *shape)
 {
     const labial_phoneme_t *phonemes = model->phonemes;
-    mix(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, shape);
+    mix(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, shape->knots[0]);
+    if (model->pair_knots > 1u)
+        memcpy(shape->knots[1], shape->knots[0], sizeof shape->knots[1]);
     add_pair(model, phoneme << 8 | previous, shape);
     add_pair(model, phoneme << 8 | 128u | next, shape);
+    if (model->pair_knots <= 1u)
+        memcpy(shape->knots[1], shape->knots[0], sizeof shape->knots[1]);
 }
 
-void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL_CHANNELS], const uint8_t *labels,
-                         int16_t target[LABIAL_CHANNELS])
+/* The channels in which a phoneme makes contact. */
+static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
+{
+    const unsigned floor = model->phonemes[phoneme].floor;
+    return floor ? model->contacts[floor - 1u] : 0u;
+}
+
+/* Raises those of the channels to a phoneme's floor that lie below it. */
+static void raise(const labial_model_t *model, unsigned phoneme, unsigned channels, int16_t target[LABIAL_CHANNELS])
+{
+    const unsigned floor = model->phonemes[phoneme].floor;
+    unsigned k;
+    if (floor == 0)
+        return;
+    for (k = 0; k < LABIAL_CHANNELS; k++, channels >>= 1) {
+        const int16_t least = model->floors[(floor - 1u) * LABIAL_CHANNELS + k];
+        if ((channels & 1u) && target[k] < least)
+            target[k] = least;
+    }
+}
+
+/* Contact of a phoneme and of short ones beside it; returns the channels. */
+static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, int16_t target[LABIAL_CHANNELS])
+{
+    const uint8_t *labels = taken->labels;
+    const unsigned own = contacts_of(model, labels[0]);
+    unsigned before = 0, after = 0; /* those of a phoneme that follows, and that went before */
+    if (labels[1] != labels[0] && !(labels[1] == labels[2] && labels[2] == labels[3]))
+        before = contacts_of(model, labels[1]);
+    if (labels[-1] != labels[0] && labels[-1] != labels[-2])
+        after = contacts_of(model, labels[-1]);
+    raise(model, labels[0], taken->is_open ? ~own : ~0u, target);
+    raise(model, labels[1], before, target);
+    raise(model, labels[-1], after, target);
+    return (taken->is_open ? 0u : own) | before | after;
+}
+
+uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
+                             int16_t target[LABIAL_CHANNELS])
 {
     const int8_t *rows[LABIAL_KERNEL_TAPS_MAX]; /* what each tap's phoneme adds */
-    const unsigned taps = model->kernel_taps, floor = model->phonemes[*labels].floor;
-    const int16_t *least = floor ? model->floors + (floor - 1u) * LABIAL_CHANNELS : NULL;
+    const uint8_t *labels = taken->labels;
+    const unsigned taps = model->kernel_taps;
     int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, as no pointer may pass the array's end */
     unsigned k, tap;
     for (tap = 0; tap < taps; tap++, lag += model->kernel_stride)
         rows[tap] = model->kernels + ((size_t)labels[lag] * taps + tap) * LABIAL_CHANNELS;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
-        int32_t sum = 0;
+        const int32_t start = shape->knots[0][k];
         const int8_t *const *row = rows;
+        int32_t sum = 0;
         for (tap = taps; tap > 0; tap--)
             sum += (*row++)[k];
-        sum = labial_clamp(shape[k] + scaled(sum, model->channels[k].kernel_scale), LABIAL_POSITION_MAX);
-        target[k] = (int16_t)(least && sum < least[k] ? least[k] : sum);
+        sum = start + (((shape->knots[1][k] - start) * (int32_t)taken->share + 8192) >> 14) +
+              scaled(sum, model->channels[k].kernel_scale);
+        target[k] = (int16_t)labial_clamp(sum, LABIAL_POSITION_MAX);
     }
+    return (uint16_t)(model->floor_count ? touch(model, taken, target) : 0u);
 }

@@ -4,21 +4,21 @@
 #ifndef LABIAL_SHAPE_H
 #define LABIAL_SHAPE_H
 
-#include "labial/model.h"
+#include "labial/labial.h"
+#include "units.h"
 
 /*
- * Shape selection (paper, eq. 2; section 2 of the method for context and soft selection): the positions of `phoneme`
- * lasting `ms` milliseconds between the given neighbours, with what these add to it as a pair.
+ * Shape selection (paper, eq. 2; section 2 of the method for context and soft selection): the shape of `phoneme` lasting
+ * `ms` milliseconds between the given neighbours, with what these add to it as a pair.
  */
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
-                         int16_t shape[LABIAL_CHANNELS]);
+                         labial_shape_t *shape);
 
 /*
- * The target of one frame: the phoneme's shape and what the temporal kernels of its neighbours add, but not below the
- * phoneme's floor. `labels` points to the frame's phoneme in an array that reaches as far to both sides as the kernels
- * do.
+ * The target of a frame that was taken: its phoneme's shape and what the temporal kernels of its neighbours add, but not
+ * below the phoneme's floor, nor below that of a short contact beside it. Returns the channels that are in contact.
  */
-void labial_shape_target(const labial_model_t *model, const int16_t shape[LABIAL_CHANNELS], const uint8_t *labels,
-                         int16_t target[LABIAL_CHANNELS]);
+uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
+                             int16_t target[LABIAL_CHANNELS]);
 
 #endif

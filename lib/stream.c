@@ -201,7 +201,7 @@ static void select(labial_t *stream)
     labial_spoken_t spoken;
     if (!stream->selected && labial_units_next(&stream->units, stream->models, stream->ended, &spoken)) {
         labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
-                            stream->next_shape);
+                            &stream->next_shape);
         stream->selected = 1;
     }
 }
@@ -211,10 +211,10 @@ static void enter(labial_t *stream, const labial_taken_t *taken)
 {
     labial_frame_t *frame = &lay_out(stream).frames[stream->frame_place];
     if (taken->is_first) {
-        memcpy(stream->shape, stream->next_shape, sizeof stream->shape);
+        stream->shape = stream->next_shape;
         stream->selected = 0;
     }
-    labial_shape_target(stream->models[taken->slot], stream->shape, taken->labels, frame->target);
+    frame->contacts = labial_shape_target(stream->models[taken->slot], &stream->shape, taken, frame->target);
     frame->slot = taken->slot;
     frame->marks = taken->marks;
     if ((taken->marks & LABIAL_BEGINS) && (stream->entered || stream->resumed))
@@ -315,7 +315,8 @@ static void solve(const turn_t *turn, int age, int last, int searched)
         if (state != asked || (frame->marks & LABIAL_BEGINS))
             labial_trajectory_ask(&stream->models[frame->slot]->channels[turn->channel], state, &ask);
         asked = state;
-        labial_trajectory_row(&turn->track->solver, &ask, frame->target[turn->channel], frame->marks, before, own);
+        labial_trajectory_row(&turn->track->solver, &ask, frame->target[turn->channel],
+                              frame->contacts >> turn->channel & 1, frame->marks, before, own);
         if (age == last)
             return;
         before = own;
@@ -412,7 +413,7 @@ static int deliver_due(labial_t *stream)
             const int32_t held = stream->held[k] + stream->earlier[k] - (stream->earlier[k] >> stream->fade_step);
             value = held + (((value - held) * labial_ease(stream->fade_step, FADE + 1u) + 8192) >> 14);
         } else {
-            stream->earlier[k] = stream->pose[k];
+            stream->earlier[k] = stream->begun ? stream->pose[k] : (int16_t)value; /* nothing moved to a first frame */
         }
         stream->pose[k] = (int16_t)labial_clamp(value, INT16_MAX);
     }

@@ -128,13 +128,14 @@ void labial_trajectory_ask(const labial_channel_t *channel, unsigned number, lab
     ask->position = ((int32_t)channel->centre + state->mean[0]) * 256;
     ask->share = (int32_t)state->share + (state->share >> 7);
     ask->hold = (int32_t)labial_weight(state->hold);
+    ask->firm = (int32_t)labial_weight(channel->firm);
     ask->delta = (int32_t)labial_weight(state->weight[0]);
     ask->delta2 = (int32_t)labial_weight(state->weight[1]);
     ask->delta_pull = 2 * ask->delta * state->mean[1];
     ask->delta2_pull = ask->delta2 * state->mean[2];
 }
 
-void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, unsigned marks,
+void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact, unsigned marks,
                            labial_factors_t *before, labial_factors_t *own)
 {
     int32_t delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
@@ -150,9 +151,9 @@ void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int
         solver->pull += delta2_pull - delta_pull;
         factor(solver, delta2 - delta, delta, before);
     }
-    solver->hold = (uint16_t)ask->hold;
+    solver->hold = (uint16_t)(contact && ask->firm > ask->hold ? ask->firm : ask->hold);
     solver->delta = (uint16_t)delta;
-    solver->position = ask->position + (position - ask->origin) * ask->share;
+    solver->position = ask->position + (position - ask->origin) * (contact ? 256 : ask->share);
     solver->pull = solver->next_pull - 2 * delta2_pull;
     solver->next_pull = delta2_pull + delta_pull;
     if (marks & LABIAL_ENDS)

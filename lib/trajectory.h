@@ -19,6 +19,7 @@ typedef struct {
     int32_t origin;      /* the target, a position, at which the anchor agrees with it */
     int32_t share;       /* of the anchor in `hold`, in 1/256 */
     int32_t hold;        /* weight */
+    int32_t firm;        /* the least weight of a frame in contact */
     int32_t delta;       /* a quarter of its weight */
     int32_t delta2;      /* weight of delta-delta */
     int32_t delta_pull;  /* twice `delta` times delta's mean, Q4 */
@@ -29,11 +30,11 @@ typedef struct {
 void labial_trajectory_ask(const labial_channel_t *channel, unsigned state, labial_ask_t *ask);
 
 /*
- * Takes up the row of a frame, whose target is `position`; `marks` say whether it is the solution's first or last. Every
+ * Takes up the row of a frame, whose target is `position`; in `contact` it is held there, firmly. `marks` say whether it is the solution's first or last. Every
  * row but the first factors the frame before it, for which it needs `before`, its place in the ring; the last one
  * factors its own frame too, `own`.
  */
-void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, unsigned marks,
+void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact, unsigned marks,
                            labial_factors_t *before, labial_factors_t *own);
 
 /*

@@ -51,10 +51,21 @@ int labial_units_hold(const labial_units_t *units, unsigned slot)
     return 0;
 }
 
-/* Frames that the model's kernels look ahead. */
+/* Frames that the model looks ahead, with its kernels and for short contacts. */
 static unsigned look_ahead(const labial_model_t *model)
 {
-    return model->kernel_taps ? (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride : 0u;
+    const unsigned reach =
+        model->kernel_taps ? (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride : 0u;
+    const unsigned contact = model->floor_count ? LABIAL_CONTACT_FRAMES : 0u;
+    return reach > contact ? reach : contact;
+}
+
+/* The middle of frame `frame` of `frames` from 0 to 1, Q14. */
+static uint16_t share_of(uint32_t frame, uint32_t frames)
+{
+    for (; frames >= 65536u; frames >>= 1)
+        frame >>= 1;
+    return (uint16_t)(((2u * frame + 1u) << 13) / frames);
 }
 
 /* Frames of the first of the two phonemes that a long silence is taken as; 0 for all others. */
@@ -106,8 +117,8 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     return from < head || i + 1u < units->count || ended;
 }
 
-/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` behind it; silence where there is
- * none. */
+/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` behind it; silence from where the
+ * solution ends. */
 static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsigned ahead)
 {
     uint8_t *label = units->labels + LABIAL_REACH;
@@ -117,14 +128,14 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
         memset(units->labels, silence, LABIAL_REACH);
     else
         memmove(units->labels, units->labels + 1, LABIAL_REACH);
-    for (ahead++; ahead > 0 && i < units->count;) {
+    for (ahead++; ahead > 0 && i < units->count; i++) {
         const labial_segment_t *segment = segment_at(units, i);
-        const uint8_t phoneme = phoneme_in(segment, slot, silence);
+        if (segment->slot != slot)
+            break;
         if (i > 0)
             left = segment->frames;
         for (; left > 0 && ahead > 0; left--, ahead--)
-            *label++ = phoneme;
-        i++;
+            *label++ = segment->phoneme;
     }
     for (; ahead > 0; ahead--)
         *label++ = silence;
@@ -144,7 +155,7 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
 {
     const labial_segment_t *segment = segment_at(units, 0), *next = NULL;
     const labial_model_t *model;
-    uint32_t head;
+    uint32_t head, begin, frames;
     unsigned ahead;
 
     if (units->count == 0)
@@ -161,6 +172,10 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     taken->labels = units->labels + LABIAL_REACH;
     taken->slot = segment->slot;
     taken->is_first = units->taken == 0 || units->taken == head;
+    begin = units->taken < head ? 0u : head;
+    frames = (units->taken < head ? head : segment->frames) - begin;
+    taken->share = share_of(units->taken - begin, frames);
+    taken->is_open = frames >= LABIAL_CONTACT_LONG && segment->frames - units->taken > LABIAL_CONTACT_LAST;
     taken->marks = (uint8_t)(units->begins ? LABIAL_BEGINS : 0);
     units->begins = 0;
     units->taken++;

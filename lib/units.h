@@ -28,8 +28,10 @@ typedef struct {
 typedef struct {
     const uint8_t *labels; /* its phoneme, among those of the frames around it, LABIAL_REACH to either side, of which
                             * those that the kernels reach count; valid until the next is taken */
+    uint16_t share;        /* how far it lies from the start of its phoneme to its end, Q14 */
     uint8_t slot;          /* its model */
     uint8_t is_first;      /* of its phoneme */
+    uint8_t is_open;       /* it lies in a phoneme that swallowed a pause, before the closing */
     uint8_t marks;
 } labial_taken_t;
 

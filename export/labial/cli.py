@@ -1,4 +1,5 @@
-"""The command ``labial``: train, synth, export, check, evaluate, laughter-corpus, rig, plot, page, record."""
+"""The command ``labial``: train, synth, timings, align, export, check, evaluate, laughter-corpus, rig, plot,
+page, record."""
 
 from __future__ import annotations
 
@@ -53,7 +54,9 @@ def parser() -> argparse.ArgumentParser:
     synth = commands.add_parser("synth", help="synthesise frames with the float64 reference")
     synth.add_argument("model", metavar="MODEL.npz")
     synth.add_argument("phones", metavar="PHONES",
-                       help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur")
+                       help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur, JSON of "
+                       "Piper, Azure, Polly, HeadTTS or Kokoro")
+    _add_source(synth)
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
                        help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
@@ -61,6 +64,22 @@ def parser() -> argparse.ArgumentParser:
     synth.add_argument("--whole", action="store_true",
                        help="search and solve the whole utterance at once, not as the run-time does")
     synth.set_defaults(run=_synth)
+
+    timings = commands.add_parser("timings", help="turn phoneme timings of any format into a .lab")
+    timings.add_argument("phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_source(timings)
+    _add_labels(timings)
+    timings.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
+    timings.set_defaults(run=_timings)
+
+    align = commands.add_parser("align", help="find the phonemes of a recording (English)")
+    align.add_argument("sound", metavar="SOUND", help="WAV, FLAC, Ogg, MP3; any rate and number of channels")
+    said = align.add_mutually_exclusive_group()
+    said.add_argument("--text", help="what is said; without it the likeliest words are looked for, which is less sure")
+    said.add_argument("--text-file", metavar="FILE", help="a file with the text, UTF-8")
+    align.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
+    align.add_argument("--quiet", action="store_true", help="no progress bar")
+    align.set_defaults(run=_align)
 
     export = commands.add_parser("export", help="write a model as C tables")
     export.add_argument("model", metavar="MODEL.npz")
@@ -74,6 +93,7 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("model", metavar="MODEL.npz")
     check.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
     check.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
+    _add_source(check)
     _add_labels(check)
     _add_export_options(check)
     check.set_defaults(run=_check)
@@ -111,6 +131,7 @@ def parser() -> argparse.ArgumentParser:
     plot = commands.add_parser("plot", help="draw trajectories with their phonemes")
     plot.add_argument("frames", metavar="FRAMES", nargs="+", help="frames files (.csv) or .fap; several are overlaid")
     plot.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_source(plot)
     _add_labels(plot)
     plot.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
     plot.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one panel "
@@ -120,6 +141,7 @@ def parser() -> argparse.ArgumentParser:
     page = commands.add_parser("page", help="write a page that plays motion")
     page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv) or .fap")
     page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    _add_source(page)
     _add_labels(page)
     page.add_argument("--audio", metavar="WAV", help="sound that is played in step")
     page.add_argument("--title", help="the file's name without it")
@@ -140,10 +162,17 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _add_source(command: argparse.ArgumentParser) -> None:
+    from labial.corpus.formats import READERS
+
+    command.add_argument("--from", dest="source", choices=tuple(READERS), metavar="FORMAT",
+                         help=f"format of the timings: {', '.join(READERS)} (told by the file)")
+
+
 def _add_labels(command: argparse.ArgumentParser) -> None:
     command.add_argument("--labels", choices=("auto", "arpabet", "ipa", "xsampa"), default="auto",
                          help="what set the phonemes' labels are of; auto takes any, and where they differ X-SAMPA "
-                         "in .pho and MaryTTS, elsewhere ARPABET (auto)")
+                         "in .pho and MaryTTS, the IPA of Piper, HeadTTS and Kokoro, elsewhere ARPABET (auto)")
 
 
 def _add_export_options(command: argparse.ArgumentParser) -> None:
@@ -190,7 +219,7 @@ def _synth(options: argparse.Namespace) -> int:
     from labial.reference.tables import FloatTables
 
     model = load(options.model)
-    tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels)
+    tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels, options.source)
     whole = options.whole
     frames = published.synthesise(tables, phonemes, whole=True) if whole else stream.synthesise(tables, phonemes)
     name = Path(options.model).stem
@@ -200,6 +229,34 @@ def _synth(options: argparse.Namespace) -> int:
     else:
         WRITERS[options.to](sys.stdout, frames, model.fps, name)
     return 0
+
+
+def _timings(options: argparse.Namespace) -> int:
+    from labial.corpus.formats import as_lab
+
+    _put(as_lab(options.phones, options.labels, options.source), options.output)
+    return 0
+
+
+def _align(options: argparse.Namespace) -> int:
+    try:
+        from labial.align.command import run
+    except ModuleNotFoundError as error:
+        raise LabialError(f"aligning needs the package {error.name}: install labial[align]") from None
+
+    text = run(options.sound, options.text, options.text_file,
+               progress=not options.quiet and sys.stderr.isatty())
+    _put(text, options.output)
+    return 0
+
+
+def _put(text: str, path: Optional[str]) -> None:
+    """Writes to a file, or to standard output without one."""
+    if path:
+        with open(path, "w", encoding="utf-8", newline="\n") as out:
+            out.write(text)
+    else:
+        sys.stdout.write(text)
 
 
 def _widened(model: Model, factor: float) -> Model:
@@ -236,7 +293,7 @@ def _check(options: argparse.Namespace) -> int:
 
     model = _widened(load(options.model), options.amplitude)
     exported = quantise(model, "checked_model", predecessors=options.predecessors)
-    streams = [read_stream(path, model, options.labels) for path in options.phones]
+    streams = [read_stream(path, model, options.labels, options.source) for path in options.phones]
     comparison = compare(model, exported, streams, options.library)
     print(comparison.table())
     failures = comparison.failures()
@@ -286,7 +343,7 @@ def _plot(options: argparse.Namespace) -> int:
         raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
     from labial.see.motion import read_bands, read_motions
 
-    plot(read_motions(options.frames), read_bands(options.phones, options.labels), options.output,
+    plot(read_motions(options.frames), read_bands(options.phones, options.labels, options.source), options.output,
          options.channels or DEFAULT)
     return 0
 
@@ -295,7 +352,8 @@ def _page(options: argparse.Namespace) -> int:
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
-    text = page(read_motion(options.frames), read_bands(options.phones, options.labels), options.audio, options.title)
+    bands = read_bands(options.phones, options.labels, options.source)
+    text = page(read_motion(options.frames), bands, options.audio, options.title)
     with open(options.output, "w", encoding="utf-8", newline="\n") as out:
         out.write(text)
     return 0

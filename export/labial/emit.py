@@ -17,6 +17,7 @@ from labial import __version__
 from labial.errors import ModelError
 from labial.faps import CHANNELS, FAP_NAMES
 from labial.quantise import FORMAT, ExportedModel
+from labial.reference.contact import FRAMES
 
 _C_KEYWORDS = frozenset(
     """alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const constexpr
@@ -61,7 +62,7 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
         **{name: 0 if table is None else int(table.size) for name, table in optional.items()},
         "kernels": int(model.kernels.size),
         "pairs": int(model.pairs.size) + 2 * len(model.pair_keys),
-        "floors": 2 * CHANNELS * (len(model.floors) - 1),
+        "floors": (2 * CHANNELS + 2) * (len(model.floors) - 1),
         "states": CHANNELS * states * 16,
         "transitions": 2 * int(model.edges.size),
         "descriptors": 24 * CHANNELS + 60,
@@ -96,11 +97,12 @@ def _comment(model: ExportedModel, what: str) -> str:
 def _reach_check(model: ExportedModel) -> str:
     """What refuses to compile where the library's memory of phonemes is too short for the model's kernels."""
     reach = model.kernel_stride * max(model.kernel_behind, model.kernels.shape[1] - 1 - model.kernel_behind)
+    reach = max(reach, FRAMES if len(model.floors) > 1 else 0)
     if reach <= 0:
         return ""
     return f"""
 #if LABIAL_REACH < {reach}
-#error "{model.name} needs LABIAL_REACH of {reach} at least: its kernels reach so far."
+#error "{model.name} needs LABIAL_REACH of {reach} at least: its targets depend on what is so far away."
 #endif
 """
 
@@ -162,7 +164,8 @@ def source(model: ExportedModel) -> str:
                 ("kernels", "int8_t", model.kernels if model.kernels.size else None),
                 ("pair_keys", "uint16_t", model.pair_keys if len(model.pair_keys) else None),
                 ("pairs", "int8_t", model.pairs if len(model.pair_keys) else None),
-                ("floors", "int16_t", model.floors[1:] if len(model.floors) > 1 else None))
+                ("floors", "int16_t", model.floors[1:] if len(model.floors) > 1 else None),
+                ("contacts", "uint16_t", model.contacts[1:] if len(model.floors) > 1 else None))
     for name, kind, table in optional:
         if table is not None:
             parts.append("\n" + _table(f"{kind} {name}", table))
@@ -179,7 +182,7 @@ def source(model: ExportedModel) -> str:
         parts.append(_table(f"uint16_t edges_{k}", model.edges[k]))
     channels = ",\n".join(
         f"    {{ {model.centre[k]}, {model.shape_scale[k]}, {model.slope_scale[k]}, {model.kernel_scale[k]}, "
-        f"{model.pair_scale[k]}, "
+        f"{model.pair_scale[k]}, {model.firm[k]}, "
         f"emissions_{k}, states_{k}, edges_{k} }}"
         for k in range(CHANNELS))
     parts.append(f"\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {{\n{channels}\n}};\n")
@@ -200,6 +203,7 @@ const labial_model_t {model.name} = {{
     {model.kernel_stride}, /* kernel_stride */
     {model.kernel_behind}, /* kernel_behind */
     {len(model.floors) - 1}, /* floor_count */
+    {model.pairs.shape[1]}, /* pair_knots */
     {len(model.pair_keys)}, /* pair_count */
     phonemes,
     components,
@@ -210,6 +214,7 @@ const labial_model_t {model.name} = {{
     {names["pair_keys"]}, /* pair_keys */
     {names["pairs"]}, /* pairs */
     {names["floors"]}, /* floors */
+    {names["contacts"]}, /* contacts */
     channels
 }};
 """)
@@ -276,7 +281,7 @@ const labial_names_t {model.name}_names = {{ {size}, {len(model.phonemes)}, entr
 def blob(model: ExportedModel) -> bytes:
     """NAME.lbm: the binary form that ``labial_model_load`` reads (``include/labial/blob.h``)."""
     states, predecessors = model.edges.shape[1:]
-    optional = (model.contexts is not None) | (model.slopes is not None) << 1
+    optional = (model.contexts is not None) | (model.slopes is not None) << 1 | (model.pairs.shape[1] == 2) << 2
     parts: List[bytes] = []
 
     def add(data: bytes) -> None:
@@ -296,9 +301,10 @@ def blob(model: ExportedModel) -> bytes:
     table(model.pair_keys, "<u2")
     table(model.pairs, "i1")
     table(model.floors[1:], "<i2")
+    table(model.contacts[1:], "<u2")
     for k in range(CHANNELS):
-        add(struct.pack("<hHHHHH", model.centre[k], model.shape_scale[k], model.slope_scale[k], model.kernel_scale[k],
-                        model.pair_scale[k], 0))
+        add(struct.pack("<hHHHHBB", model.centre[k], model.shape_scale[k], model.slope_scale[k],
+                        model.kernel_scale[k], model.pair_scale[k], model.firm[k], 0))
         add(b"".join(struct.pack("<hHBB", *row) for row in zip(
             model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k])))
         add(b"".join(struct.pack("<hhhBBBB", *mean, hold, share, *weight) for mean, hold, share, weight in zip(

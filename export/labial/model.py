@@ -63,6 +63,8 @@ class Model:
     pair_shape: np.ndarray  #: (R, K, 13) FAP that such a neighbour adds to the phoneme's shape: all through (K = 1), or
     #: at its start and at its end, between which frames interpolate (K = 2)
     floor: np.ndarray  #: (P, 13) FAP that the target does not fall below in the phoneme; -inf where none
+    contact: np.ndarray  #: (P, 13) bool, where that is contact, as of the lips in p, b, m
+    firm: np.ndarray  #: (13,) precision that holds a frame in contact at least
     decode_mean: np.ndarray  #: (13, Q) static mean that the Viterbi search sees, FAP
     decode_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
     state_mean: np.ndarray  #: (13, Q, 3) of m, delta m, delta-delta m for equation 3, FAP (per frame, per frame^2)
@@ -122,6 +124,8 @@ def check(model: Model) -> None:
         "pair_key": (pairs, 3),
         "pair_shape": (pairs, knots, CHANNELS),
         "floor": (p, CHANNELS),
+        "contact": (p, CHANNELS),
+        "firm": (CHANNELS,),
         "decode_mean": (CHANNELS, q),
         "decode_variance": (CHANNELS, q),
         "state_mean": (CHANNELS, q, 3),
@@ -147,6 +151,8 @@ def check(model: Model) -> None:
     for name in ("duration_variance", "decode_variance", "state_precision"):
         _expect((getattr(model, name) > 0).all(), f"{name} must be positive")
     _expect((model.state_anchor >= 0).all(), "state_anchor must not be negative")
+    _expect((model.firm >= 0).all(), "firm must not be negative")
+    _expect(not (np.asarray(model.contact, dtype=bool) & np.isneginf(model.floor)).any(), "contact without a floor")
     _expect((np.diff(model.decode_mean, axis=1) >= 0).all(), "decode_mean is not ascending, states are not in order")
     _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
     _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import List, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from labial.corpus.episode import Segment
-from labial.corpus.timings import phoneme_segments, read_timings
+from labial.corpus.formats import read_timings
+from labial.corpus.timings import phoneme_segments
 from labial.model import Model
 from labial.phonesets import AUTO, PhoneSet, aliases_for
 
@@ -29,14 +30,17 @@ def phone_set(model: Model) -> PhoneSet:
     )
 
 
-def read_stream(path: Union[str, os.PathLike], model: Model, labels: str = AUTO) -> Stream:
-    """Reads phoneme timings of any format that corpora come in; gaps are silence. `labels` says what set the labels are
-    of: "arpabet", "ipa", "xsampa" or "auto".
+def read_stream(
+    path: Union[str, os.PathLike], model: Model, labels: str = AUTO, source: Optional[str] = None
+) -> Stream:
+    """Reads phoneme timings of the format `source`, or of any that :func:`read_timings` tells; gaps are silence.
+    `labels` says what set the labels are of: "arpabet", "ipa", "xsampa" or "auto".
 
     The first phoneme lasts from time 0. Raises DataError, which names the file and the line, for what is malformed;
     labels that the model does not know are the nearest, with one warning each.
     """
-    return stream_of(phoneme_segments(path, read_timings(path), phone_set(model), False, labels), model, 0)
+    segments = read_timings(path, source)
+    return stream_of(phoneme_segments(path, segments, phone_set(model), False, labels), model, 0)
 
 
 def stream_of(segments: Sequence[Segment], model: Model, begin: int) -> Stream:

@@ -74,10 +74,12 @@ class ExportedModel:
     kernel_stride: int
     kernel_behind: int
     pair_keys: np.ndarray  #: (R,) ascending
-    pairs: np.ndarray  #: (R, 13)
+    pairs: np.ndarray  #: (R, K', 13)
     floor: np.ndarray  #: (P,) row of `floors`
     floors: np.ndarray  #: (1 + F, 13); row 0, which the C tables leave out, is NO_FLOOR throughout
+    contacts: np.ndarray  #: (1 + F,), bit k: channel k's floor is contact
     centre: np.ndarray  #: (13,)
+    firm: np.ndarray  #: (13,) codes
     shape_scale: np.ndarray  #: (13,)
     slope_scale: np.ndarray  #: (13,)
     kernel_scale: np.ndarray  #: (13,)
@@ -115,16 +117,14 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
     slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
     kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
-    if model.pair_shape.shape[1] != 1:
-        raise ModelError("pairs of two knots cannot be exported")
-    pairs, pair_scale = _steps(model.pair_shape[:, 0], 65535, "pairs")
+    pairs, pair_scale = _steps(model.pair_shape, 65535, "pairs")
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
-    floor, floors = _floors(model, centre)
+    floor, floors, contacts = _floors(model, centre)
     state_mean = _positions(
         model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
     )
-    hold, weights = state_weights(model, state_mean)
+    hold, weights, firm = state_weights(model, state_mean)
     names = phone_set(model)
     return ExportedModel(
         name=name,
@@ -155,7 +155,9 @@ def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSOR
         pairs=pairs[order],
         floor=floor,
         floors=floors,
+        contacts=contacts,
         centre=centre,
+        firm=firm,
         shape_scale=shape_scale,
         slope_scale=slope_scale,
         kernel_scale=kernel_scale,
@@ -181,7 +183,7 @@ def _check_limits(model: Model) -> None:
         "states": model.log_initial.shape[1],
         "taps": len(model.kernel_lag),
         "stride": model.search_stride,
-        "reach": int(np.abs(model.kernel_lag).max()) if len(model.kernel_lag) else 0,
+        "reach": max([*np.abs(model.kernel_lag), 0]),
     }
     for what, count in counts.items():
         if count > LIMITS[what]:
@@ -226,18 +228,21 @@ def _steps(values: np.ndarray, largest: int, what: str) -> Tuple[np.ndarray, np.
     return np.clip(steps, -127, 127), scale
 
 
-def _floors(model: Model, centre: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Row (P,) of each phoneme's floor, and the rows (1 + F, 13), positions."""
+def _floors(model: Model, centre: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Row (P,) of each phoneme's floor, the rows (1 + F, 13), positions, and the channels in contact (1 + F,)."""
+    touching = np.asarray(model.contact).astype(np.int64) @ (1 << np.arange(CHANNELS))
+    contacts = [0]
     position = np.clip(np.rint(model.floor * POSITION_SCALE) - centre, -POSITION_MAX, POSITION_MAX)
     position = np.where(np.isneginf(model.floor), NO_FLOOR, position)
     rows = np.full((1, CHANNELS), NO_FLOOR, dtype=np.int64)
     index = np.zeros(len(model.phonemes), dtype=np.int64)
     for p, own in enumerate(position.astype(np.int64)):
-        same = np.flatnonzero((rows == own).all(axis=1))
+        same = np.flatnonzero((rows == own).all(axis=1) & (np.array(contacts) == touching[p]))
         if not len(same):
             rows, same = np.vstack([rows, own]), np.array([len(rows)])
+            contacts.append(int(touching[p]))
         index[p] = same[0]
-    return index, rows
+    return index, rows, np.array(contacts, dtype=np.int64)
 
 
 def _costs(log_probability: np.ndarray, largest: int) -> np.ndarray:
@@ -305,15 +310,16 @@ def _stationary(log_transition: np.ndarray) -> np.ndarray:
     return share
 
 
-def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Codes of what holds the states (13, Q) and of their moving weights (13, Q, 2), a quarter of delta's and
-    delta-delta's; `state_mean` (13, Q, 3) in positions.
+def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Codes of what holds the states (13, Q), of their moving weights (13, Q, 2), a quarter of delta's and
+    delta-delta's, and of what holds frames in contact (13,); `state_mean` (13, Q, 3) in positions.
 
     Each channel's precisions are scaled as high as the largest diagonal element allows, when states that exceed another
     of equation 3's bounds have been brought within it one by one.
     """
     hold = np.zeros(model.state_anchor.shape, dtype=np.int64)
     moving = np.zeros((*hold.shape, 2), dtype=np.int64)
+    firm = np.zeros(CHANNELS, dtype=np.int64)
     for k in range(CHANNELS):
         held = model.state_precision[k, :, 0] + model.state_anchor[k]
         tied = model.state_precision[k, :, 1:] * np.array([0.25, 1.0])
@@ -325,7 +331,9 @@ def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.
             if most <= WEIGHT_SUM_MAX:
                 break
             scale *= min(WEIGHT_SUM_MAX / most, 0.99)
-    return hold, moving
+        tied_most = most - weight_value(hold[k]).max()
+        firm[k] = weight_code_below(np.array(min(model.firm[k] * scale, WEIGHT_SUM_MAX - tied_most)))
+    return hold, moving, firm
 
 
 def _diagonal(hold: np.ndarray, moving: np.ndarray) -> float:

@@ -135,6 +135,11 @@ typedef struct {
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
 
+/* The shape of a phoneme (shape.c): at its start and at its end, positions. */
+typedef struct {
+    int16_t knots[2][LABIAL_CHANNELS];
+} labial_shape_t;
+
 /* States that a step of the search looks at; the exporter knows the number too. */
 #define LABIAL_SEARCHED 8
 
@@ -171,6 +176,7 @@ typedef struct {
 /* A frame that was taken (stream.c). */
 typedef struct {
     int16_t target[LABIAL_CHANNELS]; /* positions */
+    uint16_t contacts;               /* bit k: channel k is in contact */
     uint8_t slot;                    /* its model */
     uint8_t marks;
 } labial_frame_t;
@@ -206,8 +212,8 @@ typedef struct {
     const labial_model_t *models[LABIAL_MODELS];
     labial_frame_fn callback;
     void *user;
-    int16_t shape[LABIAL_CHANNELS];   /* of the phoneme that the latest frame belongs to, positions */
-    int16_t next_shape[LABIAL_CHANNELS];
+    labial_shape_t shape; /* of the phoneme that the latest frame belongs to */
+    labial_shape_t next_shape;
     int16_t pose[LABIAL_CHANNELS];    /* the frame delivered last, Q4 FAP */
     int16_t earlier[LABIAL_CHANNELS]; /* the one before it; while something fades, how far it moved on */
     int16_t held[LABIAL_CHANNELS];    /* the pose that fades */

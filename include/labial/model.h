@@ -39,8 +39,15 @@ extern "C" {
 #define LABIAL_NO_FLOOR (-16384)         /* in `floors`: below every position */
 #define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
 
+/* Frames that a contact lasts at least: a shorter phoneme borrows the frame before it, and if it has one frame the one
+ * behind it as well. One of LABIAL_CONTACT_LONG frames or more has swallowed a pause, and closes for its last
+ * LABIAL_CONTACT_LAST frames only. */
+#define LABIAL_CONTACT_FRAMES 3
+#define LABIAL_CONTACT_LONG 15
+#define LABIAL_CONTACT_LAST 8
+
 /* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */
-#define LABIAL_WEIGHT_SUM_MAX 16383 /* the largest `hold` + twice the largest weight[0] + six times the largest weight[1] */
+#define LABIAL_WEIGHT_SUM_MAX 16383 /* the largest `hold` or `firm` + twice the largest weight[0] + six times the largest weight[1] */
 #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
 #define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
 #define LABIAL_PULL_MAX 65535       /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over the least `hold` */
@@ -87,6 +94,7 @@ typedef struct {
     uint16_t slope_scale;  /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
     uint16_t kernel_scale; /* positions per step of `kernels`, Q8 */
     uint16_t pair_scale;   /* positions per step of `pairs`, Q8 */
+    uint8_t firm;          /* weight that holds a frame in contact at least; 0 where there is none */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
     const uint16_t *edges;              /* state_count x predecessors */
@@ -111,6 +119,7 @@ typedef struct {
     uint8_t kernel_behind;      /* taps that lie before the frame: tap i is at (i - kernel_behind) * kernel_stride,
                                  * LABIAL_REACH frames away at most; 0 when L is 0 */
     uint8_t floor_count;        /* F: rows of `floors`, 0 .. 255 */
+    uint8_t pair_knots;         /* K': 1, or 2 where pairs move from a phoneme's start to its end */
     uint16_t pair_count;        /* R: rows of `pairs` */
     const labial_phoneme_t *phonemes;     /* P */
     const labial_component_t *components; /* N */
@@ -120,9 +129,13 @@ typedef struct {
     const int8_t *kernels;     /* P x L x 13, in steps of kernel_scale; null when L is 0 */
     const uint16_t *pair_keys; /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one;
                                 * null when R is 0 */
-    const int8_t *pairs;       /* R x 13, what such a neighbour adds to the phoneme's shape, in steps of pair_scale */
-    const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below: how p, b, m close the
-                                * lips whatever their neighbours do; LABIAL_NO_FLOOR where none; null when F is 0 */
+    const int8_t *pairs;       /* R x K' x 13, what such a neighbour adds to the phoneme's shape, in steps of
+                                * pair_scale */
+    const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
+                                * none; null when F is 0 */
+    const uint16_t *contacts;  /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
+                                * neighbours do: it is held firmly, and for LABIAL_CONTACT_FRAMES at least; null when F
+                                * is 0 */
     const labial_channel_t *channels; /* 13 */
 } labial_model_t;
 

@@ -14,7 +14,7 @@
 #endif
 
 #if LABIAL_REACH < 18
-#error "laughter_synthetic needs LABIAL_REACH of 18 at least: its kernels reach so far."
+#error "laughter_synthetic needs LABIAL_REACH of 18 at least: its targets depend on what is so far away."
 #endif
 
 #ifdef __cplusplus
@@ -22,7 +22,7 @@ extern "C" {
 #endif
 
 #define LAUGHTER_SYNTHETIC_FPS 50
-#define LAUGHTER_SYNTHETIC_PHONEMES 12
+#define LAUGHTER_SYNTHETIC_PHONEMES 24
 #define LAUGHTER_SYNTHETIC_STATES 50
 #define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(3)
 
@@ -39,10 +39,22 @@ enum {
     LAUGHTER_SYNTHETIC_O = 8,
     LAUGHTER_SYNTHETIC_GRUNT = 9,
     LAUGHTER_SYNTHETIC_CACKLE = 10,
-    LAUGHTER_SYNTHETIC_A = 11
+    LAUGHTER_SYNTHETIC_A = 11,
+    LAUGHTER_SYNTHETIC_FRICATIVE_SOFT = 12,
+    LAUGHTER_SYNTHETIC_FRICATIVE_LOUD = 13,
+    LAUGHTER_SYNTHETIC_IC_SOFT = 14,
+    LAUGHTER_SYNTHETIC_IC_LOUD = 15,
+    LAUGHTER_SYNTHETIC_E_SOFT = 16,
+    LAUGHTER_SYNTHETIC_E_LOUD = 17,
+    LAUGHTER_SYNTHETIC_O_SOFT = 18,
+    LAUGHTER_SYNTHETIC_O_LOUD = 19,
+    LAUGHTER_SYNTHETIC_CACKLE_SOFT = 20,
+    LAUGHTER_SYNTHETIC_CACKLE_LOUD = 21,
+    LAUGHTER_SYNTHETIC_A_SOFT = 22,
+    LAUGHTER_SYNTHETIC_A_LOUD = 23
 };
 
-/* The model, 22118 bytes on a 32-bit target. */
+/* The model, 25984 bytes on a 32-bit target. */
 extern const labial_model_t laughter_synthetic;
 
 /* Its labels and aliases; linked only when used. */

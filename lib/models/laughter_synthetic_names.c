@@ -10,7 +10,7 @@
 #endif
 
 /* Phoneme, bytes of the name and its sets of labels, name. */
-static const uint8_t entries[914] = {
+static const uint8_t entries[1038] = {
     0, 0xe1, '#',
     0, 0xe5, '<', 's', 'i', 'l', '>',
     7, 0xe1, '@',
@@ -87,15 +87,23 @@ static const uint8_t entries[914] = {
     2, 0xe3, 92, '|', '2',
     0, 0xe1, '_',
     11, 0xe1, 'a',
+    23, 0xe6, 'a', '_', 'l', 'o', 'u', 'd',
+    22, 0xe6, 'a', '_', 's', 'o', 'f', 't',
     4, 0xe1, 'b',
     4, 0xe1, 'c',
     10, 0xe6, 'c', 'a', 'c', 'k', 'l', 'e',
+    21, 0xeb, 'c', 'a', 'c', 'k', 'l', 'e', '_', 'l', 'o', 'u', 'd',
+    20, 0xeb, 'c', 'a', 'c', 'k', 'l', 'e', '_', 's', 'o', 'f', 't',
     2, 0xe5, 'c', 'l', 'i', 'c', 'k',
     9, 0xe5, 'c', 'r', 'e', 'a', 'k',
     4, 0xe1, 'd',
     7, 0xe1, 'e',
+    17, 0xe6, 'e', '_', 'l', 'o', 'u', 'd',
+    16, 0xe6, 'e', '_', 's', 'o', 'f', 't',
     5, 0xe1, 'f',
     5, 0xe9, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e',
+    13, 0xee, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e', '_', 'l', 'o', 'u', 'd',
+    12, 0xee, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e', '_', 's', 'o', 'f', 't',
     5, 0xea, 'f', 'r', 'i', 'c', 'a', 't', 'i', 'v', 'e', 's',
     9, 0xe3, 'f', 'r', 'y',
     4, 0xe1, 'g',
@@ -105,6 +113,8 @@ static const uint8_t entries[914] = {
     3, 0xe3, 'h', 'u', 'm',
     6, 0xe1, 'i',
     6, 0xe2, 'i', 'c',
+    15, 0xe7, 'i', 'c', '_', 'l', 'o', 'u', 'd',
+    14, 0xe7, 'i', 'c', '_', 's', 'o', 'f', 't',
     6, 0xe1, 'j',
     4, 0xe1, 'k',
     7, 0xe1, 'l',
@@ -121,6 +131,8 @@ static const uint8_t entries[914] = {
     1, 0xe2, 'n', 'i',
     1, 0xe3, 'n', 'i', '?',
     8, 0xe1, 'o',
+    19, 0xe6, 'o', '_', 'l', 'o', 'u', 'd',
+    18, 0xe6, 'o', '_', 's', 'o', 'f', 't',
     4, 0xe1, 'p',
     0, 0xe3, 'p', 'a', 'u',
     4, 0xe7, 'p', 'l', 'o', 's', 'i', 'v', 'e',
@@ -204,8 +216,10 @@ static const uint8_t entries[914] = {
     5, 0xe2, 207, 135
 };
 
-static const char *const labels[12] = {
-    "silence", "ne", "click", "nasal", "plosive", "fricative", "ic", "e", "o", "grunt", "cackle", "a"
+static const char *const labels[24] = {
+    "silence", "ne", "click", "nasal", "plosive", "fricative", "ic", "e", "o", "grunt", "cackle", "a",
+    "fricative_soft", "fricative_loud", "ic_soft", "ic_loud", "e_soft", "e_loud", "o_soft", "o_loud", "cackle_soft",
+    "cackle_loud", "a_soft", "a_loud"
 };
 
-const labial_names_t laughter_synthetic_names = { 914, 12, entries, labels };
+const labial_names_t laughter_synthetic_names = { 1038, 24, entries, labels };

@@ -1,6 +1,6 @@
 /*
  * speech_en.h - the speech model, method labial, 50 frames per second. Written by labial export 0.1.0; do not
- * edit. Trained on the GRID audio-visual speech corpus (Cooke, Barker, Cunningham and Shao, 2006), CC BY 4.0.
+ * edit.
  */
 #ifndef LABIAL_MODEL_SPEECH_EN_H
 #define LABIAL_MODEL_SPEECH_EN_H
@@ -13,7 +13,7 @@
 #endif
 
 #if LABIAL_REACH < 18
-#error "speech_en needs LABIAL_REACH of 18 at least: its kernels reach so far."
+#error "speech_en needs LABIAL_REACH of 18 at least: its targets depend on what is so far away."
 #endif
 
 #ifdef __cplusplus
@@ -69,7 +69,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 37960 bytes on a 32-bit target. */
+/* The model, 41408 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

@@ -1,7 +1,6 @@
 /*
  * speech_en_names.c - names of the phonemes of the speech model, method labial, 50 frames per second. Written by
- * labial export 0.1.0; do not edit. Trained on the GRID audio-visual speech corpus (Cooke, Barker, Cunningham and
- * Shao, 2006), CC BY 4.0.
+ * labial export 0.1.0; do not edit.
  */
 #include "speech_en.h"
 

@@ -171,16 +171,22 @@ static void make_speech(fixture_model_t *f, unsigned states)
     f->phonemes[FIXTURE_P].boundary = 1;
 }
 
+/* Kernels of so many taps, `behind` of them before the frame, unless the library has no room for any. */
+static void reach(fixture_model_t *f, unsigned taps, unsigned behind, unsigned stride)
+{
+    f->model.kernel_taps = (uint8_t)(stride ? taps : 0);
+    f->model.kernel_behind = (uint8_t)(stride ? behind : 0);
+    f->model.kernel_stride = (uint8_t)stride;
+}
+
 /* All that goes beyond the published method. */
 static void enrich(fixture_model_t *f)
 {
     unsigned i, c, q;
     fixture_random_t random = {7};
     f->model.soft = 1;
-    f->model.search_stride = 2;
-    f->model.kernel_taps = FIXTURE_TAPS;
-    f->model.kernel_stride = 3;
-    f->model.kernel_behind = 4;
+    f->model.search_stride = FIXTURE_STRIDE;
+    reach(f, FIXTURE_TAPS, 4, LABIAL_REACH / 4 < 3 ? LABIAL_REACH / 4 : 3);
     f->model.contexts = f->contexts;
     f->model.slopes = f->slopes;
     f->model.kernels = f->kernels;
@@ -236,15 +242,14 @@ void fixture_slow(fixture_model_t *fixture)
     make_speech(fixture, LABIAL_STATES_MAX);
     enrich(fixture);
     fixture->model.search_stride = 3;
-    fixture->model.kernel_taps = 5;
-    fixture->model.kernel_stride = LABIAL_REACH / 2;
-    fixture->model.kernel_behind = 2;
+    reach(fixture, 5, 2, LABIAL_REACH / 2);
 }
 
 void fixture_laughter(fixture_model_t *fixture)
 {
     unsigned i;
     build(fixture, FIXTURE_LAUGH_COUNT, FIXTURE_LAUGH_STATES, FIXTURE_LAUGH_SIL, 1);
+    fixture->model.search_stride = FIXTURE_STRIDE;
     fixture->phonemes[FIXTURE_HA].boundary = 1;
     for (i = 0; i < LABIAL_CHANNELS; i++) /* silence near neutral, as that of the speech models */
         fixture->shapes[2 * FIXTURE_LAUGH_SIL * LABIAL_CHANNELS + i] = 5;

@@ -59,16 +59,17 @@ enum { FIXTURE_HA, FIXTURE_NASAL, FIXTURE_LAUGH_SIL, FIXTURE_FRICATIVE, FIXTURE_
 #define FIXTURE_SPEECH_STATES 8
 #define FIXTURE_LAUGH_STATES 5
 #define FIXTURE_RATE 50
+#define FIXTURE_STRIDE 2 /* of the rich and the laughter fixture, which can be used in one stream */
 
 /* The published method alone: no optional table, hard selection, a state for every frame. The first component of every
  * phoneme lasts 100 ms and every channel has a state whose mean is exactly that component's shape. */
 void fixture_plain(fixture_model_t *fixture);
 
-/* The same phonemes with contexts, slopes, anchors, kernels, pairs, floors and soft selection; two frames share a
- * state. */
+/* The same phonemes with contexts, slopes, anchors, kernels (where LABIAL_REACH has room for any), pairs, floors and soft
+ * selection; FIXTURE_STRIDE frames share a state. */
 void fixture_rich(fixture_model_t *fixture);
 
-/* Other phonemes, other states, fewer predecessors, a state for every frame; the same frame rate. */
+/* Other phonemes, other states, fewer predecessors, no optional table; the same frame rate and stride as the rich one. */
 void fixture_laughter(fixture_model_t *fixture);
 
 /* The rich model with LABIAL_STATES_MAX states, of which three frames share one, and kernels that reach as far as they
@@ -129,31 +130,37 @@ typedef enum {
     FIXTURE_FILL,   /* as much as room allows before every tick */
     FIXTURE_SINGLE, /* one phoneme before every tick */
     FIXTURE_HUNGRY, /* one phoneme when a tick says that it waits for one, never earlier */
-    FIXTURE_WORK,   /* as FILL, and labial_work() until it has nothing to do */
-    FIXTURE_CHANCE, /* random pushes and random bursts of labial_work() */
+    FIXTURE_CHANCE, /* random bursts of pushes */
     FIXTURE_FEEDS
 } fixture_feed_t;
+
+#define FIXTURE_MODELS 4 /* of one host */
 
 typedef struct {
     labial_t *stream;          /* on the heap, so that overruns are seen */
     uint32_t *workspace;       /* on the heap, exactly as large as is demanded */
-    const labial_model_t *models[3];
+    const labial_model_t *models[FIXTURE_MODELS];
     unsigned model_count, current;
     fixture_recorder_t recorder;
     int moving;                /* move the stream's structure before every tick */
     fixture_random_t random;
 
     /* What happened so far. */
-    unsigned longest_stall, stall; /* ticks in a row that returned LABIAL_BUSY */
-    unsigned seen[5];              /* how often a tick returned each value from LABIAL_OK to LABIAL_DONE */
-    int last;                      /* what the tick before returned */
-    int ended, restarted;          /* set by whoever calls labial_end(), labial_cancel() and labial_restart() */
-    const char *complaint;         /* the first thing that went wrong, else null */
+    unsigned seen[4];      /* how often a tick returned each value from LABIAL_OK to LABIAL_DONE */
+    unsigned on_way;       /* ticks that waited for the first frame though nothing was lacking */
+    size_t begun;          /* frames that were recorded when the stream was initialised or taken up again */
+    int ended, cancelled;  /* set by fixture_end(), fixture_cancel() and fixture_restart() */
+    const char *complaint; /* the first thing that went wrong, else null */
 } fixture_host_t;
 
 /* Returns what labial_init() does with the first model. The workspace suits the largest of them. */
 int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count);
 void fixture_close(fixture_host_t *host);
+
+/* The calls of that name; what is expected of the ticks that follow depends on them. Each must succeed. */
+void fixture_end(fixture_host_t *host);
+void fixture_cancel(fixture_host_t *host, uint32_t milliseconds);
+void fixture_restart(fixture_host_t *host);
 
 /* One tick, its result and the callbacks checked against each other; also moves the stream when asked to. */
 int fixture_tick(fixture_host_t *host);

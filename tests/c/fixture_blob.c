@@ -62,8 +62,9 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
     for (q = 0; q < states; q++) {
         for (i = 0; i < 3; i++)
             put(w, (uint16_t)channel->states[q].mean[i], 2);
-        put_bytes(w, channel->states[q].weight, 3);
-        put(w, channel->states[q].anchor, 1);
+        put(w, channel->states[q].hold, 1);
+        put(w, channel->states[q].share, 1);
+        put_bytes(w, channel->states[q].weight, 2);
     }
     pad(w);
     for (i = 0; i < states * predecessors; i++)

@@ -38,7 +38,6 @@ int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsi
     unsigned i;
     memset(host, 0, sizeof *host);
     host->random.state = 0x1234567u;
-    host->last = LABIAL_WAITING;
     host->model_count = model_count;
     for (i = 0; i < model_count; i++) {
         const uint32_t wanted = labial_workspace_size(models[i]);
@@ -74,9 +73,49 @@ static void move(fixture_host_t *host)
     host->stream = place;
 }
 
+void fixture_end(fixture_host_t *host)
+{
+    if (labial_end(host->stream) != LABIAL_OK)
+        fixture_complain(host, "the end was refused");
+    host->ended = 1;
+}
+
+void fixture_cancel(fixture_host_t *host, uint32_t milliseconds)
+{
+    if (labial_cancel(host->stream, milliseconds) != LABIAL_OK)
+        fixture_complain(host, "a cancel was refused");
+    host->ended = host->cancelled = 1;
+}
+
+void fixture_restart(fixture_host_t *host)
+{
+    if (labial_restart(host->stream) != LABIAL_OK)
+        fixture_complain(host, "a restart was refused");
+    host->ended = host->cancelled = 0;
+    host->begun = host->recorder.count;
+    host->on_way = 0;
+}
+
+/* What a tick may say when it delivers nothing; `room` is that before the tick. */
+static void check_silent(fixture_host_t *host, int result, unsigned room)
+{
+    const int begun = host->recorder.count > host->begun;
+    if (result == LABIAL_DONE && !host->ended)
+        fixture_complain(host, "done before the end");
+    if (result != LABIAL_DONE && (result == LABIAL_WAITING) == begun)
+        fixture_complain(host, "WAITING is for the first frame, STARVED for every other");
+    if (result == LABIAL_STARVED && host->ended)
+        fixture_complain(host, "starves after the end");
+    if (result == LABIAL_STARVED && room == 0)
+        fixture_complain(host, "starves with a full queue");
+    if (result == LABIAL_WAITING && (host->ended || room == 0) &&
+        ++host->on_way > LABIAL_DELAY((unsigned)host->models[0]->search_stride))
+        fixture_complain(host, "the first frame takes longer than the delay");
+}
+
 int fixture_tick(fixture_host_t *host)
 {
-    labial_latency_t before;
+    labial_latency_t before, after;
     unsigned room;
     int result;
     if (host->moving)
@@ -85,31 +124,24 @@ int fixture_tick(fixture_host_t *host)
     room = labial_room(host->stream);
     host->recorder.calls = 0;
     result = labial_tick(host->stream);
-    if (host->recorder.calls != (result == LABIAL_OK ? 1u : 0u))
-        fixture_complain(host, "the callback was not called exactly once per LABIAL_OK");
-    if (host->recorder.misnumbered)
-        fixture_complain(host, "frame numbers are not consecutive");
-    if (result != LABIAL_OK && (before.ready >= LABIAL_PREROLL || (before.ready > 0 && host->last == LABIAL_OK)))
-        fixture_complain(host, "a frame that was reported ready was not delivered");
-    host->last = result;
+    after = labial_latency(host->stream);
     if (result < LABIAL_OK || result > LABIAL_DONE) {
         fixture_complain(host, "a tick returned an error or an unknown result");
         return result;
     }
     host->seen[result]++;
-    host->stall = result == LABIAL_BUSY ? host->stall + 1 : 0;
-    if (host->stall > host->longest_stall)
-        host->longest_stall = host->stall;
-    if (result == LABIAL_WAITING || result == LABIAL_STARVED) {
-        if (host->ended)
-            fixture_complain(host, "waits for more phonemes after the end");
-        else if (room == 0)
-            fixture_complain(host, "waits for more phonemes with a full queue");
-        if (!host->restarted && (result == LABIAL_WAITING) != (host->recorder.count == 0))
-            fixture_complain(host, "WAITING is for the first frame, STARVED for every other");
-    }
-    if (result == LABIAL_DONE && !host->ended)
-        fixture_complain(host, "done before the end");
+    if (host->recorder.calls != (result == LABIAL_OK ? 1u : 0u))
+        fixture_complain(host, "the callback was not called exactly once per LABIAL_OK");
+    if (host->recorder.misnumbered)
+        fixture_complain(host, "frame numbers are not consecutive");
+    if (after.frames != before.frames - (result == LABIAL_OK && !host->cancelled ? 1u : 0u))
+        fixture_complain(host, "the latency is not what was pushed and not delivered");
+    if (after.delay != LABIAL_DELAY((unsigned)host->models[0]->search_stride))
+        fixture_complain(host, "the delay is not that of the stride");
+    if ((result == LABIAL_DONE) != (host->ended && before.frames == 0) && !host->cancelled)
+        fixture_complain(host, "done before the last frame, or not after it");
+    if (result != LABIAL_OK)
+        check_silent(host, result, room);
     return result;
 }
 
@@ -127,25 +159,6 @@ int fixture_push(fixture_host_t *host, const fixture_phoneme_t *phoneme)
     if (result == LABIAL_ERROR_FULL && room > 0)
         fixture_complain(host, "the queue is full although labial_room() saw room");
     return result;
-}
-
-/* Work until there is none, bounded; ticks must then find every frame that can be had. */
-static void work(fixture_host_t *host, unsigned steps)
-{
-    const unsigned all = 1000000u;
-    unsigned i;
-    int result = LABIAL_OK;
-    host->recorder.calls = 0;
-    for (i = 0; i < (steps ? steps : all) && result == LABIAL_OK; i++)
-        result = labial_work(host->stream);
-    if (host->recorder.calls)
-        fixture_complain(host, "labial_work() delivered a frame");
-    if (result != LABIAL_OK && result != LABIAL_WAITING && result != LABIAL_DONE)
-        fixture_complain(host, "labial_work() returned what it must not");
-    if (i == all)
-        fixture_complain(host, "labial_work() does not come to an end");
-    if (result == LABIAL_WAITING && host->ended && labial_latency(host->stream).ready == 0)
-        fixture_complain(host, "labial_work() waits after the end with no frame ready");
 }
 
 /* Pushes what may be pushed now; returns how many. */
@@ -181,18 +194,9 @@ int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t co
     while (!host->complaint) {
         const size_t pushed = feed_some(host, input + i, count - i, feed, result);
         i += pushed;
-        if (i == count && !host->ended) {
-            if (labial_end(host->stream) != LABIAL_OK)
-                fixture_complain(host, "the end was refused");
-            host->ended = 1;
-        }
-        if (feed == FIXTURE_WORK)
-            work(host, 0);
-        else if (feed == FIXTURE_CHANCE && fixture_below(&host->random, 2))
-            work(host, 1 + fixture_below(&host->random, 40));
+        if (i == count && !host->ended)
+            fixture_end(host);
         result = fixture_tick(host);
-        if (feed == FIXTURE_WORK && result == LABIAL_BUSY)
-            fixture_complain(host, "a tick was busy after labial_work() had done everything");
         if (result == LABIAL_DONE)
             break;
         stuck = pushed || result == LABIAL_OK ? 0 : stuck + 1;
@@ -202,7 +206,7 @@ int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t co
     if (host->complaint)
         return -1;
     left = labial_latency(host->stream);
-    if (left.frames || left.milliseconds || left.ready)
+    if (left.frames || left.milliseconds || left.phonemes)
         fixture_complain(host, "latency is not zero when the stream is done");
     if (fixture_tick(host) != LABIAL_DONE)
         fixture_complain(host, "done is not for good");

@@ -16,6 +16,9 @@
 #undef LABIAL_NARROW_MULTIPLY
 #define LABIAL_NARROW_MULTIPLY 1
 #define labial_arithmetic_shift_is_required narrow_arithmetic_shift_is_required
+#define labial_int_of_32_bits_is_required narrow_int_of_32_bits_is_required
+#define labial_part16 narrow_part16
+#define labial_part24 narrow_part24
 #define labial_add narrow_add
 #define labial_sub narrow_sub
 #define labial_mulshift narrow_mulshift
@@ -28,6 +31,8 @@
 #undef labial_add
 #undef labial_sub
 #undef labial_mulshift
+#undef labial_part16
+#undef labial_part24
 #undef labial_weight
 #undef labial_z
 #undef labial_z_cost
@@ -75,6 +80,26 @@ static void products_are_rounded_alike_and_exactly(void **state)
             check_product(a, b, shift);
             check_product(a >> (i % 31), b >> (i / 31 % 31), shift);
         }
+    }
+}
+
+/* x f / 2^16 rounded down, for every f up to one, and x f / 2^24 less than three below it. Would catch a sign lost between
+ * the halves of x, and a target whose parts differ from another's. */
+static void parts_are_rounded_alike(void **state)
+{
+    fixture_random_t random = {2};
+    unsigned i;
+    (void)state;
+    for (i = 0; i < 400000; i++) {
+        const int32_t x = i < 24 * CORNERS ? corners[i % CORNERS] : (int32_t)fixture_random(&random) >> i % 31;
+        const uint32_t f = i % 5 ? fixture_below(&random, 65537) : i % 10 ? 65536 : 0;
+        const uint32_t g = i % 5 ? fixture_below(&random, (1u << 24) + 1) : i % 10 ? 1u << 24 : 255;
+        const double exact = (double)x * g / 16777216.0;
+        assert_int_equal((uint32_t)labial_part16(x, f), wanted_product(x, (int32_t)f, 0, 16));
+        assert_int_equal(narrow_part16(x, f), labial_part16(x, f));
+        assert_int_equal(narrow_part24(x, g), labial_part24(x, g));
+        if ((double)labial_part24(x, g) > exact || (double)labial_part24(x, g) <= exact - 3.0)
+            fail_msg("%d * %u >> 24 is %d, not %g", x, g, labial_part24(x, g), exact);
     }
 }
 
@@ -160,6 +185,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(products_are_rounded_alike_and_exactly), cmocka_unit_test(sums_wrap),
+        cmocka_unit_test(parts_are_rounded_alike),
         cmocka_unit_test(weights_are_minifloats),
         cmocka_unit_test(gaussian_costs_follow_their_formula),    cmocka_unit_test(easing_follows_its_curve),
         cmocka_unit_test(clamping),

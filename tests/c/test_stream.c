@@ -2,7 +2,7 @@
  * test_stream.c - what a stream delivers: the same frames however it is fed and wherever it lies, and sane motion.
  *
  * The host of the fixture checks on every tick that the callback comes once per LABIAL_OK, that frames are numbered
- * without a gap, and that waiting, starving, being busy and being done are told apart (fixture_host.c).
+ * without a gap, and that waiting, starving and being done are told apart (fixture_host.c).
  */
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,8 +35,7 @@ static void run(fixture_host_t *host, const labial_model_t *model, size_t count,
         fail_msg("feed %d: %s (frame %zu)", (int)feed, host->complaint, host->recorder.count);
 }
 
-/* Would catch a unit whose extent depends on what happens to be in the queue, work that a tick and labial_work() do
- * differently, and a stall on any kind of input. */
+/* Would catch a frame that depends on what happens to be in the queue, and a stall on any kind of input. */
 static void frames_do_not_depend_on_the_feeding(void **state)
 {
     const labial_model_t *models[2];
@@ -96,6 +95,7 @@ static void frames_do_not_depend_on_what_memory_held(void **state)
     host.recorder.count = 0;
     host.recorder.next = 0;
     host.ended = 0;
+    host.on_way = 0;
     assert_int_equal(labial_init(host.stream, &rich.model, host.workspace, size, fixture_record, &host.recorder),
                      LABIAL_OK);
     if (fixture_play(&host, input, 40, FIXTURE_FILL) != 0)
@@ -133,12 +133,8 @@ static void two_streams_do_not_disturb_each_other(void **state)
             fixture_host_t *host = &together[i];
             if (next[i] < COUNT && labial_room(host->stream) > 0)
                 assert_int_equal(fixture_push(host, &inputs[i][next[i]++]), LABIAL_OK);
-            if (next[i] == COUNT && !host->ended) {
-                assert_int_equal(labial_end(host->stream), LABIAL_OK);
-                host->ended = 1;
-            }
-            if (rounds % 3 == i)
-                assert_true(labial_work(host->stream) >= 0);
+            if (next[i] == COUNT && !host->ended)
+                fixture_end(host);
             done[i] = fixture_tick(host) == LABIAL_DONE;
         }
     }
@@ -158,113 +154,11 @@ static void a_stream_without_phonemes_is_done_at_once(void **state)
     (void)state;
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
-    assert_int_equal(labial_work(host.stream), LABIAL_WAITING);
-    assert_int_equal(labial_end(host.stream), LABIAL_OK);
-    host.ended = 1;
-    assert_int_equal(labial_work(host.stream), LABIAL_DONE);
+    fixture_end(&host);
     assert_int_equal(fixture_tick(&host), LABIAL_DONE);
     assert_int_equal(host.recorder.count, 0);
     assert_null(host.complaint);
     fixture_close(&host);
-}
-
-/* Would catch a stream that holds back what cannot change any more, or one that claims the end while it starves. */
-static void starving_is_neither_waiting_nor_done(void **state)
-{
-    fixture_host_t host;
-    const labial_model_t *model = &rich.model;
-    size_t before;
-    int result, i;
-    (void)state;
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-    assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
-    assert_int_equal(labial_push(host.stream, FIXTURE_A, 10000), LABIAL_OK); /* 500 frames, ten windows and more */
-    assert_int_equal(labial_push(host.stream, FIXTURE_S, 100), LABIAL_OK);   /* what follows it is known */
-    do
-        result = fixture_tick(&host);
-    while (result == LABIAL_OK || result == LABIAL_BUSY);
-    assert_int_equal(result, LABIAL_STARVED);
-    before = host.recorder.count;
-    assert_in_range(before, 505 - 3 * LABIAL_WINDOW, 504);
-    for (i = 0; i < 5; i++)
-        assert_int_equal(fixture_tick(&host), LABIAL_STARVED);
-    assert_int_equal(host.recorder.count, before);
-    assert_int_equal(labial_latency(host.stream).frames, 505 - before);
-    if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
-        fail_msg("%s", host.complaint);
-    assert_int_equal(host.recorder.count, 505);
-    fixture_close(&host);
-}
-
-/* Would catch an uneven share of work: while the queue is kept full no frame is late (labial_tick()), not even with the
- * largest number of states. */
-static void no_frame_is_late_while_the_queue_is_full(void **state)
-{
-    const labial_model_t *model = &slow.model;
-    int kind, result;
-    (void)state;
-    for (kind = 0; kind < FIXTURE_MILLI; kind++) {
-        fixture_host_t host;
-        fixture_random_t random = {77};
-        fixture_phoneme_t more[8];
-        unsigned k, i = 8;
-        assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-        for (k = 0; k < 3000; k++) {
-            while (labial_room(host.stream) > 0) {
-                if (i == 8) {
-                    fixture_stream(more, 8, (fixture_kind_t)kind, fixture_random(&random));
-                    i = 0;
-                }
-                assert_int_equal(fixture_push(&host, &more[i++]), LABIAL_OK);
-            }
-            result = fixture_tick(&host);
-            if (result != LABIAL_OK && host.recorder.count > 0)
-                fail_msg("kind %d: frame %zu is late", kind, host.recorder.count);
-        }
-        assert_null(host.complaint);
-        assert_true(host.recorder.count > 2900);
-        fixture_close(&host);
-    }
-}
-
-/* Pieces that deliver only half of what they decode, one after the other for minutes, at every stride: would catch a
- * share of work that is a little too small, and so takes long to show. */
-static void no_frame_is_late_in_a_long_run_of_short_vowels(void **state)
-{
-    const labial_model_t *model = &rich.model;
-    const uint8_t own = rich.model.search_stride;
-    unsigned stride, k, n;
-    (void)state;
-    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
-        fixture_host_t host;
-        rich.model.search_stride = (uint8_t)stride;
-        assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-        for (k = n = 0; k < 20000; k++) {
-            while (labial_room(host.stream) > 0)
-                assert_int_equal(labial_push(host.stream, FIXTURE_A + n++ % 2, LABIAL_OVERLAP * 1000 / FIXTURE_RATE),
-                                 LABIAL_OK);
-            if (fixture_tick(&host) != LABIAL_OK && host.recorder.count > 0)
-                fail_msg("stride %u: frame %zu is late", stride, host.recorder.count);
-        }
-        assert_null(host.complaint);
-        fixture_close(&host);
-    }
-    rich.model.search_stride = own;
-}
-
-/* Would catch a stream that never recovers when its ticks are few, or whose work has no bound. */
-static void every_stall_is_short(void **state)
-{
-    int kind;
-    (void)state;
-    for (kind = 0; kind < FIXTURE_HOUR; kind++) {
-        fixture_host_t host;
-        fixture_stream(input, COUNT, (fixture_kind_t)kind, 21);
-        run(&host, &slow.model, COUNT, FIXTURE_FILL);
-        if (host.longest_stall > 2 * LABIAL_WINDOW)
-            fail_msg("kind %d: %u ticks without a frame", kind, host.longest_stall);
-        fixture_close(&host);
-    }
 }
 
 /* A phoneme held for long is its own shape (equation 2), for that is also a state's mean in the plain model; or that of
@@ -338,10 +232,6 @@ int main(void)
         cmocka_unit_test(frames_do_not_depend_on_what_memory_held),
         cmocka_unit_test(two_streams_do_not_disturb_each_other),
         cmocka_unit_test(a_stream_without_phonemes_is_done_at_once),
-        cmocka_unit_test(starving_is_neither_waiting_nor_done),
-        cmocka_unit_test(no_frame_is_late_while_the_queue_is_full),
-        cmocka_unit_test(no_frame_is_late_in_a_long_run_of_short_vowels),
-        cmocka_unit_test(every_stall_is_short),
         cmocka_unit_test(a_held_phoneme_settles_to_its_shape),
         cmocka_unit_test(motion_stays_within_the_states_range),
     };

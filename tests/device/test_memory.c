@@ -20,7 +20,7 @@ static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNEL
 }
 
 /* Would catch a workspace whose parts overlap or end elsewhere than LABIAL_WORKSPACE_SIZE says: canaries are checked
- * after every test. The streams are those that fill the queue, the window and the ring. */
+ * after every test. The streams are those that fill the queue and the rings. */
 static void fullest_streams_stay_inside(void)
 {
     static const char *const names[] = { "queue", "long_vowel", "switch_in_long", "turns", "one_frame", "cancelled" };

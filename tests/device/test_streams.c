@@ -38,17 +38,10 @@ static void starving_streams_conform(void)
     play_all(CONFORMANCE_HUNGRY);
 }
 
-/* Would catch frames that depend on who does the work. */
-static void streams_worked_ahead_conform(void)
-{
-    play_all(CONFORMANCE_WORK);
-}
-
 void test_streams(void)
 {
     UnitySetTestFile(__FILE__);
     RUN_TEST(filled_streams_conform);
     RUN_TEST(streams_fed_one_by_one_conform);
     RUN_TEST(starving_streams_conform);
-    RUN_TEST(streams_worked_ahead_conform);
 }

@@ -35,8 +35,9 @@ typedef struct {
     uint32_t next;      /* frame number that is due */
     unsigned calls;     /* of the callback, since the last tick began */
     uint64_t ms, frames; /* pushed and delivered since the stream began or was taken up again */
-    int ended, cancelled, done;
-    unsigned phonemes;  /* of the current model */
+    int ended, cancelled, done, begun;
+    unsigned on_way;    /* ticks that waited though nothing was lacking */
+    unsigned phonemes, silence; /* of the current model */
 } watch_t;
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -63,17 +64,25 @@ static int tick(watch_t *watch)
         REQUIRE(watch->ended);
         if (!watch->done && !watch->cancelled)
             REQUIRE(fixture_is_exact(watch->frames, watch->ms, FIXTURE_RATE));
-        REQUIRE(labial_latency(watch->stream).frames == 0 && labial_latency(watch->stream).ready == 0);
+        REQUIRE(labial_latency(watch->stream).frames == 0);
         watch->done = 1;
     }
-    if (result == LABIAL_WAITING || result == LABIAL_STARVED)
+    if (result == LABIAL_OK)
+        watch->on_way = 0;
+    if (result == LABIAL_STARVED)
         REQUIRE(!watch->ended && room > 0);
+    if (result == LABIAL_WAITING) {
+        REQUIRE(!watch->begun);
+        if (watch->ended || room == 0) /* the first frame is on its way */
+            REQUIRE(++watch->on_way <= LABIAL_DELAY(FIXTURE_STRIDE));
+    }
+    watch->begun |= result == LABIAL_OK;
     return result;
 }
 
 static int is_same(labial_latency_t a, labial_latency_t b)
 {
-    return a.frames == b.frames && a.milliseconds == b.milliseconds && a.phonemes == b.phonemes && a.ready == b.ready;
+    return a.frames == b.frames && a.milliseconds == b.milliseconds && a.phonemes == b.phonemes && a.delay == b.delay;
 }
 
 static void push(watch_t *watch, unsigned phoneme, uint32_t ms)
@@ -95,6 +104,12 @@ static void push(watch_t *watch, unsigned phoneme, uint32_t ms)
                 (result == LABIAL_ERROR_DURATION && ms > LABIAL_DURATION_MAX));
 }
 
+static void choose(watch_t *watch, const labial_model_t *model)
+{
+    watch->phonemes = model->phoneme_count;
+    watch->silence = model->silence;
+}
+
 static void use(watch_t *watch, unsigned choice)
 {
     const labial_model_t *const models[] = {&speech.model, &laugh.model, &plain.model, &slow.model, &other_rate.model};
@@ -106,14 +121,12 @@ static void use(watch_t *watch, unsigned choice)
         REQUIRE(result == LABIAL_ERROR_NULL);
     else if (watch->ended)
         REQUIRE(result == LABIAL_ERROR_STATE);
-    else if (choice == 3)
-        REQUIRE(result == LABIAL_ERROR_WORKSPACE);
-    else if (choice == 4)
-        REQUIRE(result == LABIAL_ERROR_RATE);
+    else if (choice == 3 || choice == 4)
+        REQUIRE(result == LABIAL_ERROR_RATE); /* another stride, another frame rate */
     else
         REQUIRE(result == LABIAL_OK || result == LABIAL_ERROR_MODELS);
     if (result == LABIAL_OK)
-        watch->phonemes = model->phoneme_count;
+        choose(watch, model);
 }
 
 static void restart(watch_t *watch)
@@ -125,7 +138,8 @@ static void restart(watch_t *watch)
     if (result == LABIAL_OK) {
         REQUIRE(watch->ended);
         watch->ms = watch->frames = 0;
-        watch->ended = watch->cancelled = watch->done = 0;
+        watch->ended = watch->cancelled = watch->done = watch->begun = 0;
+        watch->on_way = 0;
     }
 }
 
@@ -143,7 +157,6 @@ static void one_call(watch_t *watch, bytes_t *bytes)
 {
     const unsigned call = take(bytes, 1);
     unsigned i;
-    int result;
     switch (call % 16) {
     case 0:
     case 1:
@@ -169,15 +182,14 @@ static void one_call(watch_t *watch, bytes_t *bytes)
         for (i = call; i > 0 && tick(watch) == LABIAL_OK; i--)
             ;
         break;
-    case 10:
-    case 11:
-        watch->calls = 0;
-        for (i = call; i > 0; i--) {
-            result = labial_work(watch->stream);
-            REQUIRE(result == LABIAL_OK || result == LABIAL_WAITING || result == LABIAL_DONE);
-            REQUIRE(result != LABIAL_DONE || watch->ended);
+    case 10: /* a pause */
+        push(watch, watch->silence, take(bytes, 2));
+        break;
+    case 11: /* phonemes of one frame, of both models in turn */
+        for (i = call >> 4; i > 0; i--) {
+            use(watch, i % 2);
+            push(watch, i % watch->phonemes, 1000 / FIXTURE_RATE);
         }
-        REQUIRE(watch->calls == 0);
         break;
     case 12:
         use(watch, call >> 4);
@@ -215,8 +227,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         fixture_rich(&speech);
         fixture_laughter(&laugh);
         fixture_plain(&plain);
+        plain.model.search_stride = FIXTURE_STRIDE;
         fixture_slow(&slow);
         fixture_plain(&other_rate);
+        other_rate.model.search_stride = FIXTURE_STRIDE;
         other_rate.model.frames_per_second = 30;
     }
     bytes.data = data;
@@ -227,7 +241,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     workspace = malloc(room);
     watch.stream = (labial_t *)malloc(sizeof *watch.stream);
     REQUIRE(workspace && watch.stream);
-    watch.phonemes = model->phoneme_count;
+    choose(&watch, model);
     REQUIRE(labial_init(watch.stream, model, workspace, room, on_frame, &watch) == LABIAL_OK);
     move(&watch);
     for (calls = 0; bytes.size > 0 && calls < 2000; calls++)

@@ -11,7 +11,8 @@ from typing import List, Tuple
 import pytest
 
 from labial.cli import main
-from labial.corpus.timings import phoneme_segments, read_timings
+from labial.corpus.formats import read_timings
+from labial.corpus.timings import phoneme_segments
 from labial.errors import DataError
 from labial.phonesets import SPEECH
 from labial.see.motion import read_bands

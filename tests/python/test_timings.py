@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from labial.corpus.formats import read_timings
 from labial.corpus.timings import (
     phoneme_segments,
     read_flite,
@@ -15,7 +16,6 @@ from labial.corpus.timings import (
     read_pho,
     read_phseg,
     read_textgrid,
-    read_timings,
 )
 from labial.errors import DataError
 from labial.phonesets import SPEECH

@@ -10,8 +10,9 @@ from typing import Dict, List, Tuple, Union
 import numpy as np
 
 from labial.corpus.episode import Episode
+from labial.corpus.formats import read_timings
 from labial.corpus.lines import read_lines, table_rows
-from labial.corpus.timings import phoneme_segments, read_timings
+from labial.corpus.timings import phoneme_segments
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_COLUMNS
 from labial.phonesets import PhoneSet

@@ -13,11 +13,11 @@ import re
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple, Union
+from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
-from labial.phonesets import AUTO, PhoneSet
+from labial.phonesets import AUTO, LAUGHTER, SPEECH, PhoneSet
 
 PathLike = Union[str, os.PathLike]
 
@@ -44,7 +44,7 @@ class SourceSegment(Segment):
     """A segment with the line it was read from; None in a TextGrid, whose intervals are numbered instead."""
 
     line: Optional[int] = None
-    sampa: bool = False  #: the format's labels are X-SAMPA
+    labels: str = AUTO  #: the set that the format's labels are of
 
 
 def read_lab(path: PathLike) -> List[SourceSegment]:
@@ -60,7 +60,7 @@ def read_lab(path: PathLike) -> List[SourceSegment]:
         word = fields[4] if len(fields) > 4 else None
         start, end = _number(path, line, fields[0], "start"), _number(path, line, fields[1], "end")
         segments.append(SourceSegment(start, end, fields[2], apex, word, line))
-    return _checked(path, segments)
+    return checked(path, segments)
 
 
 def read_htk(path: PathLike) -> List[SourceSegment]:
@@ -76,7 +76,7 @@ def read_htk(path: PathLike) -> List[SourceSegment]:
             raise DataError(path, line, f"times {fields[0]!r} and {fields[1]!r} are not whole numbers of 100 ns")
         start, end = int(fields[0]) / _HTK_RATE, int(fields[1]) / _HTK_RATE
         segments.append(SourceSegment(start, end, _centre(fields[2]), line=line))
-    return _checked(path, segments)
+    return checked(path, segments)
 
 
 def read_mary(path: PathLike) -> List[SourceSegment]:
@@ -90,8 +90,9 @@ def read_mary(path: PathLike) -> List[SourceSegment]:
             raise DataError(path, line, f"expected 'end number label', found {len(fields)} columns")
         _number(path, line, fields[1], "second field")
         start = segments[-1].end if segments else 0.0
-        segments.append(SourceSegment(start, _number(path, line, fields[0], "end"), fields[2], line=line, sampa=True))
-    return _checked(path, segments)
+        end = _number(path, line, fields[0], "end")
+        segments.append(SourceSegment(start, end, fields[2], line=line, labels="xsampa"))
+    return checked(path, segments)
 
 
 def read_phseg(path: PathLike) -> List[SourceSegment]:
@@ -118,7 +119,7 @@ def read_phseg(path: PathLike) -> List[SourceSegment]:
         if last < first:
             raise DataError(path, line, f"the segment ends in frame {last}, before its first frame {first}")
         segments.append(SourceSegment(first / PHSEG_RATE, (last + 1) / PHSEG_RATE, fields[3], line=line))
-    return _checked(path, segments)
+    return checked(path, segments)
 
 
 def read_flite(path: PathLike) -> List[SourceSegment]:
@@ -131,7 +132,7 @@ def read_flite(path: PathLike) -> List[SourceSegment]:
                 raise DataError(path, line, f"{item!r} is not 'label:end'")
             start = segments[-1].end if segments else 0.0
             segments.append(SourceSegment(start, _number(path, line, end, "end"), label, line=line))
-    return _checked(path, segments)
+    return checked(path, segments)
 
 
 def read_pho(path: PathLike) -> List[SourceSegment]:
@@ -149,9 +150,9 @@ def read_pho(path: PathLike) -> List[SourceSegment]:
         duration, *_pitch = [_number(path, line, text, "value") for text in fields[1:]]
         if duration < 0:
             raise DataError(path, line, f"the duration {fields[1]} is negative")
-        segments.append(SourceSegment(elapsed / 1000, (elapsed + duration) / 1000, fields[0], line=line, sampa=True))
-        elapsed += duration
-    return _checked(path, segments)
+        start, elapsed = elapsed, elapsed + duration
+        segments.append(SourceSegment(start / 1000, elapsed / 1000, fields[0], line=line, labels="xsampa"))
+    return checked(path, segments)
 
 
 def read_textgrid(path: PathLike, tier: Optional[str] = None) -> List[SourceSegment]:
@@ -183,7 +184,7 @@ def read_textgrid_tiers(path: PathLike) -> Dict[str, List[SourceSegment]]:
     except ModuleNotFoundError as error:
         raise DataError(path, None, f"TextGrids need the package {error.name}: install labial[train]") from None
 
-    text = _text(path, ("utf-8-sig", "utf-16"))
+    text = text_of(path, ("utf-8-sig", "utf-16"))
     if "ooTextFile" not in text[:200] or "TextGrid" not in text[:200]:
         raise DataError(path, 1, "not a TextGrid in text form")
     _refuse_signs(path, text)
@@ -200,42 +201,24 @@ def read_textgrid_tiers(path: PathLike) -> Dict[str, List[SourceSegment]]:
                         f"but {', '.join(map(str, found)) or 'none'} could be read")
     result = {}
     for item in interval_tiers:
-        result[item.name] = _checked(path, [SourceSegment(float(a), float(b), label) for a, b, label in item.entries])
+        result[item.name] = checked(path, [SourceSegment(float(a), float(b), label) for a, b, label in item.entries])
     return result
 
 
-def read_timings(path: PathLike) -> List[SourceSegment]:
-    """Reads timings in the format that the suffix tells (.lab .TextGrid .phseg .pho .psdur .realised_durations), else
-    the content."""
-    suffix = Path(path).suffix.lower()
-    if suffix in _READERS:
-        return _READERS[suffix](path)
-    head = _text(path, ("utf-8-sig", "utf-16")).lstrip()[:4000]
-    first = next((line.split() for line in head.splitlines() if line.strip() and not line.lstrip().startswith(";")), [])
-    if "ooTextFile" in head[:200]:
-        return read_textgrid(path)
-    if first and first[0].lower() == "sfrm":
-        return read_phseg(path)
-    if first and all(re.fullmatch(r".+:\d+(\.\d*)?", item) for item in first):
-        return read_flite(path)
-    if first and first[0].startswith("#"):
-        return read_mary(path)
-    if len(first) >= 3 and _is_number(first[0]) and _is_number(first[1]):
-        return read_lab(path)
-    if len(first) >= 2 and _is_number(first[1]):
-        return read_pho(path)
-    raise DataError(path, None, "no known format of phoneme timings (.lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, "
-                    "flite -psdur)")
+def phone_set_of(segments: Sequence[SourceSegment], labels: str = AUTO) -> PhoneSet:
+    """Speech or laughter, whichever knows more of the segments' labels; speech where both know as many."""
+    known = [sum(meaning(segment, phones, labels) is not None for segment in segments) for phones in (SPEECH, LAUGHTER)]
+    return LAUGHTER if known[1] > known[0] else SPEECH
 
 
 def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> Optional[str]:
     """The phoneme of `phone_set` that a segment's label means in the set `labels`, or None; silence where it has none.
 
-    Where `labels` is "auto", labels of a format that has X-SAMPA are that first.
+    Where `labels` is "auto", labels of a format that has one set are of that first.
     """
     if not segment.label:
         return phone_set.silence
-    known = phone_set.resolve(segment.label, "xsampa") if labels == AUTO and segment.sampa else None
+    known = phone_set.resolve(segment.label, segment.labels) if labels == AUTO else None
     return phone_set.resolve(segment.label, labels) if known is None else known
 
 
@@ -273,16 +256,8 @@ def phoneme_segments(
     return tuple(result)
 
 
-_READERS: Dict[str, Callable[[PathLike], List[SourceSegment]]] = {
-    ".lab": read_lab, ".textgrid": read_textgrid, ".phseg": read_phseg, ".pho": read_pho, ".psdur": read_flite,
-    ".realised_durations": read_mary,
-}  # fmt: skip
-
-#: Suffixes by which formats are told, in small letters.
-SUFFIXES = tuple(_READERS)
-
-
-def _text(path: PathLike, encodings: Sequence[str] = ("utf-8-sig",)) -> str:
+def text_of(path: PathLike, encodings: Sequence[str] = ("utf-8-sig",)) -> str:
+    """A file's text, in the first of `encodings` that it fits."""
     try:
         data = Path(path).read_bytes()
     except OSError as error:
@@ -295,9 +270,14 @@ def _text(path: PathLike, encodings: Sequence[str] = ("utf-8-sig",)) -> str:
     raise DataError(path, None, f"not {' or '.join(encodings)} text")
 
 
+def lab_of(segments: Iterable[Segment]) -> str:
+    """Segments as lines of ``start end label``, seconds."""
+    return "".join(f"{item.start:.4f} {item.end:.4f} {item.label}\n" for item in segments)
+
+
 def _rows(path: PathLike, comment: str = "") -> List[Tuple[int, List[str]]]:
     rows = []
-    for line, text in enumerate(_text(path).splitlines(), 1):
+    for line, text in enumerate(text_of(path).splitlines(), 1):
         fields = (text.split(comment)[0] if comment else text).split()
         if fields:
             rows.append((line, fields))
@@ -323,7 +303,8 @@ def _is_whole(text: str) -> bool:
     return text.isdecimal() and len(text) <= 18
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether `text` is a finite number."""
     try:
         return math.isfinite(float(text))
     except ValueError:
@@ -331,7 +312,7 @@ def _is_number(text: str) -> bool:
 
 
 def _number(path: PathLike, line: int, text: str, what: str) -> float:
-    if not _is_number(text):
+    if not is_number(text):
         raise DataError(path, line, f"{what} {text!r} is not a finite number")
     return float(text)
 
@@ -340,11 +321,12 @@ def _refuse_signs(path: PathLike, text: str) -> None:
     """Times below zero would lose their sign in the library (it allows for a start of -0)."""
     for line, content in enumerate(text.splitlines(), 1):
         match = re.fullmatch(r"\s*(?:(?:xmin|xmax|number)\s*=\s*)?(-[\d.]+)\s*", content)
-        if match and _is_number(match.group(1)) and float(match.group(1)) != 0:
+        if match and is_number(match.group(1)) and float(match.group(1)) != 0:
             raise DataError(path, line, f"the time {match.group(1)} is negative")
 
 
-def _checked(path: PathLike, segments: List[SourceSegment]) -> List[SourceSegment]:
+def checked(path: PathLike, segments: List[SourceSegment]) -> List[SourceSegment]:
+    """`segments`, or a DataError where times are late, turned round, overlap, or there are none."""
     if not segments:
         raise DataError(path, None, "no segments")
     previous = -math.inf

@@ -12,7 +12,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span
-from labial.corpus.timings import SUFFIXES, phoneme_segments, read_timings
+from labial.corpus.formats import SUFFIXES, read_timings
+from labial.corpus.timings import phoneme_segments
 from labial.errors import DataError, LabialError
 from labial.frames import even, write_csv
 from labial.phonesets import PhoneSet

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Sequence, Tuple
 
 import numpy as np
 
 from labial.faps import CHANNELS
+from labial.reference.contact import raised
 from labial.reference.tables import Tables
 
 
@@ -25,6 +26,13 @@ def targets(
 ) -> np.ndarray:
     """(T, 13) the moving target of an utterance, in the tables' positions; phonemes of no frames leave no trace,
     silence is before and after."""
+    return targets_and_contact(tables, phonemes, milliseconds, frames)[0]
+
+
+def targets_and_contact(
+    tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int], frames: Sequence[int]
+) -> Tuple[np.ndarray, np.ndarray]:
+    """The targets (T, 13) of :func:`targets`, and where they are in contact, (T, 13) bool."""
     held = [i for i, count in enumerate(frames) if count]
     seen = [tables.silence] + [phonemes[i] for i in held] + [tables.silence]
     length = np.array([frames[i] for i in held], dtype=np.int64)
@@ -36,4 +44,5 @@ def targets(
     reach = int(np.abs(tables.lags).max()) if len(tables.lags) else 0
     padded = np.concatenate([np.full(reach, tables.silence), labels, np.full(reach, tables.silence)]).astype(np.int64)
     at = np.arange(len(labels))[:, None] + reach + tables.lags[None, :]
-    return tables.targets(tables.interpolated(shapes[index], knot_shares(length, tables.knots)), labels, padded[at])
+    moving = tables.targets(tables.interpolated(shapes[index], knot_shares(length, tables.knots)), padded[at])
+    return raised(moving, labels, length, tables.silence, tables.floor, tables.contact)

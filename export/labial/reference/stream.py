@@ -9,7 +9,7 @@ import numpy as np
 from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.reference import trajectory
-from labial.reference.shape import targets
+from labial.reference.shape import targets_and_contact
 from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
 from labial.reference.units import segments, unit_ends
@@ -41,28 +41,35 @@ def synthesise(
     `window` is how many frames beyond those delivered the solution knows, or with `whole` all of them; `lag` how many
     frames later the search decides.
     """
-    target, ends = aims(tables, phonemes)
-    return solution(tables, target, ends, whole=whole, window=window, lag=lag)
+    target, contact, ends = aims(tables, phonemes)
+    return solution(tables, target, contact, ends, whole=whole, window=window, lag=lag)
 
 
-def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> Tuple[np.ndarray, np.ndarray]:
-    """Targets (T, 13) in the tables' positions and the frames (T,) that end units, of pairs of phoneme number and
-    milliseconds."""
+def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Targets (T, 13) in the tables' positions, where they are in contact (T, 13), and the frames (T,) that end units,
+    of pairs of phoneme number and milliseconds."""
     check(tables, phonemes)
     held = segments(phonemes, tables.silence, tables.ahead, tables.fps)
-    target = targets(tables, [item.phoneme for item in held], [item.milliseconds for item in held],
-                     [item.frames for item in held])
-    return target, unit_ends(held, tables.boundary)
+    target, contact = targets_and_contact(tables, [item.phoneme for item in held],
+                                          [item.milliseconds for item in held], [item.frames for item in held])
+    return target, contact, unit_ends(held, tables.boundary)
 
 
 def solution(
-    tables: Tables, target: np.ndarray, ends: np.ndarray, *, whole: bool = False, window: int = WINDOW, lag: int = LAG
+    tables: Tables,
+    target: np.ndarray,
+    contact: np.ndarray,
+    ends: np.ndarray,
+    *,
+    whole: bool = False,
+    window: int = WINDOW,
+    lag: int = LAG,
 ) -> np.ndarray:
-    """(T, 13) float64, FAP units: the motion for targets (T, 13) in the tables' positions; `ends` (T,) are the frames
-    that end a unit, the last one among them."""
+    """(T, 13) float64, FAP units: the motion for targets (T, 13) in the tables' positions, some of them in `contact`
+    (T, 13); `ends` (T,) are the frames that end a unit, the last one among them."""
     if not len(target):
         return np.zeros((0, CHANNELS))
-    terms = tables.equation(tables.search(target, ends, lag), target)
+    terms = tables.equation(tables.search(target, ends, lag), target, contact)
     if whole:
         return trajectory.solve_whole(terms)
     return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window, lag))

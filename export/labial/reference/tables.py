@@ -6,8 +6,8 @@ centre with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap` a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Union
+from dataclasses import dataclass, replace
+from typing import Optional, Union
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from labial.fixed import (
 )
 from labial.model import Model
 from labial.quantise import ExportedModel
+from labial.reference.contact import FRAMES
 from labial.reference.viterbi import LAG, Chains, decode, normal_chains
 
 #: Durations farther than this many standard deviations from a component's mean change its shape no more.
@@ -56,7 +57,9 @@ class FloatTables:
         self.boundary = np.asarray(model.boundary, dtype=bool)
         self.viseme_class = np.asarray(model.phoneme_class)
         self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
-        self.ahead = max(int(self.lags[-1]), 0) if len(self.lags) else 0
+        self.floor = np.asarray(model.floor)  #: (P, 13)
+        self.contact = np.asarray(model.contact)  #: (P, 13) bool
+        self.ahead = _look_ahead(self.lags, bool(np.isfinite(self.floor).any()))
         self.stride = model.search_stride
         self.chains = normal_chains(model.decode_mean, model.decode_variance, model.log_transition, model.log_initial)
         self._first = model.first_component()
@@ -91,25 +94,25 @@ class FloatTables:
         """(T, 13) the shapes of frames between knots (T, K, 13) of `share` (T, K)."""
         return np.einsum("tk,tkc->tc", share, knots)
 
-    def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
-        """(T, 13) targets: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to them, but not
-        below the floors of `labels` (T,), the frames' own phonemes."""
+    def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+        """(T, 13) targets before floors: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to
+        them."""
         taps = np.arange(neighbours.shape[1])
-        return np.maximum(shapes + self.model.kernel[neighbours, taps].sum(axis=1), self.model.floor[labels])
+        return shapes + self.model.kernel[neighbours, taps].sum(axis=1)
 
     def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG) -> np.ndarray:
         """(T, 13) int64: the state path for targets (T, 13), given the frames (T,) that end units."""
         return decode(self.chains, [targets], [ends], self.stride, lag=lag)[0]
 
-    def equation(self, path: np.ndarray, targets: np.ndarray) -> Equation:
-        """Equation 3's terms for `path` (T, 13)."""
+    def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
+        """Equation 3's terms for `path` (T, 13); frames in `contact` (T, 13) are held by their target alone."""
         own = _CHANNEL, path
-        return Equation(
+        return _in_contact(Equation(
             weight=self.model.state_precision[own],
             mean=self.model.state_mean[own],
             anchor=self.model.state_anchor[own],
             target=targets,
-        )
+        ), contact, self.model.firm)
 
     @staticmethod
     def to_fap(positions: np.ndarray) -> np.ndarray:
@@ -131,11 +134,13 @@ class ExportedTables:
         self.viseme_class = exported.viseme_class
         taps = exported.kernels.shape[1]
         self.lags = (np.arange(taps) - exported.kernel_behind) * exported.kernel_stride
-        self.ahead = max(int(self.lags[-1]), 0) if taps else 0
+        self.floor = exported.floors[exported.floor]
+        self.contact = ((exported.contacts[exported.floor][:, None] >> _CHANNEL) & 1).astype(bool)
+        self.ahead = _look_ahead(self.lags, len(exported.floors) > 1)
         self.stride = exported.search_stride
         self.chains = Chains(exported.emission_mean, exported.dense_transitions(), exported.initial, LEAP,
                              self.emission)
-        self.knots = 1
+        self.knots = exported.pairs.shape[1]
 
     def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
         """As :meth:`FloatTables.select`, in positions."""
@@ -158,26 +163,26 @@ class ExportedTables:
         position = rounded_shift(((share @ model.shapes[own]) >> 4) * model.shape_scale, 16)
         if model.slopes is not None:
             position = position + rounded_shift(((deviation @ model.slopes[own]) >> 4) * model.slope_scale, 16)
-        position = np.clip(position, -POSITION_MAX, POSITION_MAX)
+        position = np.repeat(np.clip(position, -POSITION_MAX, POSITION_MAX)[None], self.knots, axis=0)
         for key in (phoneme * 256 + previous, phoneme * 256 + 128 + following):
             row = int(np.searchsorted(model.pair_keys, key))
             if row < len(model.pair_keys) and model.pair_keys[row] == key:
                 added = rounded_shift(model.pairs[row] * model.pair_scale, 8)
                 position = np.clip(position + added, -POSITION_MAX, POSITION_MAX)
-        return position[None]
+        return position
 
     @staticmethod
     def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
-        """As :meth:`FloatTables.interpolated`: exported models have one knot."""
-        return knots[:, 0]
+        """As :meth:`FloatTables.interpolated`."""
+        share = np.floor(share[:, -1:] * 16384.0 + 1e-9).astype(np.int64)  # of the later knot, Q14
+        return knots[:, 0] + rounded_shift((knots[:, -1] - knots[:, 0]) * share, 14)
 
-    def targets(self, shapes: np.ndarray, labels: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.targets`, in positions."""
         model = self.exported
         taps = np.arange(neighbours.shape[1])
         added = rounded_shift(model.kernels[neighbours, taps].sum(axis=1) * model.kernel_scale, 8)
-        held = np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
-        return np.maximum(held, model.floors[model.floor[labels]])
+        return np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
 
     def emission(self, targets: np.ndarray, states: np.ndarray) -> np.ndarray:
         """(..., 13, W) costs of states (..., 13, W) for targets (..., 13), in 1/32 nat."""
@@ -190,21 +195,36 @@ class ExportedTables:
         """As :meth:`FloatTables.search`."""
         return decode(self.chains, [targets], [ends], self.stride, lag=lag)[0]
 
-    def equation(self, path: np.ndarray, targets: np.ndarray) -> Equation:
+    def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
         """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""
         model, own = self.exported, (_CHANNEL, path)
         hold, share = weight_value(model.state_hold[own]), share_value(model.state_share[own]) / 256.0
         moving = weight_value(model.state_weight[own]) * np.array([4, 1])  # the tables hold a quarter of delta's
-        return Equation(
+        return _in_contact(Equation(
             weight=np.concatenate([(hold * (1.0 - share))[..., None], moving], axis=-1),
             mean=model.state_mean[own] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
             anchor=hold * share,
             target=self.to_fap(targets),
-        )
+        ), contact, weight_value(model.firm))
 
     def to_fap(self, positions: np.ndarray) -> np.ndarray:
         """Positions in FAP units."""
         return (positions + self.exported.centre) / 16.0
+
+
+def _look_ahead(lags: np.ndarray, has_floors: bool) -> int:
+    """Frames that targets look ahead, with kernels of these lags (L,) and for short contacts."""
+    return max(int(lags[-1]) if len(lags) else 0, FRAMES if has_floors else 0, 0)
+
+
+def _in_contact(terms: Equation, contact: Optional[np.ndarray], firm: np.ndarray) -> Equation:
+    """The terms with the frames in `contact` (T, 13) held by their targets, by weights `firm` (13,) at least."""
+    if contact is None:
+        return terms
+    hold = terms.weight[..., 0] + terms.anchor
+    weight = terms.weight.copy()
+    weight[..., 0] = np.where(contact, 0.0, weight[..., 0])
+    return replace(terms, weight=weight, anchor=np.where(contact, np.maximum(hold, firm), terms.anchor))
 
 
 def _likelihood(cost: np.ndarray) -> np.ndarray:

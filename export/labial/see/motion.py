@@ -11,8 +11,9 @@ from typing import List, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from labial.corpus.folder import read_frames
+from labial.corpus.formats import read_timings
 from labial.corpus.lines import read_lines
-from labial.corpus.timings import SourceSegment, meaning, read_timings
+from labial.corpus.timings import SourceSegment, meaning, phone_set_of
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
@@ -105,7 +106,7 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return np.arange(count) / fps, frames
 
 
-def read_bands(path: Optional[PathLike], labels: str = AUTO) -> List[Band]:
+def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
     Labels are of the set `labels`, and those of speech or of laughter, whichever knows more of them. A label that it
@@ -113,9 +114,8 @@ def read_bands(path: Optional[PathLike], labels: str = AUTO) -> List[Band]:
     """
     if path is None:
         return []
-    segments = [segment for segment in read_timings(path) if segment.end > segment.start]
-    known = [sum(meaning(segment, phones, labels) is not None for segment in segments) for phones in (SPEECH, LAUGHTER)]
-    phones = LAUGHTER if known[1] > known[0] else SPEECH
+    segments = [segment for segment in read_timings(path, source) if segment.end > segment.start]
+    phones = phone_set_of(segments, labels)
     return [Band(segment.start, segment.end, *_named(segment, phones, labels)) for segment in segments]
 
 

@@ -8,6 +8,7 @@ phoneme does it fall below what people hardly ever do: protrusion ends at lips a
 from __future__ import annotations
 
 from typing import Sequence as SequenceOf
+from typing import Tuple
 
 import numpy as np
 
@@ -25,13 +26,17 @@ MARGIN = 0.04
 #: The percentile of all human frames that no target falls below.
 LEAST = 1.0
 
+#: How firmly a frame in contact is held: times the median over a channel's states.
+FIRMNESS = 4.0
+
 #: The share of a class's occurrences, those that close most, whose mean pose is the floor: people's mean, but for the
 #: tenth whose lips the timings hardly meet.
 FIRMEST = 0.9
 
 
-def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> np.ndarray:
-    """(P, 13) FAP: the pose of contact in the phonemes and channels that make it, elsewhere the LEAST percentile.
+def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> Tuple[np.ndarray, np.ndarray]:
+    """(P, 13) FAP: the pose of contact in the phonemes and channels that make it, elsewhere the LEAST percentile; and
+    (P, 13) bool: where it is contact.
 
     The pose is the mean, by weight, over the FIRMEST occurrences of the phoneme's class, each at its frame of closest
     contact.
@@ -40,6 +45,7 @@ def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> np.
     counts = np.concatenate([item.weights for item in material]) > 0
     least = np.array([np.percentile(values[of], LEAST) for values, of in zip(frames.T, counts.T)])
     result = np.tile(least, (len(phone_set.phonemes), 1))
+    contacts = np.zeros(result.shape, dtype=bool)
     classes = np.array(phone_set.phoneme_class)
     margin = round(MARGIN * fps)
     for name, faps in CONTACTS.items():
@@ -63,4 +69,5 @@ def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> np.
             mean = (weight[firm] * contact[firm]).sum(axis=0) / np.maximum(total, 1e-9)
             held = np.where(total > 0, mean, least[channels])
             result[np.ix_(classes == number, channels)] = held
-    return result
+            contacts[np.ix_(classes == number, channels)] = total > 0
+    return result, contacts

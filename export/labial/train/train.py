@@ -15,7 +15,8 @@ from labial.faps import CHANNELS, FAP_COLUMNS
 from labial.model import KINDS, METHODS, Model
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.quantise import LIMITS
-from labial.train.closures import floors
+from labial.reference.contact import FRAMES, raised
+from labial.train.closures import FIRMNESS, floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
@@ -111,7 +112,8 @@ def _stretches(
 
 
 def _targets(
-    choice: Choice, fitted: Kernels, material: SequenceOf[Sequence], silence: int, floor: np.ndarray
+    choice: Choice, fitted: Kernels, material: SequenceOf[Sequence], silence: int, floor: np.ndarray,
+    contact: np.ndarray,
 ) -> List[np.ndarray]:
     """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
     selected = np.split(shapes(fitted.tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
@@ -119,7 +121,7 @@ def _targets(
     for shape, item in zip(selected, material):
         held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
         moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
-        result.append(np.maximum(moving, floor[item.phoneme_at()]))
+        result.append(raised(moving, item.phoneme_at(), item.length, silence, floor, contact)[0])
     return result
 
 
@@ -215,7 +217,7 @@ def train(
 
     material = sequences(corpus, phone_set, fps)
     if extended:
-        ahead = int(lags(fps, look_ahead)[-1])
+        ahead = max(int(lags(fps, look_ahead)[-1]), FRAMES)
         material = [with_pauses_cut(item, silence, ahead, fps) for item in material]
     _check_taught(material)
     items = occurrences(material, phone_set)
@@ -223,7 +225,9 @@ def train(
     plan = back_off(counts, phone_set)
     _report(plan, phone_set, counts)
 
-    floor = floors(material, phone_set, fps) if extended else np.full((phonemes, CHANNELS), -np.inf)
+    floor, contact = np.full((phonemes, CHANNELS), -np.inf), np.zeros((phonemes, CHANNELS), dtype=bool)
+    if extended:
+        floor, contact = floors(material, phone_set, fps)
     with Workers(jobs, progress) as workers, threadpool_limits(1):
         tasks = _mixture_tasks(items, plan, classes if extended else 0, components, seed)
         tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), extended)
@@ -240,7 +244,7 @@ def train(
             )
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
             pair_key, pair_shape = fitted.pair_key, fitted.pair_shape
-            targets = _targets(choice, fitted, material, silence, floor)
+            targets = _targets(choice, fitted, material, silence, floor, contact)
             ends = [_unit_ends(item, boundary) for item in material]
             batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
             tasks = [(targets[batch], ends[batch], states) for batch in batches]
@@ -284,6 +288,8 @@ def train(
         pair_key=pair_key,
         pair_shape=pair_shape,
         floor=floor,
+        contact=contact,
+        firm=FIRMNESS * np.median(states.state_precision[..., 0] + states.state_anchor, axis=1) * contact.any(axis=0),
         decode_mean=states.decode_mean,
         decode_variance=states.decode_variance,
         state_mean=states.state_mean,

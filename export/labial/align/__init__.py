@@ -1,0 +1,1 @@
+"""Forced alignment: which phoneme of a recording is spoken when (``labial align``)."""

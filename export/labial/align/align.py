@@ -1,0 +1,211 @@
+"""``labial align``: phonemes of a recording with their times, from what is said in it or from the sound alone."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from dataclasses import dataclass
+from typing import Callable, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from labial.align.recogniser import Recogniser
+from labial.align.silence import LONGEST_PAUSE_UNHEARD, with_silences
+from labial.align.sound import RATE, prepared, read_sound, silences
+from labial.align.words import pronunciations, words_of
+from labial.corpus.episode import Segment
+from labial.errors import DataError, LabialError
+
+PathLike = Union[str, os.PathLike]
+Progress = Callable[[float, float], None]
+
+#: Seconds that are searched at once at most, and those at the end of such a piece that are searched with the next, too.
+LONGEST_PIECE, OVERLAP = 30.0, 6.0
+#: Words per second that nobody speaks.
+_FASTEST = 7.0
+#: Mean score of a frame below which phonemes are not those of the sound. Of speech by synthesisers that the text fits,
+#: -9 .. -32 were measured, of texts of other sentences -56 .. -87.
+MISFIT = -45.0
+#: The part of what is heard that words take up at least, where the sound is nothing but speech with its noises.
+LEAST_SPOKEN = 1 / 3
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What was found in a piece of the sound: times are those of the whole sound."""
+
+    segments: List[Segment]
+    start: float
+    end: float
+    score: float  #: of the mean frame, see :class:`Recogniser`; 0 for a silent one
+
+
+def align(
+    path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None
+) -> Tuple[Segment, ...]:
+    """English phonemes (ARPABET and SIL) of a sound file, without gaps from time 0 to the sound's end.
+
+    `text` is what is said in it; without, the likeliest words are looked for. `progress` is told the seconds that are
+    done. Warns of words that are pronounced by guess and of a text that does not seem to be that of the sound. Raises
+    DataError for a sound that cannot be read or a text that cannot be found in it, LabialError for a text that has no
+    words or is not English.
+    """
+    samples = read_sound(path)
+    recogniser = Recogniser()
+    sound = Sound(samples, prepared(samples), silences(samples))
+    if text is None:
+        pieces = _found(sound, recogniser, progress)
+    else:
+        words = words_of(text)
+        if not words:
+            raise LabialError("the text has no words")
+        _learn(recogniser, words)
+        pieces = _followed(path, sound, words, recogniser, progress)
+    _judge(path, sound, pieces, text is not None)
+    segments = [segment for piece in pieces for segment in piece.segments]
+    return tuple(_joined(segments))
+
+
+@dataclass(frozen=True)
+class Sound:
+    """A sound as it was, as the recogniser takes it, and where it is silent."""
+
+    samples: np.ndarray  #: (N,) float32 at `RATE`
+    prepared: np.ndarray  #: (N,) int16 at `RATE`
+    silences: Sequence[Tuple[float, float]]  #: seconds
+
+    @property
+    def length(self) -> float:
+        """Seconds."""
+        return len(self.samples) / RATE
+
+    def part(self, start: float, end: float) -> np.ndarray:
+        """What the recogniser takes of a piece."""
+        return self.prepared[round(start * RATE) : round(end * RATE)]
+
+    def cut(self, start: float, longest: float) -> float:
+        """Where a piece from `start` may end: in the last silence of its latter half, in its quietest moment without
+        one, at the sound's end when that is near."""
+        if self.length - start <= longest:
+            return self.length
+        middles = [(a + b) / 2 for a, b in self.silences if start + longest / 2 < (a + b) / 2 <= start + longest]
+        if middles:
+            return middles[-1]
+        hop = RATE // 20
+        begin = round((start + longest / 2) * RATE)
+        frames = self.samples[begin : begin + round(longest / 2 * RATE) // hop * hop].reshape(-1, hop)
+        return (begin + (int(np.argmin(np.square(frames).sum(axis=1))) + 0.5) * hop) / RATE
+
+    def piece(self, start: float, end: float, found: Optional[Tuple[List[Segment], float]]) -> Piece:
+        """Phonemes from `start` brought to the silences and to the time of the whole sound; silence without any."""
+        if found is None:
+            return Piece([Segment(start, end, "SIL")], start, end, 0.0)
+        within = [(max(a, start) - start, min(b, end) - start) for a, b in self.silences if a < end and b > start]
+        unheard = [(s.start, s.end) for s in found[0] if s.label == "SIL" and s.duration > LONGEST_PAUSE_UNHEARD]
+        segments = with_silences(found[0], _united([*within, *unheard]), end - start)
+        return Piece([Segment(start + s.start, start + s.end, s.label) for s in segments], start, end, found[1])
+
+
+def _learn(recogniser: Recogniser, words: List[str]) -> None:
+    new, guessed = pronunciations(words, recogniser.lookup)
+    if new:
+        recogniser.learn(new)
+    if guessed:
+        more = f" and {len(guessed) - 8} more" if len(guessed) > 8 else ""
+        warnings.warn(f"not in the dictionary, pronounced as they are spelt: {', '.join(guessed[:8])}{more}",
+                      stacklevel=3)
+
+
+def _found(sound: Sound, recogniser: Recogniser, progress: Optional[Progress]) -> List[Piece]:
+    """Pieces from silence to silence, each with its likeliest words."""
+    pieces: List[Piece] = []
+    start = 0.0
+    while start < sound.length:
+        end = sound.cut(start, LONGEST_PIECE)
+        silent = any(a <= start and b >= end for a, b in sound.silences)
+        pieces.append(sound.piece(start, end, None if silent else recogniser.find(sound.part(start, end))))
+        start = end
+        if progress:
+            progress(start, sound.length)
+    return pieces
+
+
+def _followed(
+    path: PathLike, sound: Sound, words: Sequence[str], recogniser: Recogniser, progress: Optional[Progress]
+) -> List[Piece]:
+    """Pieces that follow the text: each is searched with a part of the next one, so that what comes after a word has a
+    say in where it is."""
+    pieces: List[Piece] = []
+    start, at = 0.0, 0
+    while start < sound.length:
+        end, count = sound.length, len(words) - at
+        if sound.length - start > LONGEST_PIECE + OVERLAP and count:
+            end, count = _next_piece(sound, start, words[at:], recogniser)
+        found = recogniser.phonemes(sound.part(start, end), words[at : at + count]) if count else None
+        if count and found is None:
+            raise DataError(path, None, f"the text does not fit the sound from {start:.1f} s on: "
+                            f"'{' '.join(words[at : at + 6])} ...' is not found there")
+        pieces.append(sound.piece(start, end, found))
+        start, at = end, at + count
+        if progress:
+            progress(start, sound.length)
+    if at < len(words):
+        rest = " ".join(words[at : at + 6])
+        raise DataError(path, None, f"the text does not fit: the sound ends before '{rest} ...'")
+    return pieces
+
+
+def _next_piece(sound: Sound, start: float, words: Sequence[str], recogniser: Recogniser) -> Tuple[float, int]:
+    """Where the next piece ends, and how many of `words` are in it."""
+    end = sound.cut(start, LONGEST_PIECE)
+    most = int(_FASTEST * (end - start)) + 1
+    rows = recogniser.follow_part(sound.part(start, end), words[:most])
+    count, best, pause = 0, (end, 0), 0.0
+    for word, begin, stop in rows:
+        if word.startswith(("<", "[")):
+            if stop - begin >= pause and begin > LONGEST_PIECE / 4 and stop < end - start - OVERLAP:
+                best, pause = (start + (begin + stop) / 2, count), 0.1
+        else:
+            count += 1
+            if not pause and stop < end - start - OVERLAP:
+                best = (start + stop, count)
+    return best
+
+
+def _judge(path: PathLike, sound: Sound, pieces: Sequence[Piece], has_text: bool) -> None:
+    """Warns where phonemes do not sound like what they are called, or are few for what is heard."""
+    name = os.fspath(path)
+    spoken = sum(segment.duration for piece in pieces for segment in piece.segments if segment.label != "SIL")
+    heard = sound.length - sum(end - begin for begin, end in sound.silences)
+    if not spoken:
+        warnings.warn(f"{name}: no speech is found in the sound", stacklevel=3)
+        return
+    what = "the text does not fit the sound" if has_text else "the sound is hardly clear English speech"
+    worst = min(pieces, key=lambda piece: piece.score)
+    if worst.score < MISFIT:
+        where = "" if len(pieces) == 1 else f" from {worst.start:.1f} to {worst.end:.1f} s"
+        warnings.warn(f"{name}: {what}{where}; the mouth will not match what is heard", stacklevel=3)
+    elif spoken < LEAST_SPOKEN * heard:
+        warnings.warn(f"{name}: {what}: words are in {spoken:.1f} of {heard:.1f} s that are not silent", stacklevel=3)
+
+
+def _united(spans: Sequence[Tuple[float, float]]) -> List[Tuple[float, float]]:
+    """Spans in order, those that overlap as one."""
+    result: List[Tuple[float, float]] = []
+    for start, end in sorted(spans):
+        if result and start <= result[-1][1]:
+            result[-1] = (result[-1][0], max(end, result[-1][1]))
+        else:
+            result.append((start, end))
+    return result
+
+
+def _joined(segments: Sequence[Segment]) -> List[Segment]:
+    """Segments with neighbouring silences as one."""
+    result: List[Segment] = []
+    for segment in segments:
+        if result and segment.label == result[-1].label == "SIL":
+            result[-1] = Segment(result[-1].start, segment.end, "SIL")
+        else:
+            result.append(segment)
+    return result

@@ -1,0 +1,341 @@
+"""Phoneme timings as JSON: what speech services and neural synthesisers tell of the speech they make.
+
+Each reader returns segments in seconds, as those of :mod:`labial.corpus.timings` do, and checks them the same way. A
+file is one JSON document, or one per line. Errors are DataErrors with the line where each line is a document of its
+own, else with the number of the entry.
+
+What comes character by character, as from Piper and Kokoro, becomes phonemes: a stress mark's time goes to the vowel
+that follows, that of a length mark or diacritic to what it follows, the two halves of a diphthong or affricate are one
+phoneme, and punctuation is silence. The blank between two words takes time, too, but nobody's lips rest there: up to
+`LONGEST_BLANK` it goes to the phoneme before it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import unicodedata
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+from labial.corpus.timings import PathLike, SourceSegment, checked, text_of
+from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
+from labial.errors import DataError
+
+#: A blank between words, or what a service leaves out between two phonemes, is a pause from here on, in seconds.
+LONGEST_BLANK = 0.15
+#: Seconds that the last viseme lasts, of which only the beginning is told.
+LAST_VISEME = 0.1
+#: Kokoro's frames per second: 600 samples each, 24,000 samples per second.
+KOKORO_RATE = 40.0
+#: Azure's ticks per second, of 100 ns.
+AZURE_RATE = 1e7
+
+_STRESS = ("ˈ", "ˌ")
+#: What is one phoneme although it comes as two.
+_PAIRS = ("aɪ", "aʊ", "ɔɪ", "eɪ", "oʊ", "əʊ", "tʃ", "dʒ", "ɜɹ")
+#: Kokoro's letters (its grapheme-to-phoneme step Misaki's) that are not the IPA's.
+_MISAKI = {"A": "eɪ", "I": "aɪ", "O": "oʊ", "Q": "əʊ", "W": "aʊ", "Y": "ɔɪ", "T": "ɾ", "ᵊ": "ə"}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One object of a file: `line` where a line is a document, else its `number` in the document, from 1."""
+
+    path: PathLike
+    line: Optional[int]
+    number: int
+    fields: Dict[str, Any]
+
+    def error(self, problem: str) -> DataError:
+        """`problem`, with where it is."""
+        return DataError(self.path, self.line, problem if self.line else f"entry {self.number}: {problem}")
+
+    def get(self, *names: str) -> Any:
+        """The first field that there is of `names`, whatever the case and the underscores of the file's keys."""
+        for key, value in self.fields.items():
+            if _plain(key) in names:
+                return value
+        raise self.error(f"no field {names[0]!r}")
+
+    def has(self, *names: str) -> bool:
+        """Whether all of `names` are there."""
+        return {_plain(key) for key in self.fields} >= set(names)
+
+    def number_of(self, *names: str) -> float:
+        """A field that must be a finite number, not below zero."""
+        return self.as_number(self.get(*names), names[0])
+
+    def as_number(self, value: Any, what: str) -> float:
+        """`value` as a float, or an error."""
+        try:
+            number = float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else math.nan
+        except OverflowError:
+            number = math.inf
+        if not 0.0 <= number < math.inf:
+            raise self.error(f"{what!r} is {_shown(value)}, not a number from 0 on")
+        return number
+
+    def text_of(self, *names: str) -> str:
+        """A field that must be text."""
+        value = self.get(*names)
+        if not isinstance(value, str):
+            raise self.error(f"{names[0]!r} is {_shown(value)}, not text")
+        return value
+
+    def list_of(self, *names: str) -> List[Any]:
+        """A field that must be a list."""
+        value = self.get(*names)
+        if not isinstance(value, list):
+            raise self.error(f"{names[0]!r} is {_shown(value)}, not a list")
+        return value
+
+    def parts(self, *names: str) -> List[Entry]:
+        """A field that must be a list of objects, as entries."""
+        return [_entry(self.path, self.line, number, item) for number, item in enumerate(self.list_of(*names), 1)]
+
+
+def read_entries(path: PathLike) -> List[Entry]:
+    """The objects of a file: those of a list, a single one, or one per line."""
+    text = text_of(path, ("utf-8-sig", "utf-16"))
+    try:
+        document = _loads(path, text)
+        items = document if isinstance(document, list) else [document]
+        return [_entry(path, None, number, item) for number, item in enumerate(items, 1)]
+    except json.JSONDecodeError as error:
+        lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+        if len(lines) < 2 or not _is_document(lines[0][1]):
+            raise DataError(path, error.lineno, f"not JSON: {error.msg}") from None
+    entries = []
+    for number, line in lines:
+        try:
+            entries.append(_entry(path, number, number, _loads(path, line)))
+        except json.JSONDecodeError as error:
+            raise DataError(path, number, f"not JSON: {error.msg}") from None
+    return entries
+
+
+def read_plain(path: PathLike) -> List[SourceSegment]:
+    """Reads a list of objects with `phoneme`, `start` and `end`, in seconds."""
+    return checked(path, [
+        SourceSegment(item.number_of("start"), item.number_of("end"), item.text_of("phoneme"), line=item.line)
+        for item in read_entries(path)])
+
+
+def read_piper(path: PathLike) -> List[SourceSegment]:
+    """Reads Piper's alignments: audio chunks with `sample_rate` and `phoneme_alignments` (`phoneme`, `num_samples`), or
+    what its HTTP server's ``/info`` answers (`alignments` of `phoneme` and `seconds`)."""
+    tokens: List[SourceSegment] = []
+    moment = 0.0
+    for item in _piper_phonemes(read_entries(path)):
+        label, end = item.text_of("phoneme"), moment + item.number_of("seconds")
+        tokens.append(SourceSegment(moment, end, label, line=item.line))
+        moment = end
+    return checked(path, phonemes_of(tokens))
+
+
+def read_kokoro(path: PathLike) -> List[SourceSegment]:
+    """Reads results of Kokoro's pipeline: `phonemes`, a string, and `pred_dur`, the frames of the silence before it, of
+    each of its characters and of the silence behind it; 40 frames per second."""
+    tokens: List[SourceSegment] = []
+    frames = 0.0
+    for item in read_entries(path):
+        characters = ["", *item.text_of("phonemes"), ""]
+        durations = [item.as_number(value, "pred_dur") for value in item.list_of("preddur")]
+        if len(durations) != len(characters):
+            raise item.error(f"{len(durations)} durations for {len(characters) - 2} characters and the silence around "
+                             "them: Kokoro left out characters that it does not know")
+        for character, duration in zip(characters, durations):
+            start, frames = frames, frames + duration
+            label = _MISAKI.get(character, character)
+            tokens.append(SourceSegment(start / KOKORO_RATE, frames / KOKORO_RATE, label, line=item.line))
+    return checked(path, phonemes_of(tokens))
+
+
+def read_headtts(path: PathLike) -> List[SourceSegment]:
+    """Reads HeadTTS's answers: `phonemes` with `vtimes` and `vdurations`, milliseconds; each answer begins where the
+    one before ends, as when their sounds are joined.
+
+    The times overlap and leave out blanks and h; so a phoneme lasts until the next one, or to its own end where that
+    is a pause.
+    """
+    segments: List[SourceSegment] = []
+    origin = 0.0
+    for item in read_entries(path):
+        if not item.has("vtimes") and isinstance(item.fields.get("data"), dict):
+            item = _entry(path, item.line, item.number, item.fields["data"])  # as the client library hands it on
+        labels = item.list_of("phonemes")
+        starts = [item.as_number(value, "vtimes") / 1000 for value in item.list_of("vtimes")]
+        lengths = [item.as_number(value, "vdurations") / 1000 for value in item.list_of("vdurations")]
+        if not len(labels) == len(starts) == len(lengths) or not all(isinstance(label, str) for label in labels):
+            raise item.error("'phonemes', 'vtimes' and 'vdurations' are not of one length")
+        nexts = [*starts[1:], math.inf]
+        for label, start, length, after in zip(labels, starts, lengths, nexts):
+            end = start + length
+            end = after if end > after or after - end <= LONGEST_BLANK else end
+            segments.append(SourceSegment(origin + start, origin + end, _MISAKI.get(label, label), line=item.line))
+        origin = segments[-1].end if segments else origin
+    return checked(path, phonemes_of(segments))
+
+
+def read_azure(path: PathLike) -> List[SourceSegment]:
+    """Reads Azure's viseme events: `viseme_id` (0 .. 21) and `audio_offset`, ticks of 100 ns, under the names that any
+    of its libraries gives them."""
+    marks = []
+    for item in read_entries(path):
+        name = _shown(item.get("visemeid", "privvisemeid"))
+        marks.append((item.number_of("audiooffset", "privaudiooffset") / AZURE_RATE, name, item.line))
+    return _from_visemes(path, marks, AZURE, AZURE_PAIRS)
+
+
+def read_polly(path: PathLike) -> List[SourceSegment]:
+    """Reads Amazon Polly's speech marks, one object per line: those of type "viseme", `time` in milliseconds."""
+    marks = [(item.number_of("time") / 1000, item.text_of("value"), item.line)
+             for item in read_entries(path) if item.get("type") == "viseme"]
+    if not marks:
+        raise DataError(path, None, "no speech marks of type 'viseme'")
+    return _from_visemes(path, marks, POLLY, {})
+
+
+#: Readers by the names of --from.
+READERS: Dict[str, Callable[[PathLike], List[SourceSegment]]] = {
+    "piper": read_piper, "azure": read_azure, "polly": read_polly, "headtts": read_headtts, "kokoro": read_kokoro,
+    "json": read_plain,
+}  # fmt: skip
+
+
+def service_of(path: PathLike) -> Optional[str]:
+    """Which of `READERS` a JSON file is for, by the fields of its first object; None when it is none of them."""
+    entries = read_entries(path)
+    if not entries:
+        return None
+    first = entries[0]
+    data = first.fields.get("data")
+    if first.has("preddur"):
+        return "kokoro"
+    if first.has("vtimes") or (isinstance(data, dict) and "vtimes" in data):
+        return "headtts"
+    if first.has("visemeid") or first.has("privvisemeid"):
+        return "azure"
+    if first.has("type", "time", "value"):
+        return "polly"
+    if first.has("phoneme", "start", "end"):
+        return "json"
+    piper = (("phonemealignments",), ("alignments",), ("last",), ("phoneme", "numsamples"), ("phoneme", "seconds"))
+    return "piper" if any(first.has(*names) for names in piper) else None
+
+
+def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
+    """Phonemes, in the IPA, of characters that follow each other (see above); "" is silence, and so is every gap."""
+    result: List[SourceSegment] = []
+    begin: Optional[float] = None  # of the stress mark before the next phoneme
+    joins = False  # the next character may be the second half of the phoneme before it
+    for token in tokens:
+        label = token.label
+        last = result[-1] if result and result[-1].label else None
+        if label in _STRESS:
+            begin = token.start if begin is None else begin
+        elif last and begin is None and _is_mark(label):
+            result[-1] = _grown(last, token, last.label + label)
+        elif last and begin is None and joins and last.label + label in _PAIRS and token.start <= last.end:
+            result[-1] = _grown(last, token, last.label + label)
+        elif last and label.isspace() and token.duration <= LONGEST_BLANK:
+            result[-1] = _grown(last, token, last.label)
+            joins = False
+        elif _is_silence(label):
+            if result and not last:
+                result[-1] = _grown(result[-1], token, "")
+            else:
+                result.append(SourceSegment(token.start, token.end, "", line=token.line))
+            begin = None
+        else:
+            start = token.start if begin is None else begin
+            result.append(SourceSegment(start, token.end, label, line=token.line, labels="ipa"))
+            begin, joins = None, True
+    return result
+
+
+def _grown(segment: SourceSegment, token: SourceSegment, label: str) -> SourceSegment:
+    return SourceSegment(segment.start, token.end, label, line=segment.line, labels=segment.labels)
+
+
+def _is_mark(label: str) -> bool:
+    """Whether `label` only changes what is before it: length, release, nasality, tone."""
+    return bool(label) and all(unicodedata.category(c) in ("Lm", "Mn", "Sk", "Nd") for c in label)
+
+
+def _is_silence(label: str) -> bool:
+    return all(unicodedata.category(c)[0] in "PSZC" for c in label)
+
+
+def _piper_phonemes(entries: Sequence[Entry]) -> List[Entry]:
+    """Objects of `phoneme` and `seconds` from any of Piper's shapes."""
+    result: List[Entry] = []
+    for item in entries:
+        if item.has("last"):
+            last = item.get("last")
+            if not isinstance(last, dict):
+                raise item.error("the server has not spoken yet: ask for /info after /synthesize")
+            item = _entry(item.path, item.line, item.number, last)
+        if item.has("phonemealignments"):
+            if item.get("phonemealignments") is None:
+                raise item.error("the voice told no alignments: load it with include_alignments=True")
+            rate = item.number_of("samplerate")
+            if rate < 1:
+                raise item.error(f"'sample_rate' is {rate:g}")
+            result += [_entry(part.path, part.line, part.number, {
+                "phoneme": part.get("phoneme"), "seconds": part.number_of("numsamples") / rate,
+            }) for part in item.parts("phonemealignments")]
+        elif item.has("alignments"):
+            result += item.parts("alignments")
+        elif item.has("phoneme", "numsamples"):
+            raise item.error("samples without a rate: keep the chunk's sample_rate beside its phoneme_alignments")
+        else:
+            result.append(item)
+    return result
+
+
+def _from_visemes(
+    path: PathLike, marks: Sequence[Tuple[float, str, Optional[int]]], table: Dict[str, str],
+    pairs: Dict[Tuple[str, str], str],
+) -> List[SourceSegment]:
+    """Segments of visemes of which only the beginnings are told."""
+    for number, (_, name, line) in enumerate(marks, 1):
+        if name not in table:
+            raise DataError(path, line, f"{'' if line else f'entry {number}: '}no viseme is called {name!r}")
+    ends = [start for start, _, _ in marks[1:]] + [marks[-1][0] + LAST_VISEME] if marks else []
+    segments: List[SourceSegment] = []
+    for (first, last), phoneme in stand_ins([name for _, name, _ in marks], table, pairs):
+        segments.append(SourceSegment(marks[first][0], ends[last], phoneme, line=marks[first][2], labels="arpabet"))
+    return checked(path, segments)
+
+
+def _entry(path: PathLike, line: Optional[int], number: int, item: Any) -> Entry:
+    if not isinstance(item, dict):
+        raise Entry(path, line, number, {}).error(f"{_shown(item)} is not an object")
+    return Entry(path, line, number, item)
+
+
+def _loads(path: PathLike, text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (RecursionError, ValueError) as error:  # nested too deeply; a number of too many digits
+        if isinstance(error, json.JSONDecodeError):
+            raise
+        raise DataError(path, None, "JSON that is nested too deeply or has a number of too many digits") from None
+
+
+def _is_document(line: str) -> bool:
+    try:
+        return isinstance(json.loads(line), dict)
+    except (RecursionError, ValueError):
+        return False
+
+
+def _plain(key: str) -> str:
+    return key.replace("_", "").lower()
+
+
+def _shown(value: Any) -> str:
+    text = value if isinstance(value, str) else json.dumps(value)
+    return text if len(text) <= 40 else text[:37] + "..."

@@ -1,0 +1,45 @@
+"""Contact: lips that meet in p, b, m, and the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
+
+In contact a target does not fall below its floor, and equation 3 holds the frame there firmly. A phoneme shorter than
+FRAMES borrows the frame before it, and of one frame also the one behind it. One of LONG frames or more has swallowed a
+pause; it closes for its LAST frames.
+"""
+
+from __future__ import annotations
+
+from typing import Tuple
+
+import numpy as np
+
+#: Frames (``include/labial/model.h``).
+FRAMES = 3
+LONG = 15
+LAST = 8
+
+
+def raised(
+    target: np.ndarray, labels: np.ndarray, length: np.ndarray, silence: int, floor: np.ndarray, contact: np.ndarray
+) -> Tuple[np.ndarray, np.ndarray]:
+    """Targets (T, 13) that keep the floors, and where they are in contact, (T, 13) bool.
+
+    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme. `floor` (P, 13) is what a phoneme's
+    targets do not fall below, in the unit of `target`; `contact` (P, 13) bool says where it is contact.
+    """
+    frames = len(labels)
+    padded = np.concatenate([np.full(FRAMES, silence), labels, np.full(FRAMES, silence)])
+
+    def label(lag: int) -> np.ndarray:
+        return padded[FRAMES + lag : FRAMES + lag + frames]
+
+    whole = np.repeat(length, length)
+    left = np.repeat(np.cumsum(length), length) - np.arange(frames)
+    closing = (whole < LONG) | (left <= LAST)
+    short = (label(1) != labels) & ~((label(1) == label(2)) & (label(2) == label(3)))
+    single = (label(-1) != labels) & (label(-1) != label(-2))
+    own = contact[labels] & closing[:, None]
+    before = contact[label(1)] & short[:, None]
+    after = contact[label(-1)] & single[:, None]
+    target = np.where(contact[labels] & ~own, target, np.maximum(target, floor[labels]))
+    target = np.where(before, np.maximum(target, floor[label(1)]), target)
+    target = np.where(after, np.maximum(target, floor[label(-1)]), target)
+    return target, own | before | after

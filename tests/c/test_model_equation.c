@@ -1,0 +1,153 @@
+/*
+ * test_model_equation.c - the limits of equation 3 that labial_model_check() holds a model to: each is accepted at its
+ * bound and refused beyond it. test_trajectory.c says that the solver keeps its promise within them.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "fixture.h"
+
+static fixture_model_t f; /* what model_check.h changes */
+
+#include "model_check.h"
+
+/* The least weight above `value`, and the largest that is not. */
+static uint8_t above(double value)
+{
+    uint8_t code = 0;
+    while (fixture_weight_value(code) <= value)
+        code++;
+    return code;
+}
+
+static uint8_t not_above(double value)
+{
+    return (uint8_t)(above(value) - 1);
+}
+
+/* All states of a channel alike: no pull, and what is given. */
+static void hold_all(unsigned c, uint8_t hold, uint8_t delta, uint8_t delta2)
+{
+    unsigned q;
+    for (q = 0; q < FIXTURE_SPEECH_STATES; q++) {
+        labial_state_t *s = &f.states[c][q];
+        s->hold = hold;
+        s->weight[0] = delta;
+        s->weight[1] = delta2;
+        s->mean[1] = s->mean[2] = 0;
+    }
+}
+
+/* The largest hold, twice the largest weight of delta and six times that of delta-delta, each of any state: would catch
+ * a sum over the weights of each state for itself, and another factor. */
+static void refuses_weights_beyond_the_largest_sum(void **state)
+{
+    const double sum = LABIAL_WEIGHT_SUM_MAX;
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        const uint8_t dd = not_above(1400), d = not_above(1000);
+        labial_state_t *const s = f.states[c];
+        hold_all(c, not_above(500), 0, 0);
+        ACCEPTED(uint8_t, s[1].hold, not_above(sum));
+        REFUSED(uint8_t, s[1].hold, above(sum));
+        REFUSED(uint8_t, s[1].hold, 0xff);
+        s[7].weight[1] = dd; /* in one state, */
+        ACCEPTED(uint8_t, s[1].hold, not_above(sum - 6 * fixture_weight_value(dd)));
+        REFUSED(uint8_t, s[1].hold, above(sum - 6 * fixture_weight_value(dd)));
+        s[4].weight[1] = dd; /* and in another */
+        ACCEPTED(uint8_t, s[4].weight[0], d);
+        s[4].weight[0] = d;
+        ACCEPTED(uint8_t, s[0].hold, not_above(sum - 6 * fixture_weight_value(dd) - 2 * fixture_weight_value(d)));
+        REFUSED(uint8_t, s[0].hold, above(sum - 6 * fixture_weight_value(dd) - 2 * fixture_weight_value(d)));
+        hold_all(c, not_above(500), 0, 0);
+        ACCEPTED(uint8_t, s[2].weight[1], not_above((sum - fixture_weight_value(not_above(500))) / 6));
+        REFUSED(uint8_t, s[2].weight[1], above((sum - fixture_weight_value(not_above(500))) / 6));
+        REFUSED(uint8_t, s[2].weight[1], 0xff);
+    }
+}
+
+/* Would catch a stiffness measured by another state's hold, and motion that no factorisation of this kind bears. */
+static void refuses_motion_that_is_too_stiff(void **state)
+{
+    unsigned c, code;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        labial_state_t *const s = &f.states[c][c % FIXTURE_SPEECH_STATES];
+        hold_all(c, not_above(500), 0, 0);
+        for (code = not_above(LABIAL_WEIGHT_MIN); code <= not_above(120); code++) {
+            const double hold = fixture_weight_value((uint8_t)code);
+            s->hold = (uint8_t)code;
+            ACCEPTED(uint8_t, s->weight[1], not_above(LABIAL_STIFFNESS_MAX * hold));
+            REFUSED(uint8_t, s->weight[1], above(LABIAL_STIFFNESS_MAX * hold));
+        }
+        s->weight[1] = 40; /* delta is no heavier than delta-delta */
+        ACCEPTED(uint8_t, s->weight[0], 40);
+        REFUSED(uint8_t, s->weight[0], 41);
+        s->weight[1] = 0;
+        REFUSED(uint8_t, s->weight[0], 1);
+    }
+}
+
+/* Four times the largest weight times mean of delta, and of delta-delta, whatever their signs and states, over the least
+ * hold: exactly, for weights of 8 and 16. */
+static void refuses_pulls_beyond_the_largest(void **state)
+{
+    const int all = LABIAL_PULL_MAX * LABIAL_WEIGHT_MIN / 4 / 16; /* of a weight of 16; rounded down */
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        labial_state_t *const s = f.states[c];
+        hold_all(c, 16, 16, 16);
+        s[6].hold = LABIAL_WEIGHT_MIN;
+        ACCEPTED(int16_t, s[2].mean[1], all);
+        ACCEPTED(int16_t, s[2].mean[2], -all);
+        REFUSED(int16_t, s[2].mean[1], -all - 1);
+        REFUSED(int16_t, s[2].mean[2], all + 1);
+        s[1].mean[1] = -5000;
+        ACCEPTED(int16_t, s[2].mean[2], all - 5000);
+        ACCEPTED(int16_t, s[2].mean[2], 5000 - all);
+        REFUSED(int16_t, s[2].mean[2], all - 4999);
+        REFUSED(int16_t, s[1].mean[2], 4999 - all);
+        s[6].hold = 16; /* twice as much */
+        ACCEPTED(int16_t, s[2].mean[2], all - 4999);
+        ACCEPTED(int16_t, s[2].mean[2], 2 * all + 1 - 5000);
+        REFUSED(int16_t, s[2].mean[2], 2 * all + 2 - 5000);
+    }
+}
+
+static void refuses_states_that_nothing_holds(void **state)
+{
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        labial_state_t *s = &f.states[c][c % FIXTURE_SPEECH_STATES];
+        hold_all(c, 40, 0, 0);
+        REFUSED(uint8_t, s->hold, 0);
+        REFUSED(uint8_t, s->hold, LABIAL_WEIGHT_MIN - 1);
+        ACCEPTED(uint8_t, s->hold, LABIAL_WEIGHT_MIN);
+        ACCEPTED(uint8_t, s->share, 0);
+        ACCEPTED(uint8_t, s->share, 255);
+    }
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_plain(&f);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(refuses_weights_beyond_the_largest_sum, setup),
+        cmocka_unit_test_setup(refuses_motion_that_is_too_stiff, setup),
+        cmocka_unit_test_setup(refuses_pulls_beyond_the_largest, setup),
+        cmocka_unit_test_setup(refuses_states_that_nothing_holds, setup),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

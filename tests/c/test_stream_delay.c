@@ -1,0 +1,166 @@
+/*
+ * test_stream_delay.c - what each tick does, foretold: a frame is taken as soon as all that it needs was pushed, and
+ * delivered LABIAL_DELAY() ticks of taking later, whatever the feeding.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <string.h>
+
+#include "oracle.h"
+
+#define COUNT 200
+#define MANY 20000
+
+static fixture_model_t plain, rich, laugh, slow;
+static fixture_phoneme_t input[COUNT];
+static oracle_frame_t frames[MANY];
+static unsigned long starved, waited;
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_plain(&plain);
+    fixture_rich(&rich);
+    fixture_laughter(&laugh);
+    fixture_slow(&slow);
+    return 0;
+}
+
+/* Plays the input in random bursts with pauses of up to `longest` ticks, and foretells every tick. */
+static void foretell(const labial_model_t *const *models, unsigned model_count, uint32_t longest, uint32_t seed)
+{
+    const size_t count = oracle_units(models, input, COUNT, frames, MANY);
+    const unsigned delay = LABIAL_DELAY((unsigned)models[0]->search_stride);
+    fixture_random_t random = { seed + 1 };
+    fixture_host_t host;
+    size_t pushed = 0, taken = 0, moved = 0; /* ticks that took a frame or, after the end, let them run out */
+    uint32_t quiet = 0;
+    int wanted = LABIAL_OK, got;
+    assert_int_equal(fixture_open(&host, models, model_count), LABIAL_OK);
+    while (wanted != LABIAL_DONE) {
+        uint32_t burst = quiet > 0 ? 0 : 1 + fixture_below(&random, 6);
+        int is_moving;
+        for (; burst > 0 && pushed < COUNT && labial_room(host.stream) > 0; burst--, pushed++)
+            if (fixture_push(&host, &input[pushed]) != LABIAL_OK)
+                break;
+        quiet = quiet > 0 ? quiet - 1 : fixture_below(&random, longest + 1);
+        if (pushed == COUNT && !host.ended)
+            fixture_end(&host);
+        is_moving = taken < count ? host.ended || pushed >= frames[taken].needs : host.ended && host.recorder.count < count;
+        taken += is_moving && taken < count;
+        moved += (size_t)is_moving;
+        if (is_moving && moved > delay)
+            wanted = LABIAL_OK;
+        else if (host.ended && !is_moving)
+            wanted = LABIAL_DONE;
+        else
+            wanted = moved > delay ? LABIAL_STARVED : LABIAL_WAITING;
+        got = fixture_tick(&host);
+        if (got != wanted)
+            fail_msg("seed %u: a tick says %d, not %d, after %zu of %zu frames, %zu taken", seed, got, wanted,
+                     host.recorder.count, count, taken);
+        starved += got == LABIAL_STARVED;
+        waited += got == LABIAL_WAITING;
+    }
+    assert_int_equal(host.recorder.count, count);
+    if (host.complaint)
+        fail_msg("seed %u: %s", seed, host.complaint);
+    fixture_close(&host);
+}
+
+/* Would catch a delay that depends on the past, a frame that is held back, a tick that fails while input is there, a
+ * shortage that is called the end or the beginning. */
+static void every_tick_is_foretold(void **state)
+{
+    fixture_model_t *const all[] = { &plain, &rich, &slow };
+    int kind;
+    uint32_t seed;
+    (void)state;
+    for (kind = 0; kind < FIXTURE_HOUR; kind++)
+        for (seed = 0; seed < 24; seed++) {
+            fixture_model_t *const f = all[seed % 3];
+            const labial_model_t *const model = &f->model;
+            const uint8_t own = f->model.search_stride;
+            size_t i;
+            f->model.search_stride = (uint8_t)(1 + seed / 3);
+            fixture_stream(input, COUNT, (fixture_kind_t)kind, seed);
+            for (i = 0; i < COUNT; i++)
+                input[i].ms %= 1500;
+            foretell(&model, 1, seed % 4 * 10, seed);
+            f->model.search_stride = own;
+        }
+    assert_true(starved > 1000 && waited > 100);
+}
+
+/* The same where models change: their slots are free in time, for no frame may be late. */
+static void changes_of_model_delay_nothing(void **state)
+{
+#if LABIAL_MODELS > 1
+    const labial_model_t *const models[] = { &rich.model, &laugh.model };
+    uint32_t seed;
+    (void)state;
+    for (seed = 0; seed < 40; seed++) {
+        fixture_random_t random = { seed + 99 };
+        size_t i;
+        fixture_stream(input, COUNT, seed % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, seed);
+        for (i = 1; i < COUNT; i++) {
+            input[i].model = fixture_below(&random, 1 + seed / 4) == 0 ? !input[i - 1].model : input[i - 1].model;
+            input[i].phoneme = (uint8_t)(input[i].phoneme % FIXTURE_LAUGH_COUNT);
+        }
+        foretell(models, 2, seed % 4 * 10, seed);
+    }
+#else
+    (void)state;
+    (void)laugh;
+#endif
+}
+
+/* The delay is that of the window, the lag and the stride and nothing else; the program is told. */
+static void the_delay_is_the_sum_of_its_parts(void **state)
+{
+    (void)state;
+    assert_int_equal(LABIAL_DELAY(1), LABIAL_WINDOW + LABIAL_LAG + 1);
+    assert_int_equal(LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX), LABIAL_WINDOW + LABIAL_LAG + LABIAL_SEARCH_STRIDE_MAX);
+}
+
+/* An hour of silence holds up neither what comes before it nor what comes after. */
+static void an_hour_of_silence_is_played_as_it_comes(void **state)
+{
+    const labial_model_t *const model = &rich.model;
+    const size_t hour = LABIAL_DURATION_MAX / 1000 * FIXTURE_RATE;
+    fixture_host_t host;
+    size_t i;
+    (void)state;
+    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    assert_int_equal(labial_push(host.stream, FIXTURE_A, 100), LABIAL_OK); /* 5 frames */
+    assert_int_equal(labial_push(host.stream, FIXTURE_SIL, LABIAL_DURATION_MAX), LABIAL_OK);
+    for (i = 0; i < LABIAL_DELAY(FIXTURE_STRIDE); i++)
+        assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
+#if LABIAL_REACH >= 4
+    for (i = 0; i < hour - 100; i++)
+        if (fixture_tick(&host) != LABIAL_OK)
+            fail_msg("frame %zu is late: %s", i, host.complaint ? host.complaint : "");
+#endif
+    fixture_end(&host);
+    while (fixture_tick(&host) != LABIAL_DONE)
+        assert_true(host.recorder.count <= hour + 5);
+    assert_int_equal(host.recorder.count, hour + 5);
+    if (host.complaint)
+        fail_msg("%s", host.complaint);
+    fixture_close(&host);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_tick_is_foretold),
+        cmocka_unit_test(changes_of_model_delay_nothing),
+        cmocka_unit_test(the_delay_is_the_sum_of_its_parts),
+        cmocka_unit_test(an_hour_of_silence_is_played_as_it_comes),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}
