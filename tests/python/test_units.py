@@ -69,8 +69,8 @@ def test_every_frame_of_every_stream_has_a_target_and_a_unit(seed: int) -> None:
     for tables in (FloatTables(model), ExportedTables(quantise(model, "model"))):
         for stream in streams(len(model.phonemes), model.boundary, seed).values():
             total = (50 * sum(ms for _, ms in stream) + 500) // 1000
-            target, ends = aims(tables, stream)
-            assert target.shape == (total, 13) and ends.shape == (total,)
+            target, contact, ends = aims(tables, stream)
+            assert target.shape == contact.shape == (total, 13) and ends.shape == (total,)
             assert not total or ends[-1]
 
 

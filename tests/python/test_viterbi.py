@@ -179,7 +179,7 @@ def test_exported_decisions_are_those_of_the_rules(seed: int, states: int, lag: 
     model = quantise(random_model(seed, states=states), "model")
     tables = ExportedTables(model)
     for name in ("ordinary", "one frame each", "with zeros"):
-        target, ends = aims(tables, streams(9, tables.boundary, seed)[name])
+        target, _, ends = aims(tables, streams(9, tables.boundary, seed)[name])
         target, ends = target[:90] // 64 * 64, ends[:90].copy()  # coarse, so that states tie
         ends[-1] = True
         path = tables.search(target, ends, lag)

@@ -1,4 +1,4 @@
-"""Contact: lips that meet in p, b, m, and the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
+"""Contact: lips that meet in p, b, m, the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
 
 In contact a target does not fall below its floor, and equation 3 holds the frame there firmly. A phoneme shorter than
 FRAMES borrows the frame before it, and of one frame also the one behind it. One of LONG frames or more has swallowed a
@@ -22,8 +22,8 @@ def raised(
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Targets (T, 13) that keep the floors, and where they are in contact, (T, 13) bool.
 
-    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme. `floor` (P, 13) is what a phoneme's
-    targets do not fall below, in the unit of `target`; `contact` (P, 13) bool says where it is contact.
+    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme. `floor` (P, 13) is what a
+    phoneme's targets do not fall below, in the unit of `target`; `contact` (P, 13) bool says where it is contact.
     """
     frames = len(labels)
     padded = np.concatenate([np.full(FRAMES, silence), labels, np.full(FRAMES, silence)])
