@@ -45,4 +45,4 @@ def targets_and_contact(
     padded = np.concatenate([np.full(reach, tables.silence), labels, np.full(reach, tables.silence)]).astype(np.int64)
     at = np.arange(len(labels))[:, None] + reach + tables.lags[None, :]
     moving = tables.targets(tables.interpolated(shapes[index], knot_shares(length, tables.knots)), padded[at])
-    return raised(moving, labels, length, tables.silence, tables.floor, tables.contact)
+    return raised(moving, labels, length, tables.silence, tables.ahead, tables.floor, tables.contact)

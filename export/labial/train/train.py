@@ -112,7 +112,12 @@ def _stretches(
 
 
 def _targets(
-    choice: Choice, fitted: Kernels, material: SequenceOf[Sequence], silence: int, floor: np.ndarray,
+    choice: Choice,
+    fitted: Kernels,
+    material: SequenceOf[Sequence],
+    silence: int,
+    ahead: int,
+    floor: np.ndarray,
     contact: np.ndarray,
 ) -> List[np.ndarray]:
     """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
@@ -121,7 +126,7 @@ def _targets(
     for shape, item in zip(selected, material):
         held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
         moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
-        result.append(raised(moving, item.phoneme_at(), item.length, silence, floor, contact)[0])
+        result.append(raised(moving, item.phoneme_at(), item.length, silence, ahead, floor, contact)[0])
     return result
 
 
@@ -216,6 +221,7 @@ def train(
     stride = search_stride if extended else 1
 
     material = sequences(corpus, phone_set, fps)
+    ahead = 0
     if extended:
         ahead = max(int(lags(fps, look_ahead)[-1]), FRAMES)
         material = [with_pauses_cut(item, silence, ahead, fps) for item in material]
@@ -244,7 +250,7 @@ def train(
             )
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
             pair_key, pair_shape = fitted.pair_key, fitted.pair_shape
-            targets = _targets(choice, fitted, material, silence, floor, contact)
+            targets = _targets(choice, fitted, material, silence, ahead, floor, contact)
             ends = [_unit_ends(item, boundary) for item in material]
             batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
             tasks = [(targets[batch], ends[batch], states) for batch in batches]
