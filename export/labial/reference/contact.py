@@ -1,4 +1,4 @@
-"""Contact: lips that meet in p, b, m, and the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
+"""Contact: lips that meet in p, b, m, the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
 
 In contact a target does not fall below its floor, and equation 3 holds the frame there firmly. A phoneme shorter than
 FRAMES borrows the frame before it, and of one frame also the one behind it. One of LONG frames or more has swallowed a

@@ -39,7 +39,7 @@ def synthesise(
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
 
     `window` is how many frames beyond those delivered the solution knows, or with `whole` all of them; `lag` how many
-    blocks later the search decides.
+    frames later the search decides.
     """
     target, contact, ends = aims(tables, phonemes)
     return solution(tables, target, contact, ends, whole=whole, window=window, lag=lag)
@@ -73,4 +73,4 @@ def solution(
     terms = tables.equation(tables.search(target, ends, lag), target, contact)
     if whole:
         return trajectory.solve_whole(terms)
-    return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window))
+    return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window, lag))
