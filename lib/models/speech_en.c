@@ -1,5 +1,5 @@
 /*
- * speech_en.c - the speech model, method labial, 50 frames per second. Written by labial export 0.1.0; do not
+ * speech_en.c - the speech model, method labial, 50 frames per second. Written by labial export 0.2.0; do not
  * edit.
  */
 #include "speech_en.h"

@@ -1,6 +1,6 @@
 /*
  * speech_en_names.c - names of the phonemes of the speech model, method labial, 50 frames per second. Written by
- * labial export 0.1.0; do not edit.
+ * labial export 0.2.0; do not edit.
  */
 #include "speech_en.h"
 
