@@ -254,7 +254,9 @@ def train(
             tasks = [(targets[batch], ends[batch], states) for batch in batches]
             paths = [path for batch in workers.run("matched states", _decode, tasks) for path in batch]
             human = [item.frames for item in material]
-            weights = [item.weights * (item.rest == 0)[:, None] for item in material]  # people part their lips there
+            weights = [item.weights for item in material]
+            if contact[silence].any():  # targets rest where people part their lips
+                weights = [own * (item.rest == 0)[:, None] for own, item in zip(weights, material)]
             states = match_states(states, paths, targets, human, weights, scales)
 
     training: Dict[str, object] = {
