@@ -70,7 +70,8 @@ def _at_rest(
     silent = np.append(labels[np.cumsum(length) - 1] == silence, False)
     head = silent[:-1] & silent[1:] & (np.append(length[1:], 0) == ahead)  # what is cut off stands behind it
     share = np.where(head[number], np.minimum(frame + 1, REST), 0)[:, None]
-    way = (floor[silence] - target) * share
+    rest = np.where(contact[silence], floor[silence], 0)
+    way = (rest - target) * share
     if np.issubdtype(target.dtype, np.integer):
         way = np.where(way < 0, -(-way // REST), way // REST)  # towards zero, as C divides
     else:
