@@ -22,7 +22,7 @@ def shut(*spans: Tuple[int, int]) -> Tuple[List[int], List[int], List[bool]]:
     """The two channels' targets, 0 without floors, and where the first is in contact, of phonemes and their frames."""
     labels = np.repeat([phoneme for phoneme, _ in spans], [frames for _, frames in spans])
     length = np.array([frames for _, frames in spans])
-    target, contact = raised(np.zeros((len(labels), 2)), labels, length, SIL, FLOOR, CONTACT)
+    target, contact = raised(np.zeros((len(labels), 2)), labels, length, SIL, 6, FLOOR, CONTACT)
     assert not contact[:, 1].any()
     return target[:, 0].tolist(), target[:, 1].tolist(), contact[:, 0].tolist()
 
@@ -41,7 +41,7 @@ def test_floors_hold_where_contact_is() -> None:
     first, second, _ = shut((OPEN, 3), (LIPS, 1), (OPEN, 2))
     assert first == [0.0, 0.0, 40.0, 40.0, 40.0, 0.0]
     assert second[3] == 10.0 and second[0] == 0.0
-    deep = raised(np.full((2, 2), -80.0), np.array([OPEN, OPEN]), np.array([2]), SIL, FLOOR, CONTACT)[0]
+    deep = raised(np.full((2, 2), -80.0), np.array([OPEN, OPEN]), np.array([2]), SIL, 6, FLOOR, CONTACT)[0]
     assert deep.tolist() == [[-50.0, -80.0]] * 2
 
 
@@ -51,6 +51,30 @@ def test_a_long_closure_holds_its_last_frames_alone() -> None:
     assert contact == [False] * 7 + [True] * 8 and first == [0.0] * 7 + [40.0] * 8
     assert second == [10.0] * 15  # what is no contact stays
     assert all(shut((LIPS, 14))[2])
+
+
+def test_a_mouth_comes_to_rest_in_pauses() -> None:
+    """In the head of a pause that was cut, from the first frame on by a sixteenth more, where silence says so; neither
+    in its tail, which leads to what follows, nor in a pause that was not cut. It is no contact, which would be held."""
+    floor = np.array([[-160.0, 32.0], [-np.inf, -np.inf]])
+    resting = np.array([[True, False], [False, False]])
+    labels, length = np.array([OPEN] + [SIL] * 26 + [OPEN]), np.array([1, 20, 6, 1])
+    aim = np.full((28, 2), 64.0)
+    target, contact = raised(aim, labels, length, SIL, 6, floor, resting)
+    step = np.minimum(np.arange(1, 21), 16) / 16
+    assert not contact.any() and (target[:, 1] == 64.0).all()
+    np.testing.assert_allclose(target[1:21, 0], 64.0 - 224.0 * step)
+    assert (target[[0, *range(21, 28)], 0] == 64.0).all()
+    whole = aim.astype(np.int64), labels, np.array([1, 26, 1]), SIL, 6, floor.clip(-500).astype(np.int64), resting
+    assert (raised(*whole)[0] == 64).all()
+
+
+def test_whole_numbers_come_to_rest_as_c_divides() -> None:
+    """Towards zero: 7 positions on the way to 0, and -7, lose as much."""
+    floor, resting = np.array([[0, 0]]), np.array([[True, True]])
+    aim = np.repeat([[7, -7]], 26, axis=0)
+    found = raised(aim, np.zeros(26, dtype=int), np.array([20, 6]), SIL, 6, floor, resting)[0]
+    assert found[:4].tolist() == [[7, -7], [7, -7], [6, -6], [6, -6]] and not found[15:20].any()
 
 
 @pytest.mark.parametrize("seed", range(4))

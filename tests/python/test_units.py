@@ -32,9 +32,9 @@ def test_a_pause_is_cut_where_the_kernels_begin_to_see_what_ends_it() -> None:
 
 def test_what_is_not_cut() -> None:
     """A pause that the kernels span, phonemes that are no pause, and everything where nothing looks ahead."""
-    stream = [(SIL, 120), (VOWEL, 500), (SIL, 140)]
+    stream = [(SIL, 125), (VOWEL, 500), (SIL, 140)]
     assert [item.frames for item in segments(stream, SIL, 6, 50)] == [6, 25, 1, 6]
-    assert [item.milliseconds for item in segments(stream, SIL, 6, 50)] == [120, 500, 20, 120]
+    assert [item.milliseconds for item in segments(stream, SIL, 6, 50)] == [125, 500, 20, 120]
     assert [item.frames for item in segments(stream, SIL, 0, 50)] == [6, 25, 7]
 
 
