@@ -61,8 +61,8 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
 
 def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
     """(1, 13) nats per state by which the exported tables' path is less likely than the best, by the float tables."""
-    wanted, _ = aims(ideal, stream)
-    given, ends = aims(tables, stream)
+    wanted, _, _ = aims(ideal, stream)
+    given, _, ends = aims(tables, stream)
     taken = tables.search(given, ends)
     chains = ideal.chains
     transition = np.minimum(chains.transition, LEAP / COST_SCALE)  # the library enters any state at that cost
