@@ -52,12 +52,11 @@ static unsigned keep_floors(const labial_model_t *model, const oracle_frame_t *f
     const unsigned contacts = contacts_of(model, frame->phoneme);
     const int is_silent = frame->phoneme == model->silence;
     const int is_closed = !is_silent && (frame->whole < LONG || frame->whole - frame->number <= CLOSED);
-    const int rested = !frame->is_head ? 0 : frame->number < RESTING ? (int)frame->number + 1 : RESTING;
     unsigned k;
     for (k = 0; floor && k < LABIAL_CHANNELS; k++) {
         const int is_contact = contacts >> k & 1;
         if (is_contact && is_silent)
-            target[k] = (int16_t)(target[k] + (floor[k] - target[k]) * rested / RESTING);
+            target[k] = (int16_t)(target[k] + (floor[k] - target[k]) * (int)frame->rest / RESTING);
         else if ((!is_contact || is_closed) && target[k] < floor[k])
             target[k] = floor[k];
     }
