@@ -3,85 +3,75 @@ leaves to the stream - passing from model to model, cancelling, taking up again 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import groupby
 from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
 from labial.faps import CHANNELS
-from labial.reference.shape import targets
-from labial.reference.stream import frame_counts
+from labial.reference.stream import aims, solution
 from labial.reference.tables import Tables
-from labial.reference.trajectory import join, solve
-from labial.reference.units import OVERLAP, PIECE, WINDOW, Piece
-from scripts import Part, Script, ease_frames
+from labial.reference.units import frame_counts
+from scripts import Part, Push, Script, ease_frames
+
+#: Frames over which what begins anew fades in.
+FADE = 8
 
 
-def mixed_pieces(frames: Sequence[int], boundary: Sequence[bool], model: Sequence[str]) -> List[Tuple[Piece, str]]:
-    """As :func:`labial.reference.units.pieces`, for phonemes of several models; each piece with its own.
+@dataclass(frozen=True)
+class Run:
+    """Phonemes of one model that follow each other, with their frames: what is solved at once, as if silence were
+    before and after."""
 
-    A run of one model's phonemes is cut as if it were alone, but its last piece runs on over the next run: for OVERLAP
-    frames, the rest of the window, the length of that run or its own frames of the first, whichever is least.
-    """
-    spans = []
-    at = 0
-    for count, is_boundary, name in zip(frames, boundary, model):
-        if count:
-            spans.append((at, at + count, is_boundary, name))
-            at += count
-    result: List[Tuple[Piece, str]] = []
-    begin = fade_in = 0
-    while begin < at:
-        own = next(name for first, last, _, name in spans if first <= begin < last)
-        change = next((first for first, _, _, name in spans if first > begin and name != own), at)
-        after = next((first for first, _, _, name in spans if first > change and name == own), at)
-        limit = begin + WINDOW
-        end, fade_out = limit, OVERLAP
-        for first, last, is_boundary, _ in spans[:-1]:
-            if is_boundary and max(begin + fade_in, begin + 1) <= first < change and last <= limit:
-                end, fade_out = last, min(last - first, (last - begin) // 2, OVERLAP)
-                if end - begin >= PIECE:
-                    break
-        else:
-            if change < limit or change == at == limit:
-                fade_out = min(OVERLAP, limit - change, after - change, change - begin)
-                end = change + fade_out
-        result.append((Piece(begin, end, fade_in, fade_out), own))
-        if not fade_out:
-            break
-        begin, fade_in = end - fade_out, fade_out
+    model: str
+    begin: int  #: frame of the part
+    phonemes: Tuple[Tuple[int, int], ...]
+    counts: Tuple[int, ...]
+
+
+def runs(pushes: Sequence[Push], fps: int) -> List[Run]:
+    """The runs of a part. Phonemes without frames leave no trace but their time."""
+    counts = frame_counts([push.milliseconds for push in pushes], fps)
+    held = [(push, count) for push, count in zip(pushes, counts) if count]
+    result: List[Run] = []
+    begin = 0
+    for model, group in groupby(held, key=lambda item: item[0].model):
+        own = list(group)
+        result.append(Run(model, begin, tuple((push.phoneme, push.milliseconds) for push, _ in own),
+                          tuple(count for _, count in own)))
+        begin += sum(result[-1].counts)
     return result
-
-
-def part_motion(tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool) -> np.ndarray:
-    """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without easing. `held` (13,) is the pose
-    from which it fades in when it is `resumed`."""
-    rate = tables["speech"].fps
-    durations = [push.milliseconds for push in part.pushes]
-    frames = frame_counts(durations, rate)
-    names = [push.model for push in part.pushes]
-    boundary = [bool(tables[push.model].boundary[push.phoneme]) for push in part.pushes]
-    wanted = part.cancel[0] if part.cancel else sum(frames)
-    cut = [(piece, name) for piece, name in mixed_pieces(frames, boundary, names) if piece.begin < wanted]
-    if not cut:
-        return np.zeros((0, CHANNELS))
-    # Each model takes the other's phonemes for silence.
-    aims = {name: targets(tables[name], [push.phoneme if push.model == name else tables[name].silence
-                                         for push in part.pushes], durations, frames) for name in set(names)}
-    motion = []
-    for piece, name in cut:
-        aim = aims[name][piece.begin : piece.end]
-        motion.append(solve(tables[name].equation(tables[name].search(aim), aim)))
-    pieces = [piece for piece, _ in cut]
-    if resumed:
-        first = pieces[0]
-        fade = min(first.end - first.begin - first.fade_out, OVERLAP)
-        motion[0][:fade] = held + (motion[0][:fade] - held) * smooth(np.arange(1, fade + 1) / (fade + 1))
-    return join(pieces, motion)[:wanted]
 
 
 def smooth(s: np.ndarray) -> np.ndarray:
     """(T, 1) how far a transition has gone at `s` (T,), 0 .. 1."""
     return (s * s * (3.0 - 2.0 * s))[:, None]
+
+
+def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray) -> np.ndarray:
+    """(T, 13): the first frames `fresh` (T, 13), at most FADE, fading in from the pose `held` (13,), which goes on as
+    far as its last frame `moved` it (13,), half as far with each frame."""
+    step = np.arange(1, len(fresh) + 1)
+    base = held + moved * (1.0 - 0.5 ** step[:, None])
+    return base + (fresh - base) * smooth(step / (FADE + 1))
+
+
+def part_motion(tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool) -> np.ndarray:
+    """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without easing. `held` (13,) is the pose
+    from which it fades in when it is `resumed`."""
+    motion = np.zeros((0, CHANNELS))
+    faded_until = 0  # the frame behind the last that a fade has touched
+    for run in runs(part.pushes, tables["speech"].fps):
+        own = tables[run.model]
+        fresh = solution(own, *aims(own, run.phonemes, run.counts), begin=run.begin)
+        if run.begin or resumed:
+            rests = run.begin < 2 or run.begin <= faded_until
+            moved = np.zeros(CHANNELS) if rests else motion[-1] - motion[-2]
+            fresh[:FADE] = faded(motion[-1] if run.begin else held, moved, fresh[:FADE])
+            faded_until = run.begin + FADE
+        motion = np.concatenate([motion, fresh])
+    return motion[: part.cancel[0]] if part.cancel else motion
 
 
 def script_motion(tables: Dict[str, Tables], script: Script) -> np.ndarray:
@@ -93,15 +83,13 @@ def script_motion(tables: Dict[str, Tables], script: Script) -> np.ndarray:
         resumed = any(len(frames) for frames in shown)
         motion = part_motion(tables, part, held, resumed)
         shown.append(motion)
-        if len(motion):
-            held = np.floor(motion[-1] + 0.5)  # what the program was given
+        held = motion[-1] if len(motion) else held
         if part.cancel:
             eased = [part.cancel[1], *(milliseconds for _, milliseconds in part.again)]
             until = [frames for frames, _ in part.again]
             for milliseconds, frames in zip(eased, [*until, None]):
                 length = ease_frames(milliseconds, rate)
                 shown.append((held * (1.0 - smooth(np.arange(1, length + 1) / length)))[:frames])
-                if len(shown[-1]):
-                    held = np.floor(shown[-1][-1] + 0.5)
+                held = shown[-1][-1] if len(shown[-1]) else held
             held = np.zeros(CHANNELS)
     return np.concatenate(shown)

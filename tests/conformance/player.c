@@ -1,9 +1,9 @@
 #include "player.h"
 
-/* Ticks without a frame after which a stream counts as stuck: more than the longest piece takes. */
-#define PATIENCE 1000u
+/* Ticks from a frame that is taken up to its delivery; the first ones return LABIAL_WAITING. */
+#define DELAY LABIAL_DELAY((unsigned)speech_en.search_stride)
 
-const char *const conformance_feed_names[CONFORMANCE_FEEDS] = { "fill", "single", "hungry", "work" };
+const char *const conformance_feed_names[CONFORMANCE_FEEDS] = { "fill", "single", "hungry", "real time" };
 
 typedef struct {
     labial_t *stream;
@@ -15,7 +15,9 @@ typedef struct {
     uint32_t frames;    /* in all */
     uint32_t take;      /* of them before the part that is played, which labial_restart() began */
     uint32_t cancel_at; /* frames of the part after which it is cancelled, UINT32_MAX if it ends */
-    unsigned idle;      /* ticks since the last frame */
+    uint32_t ticks;     /* of the part */
+    uint32_t pushed;    /* milliseconds, of the part */
+    unsigned idle;      /* ticks since the last frame or push */
     int last;           /* what the tick before returned */
 } player_t;
 
@@ -47,14 +49,37 @@ static void tick(player_t *player)
         complain(player, "a tick failed");
     if (player->frames != before + (result == LABIAL_OK ? 1u : 0u))
         complain(player, "a tick delivered other than what it said");
-    /* Playing began with frames in hand, and the queue was full or the end known ever since. */
-    if (result == LABIAL_BUSY && player->last == LABIAL_OK && player->feed != CONFORMANCE_HUNGRY &&
-        player->feed != CONFORMANCE_SINGLE)
-        complain(player, "a frame was late");
+    if (result == LABIAL_WAITING && player->last != LABIAL_WAITING)
+        complain(player, "a tick waits for a first frame that was delivered");
     player->idle = result == LABIAL_OK ? 0 : player->idle + 1u;
-    if (player->idle > PATIENCE)
-        complain(player, "the stream stands still");
+    player->ticks++;
     player->last = result;
+}
+
+/* Whether the stream does nothing more before it gets another phoneme: a frame that it took up would have come. */
+static int starves(const player_t *player)
+{
+    return player->last == LABIAL_STARVED || player->idle > DELAY;
+}
+
+/* The stream has got what it may have waited for. */
+static void feed(player_t *player)
+{
+    player->idle = 0;
+    if (player->last == LABIAL_STARVED)
+        player->last = LABIAL_OK;
+}
+
+static int goes_on(const player_t *player)
+{
+    return !player->complaint && !is_cut(player);
+}
+
+/* Ticks before a push of the real-time feed, until the phoneme begins. */
+static void wait_for_phoneme(player_t *player)
+{
+    while (goes_on(player) && player->ticks < player->pushed * speech_en.frames_per_second / 1000u)
+        tick(player);
 }
 
 /* Ticks before a push, as the feed demands, until there is room. */
@@ -63,15 +88,14 @@ static void make_room(player_t *player)
     if (player->feed == CONFORMANCE_SINGLE)
         tick(player);
     if (player->feed == CONFORMANCE_HUNGRY)
-        do
+        while (goes_on(player) && !starves(player))
             tick(player);
-        while (!player->complaint && !is_cut(player) && player->last != LABIAL_WAITING &&
-               player->last != LABIAL_STARVED);
-    while (!player->complaint && !is_cut(player) && labial_room(player->stream) == 0) {
-        if (player->feed == CONFORMANCE_WORK)
-            while (labial_work(player->stream) == LABIAL_OK) {
-            }
+    if (player->feed == CONFORMANCE_REAL_TIME)
+        wait_for_phoneme(player);
+    while (goes_on(player) && labial_room(player->stream) == 0) {
         tick(player);
+        if (starves(player))
+            complain(player, "a full queue does not move the stream");
     }
 }
 
@@ -83,12 +107,15 @@ static void push(player_t *player, const conformance_step_t *step)
     player->model = step->model;
     if (labial_push(player->stream, step->value, step->milliseconds) != LABIAL_OK)
         complain(player, "a phoneme is refused");
+    player->pushed += step->milliseconds;
+    feed(player);
 }
 
 /* Ends or cancels what was pushed. */
 static void finish(player_t *player, const conformance_step_t *step)
 {
     uint32_t left;
+    feed(player);
     if (step->kind == CONFORMANCE_AGAIN) {
         for (left = step->value; left > 0 && !player->complaint; left--) {
             tick(player);
@@ -100,7 +127,7 @@ static void finish(player_t *player, const conformance_step_t *step)
     } else if (step->kind == CONFORMANCE_CANCEL) {
         while (!player->complaint && !is_cut(player)) {
             tick(player);
-            if (player->last == LABIAL_WAITING || player->last == LABIAL_STARVED)
+            if (starves(player))
                 complain(player, "the frame to cancel after needs phonemes that do not come");
         }
         if (labial_cancel(player->stream, step->milliseconds) != LABIAL_OK)
@@ -110,14 +137,13 @@ static void finish(player_t *player, const conformance_step_t *step)
     }
 }
 
-/* Ticks until nothing is left. */
+/* Ticks until nothing is left; there is nothing to wait for. */
 static void drain(player_t *player)
 {
     do {
-        if (player->feed == CONFORMANCE_WORK)
-            while (labial_work(player->stream) == LABIAL_OK) {
-            }
         tick(player);
+        if (player->last != LABIAL_DONE && starves(player))
+            complain(player, "a frame is late");
     } while (!player->complaint && player->last != LABIAL_DONE);
 }
 
@@ -129,6 +155,16 @@ static uint32_t cancelled_at(const conformance_stream_t *script, unsigned i)
     return script->steps[i].kind == CONFORMANCE_CANCEL ? script->steps[i].value : UINT32_MAX;
 }
 
+/* Begins a part, with step `i` of the script. */
+static void begin_part(player_t *player, const conformance_stream_t *script, unsigned i)
+{
+    player->take = player->frames;
+    player->cancel_at = cancelled_at(script, i);
+    player->ticks = player->pushed = 0;
+    player->idle = 0;
+    player->last = LABIAL_WAITING;
+}
+
 const char *conformance_play(const conformance_stream_t *script, conformance_feed_t feed, labial_t *stream,
                              void *workspace, size_t workspace_size, labial_frame_fn sink, void *user)
 {
@@ -138,9 +174,8 @@ const char *conformance_play(const conformance_stream_t *script, conformance_fee
     player.sink = sink;
     player.user = user;
     player.feed = feed;
-    player.last = LABIAL_WAITING;
     player.model = CONFORMANCE_SPEECH;
-    player.cancel_at = cancelled_at(script, 0);
+    begin_part(&player, script, 0);
     if (labial_init(stream, &speech_en, workspace, workspace_size, on_frame, &player) != LABIAL_OK)
         return "labial_init() failed";
 
@@ -161,9 +196,7 @@ const char *conformance_play(const conformance_stream_t *script, conformance_fee
         if (i + 1u < script->step_count) {
             if (labial_restart(stream) != LABIAL_OK)
                 complain(&player, "a restart is refused");
-            player.take = player.frames;
-            player.cancel_at = cancelled_at(script, i + 1u);
-            player.last = LABIAL_WAITING;
+            begin_part(&player, script, i + 1u);
         }
     }
     return player.complaint;

@@ -12,10 +12,10 @@
 #define CONFORMANCE_WORKSPACE LABIAL_LARGER(SPEECH_EN_WORKSPACE_SIZE, LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
 
 typedef enum {
-    CONFORMANCE_FILL,   /* as many phonemes as there is room for before every tick */
-    CONFORMANCE_SINGLE, /* one phoneme before every tick */
-    CONFORMANCE_HUNGRY, /* one phoneme when a tick says that it waits for one: the stream starves throughout */
-    CONFORMANCE_WORK,   /* as FILL, and labial_work() between ticks until it has nothing to do */
+    CONFORMANCE_FILL,      /* as many phonemes as there is room for before every tick */
+    CONFORMANCE_SINGLE,    /* one phoneme before every tick */
+    CONFORMANCE_HUNGRY,    /* one phoneme when nothing goes on without it: the stream starves throughout */
+    CONFORMANCE_REAL_TIME, /* each phoneme when as many ticks have passed as there are frames before it */
     CONFORMANCE_FEEDS
 } conformance_feed_t;
 
@@ -26,7 +26,7 @@ extern const char *const conformance_feed_names[CONFORMANCE_FEEDS];
  * Plays a stream from labial_init() on; `sink` receives its frames. `workspace` has CONFORMANCE_WORKSPACE bytes.
  *
  * Returns null, or what the library did that it must not do: an error, frames that are misnumbered, more than one per
- * tick, a frame that is late though phonemes were there, a stream that stands still.
+ * tick, a frame that is late though phonemes were there, a full queue that does not move.
  */
 const char *conformance_play(const conformance_stream_t *script, conformance_feed_t feed, labial_t *stream,
                              void *workspace, size_t workspace_size, labial_frame_fn sink, void *user);

@@ -166,6 +166,9 @@ def read_frames(text: str) -> Frames:
             rows[name] = []
         elif name is not None and len(values) == 13 and all(re.fullmatch(r"-?\d+", value) for value in values):
             rows[name].append([int(value) for value in values])
+        elif name is not None and rows[name] and re.fullmatch(r"and \d+", line):
+            rows[name] += [rows[name][-1]] * int(values[1])
         else:
-            raise LabialError(f"frames, line {number}: {line!r} is neither a stream's name nor 13 numbers")
+            raise LabialError(f"frames, line {number}: {line!r} is neither a stream's name nor 13 numbers "
+                              "nor `and` and a number")
     return {key: np.array(value, dtype=np.int64).reshape(-1, 13) for key, value in rows.items()}

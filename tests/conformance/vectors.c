@@ -177,15 +177,45 @@ static const conformance_step_t long_vowel_steps[] = {
     PUSH(SPEECH, SPEECH_EN_IY, 900), PUSH(SPEECH, SPEECH_EN_P, 200), END
 };
 
-static const conformance_step_t edge_in_overlap_steps[] = {
-    PUSH(SPEECH, SPEECH_EN_S, 720), PUSH(SPEECH, SPEECH_EN_AA, 120), PUSH(SPEECH, SPEECH_EN_S, 1200), END
+static const conformance_step_t short_stops_steps[] = {
+    PUSH(SPEECH, SPEECH_EN_AA, 120), PUSH(SPEECH, SPEECH_EN_B, 20), PUSH(SPEECH, SPEECH_EN_AA, 120),
+    PUSH(SPEECH, SPEECH_EN_P, 20), PUSH(SPEECH, SPEECH_EN_AE, 110), PUSH(SPEECH, SPEECH_EN_M, 20),
+    PUSH(SPEECH, SPEECH_EN_AA, 90), PUSH(SPEECH, SPEECH_EN_B, 40), PUSH(SPEECH, SPEECH_EN_AY, 130),
+    PUSH(SPEECH, SPEECH_EN_P, 40), PUSH(SPEECH, SPEECH_EN_AE, 100), PUSH(SPEECH, SPEECH_EN_M, 40),
+    PUSH(SPEECH, SPEECH_EN_AA, 120), PUSH(SPEECH, SPEECH_EN_P, 60), PUSH(SPEECH, SPEECH_EN_AA, 20),
+    PUSH(SPEECH, SPEECH_EN_M, 20), PUSH(SPEECH, SPEECH_EN_AA, 20), PUSH(SPEECH, SPEECH_EN_B, 20),
+    PUSH(SPEECH, SPEECH_EN_P, 20), PUSH(SPEECH, SPEECH_EN_AE, 120), PUSH(SPEECH, SPEECH_EN_F, 20),
+    PUSH(SPEECH, SPEECH_EN_AA, 100), PUSH(SPEECH, SPEECH_EN_V, 20), PUSH(SPEECH, SPEECH_EN_AE, 110),
+    PUSH(SPEECH, SPEECH_EN_B, 20), PUSH(SPEECH, SPEECH_EN_M, 20), PUSH(SPEECH, SPEECH_EN_AA, 120),
+    PUSH(SPEECH, SPEECH_EN_P, 20), END
+};
+
+static const conformance_step_t long_stop_steps[] = {
+    PUSH(SPEECH, SPEECH_EN_AA, 140), PUSH(SPEECH, SPEECH_EN_P, 400), PUSH(SPEECH, SPEECH_EN_AA, 120),
+    PUSH(SPEECH, SPEECH_EN_B, 280), PUSH(SPEECH, SPEECH_EN_AE, 110), PUSH(SPEECH, SPEECH_EN_M, 300),
+    PUSH(SPEECH, SPEECH_EN_AA, 130), PUSH(SPEECH, SPEECH_EN_P, 320), PUSH(SPEECH, SPEECH_EN_M, 20),
+    PUSH(SPEECH, SPEECH_EN_AE, 120), PUSH(SPEECH, SPEECH_EN_B, 560), END
 };
 
 static const conformance_step_t pauses_steps[] = {
     PUSH(SPEECH, SPEECH_EN_SIL, 900), PUSH(SPEECH, SPEECH_EN_B, 60), PUSH(SPEECH, SPEECH_EN_AY, 120),
     PUSH(SPEECH, SPEECH_EN_SIL, 1130), PUSH(SPEECH, SPEECH_EN_M, 70), PUSH(SPEECH, SPEECH_EN_EY, 100),
     PUSH(SPEECH, SPEECH_EN_SIL, 2000), PUSH(SPEECH, SPEECH_EN_P, 60), PUSH(SPEECH, SPEECH_EN_UW, 90),
-    PUSH(SPEECH, SPEECH_EN_SIL, 810), END
+    PUSH(SPEECH, SPEECH_EN_SIL, 120), PUSH(SPEECH, SPEECH_EN_AA, 80), PUSH(SPEECH, SPEECH_EN_SIL, 140),
+    PUSH(SPEECH, SPEECH_EN_P, 60), PUSH(SPEECH, SPEECH_EN_SIL, 160), PUSH(SPEECH, SPEECH_EN_UW, 90),
+    PUSH(SPEECH, SPEECH_EN_SIL, 180), PUSH(SPEECH, SPEECH_EN_M, 60), PUSH(SPEECH, SPEECH_EN_SIL, 100),
+    PUSH(SPEECH, SPEECH_EN_AA, 70), PUSH(SPEECH, SPEECH_EN_SIL, 60), PUSH(SPEECH, SPEECH_EN_SIL, 300),
+    PUSH(SPEECH, SPEECH_EN_SIL, 200), PUSH(SPEECH, SPEECH_EN_P, 70), PUSH(SPEECH, SPEECH_EN_SIL, 810), END
+};
+
+static const conformance_step_t minutes_steps[] = {
+    PUSH(SPEECH, SPEECH_EN_M, 70), PUSH(SPEECH, SPEECH_EN_AY, 180), PUSH(SPEECH, SPEECH_EN_SIL, 180000),
+    PUSH(SPEECH, SPEECH_EN_B, 60), PUSH(SPEECH, SPEECH_EN_IY, 130), PUSH(SPEECH, SPEECH_EN_SIL, 90), END
+};
+
+static const conformance_step_t endless_steps[] = {
+    PUSH(SPEECH, SPEECH_EN_EY, 130), PUSH(SPEECH, SPEECH_EN_P, 60), PUSH(SPEECH, SPEECH_EN_SIL, 3600000),
+    CANCEL(40, 200), PUSH(SPEECH, SPEECH_EN_UW, 140), PUSH(SPEECH, SPEECH_EN_M, 60), END
 };
 
 static const conformance_step_t queue_steps[] = {
@@ -239,12 +269,32 @@ static const conformance_step_t switch_steps[] = {
     PUSH(SPEECH, SPEECH_EN_IY, 160), PUSH(SPEECH, SPEECH_EN_SIL, 100), END
 };
 
+static const conformance_step_t graded_steps[] = {
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A_SOFT, 120), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_FRICATIVE_SOFT, 60),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 120), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_FRICATIVE, 60),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A_LOUD, 120), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_FRICATIVE_LOUD, 60),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_IC_SOFT, 80), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_IC, 80),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_IC_LOUD, 80), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_E_SOFT, 90),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_E, 90), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_E_LOUD, 90),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_O_LOUD, 90), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_O, 90),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_O_SOFT, 90), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_CACKLE_SOFT, 100),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_CACKLE_LOUD, 100), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_CACKLE, 100),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_SILENCE, 200), END
+};
+
 static const conformance_step_t quick_switches_steps[] = {
     PUSH(SPEECH, SPEECH_EN_AY, 60), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 40), PUSH(SPEECH, SPEECH_EN_B, 20),
     PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 20), PUSH(SPEECH, SPEECH_EN_IY, 0),
     PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_NE, 20), PUSH(SPEECH, SPEECH_EN_M, 20), PUSH(SPEECH, SPEECH_EN_EY, 100),
     PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 0), PUSH(SPEECH, SPEECH_EN_P, 60),
-    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_CACKLE, 200), PUSH(SPEECH, SPEECH_EN_SIL, 20), END
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_CACKLE, 160), PUSH(SPEECH, SPEECH_EN_SIL, 160), PUSH(SPEECH, SPEECH_EN_AA, 20),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 180), PUSH(SPEECH, SPEECH_EN_OW, 180),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_NE, 140), PUSH(SPEECH, SPEECH_EN_EY, 40), END
+};
+
+static const conformance_step_t second_frame_steps[] = {
+    PUSH(SPEECH, SPEECH_EN_AA, 20), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 200), END,
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 40), PUSH(SPEECH, SPEECH_EN_AA, 200), END
 };
 
 static const conformance_step_t turns_steps[] = {
@@ -396,30 +446,35 @@ static const conformance_step_t saturated_steps[] = {
 };
 
 const conformance_stream_t conformance_streams[] = {
-    { "sentence", sentence_steps, 17, 78, 0x908c76edu },
-    { "phonemes", phonemes_steps, 41, 120, 0x8c9efe24u },
-    { "laugh", laugh_steps, 33, 146, 0xd5181929u },
-    { "one_frame", one_frame_steps, 30, 29, 0x157367c5u },
-    { "one_millisecond", one_millisecond_steps, 161, 8, 0xcc8b0052u },
-    { "rounding", rounding_steps, 17, 23, 0xa373f5edu },
-    { "zeros", zeros_steps, 15, 25, 0xf3aae314u },
+    { "sentence", sentence_steps, 17, 78, 0x45c4ad17u },
+    { "phonemes", phonemes_steps, 41, 120, 0xc5d8d869u },
+    { "laugh", laugh_steps, 33, 146, 0x4d81b382u },
+    { "one_frame", one_frame_steps, 30, 29, 0xf74af5b4u },
+    { "one_millisecond", one_millisecond_steps, 161, 8, 0x57fb11aeu },
+    { "rounding", rounding_steps, 17, 23, 0xd4fbf35cu },
+    { "zeros", zeros_steps, 15, 25, 0x9b341d71u },
     { "silent_zeros", silent_zeros_steps, 3, 0, 0x00000000u },
     { "nothing", nothing_steps, 1, 0, 0x00000000u },
-    { "short", short_steps, 6, 2, 0x3cb33620u },
-    { "vowels", vowels_steps, 12, 68, 0x69372084u },
-    { "consonants", consonants_steps, 26, 127, 0x662cd558u },
-    { "long_vowel", long_vowel_steps, 6, 148, 0x384ed9c1u },
-    { "edge_in_overlap", edge_in_overlap_steps, 4, 102, 0x01ca90f3u },
-    { "pauses", pauses_steps, 11, 267, 0xecfd1599u },
-    { "queue", queue_steps, 115, 114, 0x41362cdcu },
-    { "switch", switch_steps, 19, 87, 0xbe3bd27eu },
-    { "quick_switches", quick_switches_steps, 13, 28, 0x49d62067u },
-    { "turns", turns_steps, 182, 610, 0x88decbaau },
-    { "switch_in_long", switch_in_long_steps, 6, 177, 0x848b2ce2u },
-    { "restarted", restarted_steps, 13, 41, 0x1b61f514u },
-    { "cancelled", cancelled_steps, 52, 94, 0x3095f573u },
-    { "cancelled_twice", cancelled_twice_steps, 40, 81, 0x4d05b1e1u },
-    { "saturated", saturated_steps, 4, 65, 0x96531f3du }
+    { "short", short_steps, 6, 2, 0xcd46fcc5u },
+    { "vowels", vowels_steps, 12, 68, 0x296bad4au },
+    { "consonants", consonants_steps, 26, 127, 0xe60af1c8u },
+    { "long_vowel", long_vowel_steps, 6, 148, 0xcf65aea8u },
+    { "short_stops", short_stops_steps, 29, 84, 0x69720fe8u },
+    { "long_stop", long_stop_steps, 12, 125, 0xce2ff737u },
+    { "pauses", pauses_steps, 25, 352, 0x2b6fc640u },
+    { "minutes", minutes_steps, 7, 9027, 0x659c1f0bu },
+    { "endless", endless_steps, 7, 60, 0xd73c429fu },
+    { "queue", queue_steps, 115, 114, 0x05f2f8b6u },
+    { "switch", switch_steps, 19, 87, 0x039ffef6u },
+    { "graded", graded_steps, 20, 91, 0x88c60066u },
+    { "quick_switches", quick_switches_steps, 18, 61, 0x9e189955u },
+    { "second_frame", second_frame_steps, 6, 23, 0xf5a371edu },
+    { "turns", turns_steps, 182, 610, 0xf4ce44d1u },
+    { "switch_in_long", switch_in_long_steps, 6, 177, 0x0858c6d9u },
+    { "restarted", restarted_steps, 13, 41, 0x2170c4efu },
+    { "cancelled", cancelled_steps, 52, 94, 0x24dfdf28u },
+    { "cancelled_twice", cancelled_twice_steps, 40, 81, 0x76e84dc5u },
+    { "saturated", saturated_steps, 4, 65, 0x6360d3b2u }
 };
 
-const unsigned conformance_stream_count = 24;
+const unsigned conformance_stream_count = 29;

@@ -38,10 +38,17 @@ static void starving_streams_conform(void)
     play_all(CONFORMANCE_HUNGRY);
 }
 
+/* Would catch frames that depend on what is known when they are taken up. */
+static void streams_fed_in_real_time_conform(void)
+{
+    play_all(CONFORMANCE_REAL_TIME);
+}
+
 void test_streams(void)
 {
     UnitySetTestFile(__FILE__);
     RUN_TEST(filled_streams_conform);
     RUN_TEST(streams_fed_one_by_one_conform);
     RUN_TEST(starving_streams_conform);
+    RUN_TEST(streams_fed_in_real_time_conform);
 }

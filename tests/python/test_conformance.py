@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Tuple
 
 import numpy as np
 import pytest
 
 from labial.errors import LabialError
 from labial.quantise import ExportedModel
-from labial.reference import units
+from labial.reference import contact
+from labial.reference.stream import DURATION_MAX, synthesise
 from labial.reference.tables import ExportedTables
 
 HERE = Path(__file__).resolve().parents[1] / "conformance"
+QUEUE = 32  # LABIAL_QUEUE
 sys.path.insert(0, str(HERE))
 
-from motion import mixed_pieces  # noqa: E402
+import motion  # noqa: E402
 from regenerate import bundled_models, deviations  # noqa: E402
-from scripts import Frames, Script, as_c, digest, read, read_frames  # noqa: E402
+from scripts import Frames, Part, Push, Script, as_c, digest, read, read_frames  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -84,16 +86,28 @@ def test_streams_reach_the_edge_cases(
     assert {push.phoneme for push in pushes("phonemes")} == set(range(len(models["speech"].phonemes)))
     assert {push.phoneme for push in pushes("laugh")} == set(range(len(models["laughter"].phonemes)))
     assert all(edges("vowels")) and not any(edges("consonants")) and not any(edges("queue"))
-    assert len(pushes("queue")) > units.WINDOW + 2 * 20 + units.OVERLAP + 4  # LABIAL_QUEUE
-    assert not len(frames["silent_zeros"]) and not len(frames["nothing"]) and len(frames["pauses"]) > 5 * units.WINDOW
+    assert len(pushes("queue")) > 2 * QUEUE
+    assert not len(frames["silent_zeros"]) and not len(frames["nothing"])
+
+    ahead = tables["speech"].ahead
+    pauses = {push.milliseconds // 20 for push in pushes("pauses") if push.phoneme == tables["speech"].silence}
+    assert {ahead - 1, ahead, ahead + 1} <= pauses and max(pauses) > 10 * ahead
+    assert len(frames["minutes"]) > 120 * 50 and max(push.milliseconds for push in pushes("endless")) == DURATION_MAX
+    stops = {name: {push.milliseconds // 20 for push in pushes(name) if tables["speech"].contact[push.phoneme].any()}
+             for name in ("short_stops", "long_stop")}
+    assert {1, 2, 3} <= stops["short_stops"] and {contact.LONG - 1, contact.LONG, 20} <= stops["long_stop"]
+    graded = {number for number, label in enumerate(models["laughter"].phonemes) if label.endswith(("_soft", "_loud"))}
+    assert graded and graded <= {push.phoneme for push in pushes("graded")}
+    lengths = {sum(run.counts) for part in by_name["quick_switches"].parts for run in motion.runs(part.pushes, 50)}
+    assert {1, motion.FADE - 1, motion.FADE, motion.FADE + 1} <= lengths
     assert max(push.milliseconds for push in pushes("saturated")) > 65535
     assert any(part.cancel and part.cancel[0] == 0 for part in by_name["cancelled"].parts)
     turns = pushes("turns")
-    assert len(turns) > 132 and all(one.model != other.model for one, other in zip(turns, turns[1:]))
+    assert len(turns) > 2 * QUEUE and all(one.model != other.model for one, other in zip(turns, turns[1:]))
     counts = {"speech": set(), "laughter": set()}
     for push in turns:
         counts[push.model].add(push.milliseconds // 20)
-    assert all(min(found) < units.OVERLAP // 2 and max(found) > units.OVERLAP for found in counts.values())
+    assert all(min(found) < motion.FADE // 2 and max(found) >= motion.FADE for found in counts.values())
     again = [(script.name, at) for script in scripts for part in script.parts for at, _ in part.again]
     assert {name for name, _ in again} == {"cancelled_twice"} and {0, 6, 14} <= {at for _, at in again}
 
@@ -102,41 +116,45 @@ def test_a_second_cancel_starts_from_the_pose_reached(
     models: Dict[str, ExportedModel], scripts: List[Script], frames: Frames
 ) -> None:
     """The frames differ widely from those of an easing that begins anew from the pose of the first cancel."""
-    motion = frames["cancelled_twice"]
-    pose = motion[8]  # the last frame before the cancel
+    shown = frames["cancelled_twice"]
+    pose = shown[8]  # the last frame before the cancel
     moved = np.abs(pose).max()
-    assert moved > 100 and np.abs(motion[14]).max() < 0.9 * moved  # six frames of easing later
-    assert np.abs(motion[15] - motion[14]).max() < 0.05 * moved  # no jump back
-    assert motion[21].any() and not motion[22].any()  # three, then five more
+    assert moved > 100 and np.abs(shown[14]).max() < 0.9 * moved  # six frames of easing later
+    assert np.abs(shown[15] - shown[14]).max() < 0.05 * moved  # no jump back
+    assert shown[21].any() and not shown[22].any()  # three, then five more
 
 
-def test_one_model_is_cut_as_ever() -> None:
-    """The cutting of several models' phonemes is the reference's own where there is only one."""
-    rng = np.random.default_rng(5)
-    for _ in range(300):
-        frames = rng.integers(0, rng.choice([2, 6, 30, 90]), rng.integers(1, 60)).tolist()
-        boundary = (rng.random(len(frames)) < rng.random()).tolist()
-        assert [piece for piece, _ in mixed_pieces(frames, boundary, ["speech"] * len(frames))] == (
-            units.pieces(frames, boundary))
+def runs_of(*pushes: Tuple[str, int, int]) -> List[motion.Run]:
+    return motion.runs([Push(*push) for push in pushes], 50)
 
 
-def test_no_frame_is_in_three_pieces_whatever_the_models() -> None:
-    """Pieces of two models follow each other without a gap, within the window, and share no more than half of each."""
-    rng = np.random.default_rng(7)
-    for _ in range(300):
-        frames = rng.integers(0, rng.choice([2, 6, 30, 90]), rng.integers(1, 60)).tolist()
-        boundary = (rng.random(len(frames)) < rng.random()).tolist()
-        laughs = rng.random(len(frames)) < rng.choice([0.1, 0.5])
-        names = np.where(laughs, "laughter", "speech").tolist()
-        own = np.repeat(names, frames)
-        found = mixed_pieces(frames, boundary, names)
-        assert (found[-1][0].end if found else 0) == len(own)
-        for (piece, name), (before, _) in zip(found, [(units.Piece(0, 0, 0, 0), ""), *found]):
-            length = piece.end - piece.begin
-            assert 0 < length <= units.WINDOW and piece.begin == before.end - piece.fade_in
-            assert piece.fade_in == before.fade_out <= units.OVERLAP
-            assert 2 * piece.fade_out <= length and piece.fade_in + piece.fade_out <= length
-            assert (own[piece.begin : piece.end - piece.fade_out] == name).all()
+def test_runs_are_those_of_frames() -> None:
+    """Phonemes without frames part no run, their time goes on to the next, and a run knows where it begins."""
+    found = runs_of(("speech", 3, 60), ("laughter", 1, 9), ("speech", 4, 11), ("laughter", 2, 45), ("laughter", 1, 36))
+    assert [(run.model, run.begin, run.phonemes, run.counts) for run in found] == [
+        ("speech", 0, ((3, 60), (4, 11)), (3, 1)), ("laughter", 4, ((2, 45), (1, 36)), (2, 2))]
+    assert runs_of(("speech", 1, 9)) == []
+
+
+def test_a_fade_moves_on_and_arrives() -> None:
+    """By its formula, frame by frame: base + (fresh - base) (3 s^2 - 2 s^3), s = j / 9, base = held + v - v / 2^j."""
+    fresh = np.full((8, 13), 90.0)
+    found = motion.faded(np.zeros(13), np.full(13, 16.0), fresh)
+    for j in range(1, 9):
+        base, s = 16.0 - 16.0 / 2**j, j / 9.0
+        assert np.allclose(found[j - 1], base + (90.0 - base) * (3 * s * s - 2 * s**3))
+    assert np.allclose(motion.faded(np.zeros(13), np.zeros(13), fresh[:3]), found[:3] - np.array(
+        [[(16.0 - 16.0 / 2**j) * (1 - 3 * (j / 9) ** 2 + 2 * (j / 9) ** 3)] * 13 for j in (1, 2, 3)]))
+
+
+def test_one_run_is_the_reference(models: Dict[str, ExportedModel]) -> None:
+    """A part of one model is what the reference makes of it, and a later run its motion on other turns."""
+    tables = {word: ExportedTables(model) for word, model in models.items()}
+    pushes = tuple(Push("speech", number, 75) for number in (0, 5, 9, 20, 0))
+    alone = motion.part_motion(tables, Part(pushes, None), np.zeros(13), False)
+    assert (alone == synthesise(tables["speech"], [(push.phoneme, push.milliseconds) for push in pushes])).all()
+    behind = motion.part_motion(tables, Part((Push("laughter", 1, 20), *pushes), None), np.zeros(13), False)
+    assert len(behind) == len(alone) + 1 and 0 < np.abs(behind[9:] - alone[8:]).max() < 60
 
 
 @pytest.mark.parametrize("line, complaint", [

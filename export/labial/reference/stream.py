@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -45,11 +45,13 @@ def synthesise(
     return solution(tables, target, contact, ends, whole=whole, window=window, lag=lag)
 
 
-def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+def aims(
+    tables: Tables, phonemes: Sequence[Tuple[int, int]], counts: Optional[Sequence[int]] = None
+) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Targets (T, 13) in the tables' positions, where they are in contact (T, 13), and the frames (T,) that end units,
-    of pairs of phoneme number and milliseconds."""
+    of pairs of phoneme number and milliseconds; `counts` as in :func:`labial.reference.units.segments`."""
     check(tables, phonemes)
-    held = segments(phonemes, tables.silence, tables.ahead, tables.fps)
+    held = segments(phonemes, tables.silence, tables.ahead, tables.fps, counts)
     target, contact = targets_and_contact(tables, [item.phoneme for item in held],
                                           [item.milliseconds for item in held], [item.frames for item in held],
                                           rest(held))
@@ -65,12 +67,14 @@ def solution(
     whole: bool = False,
     window: int = WINDOW,
     lag: int = LAG,
+    begin: int = 0,
 ) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion for targets (T, 13) in the tables' positions, some of them in `contact`
-    (T, 13); `ends` (T,) are the frames that end a unit, the last one among them."""
+    (T, 13); `ends` (T,) are the frames that end a unit, the last one among them. The first is frame `begin` of a
+    stream, whose channels have their turns counted from its own first."""
     if not len(target):
         return np.zeros((0, CHANNELS))
-    terms = tables.equation(tables.search(target, ends, lag), target, contact)
+    terms = tables.equation(tables.search(target, ends, lag, begin), target, contact)
     if whole:
         return trajectory.solve_whole(terms)
-    return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window, lag))
+    return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window, lag, begin))

@@ -100,9 +100,10 @@ class FloatTables:
         taps = np.arange(neighbours.shape[1])
         return shapes + self.model.kernel[neighbours, taps].sum(axis=1)
 
-    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG) -> np.ndarray:
-        """(T, 13) int64: the state path for targets (T, 13), given the frames (T,) that end units."""
-        return decode(self.chains, [targets], [ends], self.stride, lag=lag)[0]
+    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0) -> np.ndarray:
+        """(T, 13) int64: the state path for targets (T, 13), given the frames (T,) that end units; the first is
+        frame `begin` of the stream."""
+        return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
         """Equation 3's terms for `path` (T, 13); frames in `contact` (T, 13) are held by their target alone."""
@@ -191,9 +192,9 @@ class ExportedTables:
         z = np.minimum((distance * model.emission_gain[own]) >> 12, EMISSION_Z_MAX)
         return z_cost(z) + model.emission_cost[own]
 
-    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG) -> np.ndarray:
+    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0) -> np.ndarray:
         """As :meth:`FloatTables.search`."""
-        return decode(self.chains, [targets], [ends], self.stride, lag=lag)[0]
+        return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
         """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""

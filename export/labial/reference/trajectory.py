@@ -55,8 +55,8 @@ def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     return settled, rho, kappa
 
 
-def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0) -> np.ndarray:
-    """(T, 13) int64: the frame from which the way back to each frame starts.
+def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0) -> np.ndarray:
+    """(T, 13) int64: the frame from which the way back to each frame starts, where the first is the stream's `begin`.
 
     A channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends `lag` frames after
     frame k, when the states up to k are decided. Then the frame before k has all that it is tied to, and k itself where
@@ -64,7 +64,7 @@ def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0) -> np.n
     """
     frame = np.arange(frames)[:, None]
     earliest = frame + window + 1
-    end = earliest + (np.arange(CHANNELS) - lag - earliest) % stride
+    end = earliest + (np.arange(CHANNELS) - lag - begin - earliest) % stride
     return np.where(end == frames - 1, end, np.minimum(end - 1, frames - 1))
 
 

@@ -47,10 +47,14 @@ def pause_cut(frames: int, milliseconds: int, ahead: int, fps: int) -> List[Tupl
     return [(frames - ahead, milliseconds - tail), (ahead, tail)]
 
 
-def segments(phonemes: Sequence[Tuple[int, int]], silence: int, ahead: int, fps: int) -> List[Segment]:
-    """The phonemes, pairs of number and milliseconds, that have frames; pauses are cut by :func:`pause_cut`."""
+def segments(
+    phonemes: Sequence[Tuple[int, int]], silence: int, ahead: int, fps: int, counts: Optional[Sequence[int]] = None
+) -> List[Segment]:
+    """The phonemes, pairs of number and milliseconds, that have frames; pauses are cut by :func:`pause_cut`. `counts`
+    are their frames where they follow others, which leave something over."""
     result = []
-    for (phoneme, milliseconds), frames in zip(phonemes, frame_counts([ms for _, ms in phonemes], fps)):
+    counts = frame_counts([ms for _, ms in phonemes], fps) if counts is None else counts
+    for (phoneme, milliseconds), frames in zip(phonemes, counts):
         capped = min(milliseconds, MILLISECONDS_MAX)
         parts = pause_cut(frames, capped, ahead, fps) if phoneme == silence else [(frames, capped)]
         if len(parts) > 1:

@@ -51,9 +51,9 @@ def normal_chains(
     return Chains(mean, -log_transition, -log_initial, LEAP / COST_SCALE, emission)
 
 
-def block_at(frames: int, stride: int) -> np.ndarray:
-    """(T, 13) int64: the block of each frame, per channel."""
-    return np.maximum(-((_CHANNEL % stride - np.arange(frames)[:, None]) // stride), 0)
+def block_at(frames: int, stride: int, begin: int = 0) -> np.ndarray:
+    """(T, 13) int64: the block of each frame, per channel, of a solution whose first frame is the stream's `begin`."""
+    return np.maximum(-(((_CHANNEL - begin) % stride - np.arange(frames)[:, None]) // stride), 0)
 
 
 def block_ends(frames: int, stride: int, channel: int) -> np.ndarray:
@@ -61,9 +61,9 @@ def block_ends(frames: int, stride: int, channel: int) -> np.ndarray:
     return np.append(np.arange(channel % stride, frames - 1, stride), frames - 1)
 
 
-def looked_at(frames: int, stride: int, blocks: int) -> np.ndarray:
+def looked_at(frames: int, stride: int, blocks: int, begin: int = 0) -> np.ndarray:
     """(B, 13) int64: the frames whose targets the search sees: the middle ones of whole blocks, or the later of two."""
-    end = _CHANNEL % stride + stride * np.arange(blocks)[:, None]
+    end = (_CHANNEL - begin) % stride + stride * np.arange(blocks)[:, None]
     return np.clip(end - stride + 1 + stride // 2, 0, frames - 1)
 
 
@@ -130,16 +130,16 @@ def search(chains: Chains, position: np.ndarray, closed: np.ndarray, searched: i
 
 
 def decode(chains: Chains, targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], stride: int, *, lag: int = LAG,
-           searched: int = SEARCHED) -> List[np.ndarray]:
+           searched: int = SEARCHED, begin: int = 0) -> List[np.ndarray]:
     """(T, 13) int64 each: the state paths of utterances, given their targets (T, 13) and which frames (T,) end units.
+    Their first frames are frame `begin` of a stream.
 
     Every utterance has at least one frame, the last of which ends a unit.
     """
-    number = [block_at(len(target), stride) for target in targets]
+    number = [block_at(len(target), stride, begin) for target in targets]
     blocks = max(int(item.max()) for item in number) + 1
-    position = np.stack(
-        [np.take_along_axis(target, looked_at(len(target), stride, blocks), axis=0) for target in targets], axis=1
-    )
+    seen = [looked_at(len(target), stride, blocks, begin) for target in targets]
+    position = np.stack([np.take_along_axis(target, at, axis=0) for target, at in zip(targets, seen)], axis=1)
     closed = np.zeros(position.shape, dtype=bool)
     for i, (end, item) in enumerate(zip(ends, number)):
         closed[item[np.flatnonzero(end)], i, _CHANNEL] = True
