@@ -62,7 +62,7 @@ static inline int32_t labial_part16(int32_t x, uint32_t f)
 }
 
 /* x * f / 2^24 for f up to 2^24: the upper 16 bits of f times x, and the lower eight times the upper half of x. Below
- * the true value by less than two. */
+ * the true value by less than three. */
 static inline int32_t labial_part24(int32_t x, uint32_t f)
 {
     return labial_part16(x, f >> 8) + (((x >> 16) * (int32_t)(f & 255u)) >> 8);

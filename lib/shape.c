@@ -139,11 +139,21 @@ void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t
         memcpy(shape->knots[1], shape->knots[0], sizeof shape->knots[1]);
 }
 
-/* The channels in which a phoneme makes contact. */
+/* The channels in which a phoneme makes contact, or silence comes to rest. */
 static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
 {
     const unsigned floor = model->phonemes[phoneme].floor;
     return floor ? model->contacts[floor - 1u] : 0u;
+}
+
+/* Brings those of the channels that come to rest in silence `rest` of LABIAL_REST_FRAMES of the way there. */
+static void settle(const labial_model_t *model, unsigned channels, int32_t rest, int16_t target[LABIAL_CHANNELS])
+{
+    const int16_t *pose = model->floors + (model->phonemes[model->silence].floor - 1u) * LABIAL_CHANNELS;
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++, channels >>= 1)
+        if (channels & 1u)
+            target[k] = (int16_t)(target[k] + (pose[k] - target[k]) * rest / LABIAL_REST_FRAMES);
 }
 
 /* Raises those of the channels to a phoneme's floor that lie below it. */
@@ -165,15 +175,18 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
 {
     const uint8_t *labels = taken->labels;
     const unsigned own = contacts_of(model, labels[0]);
+    const int is_open = taken->is_open || labels[0] == model->silence;
     unsigned before = 0, after = 0; /* those of a phoneme that follows, and that went before */
-    if (labels[1] != labels[0] && !(labels[1] == labels[2] && labels[2] == labels[3]))
+    if (labels[1] != labels[0] && labels[1] != model->silence && !(labels[1] == labels[2] && labels[2] == labels[3]))
         before = contacts_of(model, labels[1]);
-    if (labels[-1] != labels[0] && labels[-1] != labels[-2])
+    if (labels[-1] != labels[0] && labels[-1] != model->silence && labels[-1] != labels[-2])
         after = contacts_of(model, labels[-1]);
-    raise(model, labels[0], taken->is_open ? ~own : ~0u, target);
+    raise(model, labels[0], is_open ? ~own : ~0u, target);
+    if (taken->rest && own)
+        settle(model, own, taken->rest, target);
     raise(model, labels[1], before, target);
     raise(model, labels[-1], after, target);
-    return (taken->is_open ? 0u : own) | before | after;
+    return (is_open ? 0u : own) | before | after;
 }
 
 uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,

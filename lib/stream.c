@@ -304,7 +304,7 @@ static void solve(const turn_t *turn, int age, int last, int searched)
     const labial_frame_t *frame;
     labial_factors_t *before, *own;
     unsigned asked = LABIAL_STATES_MAX;
-    labial_ask_t ask;
+    labial_ask_t ask = { 0, 0, 0, 0, 0, 0, 0, 0, 0 };
     if (age < last)
         return;
     frame = frame_of(turn, age);

@@ -125,7 +125,7 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
     uint32_t left = segment_at(units, 0)->frames - units->taken;
     unsigned i = 0;
     if (units->begins)
-        memset(units->labels, silence, LABIAL_REACH);
+        memset(units->labels, silence, sizeof units->labels);
     else
         memmove(units->labels, units->labels + 1, LABIAL_REACH);
     for (ahead++; ahead > 0 && i < units->count; i++) {
@@ -175,6 +175,9 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     begin = units->taken < head ? 0u : head;
     frames = (units->taken < head ? head : segment->frames) - begin;
     taken->share = share_of(units->taken - begin, frames);
+    taken->rest = 0;
+    if (head > 0 && (units->taken < head || !next || next->slot != segment->slot))
+        taken->rest = (uint8_t)(units->taken < LABIAL_REST_FRAMES ? units->taken + 1u : LABIAL_REST_FRAMES);
     taken->is_open = frames >= LABIAL_CONTACT_LONG && segment->frames - units->taken > LABIAL_CONTACT_LAST;
     taken->marks = (uint8_t)(units->begins ? LABIAL_BEGINS : 0);
     units->begins = 0;

@@ -1,10 +1,8 @@
 /*
- * together.c - the talking stream runs from the first to the last frame; the laughing one is made ready before each
- * laugh and ticked from its first frame on. Every frame is the blend of both.
+ * together.c - two streams run side by side from the first to the last frame: one talks, the other one laughs and rests
+ * between laughs. Every frame is the blend of both.
  *
- * A device does what one turn of the loop in together_play() does in each frame period, once: where the loop asks again
- * at once for a frame that is being computed, a device shows the frame before, which hardly ever happens
- * (labial_tick()).
+ * A device does what one turn of the loop in together_play() does in each frame period, once.
  */
 #include "together.h"
 
@@ -32,10 +30,11 @@ typedef struct {
     labial_t laugh;
     uint32_t laugh_workspace[(LAUGHTER_SYNTHETIC_WORKSPACE_SIZE + 3u) / 4u];
     int16_t laughing[LABIAL_CHANNELS]; /* its latest frame */
-    size_t current;                    /* laugh of the score */
-    labial_laugh_t generator;          /* of its phonemes */
-    unsigned phoneme;                  /* that comes next, */
-    uint32_t milliseconds;             /* or 0 when there is none */
+    labial_laugh_t generator;          /* of the phonemes of the laugh that is being pushed */
+    size_t next_laugh;                 /* to be pushed */
+    uint64_t laughed;                  /* time up to which laughs and rests were made, milliseconds */
+
+    size_t current; /* laugh of the score that is heard now, or the next one */
 } together_t;
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -63,40 +62,41 @@ static int feed_talk(together_t *t)
 
 /* ---- The stream that laughs ------------------------------------------------------------------------------------ */
 
-static void next_of_laugh(together_t *t)
+/* The next phoneme of this stream: of a laugh, or the rest up to the next one. Returns LABIAL_OK, LABIAL_DONE behind the
+ * last laugh, or an error. */
+static int next_to_laugh(together_t *t, unsigned *phoneme, uint32_t *milliseconds)
 {
-    if (labial_laugh_next(&t->generator, &t->phoneme, &t->milliseconds) != LABIAL_OK)
-        t->milliseconds = 0;
+    int result = labial_laugh_next(&t->generator, phoneme, milliseconds);
+    while (result == LABIAL_DONE && t->next_laugh < t->score->laugh_count) {
+        const score_laugh_t *laugh = &t->score->laughs[t->next_laugh];
+        const uint64_t rest = laugh->begin - t->laughed;
+        if (rest > 0) {
+            *phoneme = laughter_synthetic.silence;
+            *milliseconds = rest < LABIAL_DURATION_MAX ? (uint32_t)rest : LABIAL_DURATION_MAX;
+            t->laughed += *milliseconds;
+            return LABIAL_OK;
+        }
+        result = labial_laugh_begin(&t->generator, (uint32_t)(laugh->end - laugh->begin), laugh->intensity,
+                                    (uint32_t)t->next_laugh);
+        t->laughed = laugh->end;
+        t->next_laugh++;
+        if (result == LABIAL_OK)
+            result = labial_laugh_next(&t->generator, phoneme, milliseconds);
+    }
+    return result;
 }
 
 static int feed_laugh(together_t *t)
 {
     int result = LABIAL_OK;
-    while (result == LABIAL_OK && t->milliseconds > 0 && labial_room(&t->laugh) > 0) {
-        result = labial_push(&t->laugh, t->phoneme, t->milliseconds);
-        next_of_laugh(t);
+    while (result == LABIAL_OK && labial_room(&t->laugh) > 0) {
+        unsigned phoneme;
+        uint32_t milliseconds;
+        result = next_to_laugh(t, &phoneme, &milliseconds);
+        if (result == LABIAL_OK)
+            result = labial_push(&t->laugh, phoneme, milliseconds);
     }
-    if (result == LABIAL_OK && t->milliseconds == 0)
-        result = labial_end(&t->laugh);
-    return result;
-}
-
-/* Makes the current laugh ready: its first frames are computed, and the first tick will deliver. A device does this
- * while it has time, some frames before the laugh is due. */
-static int prepare_laugh(together_t *t)
-{
-    if (t->current == t->score->laugh_count)
-        return LABIAL_OK;
-    const score_laugh_t *laugh = &t->score->laughs[t->current];
-    int result = labial_laugh_begin(&t->generator, (uint32_t)(laugh->end - laugh->begin), laugh->intensity,
-                                    (uint32_t)t->current);
-    if (result == LABIAL_OK) {
-        next_of_laugh(t);
-        result = feed_laugh(t);
-    }
-    while (result == LABIAL_OK)
-        result = labial_work(&t->laugh);
-    return result < 0 ? result : LABIAL_OK;
+    return result == LABIAL_DONE ? labial_end(&t->laugh) : result;
 }
 
 /* ---- Both ------------------------------------------------------------------------------------------------------ */
@@ -115,9 +115,11 @@ static unsigned least(unsigned a, unsigned b)
 }
 
 /* The talk and, where the score has one, the laugh, at `now` (milliseconds), from both streams' latest frames. */
-static void blend_at(const together_t *t, uint64_t now, int16_t faps[LABIAL_CHANNELS])
+static void blend_at(together_t *t, uint64_t now, int16_t faps[LABIAL_CHANNELS])
 {
     unsigned intensity = 0, words = LABIAL_BLEND_FULL;
+    while (t->current < t->score->laugh_count && now >= t->score->laughs[t->current].end)
+        t->current++;
     if (t->current < t->score->laugh_count) {
         const score_laugh_t *laugh = &t->score->laughs[t->current];
         intensity = least(ramp(laugh->begin, now), ramp(now, laugh->end));
@@ -126,47 +128,34 @@ static void blend_at(const together_t *t, uint64_t now, int16_t faps[LABIAL_CHAN
     labial_blend(&labial_blend_default, intensity, words, t->speech, t->laughing, faps);
 }
 
-/* The next frame of a stream, or why there is none. */
-static int take(labial_t *stream)
+/* One frame period of both streams. The laughing one ends with its last laugh, and its last frame stays. */
+static int tick(together_t *t)
 {
-    int result;
-    do
-        result = labial_tick(stream);
-    while (result == LABIAL_BUSY);
-    return result;
+    int result = feed_talk(t);
+    if (result == LABIAL_OK)
+        result = feed_laugh(t);
+    if (result == LABIAL_OK)
+        result = labial_tick(&t->laugh);
+    return result >= LABIAL_OK ? labial_tick(&t->talk) : result;
 }
 
 int together_play(const score_t *score, together_sink_t sink, void *user)
 {
     static together_t t;
+    uint64_t frame = 0;
     memset(&t, 0, sizeof t);
     t.score = score;
     int result = labial_init(&t.talk, &speech_en, t.talk_workspace, sizeof t.talk_workspace, on_frame, t.speech);
     if (result == LABIAL_OK)
         result = labial_init(&t.laugh, &laughter_synthetic, t.laugh_workspace, sizeof t.laugh_workspace, on_frame,
                              t.laughing);
-    if (result == LABIAL_OK)
-        result = prepare_laugh(&t);
-    for (uint64_t frame = 0; result == LABIAL_OK; frame++) {
-        const uint64_t now = frame * 1000u / speech_en.frames_per_second;
-        result = feed_talk(&t);
-        if (result == LABIAL_OK)
-            result = take(&t.talk);
-        if (result == LABIAL_OK && t.current < score->laugh_count && now >= score->laughs[t.current].begin) {
-            result = feed_laugh(&t);
-            if (result == LABIAL_OK)
-                result = take(&t.laugh);
-            if (result == LABIAL_DONE) { /* until the next laugh, with intensity 0, its last frame stays */
-                t.current++;
-                result = labial_restart(&t.laugh);
-                if (result == LABIAL_OK)
-                    result = prepare_laugh(&t);
-            }
-        }
-        if (result == LABIAL_OK) {
+    while (result >= LABIAL_OK && result != LABIAL_DONE) {
+        result = tick(&t);
+        if (result == LABIAL_OK) { /* and not LABIAL_WAITING: both streams have the same delay */
             int16_t faps[LABIAL_CHANNELS];
-            blend_at(&t, now, faps);
+            blend_at(&t, frame * 1000u / speech_en.frames_per_second, faps);
             sink(user, faps);
+            frame++;
         }
     }
     return result == LABIAL_DONE ? LABIAL_OK : result;

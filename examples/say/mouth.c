@@ -23,14 +23,15 @@ static int failed(const mouth_t *mouth, const char *where, const char *why)
     return -1;
 }
 
-/* Takes every frame that what was pushed so far allows. There is no clock to follow here, so a frame that is still
- * being computed is asked for again at once. Returns why there are no more, or an error. */
+/* Takes every frame that what was pushed so far allows; there is no clock to follow here. Before the first frame comes
+ * as many ticks as the stream's delay bring none. Returns why there are no more, or an error. */
 static int drain(mouth_t *mouth)
 {
+    unsigned underway = labial_latency(&mouth->stream).delay;
     int result;
     do {
         result = labial_tick(&mouth->stream);
-    } while (result == LABIAL_OK || result == LABIAL_BUSY);
+    } while (result == LABIAL_OK || (result == LABIAL_WAITING && underway-- > 0));
     return result;
 }
 

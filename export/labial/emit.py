@@ -65,7 +65,7 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
         "floors": (2 * CHANNELS + 2) * (len(model.floors) - 1),
         "states": CHANNELS * states * 16,
         "transitions": 2 * int(model.edges.size),
-        "descriptors": 24 * CHANNELS + 60,
+        "descriptors": 24 * CHANNELS + 64,
     }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from labial import emit
 from labial.faps import CHANNELS, FAP_NAMES
-from labial.fixed import WEIGHT_MIN, weight_value
+from labial.fixed import SEARCHED, WEIGHT_MIN, weight_value
 from labial.loss import Loss
 from labial.model import Model
 from labial.quantise import ExportedModel
@@ -15,7 +15,8 @@ from labial.reference.trajectory import WINDOW
 
 def workspace_bytes(stride: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
-    return CHANNELS * (8 * (WINDOW + stride + 1) + 56) + (stride * (28 + 2 * CHANNELS) + 3) // 4 * 4
+    track = (40 + 3 + SEARCHED + 3) // 4 * 4
+    return CHANNELS * (8 * (WINDOW + stride + 1) + track) + (stride * (30 + 2 * CHANNELS) + 3) // 4 * 4
 
 
 def memory(exported: ExportedModel) -> str:
@@ -26,6 +27,13 @@ def memory(exported: ExportedModel) -> str:
     lines.append(f"{'flash, names, if used':<32}{emit.names_bytes(exported):>8} bytes")
     lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.search_stride):>8} bytes")
     return "\n".join(lines)
+
+
+def loosened(model: Model, exported: ExportedModel) -> int:
+    """States whose delta-delta weight is less of what holds them than trained by more than codes are rounded."""
+    trained = model.state_precision[..., 2] / (model.state_precision[..., 0] + model.state_anchor)
+    kept = weight_value(exported.state_weight[..., 1]) / weight_value(exported.state_hold)
+    return int((kept < 0.85 * trained).sum())
 
 
 def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
@@ -39,4 +47,6 @@ def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
                  "on average")
     floor = int((weight_value(exported.state_hold) <= WEIGHT_MIN).sum())
     lines.append(f"states held by no more than the least weight: {floor} of {exported.state_hold.size}")
+    lines.append(f"states that are less stiff than trained, within the solver's bounds: {loosened(model, exported)} "
+                 f"of {exported.state_hold.size}")
     return "\n".join(lines)

@@ -65,8 +65,8 @@ extern "C" {
 #define LABIAL_REACH 20
 #endif
 
-/* Models whose phonemes a stream can hold at the same time. A model makes room for another when its phonemes have been
- * taken up. 1 .. 255. */
+/* Models that a stream can hold at the same time. One makes room for another when its phonemes have been taken up and as
+ * many frames after them as the search takes at a time. 1 .. 255. */
 #ifndef LABIAL_MODELS
 #define LABIAL_MODELS 2
 #endif

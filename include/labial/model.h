@@ -46,6 +46,9 @@ extern "C" {
 #define LABIAL_CONTACT_LONG 15
 #define LABIAL_CONTACT_LAST 8
 
+/* Frames in which a mouth comes to rest in a pause, but for its last, which lead to what follows. */
+#define LABIAL_REST_FRAMES 16
+
 /* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */
 #define LABIAL_WEIGHT_SUM_MAX 16383 /* the largest `hold` or `firm` + twice the largest weight[0] + six times the largest weight[1] */
 #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
@@ -134,8 +137,8 @@ typedef struct {
     const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
                                 * none; null when F is 0 */
     const uint16_t *contacts;  /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
-                                * neighbours do: it is held firmly, and for LABIAL_CONTACT_FRAMES at least; null when F
-                                * is 0 */
+                                * neighbours do: it is held firmly, and for LABIAL_CONTACT_FRAMES at least. In silence:
+                                * it is where the channel comes to rest in a pause. Null when F is 0 */
     const labial_channel_t *channels; /* 13 */
 } labial_model_t;
 

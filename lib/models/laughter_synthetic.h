@@ -1,5 +1,5 @@
 /*
- * laughter_synthetic.h - the laughter model, method labial, 50 frames per second. Written by labial export 0.1.0;
+ * laughter_synthetic.h - the laughter model, method labial, 50 frames per second. Written by labial export 0.2.0;
  * do not edit. Trained on a synthetic corpus: the timings follow published statistics, the amplitudes are design
  * choices.
  */
@@ -54,7 +54,7 @@ enum {
     LAUGHTER_SYNTHETIC_A_LOUD = 23
 };
 
-/* The model, 25984 bytes on a 32-bit target. */
+/* The model, 25988 bytes on a 32-bit target. */
 extern const labial_model_t laughter_synthetic;
 
 /* Its labels and aliases; linked only when used. */

@@ -1,6 +1,8 @@
 /*
- * speech_en.h - the speech model, method labial, 50 frames per second. Written by labial export 0.1.0; do not
- * edit.
+ * speech_en.h - the speech model, method labial, 50 frames per second. Written by labial export 0.2.0; do not
+ * edit. Trained on the GRID audio-visual speech corpus (Cooke, Barker, Cunningham and Shao, 2006), CC BY 4.0, and
+ * on measurements of addresses by presidents of the United States, works of the federal government (public
+ * domain, 17 USC 105).
  */
 #ifndef LABIAL_MODEL_SPEECH_EN_H
 #define LABIAL_MODEL_SPEECH_EN_H
@@ -69,7 +71,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 41408 bytes on a 32-bit target. */
+/* The model, 41440 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

@@ -115,6 +115,7 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
     f->model.class_count = FIXTURE_CLASSES;
     f->model.state_count = (uint8_t)states;
     f->model.search_stride = 1;
+    f->model.pair_knots = 1;
     f->model.silence = (uint8_t)silence;
     f->model.phonemes = f->phonemes;
     f->model.components = f->components;
@@ -196,10 +197,13 @@ static void enrich(fixture_model_t *f)
     for (i = 0; i < FIXTURE_PAIRS; i++) /* every phoneme, both sides; every second neighbour */
         f->pair_keys[i] = (uint16_t)(i / (2 * FIXTURE_PAIR_SIDE) << 8 | (i / FIXTURE_PAIR_SIDE % 2) * 128 |
                                      i % FIXTURE_PAIR_SIDE * 2);
-    for (i = 0; i < FIXTURE_PAIRS * LABIAL_CHANNELS; i++)
+    f->model.pair_knots = 2;
+    for (i = 0; i < sizeof f->pairs; i++)
         f->pairs[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
     f->model.floor_count = FIXTURE_FLOORS;
     f->model.floors = f->floors;
+    f->model.contacts = f->contacts;
+    f->contacts[0] = 0x1555; /* the channels of its floors are contact */
     f->phonemes[FIXTURE_P].floor = 1;
     f->phonemes[FIXTURE_O].floor = 2;
     for (i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
@@ -211,6 +215,7 @@ static void enrich(fixture_model_t *f)
     for (i = 0; i < sizeof f->kernels; i++)
         f->kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
     for (c = 0; c < LABIAL_CHANNELS; c++) {
+        f->channels[c].firm = fixture_weight_code(1500);
         f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
         f->channels[c].kernel_scale = 512; /* 100 steps: 12.5 FAP units */
         f->channels[c].pair_scale = 1280;  /* 40 steps: 12.5 FAP units */

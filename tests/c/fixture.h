@@ -43,8 +43,9 @@ typedef struct {
     int8_t slopes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
     int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
     uint16_t pair_keys[FIXTURE_PAIRS];
-    int8_t pairs[FIXTURE_PAIRS * LABIAL_CHANNELS];
+    int8_t pairs[FIXTURE_PAIRS * 2 * LABIAL_CHANNELS];
     int16_t floors[FIXTURE_FLOORS * LABIAL_CHANNELS];
+    uint16_t contacts[FIXTURE_FLOORS];
     labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     uint16_t edges[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];

@@ -96,7 +96,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     put(&w, model->kernel_taps, 1);
     put(&w, model->kernel_stride, 1);
     put(&w, model->kernel_behind, 1);
-    put(&w, (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u), 1);
+    put(&w, (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u) | (model->pair_knots == 2 ? 4u : 0u), 1);
     put(&w, model->floor_count, 1);
     put(&w, model->pair_count, 2);
     for (i = 0; i < model->phoneme_count; i++) {
@@ -124,10 +124,13 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     for (i = 0; i < model->pair_count; i++)
         put(&w, model->pair_keys[i], 2);
     pad(&w);
-    put_bytes(&w, model->pairs, (size_t)model->pair_count * LABIAL_CHANNELS);
+    put_bytes(&w, model->pairs, (size_t)model->pair_count * model->pair_knots * LABIAL_CHANNELS);
     pad(&w);
     for (i = 0; i < (unsigned)model->floor_count * LABIAL_CHANNELS; i++)
         put(&w, (uint16_t)model->floors[i], 2);
+    pad(&w);
+    for (i = 0; i < model->floor_count; i++)
+        put(&w, model->contacts[i], 2);
     pad(&w);
     for (i = 0; i < LABIAL_CHANNELS; i++)
         put_channel(&w, &model->channels[i], model->state_count, model->predecessors);

@@ -298,12 +298,16 @@ static void memory_beside_the_workspace_is_untouched(void **state)
 static void too_many_models_are_refused_until_ticks_make_room(void **state)
 {
     const labial_model_t *const models[FIXTURE_MODELS] = { &rich.model, &laugh.model, &third.model, &fourth.model };
-    const unsigned frames = 30, still_needed = FIXTURE_STRIDE + LABIAL_LAG;
+    const unsigned frames = 100, still_needed = FIXTURE_STRIDE + LABIAL_LAG;
     fixture_host_t host;
     unsigned i, ticks = 0;
     (void)state;
     assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
     assert_in_range(LABIAL_MODELS, 1, FIXTURE_MODELS - 1); /* what this test is written for */
+    if (LABIAL_QUEUE <= LABIAL_MODELS) { /* too short to hold phonemes of so many */
+        fixture_close(&host);
+        return;
+    }
     for (i = 0; i < LABIAL_MODELS; i++) {
         assert_int_equal(labial_use(host.stream, models[i]), LABIAL_OK);
         assert_int_equal(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE), LABIAL_OK);
@@ -313,7 +317,7 @@ static void too_many_models_are_refused_until_ticks_make_room(void **state)
 #if LABIAL_MODELS > 1
     assert_int_equal(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE), LABIAL_OK); /* so that the last begins */
 #endif
-    while (labial_use(host.stream, models[LABIAL_MODELS]) == LABIAL_ERROR_MODELS && ticks < 100) {
+    while (labial_use(host.stream, models[LABIAL_MODELS]) == LABIAL_ERROR_MODELS && ticks < 400) {
         (void)fixture_tick(&host);
         ticks++;
     }
@@ -324,7 +328,7 @@ static void too_many_models_are_refused_until_ticks_make_room(void **state)
         fail_msg("%s", host.complaint);
     assert_int_equal(host.recorder.count, (LABIAL_MODELS + 1) * frames + 1000 * FIXTURE_RATE / 1000);
 #else
-    assert_int_equal(ticks, 100); /* what follows the only phoneme is not known: it is never taken up but at the end */
+    assert_int_equal(ticks, 400); /* what follows the only phoneme is not known: it is never taken up but at the end */
     if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
         fail_msg("%s", host.complaint);
     fixture_restart(&host);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Dict, List, Tuple
 
 import numpy as np
@@ -32,6 +33,8 @@ def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: i
         value = rng.uniform(0.05, 1.0, shape)
         return np.log(value / value.sum(axis=-1, keepdims=True))
 
+    anchor = 3.0 / variance if own else np.zeros_like(variance)
+    floor = np.where(rng.random((phonemes, CHANNELS)) < (0.15 if own else 0.0), 0.3 * reach, -np.inf)
     return Model(
         kind="speech",
         method=method,
@@ -57,17 +60,25 @@ def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: i
                            if (p + n + side) % 3 == 0 and own], dtype=np.int64).reshape(-1, 3),
         pair_shape=rng.normal(0, 0.1, (sum((p + n + side) % 3 == 0 and own for p in range(phonemes)
                                            for side in (0, 1) for n in range(phonemes)), knots, CHANNELS)) * reach,
-        floor=np.where(rng.random((phonemes, CHANNELS)) < (0.15 if own else 0.0), 0.3 * reach, -np.inf),
+        floor=floor,
+        contact=np.isfinite(floor) & (rng.random(floor.shape) < 0.7) & (np.arange(phonemes) > 0)[:, None],
+        firm=np.median(precision[..., 0] + anchor, axis=1) * 4.0,
         decode_mean=mean,
         decode_variance=variance,
         state_mean=state_mean,
         state_precision=precision,
-        state_anchor=3.0 / variance if own else np.zeros_like(variance),
+        state_anchor=anchor,
         log_transition=np.log(stay / stay.sum(axis=-1, keepdims=True)),
         log_initial=log_share((CHANNELS, states)),
         aliases={"sil": "SIL", "p1": "P1", "ɑ": "P2"},
         attribution="Made up.",
     )
+
+
+def without_floors(model: Model) -> Model:
+    """The model with targets that nothing holds up."""
+    shape = model.floor.shape
+    return replace(model, floor=np.full(shape, -np.inf), contact=np.zeros(shape, dtype=bool))
 
 
 def streams(phonemes: int, boundary: np.ndarray, seed: int) -> Dict[str, Stream]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from labial.model import load
 from labial.native import NativeModel, compiler, library_root
 from labial.quantise import quantise
 from labial.report import workspace_bytes
-from models import random_model, streams
+from models import random_model, streams, without_floors
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
           "-Wshadow", "-Werror"]  # fmt: skip
@@ -83,10 +84,31 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     """Tables of another version must not be linked by accident."""
     emit.write(quantise(random_model(2), "some_model"), tmp_path)
     header = tmp_path / "some_model.h"
-    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 2", "LABIAL_MODEL_FORMAT != 3"))
+    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 3", "LABIAL_MODEL_FORMAT != 4"))
     done = subprocess.run([compiler(), "-std=c99", f"-I{library_root() / 'include'}", "-fsyntax-only",
                            str(tmp_path / "some_model.c")], capture_output=True, text=True)
     assert done.returncode != 0 and "run labial export again" in done.stderr
+
+
+@pytest.mark.parametrize(("behind", "ahead", "apart", "needed"), [(6, 2, 3, 18), (1, 3, 5, 15), (0, 0, 1, 0)])
+def test_a_library_that_remembers_too_few_phonemes_does_not_compile(
+    tmp_path: Path, behind: int, ahead: int, apart: int, needed: int
+) -> None:
+    """Kernels that reach beyond LABIAL_REACH would read outside the library's memory; to either side."""
+    lags = np.arange(-behind, ahead + 1) * apart
+    kernel = np.zeros((9, len(lags), CHANNELS))
+    model = without_floors(random_model(2))  # contacts reach three frames by themselves
+    emit.write(quantise(replace(model, kernel=kernel, kernel_lag=lags), "some_model"), tmp_path)
+
+    def compiled(reach: int) -> subprocess.CompletedProcess:
+        command = [compiler(), "-std=c99", "-fsyntax-only", f"-I{library_root() / 'include'}"]
+        return subprocess.run([*command, f"-DLABIAL_REACH={reach}", str(tmp_path / "some_model.c")],
+                              capture_output=True, text=True)
+
+    assert compiled(needed).returncode == 0
+    if needed:
+        done = compiled(needed - 1)
+        assert done.returncode != 0 and f"some_model needs LABIAL_REACH of {needed} at least" in done.stderr
 
 
 @pytest.mark.parametrize("method", ["paper", "labial"])
@@ -106,7 +128,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 }
 int main(int argc, char **argv)
 {
-    static uint32_t data[65536], workspace[LABIAL_WORKSPACE_SIZE(64, 1) / 4];
+    static uint32_t data[65536], workspace[LABIAL_WORKSPACE_SIZE(8) / 4];
     static labial_t stream;
     labial_blob_t blob;
     unsigned phoneme, ms;
@@ -148,13 +170,13 @@ int main(void)
            (unsigned)(sizeof(labial_emission_t) + sizeof(labial_state_t)), (unsigned)sizeof(labial_phoneme_t),
            (unsigned)sizeof(labial_component_t));
     printf("%u %u %u %u", (unsigned)offsetof(labial_model_t, pair_count) + 2, POINTERS(labial_model_t, phonemes),
-           (unsigned)offsetof(labial_channel_t, pair_scale) + 2, POINTERS(labial_channel_t, emissions));
+           (unsigned)offsetof(labial_channel_t, firm) + 1, POINTERS(labial_channel_t, emissions));
     return 0;
 }
 """)
     done = subprocess.run([str(build(tmp_path, "main.c", "some_model.c"))], capture_output=True, text=True, check=True)
     *sizes, head, pointers, channel_head, channel_pointers = map(int, done.stdout.split())
-    assert sizes == [workspace_bytes(12, 2), workspace_bytes(12, 2), 16, 6, 6]
+    assert sizes == [workspace_bytes(model.search_stride)] * 2 + [16, 6, 6]
 
     def on_32_bits(head: int, pointers: int) -> int:
         return (head + 3) // 4 * 4 + 4 * pointers

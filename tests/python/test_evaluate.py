@@ -13,10 +13,16 @@ from labial.cli import main
 from labial.corpus import Episode
 from labial.errors import LabialError
 from labial.evaluate import protocol
+from labial.evaluate.baselines import trained
+from labial.evaluate.material import utterances
 from labial.evaluate.methods import METHODS, select
 from labial.evaluate.report import Cell, cell
 from labial.evaluate.splits import Split
+from labial.evaluate.training import Training
 from labial.frames import write_csv
+from labial.phonesets import SPEECH
+from labial.reference import published, stream
+from labial.reference.tables import FloatTables
 from test_evaluate_material import planted, shape_of_phoneme
 
 QUICK = "mean,steps,blur,regression,hmm_synthesis"
@@ -59,6 +65,19 @@ def test_every_method_end_to_end(corpus) -> None:
         assert all(-1 <= values[f"correlation/{name}"] <= 1 for name in ("open_jaw", "mean"))
     assert set(outcome.example.motion) == {method.name for method in METHODS}
     assert len(outcome.split.training) == 14 and len(outcome.split.test) == 4
+
+
+def test_the_trained_rows_decode_as_they_say(corpus) -> None:
+    """The paper's row unit by unit, as it is published; Labial's as the run-time does."""
+    material = utterances(corpus, SPEECH, 50)
+    training = Training(material[:8], SPEECH, 50, 0)
+    given = material[9].timeline
+    for fit, name, synthesise in ((trained.fit_paper, "paper", published.synthesise),
+                                  (trained.fit_labial, "labial", stream.synthesise)):
+        found = fit(training).predict(given)
+        np.testing.assert_array_equal(found, synthesise(FloatTables(training.model(name)), given.stream))
+    unlike = stream.synthesise(FloatTables(training.model("paper")), given.stream)
+    assert np.abs(trained.fit_paper(training).predict(given) - unlike).max() > 1
 
 
 def test_the_same_bytes_for_any_number_of_jobs(folder, tmp_path, capsys) -> None:

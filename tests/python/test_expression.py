@@ -16,7 +16,7 @@ from labial.train.closures import floors
 from labial.train.expression import AMPLITUDE, restored
 from labial.train.sequences import Sequence
 from labial.train.workers import Workers
-from models import random_model
+from models import random_model, without_floors
 
 
 def sequence(phonemes: list, frames: np.ndarray, length: int) -> Sequence:
@@ -39,28 +39,29 @@ def test_floors_are_the_mean_pose_of_closures() -> None:
     frames = np.full((200, CHANNELS), -300.0)
     for i in range(10):  # vowels and closures of ten frames each in turn; contact in the middle of the closure
         frames[20 * i + 15, lower] = 40.0 if i % 2 else -60.0
-    found = floors([sequence([vowel, b] * 10, frames, 10)], SPEECH, 50)
+    found, contact = floors([sequence([vowel, b] * 10, frames, 10)], SPEECH, 50)
+    assert contact[b, lower] and not contact[b, FAP_NUMBERS.index(3)] and not contact[vowel].any()
     assert np.isclose(found[b, lower], (5 * 40.0 + 4 * -60.0) / 9)
     assert np.array_equal(found[b], found[SPEECH.phonemes.index("P")])
     other = np.where(frames > -300, 100.0, frames)
     heavy = dataclasses.replace(sequence([vowel, b] * 10, other, 10), weight=np.full(frames.shape, 3.0))
-    both = floors([sequence([vowel, b] * 10, frames, 10), heavy], SPEECH, 50)
+    both, _ = floors([sequence([vowel, b] * 10, frames, 10), heavy], SPEECH, 50)
     assert np.isclose(both[b, lower], (5 * 40.0 + 3 * -60.0 + 30 * 100.0) / 38)
     ignored = dataclasses.replace(heavy, weight=np.zeros(frames.shape))
-    assert np.array_equal(floors([sequence([vowel, b] * 10, frames, 10), ignored], SPEECH, 50), found)
+    assert np.array_equal(floors([sequence([vowel, b] * 10, frames, 10), ignored], SPEECH, 50)[0], found)
     assert (found[vowel] == -300.0).all() and found[b, FAP_NUMBERS.index(3)] == -300.0
 
 
 def test_laughter_has_no_contact() -> None:
     """Its classes make none; a floor above the least would hold its lips together."""
     motion = np.random.default_rng(0).normal(0, 50, (100, CHANNELS))
-    found = floors([sequence([0, 3, 5, 7, 9], motion, 20)], LAUGHTER, 50)
-    assert (found == np.percentile(motion, 1, axis=0)).all()
+    found, contact = floors([sequence([0, 3, 5, 7, 9], motion, 20)], LAUGHTER, 50)
+    assert not contact.any() and (found == np.percentile(motion, 1, axis=0)).all()
 
 
 def test_widening_scales_targets_about_the_mean_pose() -> None:
     """Every term of the target has to be scaled; one that is forgotten bends the motion instead of widening it."""
-    model = dataclasses.replace(random_model(4, knots=2), floor=np.full((9, CHANNELS), -np.inf))
+    model = without_floors(random_model(4, knots=2))
     gain = np.linspace(0.5, 2.0, CHANNELS)
     asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
     before = targets(FloatTables(model), *asked)
@@ -72,7 +73,7 @@ def test_widening_scales_targets_about_the_mean_pose() -> None:
 
 def test_amplitude_is_brought_to_its_goal() -> None:
     """The human here moves 1.4 times as far as the model: every channel must end at AMPLITUDE of that, within 2 %."""
-    model = dataclasses.replace(random_model(5), floor=np.full((9, CHANNELS), -np.inf))
+    model = without_floors(random_model(5))
     rng = np.random.default_rng(5)
     material = []
     for _ in range(4):
@@ -89,7 +90,7 @@ def test_amplitude_is_brought_to_its_goal() -> None:
 def test_a_channel_is_widened_about_the_middle_of_its_range() -> None:
     """A pose that stays where it is under the gain lies between the 5th and the 95th percentile of human motion, not at
     the mean, which in a skewed channel is near the end that it rests at."""
-    model = dataclasses.replace(random_model(6), floor=np.full((9, CHANNELS), -np.inf))
+    model = without_floors(random_model(6))
     rng = np.random.default_rng(6)
     phonemes = rng.integers(1, 9, 200).tolist()
     motion = 2.0 * synthesise(FloatTables(model), [(p, 120) for p in phonemes])
@@ -110,7 +111,7 @@ def test_floats_interpolate_between_the_knots_of_pairs() -> None:
     same = dataclasses.replace(one, pair_shape=np.repeat(one.pair_shape, 2, axis=1))
     asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
     assert np.allclose(targets(FloatTables(one), *asked), targets(FloatTables(same), *asked))
-    bare = dataclasses.replace(two, kernel=np.zeros_like(two.kernel), floor=np.full_like(two.floor, -np.inf))
+    bare = without_floors(dataclasses.replace(two, kernel=np.zeros_like(two.kernel)))
     found = targets(FloatTables(bare), *asked)[9:19]  # the third phoneme's ten frames
     steps = np.diff(found, axis=0)
     assert np.allclose(steps, steps[0]) and np.abs(steps).max() > 1

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
 
+from labial import fixed
 from labial.errors import ModelError
 from labial.faps import CHANNELS
 from labial.fixed import (
@@ -25,8 +27,30 @@ from labial.fixed import (
 )
 from labial.loss import measure
 from labial.model import Model
-from labial.quantise import ExportedModel, quantise
+from labial.native import library_root
+from labial.quantise import FORMAT, LIMITS, ExportedModel, quantise
+from labial.reference.stream import DURATION_MAX
+from labial.reference.trajectory import WINDOW
+from labial.reference.viterbi import LAG
+from labial.report import loosened
 from models import random_model, streams
+
+
+def test_limits_are_the_librarys() -> None:
+    """The exporter and the reference write numbers down that the headers define; one that is changed there alone makes
+    models that the library refuses, or another motion."""
+    headers = [library_root() / "include" / "labial" / name for name in ("model.h", "labial.h")]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in headers)
+    defined = {name: int(value) for name, value in re.findall(r"^#define LABIAL_(\w+) \(?(-?\d+)u?\)?\s", text, re.M)}
+    known = {
+        "MODEL_FORMAT": FORMAT, "POSITION_MAX": fixed.POSITION_MAX, "NO_FLOOR": fixed.NO_FLOOR,
+        "WEIGHT_SUM_MAX": WEIGHT_SUM_MAX, "WEIGHT_MIN": WEIGHT_MIN, "STIFFNESS_MAX": STIFFNESS_MAX,
+        "PULL_MAX": PULL_MAX, "SEARCHED": fixed.SEARCHED, "WINDOW": WINDOW, "LAG": LAG, "DURATION_MAX": DURATION_MAX,
+        "PHONEMES_MAX": LIMITS["phonemes"], "CLASSES_MAX": LIMITS["classes"], "STATES_MAX": LIMITS["states"],
+        "PHONEME_COMPONENTS_MAX": LIMITS["components"], "KERNEL_TAPS_MAX": LIMITS["taps"],
+        "SEARCH_STRIDE_MAX": LIMITS["stride"], "REACH": LIMITS["reach"], "CHANNELS": CHANNELS,
+    }  # fmt: skip
+    assert {name: defined.get(name) for name in known} == known
 
 
 def test_weights_are_ascending_and_codes_are_the_nearest() -> None:
@@ -124,6 +148,9 @@ def test_a_state_that_is_too_stiff_is_loosened_alone() -> None:
     precision, anchor = model.state_precision.copy(), model.state_anchor.copy()
     precision[:, 2, 0], anchor[:, 2] = 0.2, 0.2  # hold .4 of 100
     found = weights_of(dataclasses.replace(model, state_precision=precision, state_anchor=anchor))
+    assert loosened(model, quantise(model, "model")) == 0
+    stiff = dataclasses.replace(model, state_precision=precision, state_anchor=anchor)
+    assert loosened(stiff, quantise(stiff, "model")) == CHANNELS  # and the exporter says so
     hold, _, delta, bend = found[2]
     assert 15.0 * hold <= bend <= 16.0 * hold and delta == pytest.approx(bend / 2, rel=1 / 8)
     np.testing.assert_allclose(found[[0, 1, 3]], weights_of(model)[[0, 1, 3]])
@@ -150,7 +177,7 @@ def test_delta_never_outweighs_delta_delta() -> None:
 
 @pytest.mark.parametrize("feature", [1, 2])
 def test_means_that_pull_too_far_lose_weight(feature: int) -> None:
-    """One state's delta or delta-delta mean of 900 FAP units, 14,400 positions: 4 weights times that may be 131,071
+    """One state's delta or delta-delta mean of 900 FAP units, 14,400 positions: 4 weights times that may be PULL_MAX
     times what holds the least held state."""
     model = plain()
     mean, precision = model.state_mean.copy(), model.state_precision.copy()

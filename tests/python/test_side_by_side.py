@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 
 from labial.evaluate import side_by_side
+from labial.evaluate.trajectories import labial_parameters
 from labial.model import save
-from labial.reference.stream import frame_counts
+from labial.reference import published, stream
+from labial.reference.tables import FloatTables
+from labial.reference.units import frame_counts
 from models import random_model
 
 TIMINGS = "0.000 0.200 SIL\n0.200 0.300 P1\n0.300 0.400 P2\n0.400 0.520 P1\n0.520 0.900 P4\n"
@@ -57,6 +60,18 @@ def test_the_least_distance_is_that_of_the_closures_own_frames(files) -> None:
     first, second = side_by_side.least(drawn, "new")
     assert first == drawn.motion["new"][begin : begin + 5, 0].min()
     assert second == drawn.motion["new"][20:26, 0].min()
+
+
+def test_each_method_moves_in_its_own_way(files) -> None:
+    """The published method unit by unit, to the letter; Labial as the run-time does."""
+    models = {name: side_by_side.load(files / f"{name}.npz") for name in ("old", "new")}
+    drawn = side_by_side.synthesise_all(files / "timings.lab", models)
+    given = [(0, 200), (1, 100), (2, 100), (1, 120), (4, 380)]
+    for name, synthesise in (("old", published.synthesise), ("new", stream.synthesise)):
+        motion = synthesise(FloatTables(models[name]), given)
+        np.testing.assert_array_equal(drawn.motion[name], labial_parameters(motion))
+    other = labial_parameters(stream.synthesise(FloatTables(models["old"]), given))
+    assert np.abs(drawn.motion["old"] - other).max() > 1
 
 
 def test_models_that_cannot_be_compared_are_told(files, capsys) -> None:

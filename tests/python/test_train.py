@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 from dataclasses import replace
 
@@ -12,22 +13,27 @@ from labial.corpus import Episode, Segment
 from labial.errors import LabialError
 from labial.model import Model, load, save
 from labial.phonesets import SPEECH
-from labial.reference.stream import synthesise
+from labial.reference import published
+from labial.reference import stream as carried_on
 from labial.reference.tables import FloatTables
 from labial.train import train
+from labial.train.sequences import Sequence, with_pauses_cut
 from labial.train.states import DYNAMIC_RANGE, Scales, limit_range, match_states
-from labial.train.train import codebook_tables, train_channel
+from labial.train.train import _unit_ends, codebook_tables, train_channel
 from labial.train.workers import Workers
 
 LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
 OPTIONS = {"kind": "speech", "codebook": 12, "components": 2, "progress": False, "attribution": "synthetic"}
 
 
-def episode(seed: int) -> Episode:
-    """Thirty phonemes, each with a lip shape of its own that the mouth glides to, recorded at 100 frames/s."""
+def episode(seed: int, pause: float = 0.0) -> Episode:
+    """Thirty phonemes, each with a lip shape of its own that the mouth glides to, recorded at 100 frames/s; with a
+    pause of so many seconds in the middle, if any."""
     rng = np.random.default_rng(seed)
     labels = ["SIL", *rng.choice(LABELS, 28), "SIL"]
     lengths = rng.integers(5, 16, 30) / 100.0
+    if pause:
+        labels[15], lengths[15] = "SIL", pause
     ends = np.cumsum(lengths)
     shape = {label: np.random.default_rng(index).normal(0, 150, 13) for index, label in enumerate(("SIL", *LABELS))}
     times = np.arange(0.0, ends[-1], 0.01) + 0.005
@@ -67,6 +73,7 @@ def test_the_same_bytes_for_any_number_of_jobs(corpus, models, method, tmp_path)
 def motion_error(model: Model, item: Episode) -> float:
     """RMS error over the motion's standard deviation, on frames of 20 ms."""
     stream = [(model.phonemes.index(s.label), round(1000 * s.duration)) for s in item.segments]
+    synthesise = published.synthesise if model.method == "paper" else carried_on.synthesise
     found = synthesise(FloatTables(model), stream)
     centre = (np.arange(len(found)) + 0.5) / model.fps
     human = np.stack([np.interp(centre, item.times, channel) for channel in item.frames.T], axis=1)
@@ -155,6 +162,59 @@ def test_matched_states_follow_the_human_under_them():
     np.testing.assert_array_equal(matched.decode_mean, tables.decode_mean)
     # From one state to the other every 500 frames, that is every 250 of the path's steps, and half a count more.
     np.testing.assert_allclose(np.exp(matched.log_transition[:, 0, 1]), 4.5 / 1001, rtol=0.01)
+
+
+def test_training_sees_what_the_run_time_will_do(monkeypatch):
+    """Targets and state paths in training are those of the finished model on the same phonemes: a pause that is cut in
+    one alone, another grid of blocks or end of a unit, or another target, would train for what never happens."""
+    module = importlib.import_module("labial.train.train")
+    seen = {}
+
+    def matched(tables, paths, targets, *others):
+        seen.update(tables=tables, paths=paths, targets=targets)
+        return match_states(tables, paths, targets, *others)
+
+    monkeypatch.setattr(module, "match_states", matched)
+    monkeypatch.setattr(module, "restored", lambda model, material, workers: model)  # would widen what was seen
+    corpus = [episode(seed, 0.3 + 0.05 * seed) for seed in range(8)]
+    model = train(corpus, method="labial", jobs=1, search_stride=3, **OPTIONS)
+    tables = FloatTables(replace(model, log_transition=seen["tables"].log_transition))  # those that were searched with
+    for item, path, target in zip(corpus, seen["paths"], seen["targets"]):
+        bounds = [round(1000 * segment.end) for segment in item.segments]
+        stream = list(zip([model.phonemes.index(s.label) for s in item.segments], np.diff([0, *bounds]).tolist()))
+        given, _, ends = carried_on.aims(tables, stream)
+        np.testing.assert_allclose(target, given, atol=1e-9)
+        np.testing.assert_array_equal(path, tables.search(given, ends))
+
+
+def test_pauses_are_cut_by_hand():
+    """A pause of 20 frames before a vowel, six of which see it: 280 and 120 ms; apexes stay where they were."""
+    item = Sequence("a", np.array([0, 3, 0]), np.array([0.401, 0.1, 0.12]), np.array([20, 5, 6]),
+                    np.array([15, 22, 26]), np.zeros((31, 13)))  # fmt: skip
+    found = with_pauses_cut(item, 0, 6, 50)
+    assert found.phoneme.tolist() == [0, 0, 3, 0] and found.length.tolist() == [14, 6, 5, 6]
+    np.testing.assert_allclose(found.duration, [0.281, 0.12, 0.1, 0.12])
+    assert found.apex.tolist() == [7, 15, 22, 26]  # the head's is its middle
+    assert found.phoneme_at().tolist() == item.phoneme_at().tolist()
+    assert with_pauses_cut(item, 0, 0, 50).length.tolist() == [20, 5, 6]
+    ends = _unit_ends(found, np.arange(4) == 3)
+    assert np.flatnonzero(ends).tolist() == [24, 30]
+
+
+def test_transitions_are_counted_on_each_channels_own_blocks():
+    """Stride 3, twelve frames: channel 0 decides with frames 0, 3, 6, 9 and 11, channel 1 with 1, 4, 7, 10 and 11.
+    Counting every third frame for all channels would count other chains."""
+    rng = np.random.default_rng(0)
+    human = rng.normal(0, 50, (12, 13))
+    tables = codebook_tables([train_channel([human[:, k]], [np.array([0])], 3, 3) for k in range(13)], 3)
+    states = np.array([0, 1, 1, 1, 2, 2, 2, 0, 0, 0, 1, 1])
+    path = np.repeat(states[:, None], 13, axis=1)
+    path[:, 1] = [0, 0, 1, 1, 1, 2, 2, 2, 0, 0, 0, 1]
+    weights = np.ones_like(human)
+    matched = match_states(tables, [path], [human], [human], [weights], Scales())
+    for k in (0, 1):  # both chains are 0 1 2 0 1
+        counts = np.array([[0.5, 2.5, 0], [0.5, 0.5, 1.5], [1, 0.5, 0.5]])
+        np.testing.assert_allclose(np.exp(matched.log_transition[k]), counts / counts.sum(axis=1, keepdims=True))
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from labial.reference import published
-from labial.reference.published import Piece, join
 from labial.reference.tables import Equation
 from labial.reference.trajectory import forward, solve, solve_whole, starts
 from oracles import sptk
@@ -118,6 +117,7 @@ def test_starts_by_hand() -> None:
     assert starts(20, 3, 4)[:8, 4].tolist() == [6, 6, 6, 9, 9, 9, 12, 12]  # its blocks end with 1, 4, 7, 10, 13
     assert starts(10, 3, 4)[:, 0].tolist() == [5, 5, 9, 9, 9, 9, 9, 9, 9, 9]
     assert starts(11, 3, 4)[:, 0].tolist() == [5, 5, 8, 8, 8, 10, 10, 10, 10, 10, 10]
+    assert starts(20, 3, 4, 2)[:8, 0].tolist() == starts(20, 3, 4)[:8, 4].tolist()  # blocks that end with 3 decide 1
     assert starts(20, 1, 4)[:4, 7].tolist() == [4, 5, 6, 7] and starts(1, 3, 4).tolist() == [[0] * 13]
 
 
@@ -149,10 +149,3 @@ def test_rows_sum_to_what_holds_them() -> None:
     settled, rho, kappa = forward(item)
     assert np.allclose(settled, item.mean[0, :, 0]) and np.allclose(solve_whole(item), item.mean[0, :, 0])
     assert np.allclose(rho[-1], 1.0) and not kappa[-2:].any()  # nothing lies beyond the last frame
-
-
-def test_join_crosses_shared_frames_linearly() -> None:
-    """Frames of one unit are its own; shared ones go from the old to the new in even steps, as it is published."""
-    pieces = [Piece(0, 6, 0, 3), Piece(3, 9, 3, 0)]
-    joined = join(pieces, [np.zeros((6, 1)), np.full((6, 1), 4.0)])
-    assert joined[:, 0].tolist() == [0, 0, 0, 1, 2, 3, 4, 4, 4]

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from labial.quantise import quantise
-from labial.reference.published import OVERLAP, PIECE_MAX, Piece, pieces, whole_piece
 from labial.reference.stream import aims, synthesise
 from labial.reference.tables import ExportedTables, FloatTables
 from labial.reference.units import Segment, frame_counts, segments, unit_ends
@@ -70,8 +69,8 @@ def test_every_frame_of_every_stream_has_a_target_and_a_unit(seed: int) -> None:
     for tables in (FloatTables(model), ExportedTables(quantise(model, "model"))):
         for stream in streams(len(model.phonemes), model.boundary, seed).values():
             total = (50 * sum(ms for _, ms in stream) + 500) // 1000
-            target, ends = aims(tables, stream)
-            assert target.shape == (total, 13) and ends.shape == (total,)
+            target, contact, ends = aims(tables, stream)
+            assert target.shape == contact.shape == (total, 13) and ends.shape == (total,)
             assert not total or ends[-1]
 
 
@@ -91,48 +90,3 @@ def test_nothing_in_is_nothing_out() -> None:
     tables = FloatTables(random_model(1))
     for stream in ([], [(1, 0)], [(1, 9)]):
         assert synthesise(tables, stream).shape == (0, 13)
-
-
-# ---- The published method's units, which the evaluation's row is decoded by.
-
-
-def test_published_units_run_from_boundary_to_boundary_inclusive() -> None:
-    """V-C-V: each vowel belongs to the unit that it ends and to the one that it begins; V-CC-V is one unit."""
-    assert pieces([4, 9, 5, 2, 6], [True, False, True, False, True]) == [Piece(0, 18, 0, 5), Piece(13, 26, 5, 0)]
-    assert pieces([4, 3, 3, 5], [True, False, False, True]) == [Piece(0, 15, 0, 0)]
-    found = pieces([4, 3, 4, 3, 4], [True, False, True, False, True])
-    assert found == [Piece(0, 11, 0, 4), Piece(7, 18, 4, 0)]
-
-
-def test_short_units_can_be_taken_together() -> None:
-    """Where seams are measured: a piece ends with the first unit that gives it so many frames, if that fits."""
-    assert pieces([4, 3, 4, 3, 4, 3, 5, 20], [True, False] * 4, 16) == [Piece(0, 18, 0, 4), Piece(14, 46, 4, 0)]
-    found = pieces([4, 3, 4, 35, 5], [True, False, True, False, True], 16)
-    assert found[0] == Piece(0, 11, 0, 4) and found[1].begin == 7
-
-
-def test_published_edges() -> None:
-    """A stream's first and last phoneme are boundaries; long units are cut and chained; no frames are no piece."""
-    assert pieces([4, 3, 3], [False, False, False]) == [Piece(0, 10, 0, 0)]
-    assert pieces([100], [False]) == [Piece(0, 40, 0, 8), Piece(32, 72, 8, 8), Piece(64, 100, 8, 0)]
-    assert pieces([2, 30, 4, 5], [False, True, False, True])[0] == Piece(0, 32, 0, OVERLAP)
-    assert pieces([4, 0, 3, 0], [False, True, False, True]) == [Piece(0, 7, 0, 0)]
-    assert pieces([0, 0], [True, True]) == [] and whole_piece([0]) == []
-    assert whole_piece([3, 0, 4]) == [Piece(0, 7, 0, 0)]
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_pieces_cover_every_frame_once_or_twice(seed: int) -> None:
-    """For any stream: no gap, no frame in three pieces, no piece that is too long, shared frames agree."""
-    model = random_model(seed)
-    for stream in streams(len(model.phonemes), model.boundary, seed).values():
-        counts = frame_counts([ms for _, ms in stream], 50)
-        cut = pieces(counts, [bool(model.boundary[p]) for p, _ in stream])
-        cover = np.zeros(sum(counts), dtype=int)
-        for before, after in zip([None, *cut], cut):
-            cover[after.begin : after.end] += 1
-            assert 0 < after.end - after.begin <= PIECE_MAX
-            assert after.fade_in + after.fade_out <= after.end - after.begin
-            assert after.fade_in == (before.end - after.begin if before else 0)
-            assert after.fade_in == (before.fade_out if before else 0) <= OVERLAP
-        assert cover.size == 0 or (cover.min() >= 1 and cover.max() <= 2)

@@ -1,8 +1,9 @@
-"""Contact: lips that meet in p, b, m, and the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
+"""Contact: lips that meet in p, b, m, the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
 
 In contact a target does not fall below its floor, and equation 3 holds the frame there firmly. A phoneme shorter than
 FRAMES borrows the frame before it, and of one frame also the one behind it. One of LONG frames or more has swallowed a
-pause; it closes for its LAST frames.
+pause; it closes for its LAST frames. In a pause the mouth comes to rest, but for its last frames, which lead to what
+follows.
 """
 
 from __future__ import annotations
@@ -15,15 +16,23 @@ import numpy as np
 FRAMES = 3
 LONG = 15
 LAST = 8
+REST = 16
 
 
 def raised(
-    target: np.ndarray, labels: np.ndarray, length: np.ndarray, silence: int, floor: np.ndarray, contact: np.ndarray
+    target: np.ndarray,
+    labels: np.ndarray,
+    length: np.ndarray,
+    rest: np.ndarray,
+    silence: int,
+    floor: np.ndarray,
+    contact: np.ndarray,
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Targets (T, 13) that keep the floors, and where they are in contact, (T, 13) bool.
 
-    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme. `floor` (P, 13) is what a phoneme's
-    targets do not fall below, in the unit of `target`; `contact` (P, 13) bool says where it is contact.
+    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme, `rest` (T,) how far the mouth has
+    come to rest, of REST. `floor` (P, 13) is what a phoneme's targets do not fall below, in the unit of `target`;
+    `contact` (P, 13) bool says where it is contact, or for silence where the mouth comes to rest.
     """
     frames = len(labels)
     padded = np.concatenate([np.full(FRAMES, silence), labels, np.full(FRAMES, silence)])
@@ -33,13 +42,23 @@ def raised(
 
     whole = np.repeat(length, length)
     left = np.repeat(np.cumsum(length), length) - np.arange(frames)
-    closing = (whole < LONG) | (left <= LAST)
-    short = (label(1) != labels) & ~((label(1) == label(2)) & (label(2) == label(3)))
-    single = (label(-1) != labels) & (label(-1) != label(-2))
+    closing = ((whole < LONG) | (left <= LAST)) & (labels != silence)
+    short = (label(1) != labels) & (label(1) != silence) & ~((label(1) == label(2)) & (label(2) == label(3)))
+    single = (label(-1) != labels) & (label(-1) != silence) & (label(-1) != label(-2))
     own = contact[labels] & closing[:, None]
     before = contact[label(1)] & short[:, None]
     after = contact[label(-1)] & single[:, None]
     target = np.where(contact[labels] & ~own, target, np.maximum(target, floor[labels]))
+    target = np.where(contact[silence] & (rest > 0)[:, None], _part_of_way(target, floor[silence], rest), target)
     target = np.where(before, np.maximum(target, floor[label(1)]), target)
     target = np.where(after, np.maximum(target, floor[label(-1)]), target)
     return target, own | before | after
+
+
+def _part_of_way(target: np.ndarray, pose: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """(T, 13) `rest` (T,) of REST of the way from targets (T, 13) to a pose (13,); integers are divided as in C."""
+    with np.errstate(invalid="ignore"):
+        way = (pose - target) * rest[:, None]
+    if np.issubdtype(target.dtype, np.integer):
+        return target + np.sign(way) * (np.abs(way) // REST)
+    return target + way / REST

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -30,9 +30,14 @@ def targets(
 
 
 def targets_and_contact(
-    tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int], frames: Sequence[int]
+    tables: Tables,
+    phonemes: Sequence[int],
+    milliseconds: Sequence[int],
+    frames: Sequence[int],
+    rest: Optional[np.ndarray] = None,
 ) -> Tuple[np.ndarray, np.ndarray]:
-    """The targets (T, 13) of :func:`targets`, and where they are in contact, (T, 13) bool."""
+    """The targets (T, 13) of :func:`targets`, and where they are in contact, (T, 13) bool; `rest` (T,) is how far the
+    mouth has come to rest in pauses."""
     held = [i for i, count in enumerate(frames) if count]
     seen = [tables.silence] + [phonemes[i] for i in held] + [tables.silence]
     length = np.array([frames[i] for i in held], dtype=np.int64)
@@ -45,4 +50,5 @@ def targets_and_contact(
     padded = np.concatenate([np.full(reach, tables.silence), labels, np.full(reach, tables.silence)]).astype(np.int64)
     at = np.arange(len(labels))[:, None] + reach + tables.lags[None, :]
     moving = tables.targets(tables.interpolated(shapes[index], knot_shares(length, tables.knots)), padded[at])
-    return raised(moving, labels, length, tables.silence, tables.floor, tables.contact)
+    rest = np.zeros(len(labels), dtype=np.int64) if rest is None else rest
+    return raised(moving, labels, length, rest, tables.silence, tables.floor, tables.contact)

@@ -12,7 +12,7 @@ from labial.reference import trajectory
 from labial.reference.shape import targets_and_contact
 from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
-from labial.reference.units import segments, unit_ends
+from labial.reference.units import rest, segments, unit_ends
 from labial.reference.viterbi import LAG
 
 #: Longest duration of one phoneme, milliseconds.
@@ -39,7 +39,7 @@ def synthesise(
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
 
     `window` is how many frames beyond those delivered the solution knows, or with `whole` all of them; `lag` how many
-    blocks later the search decides.
+    frames later the search decides.
     """
     target, contact, ends = aims(tables, phonemes)
     return solution(tables, target, contact, ends, whole=whole, window=window, lag=lag)
@@ -53,7 +53,8 @@ def aims(
     check(tables, phonemes)
     held = segments(phonemes, tables.silence, tables.ahead, tables.fps, counts)
     target, contact = targets_and_contact(tables, [item.phoneme for item in held],
-                                          [item.milliseconds for item in held], [item.frames for item in held])
+                                          [item.milliseconds for item in held], [item.frames for item in held],
+                                          rest(held))
     return target, contact, unit_ends(held, tables.boundary)
 
 
@@ -76,4 +77,4 @@ def solution(
     terms = tables.equation(tables.search(target, ends, lag, begin), target, contact)
     if whole:
         return trajectory.solve_whole(terms)
-    return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window, begin))
+    return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window, lag, begin))

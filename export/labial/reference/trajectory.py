@@ -55,15 +55,16 @@ def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     return settled, rho, kappa
 
 
-def starts(frames: int, stride: int, window: int = WINDOW, begin: int = 0) -> np.ndarray:
+def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0) -> np.ndarray:
     """(T, 13) int64: the frame from which the way back to each frame starts, where the first is the stream's `begin`.
 
-    A channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends with frame k. Then
-    the frame before k has all that it is tied to, and k itself where it is the stream's last.
+    A channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends `lag` frames after
+    frame k, when the states up to k are decided. Then the frame before k has all that it is tied to, and k itself where
+    it is the stream's last.
     """
     frame = np.arange(frames)[:, None]
     earliest = frame + window + 1
-    end = earliest + (np.arange(CHANNELS) - begin - earliest) % stride
+    end = earliest + (np.arange(CHANNELS) - begin - lag - earliest) % stride
     return np.where(end == frames - 1, end, np.minimum(end - 1, frames - 1))
 
 

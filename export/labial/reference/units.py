@@ -7,17 +7,22 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from labial.reference.contact import REST
+
 #: Milliseconds of a phoneme that the shapes tell apart at most.
 MILLISECONDS_MAX = 65535
 
 
 @dataclass(frozen=True)
 class Segment:
-    """A phoneme as the steps behind see it: its number, milliseconds (capped) and frames."""
+    """A phoneme as the steps behind see it: its number, milliseconds (capped) and frames; which part it is of a pause
+    that was cut, 0 for the head, and frames of that pause before it."""
 
     phoneme: int
     milliseconds: int
     frames: int
+    part: Optional[int] = None
+    before: int = 0
 
 
 def frame_counts(milliseconds: Sequence[int], fps: int) -> List[int]:
@@ -52,8 +57,23 @@ def segments(
     for (phoneme, milliseconds), frames in zip(phonemes, counts):
         capped = min(milliseconds, MILLISECONDS_MAX)
         parts = pause_cut(frames, capped, ahead, fps) if phoneme == silence else [(frames, capped)]
-        result += [Segment(phoneme, ms, count) for count, ms in parts if count]
+        if len(parts) > 1:
+            (head, head_ms), (tail, tail_ms) = parts
+            result += [Segment(phoneme, head_ms, head, 0), Segment(phoneme, tail_ms, tail, 1, head)]
+        elif frames:
+            result.append(Segment(phoneme, capped, frames))
     return result
+
+
+def rest(held: Sequence[Segment]) -> np.ndarray:
+    """(T,) int64: how far the mouth has come to rest in each frame, of REST: in the head of a pause, and in its tail too
+    where nothing follows."""
+    frames = [np.zeros(0, dtype=np.int64)]
+    for i, item in enumerate(held):
+        resting = item.part == 0 or (item.part == 1 and i + 1 == len(held))
+        count = np.minimum(item.before + np.arange(1, item.frames + 1), REST)
+        frames.append(count if resting else np.zeros(item.frames, dtype=np.int64))
+    return np.concatenate(frames)
 
 
 def unit_ends(held: Sequence[Segment], boundary: np.ndarray) -> np.ndarray:

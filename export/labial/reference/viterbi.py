@@ -3,8 +3,9 @@
 Each channel has a state for every `stride` frames, a *block*, and a grid of its own: a block ends with every frame k
 for which k and the channel's number leave the same remainder by `stride`, and with the last frame. So in each tick a
 share of the channels takes a step. A step scores a window of states, those around the one whose mean is nearest to the
-target; states are sorted by mean. The block's state is the best one at once, or, with a lag, the one that the best some
-blocks later, or at the unit's end, comes from. Scores run on, but the end of a unit leaves its best state alone.
+target; states are sorted by mean. A frame's state is the best one of its block at once, or, with a lag, the one that
+the best of the block some frames later, or at the unit's end, comes from. Scores run on, but the end of a unit leaves
+its best state alone.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from labial.faps import CHANNELS
 from labial.fixed import COST_SCALE, LEAP, SEARCHED
 
-#: The library's default of LABIAL_LAG, blocks.
+#: The library's default of LABIAL_LAG, frames.
 LAG = 0
 
 _CHANNEL = np.arange(CHANNELS)
@@ -76,9 +77,29 @@ def window(position: np.ndarray, mean: np.ndarray, width: int) -> np.ndarray:
     return np.clip(np.where(is_upper, above, above - 1) - width // 2, 0, states - width)
 
 
-def search(chains: Chains, position: np.ndarray, closed: np.ndarray, *, lag: int = LAG,
-           searched: int = SEARCHED) -> np.ndarray:
-    """(B, N, 13) int64: the states of B blocks of N utterances, for the targets (B, N, 13) that are looked at.
+@dataclass(frozen=True)
+class Search:
+    """What the search of B blocks of N utterances found."""
+
+    first: np.ndarray  #: (B, N, 13) the first state of each window
+    winner: np.ndarray  #: (B, N, 13) the best one's place in it
+    back: np.ndarray  #: (B, N, 13, W) each one's predecessor's place in the window of the block before
+
+    def path(self, lag: int) -> np.ndarray:
+        """(B, N, 13) int64: the states from which the best of `lag` blocks later, or of the last block, come. A unit's
+        end leaves its best alone, so that all later ones come from it."""
+        result = np.empty_like(self.winner)
+        for b in range(len(result)):
+            last = min(b + lag, len(result) - 1)
+            place = self.winner[last]
+            for later in range(last, b, -1):
+                place = np.take_along_axis(self.back[later], place[..., None], axis=-1)[..., 0]
+            result[b] = self.first[b] + place
+        return result
+
+
+def search(chains: Chains, position: np.ndarray, closed: np.ndarray, searched: int = SEARCHED) -> Search:
+    """The search of B blocks of N utterances, for the targets (B, N, 13) that are looked at.
 
     `closed` (B, N, 13) says which blocks end a unit. Of the edges into a state the least wins, the first of equals, a
     leap before all; of states the least, the first of equals.
@@ -86,8 +107,8 @@ def search(chains: Chains, position: np.ndarray, closed: np.ndarray, *, lag: int
     width = min(searched, chains.mean.shape[1])
     rank = np.arange(width)
     first = window(position, chains.mean, width)
-    winner = np.zeros(position.shape, dtype=np.int64)  # its place in the window
-    back = np.zeros((*position.shape, width), dtype=np.int64)  # place in the window of the block before
+    winner = np.zeros(position.shape, dtype=np.int64)
+    back = np.zeros((*position.shape, width), dtype=np.int64)
     score = state = None
     for b in range(len(position)):
         before, state = state, first[b][..., None] + rank
@@ -105,22 +126,7 @@ def search(chains: Chains, position: np.ndarray, closed: np.ndarray, *, lag: int
         winner[b] = total.argmin(axis=-1)
         score = np.minimum(total - total.min(axis=-1, keepdims=True), chains.leap)
         score[closed[b][..., None] & (rank != winner[b][..., None])] = chains.leap
-    return first + _traced(winner, back, lag)
-
-
-def _traced(winner: np.ndarray, back: np.ndarray, lag: int) -> np.ndarray:
-    """(B, N, 13): the places of blocks from which the winner `lag` blocks later comes, or the last one. A unit's end
-    leaves its winner alone, so that later ones all come from it."""
-    if not lag:
-        return winner
-    result = np.empty_like(winner)
-    for b in range(len(winner)):
-        last = min(b + lag, len(winner) - 1)
-        place = winner[last]
-        for later in range(last, b, -1):
-            place = np.take_along_axis(back[later], place[..., None], axis=-1)[..., 0]
-        result[b] = place
-    return result
+    return Search(first, winner, back)
 
 
 def decode(chains: Chains, targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], stride: int, *, lag: int = LAG,
@@ -137,5 +143,11 @@ def decode(chains: Chains, targets: Sequence[np.ndarray], ends: Sequence[np.ndar
     closed = np.zeros(position.shape, dtype=bool)
     for i, (end, item) in enumerate(zip(ends, number)):
         closed[item[np.flatnonzero(end)], i, _CHANNEL] = True
-    path = search(chains, position, closed, lag=lag, searched=searched)
-    return [np.take_along_axis(path[:, i], item, axis=0) for i, item in enumerate(number)]
+    found = search(chains, position, closed, searched)
+    by_blocks = [found.path(lag // stride), found.path(-(-lag // stride))]
+    result = []
+    for i, item in enumerate(number):
+        until = item[np.minimum(np.arange(len(item)) + lag, len(item) - 1)]
+        soon, late = (np.take_along_axis(path[:, i], item, axis=0) for path in by_blocks)
+        result.append(np.where(until - item > lag // stride, late, soon))
+    return result

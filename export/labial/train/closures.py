@@ -12,7 +12,7 @@ from typing import Tuple
 
 import numpy as np
 
-from labial.faps import FAP_NUMBERS
+from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.phonesets import PhoneSet
 from labial.train.sequences import Sequence
 
@@ -26,8 +26,14 @@ MARGIN = 0.04
 #: The percentile of all human frames that no target falls below.
 LEAST = 1.0
 
+#: FAPs that come to rest in a pause, jaw and lips, where a phone set makes contacts.
+RESTING = (3, 51, 52, 55, 56, 57, 58)
+
+#: Frames of pauses this far from speech say where, seconds.
+AWAY = 0.2
+
 #: How firmly a frame in contact is held: times the median over a channel's states.
-FIRMNESS = 4.0
+FIRMNESS = 1.5
 
 #: The share of a class's occurrences, those that close most, whose mean pose is the floor: people's mean, but for the
 #: tenth whose lips the timings hardly meet.
@@ -70,4 +76,21 @@ def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> Tup
             held = np.where(total > 0, mean, least[channels])
             result[np.ix_(classes == number, channels)] = held
             contacts[np.ix_(classes == number, channels)] = total > 0
+    if contacts.any():
+        silence = phone_set.phonemes.index(phone_set.silence)
+        channels = [FAP_NUMBERS.index(number) for number in RESTING]
+        result[silence, channels] = _rest(material, silence, round(AWAY * fps), least)[channels]
+        contacts[silence, channels] = True
     return result, contacts
+
+
+def _rest(material: SequenceOf[Sequence], silence: int, away: int, least: np.ndarray) -> np.ndarray:
+    """(13,) FAP: the median pose of pauses, `away` frames from speech; `least` (13,) where there is none."""
+    poses, weights = [np.zeros((0, CHANNELS))], [np.zeros((0, CHANNELS))]
+    for item in material:
+        quiet = item.phoneme_at() == silence
+        near = np.convolve(~quiet, np.ones(2 * away + 1), mode="same") > 0.5
+        poses.append(item.frames[~near])
+        weights.append(item.weights[~near])
+    frames, counts = np.concatenate(poses), np.concatenate(weights) > 0
+    return np.array([np.median(values[of]) if of.any() else low for values, of, low in zip(frames.T, counts.T, least)])

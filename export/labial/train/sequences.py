@@ -12,6 +12,7 @@ from labial.corpus.episode import Episode, Source
 from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.phonesets import PhoneSet
+from labial.reference.contact import REST
 from labial.reference.units import pause_cut
 
 
@@ -27,6 +28,12 @@ class Sequence:
     apex: np.ndarray  #: (S,) int64, the frame of the audio envelope's maximum, or of the middle
     frames: np.ndarray  #: (T, 13) human motion, FAP
     weight: Optional[np.ndarray] = None  #: (T, 13) how much each value counts, 0 for not at all; None: 1 everywhere
+    resting: Optional[np.ndarray] = None  #: (T,) int64, how far the mouth rests in pauses; None: not at all
+
+    @property
+    def rest(self) -> np.ndarray:
+        """(T,) int64: how far the mouth has come to rest in pauses that were cut, of :data:`REST`."""
+        return np.zeros(len(self.frames), dtype=np.int64) if self.resting is None else self.resting
 
     @property
     def weights(self) -> np.ndarray:
@@ -83,9 +90,14 @@ def with_pauses_cut(item: Sequence, silence: int, ahead: int, fps: int) -> Seque
     The apex stays with the part that it lies in; that of the other part is its middle.
     """
     rows: List[Tuple[int, float, int, int]] = []
+    resting = np.zeros(len(item.frames), dtype=np.int64)
     begin = 0
     for phoneme, duration, length, apex in zip(item.phoneme, item.duration, item.length, item.apex):
         parts = pause_cut(int(length), round(1000 * duration), ahead, fps) if phoneme == silence else []
+        if len(parts) > 1:
+            last = begin + length == len(resting)
+            count = int(length) if last else parts[0][0]
+            resting[begin : begin + count] = np.minimum(np.arange(1, count + 1), REST)
         for frames, milliseconds in parts if len(parts) > 1 else [(int(length), 1000 * duration)]:
             middle = begin + frames // 2
             rows.append((phoneme, milliseconds / 1000.0, frames, apex if begin <= apex < begin + frames else middle))
@@ -97,6 +109,7 @@ def with_pauses_cut(item: Sequence, silence: int, ahead: int, fps: int) -> Seque
         duration=np.array(durations, dtype=np.float64),
         length=np.array(lengths, dtype=np.int64),
         apex=np.array(apexes, dtype=np.int64),
+        resting=resting,
     )
 
 

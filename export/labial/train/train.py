@@ -112,7 +112,11 @@ def _stretches(
 
 
 def _targets(
-    choice: Choice, fitted: Kernels, material: SequenceOf[Sequence], silence: int, floor: np.ndarray,
+    choice: Choice,
+    fitted: Kernels,
+    material: SequenceOf[Sequence],
+    silence: int,
+    floor: np.ndarray,
     contact: np.ndarray,
 ) -> List[np.ndarray]:
     """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
@@ -121,7 +125,7 @@ def _targets(
     for shape, item in zip(selected, material):
         held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
         moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
-        result.append(raised(moving, item.phoneme_at(), item.length, silence, floor, contact)[0])
+        result.append(raised(moving, item.phoneme_at(), item.length, item.rest, silence, floor, contact)[0])
     return result
 
 
@@ -249,7 +253,10 @@ def train(
             batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
             tasks = [(targets[batch], ends[batch], states) for batch in batches]
             paths = [path for batch in workers.run("matched states", _decode, tasks) for path in batch]
-            human, weights = [item.frames for item in material], [item.weights for item in material]
+            human = [item.frames for item in material]
+            weights = [item.weights for item in material]
+            if contact[silence].any():  # targets rest where people part their lips
+                weights = [own * (item.rest == 0)[:, None] for own, item in zip(weights, material)]
             states = match_states(states, paths, targets, human, weights, scales)
 
     training: Dict[str, object] = {
