@@ -94,7 +94,8 @@ def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
     flags = cpu_flags(bench, board)
     archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()
     link_map = run([compiler(board), *flags, "-nostdlib", "-r", "-Wl,-M", *objects, archive, "-o", linked])
-    unknown = set(re.findall(r"U (\w+)", run([f"{prefix}nm", "-u", linked]).stdout.decode())) - {"memcpy", "memmove", "memset"}
+    undefined = run([f"{prefix}nm", "-u", linked]).stdout.decode()
+    unknown = set(re.findall(r"U (\w+)", undefined)) - {"memcpy", "memmove", "memset"}
     if unknown:
         raise RuntimeError(f"{board.core}: {', '.join(CORE)} call {', '.join(sorted(unknown))} of other files of lib/")
     members = set(re.findall(r"libgcc\.a\(([^)]+)\)", link_map.stdout.decode()))

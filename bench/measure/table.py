@@ -110,9 +110,9 @@ def _memory(bench: Bench) -> List[str]:
         f"Code is .text with read-only data. What plays compiled-in models is {core}. The other files of `lib/` are "
         "linked only when a program calls them: `model.c`, the check of a model, and `blob.c` for models from binary "
         "files. The compiler's helpers are functions of its own, such as division where the processor has none; what "
-        "the C library brings for `memcpy`, `memmove` and `memset` is not counted. Stack counts all of these. The most that it "
-        "can take comes from the compiler's frames and call graph and from the machine code of its own functions; the "
-        "program's callback is not in it.", "",
+        "the C library brings for `memcpy`, `memmove`, `memset` is not counted. Stack counts all of these. The most "
+        "that it can take comes from the compiler's frames and call graph and from the machine code of its own "
+        "functions; the program's callback is not in it.", "",
         *_by_board(bench, rows),
         "By file:", "",
         *_files(bench),
@@ -157,8 +157,8 @@ def _mlpg(bench: Bench) -> List[str]:
         *lines,
         "On x86-64, by callgrind and massif. hts_engine: its `HTS_PStreamSet_create()`, which is handed the same means "
         "and variances unit by unit as its public structures, in doubles, its allocations included; its solution is "
-        "Labial's whole one to less than a tenth of a FAP unit. SPTK: its program `mlpg`, which recurses over the frames "
-        "as they arrive; the same frames as one sequence, what each further frame costs, reading and writing included. "
+        "Labial's whole one to less than a tenth of a FAP unit. SPTK: its program `mlpg`, which recurses over the "
+        "frames as they arrive; the same frames as one sequence, what each further frame costs, reading and writing included. "
         "Memory: Labial's solvers and factors of all channels, however long the utterance; the others' heap at its "
         "peak.", "",
         *_rows(["", "instructions per frame and channel", "times Labial's", "bytes", "times Labial's"], rows),
