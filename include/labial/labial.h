@@ -47,7 +47,7 @@ extern "C" {
 #endif
 
 /* Frames after which the search decides on a state, if its unit does not end before. Each buys a likelier path by a frame
- * of delay and 223 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long as the longest
+ * of delay and some 175 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long as the longest
  * unit decodes units as published. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0

@@ -180,6 +180,24 @@ static void reach(fixture_model_t *f, unsigned taps, unsigned behind, unsigned s
     f->model.kernel_stride = (uint8_t)stride;
 }
 
+/* Floors and contacts, unless the library has no room for the frames that short contacts borrow. Row r has floors on the
+ * channels of which r + c is a multiple of three. */
+static void add_floors(fixture_model_t *f)
+{
+    if (LABIAL_REACH + 0 < LABIAL_CONTACT_FRAMES)
+        return;
+    f->model.floor_count = FIXTURE_FLOORS;
+    f->model.floors = f->floors;
+    f->model.contacts = f->contacts;
+    f->phonemes[FIXTURE_P].floor = 1;
+    f->phonemes[FIXTURE_O].floor = 2;
+    f->phonemes[FIXTURE_S].floor = 3;
+    f->phonemes[FIXTURE_SIL].floor = 4;
+    f->contacts[0] = 1u << 0 | 1u << 3 | 1u << 12 | 1u << 4; /* with 6 and 9 plain; 4 has no floor, but is held */
+    f->contacts[2] = 1u << 1 | 1u << 4;
+    f->contacts[3] = 1u << 0 | 1u << 3 | 1u << 6 | 1u << 9;
+}
+
 /* All that goes beyond the published method. */
 static void enrich(fixture_model_t *f)
 {
@@ -200,14 +218,9 @@ static void enrich(fixture_model_t *f)
     f->model.pair_knots = 2;
     for (i = 0; i < sizeof f->pairs; i++)
         f->pairs[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
-    f->model.floor_count = FIXTURE_FLOORS;
-    f->model.floors = f->floors;
-    f->model.contacts = f->contacts;
-    f->contacts[0] = 0x1555; /* the channels of its floors are contact */
-    f->phonemes[FIXTURE_P].floor = 1;
-    f->phonemes[FIXTURE_O].floor = 2;
     for (i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
         f->floors[i] = (int16_t)(i % 3 ? LABIAL_NO_FLOOR : (int)fixture_below(&random, 4000) - 2000);
+    add_floors(f);
     for (i = 0; i < sizeof f->contexts; i++)
         f->contexts[i] = (uint8_t)fixture_below(&random, 90);
     for (i = 0; i < sizeof f->slopes; i++)
@@ -287,6 +300,13 @@ void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, u
             break;
         case FIXTURE_CONSONANTS:
             p->phoneme = (uint8_t)(FIXTURE_S + fixture_below(&random, 2));
+            break;
+        case FIXTURE_CONTACTS:
+            p->ms = fixture_below(&random, 5) * (1000 / FIXTURE_RATE);
+            if (fixture_below(&random, 2))
+                p->phoneme = (uint8_t)(FIXTURE_P + fixture_below(&random, 2));
+            if (fixture_below(&random, 8) == 0)
+                p->ms = fixture_below(&random, 46) * (1000 / FIXTURE_RATE);
             break;
         case FIXTURE_RANDOM:
         case FIXTURE_LONG:

@@ -27,7 +27,7 @@ uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit 
 #define FIXTURE_COMPONENTS 16
 #define FIXTURE_CLASSES 4
 #define FIXTURE_TAPS 7
-#define FIXTURE_FLOORS 2
+#define FIXTURE_FLOORS 4
 #define FIXTURE_PREDECESSORS 8 /* of each state, at most */
 #define FIXTURE_PAIR_SIDE 3 /* known neighbours of each phoneme, to either side */
 #define FIXTURE_PAIRS (6 * 2 * FIXTURE_PAIR_SIDE)
@@ -66,8 +66,9 @@ enum { FIXTURE_HA, FIXTURE_NASAL, FIXTURE_LAUGH_SIL, FIXTURE_FRICATIVE, FIXTURE_
  * phoneme lasts 100 ms and every channel has a state whose mean is exactly that component's shape. */
 void fixture_plain(fixture_model_t *fixture);
 
-/* The same phonemes with contexts, slopes, anchors, kernels (where LABIAL_REACH has room for any), pairs, floors and soft
- * selection; FIXTURE_STRIDE frames share a state. */
+/* The same phonemes with contexts, slopes, anchors, kernels (where LABIAL_REACH has room for any), pairs of two knots,
+ * floors (where it has room for contacts) and soft selection; FIXTURE_STRIDE frames share a state. Of the floors of P and
+ * S some are contact, silence comes to rest on some of its channels, O has plain ones. */
 void fixture_rich(fixture_model_t *fixture);
 
 /* Other phonemes, other states, fewer predecessors, no optional table; the same frame rate and stride as the rich one. */
@@ -97,6 +98,7 @@ typedef enum {
     FIXTURE_PAUSES,     /* silences of many windows between words */
     FIXTURE_VOWELS,     /* boundaries only */
     FIXTURE_CONSONANTS, /* no boundary at all */
+    FIXTURE_CONTACTS,   /* P and S of 0 .. 45 frames, mostly few, apart and beside each other, also in pauses */
     FIXTURE_RANDOM,     /* 0 .. 400 ms, any phoneme */
     FIXTURE_LONG,       /* the same, meant for 2,000 phonemes */
     FIXTURE_MILLI,      /* all 1 ms */

@@ -51,7 +51,8 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
     put(w, channel->slope_scale, 2);
     put(w, channel->kernel_scale, 2);
     put(w, channel->pair_scale, 2);
-    put(w, 0, 2);
+    put(w, channel->firm, 1);
+    put(w, 0, 1);
     for (q = 0; q < states; q++) {
         put(w, (uint16_t)channel->emissions[q].mean, 2);
         put(w, channel->emissions[q].gain, 2);

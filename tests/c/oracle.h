@@ -14,6 +14,8 @@ typedef struct {
     unsigned phoneme, model, previous, next; /* as its model sees them */
     unsigned ms;
     int is_first, begins, ends, unit_ends;
+    uint64_t number, whole; /* which frame it is of how many of its phoneme; a pause that is cut in two has two */
+    int is_head;            /* of the first of these */
     size_t needs; /* phonemes that must be pushed before the frame can be taken; more than there are: only the end helps */
 } oracle_frame_t;
 
@@ -25,6 +27,13 @@ size_t oracle_units(const labial_model_t *const *models, const fixture_phoneme_t
  * phonemes is in silence. */
 unsigned oracle_label(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count, size_t at,
                       int offset);
+
+/* ---- Shapes: phonemes to targets (lib/shape.h) ---- */
+
+/* The targets of a whole stream, and bit by bit the channels in contact. Shapes and what is added to them are
+ * lib/shape.c's own, of models without floors; floors, contact and rest are put upon them here, phoneme by phoneme. */
+void oracle_targets(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count,
+                    int16_t (*targets)[LABIAL_CHANNELS], uint16_t *contacts);
 
 /* ---- Viterbi: targets to states (lib/viterbi.h) ---- */
 
@@ -59,12 +68,13 @@ void oracle_search(const labial_model_t *model, unsigned channel, const oracle_f
 /* ---- Trajectory: states to motion (lib/trajectory.h) ---- */
 
 /*
- * Equation 3 for one channel: the matrix is W' U^-1 W + A, multiplied out row of W by row of W. Frame t is taken from a
+ * Equation 3 for one channel: the matrix is W' U^-1 W + A, multiplied out row of W by row of W. A frame in contact (bit
+ * `bit` of `contacts`) is held at its target alone, by the channel's `firm` at least. Frame t is taken from a
  * way back that begins at frame start[t], as if all frames beyond were equal to that one; null: at the last frame.
  * Q4 FAP, not rounded.
  */
-void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, const int16_t *targets, size_t count,
-                       const size_t *start, double *motion);
+void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, const int16_t *targets,
+                       const uint16_t *contacts, unsigned bit, size_t count, const size_t *start, double *motion);
 
 /* Where the way back to a stream's frames `first` .. `first` + `count` - 1 begins, counted from `first`. */
 void oracle_starts(const labial_model_t *model, unsigned channel, size_t first, size_t count, size_t *start);
@@ -72,7 +82,7 @@ void oracle_starts(const labial_model_t *model, unsigned channel, size_t first, 
 /* ---- A whole stream ---- */
 
 /* The frames of a stream, Q4 FAP, `held` being the pose it fades in from, or null. At least `room` frames fit; returns
- * their number. Shapes and targets are lib/shape.c's own. */
+ * their number. */
 size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_t *input, size_t count,
                      const double *held, double (*motion)[LABIAL_CHANNELS], size_t room);
 

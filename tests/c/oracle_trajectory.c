@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "shape.h"
-
 /* ---- Equation 3 ---- */
 
 /* An equation: what frames t - 2 .. t + 2 weigh in it, and its right-hand side. */
@@ -34,13 +32,16 @@ static void add_row(equation_t *equations, size_t t, double before, double own, 
 }
 
 static void fill(equation_t *equations, const labial_channel_t *channel, const uint8_t *path, const int16_t *targets,
-                 size_t count)
+                 const uint16_t *contacts, unsigned bit, size_t count)
 {
     size_t t;
     for (t = 0; t < count; t++) {
         const labial_state_t *state = &channel->states[path[t]];
-        const double hold = fixture_weight_value(state->hold);
-        const double anchor = hold * (state->share < 128 ? state->share : state->share + 1) / 256.0;
+        const double firm = fixture_weight_value(channel->firm);
+        double hold = fixture_weight_value(state->hold);
+        double anchor = hold * (state->share < 128 ? state->share : state->share + 1) / 256.0;
+        if (contacts[t] >> bit & 1u)
+            anchor = hold = firm > hold ? firm : hold;
         add_row(equations, t, 0, 1, 0, hold - anchor, state->mean[0]);
         add_row(equations, t, 0, 1, 0, anchor, targets[t]);
         if (t == 0 || t + 1 == count)
@@ -50,14 +51,14 @@ static void fill(equation_t *equations, const labial_channel_t *channel, const u
     }
 }
 
-void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, const int16_t *targets, size_t count,
-                       const size_t *start, double *motion)
+void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, const int16_t *targets,
+                       const uint16_t *contacts, unsigned bit, size_t count, const size_t *start, double *motion)
 {
     equation_t *e = (equation_t *)calloc(count + 2, sizeof *e);
     size_t t, i;
     if (!e)
         abort();
-    fill(e, channel, path, targets, count);
+    fill(e, channel, path, targets, contacts, bit, count);
     for (t = 0; t < count; t++) /* Gauss: frame t leaves the two equations behind its own */
         for (i = 1; i <= 2 && t + i < count; i++) {
             const double factor = e[t + i].a[2 - i] / e[t].a[2];
@@ -101,24 +102,9 @@ typedef struct {
     const labial_model_t *const *models;
     oracle_frame_t *frames;
     int16_t (*targets)[LABIAL_CHANNELS];
+    uint16_t *contacts;
     size_t count;
 } stream_t;
-
-static void aim(stream_t *stream)
-{
-    int16_t shape[LABIAL_CHANNELS] = { 0 };
-    uint8_t labels[2 * LABIAL_REACH + 1];
-    size_t t;
-    int k;
-    for (t = 0; t < stream->count; t++) {
-        const oracle_frame_t *frame = &stream->frames[t];
-        const labial_model_t *model = stream->models[frame->model];
-        for (k = -LABIAL_REACH; k <= LABIAL_REACH; k++)
-            labels[LABIAL_REACH + k] = (uint8_t)oracle_label(stream->models, stream->frames, stream->count, t, k);
-        labial_shape_select(model, frame->phoneme, (uint16_t)frame->ms, frame->previous, frame->next, shape);
-        labial_shape_target(model, shape, labels + LABIAL_REACH, stream->targets[t]);
-    }
-}
 
 static double limited(double value)
 {
@@ -142,7 +128,7 @@ static void solve(const stream_t *stream, size_t first, size_t count, double (*m
         for (t = 0; t < count; t++)
             targets[t] = stream->targets[first + t][c];
         oracle_starts(model, c, first, count, start);
-        oracle_trajectory(&model->channels[c], path, targets, count, start, m);
+        oracle_trajectory(&model->channels[c], path, targets, stream->contacts + first, c, count, start, m);
         for (t = 0; t < count; t++)
             motion[first + t][c] = limited(m[t]);
     }
@@ -189,10 +175,11 @@ size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_
     stream.models = models;
     stream.frames = (oracle_frame_t *)malloc(room * sizeof *stream.frames);
     stream.targets = (int16_t(*)[LABIAL_CHANNELS])malloc(room * sizeof *stream.targets);
-    if (!stream.frames || !stream.targets)
+    stream.contacts = (uint16_t *)malloc(room * sizeof *stream.contacts);
+    if (!stream.frames || !stream.targets || !stream.contacts)
         abort();
     stream.count = oracle_units(models, input, count, stream.frames, room);
-    aim(&stream);
+    oracle_targets(models, stream.frames, stream.count, stream.targets, stream.contacts);
     for (first = t = 0; t < stream.count; t++)
         if (stream.frames[t].ends) {
             solve(&stream, first, t + 1 - first, motion);
@@ -201,5 +188,6 @@ size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_
     fade(&stream, held, motion);
     free(stream.frames);
     free(stream.targets);
+    free(stream.contacts);
     return stream.count;
 }

@@ -12,7 +12,10 @@ typedef struct {
 
 static unsigned ahead_of(const labial_model_t *model)
 {
-    return model->kernel_taps ? (unsigned)(model->kernel_taps - 1 - model->kernel_behind) * model->kernel_stride : 0;
+    const unsigned kernels =
+        model->kernel_taps ? (unsigned)(model->kernel_taps - 1 - model->kernel_behind) * model->kernel_stride : 0;
+    const unsigned stops = model->floor_count ? 3 : 0; /* to see whether a phoneme is shorter than that */
+    return kernels > stops ? kernels : stops;
 }
 
 /* Where every phoneme lies that has a frame: frames are those of the rounded sum of all durations up to it. */
@@ -80,6 +83,9 @@ size_t oracle_units(const labial_model_t *const *models, const fixture_phoneme_t
                 frame->previous = model->silence;
             }
             frame->is_first = i == 0 || i == cut;
+            frame->is_head = i < cut;
+            frame->number = i < cut ? i : i - cut;
+            frame->whole = i < cut ? cut : length - cut;
             frame->begins = begins && i == 0;
             frame->ends = ends && i + 1 == length;
             frame->unit_ends = i + 1 == length && (ends || model->phonemes[own->phoneme].boundary);

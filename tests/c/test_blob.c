@@ -77,6 +77,32 @@ static void a_binary_model_gives_the_same_frames(void **state)
     }
 }
 
+/* Would catch a byte or a table of contact that is not read, and pairs of two knots taken for such of one. */
+static void contacts_and_knots_are_read(void **state)
+{
+    labial_blob_t blob;
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        rich.channels[c].firm = (uint8_t)(0x21 + c);
+    assert_int_equal(labial_model_load(&blob, bytes, serialise(&rich.model)), LABIAL_OK);
+    assert_int_equal(blob.model.pair_knots, 2);
+    assert_memory_equal(blob.model.pairs, rich.pairs, sizeof rich.pairs);
+    assert_int_equal(blob.model.floor_count, FIXTURE_FLOORS);
+    assert_memory_equal(blob.model.floors, rich.floors, sizeof rich.floors);
+    assert_memory_equal(blob.model.contacts, rich.contacts, sizeof rich.contacts);
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        assert_int_equal(blob.model.channels[c].firm, 0x21 + c);
+    rich.model.pair_knots = 1;
+    assert_int_equal(labial_model_load(&blob, bytes, serialise(&rich.model)), LABIAL_OK);
+    assert_int_equal(blob.model.pair_knots, 1);
+    assert_memory_equal(blob.model.contacts, rich.contacts, sizeof rich.contacts); /* which lies behind the pairs */
+    fixture_rich(&rich);
+    assert_int_equal(labial_model_load(&blob, bytes, serialise(&plain.model)), LABIAL_OK);
+    assert_int_equal(blob.model.pair_knots, 1);
+    assert_null(blob.model.contacts);
+}
+
 static void every_truncation_is_refused(void **state)
 {
     unsigned m;
@@ -251,7 +277,8 @@ static void counts_that_lie_are_refused(void **state)
         {16, 0},   {17, 0xff}, {18, 1},   {18, 7},   {18, 255}, {19, 1},   {19, 32}, {20, 1},   {20, 64}, {20, 255},
         {21, 0},   {21, 4},    {21, 7},   {21, 12},  {21, 64},  {21, 255}, {22, 0},  {22, 9},   {22, 255},
         {23, 6},   {24, 2},    {25, 0},   {25, 8},   {26, 255}, {27, 7},   {28, 0},  {28, 1},   {28, 2},
-        {29, 0},   {29, 1},    {29, 3},   {29, 255}, {30, 0},   {30, 1},   {30, 35}, {30, 37},  {30, 255}, {31, 1},
+        {28, 3},   {28, 8},    {28, 15},  {28, 255},
+        {29, 0},   {29, 1},    {29, 5},   {29, 255}, {30, 0},   {30, 1},   {30, 35}, {30, 37},  {30, 255}, {31, 1},
     };
     unsigned i;
     (void)state;
@@ -272,6 +299,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_serialisers_checksum_is_the_known_one),
         cmocka_unit_test(a_binary_model_gives_the_same_frames),
+        cmocka_unit_test(contacts_and_knots_are_read),
         cmocka_unit_test(every_truncation_is_refused),
         cmocka_unit_test(every_truncation_that_is_sealed_is_refused),
         cmocka_unit_test(surplus_bytes_are_refused),

@@ -47,6 +47,7 @@ static void refuses_null(void **state)
     TRY(const int8_t *, f.model.shapes, NULL, LABIAL_ERROR_NULL);
     TRY(const int8_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL); /* there are taps */
     TRY(const int16_t *, f.model.floors, NULL, LABIAL_ERROR_NULL); /* there are floors */
+    TRY(const uint16_t *, f.model.contacts, NULL, LABIAL_ERROR_NULL); /* there are floors, contact or not */
     TRY(const labial_channel_t *, f.model.channels, NULL, LABIAL_ERROR_NULL);
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         TRY(const labial_emission_t *, f.channels[c].emissions, NULL, LABIAL_ERROR_NULL);
@@ -65,7 +66,9 @@ static void optional_tables_may_be_null(void **state)
     ACCEPTED(const int8_t *, f.model.kernels, NULL);
     f.model.floor_count = 0;
     f.phonemes[FIXTURE_P].floor = f.phonemes[FIXTURE_O].floor = 0;
+    f.phonemes[FIXTURE_S].floor = f.phonemes[FIXTURE_SIL].floor = 0;
     ACCEPTED(const int16_t *, f.model.floors, NULL);
+    ACCEPTED(const uint16_t *, f.model.contacts, NULL);
     REFUSED(uint8_t, f.phonemes[FIXTURE_P].floor, 1); /* a row of a table that is not there */
 }
 
@@ -219,6 +222,36 @@ static void refuses_floors_out_of_range(void **state)
     REFUSED(uint8_t, f.model.floor_count, FIXTURE_FLOORS - 1); /* the last phoneme's row lies outside */
 }
 
+/* Would catch contact of a channel that there is not: the run-time shifts by channels. */
+static void refuses_contacts_of_no_channel(void **state)
+{
+    unsigned row, bit;
+    (void)state;
+    for (row = 0; row < FIXTURE_FLOORS; row++) {
+        for (bit = 0; bit < 16; bit++)
+            TRY(uint16_t, f.contacts[row], 1u << bit, bit < LABIAL_CHANNELS ? LABIAL_OK : LABIAL_ERROR_MODEL);
+        ACCEPTED(uint16_t, f.contacts[row], 0);
+        ACCEPTED(uint16_t, f.contacts[row], 0x1fff);
+        REFUSED(uint16_t, f.contacts[row], 0x3fff);
+        REFUSED(uint16_t, f.contacts[row], 0xffff);
+    }
+}
+
+/* Pairs have one knot or two, even where there are none: would catch a stride of none or of three through `pairs`. */
+static void refuses_knots_other_than_one_and_two(void **state)
+{
+    (void)state;
+    ACCEPTED(uint8_t, f.model.pair_knots, 1);
+    ACCEPTED(uint8_t, f.model.pair_knots, 2);
+    REFUSED(uint8_t, f.model.pair_knots, 0);
+    REFUSED(uint8_t, f.model.pair_knots, 3);
+    REFUSED(uint8_t, f.model.pair_knots, 255);
+    f.model.pair_count = 0;
+    ACCEPTED(uint8_t, f.model.pair_knots, 2);
+    REFUSED(uint8_t, f.model.pair_knots, 0);
+    REFUSED(uint8_t, f.model.pair_knots, 3);
+}
+
 /* Would catch keys that the binary search cannot find. */
 static void refuses_pairs_out_of_order(void **state)
 {
@@ -318,6 +351,8 @@ int main(void)
         cmocka_unit_test_setup(refuses_states_out_of_order, setup),
         cmocka_unit_test_setup(refuses_positions_out_of_range, setup),
         cmocka_unit_test_setup(refuses_floors_out_of_range, setup),
+        cmocka_unit_test_setup(refuses_contacts_of_no_channel, setup),
+        cmocka_unit_test_setup(refuses_knots_other_than_one_and_two, setup),
         cmocka_unit_test_setup(refuses_pairs_out_of_order, setup),
         cmocka_unit_test_setup(refuses_scales_out_of_range, setup),
         cmocka_unit_test_setup(refuses_kernels_beyond_their_reach, setup),

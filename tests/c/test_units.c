@@ -17,6 +17,7 @@
 #define MANY 20000
 
 static fixture_model_t plain, rich, laugh;
+static labial_model_t floored; /* the rich one without kernels */
 static labial_units_t units;
 static const labial_model_t *models[LABIAL_MODELS > 1 ? LABIAL_MODELS : 2];
 static fixture_phoneme_t input[COUNT];
@@ -28,6 +29,8 @@ static int setup(void **state)
     fixture_plain(&plain);
     fixture_rich(&rich);
     fixture_laughter(&laugh);
+    floored = rich.model;
+    floored.kernel_taps = floored.kernel_behind = 0;
     return 0;
 }
 
@@ -166,6 +169,74 @@ static void pauses_are_cut_in_two(void **state)
 #endif
 }
 
+/* Takes `count` frames and wants their shares of 4096, and whether they are open, as text. */
+static void expect_places(const unsigned *shares, const char *wanted_open, size_t count)
+{
+    labial_taken_t taken;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
+        if (shares)
+            assert_int_equal(taken.share, shares[i] * 4);
+        assert_int_equal(taken.is_open, wanted_open[i] == 'o');
+        assert_int_equal(taken.rest, 0);
+    }
+}
+
+/* By hand: the middles of frames; 14 frames are a closure all through, of 15 and 40 the last eight are one. */
+static void frames_know_their_place_in_the_phoneme(void **state)
+{
+    static const unsigned halves[] = { 2048 }, quarters[] = { 1024, 3072 }, eighths[] = { 512, 1536, 2560, 3584 };
+    (void)state;
+    begin(&plain.model);
+    push(FIXTURE_A, 0, 1);
+    expect_places(halves, "-", 1);
+    begin(&plain.model);
+    push(FIXTURE_P, 0, 2), push(FIXTURE_A, 0, 4);
+    expect_places(quarters, "--", 2);
+    expect_places(eighths, "----", 4);
+    begin(&plain.model);
+    push(FIXTURE_P, 0, 14);
+    expect_places(NULL, "--------------", 14);
+    begin(&plain.model);
+    push(FIXTURE_P, 0, 15), push(FIXTURE_P, 0, 40); /* each for itself */
+    expect_places(NULL, "ooooooo--------", 15);
+    expect_places(NULL, "oooooooooooooooooooooooooooooooo--------", 40);
+}
+
+/* Floors alone look three frames ahead, so that a stop is known to be short before it begins. Of a pause of 20 frames 17
+ * come to rest, in 16 steps, and 3 lead on; one of three is no pause. */
+static void pauses_come_to_rest(void **state)
+{
+#if LABIAL_REACH >= 3
+    labial_taken_t taken;
+    unsigned i;
+    (void)state;
+    begin(&floored);
+    push(FIXTURE_SIL, 0, 3), push(FIXTURE_A, 0, 2), push(FIXTURE_SIL, 0, 20);
+    expect_places(NULL, "-----", 5);
+    for (i = 1; i <= 17; i++) {
+        assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+        assert_int_equal(taken.rest, i < 16 ? i : 16);
+    }
+    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
+    expect_places(NULL, "---", 3);
+    assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_DONE);
+    begin(&floored);
+    push(FIXTURE_A, 0, 2), push(FIXTURE_P, 0, 2);
+    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK); /* sees three frames behind it */
+    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
+    push(FIXTURE_O, 0, 1);
+    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+    assert_int_equal(taken.labels[1], FIXTURE_P);
+    assert_int_equal(taken.labels[2], FIXTURE_P);
+    assert_int_equal(taken.labels[3], FIXTURE_O);
+#else
+    (void)state;
+    assert_int_equal(floored.floor_count, 0); /* the fixture has no contacts where there is no room for them */
+#endif
+}
+
 /* Random phonemes of one or two models. */
 static void compose(int kind, uint32_t seed)
 {
@@ -184,7 +255,23 @@ static void compose(int kind, uint32_t seed)
     }
 }
 
-static unsigned long compared, waits, cuts;
+static unsigned long compared, waits, cuts, open, rested;
+
+/* Where the frame lies in its phoneme, whether that is open, how far the mouth came to rest. */
+static void compare_place(const labial_taken_t *taken, const oracle_frame_t *frame, size_t at)
+{
+    const double share = 16384.0 * ((double)frame->number + 0.5) / (double)frame->whole;
+    const int is_open = frame->whole >= 15 && frame->whole - frame->number > 8;
+    const uint64_t rest = !frame->is_head ? 0 : frame->number < 16 ? frame->number + 1 : 16;
+    if (taken->share > share || taken->share <= share - 1.0) /* rounded down */
+        fail_msg("frame %zu: share %u, not %g", at, taken->share, share);
+    if (frame->phoneme != models[frame->model]->silence && taken->is_open != is_open)
+        fail_msg("frame %zu: open %u, not %d", at, taken->is_open, is_open);
+    if (taken->rest != rest)
+        fail_msg("frame %zu: rest %u, not %u", at, taken->rest, (unsigned)rest);
+    open += frame->phoneme != models[frame->model]->silence && is_open;
+    rested += rest == 16;
+}
 
 /* What begins with the first of the frames from `at` on that begins a phoneme; whenever it is told, it must be right, and
  * before that frame is taken it must be told. */
@@ -215,12 +302,14 @@ static void compare(const labial_taken_t *taken, size_t at, size_t count)
     const labial_model_t *model = models[frame->model];
     const unsigned marks = (frame->begins ? LABIAL_BEGINS : 0u) | (frame->ends ? LABIAL_ENDS : 0u) |
                            (frame->unit_ends ? LABIAL_UNIT_ENDS : 0u);
+    const int ahead = (model->kernel_taps ? model->kernel_taps - 1 - model->kernel_behind : 0) * model->kernel_stride;
+    const int behind = model->kernel_behind * model->kernel_stride;
     int k;
+    compare_place(taken, frame, at);
     if (taken->slot != frame->model || taken->is_first != frame->is_first || taken->marks != marks)
         fail_msg("frame %zu: model %u, first %u, marks %u, not %u, %d, %u", at, taken->slot, taken->is_first,
                  taken->marks, frame->model, frame->is_first, marks);
-    for (k = -model->kernel_behind * model->kernel_stride;
-         k <= (model->kernel_taps ? model->kernel_taps - 1 - model->kernel_behind : 0) * model->kernel_stride; k++)
+    for (k = model->floor_count && behind < 2 ? -2 : -behind; k <= (model->floor_count && ahead < 3 ? 3 : ahead); k++)
         if (taken->labels[k] != oracle_label(models, wanted, count, at, k))
             fail_msg("frame %zu: %d from it is phoneme %u, not %u", at, k, taken->labels[k],
                      oracle_label(models, wanted, count, at, k));
@@ -238,7 +327,7 @@ static void follow(int kind, uint32_t seed, int hungry)
     size_t count, at = 0, pushed = 0;
     int result = LABIAL_STARVED;
     compose(kind, seed);
-    begin(seed % 3 ? &rich.model : &plain.model);
+    begin(seed % 3 ? &rich.model : seed % 2 ? &floored : &plain.model);
     count = oracle_units(models, input, COUNT, wanted, MANY);
     while (result != LABIAL_DONE) {
         uint32_t more = hungry ? result == LABIAL_STARVED : fixture_below(&random, 5);
@@ -280,6 +369,7 @@ static void random_streams_are_taken_frame_by_frame(void **state)
     }
     assert_true(compared > 100000 && waits > 1000);
     assert_true(cuts > 100 || LABIAL_REACH < 4);
+    assert_true((open > 1000 && rested > 1000) || LABIAL_REACH < 4);
 }
 
 /* Which models are held: would catch a slot that is free too early or never. */
@@ -307,6 +397,8 @@ int main(void)
         cmocka_unit_test(solutions_end_where_models_change),
         cmocka_unit_test(frames_wait_for_the_next_phoneme),
         cmocka_unit_test(pauses_are_cut_in_two),
+        cmocka_unit_test(frames_know_their_place_in_the_phoneme),
+        cmocka_unit_test(pauses_come_to_rest),
         cmocka_unit_test(random_streams_are_taken_frame_by_frame),
         cmocka_unit_test(the_queue_knows_its_models),
     };

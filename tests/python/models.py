@@ -61,7 +61,7 @@ def random_model(seed: int, method: str = "labial", phonemes: int = 9, states: i
         pair_shape=rng.normal(0, 0.1, (sum((p + n + side) % 3 == 0 and own for p in range(phonemes)
                                            for side in (0, 1) for n in range(phonemes)), knots, CHANNELS)) * reach,
         floor=floor,
-        contact=np.isfinite(floor) & (rng.random(floor.shape) < 0.7) & (np.arange(phonemes) > 0)[:, None],
+        contact=np.isfinite(floor) & (rng.random(floor.shape) < 0.7),
         firm=np.median(precision[..., 0] + anchor, axis=1) * 4.0,
         decode_mean=mean,
         decode_variance=variance,

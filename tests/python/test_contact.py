@@ -11,6 +11,7 @@ from labial.quantise import quantise
 from labial.reference.contact import raised
 from labial.reference.stream import aims
 from labial.reference.tables import ExportedTables, FloatTables
+from labial.reference.units import rest, segments
 from models import random_model, streams
 
 SIL, OPEN, LIPS = 0, 1, 2
@@ -22,7 +23,7 @@ def shut(*spans: Tuple[int, int]) -> Tuple[List[int], List[int], List[bool]]:
     """The two channels' targets, 0 without floors, and where the first is in contact, of phonemes and their frames."""
     labels = np.repeat([phoneme for phoneme, _ in spans], [frames for _, frames in spans])
     length = np.array([frames for _, frames in spans])
-    target, contact = raised(np.zeros((len(labels), 2)), labels, length, SIL, FLOOR, CONTACT)
+    target, contact = raised(np.zeros((len(labels), 2)), labels, length, 0 * labels, SIL, FLOOR, CONTACT)
     assert not contact[:, 1].any()
     return target[:, 0].tolist(), target[:, 1].tolist(), contact[:, 0].tolist()
 
@@ -41,7 +42,8 @@ def test_floors_hold_where_contact_is() -> None:
     first, second, _ = shut((OPEN, 3), (LIPS, 1), (OPEN, 2))
     assert first == [0.0, 0.0, 40.0, 40.0, 40.0, 0.0]
     assert second[3] == 10.0 and second[0] == 0.0
-    deep = raised(np.full((2, 2), -80.0), np.array([OPEN, OPEN]), np.array([2]), SIL, FLOOR, CONTACT)[0]
+    deep = raised(np.full((2, 2), -80.0), np.array([OPEN, OPEN]), np.array([2]), np.zeros(2, dtype=int), SIL, FLOOR,
+                  CONTACT)[0]
     assert deep.tolist() == [[-50.0, -80.0]] * 2
 
 
@@ -51,6 +53,33 @@ def test_a_long_closure_holds_its_last_frames_alone() -> None:
     assert contact == [False] * 7 + [True] * 8 and first == [0.0] * 7 + [40.0] * 8
     assert second == [10.0] * 15  # what is no contact stays
     assert all(shut((LIPS, 14))[2])
+
+
+def test_a_mouth_comes_to_rest_in_pauses() -> None:
+    """In the head of a pause that was cut, from the first frame on by a sixteenth more, where silence says so; in its
+    tail too where nothing follows, but not where it leads on, nor in a pause that was not cut, whatever stands beside it.
+    It is no contact, which would be held."""
+    def shares(*pushed: Tuple[int, int]) -> List[int]:
+        return rest(segments(pushed, SIL, 6, 50)).tolist()
+
+    assert shares((OPEN, 20), (SIL, 520), (OPEN, 20)) == [0, *range(1, 17), 16, 16, 16, 16, *[0] * 6, 0]
+    assert shares((OPEN, 20), (SIL, 200)) == [0, *range(1, 11)]
+    assert shares((SIL, 100), (SIL, 120), (OPEN, 20)) == [0] * 12
+    assert shares((SIL, 120)) == [0] * 6
+    floor = np.array([[-160.0, 32.0], [-np.inf, -np.inf]])
+    resting = np.array([[True, False], [False, False]])
+    labels, length, step = np.array([OPEN] + [SIL] * 20), np.array([1, 20]), np.minimum(np.arange(21), 16)
+    target, contact = raised(np.full((21, 2), 64.0), labels, length, step, SIL, floor, resting)
+    assert not contact.any() and (target[:, 1] == 64.0).all()
+    np.testing.assert_allclose(target[:, 0], 64.0 - 224.0 * step / 16)
+
+
+def test_whole_numbers_come_to_rest_as_c_divides() -> None:
+    """Towards zero: 7 positions on the way to 0, and -7, lose as much."""
+    floor, resting = np.array([[0, 0]]), np.array([[True, True]])
+    aim, step = np.repeat([[7, -7]], 20, axis=0), np.minimum(np.arange(1, 21), 16)
+    found = raised(aim, np.zeros(20, dtype=int), np.array([20]), step, SIL, floor, resting)[0]
+    assert found[:4].tolist() == [[7, -7], [7, -7], [6, -6], [6, -6]] and not found[15:].any()
 
 
 @pytest.mark.parametrize("seed", range(4))

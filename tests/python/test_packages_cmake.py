@@ -30,7 +30,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An installed tree, moved after it was installed, with one limit overridden."""
     folder = tmp_path_factory.mktemp("install")
     run(CMAKE, "-S", SOURCE, "-B", folder / "build", "-DLABIAL_BUILD_TESTS=OFF", "-DLABIAL_BUILD_EXAMPLES=OFF",
-        "-DCMAKE_BUILD_TYPE=Release", "-DLABIAL_READY=33", f"-DCMAKE_INSTALL_PREFIX={folder / 'first'}")
+        "-DCMAKE_BUILD_TYPE=Release", "-DLABIAL_QUEUE=33", f"-DCMAKE_INSTALL_PREFIX={folder / 'first'}")
     run(CMAKE, "--build", folder / "build")
     run(CMAKE, "--install", folder / "build")
     shutil.rmtree(folder / "build")
@@ -50,7 +50,7 @@ def test_find_package(installed: Path, tmp_path: Path) -> None:
     """The target brings headers, the library below the model and the limit that the library was built with."""
     find = f"find_package(labial {labial.__version__} REQUIRED COMPONENTS speech_en laughter_synthetic)\n"
     assert build(tmp_path, HEAD + find + LINK, f"-DCMAKE_PREFIX_PATH={installed}") == expected_frames()
-    (tmp_path / "main.c").write_text('#include "speech_en.h"\nint main(void) { return LABIAL_READY != 33; }\n')
+    (tmp_path / "main.c").write_text('#include "speech_en.h"\nint main(void) { return LABIAL_QUEUE != 33; }\n')
     run(CMAKE, "--build", tmp_path / "build")
     run(tmp_path / "build" / "program")
 
@@ -71,7 +71,7 @@ def test_pkg_config(installed: Path, tmp_path: Path) -> None:
     assert len(folders) == 1
     env = {"PKG_CONFIG_PATH": str(folders[0])}
     flags = run("pkg-config", "--cflags", "--libs", "labial_speech_en", env=env).split()
-    assert "-DLABIAL_READY=33" in flags
+    assert "-DLABIAL_QUEUE=33" in flags
     (tmp_path / "main.c").write_text(PROGRAM)
     run(CC, tmp_path / "main.c", *flags, "-o", tmp_path / "program")
     assert run(tmp_path / "program") == expected_frames()

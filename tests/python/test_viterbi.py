@@ -204,6 +204,23 @@ def test_a_step_by_hand() -> None:
     assert decode(chains, [targets], [ends_of(5, 1)], 1)[0][:, 0].tolist() == [0, 0, 0, 0, 0]
 
 
+def test_a_leap_goes_before_an_edge_that_costs_as_much() -> None:
+    """The third state is entered from the second for 100 + 155, or from the best, the first, for 255: at once it is the
+    same, but not for who asks where it came from. An edge that costs one less wins."""
+    costs = np.array([[0, 100, 300], [900, 900, 0]])
+
+    def emission(targets: np.ndarray, states: np.ndarray) -> np.ndarray:
+        return costs[targets.astype(int)[..., None], states]
+
+    transition = np.full((13, 3, 3), np.inf)
+    mean, initial = np.tile([0.0, 100.0, 200.0], (13, 1)), np.zeros((13, 3))
+    targets = np.repeat([[0.0], [1.0]], 13, axis=1)
+    for edge, origin in ((155.0, 0), (154.0, 1)):
+        transition[:, 1, 2] = edge
+        path = decode(Chains(mean, transition, initial, 255.0, emission), [targets], [ends_of(2)], 1, lag=1)[0]
+        assert path[:, 0].tolist() == [origin, 2]
+
+
 # ---- Blocks and windows.
 
 

@@ -4,11 +4,11 @@
 #
 # - every global symbol matches NAMES, so that a program's own names are safe;
 # - nothing lies in .data, .bss or common: the library has no state, its tables stay in flash;
-# - nothing is called but memcpy, memset and the compiler's own helpers.
+# - nothing is called but memcpy, memmove, memset and the compiler's own helpers.
 cmake_minimum_required(VERSION 3.22...3.31)
 
 # What compilers call by themselves: division and shifts, stack protection, checked copies, position independence.
-set(helpers "memcpy|memset|__mem(cpy|set)_chk|__aeabi_[a-z0-9_]+|__[a-z]+[sdt]i[23]")
+set(helpers "memcpy|memmove|memset|__mem(cpy|move|set)_chk|__aeabi_[a-z0-9_]+|__[a-z]+[sdt]i[23]")
 string(APPEND helpers "|__stack_chk_(fail|guard)|_GLOBAL_OFFSET_TABLE_")
 
 execute_process(COMMAND "${NM}" --format=sysv "${LIBRARY}" OUTPUT_VARIABLE table RESULT_VARIABLE failed)

@@ -64,7 +64,7 @@ def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: 
     """
     frame = np.arange(frames)[:, None]
     earliest = frame + window + 1
-    end = earliest + (np.arange(CHANNELS) - begin - lag - earliest) % stride
+    end = earliest + (np.arange(CHANNELS) - lag - begin - earliest) % stride
     return np.where(end == frames - 1, end, np.minimum(end - 1, frames - 1))
 
 

@@ -1,0 +1,298 @@
+/*
+ * test_contact.c - contact and rest, from phonemes to targets: cases worked by hand from the rules of labial/model.h, and
+ * random streams against oracle_shape.c, which puts contact upon the whole stream phoneme by phoneme.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <string.h>
+
+#include "oracle.h"
+#include "shape.h"
+#include "units.h"
+
+#define COUNT 60
+#define MANY 6000
+
+/* Of the model whose cases are worked by hand: where lips meet, and where the lower lip meets the teeth. */
+enum { LIPS = 0, TEETH = 1, JAW = 2 };
+
+static fixture_model_t f, other;
+static const labial_model_t *models[2];
+static labial_units_t units;
+static int16_t targets[MANY][LABIAL_CHANNELS];
+static uint16_t contacts[MANY];
+
+/* Every target is 0 but for floors. P closes LIPS, S is to be an f and closes TEETH; both have a floor for the JAW that is
+ * none of contact. O has a plain floor for LIPS. In a pause LIPS come to -800, the JAW stays above -5. */
+static int setup(void **state)
+{
+    static const int16_t floors[4][3] = { { 1000, LABIAL_NO_FLOOR, 100 },
+                                          { 500, LABIAL_NO_FLOOR, LABIAL_NO_FLOOR },
+                                          { LABIAL_NO_FLOOR, 700, 200 },
+                                          { -800, LABIAL_NO_FLOOR, -5 } };
+    unsigned i;
+    (void)state;
+    fixture_plain(&f);
+    memset(f.shapes, 0, sizeof f.shapes);
+    f.model.floor_count = FIXTURE_FLOORS;
+    f.model.floors = f.floors;
+    f.model.contacts = f.contacts;
+    for (i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
+        f.floors[i] = LABIAL_NO_FLOOR;
+    for (i = 0; i < FIXTURE_FLOORS; i++)
+        memcpy(f.floors + i * LABIAL_CHANNELS, floors[i], sizeof floors[i]);
+    f.phonemes[FIXTURE_P].floor = 1;
+    f.phonemes[FIXTURE_O].floor = 2;
+    f.phonemes[FIXTURE_S].floor = 3;
+    f.phonemes[FIXTURE_SIL].floor = 4;
+    f.contacts[0] = 1u << LIPS;
+    f.contacts[2] = 1u << TEETH;
+    f.contacts[3] = 1u << LIPS;
+    fixture_laughter(&other);
+    models[0] = &f.model;
+    models[1] = &other.model;
+    return labial_model_check(&f.model) == LABIAL_OK ? 0 : -1;
+}
+
+/* Takes and aims at all frames of what was pushed, and returns their number. */
+static size_t aim(void)
+{
+    labial_taken_t taken;
+    labial_spoken_t spoken;
+    labial_shape_t shape;
+    size_t n = 0;
+    memset(&shape, 0, sizeof shape);
+    for (;;) {
+        if (labial_units_at_first(&units, models)) {
+            assert_int_equal(labial_units_next(&units, models, 1, &spoken), 1);
+            labial_shape_select(models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next, &shape);
+        }
+        if (labial_units_take(&units, models, 1, &taken) != LABIAL_OK)
+            return n;
+        assert_true(n < MANY);
+        contacts[n] = labial_shape_target(models[taken.slot], &shape, &taken, targets[n]);
+        n++;
+    }
+}
+
+/* Pushes phonemes that are told by letter and frames, as "T3 P1 T3", and aims. `x` is the other model's. */
+static size_t speak(const char *text)
+{
+    static const char letters[] = "_aopft";
+    labial_units_forget(&units);
+    while (*text) {
+        const char *at = strchr(letters, *text);
+        unsigned frames = 0;
+        for (text++; *text >= '0' && *text <= '9'; text++)
+            frames = frames * 10 + (unsigned)(*text - '0');
+        (void)labial_units_push(&units, at ? (unsigned)(at - letters) : FIXTURE_HA, !at, frames * 1000 / FIXTURE_RATE,
+                                FIXTURE_RATE);
+        text += *text == ' ';
+    }
+    return aim();
+}
+
+/* Where a channel is in contact, frame by frame: `x`, else `.`; there it is at `floor` too. */
+static void expect(const char *text, unsigned channel, int floor, const char *wanted)
+{
+    static char found[MANY + 1];
+    const size_t n = speak(text);
+    size_t t;
+    for (t = 0; t < n; t++) {
+        found[t] = contacts[t] >> channel & 1 ? 'x' : '.';
+        if (found[t] == 'x' && targets[t][channel] != floor)
+            fail_msg("%s: frame %zu is in contact at %d, not %d", text, t, targets[t][channel], floor);
+    }
+    found[n] = 0;
+    if (strcmp(found, wanted) != 0)
+        fail_msg("%s, channel %u: %s, not %s", text, channel, found, wanted);
+}
+
+static void lips(const char *text, const char *wanted)
+{
+    expect(text, LIPS, 1000, wanted);
+}
+
+static void teeth(const char *text, const char *wanted)
+{
+    expect(text, TEETH, 700, wanted);
+}
+
+/* A contact lasts three frames at least; would catch a frame too few or too many, at either side. */
+static void short_stops_borrow_frames(void **state)
+{
+    (void)state;
+    lips("t3 p0 t3", "......");
+    lips("t3 p1 t3", "..xxx..");
+    lips("t3 p2 t3", "..xxx...");
+    lips("t3 p3 t3", "...xxx...");
+    lips("t3 p4 t3", "...xxxx...");
+    lips("t3 p14 t3", "...xxxxxxxxxxxxxx...");
+    lips("t1 p1 t1", "xxx");
+    lips("t1 p1 t1 p1 t1", "xxxxx");
+    lips("t3 p1 p1 t3", "..xxx..."); /* two that follow one another are one contact */
+    lips("t3 p2 p1 t3", "...xxx...");
+    lips("t3 p9 p1 t3", "...xxxxxxxxxx...");
+    lips("t3 p1 p1 p1 t3", "...xxx...");
+}
+
+/* What swallowed a pause closes for its last eight frames; before that it is free of its contact, not of its floors. */
+static void long_stops_close_at_their_end(void **state)
+{
+    size_t t, n;
+    (void)state;
+    lips("t3 p15 t3", "..........xxxxxxxx...");
+    lips("t3 p16 t3", "...........xxxxxxxx...");
+    lips("t3 p40 t3", "...................................xxxxxxxx...");
+    n = speak("t3 p40 t3");
+    for (t = 0; t < n; t++) {
+        const int is_stop = t >= 3 && t < 43;
+        assert_int_equal(targets[t][LIPS], t >= 35 && t < 43 ? 1000 : 0);
+        assert_int_equal(targets[t][JAW], is_stop ? 100 : 0);
+    }
+}
+
+/* A borrowed frame takes over what is contact, nothing else; neither is a plain floor contact, nor its frames lent. */
+static void only_contact_is_borrowed(void **state)
+{
+    static const int wanted[] = { 0, 0, 0, 100, 0, 0, 0 }, floors[] = { 0, 0, 500, 1000, 1000, 1000, 0 };
+    size_t t;
+    (void)state;
+    assert_int_equal(speak("t3 p1 t3"), 7);
+    for (t = 0; t < 7; t++)
+        assert_int_equal(targets[t][JAW], wanted[t]);
+    assert_int_equal(speak("t2 o2 p1 t2"), 7);
+    for (t = 0; t < 7; t++)
+        assert_int_equal(targets[t][LIPS], t == 3 ? 1000 : floors[t]);
+    lips("t2 o1 t2", ".....");
+    assert_int_equal(contacts[2], 0);
+}
+
+/* Two contacts beside one another, in different places: each has its three frames, also those of the other phoneme. */
+static void an_f_before_a_p_keeps_its_teeth(void **state)
+{
+    (void)state;
+    teeth("t3 f2 p1 t3", "..xxx....");
+    lips("t3 f2 p1 t3", "....xxx..");
+    teeth("t3 f1 p1 t3", "..xxx...");
+    lips("t3 f1 p1 t3", "...xxx..");
+    teeth("t3 f4 p4 t3", "...xxxx.......");
+    lips("t3 f4 p4 t3", ".......xxxx...");
+    teeth("f1 p1", "xx");
+    lips("f1 p1", "xx");
+    assert_int_equal(speak("t3 f2 p1 t3"), 9);
+    assert_int_equal(targets[4][JAW], 200); /* the f's own floor; that of the p is not borrowed */
+    assert_int_equal(targets[5][JAW], 100);
+}
+
+/* There is nothing to borrow before a stream's first frame and behind its last, nor from another model. */
+static void stops_at_the_ends_have_their_own_frames(void **state)
+{
+    (void)state;
+    lips("p1", "x");
+    lips("p1 t3", "xx..");
+    lips("p2 t3", "xx...");
+    lips("t3 p1", "..xx");
+    lips("t3 p2", "..xxx");
+    lips("t3 p3", "...xxx");
+    lips("p20", "............xxxxxxxx");
+#if LABIAL_MODELS > 1
+    lips("x3 p1 t2", "...xx.");
+    lips("t2 p1 x3", ".xx...");
+    lips("t2 p2 x3 p1 x1", ".xxx...x.");
+#endif
+}
+
+/* 800 in 16 steps of 50, then at rest; but for the last three frames. A stop beside a pause borrows of it like of any
+ * other phoneme, and the stop is what counts there. */
+static void pauses_come_to_rest_and_lead_on(void **state)
+{
+    size_t t, n;
+    (void)state;
+    n = speak("t2 _30 t2");
+    assert_int_equal(n, 34);
+    for (t = 0; t < n; t++) {
+        const int step = t < 2 || t >= 29 ? 0 : t < 17 ? (int)t - 1 : 16;
+        if (targets[t][LIPS] != -50 * step)
+            fail_msg("frame %zu is %d, not %d", t, targets[t][LIPS], -50 * step);
+        assert_int_equal(targets[t][JAW], 0); /* above its floor */
+        assert_int_equal(contacts[t], 0);     /* a pause is never held firmly */
+    }
+    assert_int_equal(speak("_3"), 3); /* too short to rest */
+    assert_int_equal(targets[0][LIPS], 0);
+    assert_int_equal(targets[2][LIPS], 0);
+    assert_int_equal(speak("_4"), 4);
+    assert_int_equal(targets[0][LIPS], -50);
+    assert_int_equal(targets[1][LIPS], 0);
+    lips("_20 p1 _20", "...................xxx...................");
+    assert_int_equal(targets[18][LIPS], 0);
+    assert_int_equal(targets[22][LIPS], -100);
+    lips("_20 p2 _20", "...................xxx....................");
+    lips("_2 p1 _2", ".xxx.");
+    f.floors[3 * LABIAL_CHANNELS + LIPS] = -801; /* steps are rounded towards where the mouth comes from */
+    assert_int_equal(speak("_30"), 30);
+    assert_int_equal(targets[0][LIPS], -50);
+    assert_int_equal(targets[15][LIPS], -801);
+    f.floors[3 * LABIAL_CHANNELS + LIPS] = 801;
+    assert_int_equal(speak("_30"), 30);
+    assert_int_equal(targets[0][LIPS], 50);
+    assert_int_equal(targets[15][LIPS], 801);
+    f.floors[3 * LABIAL_CHANNELS + LIPS] = -800;
+}
+
+/* Would catch a rule that holds alone and not beside the others: every frame of random streams, all of a rich model. */
+static void random_streams_keep_contact(void **state)
+{
+    static fixture_model_t rich;
+    static fixture_phoneme_t input[COUNT];
+    static oracle_frame_t frames[MANY];
+    static int16_t wanted[MANY][LABIAL_CHANNELS];
+    static uint16_t touched[MANY];
+    unsigned seed, i, c, held = 0;
+    (void)state;
+    fixture_rich(&rich);
+    models[0] = &rich.model;
+    for (seed = 0; seed < 300; seed++) {
+        const unsigned pieces = COUNT < LABIAL_QUEUE ? COUNT : LABIAL_QUEUE;
+        size_t t, count;
+        fixture_stream(input, pieces, seed % 4 ? FIXTURE_CONTACTS : FIXTURE_PAUSES, seed);
+        labial_units_forget(&units);
+        for (i = 0; i < pieces; i++) {
+            input[i].ms %= 1000;
+            input[i].model = (uint8_t)(LABIAL_MODELS > 1 && seed % 3 == 0 && i / 7 % 2);
+            input[i].phoneme = (uint8_t)(input[i].phoneme % (input[i].model ? FIXTURE_LAUGH_COUNT : FIXTURE_SPEECH_COUNT));
+            (void)labial_units_push(&units, input[i].phoneme, input[i].model, input[i].ms, FIXTURE_RATE);
+        }
+        count = oracle_units(models, input, pieces, frames, MANY);
+        oracle_targets(models, frames, count, wanted, touched);
+        assert_int_equal(aim(), count);
+        for (t = 0; t < count; t++) {
+            if (contacts[t] != touched[t])
+                fail_msg("seed %u, frame %zu: contact %x, not %x", seed, t, contacts[t], touched[t]);
+            for (c = 0; c < LABIAL_CHANNELS; c++)
+                if (targets[t][c] != wanted[t][c])
+                    fail_msg("seed %u, frame %zu, channel %u: %d, not %d", seed, t, c, targets[t][c], wanted[t][c]);
+            held += contacts[t] != 0;
+        }
+    }
+    models[0] = &f.model;
+    assert_true(held > 5000);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(short_stops_borrow_frames),
+        cmocka_unit_test(long_stops_close_at_their_end),
+        cmocka_unit_test(only_contact_is_borrowed),
+        cmocka_unit_test(an_f_before_a_p_keeps_its_teeth),
+        cmocka_unit_test(stops_at_the_ends_have_their_own_frames),
+        cmocka_unit_test(pauses_come_to_rest_and_lead_on),
+        cmocka_unit_test(random_streams_keep_contact),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}
