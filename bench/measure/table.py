@@ -159,8 +159,8 @@ def _mlpg(bench: Bench) -> List[str]:
         "and variances unit by unit as its public structures, in doubles, its allocations included; its solution "
         "is Labial's whole one to less than a tenth of a FAP unit. SPTK: its program `mlpg`, which recurses over the "
         "frames as they arrive; the same frames as one sequence, what each further frame costs, reading and writing "
-        "included. Memory: Labial's solvers and factors of all channels, however long the utterance; the others' heap at its "
-        "peak.", "",
+        "included. Memory: Labial's solvers and factors of all channels, however long the utterance; the others' heap "
+        "at its peak.", "",
         *_rows(["", "instructions per frame and channel", "times Labial's", "bytes", "times Labial's"], rows),
     ]
 
