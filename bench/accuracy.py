@@ -1,4 +1,5 @@
-"""What integers cost in each step: the solver against float64, the state paths against a dense float64 search.
+"""What integers and deciding early cost in each step: the solver against float64, the window and the state paths
+against what knows the whole utterance.
 
 Runs as a program of its own, with numpy and the exporter on the path, and prints JSON:
 
@@ -27,14 +28,15 @@ from labial.loss import path_loss
 from labial.model import Model, load
 from labial.phones import Stream, drawn_streams, stream_of
 from labial.quantise import ExportedModel, quantise
-from labial.reference import units
-from labial.reference.shape import targets
-from labial.reference.stream import frame_counts
+from labial.reference.stream import aims, synthesise
 from labial.reference.tables import ExportedTables, FloatTables
-from labial.reference.trajectory import solve
+from labial.reference.trajectory import solve_whole
 
 #: Episodes of a corpus that are used, evenly spread over it.
 EPISODES = 60
+
+#: Frames that SOLVER takes at most, BENCH_SOLVE of unit.h.
+LONGEST = 400
 
 #: A unit of error in FAP units: 1/1024 of full scale, which is what positions can be: 1024 FAP units to either side
 #: (LABIAL_POSITION_MAX).
@@ -59,21 +61,18 @@ def check_bundled(exported: ExportedModel, root: Path) -> None:
 
 
 def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequence[Stream]) -> np.ndarray:
-    """(frames, 13) FAP: the library's solution less the float64 one, for the same tables, paths and targets, piece by
-    piece before joining."""
+    """(frames, 13) FAP: the library's solution less the float64 one, for the same tables, paths and targets, streams
+    being cut where they are longer than the library's program takes."""
     given, expected = [], []
     for stream in streams:
-        numbers, durations = [p for p, _ in stream], [ms for _, ms in stream]
-        frames = frame_counts(durations, tables.fps)
-        wanted = targets(tables, numbers, durations, frames)
-        for piece in units.pieces(frames, [bool(tables.boundary[p]) for p in numbers]):
-            span = slice(piece.begin, piece.end)
-            positions = wanted[span]
-            path = tables.search(positions)
-            expected.append(solve(tables.equation(path, positions)))
-            given.append(np.uint16(len(path)).tobytes())
+        target, _, ends = aims(tables, stream)
+        path = tables.search(target, ends)
+        for begin in range(0, len(target), LONGEST):
+            span = slice(begin, begin + LONGEST)
+            expected.append(solve_whole(tables.equation(path[span], target[span])))
+            given.append(np.uint16(len(expected[-1])).tobytes())
             for k in range(CHANNELS):
-                given.append(path[:, k].astype(np.uint8).tobytes() + positions[:, k].astype(np.int16).tobytes())
+                given.append(path[span, k].astype(np.uint8).tobytes() + target[span, k].astype(np.int16).tobytes())
     done = subprocess.run(list(solver), input=b"".join(given), stdout=subprocess.PIPE, check=True)
     found = np.frombuffer(done.stdout, dtype=np.int16)
     errors, begin = [], 0
@@ -87,11 +86,10 @@ def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequen
     return np.concatenate(errors)
 
 
-def units_in(frames: Sequence[int], boundary: Sequence[bool]) -> int:
-    """Units of a stream: from one boundary phoneme to the next inclusive, the first and the last one being what there
-    is; phonemes of no frames do not count."""
-    held = [is_boundary for count, is_boundary in zip(frames, boundary) if count]
-    return 1 + sum(held[1:-1]) if held else 0
+def window_errors(tables: ExportedTables, streams: Sequence[Stream]) -> np.ndarray:
+    """(frames, 13) FAP: the motion as it is delivered, each frame by a way back from its window's end, less that by one
+    way back from the last frame."""
+    return np.concatenate([synthesise(tables, stream) - synthesise(tables, stream, whole=True) for stream in streams])
 
 
 def measure(
@@ -99,20 +97,15 @@ def measure(
 ) -> Dict[str, float]:
     """The figures by name."""
     ideal, tables = FloatTables(model), ExportedTables(exported)
-    errors = solver_errors(tables, solver, streams)
+    errors, lost_by_window = solver_errors(tables, solver, streams), window_errors(tables, streams)
     lost = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
-    total, frames, unit_count = lost.mean(axis=1).sum(), 0, 0
-    for stream in streams:
-        counts = frame_counts([ms for _, ms in stream], tables.fps)
-        frames += sum(counts)
-        unit_count += units_in(counts, [bool(tables.boundary[p]) for p, _ in stream])
     return {
         "solver_largest": float(np.abs(errors).max() / UNIT),
         "solver_rms": float(np.sqrt(np.mean(errors**2)) / UNIT),
-        "path_piece": float(lost.mean()),
+        "window_largest": float(np.abs(lost_by_window).max()),
+        "window_rms": float(np.sqrt(np.mean(lost_by_window**2))),
+        "path_state": float(lost.mean()),
         "path_worst_channel": float(lost.mean(axis=0).max()),
-        "path_unit": float(total / unit_count),
-        "path_frames": float(100.0 * total / frames),
     }
 
 

@@ -28,7 +28,7 @@ def _options() -> argparse.Namespace:
                         help="measure nothing; make the last figures the baseline and README.md's")
     parser.add_argument("--require-all", action="store_true", help="fail when anything is left out")
     parser.add_argument("--compiler", default="cc", help="that built the host's programs (cc)")
-    parser.add_argument("--corpus", default="", help="speech corpus whose phonemes the loss is measured on")
+    parser.add_argument("--corpus", default="", help="speech corpus on whose phonemes loss and delay are measured")
     options = parser.parse_args([argument for argument in sys.argv[1:] if argument])
     options.source, options.build = source, options.build.resolve()
     return options
@@ -56,6 +56,7 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
     attempt(mlpg.hts_engine)
     attempt(mlpg.sptk)
     attempt(loss.measure, corpus or None)
+    attempt(loss.delay, corpus or None)
     rows: List[profile.Row] = []
     attempt(profile.measure, rows)
     return rows

@@ -1,7 +1,7 @@
 /*
  * board.c - what a stream costs on a board: prints names and numbers, one pair a line.
  *
- * BENCH_MODEL is SPEECH or LAUGHTER, BENCH_SECONDS how much input is synthesised. What is counted, in instructions:
+ * BENCH_MODEL is SPEECH or LAUGHTER, BENCH_SECONDS how much input is synthesised; with BENCH_TURNS it is both by turns. What is counted, in instructions:
  * labial_init() once; every call of labial_tick() from the first, before anything is ready, to the one that says
  * LABIAL_DONE; the calls of labial_push(), labial_room() and labial_end() between ticks. The stack is that of all of
  * these, with a callback that sums up the frame.
@@ -10,6 +10,9 @@
 #include "inputs.h"
 
 static const bench_input_t input = BENCH_INPUT(BENCH_MODEL);
+#ifdef BENCH_TURNS
+static const bench_input_t others[2] = { BENCH_SPEECH, BENCH_LAUGHTER };
+#endif
 
 static labial_t stream;
 static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4];
@@ -38,7 +41,11 @@ int main(void)
     do {
         uint32_t taken;
         board_count_start();
+#ifdef BENCH_TURNS
+        bench_feed_turns(&stream, others, &next, &pushed, BENCH_SECONDS * 1000u);
+#else
         bench_feed(&stream, &input, &next, &pushed, BENCH_SECONDS * 1000u);
+#endif
         pushing += board_count();
         board_count_start();
         result = labial_tick(&stream);

@@ -57,6 +57,26 @@ static inline void bench_feed(labial_t *stream, const bench_input_t *input, unsi
         labial_end(stream);
 }
 
+/* The same from two inputs, BENCH_TURN phonemes of each by turns; their durations differ, so that the
+ * model changes in every phase of the channels' turns. */
+#define BENCH_TURN 5u
+
+static inline void bench_feed_turns(labial_t *stream, const bench_input_t inputs[2], unsigned *next, uint32_t *pushed,
+                                    uint32_t milliseconds)
+{
+    while (*pushed < milliseconds && labial_room(stream) > 0) {
+        const unsigned turn = *next / BENCH_TURN, place = turn / 2u * BENCH_TURN + *next % BENCH_TURN;
+        const bench_input_t *input = &inputs[turn % 2u];
+        const bench_phoneme_t *phoneme = &input->phonemes[place % input->count];
+        labial_use(stream, input->model);
+        labial_push(stream, phoneme->phoneme, phoneme->ms);
+        *pushed += phoneme->ms;
+        ++*next;
+    }
+    if (*pushed >= milliseconds)
+        labial_end(stream);
+}
+
 /* The callback: a sum over all channels, so that nothing is left out as unused and runs can be told to agree. */
 static inline void bench_on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {

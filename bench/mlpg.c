@@ -4,7 +4,7 @@
  *   labial    by the library
  *   hts       by hts_engine's HTS_PStreamSet_create(), which takes the same means and variances as public structures
  *   compare   by both, and says how far apart they are
- *   about     by nobody: says whether hts_engine is built in
+ *   about     by nobody: says whether hts_engine is built in, and what memory Labial needs
  *   sptk      by nobody: writes means and precisions, float32, as SPTK's `mlpg -i 1` reads them from a file
  *
  * The anchors of Labial's equation 3 are a second static row; others know only one, so the two are merged into one, as
@@ -181,6 +181,7 @@ int main(int argc, char **argv)
 #else
             puts("hts_engine: no");
 #endif
+            printf("memory: %u bytes\n", (unsigned)(LABIAL_CHANNELS * BENCH_MEMORY));
             return 0;
         }
         fill(unit);

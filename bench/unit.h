@@ -4,11 +4,14 @@
 #ifndef BENCH_UNIT_H
 #define BENCH_UNIT_H
 
-#include "labial/model.h"
+#include "labial/labial.h"
 
 #define BENCH_UNIT 42  /* frames */
 #define BENCH_HOLD 3u  /* frames that a state lasts, and that a channel's turn takes */
 #define BENCH_SOLVE 400 /* frames that bench_solve() takes at most */
+
+/* Bytes that the solver needs of a channel, as the workspace holds them. */
+#define BENCH_MEMORY (sizeof(labial_solver_t) + LABIAL_FACTORS_(BENCH_HOLD) * sizeof(labial_factors_t))
 
 /* A unit of one channel: where its states are and where its frames are drawn to. */
 typedef struct {

@@ -103,6 +103,13 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
         add("labial_init()", found["init_instructions"], "instructions")
         add("stack, painted", found["stack"], "bytes")
         _check_stack(bench, board, found["stack"])
+    command = images["bench_turns"]
+    found = printed(command)
+    mean = found["tick_instructions"] / found["frames"]
+    for figure, value, unit in (("mean", round(mean), "instructions/frame"),
+                                ("worst change", found["tick_worst"], "instructions"),
+                                ("worst change / mean", round(found["tick_worst"] / mean, 3), "ratio")):
+        bench.add(board.preset, f"turns: {figure}", value, unit, command, tool_version)
     command = images["bench_mlpg"]
     found = printed(command)
     bench.add(board.preset, "MLPG", round(found["instructions"] / found["frames"], 1), "instructions/frame and channel",

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import statistics
 import subprocess
 import sys
-from typing import List, Optional, Union
+from pathlib import Path
+from typing import Dict, List, Optional, Union
 
 from measure.core import Bench, LeftOut, run
 from measure.sizes import MODELS
@@ -15,10 +17,10 @@ from measure.sizes import MODELS
 FIGURES = (
     ("MLPG error, largest", "solver_largest", "1/1024 of full scale"),
     ("MLPG error, RMS", "solver_rms", "1/1024 of full scale"),
-    ("likelihood lost by paths, per piece", "path_piece", "nats/piece and channel"),
-    ("likelihood lost by paths, per piece, worst channel", "path_worst_channel", "nats/piece"),
-    ("likelihood lost by paths, per unit", "path_unit", "nats/unit and channel"),
-    ("likelihood lost by paths, per 100 frames", "path_frames", "nats/100 frames and channel"),
+    ("window, largest", "window_largest", "FAP units"),
+    ("window, RMS", "window_rms", "FAP units"),
+    ("likelihood lost by paths, per state", "path_state", "nats/state and channel"),
+    ("likelihood lost by paths, per state, worst channel", "path_worst_channel", "nats/state"),
 )
 
 
@@ -34,21 +36,45 @@ def python_with_numpy(bench: Bench) -> str:
                   "python3-numpy, or run the preset test first, whose Python has it.")
 
 
+def delay(bench: Bench, corpus: Optional[str]) -> None:
+    """The latest frames of the demo's sentence and of a corpus's utterances."""
+    program = bench.build / "bench" / "labial-bench-delay"
+    bench.add("delay", "demo sentence: latest frame", int(run([program]).stdout), "ms", [program], "the frame rate")
+    if not corpus:
+        return
+    command = [python_with_numpy(bench), bench.source / "bench" / "utterances.py", model_path(bench, "speech_en"),
+               corpus]
+    utterances = run(command, env=environment(bench)).stdout
+    found = sorted(map(int, run([program, "-"], input=utterances).stdout.split()))
+    shown = ["PYTHONPATH=export", "python3", *map(str, command[1:-1]), "CORPUS", "|", program, "-"]
+    for figure, value in (("median", statistics.median(found)), ("largest", found[-1])):
+        bench.add("delay", f"corpus of {len(found)} utterances: latest frame, {figure}", value, "ms", shown,
+                  "the frame rate")
+
+
+def environment(bench: Bench) -> Dict[str, str]:
+    """Variables of programs that use the exporter."""
+    return dict(os.environ, PYTHONPATH=str(bench.source / "export"), OPENBLAS_NUM_THREADS="1")
+
+
+def model_path(bench: Bench, name: str) -> Path:
+    """A bundled model as it was trained."""
+    return bench.source / "export" / "models" / f"{name}.npz"
+
+
 def measure(bench: Bench, corpus: Optional[str]) -> None:
     """The solver's error and the paths' loss of both models; `corpus` is one of speech."""
     python = python_with_numpy(bench)
-    environment = dict(os.environ, PYTHONPATH=str(bench.source / "export"), OPENBLAS_NUM_THREADS="1")
     for model, name in MODELS.items():
-        trained = bench.source / "export" / "models" / f"{name}.npz"
         command: List[Union[str, os.PathLike]] = [
-            python, bench.source / "bench" / "accuracy.py", trained, name,
+            python, bench.source / "bench" / "accuracy.py", model_path(bench, name), name,
             bench.build / "bench" / "labial-bench-solve", model,
         ]
         shown = ["PYTHONPATH=export", "python3", *map(str, command[1:])]
         for where, given in (("drawn streams", []), ("corpus", [corpus])):
             if where == "corpus" and (not corpus or model != "speech"):
                 continue
-            found = json.loads(run([*command, *given], env=environment).stdout)
+            found = json.loads(run([*command, *given], env=environment(bench)).stdout)
             for figure, key, unit in FIGURES:
                 bench.add("accuracy", f"{model}, {where}: {figure}", round(found[key], 4), unit,
                           [*shown, *("CORPUS" for _ in given)], "numpy")

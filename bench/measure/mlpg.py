@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 from pathlib import Path
@@ -10,15 +11,15 @@ from typing import List, Union
 from measure.core import Bench, LeftOut, run, version
 from measure.host import collected, heap_peak, shown_callgrind
 
-#: Units of 40 frames and 13 channels that are solved; FEW and MANY tell SPTK's cost per frame from its start.
+#: Units of 42 frames and 13 channels that are solved; FEW and MANY tell SPTK's cost per frame from its start.
 UNITS, FEW, MANY = 20, 5, 25
 
-FRAMES = 40 * 13  #: of all channels of one unit
+FRAMES = 42 * 13  #: of all channels of one unit
 
 UNIT = "instructions/frame and channel"
 
-#: Clears the solver's state and calls labial_trajectory_forward() and labial_trajectory_backward() for a whole unit, as
-#: the boards' image counts it, too.
+#: Solves a unit in turns of three frames, as a stream and the boards' image do: decodes the state, takes up the rows,
+#: and goes back from the latest.
 SOLVE = "bench_unit_solve"
 
 
@@ -29,14 +30,15 @@ def measure(bench: Bench, compiler: str) -> None:
     count = collected(command, SOLVE)
     bench.add("host", "MLPG", round(count / (UNITS * FRAMES), 1), UNIT,
               shown_callgrind(command, SOLVE), version(compiler))
-    # By lib/trajectory.h: where the solution stands, three int32 per frame, the positions that it solves in place.
-    bench.add("host", "MLPG: memory of a unit", 60 + 40 * (3 * 4 + 13 * 2), "bytes",
-              ["lib/trajectory.h", "#", "60", "bytes;", "3", "int32", "and", "13", "int16", "per", "frame"],
-              "the interface")
+    about = [program, "about", "1"]
+    found = re.search(rb"memory: (\d+) bytes", run(about).stdout)
+    if not found:
+        raise RuntimeError(f"{program} does not say what memory it needs")
+    bench.add("host", "MLPG: memory", int(found.group(1)), "bytes", about, "the interface")
 
 
 def _beside(bench: Bench, name: str, count: float, memory: int, command: List[Union[str, Path]], tool: str) -> None:
-    own, own_memory = bench.value("host", "MLPG"), bench.value("host", "MLPG: memory of a unit")
+    own, own_memory = bench.value("host", "MLPG"), bench.value("host", "MLPG: memory")
     bench.add("host", f"MLPG by {name}", round(count, 1), UNIT, command, tool)
     bench.add("host", f"MLPG by {name}: heap", memory, "bytes", command, tool)
     if own and own_memory:

@@ -12,12 +12,29 @@ from measure.core import Bench, run, version
 
 #: Files of lib/ that play compiled-in models. A program links the others only when it calls them, or for models from
 #: outside (model.c, the check, and blob.c).
-CORE = ("stream", "work", "units", "shape", "viterbi", "trajectory")
+CORE = ("stream", "units", "shape", "viterbi", "trajectory")
 
 LEVELS = ("-Os", "-O2")
 
 #: The bundled models: their C file, and what they are called here.
 MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
+
+
+#: Parts of RAM and their bytes in C; the workspace's add up to LABIAL_WORKSPACE_SIZE() for what a state lasts in the
+#: bundled models, but for rounding to four.
+PARTS = {
+    "labial_t: queue and labels": "sizeof(labial_units_t)",
+    "labial_t: shapes": "2 * sizeof(labial_shape_t)",
+    "labial_t: poses": "3 * LABIAL_CHANNELS * sizeof(int16_t)",
+    "workspace: searches": "LABIAL_CHANNELS * (sizeof(labial_track_t) - sizeof(labial_solver_t))",
+    "workspace: solvers": "LABIAL_CHANNELS * sizeof(labial_solver_t)",
+    "workspace: factors": "LABIAL_CHANNELS * LABIAL_FACTORS_(STRIDE) * sizeof(labial_factors_t)",
+    "workspace: frames": "(STRIDE + LABIAL_LAG) * sizeof(labial_frame_t)",
+    "workspace: motion": "STRIDE * LABIAL_CHANNELS * sizeof(int16_t)",
+}
+
+#: Frames that share a state in the bundled models.
+STRIDE = 3
 
 
 def compile_command(bench: Bench, board: Board, level: str) -> List[str]:
@@ -77,7 +94,8 @@ def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
     flags = cpu_flags(bench, board)
     archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()
     link_map = run([compiler(board), *flags, "-nostdlib", "-r", "-Wl,-M", *objects, archive, "-o", linked])
-    unknown = set(re.findall(r"U (\w+)", run([f"{prefix}nm", "-u", linked]).stdout.decode())) - {"memcpy", "memset"}
+    undefined = run([f"{prefix}nm", "-u", linked]).stdout.decode()
+    unknown = set(re.findall(r"U (\w+)", undefined)) - {"memcpy", "memmove", "memset"}
     if unknown:
         raise RuntimeError(f"{board.core}: {', '.join(CORE)} call {', '.join(sorted(unknown))} of other files of lib/")
     members = set(re.findall(r"libgcc\.a\(([^)]+)\)", link_map.stdout.decode()))
@@ -90,6 +108,10 @@ def _ram(bench: Bench, board: Board, command: List[str], scratch: Path, tool_ver
     lines = [f'#include "{stem}.h"' for stem in MODELS.values()]
     lines.append("char stream[sizeof(labial_t)];")
     lines += [f"char {model}[{stem.upper()}_WORKSPACE_SIZE];" for model, stem in MODELS.items()]
+    for model, stem in MODELS.items():
+        same = f"{stem.upper()}_WORKSPACE_SIZE == LABIAL_WORKSPACE_SIZE({STRIDE})"
+        lines.append(f"typedef char stride_is_that_of_{model}[{same} ? 1 : -1];")
+    lines += [f"#define STRIDE {STRIDE}", *(f"char part_{i}[{size}];" for i, size in enumerate(PARTS.values()))]
     source.write_text("\n".join(lines) + "\n", encoding="ascii")
     command = [*command, f"-I{bench.source / 'lib' / 'models'}", str(source)]
     run([*command, "-o", out])
@@ -97,6 +119,8 @@ def _ram(bench: Bench, board: Board, command: List[str], scratch: Path, tool_ver
     found = {line.split()[-1]: int(line.split()[1], 16) for line in listing}
     shown = [f"{board.prefix}nm", "-S", "of", "an", "array", "of", "that", "size"]
     bench.add(board.preset, "labial_t", found["stream"], "bytes", shown, tool_version)
+    for i, part in enumerate(PARTS):
+        bench.add(board.preset, part, found[f"part_{i}"], "bytes", shown, tool_version)
     for model in MODELS:
         bench.add(board.preset, f"{model}: workspace", found[model], "bytes", shown, tool_version)
         bench.add(board.preset, f"{model}: workspace and labial_t", found[model] + found["stream"], "bytes", shown,

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
+import subprocess
 import sys
 from pathlib import Path
-from typing import List
 
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
 
-from accuracy import units_in  # noqa: E402
-from measure import baseline, readme  # noqa: E402
+from measure import baseline, readme, sizes  # noqa: E402
 from measure.core import Bench, Figure  # noqa: E402
 from measure.profile import cycles  # noqa: E402
 from measure.stack import CallGraph, _machine_code, public_functions  # noqa: E402
 
-from labial.reference import units  # noqa: E402
+from labial.model import load  # noqa: E402
+from labial.native import compiler  # noqa: E402
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -135,8 +135,8 @@ def test_commands_name_the_preset_whatever_was_built_where(tmp_path: Path) -> No
     # Catches folders of one machine in the committed baseline.
     for build in (tmp_path / "src" / "build" / "bench", tmp_path / "elsewhere"):
         bench = Bench(tmp_path / "src", build)
-        command = [build / "bench" / "labial-bench", "speech", "20", "<", tmp_path / "src" / "lib" / "work.c"]
-        assert bench.shown(command) == "build/bench/bench/labial-bench speech 20 < lib/work.c"
+        command = [build / "bench" / "labial-bench", "speech", "20", "<", tmp_path / "src" / "lib" / "units.c"]
+        assert bench.shown(command) == "build/bench/bench/labial-bench speech 20 < lib/units.c"
 
 
 def test_functions_of_every_header_are_found() -> None:
@@ -146,16 +146,33 @@ def test_functions_of_every_header_are_found() -> None:
     assert all(public_functions(bench, path.name) for path in (SOURCE / "include" / "labial").glob("*.h"))
 
 
-@pytest.mark.parametrize("frames, boundary, expected", [
-    ([4, 4, 4, 4, 4], [0, 1, 0, 1, 0], 3), ([4, 4, 4], [1, 0, 1], 1), ([4, 4, 4], [0, 1, 0], 2), ([4], [0], 1),
-    ([4, 0, 4], [0, 1, 0], 1), ([], [], 0),
-])
-def test_units_are_the_pieces_of_one_unit(frames: List[int], boundary: List[int], expected: int,
-                                          monkeypatch: pytest.MonkeyPatch) -> None:
-    # Catches units counted otherwise than the cut makes them when it takes one at a time.
-    monkeypatch.setattr(units, "PIECE", 1)
-    held = [bool(is_boundary) for is_boundary in boundary]
-    assert units_in(frames, held) == len(units.pieces(frames, held)) == expected
+def test_parts_are_the_members_of_the_headers(tmp_path: Path) -> None:
+    # Catches a part of the workspace that was forgotten or grew: the parts must add up to the macro.
+    parts = " + ".join(size for part, size in sizes.PARTS.items() if part.startswith("workspace"))
+    source = (f'#include "labial/labial.h"\n#define STRIDE {sizes.STRIDE}\n'
+              f"typedef char equal[(({parts}) + 3u) / 4u * 4u == LABIAL_WORKSPACE_SIZE(STRIDE) ? 1 : -1];\n")
+    (tmp_path / "parts.c").write_text(source, encoding="ascii")
+    command = [compiler(), "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only", str(tmp_path / "parts.c")]
+    assert subprocess.run(command).returncode == 0
+
+
+def test_the_latest_frame_is_that_of_the_rules(tmp_path: Path) -> None:
+    # Catches a clock that is off by a tick, a frame that counts though it is not the latest, and malformed input. A
+    # phoneme's first frame waits until the next one begins, or the end, and then for the stream's delay of 7 frames.
+    includes = [f"-I{SOURCE / folder}" for folder in ("include", "lib/models", "lib")]
+    program = tmp_path / "delay"
+    sources = [SOURCE / "bench" / "delay.c", *sorted((SOURCE / "lib").glob("*.c")), SOURCE / "lib/models/speech_en.c"]
+    subprocess.run([compiler(), "-std=c99", "-O1", *includes, *map(str, sources), "-o", str(program)], check=True)
+
+    def latest(text: str) -> subprocess.CompletedProcess:
+        return subprocess.run([str(program), "-"], input=text, capture_output=True, text=True)
+
+    silence = load(str(SOURCE / "export" / "models" / "speech_en.npz")).phonemes.index("SIL")
+    vowel = silence + 1
+    assert latest(f"{vowel} 400 {vowel} 60").stdout.split() == ["540"]
+    assert latest(f"{vowel} 60 {silence} 5000 {vowel} 60\n{vowel} 200\n").stdout.split() == ["260", "340"]
+    for text in (f"{vowel}", f"{vowel} 60 x", "999 60", f"{vowel} 99999999"):
+        assert latest(text).returncode == 1
 
 
 def test_readme_has_the_figures_of_the_baseline() -> None:
