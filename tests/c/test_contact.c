@@ -236,9 +236,11 @@ static void pauses_come_to_rest_and_lead_on(void **state)
     assert_int_equal(speak("_3"), 3); /* too short to rest */
     assert_int_equal(targets[0][LIPS], 0);
     assert_int_equal(targets[2][LIPS], 0);
-    assert_int_equal(speak("_4"), 4);
+    assert_int_equal(speak("_4 t2"), 6);
     assert_int_equal(targets[0][LIPS], -50);
     assert_int_equal(targets[1][LIPS], 0);
+    assert_int_equal(speak("_4"), 4); /* nothing follows: it rests on */
+    assert_int_equal(targets[3][LIPS], -200);
     lips("_20 p1 _20", "...................xxx...................");
     assert_int_equal(targets[18][LIPS], 0);
     assert_int_equal(targets[22][LIPS], -100);
