@@ -101,7 +101,8 @@ def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
     expect(widest > 450, f"the mouth opens by {widest:.0f} FAP units only")
     laugh = min(begin for model, _, begin, _ in phonemes if model == "LAUGHTER")
     neutral = servos["corners"]["neutral"]
-    expect(all(face[3] > neutral + 100 for face in faces[laugh + 15:total]), "the laugh does not smile")
+    rest = phonemes[-1][2]  # the silence that ends the laugh, in which the smile begins to fade
+    expect(all(face[3] > neutral + 100 for face in faces[laugh + 15:rest]), "the laugh does not smile")
     expect(sum(face[3] for face in faces[:laugh - 15]) / (laugh - 15) < neutral + 60, "speech smiles")
 
     # A period for each face and more, since the queue is filled before each of the two motions begins. Seven interrupts
