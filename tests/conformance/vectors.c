@@ -448,7 +448,7 @@ static const conformance_step_t saturated_steps[] = {
 const conformance_stream_t conformance_streams[] = {
     { "sentence", sentence_steps, 17, 78, 0xe2676f6fu },
     { "phonemes", phonemes_steps, 41, 120, 0x419b75d5u },
-    { "laugh", laugh_steps, 33, 146, 0x4d81b382u },
+    { "laugh", laugh_steps, 33, 146, 0x1a8c4e68u },
     { "one_frame", one_frame_steps, 30, 29, 0xa6b4406du },
     { "one_millisecond", one_millisecond_steps, 161, 8, 0xba9536f2u },
     { "rounding", rounding_steps, 17, 23, 0xf750b292u },
@@ -465,15 +465,15 @@ const conformance_stream_t conformance_streams[] = {
     { "minutes", minutes_steps, 7, 9027, 0x3db81461u },
     { "endless", endless_steps, 7, 60, 0x394e6ffcu },
     { "queue", queue_steps, 115, 114, 0x23c7193du },
-    { "switch", switch_steps, 19, 87, 0x46358260u },
-    { "graded", graded_steps, 20, 91, 0x88c60066u },
-    { "quick_switches", quick_switches_steps, 18, 61, 0xb3957d73u },
-    { "second_frame", second_frame_steps, 6, 23, 0x0c4e905au },
-    { "turns", turns_steps, 182, 610, 0xac0455c9u },
-    { "switch_in_long", switch_in_long_steps, 6, 177, 0x55e442dfu },
-    { "restarted", restarted_steps, 13, 41, 0x8ec27214u },
-    { "cancelled", cancelled_steps, 52, 94, 0x3aae735du },
-    { "cancelled_twice", cancelled_twice_steps, 40, 81, 0x3d7a1e84u },
+    { "switch", switch_steps, 19, 87, 0x0525a0b1u },
+    { "graded", graded_steps, 20, 91, 0xe10c4748u },
+    { "quick_switches", quick_switches_steps, 18, 61, 0xfea3feb7u },
+    { "second_frame", second_frame_steps, 6, 23, 0x0940108au },
+    { "turns", turns_steps, 182, 610, 0xdd4adbbbu },
+    { "switch_in_long", switch_in_long_steps, 6, 177, 0x51a90b0bu },
+    { "restarted", restarted_steps, 13, 41, 0xa7da6233u },
+    { "cancelled", cancelled_steps, 52, 94, 0x24e65748u },
+    { "cancelled_twice", cancelled_twice_steps, 40, 81, 0xf35017d4u },
     { "saturated", saturated_steps, 4, 65, 0x11d0c73bu }
 };
 

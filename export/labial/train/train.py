@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Dict, List, Tuple
 from typing import Sequence as SequenceOf
 
@@ -148,6 +148,12 @@ def _check(
         raise LabialError("the corpus is empty")
 
 
+def _own(penalties: Penalties, kind: str) -> Penalties:
+    """The penalties of a kind. Where the mouth rests in an utterance is the talker's in speech; in laughter it is how
+    hard somebody laughs, which the phonemes' grades tell, and no intercept must take that from them."""
+    return penalties if kind == "speech" else replace(penalties, intercept=np.inf)
+
+
 def _check_taught(material: SequenceOf[Sequence]) -> None:
     untaught = ~np.any([item.weights.any(axis=0) for item in material], axis=0)
     if untaught.any():
@@ -243,7 +249,7 @@ def train(
         if extended:
             choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
             fitted = fit_kernels(
-                material, choice, tables, phoneme_class, plan.stand_in, silence, fps, penalties, look_ahead,
+                material, choice, tables, phoneme_class, plan.stand_in, silence, fps, _own(penalties, kind), look_ahead,
                 pair_knots,
             )
             kernel, lag, tables = fitted.kernel, fitted.lag, fitted.tables
