@@ -57,8 +57,8 @@ def test_a_long_closure_holds_its_last_frames_alone() -> None:
 
 def test_a_mouth_comes_to_rest_in_pauses() -> None:
     """In the head of a pause that was cut, from the first frame on by a sixteenth more, where silence says so; in its
-    tail too where nothing follows, but not where it leads on, nor in a pause that was not cut, whatever stands beside it.
-    It is no contact, which would be held."""
+    tail too where nothing follows, but not where it leads on, nor in a pause that was not cut, whatever stands beside
+    it. It is no contact, which would be held."""
     def shares(*pushed: Tuple[int, int]) -> List[int]:
         return rest(segments(pushed, SIL, 6, 50)).tolist()
 

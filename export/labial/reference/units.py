@@ -66,8 +66,8 @@ def segments(
 
 
 def rest(held: Sequence[Segment]) -> np.ndarray:
-    """(T,) int64: how far the mouth has come to rest in each frame, of REST: in the head of a pause, and in its tail too
-    where nothing follows."""
+    """(T,) int64: how far the mouth has come to rest in each frame, of REST: in the head of a pause, and in its tail
+    too where nothing follows."""
     frames = [np.zeros(0, dtype=np.int64)]
     for i, item in enumerate(held):
         resting = item.part == 0 or (item.part == 1 and i + 1 == len(held))
