@@ -175,9 +175,12 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     begin = units->taken < head ? 0u : head;
     frames = (units->taken < head ? head : segment->frames) - begin;
     taken->share = share_of(units->taken - begin, frames);
+    if (units->taken == 0)
+        units->rested = units->begins; /* nothing leads to where it rests */
     taken->rest = 0;
     if (head > 0 && (units->taken < head || !next || next->slot != segment->slot))
-        taken->rest = (uint8_t)(units->taken < LABIAL_REST_FRAMES ? units->taken + 1u : LABIAL_REST_FRAMES);
+        taken->rest = (uint8_t)(units->taken < LABIAL_REST_FRAMES && !units->rested ? units->taken + 1u
+                                                                                    : LABIAL_REST_FRAMES);
     taken->is_open = frames >= LABIAL_CONTACT_LONG && segment->frames - units->taken > LABIAL_CONTACT_LAST;
     taken->marks = (uint8_t)(units->begins ? LABIAL_BEGINS : 0);
     units->begins = 0;

@@ -128,6 +128,7 @@ typedef struct {
     uint8_t head, count;
     uint8_t before;     /* phoneme in front of the oldest segment */
     uint8_t begins;     /* the next frame is the first of a solution */
+    uint8_t rested;     /* the oldest segment is a pause that a solution began with */
     uint16_t remainder; /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
     uint32_t taken;     /* frames of the oldest segment that were taken */
     uint32_t frames;    /* that are held and not yet taken */

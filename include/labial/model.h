@@ -46,7 +46,8 @@ extern "C" {
 #define LABIAL_CONTACT_LONG 15
 #define LABIAL_CONTACT_LAST 8
 
-/* Frames in which a mouth comes to rest in a pause, but for its last, which lead to what follows. */
+/* Frames in which a mouth comes to rest in a pause, but for its last, which lead to what follows; a stream that begins
+ * with a pause begins at rest. */
 #define LABIAL_REST_FRAMES 16
 
 /* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */

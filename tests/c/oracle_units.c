@@ -83,7 +83,7 @@ size_t oracle_units(const labial_model_t *const *models, const fixture_phoneme_t
                 frame->previous = model->silence;
             }
             frame->is_first = i == 0 || i == cut;
-            frame->rest = cut == 0 || (i >= cut && !ends) ? 0 : i < 15 ? (unsigned)i + 1 : 16;
+            frame->rest = cut == 0 || (i >= cut && !ends) ? 0 : i < 15 && !begins ? (unsigned)i + 1 : 16;
             frame->number = i < cut ? i : i - cut;
             frame->whole = i < cut ? cut : length - cut;
             frame->begins = begins && i == 0;

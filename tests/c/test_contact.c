@@ -236,24 +236,27 @@ static void pauses_come_to_rest_and_lead_on(void **state)
     assert_int_equal(speak("_3"), 3); /* too short to rest */
     assert_int_equal(targets[0][LIPS], 0);
     assert_int_equal(targets[2][LIPS], 0);
-    assert_int_equal(speak("_4 t2"), 6);
-    assert_int_equal(targets[0][LIPS], -50);
+    assert_int_equal(speak("t1 _4 t2"), 7);
+    assert_int_equal(targets[1][LIPS], -50);
+    assert_int_equal(targets[2][LIPS], 0);
+    assert_int_equal(speak("t1 _4"), 5); /* nothing follows: it rests on */
+    assert_int_equal(targets[4][LIPS], -200);
+    assert_int_equal(speak("_4 t2"), 6); /* nothing leads to where it rests */
+    assert_int_equal(targets[0][LIPS], -800);
     assert_int_equal(targets[1][LIPS], 0);
-    assert_int_equal(speak("_4"), 4); /* nothing follows: it rests on */
-    assert_int_equal(targets[3][LIPS], -200);
     lips("_20 p1 _20", "...................xxx...................");
     assert_int_equal(targets[18][LIPS], 0);
     assert_int_equal(targets[22][LIPS], -100);
     lips("_20 p2 _20", "...................xxx....................");
     lips("_2 p1 _2", ".xxx.");
     f.floors[3 * LABIAL_CHANNELS + LIPS] = -801; /* steps are rounded towards where the mouth comes from */
-    assert_int_equal(speak("_30"), 30);
-    assert_int_equal(targets[0][LIPS], -50);
-    assert_int_equal(targets[15][LIPS], -801);
+    assert_int_equal(speak("t1 _30"), 31);
+    assert_int_equal(targets[1][LIPS], -50);
+    assert_int_equal(targets[16][LIPS], -801);
     f.floors[3 * LABIAL_CHANNELS + LIPS] = 801;
-    assert_int_equal(speak("_30"), 30);
-    assert_int_equal(targets[0][LIPS], 50);
-    assert_int_equal(targets[15][LIPS], 801);
+    assert_int_equal(speak("t1 _30"), 31);
+    assert_int_equal(targets[1][LIPS], 50);
+    assert_int_equal(targets[16][LIPS], 801);
     f.floors[3 * LABIAL_CHANNELS + LIPS] = -800;
 }
 

@@ -65,6 +65,7 @@ def test_a_mouth_comes_to_rest_in_pauses() -> None:
     assert shares((OPEN, 20), (SIL, 520), (OPEN, 20)) == [0, *range(1, 17), 16, 16, 16, 16, *[0] * 6, 0]
     assert shares((OPEN, 20), (SIL, 200)) == [0, *range(1, 11)]
     assert shares((SIL, 100), (SIL, 120), (OPEN, 20)) == [0] * 12
+    assert shares((SIL, 200), (OPEN, 20)) == [*[16] * 4, *[0] * 7]  # nothing leads to where it rests
     assert shares((SIL, 120)) == [0] * 6
     floor = np.array([[-160.0, 32.0], [-np.inf, -np.inf]])
     resting = np.array([[True, False], [False, False]])

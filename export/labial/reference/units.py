@@ -71,7 +71,8 @@ def rest(held: Sequence[Segment]) -> np.ndarray:
     frames = [np.zeros(0, dtype=np.int64)]
     for i, item in enumerate(held):
         resting = item.part == 0 or (item.part == 1 and i + 1 == len(held))
-        count = np.minimum(item.before + np.arange(1, item.frames + 1), REST)
+        first = i == (item.part or 0)  # the pause that the stream begins with: at rest at once
+        count = np.full(item.frames, REST) if first else np.minimum(item.before + np.arange(1, item.frames + 1), REST)
         frames.append(count if resting else np.zeros(item.frames, dtype=np.int64))
     return np.concatenate(frames)
 

@@ -97,7 +97,7 @@ def with_pauses_cut(item: Sequence, silence: int, ahead: int, fps: int) -> Seque
         if len(parts) > 1:
             last = begin + length == len(resting)
             count = int(length) if last else parts[0][0]
-            resting[begin : begin + count] = np.minimum(np.arange(1, count + 1), REST)
+            resting[begin : begin + count] = np.minimum(np.arange(1, count + 1), REST) if begin else REST
         for frames, milliseconds in parts if len(parts) > 1 else [(int(length), 1000 * duration)]:
             middle = begin + frames // 2
             rows.append((phoneme, milliseconds / 1000.0, frames, apex if begin <= apex < begin + frames else middle))
