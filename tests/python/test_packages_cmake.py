@@ -123,7 +123,8 @@ def test_python_package(tmp_path: Path) -> None:
     assert run(command, "--version", env=env).startswith("labial ")
     where = run(python, "-c", "import labial.native; print(labial.native.library_root())", env=env, cwd=tmp_path)
     assert Path(where.strip()) == site / "labial" / "library"
-    (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n")
+    (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n0.3 0.38 B\n0.38 0.55 EY\n0.55 0.62 B\n0.62 0.8 IY\n"
+                                       "0.8 1 SIL\n")
     out = run(command, "check", SOURCE / "export" / "models" / "speech_en.npz", tmp_path / "word.lab",
               env={**env, "OPENBLAS_NUM_THREADS": "1"}, cwd=tmp_path)
-    assert out.startswith("15 frames") and os.sep not in out
+    assert out.startswith("50 frames") and os.sep not in out
