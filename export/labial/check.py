@@ -67,7 +67,7 @@ class Comparison:
 
 
 def _of_kept_transitions(model: Model, exported: ExportedModel) -> Model:
-    """The model with the transitions alone that are exported: what fewer of them cost, `labial export` tells in nats."""
+    """The model with the transitions alone that are exported; what fewer of them cost, `labial export` tells."""
     kept = np.isfinite(exported.dense_transitions())
     return replace(model, log_transition=np.where(kept, model.log_transition, -np.inf))
 

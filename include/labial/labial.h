@@ -40,7 +40,7 @@ extern "C" {
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
 
 /* Frames that the trajectory's way back starts ahead of those that are delivered. Each buys smoothness by a frame of
- * delay and 104 bytes of workspace; 4 leave .2 % of a channel's range (RMS) with the bundled models, the published method's
+ * delay and 104 bytes of workspace; 4 leave .1 % of a channel's range (RMS) with the bundled models, the published method's
  * stiffer ones need 16 and more. 1 .. 48. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 4
