@@ -40,15 +40,15 @@ extern "C" {
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
 
 /* Frames that the trajectory's way back starts ahead of those that are delivered. Each buys smoothness by a frame of
- * delay and 104 bytes of workspace; 4 leave .1 % of a channel's range (RMS) with the bundled models, the published method's
- * stiffer ones need 16 and more. 1 .. 48. */
+ * delay and 104 bytes of workspace; 4 leave .1 % of a channel's range (RMS) with the bundled models, the published
+ * method's stiffer ones need 16 and more. 1 .. 48. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 4
 #endif
 
-/* Frames after which the search decides on a state, if its unit does not end before. Each buys a likelier path by a frame
- * of delay and some 175 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long as the longest
- * unit decodes units as published. */
+/* Frames after which the search decides on a state, if its unit does not end before. Each buys a likelier path by a
+ * frame of delay and some 175 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long as
+ * the longest unit decodes units as published. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0
 #endif
@@ -65,8 +65,8 @@ extern "C" {
 #define LABIAL_REACH 20
 #endif
 
-/* Models that a stream can hold at the same time. One makes room for another when its phonemes have been taken up and as
- * many frames after them as the search takes at a time. 1 .. 255. */
+/* Models that a stream can hold at the same time. One makes room for another when its phonemes have been taken up and
+ * as many frames after them as the search takes at a time. 1 .. 255. */
 #ifndef LABIAL_MODELS
 #define LABIAL_MODELS 2
 #endif
@@ -256,8 +256,8 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
                 labial_frame_fn callback, void *user);
 
 /*
- * Makes the next pushes phonemes of `model`, speech or laughter. Each model takes the other's phonemes for silence; where
- * the stream passes from one to the other, the earlier motion runs out while the later one fades in, over 8 frames. The
+ * Makes the next pushes phonemes of `model`, speech or laughter. Each model takes the other's phonemes for silence;
+ * where the stream passes from one to the other, the earlier motion runs out while the later one fades in, over 8 frames. The
  * model is trusted as that of labial_init() is.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
@@ -270,8 +270,8 @@ int labial_use(labial_t *stream, const labial_model_t *model);
  * added exactly: after any number of pushes the frames amount to the rounded sum of the durations. A phoneme that gets
  * no frame of its own is skipped, and its time is added to the next.
  *
- * How a phoneme looks depends on what follows: its frames wait until the phoneme behind it and all that the kernels reach
- * are known, or until labial_end(). Pauses of any length hold nothing up: a silence is pushed whole when it begins.
+ * How a phoneme looks depends on what follows: its frames wait until the phoneme behind it and all that the kernels
+ * reach are known, or until labial_end(). Pauses of any length hold nothing up: a silence is pushed whole when it begins.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
  * labial_cancel()), LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION or LABIAL_ERROR_FULL.
