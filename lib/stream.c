@@ -4,10 +4,11 @@
  *     queue --units--> phoneme --shape--> target --viterbi--> state --trajectory--> motion --> fade --> callback
  *     pushed           one frame, all channels    a third of the channels, three frames        one frame
  *
- * Each tick takes one frame from the queue and finds its target. A state lasts `stride` frames, and so the channels take
- * turns: in each tick those whose turn it is are searched and solved for the frames since their last turn, on to the
- * latest one, and go back from there to the frames that are due. Channel c has its turn every `stride` ticks, c ticks
- * apart from channel 0. So all ticks do alike, and frame t is complete LABIAL_DELAY(stride) ticks after it was taken.
+ * Each tick takes one frame from the queue and finds its target. A state lasts `stride` frames, and so the channels
+ * take turns: in each tick those whose turn it is are searched and solved for the frames since their last turn, on to
+ * the latest one, and go back from there to the frames that are due. Channel c has its turn every `stride` ticks, c
+ * ticks apart from channel 0. So all ticks do alike, and frame t is complete LABIAL_DELAY(stride) ticks after it was
+ * taken.
  *
  * Where the model changes, and at the end, the solution ends with the last frame and the next one begins anew; the way
  * back crosses the two without a trace, for rho is one there and kappa zero. Frames that are delivered then fade from

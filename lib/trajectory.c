@@ -1,7 +1,8 @@
 /*
- * The matrix of equation 3 is symmetric, positive definite and pentadiagonal, and its rows sum to what holds each frame,
- * since deltas of a constant are zero. L D L' written with these sums keeps apart what holds a frame (g), what ties it to
- * its neighbours (f, c), and has no small difference of large numbers. With h the hold of frame t, d and dd its weights:
+ * The matrix of equation 3 is symmetric, positive definite and pentadiagonal, and its rows sum to what holds each
+ * frame, since deltas of a constant are zero. L D L' written with these sums keeps apart what holds a frame (g), what
+ * ties it to its neighbours (f, c), and has no small difference of large numbers. With h the hold of frame t, d and dd
+ * its weights:
  *
  *     c_t     = dd_(t+1) - d_(t+1)                                   second off-diagonal
  *     k_t     = rho_t c_t
@@ -11,12 +12,12 @@
  *     q_t     = q_(t-1) + (h_t (x_t - q_(t-1)) + k_(t-2) (q_(t-1) - q_(t-2)) + p_t) / g_t
  *     m_t     = m_(t+1) + rho_t (q_t - m_(t+1)) + kappa_t (m_(t+1) - m_(t+2))              (backwards)
  *
- * q_t is the position of frame t given all before it, x_t where its hold draws it, p_t the pull of delta and delta-delta
- * means. Rounding rho or kappa moves m by that share of a difference, and nothing where the motion rests.
+ * q_t is the position of frame t given all before it, x_t where its hold draws it, p_t the pull of delta and
+ * delta-delta means. Rounding rho or kappa moves m by that share of a difference, and nothing where the motion rests.
  *
- * Formats: weights are integers; g, f, c, D, k in Q16; rho and kappa in Q24, 16 bits where they are kept for the way back;
- * q and m in Q12 FAP. All of g, f, c and D stay below 2^30 because LABIAL_WEIGHT_SUM_MAX bounds the diagonal; g is never
- * below the hold, and rho and kappa lie within 0 .. 1 as long as d is not above dd.
+ * Formats: weights are integers; g, f, c, D, k in Q16; rho and kappa in Q24, 16 bits where they are kept for the way
+ * back; q and m in Q12 FAP. All of g, f, c and D stay below 2^30 because LABIAL_WEIGHT_SUM_MAX bounds the diagonal; g
+ * is never below the hold, and rho and kappa lie within 0 .. 1 as long as d is not above dd.
  */
 #include "trajectory.h"
 
@@ -135,8 +136,8 @@ void labial_trajectory_ask(const labial_channel_t *channel, unsigned number, lab
     ask->delta2_pull = ask->delta2 * state->mean[2];
 }
 
-void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact, unsigned marks,
-                           labial_factors_t *before, labial_factors_t *own)
+void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact,
+                           unsigned marks, labial_factors_t *before, labial_factors_t *own)
 {
     int32_t delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
     if (!(marks & (LABIAL_BEGINS | LABIAL_ENDS))) {

@@ -4,9 +4,10 @@
  *     (W' U^-1 W + A) m = W' U^-1 mu_q + A x
  *
  * q is the state path, U the diagonal of the states' variances, A that of the anchors' precisions and x the targets.
- * Rows of W whose delta window would leave the solution are dropped. The factorisation runs on from frame to frame; the
- * way back starts LABIAL_WINDOW frames ahead of those that are wanted, as if all beyond were equal to the first of them.
- * With weights that labial_model_check() accepts the error is below a tenth of a FAP unit (the tests hold it to that).
+ * Rows of W whose delta window would leave the solution are dropped. The factorisation runs on from frame to frame;
+ * the way back starts LABIAL_WINDOW frames ahead of those that are wanted, as if all beyond were equal to the first of
+ * them. With weights that labial_model_check() accepts the error is below a tenth of a FAP unit (the tests hold it to
+ * that).
  */
 #ifndef LABIAL_TRAJECTORY_H
 #define LABIAL_TRAJECTORY_H
@@ -30,16 +31,16 @@ typedef struct {
 void labial_trajectory_ask(const labial_channel_t *channel, unsigned state, labial_ask_t *ask);
 
 /*
- * Takes up the row of a frame, whose target is `position`; in `contact` it is held there, firmly. `marks` say whether it is the solution's first or last. Every
- * row but the first factors the frame before it, for which it needs `before`, its place in the ring; the last one
- * factors its own frame too, `own`.
+ * Takes up the row of a frame, whose target is `position`; in `contact` it is held there, firmly. `marks` say whether
+ * it is the solution's first or last. Every row but the first factors the frame before it, for which it needs
+ * `before`, its place in the ring; the last one factors its own frame too, `own`.
  */
-void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact, unsigned marks,
-                           labial_factors_t *before, labial_factors_t *own);
+void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact,
+                           unsigned marks, labial_factors_t *before, labial_factors_t *own);
 
 /*
- * The way back through the newest `count` frames of a ring of `size` factors, the newest being at `newest`. Of these the
- * last `wanted` are put into `motion`, a ring of as many `places`, from `place` backwards: Q4 FAP, one frame every
+ * The way back through the newest `count` frames of a ring of `size` factors, the newest being at `newest`. Of these
+ * the last `wanted` are put into `motion`, a ring of as many `places`, from `place` backwards: Q4 FAP, one frame every
  * LABIAL_CHANNELS.
  */
 void labial_trajectory_back(const labial_factors_t *factors, unsigned size, unsigned newest, unsigned count,

@@ -1,9 +1,9 @@
 /*
  * units.h - phonemes to frames: the queue of what was pushed, taken frame by frame.
  *
- * A frame is taken when all is known that its target depends on: what its model's kernels reach, and the phoneme behind
- * its own. So what is taken never depends on when it was pushed. A pause holds nothing up: a silence that is longer than
- * the kernels look ahead is taken as two phonemes, of which the first needs nothing of what follows.
+ * A frame is taken when all is known that its target depends on: what its model's kernels reach, and the phoneme
+ * behind its own. So what is taken never depends on when it was pushed. A pause holds nothing up: a silence that is
+ * longer than the kernels look ahead is taken as two phonemes, of which the first needs nothing of what follows.
  *
  *     pushed    | m |  ey  | b |   iy   |          silence           | m |
  *     taken     | m |  ey  | b |   iy   |      silence     | silence | m |

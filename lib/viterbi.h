@@ -5,11 +5,12 @@
  * predecessors every state can be entered from the best state of the step before, at the cost LABIAL_DEAD, the highest
  * of a transition: so that what is as far behind as that need not be kept, and eight bits are enough.
  *
- * Only the LABIAL_SEARCHED states around the one that is nearest to the target are looked at; the others are dead. Likely
- * paths hardly leave this window, and it makes all steps alike.
+ * Only the LABIAL_SEARCHED states around the one that is nearest to the target are looked at; the others are dead.
+ * Likely paths hardly leave this window, and it makes all steps alike.
  *
- * Which state was the right one for a step is decided LABIAL_LAG steps later, by the way back from the state that is best
- * then, or from the end of the unit when that comes earlier; nothing before the end of a unit is decided after it.
+ * Which state was the right one for a step is decided LABIAL_LAG steps later, by the way back from the state that is
+ * best then, or from the end of the unit when that comes earlier; nothing before the end of a unit is decided after
+ * it.
  */
 #ifndef LABIAL_VITERBI_H
 #define LABIAL_VITERBI_H

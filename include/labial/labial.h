@@ -47,8 +47,8 @@ extern "C" {
 #endif
 
 /* Frames after which the search decides on a state, if its unit does not end before. Each buys a likelier path by a
- * frame of delay and some 175 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long as
- * the longest unit decodes units as published. */
+ * frame of delay and some 175 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long
+ * as the longest unit decodes units as published. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0
 #endif
@@ -257,8 +257,8 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 
 /*
  * Makes the next pushes phonemes of `model`, speech or laughter. Each model takes the other's phonemes for silence;
- * where the stream passes from one to the other, the earlier motion runs out while the later one fades in, over 8 frames. The
- * model is trusted as that of labial_init() is.
+ * where the stream passes from one to the other, the earlier motion runs out while the later one fades in, over 8
+ * frames. The model is trusted as that of labial_init() is.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
  * LABIAL_ERROR_RATE (frames per second and search stride are those of the stream's first model) or LABIAL_ERROR_MODELS.
@@ -271,7 +271,8 @@ int labial_use(labial_t *stream, const labial_model_t *model);
  * no frame of its own is skipped, and its time is added to the next.
  *
  * How a phoneme looks depends on what follows: its frames wait until the phoneme behind it and all that the kernels
- * reach are known, or until labial_end(). Pauses of any length hold nothing up: a silence is pushed whole when it begins.
+ * reach are known, or until labial_end(). Pauses of any length hold nothing up: a silence is pushed whole when it
+ * begins.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
  * labial_cancel()), LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION or LABIAL_ERROR_FULL.

@@ -24,15 +24,16 @@
 extern "C" {
 #endif
 
-/* The highest intensity. At 0 a laugh is a hum behind nearly closed lips, at the highest the mouth is wide open, and jaw,
- * lips and corners go all steps between: the generator yields soft, plain and loud grades of the phonemes, between two
- * grades both by turns, and the model knows how far each opens. Pulses get softer along a train and from train to train.
- * Half of it has the corpus's rhythm; more makes trains longer, pauses shorter and vowels longer and more open, less has
- * more pulses hummed with closed lips. */
+/* The highest intensity. At 0 a laugh is a hum behind nearly closed lips, at the highest the mouth is wide open, and
+ * jaw, lips and corners go all steps between: the generator yields soft, plain and loud grades of the phonemes,
+ * between two grades both by turns, and the model knows how far each opens. Pulses get softer along a train and from
+ * train to train. Half of it has the corpus's rhythm; more makes trains longer, pauses shorter and vowels longer and
+ * more open, less has more pulses hummed with closed lips. */
 #define LABIAL_LAUGH_FULL 256u
 
-/* The phonemes of every laughter model that the exporter writes, in the order of their numbers: twelve, then the soft and
- * the loud grade of six of them. A model that was trained on labels without grades has the plain phoneme's shapes there. */
+/* The phonemes of every laughter model that the exporter writes, in the order of their numbers: twelve, then the soft
+ * and the loud grade of six of them. A model that was trained on labels without grades has the plain phoneme's shapes
+ * there. */
 enum {
     LABIAL_LAUGH_SILENCE,
     LABIAL_LAUGH_NE, /* air through the nose, mostly drawn in */
