@@ -48,8 +48,6 @@ static void age(labial_search_t *search)
     memmove(search->spans + 1, search->spans, LABIAL_LAG);
     memmove(search->back[1], search->back[0], sizeof search->back[0] * (LABIAL_LAG - 1u));
     memmove(search->firsts + 1, search->firsts, LABIAL_LAG - 1u);
-    if (search->undecided < LABIAL_LAG)
-        search->undecided++;
 #else
     (void)search;
 #endif
@@ -131,6 +129,10 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
     unsigned i, best = 0;
 
     age(search);
+#if LABIAL_LAG > 0
+    if (search->undecided < LABIAL_LAG)
+        search->undecided++;
+#endif
     for (i = 0; i < size; i++)
         costs[i] = emission(&channel->emissions[first + i], position);
     for (i = 0; i < size; i++, edge += predecessors) {
