@@ -8,7 +8,7 @@
 #include "units.h"
 
 /*
- * Shape selection (paper, eq. 2; section 2 of the method for context and soft selection): the shape of `phoneme`
+ * Shape selection (paper, eq. 2; DESIGN.md for context and soft selection): the shape of `phoneme`
  * lasting `ms` milliseconds between the given neighbours, with what these add to it as a pair.
  */
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,

@@ -1,4 +1,4 @@
-"""Holds an exported model, run by the C library, to the limits of the method (section 6)."""
+"""Holds an exported model, run by the C library, to the limits below."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Baselines: ridge regression on the labels in a window around each frame (section 4 of the method).
+"""Baselines: ridge regression on the labels in a window around each frame.
 
 On phoneme labels; or on viseme-class labels together with the context-aware step stream of all channels. No pipeline
 of shapes, states and trajectories follows: they show what additive temporal kernels reach by themselves.
