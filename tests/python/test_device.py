@@ -15,7 +15,7 @@ from models import random_model, streams
 @pytest.mark.parametrize("method", ["paper", "labial"])
 @pytest.mark.parametrize("seed", range(6))
 def test_library_follows_the_reference(method: str, seed: int) -> None:
-    """At most one FAP unit anywhere and RMS 0.25 (method, section 6): any wrong decision or overflow is far beyond."""
+    """At most one FAP unit anywhere and RMS 0.25: any wrong decision or overflow is far beyond."""
     model = random_model(seed, method, states=50 if seed % 2 else 12)
     exported = quantise(model, "tested_model")
     asked = list(streams(len(model.phonemes), model.boundary, seed).values())

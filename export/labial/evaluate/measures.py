@@ -1,4 +1,4 @@
-"""The measures of section 5: one method's motion on the test part, held against the human's, as named numbers."""
+"""The measures (docs/method.md, How it is judged): one method's motion on the test part, held against the human's, as named numbers."""
 
 from __future__ import annotations
 

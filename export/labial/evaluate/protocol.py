@@ -1,4 +1,4 @@
-"""The protocol of section 5: fit every method on each split's training part, measure it on the rest."""
+"""The protocol of the comparison (docs/method.md, How it is judged): fit every method on each split's training part, measure it on the rest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who is trained on and who is judged (after section 5 of Ding and Pelachaud 2015)."""
+"""Who is trained on and who is judged (docs/method.md, How it is judged)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The method as published, unit by unit: each is searched as a whole, solved as a whole, and cross-faded with the next.
 
 The run-time carries search and solution on instead. This is what it is compared with: for models of `--method paper`
-the method to the letter (sections 3 and 4 of the paper), and with `whole` both over the whole utterance.
+the method to the letter (docs/method.md, States to Equation 3), and with `whole` both over the whole utterance.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Phonemes to frames, pauses cut in two, and where units end (section 3 of the paper; ``lib/units.c``)."""
+"""Phonemes to frames, pauses cut in two, and where units end (docs/method.md, Units and search; ``lib/units.c``)."""
 
 from __future__ import annotations
 

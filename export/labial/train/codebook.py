@@ -1,4 +1,4 @@
-"""The hidden Markov model of a channel (section 3 of the paper): an LBG codebook of human motion and its counts.
+"""The hidden Markov model of a channel (docs/method.md, States): an LBG codebook of human motion and its counts.
 
 A frame's features are m, delta m = (m[t+1] - m[t-1]) / 2 and delta-delta m = m[t+1] - 2 m[t] + m[t-1], each z-scored
 over the corpus. The codebook is grown by binary splitting (Linde, Buzo and Gray 1980): each cell is split in two along

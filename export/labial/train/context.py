@@ -1,13 +1,13 @@
-"""Context-aware mixtures (beyond the paper): naive Bayes over shape, duration and the neighbours' viseme classes.
+"""Context-aware mixtures (docs/method.md, Context): naive Bayes over shape, duration and the neighbours' viseme classes.
 
-To each component of section 2 come two categorical distributions, over the class of the previous and of the next
+To each component of equation 1 come two categorical distributions, over the class of the previous and of the next
 phoneme, fitted in the same EM. Its target is the posterior density of the parameters, with conjugate priors
 that keep rare phonemes sane:
 
     weights       Dirichlet, WEIGHT_PRIOR counts per component
     classes       Dirichlet, CLASS_PRIOR counts per class (additive smoothing)
     covariance    inverse Wishart, COVARIANCE_PRIOR samples of the phoneme's overall diagonal covariance times
-                  COVARIANCE_SHRINK, plus the regularisation of section 2's mixture
+                  COVARIANCE_SHRINK, plus the regularisation of equation 1's mixture
 
 so that no iteration lowers :func:`log_posterior`.
 """

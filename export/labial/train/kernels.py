@@ -1,4 +1,4 @@
-"""Temporal kernels (beyond the paper): what each phoneme adds to every channel before, during and after itself.
+"""Temporal kernels (docs/method.md, Temporal kernels): what each phoneme adds to every channel before, during and after itself.
 
 The target of a frame is the shape of its phoneme plus one tap of the kernel of the phoneme at each of L lags:
 

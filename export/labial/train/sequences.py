@@ -137,7 +137,7 @@ class Occurrences:
     learnt: np.ndarray  #: (S,) bool, whether anything of it is learnt
 
     def vectors(self) -> np.ndarray:
-        """(S, 14): the training vectors of section 2, shape (FAP) at the apex joined with the duration (seconds)."""
+        """(S, 14): the training vectors of equation 1, shape (FAP) at the apex joined with the duration (seconds)."""
         return np.concatenate([self.apex_shape, self.duration[:, None]], axis=1)
 
 

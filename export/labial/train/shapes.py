@@ -1,4 +1,4 @@
-"""Lip shape mixtures (section 2 of the paper): one Gaussian mixture per phoneme over shape and duration.
+"""Lip shape mixtures (docs/method.md, Equation 1): one Gaussian mixture per phoneme over shape and duration.
 
 A training vector is the 13 channel values at the apex of a phoneme occurrence joined with its duration in seconds;
 equation 1 gives each phoneme a mixture with full covariances over these 14 dimensions. scikit-learn fits it on

@@ -1,4 +1,4 @@
-"""Matched states (beyond the paper): what a state of the decoded path says about human motion.
+"""Matched states (docs/method.md, Matched states): what a state of the decoded path says about human motion.
 
 The codebook's variances describe human motion inside a cell. What the run-time decodes is a state path for a target,
 which is another thing: it rests and jumps where the mouth glides. So the training set is decoded from its own targets,

@@ -202,7 +202,7 @@ def train(
 ) -> Model:
     """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
 
-    `method` is "paper", the published one, or "labial": context-aware mixtures (section 2), temporal kernels, matched
+    `method` is "paper", the published one, or "labial": context-aware mixtures, temporal kernels, matched
     states and anchors on top. `codebook` is Q, the states of each channel, `components` C of each phoneme's mixture.
     `look_ahead` is how far the temporal kernels reach into what follows, seconds; less makes a stream's frames earlier.
     `pair_knots` is 2 for pairs that move from the phoneme's start to its end, 1 for such as stand still.

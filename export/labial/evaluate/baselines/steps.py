@@ -1,6 +1,6 @@
 """Baseline: the step stream, each phoneme's selected mean shape held for the phoneme (equation 2 of the paper).
 
-Also the step stream of the context-aware mixtures (DESIGN.md, Beyond the paper), which other baselines build on.
+Also the step stream of the context-aware mixtures (docs/method.md, What Labial adds), which other baselines build on.
 """
 
 from __future__ import annotations
