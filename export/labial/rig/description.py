@@ -7,11 +7,9 @@ import re
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Tuple, Union
 
-import numpy as np
-
 from labial.errors import LabialError
 from labial.faps import CHANNELS
-from labial.rig.gestures import SOURCES
+from labial.rig.gestures import SOURCES, Row
 from labial.rig.units import UNITS, Unit, make_unit
 from labial.toml import Table, meant, read_toml
 
@@ -28,7 +26,7 @@ class Output:
     """One output, in the unit of the description: microseconds for servos."""
 
     name: str
-    weights: np.ndarray  #: (13,) float64
+    weights: Row
     gain: float  #: units per FAP unit
     neutral: float
     minimum: float
@@ -93,7 +91,7 @@ def _named(top: Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mapping
     return list(outputs.items())  # type: ignore[arg-type]
 
 
-def _source(table: Table) -> Tuple[np.ndarray, Union[float, None]]:
+def _source(table: Table) -> Tuple[Row, Union[float, None]]:
     """The weights of ``from`` and, if it is one name, the reach that is usual for it."""
     given = table.content.get("from")
     if isinstance(given, str):
@@ -102,16 +100,16 @@ def _source(table: Table) -> Tuple[np.ndarray, Union[float, None]]:
         alone = False
     if not isinstance(given, dict) or not given:
         raise table.error("from", "is the name of a gesture or a FAP, or a table { NAME = WEIGHT, ... }")
-    weights, reach = np.zeros(CHANNELS), None
+    weights, reach = (0.0,) * CHANNELS, None
     for name, weight in given.items():
         if name not in SOURCES:
             raise table.error("from", f"no gesture or FAP is called {name!r}{meant(name, SOURCES)}")
         number = table.as_number(f"from.{name}", weight)
         if abs(number) > 1000:
             raise table.error(f"from.{name}", f"{number:g} is not within -1000 .. 1000")
-        weights += number * SOURCES[name].weights
+        weights = tuple(total + number * weight for total, weight in zip(weights, SOURCES[name].weights))
         reach = SOURCES[name].reach if alone else None
-    if not weights.any():
+    if not any(weights):
         raise table.error("from", "all weights are zero")
     return weights, reach
 

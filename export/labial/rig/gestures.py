@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Dict, Mapping, NamedTuple, Optional
-
-import numpy as np
+from typing import Dict, Mapping, NamedTuple, Optional, Tuple
 
 from labial.faps import CHANNELS, FAP_COLUMNS, FAP_NAMES
+
+#: A weight or a value for each of the 13 channels. No arrays: the run-time reads rigs where numpy is not installed.
+Row = Tuple[float, ...]
 
 
 class Gesture(NamedTuple):
     """A weighted sum of FAPs, and how far it goes in ordinary speech and laughter."""
 
-    weights: np.ndarray  #: (13,) float64
+    weights: Row
     reach: Optional[float]  #: FAP units of the sum at its full extent; None where nothing is usual
 
 
-def _weights(**named: float) -> np.ndarray:
-    weights = np.zeros(CHANNELS)
-    for name, weight in named.items():
-        weights[FAP_COLUMNS.index(name)] = weight
-    return weights
+def _weights(**named: float) -> Row:
+    return tuple(float(named.get(name, 0.0)) for name in FAP_COLUMNS)
+
+
+def _alone(channel: int) -> Row:
+    return tuple(float(k == channel) for k in range(CHANNELS))
 
 
 #: Sums with a name. The reaches are round numbers near the extremes of a spoken sentence and a laugh; the corners of
@@ -36,13 +38,13 @@ GESTURES: Dict[str, Gesture] = {
 
 #: Everything that a description may name: gestures, FAPs as MPEG-4 calls them, FAPs as columns of a frames file.
 SOURCES: Mapping[str, Gesture] = {
-    **{name: Gesture(row, None) for names in (FAP_NAMES, FAP_COLUMNS) for name, row in zip(names, np.eye(CHANNELS))},
+    **{name: Gesture(_alone(k), None) for names in (FAP_NAMES, FAP_COLUMNS) for k, name in enumerate(names)},
     **GESTURES,
 }
 
 #: Faces to draw a rig with, FAP units: an open vowel, a rounded one, a smile that shows the teeth, and lips pressed on
 #: each other over a jaw that is half open, which shows whether a face can close in p, b, m.
-POSES: Dict[str, np.ndarray] = {
+POSES: Dict[str, Row] = {
     "mouth open": _weights(fap3=400, fap16=-240, fap52=-600, fap53=-15, fap54=-15, fap57=-490, fap58=-490, fap59=-120,
                            fap60=-120),
     "lips rounded": _weights(fap3=180, fap16=-100, fap17=150, fap51=50, fap52=-250, fap53=-55, fap54=-55, fap55=65,

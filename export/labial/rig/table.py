@@ -7,15 +7,16 @@ import os
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Optional, Tuple, Union
-
-import numpy as np
+from typing import TYPE_CHECKING, List, Optional, Tuple, Union
 
 from labial import __version__
-from labial.emit import check_name
 from labial.errors import DataError
 from labial.faps import FAP_NAMES
 from labial.rig.description import Output, Rig
+from labial.rig.gestures import Row
+
+if TYPE_CHECKING:
+    import numpy as np
 
 #: Version and limits of include/labial/rig.h.
 FORMAT = 1
@@ -67,23 +68,25 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
         raise fail("from" if abs(output.gain * scale) < 4096 else "gain" if output.given_gain else "full",
                    "gain and weights are too large, or too far apart, to keep the motion within one unit")
     weights, gain = found
-    return TableOutput(output.name, tuple(int(w) for w in weights), gain, values["neutral"], values["minimum"],
+    return TableOutput(output.name, weights, gain, values["neutral"], values["minimum"],
                        values["maximum"], values["slew"], output.invert)
 
 
-def _quantise(weights: np.ndarray, gain: float) -> Optional[Tuple[np.ndarray, int]]:
+def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]]:
     """Q12 weights and Q16 gain whose product is nearest to what is asked, or None when nothing comes near.
 
     Weights times a power of two and the gain divided by it are the same output. Of the pairs that fit, the plainest is
     taken that errs by less than a twentieth unit for FAPs up to FAP_MAX, else the one that errs least.
     """
-    best: Optional[Tuple[float, np.ndarray, int]] = None
+    best: Optional[Tuple[float, Tuple[int, ...], int]] = None
     for power in sorted(range(-12, 20), key=abs):
-        rounded = np.floor(weights * 2.0**power * 4096 + 0.5)
+        rounded = tuple(math.floor(weight * 2.0**power * 4096 + 0.5) for weight in weights)
         whole = math.floor(gain / 2.0**power * 65536 + 0.5)
-        if np.abs(rounded).sum() > WEIGHT_SUM_MAX or np.abs(rounded).max() > 32767 or abs(whole) > GAIN_MAX:
+        sizes = [abs(weight) for weight in rounded]
+        if sum(sizes) > WEIGHT_SUM_MAX or max(sizes) > 32767 or abs(whole) > GAIN_MAX:
             continue
-        error = float(np.abs(rounded / 4096 * (whole / 65536) - weights * gain).sum()) * FAP_MAX
+        error = FAP_MAX * sum(abs(found / 4096 * (whole / 65536) - weight * gain)
+                              for found, weight in zip(rounded, weights))
         if best is None or error < best[0]:
             best = (error, rounded, whole)
         if error < 0.05:
@@ -96,6 +99,8 @@ def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray) -> np.ndarr
 
     Weights and gains are those of the description; neutral and limits are the table's whole units.
     """
+    import numpy as np
+
     columns = []
     for output, whole in zip(rig.outputs, table):
         move = (frames @ output.weights) * (output.gain * rig.unit.scale)
@@ -171,6 +176,8 @@ const labial_rig_t {rig.name} = {{ outputs, {len(table)} }};
 
 def write(rig: Rig, directory: Union[str, os.PathLike]) -> List[Path]:
     """Writes NAME.h and NAME.c into `directory`; returns their paths. Nothing is written when the rig has errors."""
+    from labial.emit import check_name
+
     check_name(rig.name, "rig")
     table = convert(rig)
     folder = Path(directory)
