@@ -35,11 +35,11 @@ void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, uns
     static labial_solver_t solver;
     const unsigned size = LABIAL_FACTORS_(HOLD);
     unsigned t, place = 0, before = 0, turn = 0;
-    labial_ask_t ask;
+    labial_terms_t terms;
     for (t = 0; t < BENCH_UNIT; t++) {
         if (turn == 0)
-            labial_trajectory_ask(&model->channels[k], unit->path[t], &ask);
-        labial_trajectory_row(&solver, &ask, unit->targets[t][k], 0, marks_of(t, BENCH_UNIT), &factors[before],
+            labial_trajectory_terms(&model->channels[k], unit->path[t], &terms);
+        labial_trajectory_row(&solver, &terms, unit->targets[t][k], 0, marks_of(t, BENCH_UNIT), &factors[before],
                               &factors[place]);
         turn = turn + 1u < HOLD ? turn + 1u : 0u;
         if (turn == 0 && t >= LABIAL_WINDOW + HOLD)
@@ -54,10 +54,10 @@ void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, u
     static labial_factors_t factors[BENCH_SOLVE];
     static labial_solver_t solver;
     unsigned t;
-    labial_ask_t ask;
+    labial_terms_t terms;
     for (t = 0; t < length; t++) {
-        labial_trajectory_ask(&model->channels[k], path[t], &ask);
-        labial_trajectory_row(&solver, &ask, positions[t * LABIAL_CHANNELS], 0, marks_of(t, length),
+        labial_trajectory_terms(&model->channels[k], path[t], &terms);
+        labial_trajectory_row(&solver, &terms, positions[t * LABIAL_CHANNELS], 0, marks_of(t, length),
                               &factors[t > 0 ? t - 1u : 0u], &factors[t]);
     }
     labial_trajectory_back(factors, BENCH_SOLVE, length - 1u, length, length, length - 1u, length, positions);

@@ -122,29 +122,29 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     solver->kappa_f = labial_part24(f, kappa);
 }
 
-void labial_trajectory_ask(const labial_channel_t *channel, unsigned number, labial_ask_t *ask)
+void labial_trajectory_terms(const labial_channel_t *channel, unsigned number, labial_terms_t *terms)
 {
     const labial_state_t *state = &channel->states[number];
-    ask->origin = state->mean[0];
-    ask->position = ((int32_t)channel->centre + state->mean[0]) * 256;
-    ask->share = (int32_t)state->share + (state->share >> 7);
-    ask->hold = (int32_t)labial_weight(state->hold);
-    ask->firm = (int32_t)labial_weight(channel->firm);
-    ask->delta = (int32_t)labial_weight(state->weight[0]);
-    ask->delta2 = (int32_t)labial_weight(state->weight[1]);
-    ask->delta_pull = 2 * ask->delta * state->mean[1];
-    ask->delta2_pull = ask->delta2 * state->mean[2];
+    terms->origin = state->mean[0];
+    terms->position = ((int32_t)channel->centre + state->mean[0]) * 256;
+    terms->share = (int32_t)state->share + (state->share >> 7);
+    terms->hold = (int32_t)labial_weight(state->hold);
+    terms->firm = (int32_t)labial_weight(channel->firm);
+    terms->delta = (int32_t)labial_weight(state->weight[0]);
+    terms->delta2 = (int32_t)labial_weight(state->weight[1]);
+    terms->delta_pull = 2 * terms->delta * state->mean[1];
+    terms->delta2_pull = terms->delta2 * state->mean[2];
 }
 
-void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact,
+void labial_trajectory_row(labial_solver_t *solver, const labial_terms_t *terms, int32_t position, int contact,
                            unsigned marks, labial_factors_t *before, labial_factors_t *own)
 {
     int32_t delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
     if (!(marks & (LABIAL_BEGINS | LABIAL_ENDS))) {
-        delta = ask->delta;
-        delta2 = ask->delta2;
-        delta_pull = ask->delta_pull;
-        delta2_pull = ask->delta2_pull;
+        delta = terms->delta;
+        delta2 = terms->delta2;
+        delta_pull = terms->delta_pull;
+        delta2_pull = terms->delta2_pull;
     }
     if (marks & LABIAL_BEGINS) {
         memset(solver, 0, sizeof *solver);
@@ -152,9 +152,9 @@ void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int
         solver->pull += delta2_pull - delta_pull;
         factor(solver, delta2 - delta, delta, before);
     }
-    solver->hold = (uint16_t)(contact && ask->firm > ask->hold ? ask->firm : ask->hold);
+    solver->hold = (uint16_t)(contact && terms->firm > terms->hold ? terms->firm : terms->hold);
     solver->delta = (uint16_t)delta;
-    solver->position = ask->position + (position - ask->origin) * (contact ? 256 : ask->share);
+    solver->position = terms->position + (position - terms->origin) * (contact ? 256 : terms->share);
     solver->pull = solver->next_pull - 2 * delta2_pull;
     solver->next_pull = delta2_pull + delta_pull;
     if (marks & LABIAL_ENDS)

@@ -25,17 +25,17 @@ typedef struct {
     int32_t delta2;      /* weight of delta-delta */
     int32_t delta_pull;  /* twice `delta` times delta's mean, Q4 */
     int32_t delta2_pull; /* `delta2` times its mean, Q4 */
-} labial_ask_t;
+} labial_terms_t;
 
 /* Decodes a state of a channel. */
-void labial_trajectory_ask(const labial_channel_t *channel, unsigned state, labial_ask_t *ask);
+void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms);
 
 /*
  * Takes up the row of a frame, whose target is `position`; in `contact` it is held there, firmly. `marks` say whether
  * it is the solution's first or last. Every row but the first factors the frame before it, for which it needs
  * `before`, its place in the ring; the last one factors its own frame too, `own`.
  */
-void labial_trajectory_row(labial_solver_t *solver, const labial_ask_t *ask, int32_t position, int contact,
+void labial_trajectory_row(labial_solver_t *solver, const labial_terms_t *terms, int32_t position, int contact,
                            unsigned marks, labial_factors_t *before, labial_factors_t *own);
 
 /*

@@ -154,25 +154,3 @@ void labial_viterbi_end_unit(labial_search_t *search)
     search->undecided = 0;
 #endif
 }
-
-void labial_viterbi_span(labial_search_t *search, unsigned frames)
-{
-#if LABIAL_LAG > 0
-    search->spans[0] = (uint8_t)frames;
-#else
-    (void)search;
-    (void)frames;
-#endif
-}
-
-unsigned labial_viterbi_state(const labial_search_t *search, unsigned age)
-{
-    unsigned i = 0;
-#if LABIAL_LAG > 0
-    for (; age >= search->spans[i]; i++)
-        age -= search->spans[i];
-#else
-    (void)age;
-#endif
-    return search->path[i];
-}

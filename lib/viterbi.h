@@ -31,10 +31,28 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
 void labial_viterbi_end_unit(labial_search_t *search);
 
 /* How many frames the last step stands for. */
-void labial_viterbi_span(labial_search_t *search, unsigned frames);
+static inline void labial_viterbi_span(labial_search_t *search, unsigned frames)
+{
+#if LABIAL_LAG > 0
+    search->spans[0] = (uint8_t)frames;
+#else
+    (void)search;
+    (void)frames;
+#endif
+}
 
 /* The state of the frame that lies `age` frames before the last one of the last step, at most LABIAL_LAG before that
  * step's first. */
-unsigned labial_viterbi_state(const labial_search_t *search, unsigned age);
+static inline unsigned labial_viterbi_state(const labial_search_t *search, unsigned age)
+{
+    unsigned i = 0;
+#if LABIAL_LAG > 0
+    for (; age >= search->spans[i]; i++)
+        age -= search->spans[i];
+#else
+    (void)age;
+#endif
+    return search->path[i];
+}
 
 #endif

@@ -12,7 +12,7 @@ from measure.core import Bench, run, version
 
 #: Files of lib/ that play compiled-in models. A program links the others only when it calls them, or for models from
 #: outside (model.c, the check, and blob.c).
-CORE = ("stream", "units", "shape", "viterbi", "trajectory")
+CORE = ("stream", "input", "turns", "output", "units", "shape", "viterbi", "trajectory")
 
 LEVELS = ("-Os", "-O2")
 

@@ -201,15 +201,16 @@ typedef struct {
     uint8_t beyond;      /* ticks since the last frame was taken */
     uint8_t phase;       /* channels whose turn it is */
     uint8_t frame_place; /* of the latest frame in the ring of frames */
-    uint8_t factor_place, motion_place;
+    uint8_t factor_place; /* likewise */
     uint8_t fade_step;    /* 0 when nothing fades */
     uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
     uint16_t ease_step;
     uint32_t frame;   /* number of the next frame */
     uint32_t pending; /* frames pushed and not yet delivered */
     uint32_t begins[2]; /* bit i: a solution begins with the frame that was taken i ticks ago */
-    uint32_t workspace_size;
-    uint8_t *workspace;
+    labial_track_t *tracks; /* the workspace: LABIAL_CHANNELS, and behind them their rings of factors */
+    labial_frame_t *frames; /* a ring of stride + LABIAL_LAG */
+    int16_t *motion;        /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
     const labial_model_t *models[LABIAL_MODELS];
     labial_frame_fn callback;
     void *user;
@@ -217,14 +218,14 @@ typedef struct {
     labial_shape_t next_shape;
     int16_t pose[LABIAL_CHANNELS];    /* the frame delivered last, Q4 FAP */
     int16_t earlier[LABIAL_CHANNELS]; /* the one before it; while something fades, how far it moved on */
-    int16_t held[LABIAL_CHANNELS];    /* the pose that fades */
+    int16_t faded[LABIAL_CHANNELS];   /* the pose that fades */
     labial_units_t units;
 } labial_t;
 
 /*
  * Bytes of workspace for models that search a state every `stride` frames, a multiple of four; a constant expression
- * when `stride` is. It holds, in this order: each channel's factors, in a ring; the channels; the frames whose targets
- * are still needed, in a ring; the motion that is not yet delivered, likewise.
+ * when `stride` is. Its parts are, in this order: the channels' tracks; their factors, in rings; the
+ * frames whose targets are still needed, in a ring; the motion that is not yet delivered, likewise.
  */
 #define LABIAL_WORKSPACE_SIZE(stride)                                                                     \
     ((uint32_t)(LABIAL_CHANNELS * (LABIAL_FACTORS_(stride) * sizeof(labial_factors_t) + sizeof(labial_track_t)) + \

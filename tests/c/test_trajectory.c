@@ -104,13 +104,13 @@ static void require_accepted(const char *what, unsigned round)
 static void go_forward(unsigned length, labial_factors_t *factors)
 {
     labial_solver_t solver;
-    labial_ask_t ask;
+    labial_terms_t terms;
     unsigned t;
     memset(&solver, 0x55, sizeof solver);
     for (t = 0; t < length; t++) {
         const unsigned marks = (t == 0 ? LABIAL_BEGINS : 0u) | (t + 1 == length ? LABIAL_ENDS | LABIAL_UNIT_ENDS : 0u);
-        labial_trajectory_ask(&channel, path[t], &ask);
-        labial_trajectory_row(&solver, &ask, target[t], contact[t], marks, &factors[t ? t - 1 : FRAMES], &factors[t]);
+        labial_trajectory_terms(&channel, path[t], &terms);
+        labial_trajectory_row(&solver, &terms, target[t], contact[t], marks, &factors[t ? t - 1 : FRAMES], &factors[t]);
     }
 }
 
