@@ -1,5 +1,6 @@
 /*
- * laugh.c - laughs of a wanted length. export/labial/laughs.py computes the same and is the source of the tables.
+ * laugh.c - laughs of a wanted length. export/labial/laughs.py computes the same and is the source of the tables, which
+ * keep every duration, period and train within its limits (tests/c/test_laugh.c).
  */
 #include "labial/laugh.h"
 
@@ -49,7 +50,7 @@ static uint8_t choose(labial_laugh_t *laugh, const uint8_t *shares, const int16_
     return (uint8_t)i;
 }
 
-/* A duration of `phoneme`, milliseconds. Vowels get longer with intensity, silences shorter. */
+/* A duration of `phoneme`, milliseconds, at least SHORTEST. Vowels get longer with intensity, silences shorter. */
 static uint32_t duration(labial_laugh_t *laugh, unsigned phoneme)
 {
     uint32_t value;
@@ -70,12 +71,12 @@ static uint32_t duration(labial_laugh_t *laugh, unsigned phoneme)
             break;
         }
     }
-    return value < SHORTEST ? SHORTEST : value;
+    return value;
 }
 
 /* ---- The grammar ----------------------------------------------------------------------------------------------- */
 
-/* A pause has most pieces: silence, click, inhalation, grunt, silence, rest. */
+/* Appends a phoneme. A pause has most: silence, click, inhalation, grunt, silence, rest. */
 static void add(labial_laugh_t *laugh, unsigned phoneme, uint32_t milliseconds)
 {
     laugh->phonemes[laugh->count] = (uint8_t)phoneme;
@@ -113,10 +114,7 @@ static void begin_train(labial_laugh_t *laugh)
 {
     /* The median is 2/3 to 4/3 of the corpus's, in 1/384; lengths are in 1/32. */
     const uint32_t median = TRAIN_MEDIAN * (256u + laugh->intensity);
-    uint32_t count = (median * lengths[draw(laugh, 32u)] + 6144u) / 12288u;
-    if (count < 1u)
-        count = 1;
-    laugh->pulses = (uint8_t)(count > TRAIN_LONGEST ? TRAIN_LONGEST : count);
+    laugh->pulses = (uint8_t)((median * lengths[draw(laugh, 32u)] + 6144u) / 12288u);
     laugh->loudness = laugh->train_loudness;
     choose_kind(laugh);
     choose_vowel(laugh);
@@ -134,10 +132,6 @@ static void pulse(labial_laugh_t *laugh, uint32_t room)
     deviation = PERIOD_SPREAD * (int32_t)deviates[draw(laugh, 32u)];
     /* Rounded down: what is added is a whole number of 1/32 and keeps the shift from a negative number. */
     period = (uint32_t)(PERIOD - 512 + ((deviation + 512 * 32) >> 5));
-    if (period < PERIOD_SHORTEST)
-        period = PERIOD_SHORTEST;
-    if (period > PERIOD_LONGEST)
-        period = PERIOD_LONGEST;
     if (period > room)
         period = room;
     note = vowels[laugh->vowel];

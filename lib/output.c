@@ -3,7 +3,6 @@
  */
 #include <string.h>
 
-#include "fixed.h"
 #include "stream.h"
 
 /* Frames over which a solution that begins anew fades in. */

@@ -100,43 +100,32 @@ static inline uint32_t enter(labial_search_t *search, unsigned size, const uint1
     return least;
 }
 
-void labial_viterbi_begin(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
-                          labial_search_t *search)
-{
-    const unsigned first = first_of_window(model, channel, position), size = searched(model);
-    uint16_t costs[LABIAL_SEARCHED];
-    unsigned i, best = 0;
-    for (i = 0; i < size; i++) {
-        const labial_emission_t *state = &channel->emissions[first + i];
-        costs[i] = (uint16_t)(emission(state, position) + state->initial);
-        if (costs[i] < costs[best])
-            best = i;
-    }
-    age(search);
-#if LABIAL_LAG > 0
-    search->undecided = 0;
-#endif
-    take(search, first, size, costs, best);
-}
-
-void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
-                         labial_search_t *search)
+/* The next step of a path, or its first one. */
+static void step(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
+                 labial_search_t *search, int is_first)
 {
     const unsigned first = first_of_window(model, channel, position), size = searched(model);
     const unsigned predecessors = model->predecessors;
+    const labial_emission_t *states = channel->emissions + first;
     const uint16_t *edge = channel->edges + (size_t)first * predecessors;
     uint16_t costs[LABIAL_SEARCHED];
     unsigned i, best = 0;
 
     age(search);
 #if LABIAL_LAG > 0
-    if (search->undecided < LABIAL_LAG)
+    if (is_first)
+        search->undecided = 0;
+    else if (search->undecided < LABIAL_LAG)
         search->undecided++;
 #endif
-    for (i = 0; i < size; i++)
-        costs[i] = emission(&channel->emissions[first + i], position);
-    for (i = 0; i < size; i++, edge += predecessors) {
-        costs[i] = (uint16_t)(costs[i] + enter(search, size, edge, predecessors, i));
+    if (is_first)
+        for (i = 0; i < size; i++)
+            costs[i] = states[i].initial;
+    else
+        for (i = 0; i < size; i++, edge += predecessors)
+            costs[i] = (uint16_t)enter(search, size, edge, predecessors, i);
+    for (i = 0; i < size; i++) {
+        costs[i] = (uint16_t)(costs[i] + emission(&states[i], position));
         if (costs[i] < costs[best])
             best = i;
     }
@@ -144,6 +133,18 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
     search->firsts[0] = search->first;
 #endif
     take(search, first, size, costs, best);
+}
+
+void labial_viterbi_begin(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
+                          labial_search_t *search)
+{
+    step(model, channel, position, search, 1);
+}
+
+void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
+                         labial_search_t *search)
+{
+    step(model, channel, position, search, 0);
 }
 
 void labial_viterbi_end_unit(labial_search_t *search)

@@ -68,7 +68,7 @@ typedef struct {
     uint32_t tail;         /* of them, the rest at the end */
     uint32_t random;       /* state of the random numbers, never 0 */
     uint16_t intensity;    /* 0 .. LABIAL_LAUGH_FULL */
-    uint16_t durations[6]; /* pieces that are decided, milliseconds */
+    uint16_t durations[6]; /* of the phonemes that are decided, milliseconds */
     uint8_t phonemes[6];
     uint8_t first, count; /* of these, the next one and how many there are */
     uint8_t pulses;       /* to come in the current train */

@@ -11,11 +11,12 @@
 
 #include "labial/labial.h"
 #include "labial/laugh.h"
+#include "laugh_table.h"
 #include "laughter_synthetic.h"
 
 typedef struct {
     uint32_t total, shortest, longest;
-    unsigned pieces, vowels, spoken; /* vowels: pulses with an open mouth; spoken: milliseconds of them */
+    unsigned phonemes, vowels, spoken; /* vowels: pulses with an open mouth; spoken: milliseconds of them */
     uint32_t per_phoneme[LABIAL_LAUGH_PHONEMES];
 } sum_t;
 
@@ -46,7 +47,7 @@ static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
             break;
         }
         assert_true(phoneme < LABIAL_LAUGH_PHONEMES);
-        assert_true(++sum.pieces <= length / 20u + 1u);
+        assert_true(++sum.phonemes <= length / 20u + 1u);
         sum.total += ms;
         sum.per_phoneme[phoneme]++;
         sum.shortest = ms < sum.shortest ? ms : sum.shortest;
@@ -60,7 +61,7 @@ static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
     return sum;
 }
 
-/* Would catch a piece that is lost, counted twice or cut to nothing at the end, at any length. */
+/* Would catch a phoneme that is lost, counted twice or cut to nothing at the end, at any length. */
 static void totals_are_exact(void **state)
 {
     uint32_t length, seed;
@@ -71,20 +72,20 @@ static void totals_are_exact(void **state)
             for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity += 64) {
                 const sum_t sum = sum_of(length, intensity, seed * 77u);
                 assert_int_equal(sum.total, length);
-                assert_true(sum.pieces == 0 || sum.shortest >= (length < 20 ? length : 20));
+                assert_true(sum.phonemes == 0 || sum.shortest >= (length < 20 ? length : 20));
             }
     assert_int_equal(sum_of(LABIAL_DURATION_MAX, 128, 5).total, LABIAL_DURATION_MAX);
 }
 
-/* Would catch pieces longer than any of the statistics, such as one that fills what is left. */
-static void no_piece_fills_the_rest(void **state)
+/* Would catch phonemes longer than any of the statistics, such as one that fills what is left. */
+static void no_phoneme_fills_the_rest(void **state)
 {
     uint32_t seed;
     (void)state;
     for (seed = 0; seed < 300; seed++) {
         assert_true(sum_of(20000, 128, seed).longest <= 920);
         assert_true(sum_of(1800, 128, seed).longest <= 920);
-        assert_true(sum_of(1800, 128, seed).pieces >= 5);
+        assert_true(sum_of(1800, 128, seed).phonemes >= 5);
     }
 }
 
@@ -254,13 +255,55 @@ static void intensity_reaches_the_mouth(void **state)
     }
 }
 
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
+
+static unsigned sum_of_shares(const uint8_t *shares, const int16_t *tilts, size_t count)
+{
+    unsigned sum = 0;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        sum += shares[i];
+        assert_true(!tilts || (tilts[i] >= -255 && tilts[i] <= 255)); /* no weight below 0 at any intensity */
+    }
+    return sum;
+}
+
+/* Would catch tables from other statistics, for which the generator, that clamps nothing, is not built: a duration below
+ * the shortest, a period beyond its limits, a train without pulses. */
+static void the_tables_keep_the_limits(void **state)
+{
+    size_t i, j;
+    (void)state;
+    for (i = 0; i < COUNT_OF(stretches); i++)
+        for (j = 1; j < COUNT_OF(medians); j++)
+            assert_true(medians[j] * stretches[i] / 128 * 218 / 256 >= SHORTEST);
+    for (i = 0; i < COUNT_OF(deviates); i++) {
+        const double period = PERIOD + PERIOD_SPREAD * deviates[i] / 32.0;
+        assert_true(period >= PERIOD_SHORTEST + 1 && period <= PERIOD_LONGEST);
+    }
+    for (i = 0; i < COUNT_OF(lengths); i++) {
+        assert_true(TRAIN_MEDIAN * 2.0 / 3.0 * lengths[i] / 32.0 >= .5);
+        assert_true(TRAIN_MEDIAN * 4.0 / 3.0 * lengths[i] / 32.0 < TRAIN_LONGEST + .5);
+    }
+    assert_true(sum_of_shares(pulse_shares, pulse_tilts, COUNT_OF(pulse_shares)) <= 256);
+    assert_true(sum_of_shares(vowel_shares, vowel_tilts, COUNT_OF(vowel_shares)) <= 256);
+    assert_true(sum_of_shares(onset_shares, NULL, COUNT_OF(onset_shares)) <= 256);
+    for (i = 0; i < COUNT_OF(vowels); i++)
+        assert_true(vowels[i] < COUNT_OF(soft_grades) && soft_grades[vowels[i]] > 0);
+    for (i = 0; i < COUNT_OF(onsets); i++)
+        assert_true(onsets[i] > 0 && onsets[i] < COUNT_OF(medians));
+    for (i = 0; i < COUNT_OF(soft_grades); i++)
+        assert_true(soft_grades[i] == 0 ||
+                    (soft_grades[i] >= COUNT_OF(soft_grades) && soft_grades[i] + 1 < LABIAL_LAUGH_PHONEMES));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(totals_are_exact),          cmocka_unit_test(no_piece_fills_the_rest),
+        cmocka_unit_test(totals_are_exact),          cmocka_unit_test(no_phoneme_fills_the_rest),
         cmocka_unit_test(seeds_give_different_laughs), cmocka_unit_test(intensity_opens_the_mouth),
         cmocka_unit_test(errors),                    cmocka_unit_test(the_numbers_are_the_bundled_models),
-        cmocka_unit_test(intensity_reaches_the_mouth),
+        cmocka_unit_test(intensity_reaches_the_mouth), cmocka_unit_test(the_tables_keep_the_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
