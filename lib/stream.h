@@ -8,7 +8,7 @@
 #ifndef LABIAL_STREAM_H
 #define LABIAL_STREAM_H
 
-#include "fixed.h" /* whose assertions hold for all of the stream */
+#include "fixed.h"
 #include "labial/labial.h"
 
 /* The place that is `back` places before `place` in a ring of `size`; both below size. */
