@@ -1,4 +1,5 @@
-"""The measures (docs/method.md, How it is judged): one method's motion on the test part, held against the human's, as named numbers."""
+"""The measures: one method's motion on the test part, held against the human's, as named numbers (docs/method.md, How
+it is judged)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The protocol of the comparison (docs/method.md, How it is judged): fit every method on each split's training part, measure it on the rest."""
+"""The comparison: fit every method on each split's training part, measure it on the rest (docs/method.md, How it is
+judged)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The Viterbi search for a state path (docs/method.md, Units and search), decided as the frames come (``lib/viterbi.c``).
+"""The Viterbi search for a state path, decided as the frames come (docs/method.md, Units and search;
+``lib/viterbi.c``).
 
 Each channel has a state for every `stride` frames, a *block*, and a grid of its own: a block ends with every frame k
 for which k and the channel's number leave the same remainder by `stride`, and with the last frame. So in each tick a

@@ -1,4 +1,5 @@
-"""Context-aware mixtures (docs/method.md, Context): naive Bayes over shape, duration and the neighbours' viseme classes.
+"""Context-aware mixtures: naive Bayes over shape, duration and the neighbours' viseme classes (docs/method.md,
+Context).
 
 To each component of equation 1 come two categorical distributions, over the class of the previous and of the next
 phoneme, fitted in the same EM. Its target is the posterior density of the parameters, with conjugate priors

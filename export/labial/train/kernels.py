@@ -1,4 +1,5 @@
-"""Temporal kernels (docs/method.md, Temporal kernels): what each phoneme adds to every channel before, during and after itself.
+"""Temporal kernels: what each phoneme adds to every channel before, during and after itself (docs/method.md, Temporal
+kernels).
 
 The target of a frame is the shape of its phoneme plus one tap of the kernel of the phoneme at each of L lags:
 
