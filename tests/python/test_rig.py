@@ -24,7 +24,7 @@ from labial.rig.table import FAP_MAX, convert, expected
 FACES = library_root() / "examples" / "faces"
 #: Descriptions whose tables are kept, with the tables' folder; the exporter itself reads that of the blendshapes.
 EXAMPLES = {path: path.parent for path in sorted((library_root() / "examples").glob("*/*.toml"))}
-EXAMPLES[library_root() / "export" / "labial" / "rig" / "arkit.toml"] = FACES
+EXAMPLES.update(dict.fromkeys(sorted((library_root() / "export" / "labial" / "rig").glob("*.toml")), FACES))
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
           "-Wshadow", "-Werror"]  # fmt: skip

@@ -33,6 +33,7 @@ GESTURES: Dict[str, Gesture] = {
     "upper_lip": Gesture(_weights(fap51=-1), 90.0),
     "lower_lip": Gesture(_weights(fap52=-1), 560.0),
     "smile": Gesture(_weights(fap53=0.25, fap54=0.25, fap59=0.25, fap60=0.25, fap3=0.2), 120.0),
+    "spread": Gesture(_weights(fap53=0.5, fap54=0.5), 100.0),
     "rounding": Gesture(_weights(fap17=1, fap53=-0.5, fap54=-0.5), 200.0),
 }
 
