@@ -12,6 +12,13 @@
 
 #include "labial/labial.h"
 
+/* Rounds of a test that does the same over and over with other numbers: `full` of them, or, where every instruction is
+ * interpreted (the memory check), a share that still takes every way through the code. */
+#ifndef LABIAL_TEST_SHARE
+#define LABIAL_TEST_SHARE 1
+#endif
+#define FIXTURE_ROUNDS(full) ((full) / LABIAL_TEST_SHARE > 0 ? (full) / LABIAL_TEST_SHARE : 1)
+
 /* ---- Pseudo-random numbers: the same on every machine for one seed. ---- */
 
 typedef struct {
