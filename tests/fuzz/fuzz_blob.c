@@ -3,7 +3,8 @@
  * not its own, and must last exactly as long as its phonemes.
  *
  * The first byte chooses: the bytes as they are; the bytes with magic, size and checksum put right, so that the checks
- * behind these are reached; or a sound model with some of its bytes replaced, which mostly reaches the stream.
+ * behind these are reached; or a sound model, one of the suites' or a bundled one, with some of its bytes replaced, which
+ * mostly reaches the stream.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -13,8 +14,11 @@
 #include "fixture.h"
 #include "fuzz.h"
 #include "labial/blob.h"
+#include "laughter_synthetic.h"
+#include "speech_en.h"
 
-#define ROOM 32768
+#define ROOM 49152
+#define SOUND 5 /* models */
 
 /* A short stream on a model that was accepted, on a workspace of exactly the size it asks for. */
 static void play(const labial_model_t *model, uint32_t seed)
@@ -34,18 +38,34 @@ static void play(const labial_model_t *model, uint32_t seed)
     fixture_close(&host);
 }
 
+/* A sound model as a binary one, made when it is first asked for; returns its size. */
+static size_t sound_model(unsigned choice, const uint8_t **bytes)
+{
+    static uint8_t made[SOUND][ROOM];
+    static size_t lengths[SOUND];
+    static fixture_model_t small[3];
+    const labial_model_t *const models[SOUND] = {&small[0].model, &small[1].model, &small[2].model, &speech_en,
+                                                 &laughter_synthetic};
+    unsigned i;
+    if (lengths[0] == 0) {
+        fixture_plain(&small[0]);
+        fixture_rich(&small[1]);
+        fixture_laughter(&small[2]);
+        for (i = 0; i < SOUND; i++) {
+            lengths[i] = fixture_serialise(models[i], made[i], ROOM);
+            REQUIRE(lengths[i] <= ROOM);
+        }
+    }
+    *bytes = made[choice % SOUND];
+    return lengths[choice % SOUND];
+}
+
 /* Replaces bytes of a sound model: two of position, one of value. Returns the model's size. */
 static size_t patch(uint8_t *out, unsigned choice, const uint8_t *data, size_t size)
 {
-    static fixture_model_t models[3];
-    size_t length;
-    if (models[0].model.format == 0) {
-        fixture_plain(&models[0]);
-        fixture_rich(&models[1]);
-        fixture_laughter(&models[2]);
-    }
-    length = fixture_serialise(&models[choice % 3].model, out, ROOM);
-    REQUIRE(length <= ROOM);
+    const uint8_t *sound;
+    const size_t length = sound_model(choice, &sound);
+    memcpy(out, sound, length);
     for (; size >= 3; data += 3, size -= 3)
         out[12 + (data[0] | (size_t)data[1] << 8) % (length - 12)] = data[2];
     fixture_seal(out, length);

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "labial/labial.h"
+#include "labels.h"
 #include "speech_en.h"
 #include "timings.h"
 
@@ -22,25 +22,6 @@ typedef struct {
     unsigned long phonemes, stop_at;
     const timings_t *timings;
 } watch_t;
-
-/* A label as every set of labels reads it, without the NUL behind it. */
-static void look_up(const char *label, size_t length)
-{
-    static const labial_labels_t sets[] = {LABIAL_LABELS_ARPABET, LABIAL_LABELS_IPA, LABIAL_LABELS_XSAMPA,
-                                           LABIAL_LABELS_AUTO};
-    char *copy = (char *)malloc(length);
-    int found, nearest;
-    size_t i;
-    REQUIRE(copy);
-    memcpy(copy, label, length);
-    for (i = 0; i < sizeof sets / sizeof sets[0]; i++) {
-        found = labial_find_in(&speech_en_names, sets[i], copy, length);
-        REQUIRE(found == LABIAL_ERROR_NAME || (found >= 0 && found < SPEECH_EN_PHONEMES));
-        nearest = labial_find_nearest(&speech_en_names, sets[i], copy, length, SPEECH_EN_SIL);
-        REQUIRE(nearest >= 0 && nearest < SPEECH_EN_PHONEMES && (found < 0 || nearest == found));
-    }
-    free(copy);
-}
 
 static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
 {
@@ -58,7 +39,7 @@ static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
         for (i = 0; phoneme->label[i]; i++)
             REQUIRE((unsigned char)phoneme->label[i] >= 0x20 && phoneme->label[i] != 0x7f);
         REQUIRE(i > 0 && i <= TIMINGS_LABEL_MAX);
-        look_up(phoneme->label, i);
+        look_up(&speech_en_names, phoneme->label, i);
     }
     return watch->phonemes == watch->stop_at ? STOPPED : 0;
 }
