@@ -1,7 +1,7 @@
 /*
  * labial-demo - a spoken sentence, a laugh, and a sentence that breaks into laughter, written as a page.
  *
- *     labial-demo OUTPUT.html player.html sentence.flite laugh.lab laughing.flite [TITLE]
+ *     labial-demo OUTPUT.html player.html mouth.js sentence.flite laugh.lab laughing.flite
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,12 +71,14 @@ static int synthesise(demo_t *demo, char **paths)
     return demo->failed ? out_of_memory() : show_phonemes(&demo->page, score);
 }
 
-/* The whole of a text file, to be freed; null when it cannot be read. */
-static char *read_text(const char *path)
+/* The whole of a file with a null character behind it, to be freed; null, with a message, when it cannot be read. */
+static char *read_file(const char *path, size_t *size)
 {
-    FILE *in = fopen(path, "r");
-    if (!in)
+    FILE *in = fopen(path, "rb");
+    if (!in) {
+        fprintf(stderr, "labial-demo: %s: cannot open\n", path);
         return NULL;
+    }
     size_t length = 0, room = 1u << 16;
     char *text = malloc(room);
     while (text) {
@@ -89,50 +91,96 @@ static char *read_text(const char *path)
             free(text);
         text = moved;
     }
-    if (text && ferror(in)) {
+    if (!text || ferror(in)) {
+        fprintf(stderr, "labial-demo: %s: %s\n", path, text ? "cannot read" : "out of memory");
         free(text);
         text = NULL;
     }
     if (text)
         text[length] = '\0';
+    *size = length;
     fclose(in);
     return text;
 }
 
-static int write_page(const page_t *page, const char *template_path, const char *path)
+/* What the page is made of beside the motion; what is read is to be freed. */
+typedef struct {
+    char *player, *mouth, *sound;
+    size_t player_size, mouth_size, sound_size;
+} parts_t;
+
+static int read_parts(parts_t *parts, const char *player, const char *mouth, const char *sound)
 {
-    char *text = read_text(template_path);
-    if (!text) {
-        fprintf(stderr, "labial-demo: %s: cannot read\n", template_path);
+    parts->player = read_file(player, &parts->player_size);
+    parts->mouth = read_file(mouth, &parts->mouth_size);
+    if (sound)
+        parts->sound = read_file(sound, &parts->sound_size);
+    if (!parts->player || !parts->mouth || (sound && !parts->sound))
+        return -1;
+    if (sound && strncmp(parts->sound, "fLaC", 4) != 0) {
+        fprintf(stderr, "labial-demo: %s: not a FLAC file\n", sound);
         return -1;
     }
-    int result = -1;
+    return 0;
+}
+
+static void release_parts(parts_t *parts)
+{
+    free(parts->player);
+    free(parts->mouth);
+    free(parts->sound);
+}
+
+static int write_page(page_t *page, const parts_t *parts, const char *path)
+{
+    page->mouth = parts->mouth;
+    page->sound = (const unsigned char *)parts->sound;
+    page->sound_size = parts->sound_size;
     FILE *out = fopen(path, "w");
     if (!out) {
         fprintf(stderr, "labial-demo: %s: cannot write\n", path);
-    } else {
-        result = page_write(page, text, out);
-        if (fclose(out) != 0)
-            result = -1;
-        if (result != 0)
-            fprintf(stderr, "labial-demo: %s: cannot write, or %s does not hold %s once\n", path, template_path,
-                    PAGE_PLACEHOLDER);
+        return -1;
     }
-    free(text);
+    int result = page_write(page, parts->player, out);
+    if (fclose(out) != 0)
+        result = -1;
+    if (result != 0)
+        fprintf(stderr, "labial-demo: %s: cannot write, or the player does not hold %s and %s once\n", path, PAGE_DATA,
+                PAGE_MOUTH);
     return result;
 }
 
+static const char usage[] =
+    "usage: labial-demo OUTPUT.html player.html mouth.js sentence.flite laugh.lab laughing.flite [OPTION]...\n"
+    "\n"
+    "  --sound FILE.flac   sound of the whole, in step with the timings\n"
+    "  --title TITLE       title of the page\n";
+
 int main(int argc, char **argv)
 {
-    if (argc != 6 && argc != 7) {
-        fprintf(stderr, "usage: labial-demo OUTPUT.html player.html sentence.flite laugh.lab laughing.flite [TITLE]\n");
+    demo_t demo = {.page.title = "Labial: a sentence, a laugh, and both at once"};
+    parts_t parts = {NULL, NULL, NULL, 0, 0, 0};
+    const char *sound = NULL;
+    int wrong = argc < 7 || argc % 2 == 0;
+    for (int i = 7; !wrong && i < argc; i += 2) {
+        if (strcmp(argv[i], "--sound") == 0)
+            sound = argv[i + 1];
+        else if (strcmp(argv[i], "--title") == 0)
+            demo.page.title = argv[i + 1];
+        else
+            wrong = 1;
+    }
+    if (wrong) {
+        fputs(usage, stderr);
         return 2;
     }
-    demo_t demo = {.page.title = argc == 7 ? argv[6] : "Labial: a sentence, a laugh, and both at once"};
-    int result = synthesise(&demo, argv + 3);
+    int result = read_parts(&parts, argv[2], argv[3], sound);
     if (result == 0)
-        result = write_page(&demo.page, argv[2], argv[1]);
+        result = synthesise(&demo, argv + 4);
+    if (result == 0)
+        result = write_page(&demo.page, &parts, argv[1]);
     page_release(&demo.page);
     score_release(&demo.score);
+    release_parts(&parts);
     return result == 0 ? 0 : 1;
 }

@@ -1,5 +1,5 @@
 /*
- * page.c - lists of frames and phonemes, and their JSON.
+ * page.c - lists of frames and phonemes, and their JSON with the sound.
  */
 #include "page.h"
 
@@ -52,6 +52,20 @@ static void write_string(const char *text, FILE *out)
     putc('"', out);
 }
 
+/* RFC 4648, section 4. */
+static void write_base64(const unsigned char *bytes, size_t size, FILE *out)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3) {
+        const size_t count = size - i < 3 ? size - i : 3;
+        uint32_t group = 0;
+        for (size_t k = 0; k < 3; k++)
+            group = group << 8 | (k < count ? bytes[i + k] : 0u);
+        for (size_t k = 0; k < 4; k++)
+            putc(k <= count ? digits[group >> (18 - 6 * k) & 63u] : '=', out);
+    }
+}
+
 static void write_data(const page_t *page, FILE *out)
 {
     fputs("{\"title\":", out);
@@ -75,16 +89,32 @@ static void write_data(const page_t *page, FILE *out)
             fprintf(out, "%s%d", c ? "," : "", page->frames[i][c]);
         putc(']', out);
     }
-    fputs("]}", out);
+    putc(']', out);
+    if (page->sound) {
+        fputs(",\n\"audio\":\"data:audio/flac;base64,", out);
+        write_base64(page->sound, page->sound_size, out);
+        putc('"', out);
+    }
+    putc('}', out);
+}
+
+/* Where `text` holds `part`, null unless it does once. */
+static const char *only(const char *text, const char *part)
+{
+    const char *place = strstr(text, part);
+    return place && !strstr(place + strlen(part), part) ? place : NULL;
 }
 
 int page_write(const page_t *page, const char *template_text, FILE *out)
 {
-    const char *place = strstr(template_text, PAGE_PLACEHOLDER);
-    if (!place || strstr(place + strlen(PAGE_PLACEHOLDER), PAGE_PLACEHOLDER))
+    const char *data = only(template_text, PAGE_DATA), *mouth = only(template_text, PAGE_MOUTH);
+    if (!data || !mouth || mouth < data)
         return -1;
-    fwrite(template_text, 1, (size_t)(place - template_text), out);
+    fwrite(template_text, 1, (size_t)(data - template_text), out);
     write_data(page, out);
-    fputs(place + strlen(PAGE_PLACEHOLDER), out);
+    data += strlen(PAGE_DATA);
+    fwrite(data, 1, (size_t)(mouth - data), out);
+    fputs(page->mouth, out);
+    fputs(mouth + strlen(PAGE_MOUTH), out);
     return fflush(out) == 0 && !ferror(out) ? 0 : -1;
 }

@@ -10,8 +10,9 @@
 
 #include "labial/model.h"
 
-/* What the template holds, once, where the data goes. */
-#define PAGE_PLACEHOLDER "@LABIAL_DATA@"
+/* What the template holds, each once and in this order, where the data and the drawing's module go. */
+#define PAGE_DATA "@LABIAL_DATA@"
+#define PAGE_MOUTH "@LABIAL_MOUTH@"
 
 /* A phoneme's place among the frames. */
 typedef struct {
@@ -24,6 +25,9 @@ typedef struct {
 /* What a page plays. Zero-initialise, fill with the two functions below, release with page_release(). */
 typedef struct {
     const char *title;
+    const char *mouth;          /* mouth.js, whole */
+    const unsigned char *sound; /* a FLAC file whose time 0 is the first frame, or null */
+    size_t sound_size;
     unsigned frames_per_second;
     int16_t (*frames)[LABIAL_CHANNELS];
     size_t frame_count, frame_room;
@@ -35,8 +39,8 @@ typedef struct {
 int page_add_frame(page_t *page, const int16_t faps[LABIAL_CHANNELS]);
 int page_add_phoneme(page_t *page, const page_phoneme_t *phoneme);
 
-/* Writes `template_text`, with the page's data as JSON in the place of PAGE_PLACEHOLDER, to `out`. Returns 0, or -1
- * when the placeholder is not there exactly once or writing fails. */
+/* Writes `template_text`, with the page's data as JSON in the place of PAGE_DATA and the drawing's module in that of
+ * PAGE_MOUTH, to `out`. Returns 0, or -1 when either is not there exactly once or writing fails. */
 int page_write(const page_t *page, const char *template_text, FILE *out);
 
 void page_release(page_t *page);

@@ -143,7 +143,7 @@ def parser() -> argparse.ArgumentParser:
     page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
     _add_source(page)
     _add_labels(page)
-    page.add_argument("--audio", metavar="WAV", help="sound that is played in step")
+    page.add_argument("--audio", metavar="FILE", help="sound in step: WAV, MP3, Ogg, FLAC, AAC, M4A or WebM")
     page.add_argument("--title", help="the file's name without it")
     page.add_argument("-o", "--output", required=True, metavar="OUT.html")
     page.set_defaults(run=_page)

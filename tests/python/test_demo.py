@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 import os
 import re
@@ -11,14 +13,16 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
 
+import numpy as np
 import pytest
 
 PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
 pytestmark = pytest.mark.skipif(not PAGE, reason="LABIAL_DEMO_PAGE does not name the built page")
 
 DEMO = Path(__file__).resolve().parents[2] / "examples" / "demo"
-PLAYER = DEMO.parents[1] / "export" / "labial" / "see" / "player.html"
+SEE = DEMO.parents[1] / "export" / "labial" / "see"
 
+VOWELS = ("AA", "AE", "AH", "AO", "AW", "AY", "EH", "ER", "EY", "IH", "IY", "OW", "OY", "UH", "UW")
 #: FAP units between the lips up to which labial_blend_default keeps them as speech has them.
 CLOSED = 120
 #: Channels of a frame: those of the lips' height, the jaw, the corners' height.
@@ -89,8 +93,8 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Dict[str, Any]:
     pause, count = re.subn(r"<laugh ([0-9.]+) [0-9.]+>", r"pau:\1", (DEMO / "laughing.flite").read_text())
     assert count == 1
     (folder / "plain.flite").write_text(pause)
-    subprocess.run([program, folder / "plain.html", PLAYER, DEMO / "sentence.flite", DEMO / "laugh.lab",
-                    folder / "plain.flite"], check=True, timeout=60)
+    subprocess.run([program, folder / "plain.html", SEE / "player.html", SEE / "mouth.js", DEMO / "sentence.flite",
+                    DEMO / "laugh.lab", folder / "plain.flite"], check=True, timeout=60)
     parser = _Page()
     parser.feed((folder / "plain.html").read_text(encoding="utf-8"))
     parser.close()
@@ -165,14 +169,14 @@ def test_the_sentence_breaks_into_laughter_and_recovers(data: Dict[str, Any], pl
     frames, speech, both = data["frames"], plain["frames"], parts(data)[1]
     assert len(frames) == len(speech)
     laughing = spans(data, "laughing", both)
-    begin, end = laughing[0][1], laughing[-1][2]
-    assert frames[:begin] == speech[:begin]
+    (_, first, last), = spans(data, "laughter", both)
+    begin, end = first - int(2 * data["fps"]), laughing[-1][2]  # it sets in two seconds before the words pause
+    assert begin <= laughing[0][1] and frames[:begin] == speech[:begin]
     ramp = int(0.24 * data["fps"])
     assert frames[end + ramp :] == speech[end + ramp :] and len(frames) > end + 2 * ramp
-    for _, first, last in laughing:
-        if first >= begin + ramp and last <= end - ramp:
-            assert all(frames[i][c] > speech[i][c] + 30 for i in range(first, last) for c in CORNERS)
-    (_, first, last), = spans(data, "laughter", both)
+    for _, word, past in laughing:
+        if word >= begin + ramp and past <= end - ramp:
+            assert all(frames[i][c] > speech[i][c] + 30 for i in range(word, past) for c in CORNERS)
     openings = [opening(frame) for frame in frames[first + ramp : last - ramp]]
     tops = [i for i in range(1, len(openings) - 1) if openings[i - 1] < openings[i] >= openings[i + 1]]
     assert len(tops) >= 4 and max(openings) >= 100 > min(openings)
@@ -203,6 +207,56 @@ def test_laughing_words_do_not_jerk(data: Dict[str, Any], plain: Dict[str, Any])
     assert leaps(data["frames"][parts(data)[1] :]) <= leaps(plain["frames"])
 
 
+def test_sound_is_that_of_the_timings(data: Dict[str, Any]) -> None:
+    """Catches a sound that is not the committed one, not as long as the motion, whose words are not where the phonemes
+    are, or that is heard in laughs, which have no voice."""
+    soundfile = pytest.importorskip("soundfile")
+    kind, _, content = data["audio"].partition(",")
+    sound = base64.b64decode(content)
+    assert kind == "data:audio/flac;base64" and sound == (DEMO / "speech.flac").read_bytes() and len(sound) <= 400_000
+    samples, rate = soundfile.read(io.BytesIO(sound))
+    assert abs(len(samples) / rate - len(data["frames"]) / data["fps"]) < 1 / data["fps"]
+
+    def level(phoneme: Dict[str, Any]) -> float:
+        first, count = (int(phoneme[key] * rate / data["fps"]) for key in ("start_frame", "frames"))
+        heard = samples[first : first + count]
+        return float(np.sqrt(np.mean(heard**2)))
+
+    spoken = [p for p in data["phonemes"] if p["kind"] in ("speech", "laughing")]
+    loud = float(np.median([level(p) for p in spoken if p["label"] in VOWELS]))
+    assert all(level(p) > loud / 10 for p in spoken if p["label"] in VOWELS)
+    assert all(level(p) < loud / 2 for p in spoken if p["label"] == "P")
+    assert all(level(p) < loud / 5 for p in data["phonemes"] if p["kind"] == "silence")
+    assert all(level(p) < loud / 20 for p in data["phonemes"] if p["kind"] == "laughter")  # the word before it ends
+
+
+def test_sound_is_what_flite_says(tmp_path: Path) -> None:
+    """Sound and timings are of one utterance: what flite's voice slt says; README.md has the commands."""
+    soundfile = pytest.importorskip("soundfile")
+    if not shutil.which("flite"):
+        pytest.skip("needs the Debian package flite")
+    text = (DEMO / "README.md").read_text(encoding="utf-8")
+    commands = re.search(r"```sh\n(flite .*?)```", text, re.S)
+    assert commands
+    said = [line for line in commands[1].splitlines() if line.startswith("flite")]
+    assert len(said) == 3
+    for line in said:
+        subprocess.run(line, shell=True, cwd=tmp_path, check=True, timeout=60)
+    sentence, bear, maybe = ((tmp_path / f"{name}.flite").read_text().split() for name in ("sentence", "bear", "maybe"))
+    assert (DEMO / "sentence.flite").read_text().split() == sentence
+    first, _, last = (DEMO / "laughing.flite").read_text().strip().split("\n")
+    assert first.split() == bear[:-1] and last.split() == maybe and bear[-1].startswith("pau:")
+    samples, rate = soundfile.read(DEMO / "speech.flac", dtype="int16")
+    laugh, pause = flite_milliseconds("sentence.flite"), flite_milliseconds("laughing.flite")
+    second = laugh + lab_milliseconds()
+    third = second + pause - round(float(maybe[-1].split(":")[1]) * 1000)
+    for name, begin in (("sentence", 0), ("bear", second), ("maybe", third)):
+        spoken, _ = soundfile.read(tmp_path / f"{name}.wav", dtype="int16")
+        length = int(float(bear[-2].split(":")[1]) * rate) - rate // 100 if name == "bear" else len(spoken)
+        at = begin * rate // 1000
+        assert np.array_equal(samples[at : at + length], spoken[:length]), name
+
+
 def test_nothing_is_requested(text: str, page: _Page) -> None:
     """No address, no external source or link, no style import: the page works from a disk, offline."""
     assert not re.search(r"https?://", text)
@@ -219,11 +273,12 @@ def test_title_and_placeholder(text: str, data: Dict[str, Any]) -> None:
     """The title is set from the data, and the template's placeholder is gone."""
     assert data["title"]
     assert "document.title" in text and "window.labialPlayer" in text
-    assert "@LABIAL_DATA@" not in text
+    assert "@LABIAL_" not in text
 
 
-def test_controls_have_names(page: _Page) -> None:
+def test_controls_have_names(page: _Page, text: str) -> None:
     """Drawing, button and scrubber have labels for those who do not see them."""
     labels = [value for _, name, value in page.attributes if name == "aria-label"]
     assert "Play" in labels and "Speed" in labels
-    assert any(label.startswith("Position") for label in labels) and any("mouth" in label for label in labels)
+    assert any(label.startswith("Position") for label in labels)
+    assert re.search(r'<svg [^>]*aria-label="[^"]*mouth', text)

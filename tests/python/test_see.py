@@ -17,7 +17,7 @@ from labial.errors import DataError
 from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.frames import even
 from labial.see.motion import read_bands, read_fap, read_motion, read_motions
-from labial.see.page import PLACEHOLDER, PLAYER, page
+from labial.see.page import DATA_PLACE, LARGEST_SOUND, MOUTH, MOUTH_PLACE, PLAYER, page
 
 HEADER = ",".join(("time", *FAP_COLUMNS))
 LAB = "0 0.1 sil\n0.1 0.2 M\n0.2 0.3 ah0\n0.3 0.4 v\n0.4 0.5 t\n"
@@ -155,11 +155,19 @@ def test_plot_shows_files_phonemes_and_bands(given: Path) -> None:
     (["plot", "a.csv", "-o", "a.png", "--channels", ","], "no channel to plot"),
     (["plot", "a.lab", "-o", "a.png"], "a.lab:1: the header"),
     (["page", "a.csv", "--phones", "none.lab", "-o", "a.html"], "none.lab"),
-    (["page", "a.csv", "--audio", "a.lab", "-o", "a.html"], "a.lab: not a WAV file"),
+    (["page", "a.csv", "--audio", "a.lab", "-o", "a.html"], "a.lab: not a sound that browsers play: a WAV, MP3, Ogg"),
+    (["page", "a.csv", "--audio", "empty.wav", "-o", "a.html"], "empty.wav: not a sound that browsers play"),
+    (["page", "a.csv", "--audio", "large.wav", "-o", "a.html"],
+     "large.wav: a page takes a sound of 24 MB at most, and this one has 24.1 MB; as MP3 or Ogg it is shorter"),
+    (["page", "a.csv", "--audio", ".", "-o", "a.html"], ".: Is a directory"),
     (["page", "a.csv", "--audio", "none.wav", "-o", "a.html"], "none.wav"),
 ])  # fmt: skip
 def test_errors_are_one_line(given: Path, capsys, monkeypatch, arguments: List[str], message: str) -> None:
     monkeypatch.chdir(given)
+    Path("empty.wav").touch()
+    with open("large.wav", "wb") as large:
+        large.write(wav())
+        large.truncate(LARGEST_SOUND + 100_000)
     assert main(arguments) == 1
     error = capsys.readouterr().err
     assert message in error and error.count("\n") == 1 and not (given / "a.html").exists()
@@ -182,6 +190,19 @@ def test_page_plays_what_the_file_says(given: Path) -> None:
     assert kind == "data:audio/wav;base64" and base64.b64decode(content) == wav()
 
 
+@pytest.mark.parametrize(("options", "kind"), [
+    ({"format": "WAV", "subtype": "PCM_16"}, "audio/wav"), ({"format": "FLAC"}, "audio/flac"),
+    ({"format": "MP3"}, "audio/mpeg"), ({"format": "OGG", "subtype": "VORBIS"}, "audio/ogg"),
+    ({"format": "OGG", "subtype": "OPUS"}, "audio/ogg"),
+])  # fmt: skip
+def test_page_takes_what_encoders_write(given: Path, options: Dict[str, str], kind: str) -> None:
+    """A format that is taken for another one, which some browsers then refuse."""
+    soundfile = pytest.importorskip("soundfile")
+    soundfile.write(given / "sound", np.zeros(4800), 48000, **options)
+    address = data_of(page(read_motion(given / "a.csv"), [], given / "sound"))["audio"]
+    assert address == f"data:{kind};base64," + base64.b64encode((given / "sound").read_bytes()).decode()
+
+
 def test_page_begins_where_the_motion_does(tmp_path: Path) -> None:
     """Phonemes before the first frame are cut, and the sound is told where the first frame lies in it."""
     (tmp_path / "a.csv").write_text(frames(start=0.15))
@@ -195,11 +216,14 @@ def test_page_begins_where_the_motion_does(tmp_path: Path) -> None:
 def test_player_requests_nothing() -> None:
     """The template of both `labial page` and the demo: sound may only be in the page itself."""
     text = PLAYER.read_text(encoding="utf-8")
-    assert text.count(PLACEHOLDER) == 1
+    assert text.count(DATA_PLACE) == text.count(MOUTH_PLACE) == 1 and text.index(DATA_PLACE) < text.index(MOUTH_PLACE)
     policy = re.search(r'http-equiv="Content-Security-Policy"\s+content="([^"]*)"', text)
     assert policy and policy.group(1) == ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
                                           "img-src data:; media-src data:")  # fmt: skip
-    assert not re.search(r"https?://|@import|\bfetch\(|XMLHttpRequest|WebSocket|sendBeacon|\bimport\(", text)
+    drawing = MOUTH.read_text(encoding="utf-8")
+    assert "</script" not in drawing and "<!--" not in drawing
+    for part in (text, drawing):
+        assert not re.search(r"https?://|@import|\bfetch\(|XMLHttpRequest|WebSocket|sendBeacon|\bimport\b", part)
 
 
 def test_names_tell_files_apart(given: Path) -> None:

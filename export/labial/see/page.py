@@ -6,6 +6,7 @@ import base64
 import json
 import math
 import os
+import re
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Union
 
@@ -18,16 +19,31 @@ from labial.see.motion import Band, Motion, laughs
 
 PathLike = Union[str, os.PathLike]
 
-#: The player, also that of the C demo; the motion takes the place of the words below.
+#: The player and its drawing, also those of the C demo; motion and drawing take the places of the words below.
 PLAYER = Path(__file__).with_name("player.html")
-PLACEHOLDER = "@LABIAL_DATA@"
+MOUTH = Path(__file__).with_name("mouth.js")
+DATA_PLACE, MOUTH_PLACE = "@LABIAL_DATA@", "@LABIAL_MOUTH@"
+
+#: Bytes of a sound that a page takes. In the page it is a third longer, and Firefox stops at 32 MB.
+LARGEST_SOUND = 24_000_000
+#: How files begin that browsers play, where in the file, and what they are.
+_SOUNDS = (
+    (0, rb"RIFF....WAVE", "audio/wav"),
+    (0, rb"ID3|\xff[\xe2-\xe7\xf2-\xf7\xfa-\xff]", "audio/mpeg"),
+    (0, rb"OggS", "audio/ogg"),
+    (0, rb"fLaC", "audio/flac"),
+    (0, rb"\xff[\xf0\xf1\xf8\xf9]", "audio/aac"),
+    (4, rb"ftyp", "audio/mp4"),
+    (0, rb"\x1a\x45\xdf\xa3", "audio/webm"),
+)
 
 
 def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None, title: Optional[str] = None) -> str:
     """The page as text; `title` is the motion's name unless given.
 
-    `audio` is a WAV file whose time 0 is that of the motion's file. Raises DataError, which names it, when it is none,
-    and LabialError for a motion whose frames are too uneven in time to be played.
+    `audio` is a sound file that browsers play (WAV, MP3, Ogg, FLAC, AAC, M4A, WebM), of at most `LARGEST_SOUND` bytes,
+    whose time 0 is that of the motion's file. Raises DataError, which names it, when it is none, and LabialError for a
+    motion whose frames are too uneven in time to be played.
     """
     try:
         fps, frames = even(motion.times, motion.frames)
@@ -43,13 +59,14 @@ def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None
         "frames": np.rint(frames).astype(int).tolist(),
     }
     if audio is not None:
-        data["audio"] = "data:audio/wav;base64," + base64.b64encode(_wav(audio)).decode("ascii")
+        data["audio"] = _sound(audio)
     # Within a script element `</` and `<!--` have a meaning, so that no such character may stand there as it is.
     text = json.dumps(data, separators=(",", ":"))
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
-    before, after = PLAYER.read_text(encoding="utf-8").split(PLACEHOLDER)
-    return before + text + after
+    player = PLAYER.read_text(encoding="utf-8")
+    before, between, after = re.split(f"{DATA_PLACE}|{MOUTH_PLACE}", player)
+    return before + text + between + MOUTH.read_text(encoding="utf-8") + after
 
 
 def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> List[Dict[str, Any]]:
@@ -67,11 +84,18 @@ def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> Li
     return phonemes
 
 
-def _wav(path: PathLike) -> bytes:
+def _sound(path: PathLike) -> str:
+    """A sound file as the address that stands for it in the page."""
     try:
-        content = Path(path).read_bytes()
+        size = os.path.getsize(path)
+        content = b"" if size > LARGEST_SOUND else Path(path).read_bytes()
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
-    if content[:4] != b"RIFF" or content[8:12] != b"WAVE":
-        raise DataError(path, None, "not a WAV file")
-    return content
+    if size > LARGEST_SOUND:
+        most = LARGEST_SOUND // 1_000_000
+        raise DataError(path, None, f"a page takes a sound of {most} MB at most, and this one has {size / 1e6:.1f} MB; "
+                                    "as MP3 or Ogg it is shorter")  # fmt: skip
+    for offset, start, kind in _SOUNDS:
+        if re.match(start, content[offset : offset + 16], re.DOTALL):
+            return f"data:{kind};base64," + base64.b64encode(content).decode("ascii")
+    raise DataError(path, None, "not a sound that browsers play: a WAV, MP3, Ogg, FLAC, AAC, M4A or WebM file")

@@ -1,0 +1,168 @@
+/* The mouth of Labial's pages: a frame of 13 facial animation parameters (FAPs) as a drawing.
+ *
+ * An ES module without imports. `labial page` and the demo put it into their page as it stands, so that no line of it may
+ * end a script element; the npm package has it beside <labial-mouth>.
+ *
+ * The drawing knows nothing but the frame. The outer lip's contour is the neutral mouth's, displaced as FAPs 51 to 60 say
+ * at its eight points, smoothly in between; the inner contour moves with it and is kept from crossing itself where the lips
+ * touch; FAPs 16 and 17 make a lip fuller or thinner; FAP 3 lowers jaw, lower teeth and chin. */
+
+/** The parameters of a frame, in their order; FAPs 53 and 54 in MW/1024, all others in MNS/1024. */
+export const CHANNELS = ["fap3", "fap16", "fap17", "fap51", "fap52", "fap53", "fap54", "fap55", "fap56", "fap57", "fap58",
+  "fap59", "fap60"];
+
+export const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+
+/** The moment to draw, where the clock says `next` and a sound is heard at `heard`: a sound's own position moves in steps, so
+ * small differences are closed gradually; the drawing is never more than half a frame period away. */
+export const follow = (next, heard, period) => clamp(next + 0.1 * (heard - next), heard - period / 2, heard + period / 2);
+
+/* Drawing units of the two MPEG-4 measures; a FAP is 1/1024 of one. The neutral mouth's line is y = 0, down is positive. */
+const MW = 170, MNS = 74, HALF = 85, UPPER = 21, LOWER = 29;
+/* Lips that touch press on each other: the first FAP units of opening only relax them. In p, b and m, where lips meet, the
+ * talkers' outer contours are up to 75 units farther apart than at rest; in f and v, where they do not, 100 and more. */
+const SEAL = 80 * MNS / 1024;
+const STATIONS = Array.from({length: 49}, (_, i) => Math.PI * (i / 48 - 0.5));
+
+/* How far the contour is displaced at each station, from its displacement at the right corner, half way, in the middle,
+ * half way and at the left corner. In the angle whose sine is the place along the mouth, an ellipse is a smooth curve:
+ * piecewise cubic interpolation rounds the opening where it is wide and overshoots nowhere. */
+function displacement(y) {
+  const x = [-Math.PI / 2, -Math.PI / 6, 0, Math.PI / 6, Math.PI / 2], h = [], d = [], m = [];
+  for (let i = 0; i < 4; i++) { h[i] = x[i + 1] - x[i]; d[i] = (y[i + 1] - y[i]) / h[i]; }
+  for (let i = 1; i < 4; i++)
+    m[i] = d[i - 1] * d[i] <= 0 ? 0 : (h[i - 1] + h[i]) * 3 / ((2 * h[i] + h[i - 1]) / d[i - 1] + (h[i] + 2 * h[i - 1]) / d[i]);
+  m[0] = 1.25 * d[0] - 0.25 * m[1]; m[4] = 1.25 * d[3] - 0.25 * m[3];
+  return STATIONS.map(at => {
+    let i = 0;
+    while (i < 3 && at > x[i + 1]) i++;
+    const t = (at - x[i]) / h[i], s = 1 - t;
+    return s * s * (1 + 2 * t) * y[i] + t * s * s * h[i] * m[i] + t * t * (3 - 2 * t) * y[i + 1] - t * t * s * h[i] * m[i + 1];
+  });
+}
+
+const points = list => list.map(p => p[0].toFixed(1) + " " + p[1].toFixed(1)).join("L");
+
+/** The drawing of a frame: the `d` of each path by its name in the markup, how far the jaw is down, and `gap`, the widest
+ * distance between the lips' inner contours; drawing units. `faps` has 13 numbers in the order of CHANNELS. */
+export function mouthShape(faps) {
+  const [jawOpen, pushLower, pushUpper, midTop, midBottom, stretchLeft, stretchRight, topLeft, topRight, bottomLeft, bottomRight,
+    cornerLeft, cornerRight] = faps;
+  const mns = value => value * MNS / 1024, mw = value => value * MW / 1024;
+  const jaw = Math.max(mns(jawOpen), -4);
+  /* x grows towards the face's left, which is on the viewer's right. */
+  const left = Math.max(HALF + mw(stretchLeft), 30), right = Math.max(HALF + mw(stretchRight), 30);
+  const up = displacement([-cornerRight, topRight, midTop, topLeft, -cornerLeft].map(mns));
+  const down = displacement([-cornerRight, -bottomRight, -midBottom, -bottomLeft, -cornerLeft].map(mns));
+  /* A lip pushed forward shows more of itself, one drawn back less. */
+  const pushTop = clamp(pushUpper / 800, -0.25, 0.3), pushBottom = clamp(pushLower / 800, -0.25, 0.3);
+
+  const outerTop = [], outerBottom = [], innerTop = [], innerBottom = [];
+  STATIONS.forEach((angle, i) => {
+    const u = Math.sin(angle), x = u * (u > 0 ? left : right), arch = 1 - u * u, reach = Math.abs(u);
+    const bow = 1 - 0.2 * Math.exp(-((u / 0.1) ** 2)) + 0.1 * Math.exp(-(((reach - 0.2) / 0.14) ** 2));
+    const top = UPPER * Math.pow(1 - reach ** 1.5, 0.95) * bow, bottom = LOWER * Math.pow(arch, 0.9);
+    const rest = 2.4 * Math.exp(-((u / 0.2) ** 2)) - 1.6 * Math.exp(-(((reach - 0.45) / 0.25) ** 2));
+    outerTop.push([x, up[i] - top * (1 + 0.7 * pushTop)]);
+    outerBottom.push([x, down[i] + bottom * (1 + 0.7 * pushBottom)]);
+    let a = up[i] + rest + SEAL / 2 + 0.3 * top * pushTop, b = down[i] + rest - SEAL / 2 - 0.3 * bottom * pushBottom;
+    if (a > b) a = b = (a + b) / 2; /* the lips touch here; they do not pass through each other */
+    innerTop.push([0.93 * x, a]);
+    innerBottom.push([0.93 * x, b]);
+  });
+  /* Lips in contact push outwards instead of vanishing. */
+  const mid = 24, n = STATIONS.length - 1;
+  STATIONS.forEach((_, i) => {
+    const arch = Math.cos(STATIONS[i]) ** 2;
+    outerTop[i][1] = Math.min(outerTop[i][1], innerTop[i][1] - 7 * arch);
+    outerBottom[i][1] = Math.max(outerBottom[i][1], innerBottom[i][1] + 9 * arch);
+  });
+  const back = list => list.slice().reverse();
+  const between = (a, b, share, from, to) => a.map((p, i) => [p[0] * (1 - share) + b[i][0] * share, p[1] * (1 - share) + b[i][1] * share]).slice(from, to);
+  const lowest = outerBottom[mid][1], smile = clamp(mns(cornerLeft + cornerRight) / 24 + mw(stretchLeft + stretchRight) / 60, 0, 1);
+  const chin = 158 + jaw, [rx, ry] = outerTop[0], [lx, ly] = outerTop[n];
+  const paths = {
+    inner: "M" + points(innerTop) + "L" + points(back(innerBottom)) + "Z",
+    outer: "M" + points(outerTop) + "L" + points(back(outerBottom)) + "Z",
+    upperLip: "M" + points(outerTop) + "L" + points(back(innerTop)) + "Z",
+    lowerLip: "M" + points(outerBottom) + "L" + points(back(innerBottom)) + "Z",
+    upperShine: "M" + points(between(outerTop, innerTop, 0.3, 15, 34)),
+    lowerShine: "M" + points(between(outerBottom, innerBottom, 0.52, 15, 34)),
+    under: `M${right * -0.5} ${lowest - 1}Q0 ${lowest + 9} ${left * 0.5} ${lowest - 1}`,
+    corners: `M${rx + 3} ${ry}L${rx - 3} ${ry + 1}M${lx - 3} ${ly}L${lx + 3} ${ly + 1}`,
+    philtrum: `M-8-64Q-9-45-15 ${outerTop[20][1] - 3}M8-64Q9-45 15 ${outerTop[28][1] - 3}`,
+    folds: `M-58-88C-76-66 ${rx - 26} ${ry - 32} ${rx - 26} ${ry + 4}M58-88C76-66 ${lx + 26} ${ly - 32} ${lx + 26} ${ly + 4}`,
+    crease: `M-34 ${lowest + 22}Q0 ${lowest + 14} 34 ${lowest + 22}`,
+    chin: `M-40 ${chin - 40}Q-34 ${chin - 16} 0 ${chin - 14}Q34 ${chin - 16} 40 ${chin - 40}`,
+    face: `M-205-200C-206-100-202-20-184 ${44 + 0.35 * jaw}C-168 ${104 + 0.6 * jaw} -78 ${chin} 0 ${chin}` +
+          `C78 ${chin} 168 ${104 + 0.6 * jaw} 184 ${44 + 0.35 * jaw}C202-20 206-100 205-200`,
+  };
+  const opacity = {folds: 0.1 + 0.4 * smile, upperShine: 0.16 + 0.5 * pushTop, lowerShine: 0.24 + 0.5 * pushBottom};
+  return {paths, opacity, jaw, gap: Math.max(...innerBottom.map((point, i) => point[1] - innerTop[i][1]))};
+}
+
+const MARKUP = `<svg viewBox="-215 -185 430 412" role="img" aria-label="A drawn mouth that moves with the parameters">
+  <defs>
+    <linearGradient id="backdrop" x2="0" y2="1"><stop stop-color="var(--labial-backdrop-top, #dfe6ee)"/><stop offset="1" stop-color="var(--labial-backdrop-bottom, #c3cedb)"/></linearGradient>
+    <radialGradient id="skin" gradientUnits="userSpaceOnUse" cx="0" cy="-40" r="250">
+      <stop stop-color="#f0c9ae"/><stop offset=".55" stop-color="#e5b394"/><stop offset="1" stop-color="#c68d6c"/></radialGradient>
+    <linearGradient id="neck" x2="0" y2="1"><stop stop-color="#9c6a4e"/><stop offset="1" stop-color="#c48e6f"/></linearGradient>
+    <linearGradient id="upper" x2="0" y2="1"><stop stop-color="#c57a72"/><stop offset="1" stop-color="#9a4a4d"/></linearGradient>
+    <linearGradient id="lower" x2="0" y2="1"><stop stop-color="#b25b5a"/><stop offset=".45" stop-color="#cd7f78"/><stop offset="1" stop-color="#b3645f"/></linearGradient>
+    <linearGradient id="teeth" x2="0" y2="1"><stop stop-color="#b9ada0"/><stop offset=".7" stop-color="#f6f1e8"/><stop offset="1" stop-color="#ece4d6"/></linearGradient>
+    <linearGradient id="lowteeth" x2="0" y2="1"><stop stop-color="#e3dacb"/><stop offset="1" stop-color="#a2968a"/></linearGradient>
+    <radialGradient id="tongue" cy=".35"><stop stop-color="#c0686a"/><stop offset="1" stop-color="#7d3338"/></radialGradient>
+    <filter id="soft" filterUnits="userSpaceOnUse" x="-215" y="-185" width="430" height="460"><feGaussianBlur stdDeviation="3"/></filter>
+    <filter id="softer" filterUnits="userSpaceOnUse" x="-215" y="-185" width="430" height="460"><feGaussianBlur stdDeviation="8"/></filter>
+    <clipPath id="opening"><path data-d="inner"/></clipPath>
+  </defs>
+  <rect x="-600" y="-185" width="1200" height="412" fill="url(#backdrop)"/>
+  <path d="M-118 40C-112 150-122 200-150 260H150C122 200 112 150 118 40Z" fill="url(#neck)"/>
+  <path data-d="face" fill="url(#skin)" stroke="#a8704f" stroke-width="1.5"/>
+  <g fill="none" stroke="#8a5237" stroke-linecap="round">
+    <path d="M-30-185C-34-140-44-118-50-100M30-185C34-140 44-118 50-100" opacity=".22" stroke-width="5" filter="url(#soft)"/>
+    <path d="M-49-106C-60-88-50-70-34-76C-22-80-14-68 0-68C14-68 22-80 34-76C50-70 60-88 49-106" opacity=".6" stroke-width="2"/>
+    <path data-d="folds" stroke-width="4" filter="url(#soft)"/>
+    <path data-d="philtrum" stroke-width="3" opacity=".3" filter="url(#soft)"/>
+    <path data-d="crease" stroke-width="8" opacity=".25" filter="url(#soft)"/>
+    <path data-d="chin" stroke-width="9" opacity=".16" filter="url(#softer)"/>
+    <path data-d="under" stroke-width="7" opacity=".34" filter="url(#soft)"/>
+  </g>
+  <ellipse cx="0" cy="-112" rx="13" ry="34" fill="#fff" opacity=".2" filter="url(#softer)"/>
+  <path d="M-32-77C-27-85-15-83-12-76C-18-72-26-72-32-77ZM32-77C27-85 15-83 12-76C18-72 26-72 32-77Z" fill="#5b2d1e" opacity=".75"/>
+  <path data-d="inner" fill="#2a0b0f"/>
+  <g clip-path="url(#opening)">
+    <ellipse data-move="jaw" cx="0" cy="14" rx="54" ry="22" fill="url(#tongue)"/>
+    <g data-move="jaw"><path d="M-52 40V12Q-40 5-24 4Q0 2 24 4Q40 5 52 12V40Z" fill="url(#lowteeth)"/>
+      <path d="M0 3V34M-12 3V34M12 3V34M-24 4V34M24 4V34M-37 6V34M37 6V34" stroke="#8e8174" stroke-width=".8" opacity=".6"/></g>
+    <path d="M-66-34V-9Q-48 2-25 4Q-12 8 0 6Q12 8 25 4Q48 2 66-9V-34Z" fill="url(#teeth)"/>
+    <path d="M0 6V-30M-17 6V-30M17 6V-30M-31 4V-30M31 4V-30M-44 0V-30M44 0V-30M-56-4V-30M56-4V-30" stroke="#9a8d80" stroke-width=".8" opacity=".6"/>
+    <path data-d="inner" fill="none" stroke="#1c0508" stroke-width="8" opacity=".38" filter="url(#soft)"/>
+  </g>
+  <path data-d="upperLip" fill="url(#upper)"/>
+  <path data-d="lowerLip" fill="url(#lower)"/>
+  <path data-d="upperShine" fill="none" stroke="#fff" stroke-width="4" stroke-linecap="round" filter="url(#soft)"/>
+  <path data-d="lowerShine" fill="none" stroke="#fff" stroke-width="7" stroke-linecap="round" filter="url(#soft)"/>
+  <path data-d="outer" fill="none" stroke="#8d4a45" stroke-width="1.2" opacity=".45"/>
+  <path data-d="inner" fill="none" stroke="#4d1519" stroke-width="1.8" stroke-linejoin="round" opacity=".85"/>
+  <path data-d="corners" fill="none" stroke="#5d2420" stroke-width="5" stroke-linecap="round" opacity=".4" filter="url(#soft)"/>
+</svg>`;
+
+let drawings = 0;
+
+/** Puts a mouth into an empty element or shadow root and returns the function that draws a frame, as mouthShape() takes it.
+ * The colours behind the face are --labial-backdrop-top and --labial-backdrop-bottom. */
+export function createMouth(place) {
+  const own = `labial-${++drawings}-`; /* what is named in one drawing is not meant by another one */
+  place.innerHTML = MARKUP.replace(/(id="|url\(#)/g, `$1${own}`);
+  const shapes = [...place.querySelectorAll("[data-d]")], jawParts = [...place.querySelectorAll("[data-move=jaw]")];
+  return faps => {
+    const {paths, opacity, jaw} = mouthShape(faps);
+    for (const shape of shapes) {
+      const name = shape.dataset.d;
+      shape.setAttribute("d", paths[name]);
+      if (name in opacity) shape.setAttribute("opacity", opacity[name]);
+    }
+    for (const part of jawParts) part.setAttribute("transform", `translate(0 ${jaw})`);
+  };
+}
