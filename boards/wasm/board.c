@@ -1,0 +1,52 @@
+/*
+ * board.c - board.h in WebAssembly. Text goes to the program that runs the image (run.mjs); there is no counter of
+ * instructions, and the depth of the stack cannot be told.
+ */
+#include "board.h"
+
+#define IMPORT(name) __attribute__((import_module("board"), import_name(name)))
+
+IMPORT("put") extern void wasm_put(uint32_t character);
+IMPORT("exit") extern void wasm_exit(int32_t status);
+
+int main(void);
+int32_t run(void);
+
+/* What run.mjs calls. */
+__attribute__((export_name("run"))) int32_t run(void)
+{
+    return main();
+}
+
+void board_put(char character)
+{
+    wasm_put((uint8_t)character);
+}
+
+void board_exit(int status)
+{
+    wasm_exit(status); /* does not return */
+}
+
+void board_count_start(void)
+{
+}
+
+uint32_t board_count(void)
+{
+    return 0;
+}
+
+void board_stack_paint(void)
+{
+}
+
+uint32_t board_stack_depth(void)
+{
+    return 0;
+}
+
+uint32_t board_stack_left(void)
+{
+    return UINT32_MAX;
+}
