@@ -14,6 +14,7 @@ VERSIONS: Dict[str, str] = {
     "export/labial/__init__.py": r'^__version__ = "([^"]*)"$',
     "idf_component.yml": r'^version: "([^"]*)"$',
     "library.json": r'^  "version": "([^"]*)",$',
+    "packaging/npm/package.json": r'^  "version": "([^"]*)",$',
 }
 _HEADER = "include/labial/labial.h"
 _PARTS = ("MAJOR", "MINOR", "PATCH")

@@ -1,0 +1,148 @@
+/** 13 lip and jaw parameters in FAP units: MPEG-4 FAPs 3, 16, 17, 51 .. 60, in this order. */
+export type Faps = Int16Array;
+
+/** Weights by name, 0 .. 1. */
+export type Weights = Record<string, number>;
+
+/** How frames are given out. */
+export type Output = "faps" | "arkit";
+
+/** Which labels mean which sounds: "auto" is any of the others, in their order. */
+export type Labels = "auto" | "arpabet" | "ipa" | "xsampa";
+
+/** One phoneme and when it is spoken, seconds. `label` is any that the model knows, "" for silence, "<laugh>" or
+ * "<laugh:0.7>" for a laugh; `labels` is the set that is tried first. */
+export interface Segment {
+    start: number;
+    end: number;
+    label: string;
+    labels?: Labels;
+}
+
+/** What the library refuses, in its own words. `code` is its result (labial_result_t), 0 where it has none. */
+export class LabialError extends Error {
+    readonly code: number;
+}
+
+/** A model that streams can use. */
+export interface Model {
+    /** How many it has; their numbers count from 0. */
+    readonly phonemes: number;
+    /** The number of the one that is silence. */
+    readonly silence: number;
+    /** Frames per second. */
+    readonly rate: number;
+}
+
+export interface StreamOptions<O extends Output = Output> {
+    /** "faps" when left out. */
+    output?: O;
+    /** The model of the first pushes: "speech" when left out. */
+    model?: "speech" | "laughter" | Model;
+    /** "auto" when left out. */
+    labels?: Labels;
+    /** What happens to a label that nobody knows: an exception ("error", when left out), or it moves as the nearest. */
+    unknown?: "error" | "nearest";
+}
+
+type FrameOf<O> = O extends "faps" ? Faps : Weights;
+
+/** A mouth that moves while its phonemes are still arriving. */
+export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
+    /** Adds a phoneme, by label or number, of the current model; milliseconds from 0 to 3,600,000. Fractions of
+     * milliseconds are carried on, so that nothing drifts. Any number of phonemes up to 65,536 may wait. */
+    push(label: string | number, milliseconds: number, options?: { labels?: Labels; hint?: Labels }): void;
+    /** Adds a laugh: seconds, 0 to 3,600; intensity from 0, a hum, to 1, an open mouth. The same seed gives the same
+     * laugh; without one, every laugh of a stream is another. */
+    laugh(seconds: number, intensity?: number, seed?: number): void;
+    /** Makes the next pushes phonemes of another model of the same frame rate. */
+    use(model: "speech" | "laughter" | Model): void;
+    /** No more phonemes will come. */
+    end(): void;
+    /** Drops what is not yet delivered and eases back to the neutral face; then the stream is done. */
+    cancel(milliseconds?: number): void;
+    /** Takes up a stream again that is done or was cancelled. */
+    restart(): void;
+    /** Call once per frame period: the next frame, or null where there is none yet. The frame is the same object each
+     * time, so that nothing is left for the garbage collector; copy what is to be kept. */
+    tick(): FrameOf<O> | null;
+    /** All frames that what was pushed so far allows, each an object of its own. */
+    [Symbol.iterator](): IterableIterator<FrameOf<O>>;
+    /** Number of the frame that was delivered last, from 0; -1 before the first. */
+    readonly number: number;
+    /** When that frame is due, seconds after the first. */
+    readonly time: number;
+    /** Frames per second. */
+    readonly rate: number;
+    /** The model of the next push. */
+    readonly model: Model;
+    /** The stream was ended or cancelled, and every frame was delivered. */
+    readonly done: boolean;
+    /** The next frame waits for more phonemes. */
+    readonly starved: boolean;
+    /** What is pushed and not yet delivered, and `delay`, the frames between one that is taken up and its delivery. */
+    readonly latency: { frames: number; milliseconds: number; delay: number };
+    /** Gives its memory back at once; otherwise that happens some time after nobody holds the stream any more. */
+    free(): void;
+}
+
+/** The motion of a whole utterance. Frame k is due k / rate seconds after the sound begins. */
+export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
+    readonly output: O;
+    /** Frames per second. */
+    readonly rate: number;
+    /** Number of frames. */
+    readonly length: number;
+    /** Seconds. */
+    readonly duration: number;
+    /** The FAPs of all frames, 13 for each, whatever the output is. */
+    readonly faps: Int16Array;
+    /** The mouth at a time of the sound, seconds, between two frames: what is shown while the sound is there. Before
+     * the beginning and after the end it is the first and the last frame. The same object each time. */
+    at(seconds: number): O extends "faps" ? Float32Array : Weights;
+    /** One frame. */
+    frame(number: number): FrameOf<O>;
+    [Symbol.iterator](): IterableIterator<FrameOf<O>>;
+}
+
+/** The library. One serves any number of streams. */
+export class Labial {
+    /** Loads labial.wasm from beside this file, or from `wasm`: its address, an answer of fetch(), its bytes, or the
+     * compiled module. */
+    static load(options?: {
+        wasm?: string | URL | Response | ArrayBuffer | Uint8Array | WebAssembly.Module | Promise<Response>;
+    }): Promise<Labial>;
+    /** The bundled models. */
+    readonly models: { readonly speech: Model; readonly laughter: Model };
+    /** A new stream. */
+    stream<O extends Output = "faps">(options?: StreamOptions<O>): Stream<O>;
+    /** The motion of a whole utterance; gaps between segments are silence. */
+    render<O extends Output = "faps">(timings: Iterable<Segment>, options?: StreamOptions<O>): Track<O>;
+    /** A model from a binary file (`labial export --blob`), which is checked. */
+    model(bytes: ArrayBuffer | Uint8Array): Model;
+    /** The number of the phoneme that a label means. */
+    phoneme(label: string | number, options?: { model?: Model; labels?: Labels; hint?: Labels; nearest?: boolean }): number;
+    /** The label of a phoneme. */
+    label(phoneme: number, model?: Model): string;
+    /** FAPs of words that are spoken laughing: `intensity` says how much laughter there is, `words` how much of it makes
+     * room for words, both 0 .. 1. */
+    blend(speech: ArrayLike<number>, laugh: ArrayLike<number>, intensity: number, words: number, out?: Int16Array): Faps;
+    /** The weights of a face that 13 FAPs mean. */
+    convert(faps: ArrayLike<number>, output: Exclude<Output, "faps">, out?: Weights): Weights;
+}
+
+/** Readers of what voices tell of the sound they make; `source` is their JSON, parsed or as text. */
+export namespace timings {
+    /** Piper's audio chunks with `sample_rate` and `phoneme_alignments`, or its HTTP server's answer to /info. */
+    function fromPiper(source: unknown): Segment[];
+    /** Kokoro's results with `phonemes` and `pred_dur`. */
+    function fromKokoro(source: unknown): Segment[];
+    /** HeadTTS's answers with `phonemes`, `vtimes` and `vdurations`. */
+    function fromHeadTTS(source: unknown): Segment[];
+    /** Azure's viseme events. */
+    function fromAzure(source: unknown): Segment[];
+    /** Amazon Polly's speech marks. */
+    function fromPolly(source: unknown): Segment[];
+    /** Lines of `start end label`, seconds, or HTK's labels. */
+    function fromLab(text: string): Segment[];
+}

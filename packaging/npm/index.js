@@ -1,0 +1,221 @@
+// Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts says what each call takes and gives.
+import { faces } from "./faces.js";
+import { LabialError, Memory, amount, shown } from "./memory.js";
+import { Stream } from "./stream.js";
+import { Track, speak } from "./track.js";
+import * as timings from "./timings.js";
+
+export { LabialError, Stream, Track, timings };
+
+const CHANNELS = 13;
+/** Bytes of the place where labels, frames and weights are passed. */
+const SCRATCH = 16384;
+const LABEL_MAX = 256;
+const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
+
+/** A model that streams can use: a bundled one, or one that was loaded. */
+export class Model {
+    constructor(labial, at, names) {
+        const { wasm } = labial;
+        this.at = at;
+        this.names = names;
+        this.phonemes = wasm.model_phonemes(at);
+        this.silence = wasm.model_silence(at);
+        this.rate = wasm.model_rate(at);
+        this.stride = wasm.model_stride(at);
+        Object.freeze(this);
+    }
+}
+
+/** The library. One serves any number of streams. */
+export class Labial {
+    #scratch;
+    #owned = new WeakSet();
+    #loaded;
+
+    constructor(instance) {
+        this.wasm = instance.exports;
+        this.memory = new Memory(this.wasm.memory, this.wasm.__heap_base.value);
+        this.models = Object.freeze({
+            speech: new Model(this, this.wasm.model_at(0), this.wasm.names_at(0)),
+            laughter: new Model(this, this.wasm.model_at(1), this.wasm.names_at(1)),
+        });
+        Object.values(this.models).forEach((model) => this.#owned.add(model));
+        this.#scratch = this.memory.take(SCRATCH);
+        this.#loaded = new FinalizationRegistry(([at, size]) => this.memory.release(at, size));
+        Object.freeze(this);
+    }
+
+    static async load({ wasm = new URL("./labial.wasm", import.meta.url) } = {}) {
+        return new Labial(await instantiate(await wasm));
+    }
+
+    stream(options) {
+        return new Stream(this, options);
+    }
+
+    render(segments, { output = "faps", ...options } = {}) {
+        this.checkOutput(output);
+        const stream = new Stream(this, options);
+        try {
+            return new Track(this, output, stream.model.rate, speak(stream, segments));
+        } finally {
+            stream.free();
+        }
+    }
+
+    model(data) {
+        const bytes = ArrayBuffer.isView(data) ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength) : data;
+        if (!(bytes instanceof Uint8Array || bytes instanceof ArrayBuffer)) {
+            throw new TypeError(`the model is ${shown(data)}, not the bytes of a .lbm file`);
+        }
+        const header = this.wasm.blob_size();
+        const size = header + bytes.byteLength;
+        const at = this.memory.take(size);
+        this.memory.bytes.set(new Uint8Array(bytes), at + header);
+        const result = this.wasm.model_load(at, at + header, bytes.byteLength);
+        if (result < 0) {
+            this.memory.release(at, size);
+            throw this.failure(result);
+        }
+        const like = Object.values(this.models).find((one) => one.phonemes === this.wasm.model_phonemes(at));
+        const model = new Model(this, at, like ? like.names : 0);
+        this.#owned.add(model);
+        this.#loaded.register(model, [at, size]);
+        return model;
+    }
+
+    phoneme(label, { model = this.models.speech, labels = "auto", hint = "", nearest = false } = {}) {
+        if (typeof label === "number") {
+            if (!Number.isInteger(label) || label < 0 || label >= model.phonemes) throw this.failure(-6, shown(label));
+            return label;
+        }
+        if (typeof label !== "string") throw new TypeError(`the label is ${shown(label)}, not text`);
+        const sets = labels === "auto" && hint ? [hint, labels] : [labels];
+        const { read, written } = new TextEncoder().encodeInto(
+            label, this.memory.bytes.subarray(this.#scratch, this.#scratch + LABEL_MAX));
+        if (!model.names || (read < label.length && !nearest)) throw this.failure(-11, shown(label));
+        for (const set of sets) {
+            const found = this.wasm.find(model.names, this.labels(set), this.#scratch, written);
+            if (found >= 0) return found;
+        }
+        if (!nearest) throw this.failure(-11, shown(label));
+        return this.wasm.find_nearest(model.names, this.labels(labels), this.#scratch, written, model.silence);
+    }
+
+    label(phoneme, model = this.models.speech) {
+        this.phoneme(phoneme, { model });
+        return model.names ? this.memory.text(this.wasm.label_at(model.names, phoneme)) : "";
+    }
+
+    blend(speech, laugh, intensity, words, out = new Int16Array(CHANNELS)) {
+        const at = this.#scratch;
+        [speech, laugh].forEach((faps, i) => this.#put(faps, at + 32 * i));
+        const q8 = [[intensity, "intensity"], [words, "words"]].map(([x, what]) => share(x, what));
+        this.wasm.blend(...q8, at, at + 32, at + 64);
+        out.set(this.memory.int16(at + 64, CHANNELS));
+        return out;
+    }
+
+    convert(faps, output, out = {}) {
+        const names = faces[this.checkOutput(output)];
+        if (!names) throw new LabialError('FAPs are what "faps" are already; convert them to a face');
+        this.#put(faps, this.#scratch);
+        return this.weigh(this.#scratch, output, out);
+    }
+
+    // ---- What streams and tracks use --------------------------------------------------------------------------------
+
+    /** The weights of the FAPs at an address of the module's memory. */
+    weigh(at, output, out) {
+        const names = faces[output];
+        const values = this.#scratch + 64;
+        this.wasm.weigh(Object.keys(faces).indexOf(output), at, values);
+        const thousandths = this.memory.int32(values, names.length);
+        for (let i = 0; i < names.length; i++) out[names[i]] = thousandths[i] / 1000;
+        return out;
+    }
+
+    /** Phonemes and milliseconds of a laugh, one after the other. */
+    laugh(seconds, intensity, seed) {
+        const milliseconds = Math.round(1000 * amount(seconds, "seconds"));
+        const at = this.#scratch;
+        const words = at + this.wasm.laugh_size();
+        const level = share(intensity, "intensity");
+        if (!Number.isInteger(seed)) throw new TypeError(`the seed is ${shown(seed)}, not a whole number`);
+        const result = this.wasm.laugh_begin(at, Math.min(milliseconds, 2 ** 32 - 1), level, seed >>> 0);
+        if (result < 0) throw this.failure(result, `${shown(seconds)} s`);
+        const found = [];
+        while (this.wasm.laugh_next(at, words) === 0) found.push(...this.memory.int32(words, 2));
+        return found;
+    }
+
+    /** Frames of a stream, until there are no more at the moment, and how many they were: calls `add` with pieces that
+     * are not to be kept. */
+    run(mouth, add) {
+        const most = Math.floor(SCRATCH / 2 / CHANNELS);
+        let count;
+        let frames = 0;
+        do {
+            count = this.wasm.mouth_run(mouth, this.#scratch, most);
+            if (count < 0) throw this.failure(count);
+            add(this.memory.int16(this.#scratch, CHANNELS * count));
+            frames += count;
+        } while (count === most);
+        return frames;
+    }
+
+    owns(model) {
+        return this.#owned.has(model);
+    }
+
+    failure(result, what = "") {
+        return new LabialError((what && `${what}: `) + this.memory.text(this.wasm.result_text(result)), result);
+    }
+
+    labels(name) {
+        if (!Object.hasOwn(LABELS, name)) {
+            throw new LabialError(`${shown(name)} is none of the sets of labels: ${Object.keys(LABELS).join(", ")}`);
+        }
+        return LABELS[name];
+    }
+
+    checkOutput(output) {
+        if (output !== "faps" && !Object.hasOwn(faces, output)) {
+            throw new LabialError(`${shown(output)} is no output: faps, ${Object.keys(faces).join(", ")}`);
+        }
+        return output;
+    }
+
+    #put(faps, at) {
+        if (!faps || faps.length !== CHANNELS) throw new TypeError(`FAPs are ${shown(faps)}, not ${CHANNELS} numbers`);
+        const to = this.memory.int16(at, CHANNELS);
+        for (let i = 0; i < CHANNELS; i++) to[i] = Math.max(-32768, Math.min(32767, Math.round(faps[i])));
+    }
+}
+
+/** A share from 0 to 1, in 1/256. */
+function share(value, what) {
+    if (amount(value, what) > 1) throw new RangeError(`${what} is ${shown(value)}, not from 0 to 1`);
+    return Math.round(256 * value);
+}
+
+/** An instance from a file's address, an answer of fetch(), bytes or a compiled module. */
+async function instantiate(from) {
+    if (from instanceof WebAssembly.Module) return WebAssembly.instantiate(from, {});
+    let bytes = from;
+    if (typeof from === "string" || from instanceof URL) {
+        const url = new URL(from, import.meta.url);
+        if (url.protocol === "file:") {
+            const files = await import(/* webpackIgnore: true */ /* @vite-ignore */ "node:fs/promises");
+            bytes = await files.readFile(url);
+        } else {
+            bytes = await fetch(url);
+        }
+    }
+    if (typeof Response === "function" && bytes instanceof Response) {
+        if (!bytes.ok) throw new LabialError(`${bytes.url}: ${bytes.status} ${bytes.statusText}`);
+        bytes = await bytes.arrayBuffer();
+    }
+    return (await WebAssembly.instantiate(bytes, {})).instance;
+}

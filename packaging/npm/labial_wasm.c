@@ -1,0 +1,216 @@
+/*
+ * labial_wasm.c - what index.js calls of the library. The memory of streams, of models and of all that is passed is
+ * index.js's, which takes it from the heap's base on; nothing here allocates.
+ */
+#include <string.h>
+
+#include "arkit.h"
+#include "labial/blend.h"
+#include "labial/blob.h"
+#include "labial/labial.h"
+#include "labial/laugh.h"
+#include "labial/names.h"
+#include "labial/rig.h"
+#include "laughter_synthetic.h"
+#include "speech_en.h"
+
+#define EXPORT(name) __attribute__((export_name(#name)))
+
+/* The most outputs that a rig below has. */
+#define VALUES_MAX 32
+
+/* A stream with all that belongs to it. */
+typedef struct {
+    labial_t stream;
+    int16_t faps[LABIAL_CHANNELS]; /* of the frame delivered last */
+    uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4u];
+} mouth_t;
+
+static const labial_rig_t *const rigs[] = { &arkit };
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)frame;
+    memcpy(((mouth_t *)user)->faps, faps, sizeof ((mouth_t *)user)->faps);
+}
+
+/* ---- Sizes and places of what there is --------------------------------------------------------------------------- */
+
+EXPORT(mouth_size) uint32_t mouth_size(void)
+{
+    return sizeof(mouth_t);
+}
+
+EXPORT(mouth_faps) int16_t *mouth_faps(mouth_t *mouth)
+{
+    return mouth->faps;
+}
+
+EXPORT(blob_size) uint32_t blob_size(void)
+{
+    return sizeof(labial_blob_t);
+}
+
+EXPORT(laugh_size) uint32_t laugh_size(void)
+{
+    return sizeof(labial_laugh_t);
+}
+
+/* The bundled models and their names: 0 speech, 1 laughter. */
+EXPORT(model_at) const labial_model_t *model_at(unsigned number)
+{
+    return number ? &laughter_synthetic : &speech_en;
+}
+
+EXPORT(names_at) const labial_names_t *names_at(unsigned number)
+{
+    return number ? &laughter_synthetic_names : &speech_en_names;
+}
+
+EXPORT(model_phonemes) unsigned model_phonemes(const labial_model_t *model)
+{
+    return model->phoneme_count;
+}
+
+EXPORT(model_silence) unsigned model_silence(const labial_model_t *model)
+{
+    return model->silence;
+}
+
+EXPORT(model_rate) unsigned model_rate(const labial_model_t *model)
+{
+    return model->frames_per_second;
+}
+
+EXPORT(model_stride) unsigned model_stride(const labial_model_t *model)
+{
+    return model->search_stride;
+}
+
+EXPORT(label_at) const char *label_at(const labial_names_t *names, unsigned phoneme)
+{
+    return phoneme < names->phoneme_count ? names->labels[phoneme] : "";
+}
+
+EXPORT(result_text) const char *result_text(int result)
+{
+    return labial_result_text(result);
+}
+
+/* ---- Streams ----------------------------------------------------------------------------------------------------- */
+
+EXPORT(mouth_init) int mouth_init(mouth_t *mouth, const labial_model_t *model)
+{
+    memset(mouth, 0, sizeof *mouth);
+    return labial_init(&mouth->stream, model, mouth->workspace, sizeof mouth->workspace, on_frame, mouth);
+}
+
+EXPORT(mouth_use) int mouth_use(mouth_t *mouth, const labial_model_t *model)
+{
+    return labial_use(&mouth->stream, model);
+}
+
+EXPORT(mouth_push) int mouth_push(mouth_t *mouth, unsigned phoneme, uint32_t milliseconds)
+{
+    return labial_push(&mouth->stream, phoneme, milliseconds);
+}
+
+EXPORT(mouth_room) unsigned mouth_room(const mouth_t *mouth)
+{
+    return labial_room(&mouth->stream);
+}
+
+EXPORT(mouth_end) int mouth_end(mouth_t *mouth)
+{
+    return labial_end(&mouth->stream);
+}
+
+EXPORT(mouth_cancel) int mouth_cancel(mouth_t *mouth, uint32_t milliseconds)
+{
+    return labial_cancel(&mouth->stream, milliseconds);
+}
+
+EXPORT(mouth_restart) int mouth_restart(mouth_t *mouth)
+{
+    return labial_restart(&mouth->stream);
+}
+
+EXPORT(mouth_tick) int mouth_tick(mouth_t *mouth)
+{
+    return labial_tick(&mouth->stream);
+}
+
+EXPORT(mouth_held) uint32_t mouth_held(const mouth_t *mouth)
+{
+    return labial_latency(&mouth->stream).frames;
+}
+
+EXPORT(mouth_delay) unsigned mouth_delay(const mouth_t *mouth)
+{
+    return labial_latency(&mouth->stream).delay;
+}
+
+/* Ticks until `count` frames lie at `out` or no more can be had; they are as many as it returns, unless it is an error.
+ * Ticks that bring nothing before the first frame are made, too. */
+EXPORT(mouth_run) int mouth_run(mouth_t *mouth, int16_t *out, unsigned count)
+{
+    unsigned underway = labial_latency(&mouth->stream).delay, frames = 0;
+    while (frames < count) {
+        const int result = labial_tick(&mouth->stream);
+        if (result < 0)
+            return result;
+        if (result == LABIAL_OK)
+            memcpy(&out[LABIAL_CHANNELS * frames++], mouth->faps, sizeof mouth->faps);
+        else if (result != LABIAL_WAITING || underway-- == 0)
+            break;
+    }
+    return (int)frames;
+}
+
+/* ---- Labels, laughs, faces, models ------------------------------------------------------------------------------- */
+
+EXPORT(find) int find(const labial_names_t *names, unsigned labels, const char *name, uint32_t length)
+{
+    return labial_find_in(names, (labial_labels_t)labels, name, length);
+}
+
+EXPORT(find_nearest)
+int find_nearest(const labial_names_t *names, unsigned labels, const char *name, uint32_t length, unsigned silence)
+{
+    return labial_find_nearest(names, (labial_labels_t)labels, name, length, silence);
+}
+
+EXPORT(laugh_begin)
+int laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
+{
+    return labial_laugh_begin(laugh, milliseconds, intensity, seed);
+}
+
+/* The next phoneme and its milliseconds in two words at `out`. */
+EXPORT(laugh_next) int laugh_next(labial_laugh_t *laugh, uint32_t *out)
+{
+    unsigned phoneme = 0;
+    const int result = labial_laugh_next(laugh, &phoneme, &out[1]);
+    out[0] = phoneme;
+    return result;
+}
+
+EXPORT(blend)
+int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out)
+{
+    return labial_blend(&labial_blend_default, intensity, words, speech, laugh, out);
+}
+
+/* Thousandths of the face's weights, as many as it returns, at `out`. */
+EXPORT(weigh) unsigned weigh(unsigned face, const int16_t *faps, int32_t *out)
+{
+    const labial_rig_t *const rig = rigs[face];
+    labial_rig_rest(rig, out);
+    labial_rig_apply(rig, faps, out);
+    return rig->count;
+}
+
+EXPORT(model_load) int model_load(labial_blob_t *blob, const void *data, uint32_t size)
+{
+    return labial_model_load(blob, data, size);
+}

@@ -1,0 +1,96 @@
+// The memory of the WebAssembly module from its heap's base on: handed out in pieces, and taken back.
+
+/** What the library refuses, in its own words; `code` is its result (labial_result_t), 0 for what it does not know. */
+export class LabialError extends Error {
+    constructor(message, code = 0) {
+        super(message);
+        this.name = "LabialError";
+        this.code = code;
+    }
+}
+
+/** Pieces of linear memory, aligned to eight bytes: the first gap that is large enough, else more pages. */
+export class Memory {
+    #memory;
+    #gaps; // [address, size], ascending, never adjacent
+    #i8;
+
+    constructor(memory, base) {
+        const start = (base + 7) & ~7;
+        this.#memory = memory;
+        this.#gaps = [[start, memory.buffer.byteLength - start]];
+    }
+
+    /** The module's bytes; not to be kept, since they move when the memory grows. */
+    get bytes() {
+        if (!this.#i8 || this.#i8.buffer !== this.#memory.buffer) this.#i8 = new Uint8Array(this.#memory.buffer);
+        return this.#i8;
+    }
+
+    take(size) {
+        const whole = (size + 7) & ~7;
+        let index = this.#gaps.findIndex((gap) => gap[1] >= whole);
+        if (index < 0) {
+            const before = this.#memory.buffer.byteLength;
+            try {
+                this.#memory.grow(Math.ceil(whole / 65536));
+            } catch {
+                throw new LabialError("no memory is left; free streams that are no longer used");
+            }
+            this.release(before, this.#memory.buffer.byteLength - before);
+            index = this.#gaps.length - 1;
+        }
+        const gap = this.#gaps[index];
+        const at = gap[0];
+        gap[0] += whole;
+        gap[1] -= whole;
+        if (gap[1] === 0) this.#gaps.splice(index, 1);
+        return at;
+    }
+
+    release(at, size) {
+        const gaps = this.#gaps;
+        let index = gaps.findIndex((gap) => gap[0] > at);
+        if (index < 0) index = gaps.length;
+        gaps.splice(index, 0, [at, (size + 7) & ~7]);
+        for (const first of [index, index - 1]) {
+            if (first >= 0 && first + 1 < gaps.length && gaps[first][0] + gaps[first][1] === gaps[first + 1][0]) {
+                gaps[first][1] += gaps[first + 1][1];
+                gaps.splice(first + 1, 1);
+            }
+        }
+    }
+
+    int16(at, count) {
+        return new Int16Array(this.#memory.buffer, at, count);
+    }
+
+    int32(at, count) {
+        return new Int32Array(this.#memory.buffer, at, count);
+    }
+
+    /** The text at an address, up to its zero. */
+    text(at) {
+        const bytes = this.bytes;
+        return new TextDecoder().decode(bytes.subarray(at, bytes.indexOf(0, at)));
+    }
+}
+
+/** A finite number from 0 on, or a TypeError that says what it is instead. */
+export function amount(value, what) {
+    if (typeof value !== "number" || !(value >= 0 && value < Infinity)) {
+        throw new TypeError(`${what} is ${shown(value)}, not a number from 0 on`);
+    }
+    return value;
+}
+
+/** A value as messages show it: in 40 characters at most. */
+export function shown(value) {
+    let text;
+    try {
+        text = typeof value === "string" ? JSON.stringify(value) : String(value);
+    } catch {
+        text = typeof value;
+    }
+    return text.length <= 40 ? text : `${text.slice(0, 37)}...`;
+}

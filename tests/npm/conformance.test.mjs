@@ -1,0 +1,117 @@
+// Every conformance stream through the package's own calls, fed in three ways: the frames must be those of every board,
+// bit for bit. Would catch a call that reaches the library otherwise than it was made, and frames that get lost between.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import test from "node:test";
+import { Labial, vectors } from "./setup.mjs";
+
+const mouth = await Labial.load();
+
+/** CRC-32 of frames as little-endian int16, as conformance_digest() has it. */
+function crc(frames) {
+    let sum = ~0;
+    for (const value of frames.flatMap((faps) => [...faps])) {
+        for (const byte of [value & 255, (value >> 8) & 255]) {
+            sum ^= byte;
+            for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (0xedb88320 & -(sum & 1));
+        }
+    }
+    return ~sum >>> 0;
+}
+
+/** The labels of a model's phonemes by what they are called in its header. */
+function constants(model) {
+    const labels = Array.from({ length: model.phonemes }, (_, i) => mouth.label(i, model));
+    return new Map(labels.map((label) => [label.toUpperCase().replace(/\W/g, "_"), label]));
+}
+
+const labels = { speech: constants(mouth.models.speech), laughter: constants(mouth.models.laughter) };
+
+function push(stream, { model, label, milliseconds }) {
+    stream.use(model);
+    stream.push(labels[model].get(label), milliseconds);
+}
+
+/** How phonemes are fed, and all frames that can be had are taken: of the whole part, after each, frame by frame. */
+const feeds = {
+    fill(stream, phonemes) {
+        phonemes.forEach((phoneme) => push(stream, phoneme));
+        return [];
+    },
+    hungry(stream, phonemes, most) {
+        return phonemes.flatMap((phoneme) => {
+            push(stream, phoneme);
+            const found = [];
+            while (found.length < most && take(stream, 1, found)) continue;
+            most -= found.length;
+            return found;
+        });
+    },
+    "real time"(stream, phonemes, most) {
+        const found = [];
+        phonemes.forEach((phoneme) => {
+            push(stream, phoneme);
+            for (let ms = 0; ms < Math.min(phoneme.milliseconds, 5000); ms += 20) {
+                const frame = found.length < most && stream.tick();
+                if (frame) found.push(frame.slice());
+            }
+        });
+        return found;
+    },
+};
+
+/** Takes up to `count` frames; whether they all came. */
+function take(stream, count, found) {
+    if (count === 0) return true;
+    for (const frame of stream) {
+        found.push(frame);
+        if (--count === 0) return true;
+    }
+    return false;
+}
+
+function play(steps, feed) {
+    const stream = mouth.stream();
+    const frames = [];
+    for (let i = 0; i < steps.length; ) {
+        const phonemes = [];
+        while (steps[i].kind === "PUSH") phonemes.push(steps[i++]);
+        const cut = steps[i].kind === "CANCEL" ? steps[i].frames : Infinity;
+        const part = feeds[feed](stream, phonemes, cut);
+        if (cut < Infinity) {
+            assert.ok(take(stream, cut - part.length, part), "the frame to cancel after does not come");
+            stream.cancel(steps[i].milliseconds);
+        } else {
+            stream.end();
+        }
+        while (++i < steps.length && steps[i].kind === "AGAIN") {
+            assert.ok(take(stream, steps[i].frames, part));
+            stream.cancel(steps[i].milliseconds);
+        }
+        take(stream, Infinity, part);
+        assert.ok(stream.done);
+        frames.push(...part);
+        if (i < steps.length) stream.restart();
+    }
+    assert.equal(stream.number, frames.length - 1);
+    stream.free();
+    return frames;
+}
+
+const streams = vectors();
+assert.ok(streams.length >= 24);
+for (const { name, steps, frames, digest } of streams) {
+    for (const feed of Object.keys(feeds)) {
+        test(`${name}, ${feed}`, () => {
+            const found = play(steps, feed);
+            assert.deepEqual([found.length, crc(found).toString(16)], [frames, digest.toString(16)]);
+        });
+    }
+}
+
+test("the first stream, value by value", () => {
+    const text = readFileSync(new URL("../conformance/frames.txt", import.meta.url), "utf8");
+    const rows = text.split("\n").slice(1, 11).map((line) => line.split(" ").map(Number));
+    const found = play(streams[0].steps, "fill").slice(0, rows.length).map((faps) => [...faps]);
+    assert.deepEqual(found, rows);
+});

@@ -1,0 +1,33 @@
+// What the tests of the npm package share: the package itself, as it was packed, and the conformance streams.
+import { readFileSync } from "node:fs";
+import { resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+/** The folder of the package, which the build names. */
+export const folder = resolve(process.env.LABIAL_NPM_PACKAGE ?? "build/wasm/npm");
+
+export const { Labial, LabialError, timings } = await import(pathToFileURL(`${folder}/index.js`));
+
+/** The repository's file of this path. */
+export function source(path) {
+    return readFileSync(new URL(`../../${path}`, import.meta.url), "utf8");
+}
+
+const MODELS = { SPEECH: ["speech", "SPEECH_EN_"], LAUGHTER: ["laughter", "LAUGHTER_SYNTHETIC_"] };
+
+/** The streams of tests/conformance/vectors.c: name, steps, the number of frames and their digest. */
+export function vectors() {
+    const text = source("tests/conformance/vectors.c");
+    const steps = {};
+    for (const [, name, body] of text.matchAll(/conformance_step_t (\w+)_steps\[\] = \{([^;]*)\};/g)) {
+        steps[name] = [...body.matchAll(/(PUSH|CANCEL|AGAIN|END)(?:\(([^)]*)\))?/g)].map(([, kind, inner = ""]) => {
+            const [first, second, third] = inner.split(/,\s*/);
+            if (kind !== "PUSH") return { kind, frames: Number(first), milliseconds: Number(second) };
+            const [model, prefix] = MODELS[first];
+            return { kind, model, label: second.slice(prefix.length), milliseconds: Number(third) };
+        });
+    }
+    return [...text.matchAll(/\{ "(\w+)", \w+, (\d+), (\d+), (0x[0-9a-f]+)u \}/g)].map(([, name, , frames, digest]) => ({
+        name, steps: steps[name], frames: Number(frames), digest: Number(digest),
+    }));
+}
