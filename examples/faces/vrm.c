@@ -13,10 +13,10 @@ static const labial_rig_output_t outputs[5] = {
      * stretch_l_cornerlip_o +1.5 stretch_r_cornerlip_o) */
     { { -7168, 0, -12288, -16384, -4096, 6144, 6144, 0, 0, 0, 0, 0, 0 },
       0, 0, 196608, 0, 0, 400, 0 },
-    /* ou: 2.5 per FAP unit of (-1 open_jaw +5 push_t_lip -2 lower_t_midlip_o -0.5 raise_b_midlip_o -2.5
-     * stretch_l_cornerlip_o -2.5 stretch_r_cornerlip_o) */
-    { { -4096, 0, 20480, -8192, -2048, -10240, -10240, 0, 0, 0, 0, 0, 0 },
-      0, 0, 163840, -120, 0, 600, 0 },
+    /* ou: 3 per FAP unit of (-2.25 open_jaw +4 push_t_lip -1.5 lower_t_midlip_o -1.5 raise_b_midlip_o -2
+     * stretch_l_cornerlip_o -2 stretch_r_cornerlip_o) */
+    { { -9216, 0, 16384, -6144, -6144, -8192, -8192, 0, 0, 0, 0, 0, 0 },
+      0, 0, 196608, -200, 0, 600, 0 },
     /* ee: 3 per FAP unit of (-1.25 push_t_lip -1.75 lower_t_midlip_o -0.5 raise_b_midlip_o +3
      * stretch_l_cornerlip_o +3 stretch_r_cornerlip_o) */
     { { 0, 0, -5120, -7168, -2048, 12288, 12288, 0, 0, 0, 0, 0, 0 },
