@@ -1,4 +1,4 @@
-"""The command ``labial``: train, synth, timings, align, export, check, evaluate, laughter-corpus, rig, plot,
+"""The command ``labial``: train, synth, timings, align, bake, export, check, evaluate, laughter-corpus, rig, plot,
 page, record."""
 
 from __future__ import annotations
@@ -74,12 +74,26 @@ def parser() -> argparse.ArgumentParser:
 
     align = commands.add_parser("align", help="find the phonemes of a recording (English)")
     align.add_argument("sound", metavar="SOUND", help="WAV, FLAC, Ogg, MP3; any rate and number of channels")
-    said = align.add_mutually_exclusive_group()
-    said.add_argument("--text", help="what is said; without it the likeliest words are looked for, which is less sure")
-    said.add_argument("--text-file", metavar="FILE", help="a file with the text, UTF-8")
+    _add_said(align)
     align.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
     align.add_argument("--quiet", action="store_true", help="no progress bar")
     align.set_defaults(run=_align)
+
+    bake = commands.add_parser("bake", help="turn timings, a sound or frames into a C header that a board plays")
+    bake.add_argument("file", metavar="FILE", help="phoneme timings, as for synth; a sound, as for align; or frames "
+                      "(.csv, .fap)")
+    bake.add_argument("-o", "--output", required=True, metavar="OUT.h")
+    bake.add_argument("--as", dest="kind", choices=("track", "phonemes"), default="track",
+                      help="a byte per output and frame, which an Arduino Uno plays, or phonemes for boards that run "
+                      "Labial (track)")
+    bake.add_argument("--rig", metavar="FACE.toml", help="what a track moves, as for rig; a jaw without it")
+    _add_said(bake)
+    _add_source(bake)
+    _add_labels(bake)
+    bake.add_argument("--model", metavar="MODEL.npz", help="the one that Labial comes with that knows the phonemes, "
+                      "without it")
+    bake.add_argument("--name", help="of the C symbols; the header's file name without it")
+    bake.set_defaults(run=_bake)
 
     export = commands.add_parser("export", help="write a model as C tables")
     export.add_argument("model", metavar="MODEL.npz")
@@ -175,6 +189,13 @@ def _add_labels(command: argparse.ArgumentParser) -> None:
                          "in .pho and MaryTTS, the IPA of Piper, HeadTTS and Kokoro, elsewhere ARPABET (auto)")
 
 
+def _add_said(command: argparse.ArgumentParser) -> None:
+    said = command.add_mutually_exclusive_group()
+    said.add_argument("--text", help="what is said in a sound; without it the likeliest words are looked for, which is "
+                      "less sure")
+    said.add_argument("--text-file", metavar="FILE", help="a file with the text, UTF-8")
+
+
 def _add_export_options(command: argparse.ArgumentParser) -> None:
     from labial.quantise import DEFAULT_PREDECESSORS
 
@@ -247,6 +268,17 @@ def _align(options: argparse.Namespace) -> int:
     text = run(options.sound, options.text, options.text_file,
                progress=not options.quiet and sys.stderr.isatty())
     _put(text, options.output)
+    return 0
+
+
+def _bake(options: argparse.Namespace) -> int:
+    from labial.bake.command import run
+    from labial.bake.source import Source, said
+
+    source = Source(options.file, options.model, said(options.text, options.text_file), options.labels,
+                    options.source)
+    for path in run(source, options.output, options.kind, options.rig, options.name):
+        print(path)
     return 0
 
 

@@ -40,15 +40,20 @@ def check_name(name: str, what: str = "model") -> None:
 
 
 def phoneme_constants(model: ExportedModel) -> List[str]:
-    """The C constant of each phoneme, ``NAME_LABEL``; labels that C cannot spell are numbered."""
+    """The C constant of each phoneme of a model."""
+    return constants_of(model.name, model.phonemes)
+
+
+def constants_of(name: str, labels: Sequence[str]) -> List[str]:
+    """The C constant of each label, ``NAME_LABEL``; labels that C cannot spell are numbered."""
     used: Dict[str, int] = {}
     names = []
-    for number, label in enumerate(model.phonemes):
+    for number, label in enumerate(labels):
         spelled = re.sub(r"[^A-Za-z0-9_]", "_", label).upper()
         if not spelled or spelled in used:
             spelled = f"PHONEME_{number}"
         used[spelled] = number
-        names.append(f"{model.name.upper()}_{spelled}")
+        names.append(f"{name.upper()}_{spelled}")
     return names
 
 

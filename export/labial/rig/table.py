@@ -7,7 +7,7 @@ import os
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
 from labial import __version__
 from labial.errors import DataError
@@ -105,6 +105,22 @@ def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray) -> np.ndarr
     for output, whole in zip(rig.outputs, table):
         move = (frames @ output.weights) * (output.gain * rig.unit.scale)
         columns.append(np.clip(whole.neutral + (-move if output.invert else move), whole.minimum, whole.maximum))
+    return np.stack(columns, axis=1)
+
+
+def moved(table: Sequence[TableOutput], frames: np.ndarray) -> np.ndarray:
+    """(T, N) int64 values for (T, 13) whole FAPs of 16 bits, from rest on, to the bit as labial_rig_apply has them."""
+    import numpy as np
+
+    columns = []
+    for output in table:
+        product = (frames @ np.array(output.weights, dtype=np.int64)) * output.gain
+        move = np.clip((product + (1 << 27)) >> 28, -(1 << 30), 1 << 30)
+        values = np.clip(output.neutral + (-move if output.invert else move), output.minimum, output.maximum)
+        last = min(max(output.neutral, output.minimum), output.maximum)
+        for frame in range(len(values) if output.slew else 0):
+            last = values[frame] = min(max(values[frame], last - output.slew), last + output.slew)
+        columns.append(values)
     return np.stack(columns, axis=1)
 
 

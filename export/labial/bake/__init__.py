@@ -1,0 +1,1 @@
+"""Motion or phonemes as a C header to compile: ``labial bake``."""

@@ -1,0 +1,46 @@
+"""The command ``labial bake``."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import List, Optional
+
+from labial.bake import phonemes, track
+from labial.bake.source import Source, read_phonemes, read_track
+from labial.emit import check_name
+from labial.errors import LabialError
+from labial.rig.description import read
+from labial.rig.table import convert
+
+#: The player, which is written beside each track.
+PLAYER = "labial_track.h"
+
+
+def run(source: Source, output: str, kind: str, rig: Optional[str] = None, name: Optional[str] = None) -> List[Path]:
+    """Writes a header of `kind`, "track" or "phonemes", and beside a track its player; returns their paths.
+
+    `rig` is a rig's description, for a track; a jaw without it. `name` is what C calls it, the file's name without it.
+    """
+    path = Path(output)
+    if path.suffix.lower() != ".h":
+        raise LabialError(f"{output}: what is written is a C header, whose name ends with .h")
+    if path.name == PLAYER:
+        raise LabialError(f"{output}: this is the name of the player")
+    name = name or re.sub(r"[^0-9A-Za-z]+", "_", path.stem)
+    check_name(name, "header")
+    if kind == "phonemes":
+        if rig is not None:
+            raise LabialError("--rig goes with --as track; a board that is given phonemes applies the rig itself")
+        model, called, stream = read_phonemes(source)
+        files = {path: phonemes.header(name, Path(source.path).name, called, model.phonemes, stream)}
+    else:
+        face = read(rig, name) if rig is not None else track.JAW
+        table = convert(face)
+        track.check_names(face)
+        text = track.header(name, Path(source.path).name, face, table, read_track(source))
+        files = {path: text, path.with_name(PLAYER): Path(__file__).with_name(PLAYER).read_text(encoding="ascii")}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for file, content in files.items():
+        file.write_bytes(content.encode("ascii", errors="replace"))
+    return list(files)

@@ -1,0 +1,141 @@
+"""What is baked: phoneme timings, a sound or frames, and which of these a file is."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import List, Optional, Tuple, Union
+
+import numpy as np
+
+from labial.corpus.formats import read_timings
+from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments, text_of
+from labial.errors import DataError, LabialError
+from labial.frames import even
+from labial.model import Model, load
+from labial.phones import Stream, phone_set, stream_of
+from labial.phonesets import AUTO
+from labial.see.motion import read_motion
+
+PathLike = Union[str, os.PathLike]
+
+#: Suffixes, in small letters, of what is a sound, and of what holds frames; anything else holds timings.
+SOUNDS = (".wav", ".flac", ".ogg", ".oga", ".opus", ".mp3", ".aif", ".aiff", ".au", ".caf")
+FRAMES = (".csv", ".fap")
+#: Frames per second of a track.
+RATE = 50
+#: Frames that a track has at most: five and a half hours.
+_LONGEST = 1_000_000
+#: The models that Labial comes with, by kind.
+_BUNDLED = {"speech": "speech_en", "laughter": "laughter_synthetic"}
+
+
+@dataclass(frozen=True)
+class Source:
+    """What the command was told about its input."""
+
+    path: str
+    model: Optional[str] = None  #: a model's file; that of the bundled ones that knows the labels without it
+    text: Optional[str] = None  #: what is said in a sound
+    labels: str = AUTO
+    format: Optional[str] = None  #: of the timings; told by the file without it
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the file is a sound, by its name."""
+        return self.format is None and Path(self.path).suffix.lower() in SOUNDS
+
+    @property
+    def has_frames(self) -> bool:
+        """Whether the file holds frames, by its name."""
+        return self.format is None and Path(self.path).suffix.lower() in FRAMES
+
+
+def bundled(kind: str) -> Path:
+    """The file of the model of this kind ("speech", "laughter") that Labial comes with: in the package, or in the
+    source tree. Raises LabialError where it is not installed."""
+    package = Path(__file__).resolve().parents[1]
+    for folder in (package / "models", package.parent / "models"):
+        if (folder / f"{_BUNDLED[kind]}.npz").is_file():
+            return folder / f"{_BUNDLED[kind]}.npz"
+    raise LabialError(f"the model {_BUNDLED[kind]} is not installed with this package: name a model by --model")
+
+
+def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
+    """The model, what the model is called, and the phonemes of timings or of a sound. Raises DataError."""
+    if source.has_frames:
+        raise DataError(source.path, None, "holds frames, which have no phonemes; --as track takes frames")
+    segments = _heard(source) if source.is_sound else _timed(source)
+    if source.model:
+        path = Path(source.model)
+    else:
+        path = bundled(phone_set_of(segments, source.labels).kind)
+    model = load(path)
+    found = phoneme_segments(source.path, segments, phone_set(model), False, source.labels)
+    return model, path.stem, stream_of(found, model, 0)
+
+
+def _timed(source: Source) -> List[SourceSegment]:
+    if source.text is not None:
+        raise LabialError(f"{source.path}: a text goes with a sound ({', '.join(SOUNDS)}), not with timings or frames")
+    return read_timings(source.path, source.format)
+
+
+def _heard(source: Source) -> List[SourceSegment]:
+    try:
+        from labial.align.align import align
+    except ModuleNotFoundError as error:
+        raise LabialError(f"a sound needs the package {error.name}: install labial[align]") from None
+    if source.text is None:
+        warnings.warn(f"{source.path}: without its text (--text, --text-file) phonemes are less sure", stacklevel=2)
+    found = align(source.path, source.text)
+    return [SourceSegment(item.start, item.end, item.label, None, "arpabet") for item in found]
+
+
+def said(text: Optional[str], file: Optional[str]) -> Optional[str]:
+    """What is said, from either of the two options."""
+    return text if file is None else text_of(file)
+
+
+def read_track(source: Source) -> np.ndarray:
+    """(T, 13) FAPs, float64, 50 frames a second from time 0, of a file of frames, of timings or of a sound."""
+    if source.has_frames:
+        if source.text is not None or source.model:
+            raise LabialError(f"{source.path}: frames need neither a text nor a model")
+        motion = read_motion(source.path)
+        return _at_rate(source.path, motion.times, motion.frames)
+    from labial.reference import stream
+    from labial.reference.tables import FloatTables
+
+    model, _, phonemes = read_phonemes(source)
+    seconds = sum(milliseconds for _, milliseconds in phonemes) / 1000.0
+    _check_length(source.path, seconds)
+    frames = stream.synthesise(FloatTables(model), phonemes)
+    if not len(frames):
+        raise DataError(source.path, None, "too short for a frame, which is 20 ms")
+    return _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
+
+
+def _check_length(path: PathLike, seconds: float) -> None:
+    if seconds * RATE > _LONGEST:
+        raise DataError(path, None, f"{seconds:.0f} s are too long: a track has at most {_LONGEST} frames")
+
+
+def _at_rate(path: PathLike, times: np.ndarray, frames: np.ndarray) -> np.ndarray:
+    """Frames at 50 a second from time 0, the sound's beginning: as they are, or interpolated linearly. Before the first
+    and behind the last the mouth stays as it is there."""
+    if times[-1] < 0:
+        raise DataError(path, None, f"its last time, {times[-1]:g} s, lies before 0, where the sound begins")
+    _check_length(path, float(times[-1]))
+    try:
+        rate, frames = even(times, frames)
+    except ValueError as error:
+        raise DataError(path, None, str(error)) from None
+    times = times[0] + np.arange(len(frames)) / rate
+    count = math.floor(round(float(times[-1] + 1.0 / rate) * RATE, 6) + 1e-3)
+    grid = np.arange(max(count, 1)) / RATE
+    return np.stack([np.interp(grid, times, channel) for channel in frames.T], axis=1)
+
