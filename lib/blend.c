@@ -6,7 +6,7 @@
 #include "fixed.h"
 #include "labial/labial.h"
 
-/* Channels, and bits by channel of what speech holds in a closure. */
+/* Channels, and bits by channel of what speech keeps in a closure. */
 #define JAW 0u
 #define UPPER_MIDLIP 3u
 #define LOWER_MIDLIP 4u
@@ -19,7 +19,7 @@ const labial_blend_t labial_blend_default = {
     { 90, 154, 154, 90, 90, 230, 230, 90, 90, 90, 90, 230, 230 }, 120, 240, 150, 270,
 };
 
-/* How free the channel is of a closure, Q14, at a `distance` from it that is held up to `low` and free from `high`. */
+/* How free the channel is of a closure, Q14, at a `distance` from it: not at all up to `low`, wholly from `high`. */
 static uint32_t freedom(int32_t distance, int32_t low, int32_t high)
 {
     if (distance <= low)

@@ -75,7 +75,7 @@ static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessor
     channel->firm = scales[10];
     channel->emissions = (const labial_emission_t *)table(reader, states, sizeof(labial_emission_t));
     channel->states = (const labial_state_t *)table(reader, states, sizeof(labial_state_t));
-    channel->edges = (const uint16_t *)table(reader, states * predecessors, 2u);
+    channel->transitions = (const uint16_t *)table(reader, states * predecessors, 2u);
 }
 
 static void read_tables(reader_t *reader, unsigned optional, labial_model_t *model, labial_channel_t *channels)

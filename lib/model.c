@@ -1,20 +1,14 @@
+/*
+ * model.c - whether a model's tables are what labial/model.h says.
+ */
 #include <stddef.h>
 
 #include "fixed.h"
 #include "labial/labial.h"
 
-static int phonemes_are_sound(const labial_model_t *model)
+static int is_within(uint32_t value, uint32_t least, uint32_t most)
 {
-    unsigned p;
-    for (p = 0; p < model->phoneme_count; p++) {
-        const labial_phoneme_t *phoneme = &model->phonemes[p];
-        if (phoneme->component_count == 0 || phoneme->component_count > LABIAL_PHONEME_COMPONENTS_MAX ||
-            (uint32_t)phoneme->first_component + phoneme->component_count > model->component_count ||
-            phoneme->viseme_class >= model->class_count || phoneme->boundary > 1 ||
-            phoneme->floor > model->floor_count)
-            return 0;
-    }
-    return 1;
+    return value >= least && value <= most;
 }
 
 static int is_position(int32_t value)
@@ -27,9 +21,99 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-static uint32_t smaller(uint32_t a, uint32_t b)
+/* Whether no pointer is null that the counts make necessary. */
+static int tables_are_there(const labial_model_t *model)
 {
-    return a < b ? a : b;
+    unsigned k;
+    if (!model->phonemes || !model->components || !model->shapes || !model->channels)
+        return 0;
+    if (model->kernel_taps && !model->kernels)
+        return 0;
+    if (model->pair_count && (!model->pair_keys || !model->pairs))
+        return 0;
+    if (model->floor_count && (!model->floors || !model->contacts))
+        return 0;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        if (!model->channels[k].emissions || !model->channels[k].states || !model->channels[k].transitions)
+            return 0;
+    return 1;
+}
+
+static int counts_are_sound(const labial_model_t *model)
+{
+    return is_within(model->frames_per_second, 1, 250) && model->component_count > 0 &&
+           is_within(model->phoneme_count, 1, LABIAL_PHONEMES_MAX) &&
+           is_within(model->class_count, 1, LABIAL_CLASSES_MAX) &&
+           is_within(model->state_count, 1, LABIAL_STATES_MAX) &&
+           is_within(model->predecessors, 1, LABIAL_STATES_MAX) &&
+           is_within(model->search_stride, 1, LABIAL_SEARCH_STRIDE_MAX) && model->silence < model->phoneme_count &&
+           model->soft <= 1;
+}
+
+static int kernels_are_sound(const labial_model_t *model)
+{
+    if (model->kernel_taps == 0)
+        return model->kernel_behind == 0;
+    return model->kernel_taps <= LABIAL_KERNEL_TAPS_MAX && model->kernel_behind < model->kernel_taps &&
+           (uint32_t)model->kernel_behind * model->kernel_stride <= LABIAL_REACH &&
+           (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride <= LABIAL_REACH;
+}
+
+static int pairs_are_sound(const labial_model_t *model)
+{
+    unsigned i;
+    for (i = 1; i < model->pair_count; i++)
+        if (model->pair_keys[i] <= model->pair_keys[i - 1u])
+            return 0;
+    return is_within(model->pair_knots, 1, 2);
+}
+
+static int floors_are_sound(const labial_model_t *model)
+{
+    unsigned i, k;
+    for (i = 0; i < model->floor_count; i++) {
+        if (model->contacts[i] >> LABIAL_CHANNELS)
+            return 0;
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const int16_t floor = model->floors[i * LABIAL_CHANNELS + k];
+            if (floor < LABIAL_NO_FLOOR || floor > LABIAL_POSITION_MAX)
+                return 0;
+        }
+    }
+    return model->floor_count == 0 || LABIAL_REACH >= LABIAL_CONTACT_FRAMES;
+}
+
+static int phonemes_are_sound(const labial_model_t *model)
+{
+    unsigned p;
+    for (p = 0; p < model->phoneme_count; p++) {
+        const labial_phoneme_t *phoneme = &model->phonemes[p];
+        if (!is_within(phoneme->component_count, 1, LABIAL_PHONEME_COMPONENTS_MAX) ||
+            (uint32_t)phoneme->first_component + phoneme->component_count > model->component_count ||
+            phoneme->viseme_class >= model->class_count || phoneme->boundary > 1 ||
+            phoneme->floor > model->floor_count)
+            return 0;
+    }
+    return 1;
+}
+
+static int emissions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
+{
+    unsigned q;
+    for (q = 0; q < model->state_count; q++)
+        if (!is_position(channel->emissions[q].mean) ||
+            (q > 0 && channel->emissions[q].mean < channel->emissions[q - 1u].mean))
+            return 0;
+    return 1;
+}
+
+static int transitions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
+{
+    unsigned i;
+    for (i = 0; i < (unsigned)model->state_count * model->predecessors; i++)
+        if ((channel->transitions[i] & 0xffu) >= model->state_count)
+            return 0;
+    return 1;
 }
 
 /* weight * |mean|, below 2^33 / 4 with any weight within the limits. */
@@ -38,99 +122,66 @@ static uint32_t pull(uint32_t weight, int32_t mean)
     return weight * (uint32_t)(mean < 0 ? -mean : mean);
 }
 
-/* States are in order and in range, and equation 3 is within the limits that lib/trajectory.c needs. */
-static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel)
-{
-    uint32_t least = UINT32_MAX, most = labial_weight(channel->firm), delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
-    unsigned q, i;
-    for (q = 0; q < model->state_count; q++) {
-        const labial_state_t *state = &channel->states[q];
-        const uint32_t hold = labial_weight(state->hold), d = labial_weight(state->weight[0]),
-                       dd = labial_weight(state->weight[1]);
-        if (!is_position(channel->emissions[q].mean) ||
-            (q > 0 && channel->emissions[q].mean < channel->emissions[q - 1u].mean))
-            return 0;
-        for (i = 0; i < 3; i++)
-            if (!is_position(state->mean[i]))
-                return 0;
-        if (hold < LABIAL_WEIGHT_MIN || hold > LABIAL_WEIGHT_SUM_MAX || d > dd || dd > LABIAL_STIFFNESS_MAX * hold ||
-            dd > LABIAL_WEIGHT_SUM_MAX / 6)
-            return 0;
-        least = smaller(least, hold);
-        most = larger(most, hold);
-        delta = larger(delta, d);
-        delta2 = larger(delta2, dd);
-        delta_pull = larger(delta_pull, pull(d, state->mean[1]));
-        delta2_pull = larger(delta2_pull, pull(dd, state->mean[2]));
-    }
-    return most + 2u * delta + 6u * delta2 <= LABIAL_WEIGHT_SUM_MAX &&
-           4u * delta_pull + 4u * delta2_pull <= LABIAL_PULL_MAX * least;
-}
+/* What the states of a channel ask of equation 3 at most: weights, and their products with the means. */
+typedef struct {
+    uint32_t least_hold, most_hold, delta, delta2, delta_pull, delta2_pull;
+} extremes_t;
 
-static int transitions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
+/* Whether one state is in range; `extremes` takes it up. */
+static int state_is_sound(const labial_state_t *state, extremes_t *extremes)
 {
-    unsigned i;
-    for (i = 0; i < (unsigned)model->state_count * model->predecessors; i++)
-        if ((channel->edges[i] & 0xffu) >= model->state_count)
-            return 0;
+    const uint32_t hold = labial_weight(state->hold), delta = labial_weight(state->weight[0]),
+                   delta2 = labial_weight(state->weight[1]);
+    if (!is_position(state->mean[0]) || !is_position(state->mean[1]) || !is_position(state->mean[2]))
+        return 0;
+    if (!is_within(hold, LABIAL_WEIGHT_MIN, LABIAL_WEIGHT_SUM_MAX) || delta > delta2 ||
+        delta2 > LABIAL_STIFFNESS_MAX * hold || delta2 > LABIAL_WEIGHT_SUM_MAX / 6)
+        return 0;
+    extremes->least_hold = hold < extremes->least_hold ? hold : extremes->least_hold;
+    extremes->most_hold = larger(extremes->most_hold, hold);
+    extremes->delta = larger(extremes->delta, delta);
+    extremes->delta2 = larger(extremes->delta2, delta2);
+    extremes->delta_pull = larger(extremes->delta_pull, pull(delta, state->mean[1]));
+    extremes->delta2_pull = larger(extremes->delta2_pull, pull(delta2, state->mean[2]));
     return 1;
 }
 
-static int channel_is_sound(const labial_model_t *model, unsigned k)
+/* Whether equation 3 of a channel is within the limits that lib/trajectory.c needs. */
+static int states_are_sound(const labial_model_t *model, const labial_channel_t *channel)
 {
-    const labial_channel_t *channel = &model->channels[k];
-    if (!is_position(channel->centre) || channel->shape_scale > 32767u || channel->slope_scale > 16383u)
-        return 0;
-    return states_are_sound(model, channel) && transitions_are_sound(model, channel);
+    extremes_t extremes = { UINT32_MAX, 0, 0, 0, 0, 0 };
+    unsigned q;
+    extremes.most_hold = labial_weight(channel->firm);
+    for (q = 0; q < model->state_count; q++)
+        if (!state_is_sound(&channel->states[q], &extremes))
+            return 0;
+    return extremes.most_hold + 2u * extremes.delta + 6u * extremes.delta2 <= LABIAL_WEIGHT_SUM_MAX &&
+           4u * extremes.delta_pull + 4u * extremes.delta2_pull <= LABIAL_PULL_MAX * extremes.least_hold;
+}
+
+static int channels_are_sound(const labial_model_t *model)
+{
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const labial_channel_t *channel = &model->channels[k];
+        if (!is_position(channel->centre) || channel->shape_scale > 32767u || channel->slope_scale > 16383u ||
+            !emissions_are_sound(model, channel) || !states_are_sound(model, channel) ||
+            !transitions_are_sound(model, channel))
+            return 0;
+    }
+    return 1;
 }
 
 int labial_model_check(const labial_model_t *model)
 {
-    unsigned k;
-    size_t i;
     if (!model)
         return LABIAL_ERROR_NULL;
     if (model->format != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
-    if (!model->phonemes || !model->components || !model->shapes || !model->channels ||
-        (model->kernel_taps && !model->kernels) || (model->floor_count && (!model->floors || !model->contacts)) ||
-        (model->pair_count && (!model->pair_keys || !model->pairs)))
+    if (!tables_are_there(model))
         return LABIAL_ERROR_NULL;
-    if (model->frames_per_second == 0 || model->frames_per_second > 250u || model->component_count == 0 ||
-        model->phoneme_count == 0 || model->phoneme_count > LABIAL_PHONEMES_MAX || model->class_count == 0 ||
-        model->class_count > LABIAL_CLASSES_MAX || model->state_count == 0 ||
-        model->state_count > LABIAL_STATES_MAX || model->predecessors == 0 ||
-        model->predecessors > LABIAL_STATES_MAX || model->search_stride == 0 ||
-        model->search_stride > LABIAL_SEARCH_STRIDE_MAX || model->silence >= model->phoneme_count || model->soft > 1)
-        return LABIAL_ERROR_MODEL;
-    if (model->kernel_taps) {
-        if (model->kernel_taps > LABIAL_KERNEL_TAPS_MAX || model->kernel_behind >= model->kernel_taps ||
-            (uint32_t)model->kernel_behind * model->kernel_stride > LABIAL_REACH ||
-            (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride > LABIAL_REACH)
-            return LABIAL_ERROR_MODEL;
-    } else if (model->kernel_behind) {
-        return LABIAL_ERROR_MODEL;
-    }
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
-        const labial_channel_t *channel = &model->channels[k];
-        if (!channel->emissions || !channel->states || !channel->edges)
-            return LABIAL_ERROR_NULL;
-    }
-    for (i = 1; i < model->pair_count; i++)
-        if (model->pair_keys[i] <= model->pair_keys[i - 1u])
-            return LABIAL_ERROR_MODEL;
-    if (model->pair_knots < 1u || model->pair_knots > 2u || (model->floor_count && LABIAL_REACH < LABIAL_CONTACT_FRAMES))
-        return LABIAL_ERROR_MODEL;
-    for (i = 0; i < model->floor_count; i++)
-        if (model->contacts[i] >> LABIAL_CHANNELS)
-            return LABIAL_ERROR_MODEL;
-    for (i = 0; i < (size_t)model->floor_count * LABIAL_CHANNELS; i++)
-        if (model->floors[i] > LABIAL_POSITION_MAX || model->floors[i] < LABIAL_NO_FLOOR)
-            return LABIAL_ERROR_MODEL;
-    if (!phonemes_are_sound(model))
-        return LABIAL_ERROR_MODEL;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        if (!channel_is_sound(model, k))
-            return LABIAL_ERROR_MODEL;
-    return LABIAL_OK;
+    return counts_are_sound(model) && kernels_are_sound(model) && pairs_are_sound(model) && floors_are_sound(model) &&
+                   phonemes_are_sound(model) && channels_are_sound(model)
+               ? LABIAL_OK
+               : LABIAL_ERROR_MODEL;
 }

@@ -5,7 +5,7 @@
 
 #include "fixed.h"
 
-#define ONE 4096 /* a component's share of the mixture, Q12 */
+#define ONE 4096u /* the whole of a mixture, Q12 */
 
 /* Largest z of a duration: over a thousand standard deviations, so that the widest component takes an endless pause. */
 #define DURATION_Z_MAX 65535u
@@ -19,11 +19,12 @@ static const uint16_t coarse[16] = { 32768, 19875, 12055, 7312, 4435, 2690, 1631
 static const uint16_t fine[16] = { 32768, 31760, 30783, 29836, 28918, 28028, 27166, 26330,
                                    25520, 24735, 23974, 23236, 22521, 21828, 21157, 20506 };
 
-static uint32_t likelihood(uint32_t cost)
+/* Q15 */
+static uint16_t likelihood(uint32_t cost)
 {
     if (cost > 255u)
         return 0;
-    return ((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15;
+    return (uint16_t)(((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15);
 }
 
 /* Costs and signed, limited z of a phoneme's components; returns the best one's index within the phoneme. */
@@ -52,34 +53,42 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
     return best;
 }
 
+/* Shares of the mixture, Q12, by what each component costs; the best one has what rounding leaves. */
+static void weigh(const uint32_t *costs, unsigned count, unsigned best, uint16_t *shares)
+{
+    uint16_t likelihoods[LABIAL_PHONEME_COMPONENTS_MAX];
+    uint32_t sum = 0, rest = ONE;
+    unsigned c;
+    for (c = 0; c < count; c++) {
+        likelihoods[c] = likelihood(costs[c] - costs[best]);
+        sum += likelihoods[c];
+    }
+    for (c = 0; c < count; c++) {
+        shares[c] = (uint16_t)(likelihoods[c] * (uint32_t)ONE / sum);
+        rest -= shares[c];
+    }
+    shares[best] = (uint16_t)(shares[best] + rest);
+}
+
 /* The shape of a phoneme between neighbours of the given viseme classes. */
 static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms, unsigned previous_class,
                 unsigned next_class, int16_t shape[LABIAL_CHANNELS])
 {
     const unsigned count = phoneme->component_count;
-    uint32_t shares[LABIAL_PHONEME_COMPONENTS_MAX] = { 0 }; /* first costs, then the mixture's weights, Q12 */
-    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX];      /* first z, Q6, held to SLOPE_Z_MAX, then share * z, Q12 */
-    const unsigned best = score(model, phoneme, ms, previous_class, next_class, shares, deviations);
+    uint32_t costs[LABIAL_PHONEME_COMPONENTS_MAX];
+    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
+    uint16_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* of the mixture, Q12 */
+    int16_t tilts[LABIAL_PHONEME_COMPONENTS_MAX];      /* share * deviation, Q12: how much of its slope counts */
+    const unsigned best = score(model, phoneme, ms, previous_class, next_class, costs, deviations);
     unsigned c, k;
 
-    if (model->soft) {
-        const uint32_t least = shares[best];
-        uint32_t sum = 0, rest = ONE;
-        for (c = 0; c < count; c++) {
-            shares[c] = likelihood(shares[c] - least);
-            sum += shares[c];
-        }
-        for (c = 0; c < count; c++) {
-            shares[c] = shares[c] * ONE / sum;
-            rest -= shares[c];
-        }
-        shares[best] += rest;
-    } else {
-        for (c = 0; c < count; c++)
-            shares[c] = c == best ? ONE : 0;
-    }
+    memset(shares, 0, sizeof shares);
+    if (model->soft)
+        weigh(costs, count, best, shares);
+    else
+        shares[best] = ONE;
     for (c = 0; c < count; c++)
-        deviations[c] = (int16_t)(((int32_t)shares[c] * deviations[c]) >> 6);
+        tilts[c] = (int16_t)((shares[c] * (int32_t)deviations[c]) >> 6);
 
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];
@@ -88,7 +97,7 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, ui
         for (c = 0; c < count; c++) {
             mean += (int32_t)shares[c] * model->shapes[first + c * LABIAL_CHANNELS];
             if (model->slopes)
-                change += deviations[c] * model->slopes[first + c * LABIAL_CHANNELS];
+                change += tilts[c] * model->slopes[first + c * LABIAL_CHANNELS];
         }
         mean = ((mean >> 4) * channel->shape_scale + 32768) >> 16;
         change = ((change >> 4) * channel->slope_scale + 32768) >> 16;

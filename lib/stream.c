@@ -80,7 +80,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     return LABIAL_OK;
 }
 
-/* Whether the model in `slot` is still needed: for phonemes that are held or frames that are not yet solved. */
+/* Whether the model in `slot` is still needed: for phonemes in the queue or frames that are not yet solved. */
 static int is_in_use(const labial_t *stream, unsigned slot)
 {
     const unsigned size = stream->stride + LABIAL_LAG;

@@ -1,6 +1,6 @@
 /*
- * The matrix of equation 3 is symmetric, positive definite and pentadiagonal, and its rows sum to what holds each
- * frame, since deltas of a constant are zero. L D L' written with these sums keeps apart what holds a frame (g), what
+ * The matrix of equation 3 is symmetric, positive definite and pentadiagonal, and its rows sum to the hold of each
+ * frame, since deltas of a constant are zero. L D L' written with these sums keeps apart the hold of a frame (g), what
  * ties it to its neighbours (f, c), and has no small difference of large numbers. With h the hold of frame t, d and dd
  * its weights:
  *
@@ -80,7 +80,7 @@ static uint16_t short_part(uint32_t part)
     return (uint16_t)(rounded - (rounded >> 16));
 }
 
-/* The position of the pending frame given all before it; `g` is what holds it. */
+/* The position of the pending frame given all before it; `g` is its row sum, eliminated. */
 static int32_t filtered(const labial_solver_t *solver, int32_t g)
 {
     const unsigned shift = headroom((uint32_t)g);

@@ -6,17 +6,17 @@
  * q is the state path, U the diagonal of the states' variances, A that of the anchors' precisions and x the targets.
  * Rows of W whose delta window would leave the solution are dropped. The factorisation runs on from frame to frame;
  * the way back starts LABIAL_WINDOW frames ahead of those that are wanted, as if all beyond were equal to the first of
- * them. With weights that labial_model_check() accepts the error is below a tenth of a FAP unit (the tests hold it to
- * that).
+ * them. With weights that labial_model_check() accepts the error is below a tenth of a FAP unit (as the
+ * tests show).
  */
 #ifndef LABIAL_TRAJECTORY_H
 #define LABIAL_TRAJECTORY_H
 
 #include "labial/labial.h"
 
-/* What a state asks of each of its frames, decoded. */
+/* What a state adds to equation 3 in each of its frames. */
 typedef struct {
-    int32_t position;    /* Q12 FAP: where the static feature holds a frame */
+    int32_t position;    /* Q12 FAP: where the static feature draws a frame */
     int32_t origin;      /* the target, a position, at which the anchor agrees with it */
     int32_t share;       /* of the anchor in `hold`, in 1/256 */
     int32_t hold;        /* weight */
@@ -27,13 +27,13 @@ typedef struct {
     int32_t delta2_pull; /* `delta2` times its mean, Q4 */
 } labial_terms_t;
 
-/* Decodes a state of a channel. */
+/* The terms of a state of a channel. */
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms);
 
 /*
- * Takes up the row of a frame, whose target is `position`; in `contact` it is held there, firmly. `marks` say whether
- * it is the solution's first or last. Every row but the first factors the frame before it, for which it needs
- * `before`, its place in the ring; the last one factors its own frame too, `own`.
+ * Takes up the row of a frame, whose target is `position`; in `contact` its hold is `firm` at least and draws it there.
+ * `marks` say whether it is the solution's first or last. Every row but the first factors the frame before it, for
+ * which it needs `before`, its place in the ring; the last one factors its own frame too, `own`.
  */
 void labial_trajectory_row(labial_solver_t *solver, const labial_terms_t *terms, int32_t position, int contact,
                            unsigned marks, labial_factors_t *before, labial_factors_t *own);

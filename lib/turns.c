@@ -3,8 +3,8 @@
  *
  * A state lasts `stride` frames, and so the channels take turns: in each tick those whose turn it is are searched and
  * solved for the frames since their last turn, up to the latest one, and go back from there to the frames that are due.
- * Channel c has its turn every `stride` ticks, c ticks apart from channel 0. So every tick does about the same work, and
- * a frame is complete LABIAL_DELAY(stride) ticks after it was taken.
+ * Channel c has its turn every `stride` ticks, c ticks apart from channel 0. So every tick does about the same work,
+ * and a frame is complete LABIAL_DELAY(stride) ticks after it was taken.
  *
  * Frames are named by their age here: how many ticks ago they were taken.
  */

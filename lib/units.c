@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* The i-th segment held, the oldest being 0. */
+/* The i-th segment of the queue, the oldest being 0. */
 static const labial_segment_t *segment_at(const labial_units_t *units, unsigned i)
 {
     i += units->head;

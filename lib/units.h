@@ -2,7 +2,7 @@
  * units.h - phonemes to frames: the queue of what was pushed, taken frame by frame.
  *
  * A frame is taken when all is known that its target depends on: what its model's kernels reach, and the phoneme
- * behind its own. So what is taken never depends on when it was pushed. A pause holds nothing up: a silence that is
+ * behind its own. So what is taken never depends on when it was pushed. A pause delays nothing: a silence that is
  * longer than the kernels look ahead is taken as two phonemes, of which the first needs nothing of what follows.
  *
  *     pushed    | m |  ey  | b |   iy   |          silence           | m |
@@ -64,7 +64,7 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
 /* Whether the next frame begins a phoneme. */
 int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS]);
 
-/* Whether phonemes of the model in `slot` are held. */
+/* Whether phonemes of the model in `slot` are in the queue. */
 int labial_units_hold(const labial_units_t *units, unsigned slot);
 
 #endif

@@ -73,8 +73,8 @@ static void take(labial_search_t *search, unsigned first, unsigned size, const u
 #endif
 }
 
-/* The least cost of entering state `i` of a window, by its edges or from the best state; notes where from. */
-static inline uint32_t enter(labial_search_t *search, unsigned size, const uint16_t *edge, unsigned predecessors,
+/* The least cost of entering state `i` of a window, by its transitions or from the best state; notes where from. */
+static inline uint32_t enter(labial_search_t *search, unsigned size, const uint16_t *transition, unsigned predecessors,
                              unsigned i)
 {
     const unsigned first = search->first;
@@ -85,9 +85,9 @@ static inline uint32_t enter(labial_search_t *search, unsigned size, const uint1
     (void)i;
 #endif
     do {
-        const unsigned predecessor = (*edge & 0xffu) - first;
+        const unsigned predecessor = (*transition & 0xffu) - first;
         if (predecessor < size) {
-            const uint32_t score = search->scores[predecessor] + ((uint32_t)*edge >> 8);
+            const uint32_t score = search->scores[predecessor] + ((uint32_t)*transition >> 8);
             if (score < least) {
                 least = score;
 #if LABIAL_LAG > 0
@@ -95,7 +95,7 @@ static inline uint32_t enter(labial_search_t *search, unsigned size, const uint1
 #endif
             }
         }
-        edge++;
+        transition++;
     } while (--predecessors > 0);
     return least;
 }
@@ -107,7 +107,7 @@ static void step(const labial_model_t *model, const labial_channel_t *channel, i
     const unsigned first = first_of_window(model, channel, position), size = searched(model);
     const unsigned predecessors = model->predecessors;
     const labial_emission_t *states = channel->emissions + first;
-    const uint16_t *edge = channel->edges + (size_t)first * predecessors;
+    const uint16_t *transition = channel->transitions + (size_t)first * predecessors;
     uint16_t costs[LABIAL_SEARCHED];
     unsigned i, best = 0;
 
@@ -122,8 +122,8 @@ static void step(const labial_model_t *model, const labial_channel_t *channel, i
         for (i = 0; i < size; i++)
             costs[i] = states[i].initial;
     else
-        for (i = 0; i < size; i++, edge += predecessors)
-            costs[i] = (uint16_t)enter(search, size, edge, predecessors, i);
+        for (i = 0; i < size; i++, transition += predecessors)
+            costs[i] = (uint16_t)enter(search, size, transition, predecessors, i);
     for (i = 0; i < size; i++) {
         costs[i] = (uint16_t)(costs[i] + emission(&states[i], position));
         if (costs[i] < costs[best])

@@ -184,11 +184,11 @@ def source(model: ExportedModel) -> str:
             "{ { " + ", ".join(map(str, mean)) + f" }}, {hold}, {share}, {{ {delta}, {bend} }} }}"
             for mean, hold, share, (delta, bend) in zip(
                 model.state_mean[k].tolist(), model.state_hold[k], model.state_share[k], model.state_weight[k]))))
-        parts.append(_table(f"uint16_t edges_{k}", model.edges[k]))
+        parts.append(_table(f"uint16_t transitions_{k}", model.edges[k]))
     channels = ",\n".join(
         f"    {{ {model.centre[k]}, {model.shape_scale[k]}, {model.slope_scale[k]}, {model.kernel_scale[k]}, "
         f"{model.pair_scale[k]}, {model.firm[k]}, "
-        f"emissions_{k}, states_{k}, edges_{k} }}"
+        f"emissions_{k}, states_{k}, transitions_{k} }}"
         for k in range(CHANNELS))
     parts.append(f"\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {{\n{channels}\n}};\n")
     names = {name: name if table is not None else "NULL" for name, _, table in optional}

@@ -28,8 +28,8 @@
  *                                              meet; free where l <= s
  *     protrusion (16, 17), corners (53, 54, 59, 60)      always free: one smiles with closed lips, too
  *
- * With words = 0 nothing is held and the mouth laughs alone: pauses of speech have closed lips, which are no closures
- * that a laugh should keep.
+ * With words = 0 nothing is kept closed and the mouth laughs alone: pauses of speech have closed lips, which are no
+ * closures that a laugh should keep.
  *
  * Every value lies between the speech's and the laugh's, so that nothing overflows or leaves the range of FAPs. With
  * intensity = 0, and with share[c] * free[c] = 0 while words = 1, it is exactly the speech's; with intensity = 1 and
@@ -57,9 +57,9 @@ typedef struct {
     /* Q8, 0 .. LABIAL_BLEND_FULL, more counts as that: how far the channel follows the laugh at full intensity while
      * words are spoken. */
     uint16_t shares[LABIAL_CHANNELS];
-    int16_t closed;   /* FAP units of opening: up to here the lips are closed and held */
+    int16_t closed;   /* FAP units of opening: up to here the lips are closed and stay so */
     int16_t open;     /* from here on they are free; where it is not above `closed` there is nothing in between */
-    int16_t touching; /* FAP units of drop: up to here the lower lip touches the teeth and is held */
+    int16_t touching; /* FAP units of drop: up to here the lower lip touches the teeth and stays there */
     int16_t dropped;  /* from here on it is free; where it is not above `touching` there is nothing in between */
 } labial_blend_t;
 

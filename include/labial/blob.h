@@ -1,9 +1,9 @@
 /*
- * labial/blob.h - models from files or flash pages instead of compiled-in tables.
+ * labial/blob.h - blobs: models from files or flash pages instead of compiled-in tables.
  *
- * A binary model (`labial export --blob` writes NAME.lbm) is little-endian and is used in place: nothing is copied, the
- * bytes must stay where they are for as long as the model is used. It is not trusted: labial_model_load() checks every
- * length before it takes a pointer, and labial_model_check() every value.
+ * A blob is a model as bytes; `labial export --blob` writes it as the file NAME.lbm. It is little-endian and is used in
+ * place: nothing is copied, and the bytes must stay where they are for as long as the model is used. A blob is not
+ * trusted: labial_model_load() checks every length before it takes a pointer, and labial_model_check() every value.
  *
  *   bytes 0-3    "LBM1"
  *   bytes 4-7    size of the whole model in bytes, uint32
@@ -15,8 +15,8 @@
  *   bytes 30-31  pair_count (uint16)
  *   then the tables of labial_model_t in their order, each padded with zeros to a multiple of four bytes: phonemes,
  *   components, contexts, shapes, slopes, kernels, pair_keys, pairs, floors, contacts; and for each channel centre
- *   (int16), shape_scale, slope_scale, kernel_scale, pair_scale (uint16), firm (uint8), 0 (uint8), then emissions, states,
- *   edges
+ *   (int16), shape_scale, slope_scale, kernel_scale, pair_scale (uint16), firm (uint8), 0 (uint8), then emissions,
+ *   states, transitions
  */
 #ifndef LABIAL_BLOB_H
 #define LABIAL_BLOB_H
@@ -29,15 +29,16 @@
 extern "C" {
 #endif
 
-/* A model over a binary file, with the room that its channels need. Caller-owned; must not be moved once loaded. */
+/* A model that lies over a blob, and the channels that it points to. The caller owns it and must not move it once it is
+ * loaded. */
 typedef struct {
     labial_model_t model;
     labial_channel_t channels[LABIAL_CHANNELS];
 } labial_blob_t;
 
 /*
- * Lays `blob->model` over the `size` bytes at `data`, which are aligned to four; `size` is the model's own size, as its
- * header has it.
+ * Lays `blob->model` over the `size` bytes at `data`, which are aligned to four; `size` is the size that the blob's
+ * header states.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION (another format, or a big-endian machine) or
  * LABIAL_ERROR_MODEL (misaligned, truncated, damaged, or out of range).

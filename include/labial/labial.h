@@ -39,34 +39,34 @@ extern "C" {
 
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
 
-/* Frames that the trajectory's way back starts ahead of those that are delivered. Each buys smoothness by a frame of
- * delay and 104 bytes of workspace; 4 leave .1 % of a channel's range (RMS) with the bundled models, the published
- * method's stiffer ones need 16 and more. 1 .. 48. */
+/* How many frames ahead of the delivered ones the trajectory's way back starts, 1 .. 48. Each frame makes the motion
+ * smoother and costs a frame of delay and 104 bytes of workspace. With the bundled models 4 frames leave an error of
+ * .1 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 4
 #endif
 
-/* Frames after which the search decides on a state, if its unit does not end before. Each buys a likelier path by a
- * frame of delay and some 175 bytes of workspace; with the bundled models nothing that is seen. 0 .. 40; a lag as long
- * as the longest unit decodes units as published. */
+/* How many frames after a step the search decides on its state, if the unit does not end earlier, 0 .. 40. Each frame
+ * makes the path likelier and costs a frame of delay and about 175 bytes of workspace; with the bundled models the
+ * difference cannot be seen. With a lag as long as the longest unit, units are searched as the method was published. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0
 #endif
 
-/* Phonemes that can be held: how far ahead a program can push. Costs 8 bytes of the stream each. LABIAL_REACH + 2 ..
- * 255; with these no sequence of pushes can stall the stream. */
+/* Phonemes that the queue has room for: how far ahead a program can push, LABIAL_REACH + 2 .. 255. Each costs 8 bytes
+ * of the stream. Within these limits no sequence of pushes can stall the stream. */
 #ifndef LABIAL_QUEUE
 #define LABIAL_QUEUE 32
 #endif
 
-/* Farthest tap of a model's kernels, in frames, to either side. Costs 2 bytes of the stream each; a model says when it
- * needs more. 0 .. 60. */
+/* Distance of the farthest tap of a model's kernels from the frame, in frames to either side, 0 .. 60. Each frame costs
+ * 2 bytes of the stream. A generated model does not compile where it needs more, and a blob is refused. */
 #ifndef LABIAL_REACH
 #define LABIAL_REACH 20
 #endif
 
-/* Models that a stream can hold at the same time. One makes room for another when its phonemes have been taken up and
- * as many frames after them as the search takes at a time. 1 .. 255. */
+/* Models whose phonemes can be in a stream at the same time, 1 .. 255. A model makes room for another when its phonemes
+ * have been taken up, and after them as many frames as the search takes at a time. */
 #ifndef LABIAL_MODELS
 #define LABIAL_MODELS 2
 #endif
@@ -90,7 +90,7 @@ extern "C" {
     X(LABIAL_ERROR_DURATION, -7, "the duration exceeds LABIAL_DURATION_MAX")                                     \
     X(LABIAL_ERROR_FULL, -8, "the queue is full; tick and push again")                                           \
     X(LABIAL_ERROR_RATE, -9, "the model's frame rate or search stride is not the stream's")                      \
-    X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still held")                         \
+    X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still to be played")                 \
     X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                \
     X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")
 
@@ -131,7 +131,7 @@ typedef struct {
     uint8_t rested;     /* the oldest segment is a pause that a solution began with */
     uint16_t remainder; /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
     uint32_t taken;     /* frames of the oldest segment that were taken */
-    uint32_t frames;    /* that are held and not yet taken */
+    uint32_t frames;    /* of all segments that are not yet taken */
     uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last that was taken */
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
@@ -242,7 +242,7 @@ uint32_t labial_workspace_size(const labial_model_t *model);
 #define LABIAL_LARGER(a, b) ((a) > (b) ? (a) : (b))
 
 /*
- * Prepares a stream whose first phonemes are those of `model`; whatever it held before is forgotten.
+ * Prepares a stream whose first phonemes are those of `model`; whatever it contained before is forgotten.
  *
  * `workspace` is aligned to four bytes and has at least labial_workspace_size() bytes of the largest model that the
  * stream will use; it belongs to the stream until it is initialised anew or no longer used.
@@ -272,7 +272,7 @@ int labial_use(labial_t *stream, const labial_model_t *model);
  * no frame of its own is skipped, and its time is added to the next.
  *
  * How a phoneme looks depends on what follows: its frames wait until the phoneme behind it and all that the kernels
- * reach are known, or until labial_end(). Pauses of any length hold nothing up: a silence is pushed whole when it
+ * reach are known, or until labial_end(). Pauses of any length delay nothing: a silence is pushed whole when it
  * begins.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
@@ -313,11 +313,11 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds);
  */
 int labial_restart(labial_t *stream);
 
-/* How much input the stream holds between what was pushed and what was delivered. */
+/* How much of the input has been pushed and not yet delivered. */
 typedef struct {
     uint32_t frames;       /* pushed and not yet delivered */
     uint32_t milliseconds; /* the same as time, rounded to the nearest */
-    unsigned phonemes;     /* held in the queue: pushed, and not yet taken up to their last frame */
+    unsigned phonemes;     /* in the queue: pushed, and not yet taken up to their last frame */
     unsigned delay;        /* frames between one that is taken up and the one that is delivered: LABIAL_DELAY() */
 } labial_latency_t;
 

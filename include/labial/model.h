@@ -3,7 +3,7 @@
  *
  * A model is a set of constant tables: it stays in flash, is never written, and may serve any number of streams at
  * once. Programs do not fill these structures by hand: `labial export` writes a C file that does, and
- * labial_model_load() (labial/blob.h) lays one over a binary file.
+ * labial_model_load() (labial/blob.h) lays one over a blob.
  *
  * Number formats, the same in every table:
  *
@@ -23,13 +23,14 @@
 extern "C" {
 #endif
 
-/* Version of the tables' meaning. A generated model of another version does not compile, a binary one is refused. */
+/* Version of the tables' meaning. A generated model of another version does not compile, and a blob of another version
+ * is refused. */
 #define LABIAL_MODEL_FORMAT 3
 
 /* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
 #define LABIAL_CHANNELS 13
 
-/* Limits that the run-time's arithmetic and memory are built for; labial_model_check() holds every model to them. */
+/* Limits that the run-time's arithmetic and memory are built for; labial_model_check() refuses a model beyond them. */
 #define LABIAL_PHONEMES_MAX 128          /* phonemes of one model */
 #define LABIAL_CLASSES_MAX 32            /* viseme classes of one model */
 #define LABIAL_PHONEME_COMPONENTS_MAX 8  /* mixture components of one phoneme */
@@ -50,11 +51,11 @@ extern "C" {
  * with a pause begins at rest. */
 #define LABIAL_REST_FRAMES 16
 
-/* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */
-#define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `firm` + twice the largest weight[0] + six times weight[1] */
-#define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
-#define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
-#define LABIAL_PULL_MAX 65535       /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over the least `hold` */
+/* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c).
+ * */ #define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `firm` + twice the largest weight[0] + six times
+ * weight[1] */ #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */ #define LABIAL_STIFFNESS_MAX 16     /* a
+ * state's weight[1] over its `hold`; weight[0] is not above weight[1] */ #define LABIAL_PULL_MAX 65535       /* Q4:
+ * four times the largest weight[i] * |mean[1 + i]|, summed, over the least `hold` */
 
 /* A phoneme: which mixture components are its own and which viseme class its neighbours see. */
 typedef struct {
@@ -91,17 +92,17 @@ typedef struct {
 
 /* One channel's scales and its hidden Markov model. States are in the order of their emissions' means. Each has as many
  * possible predecessors as the model says, in ascending order, the last repeated where there are fewer: the predecessor
- * in the low byte of an edge, the transition's cost in the high one. */
+ * in the low byte of a transition, the transition's cost in the high one. */
 typedef struct {
     int16_t centre;        /* Q4 FAP: added to every position on output */
     uint16_t shape_scale;  /* positions per step of `shapes`, Q8; at most 32767 */
     uint16_t slope_scale;  /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
     uint16_t kernel_scale; /* positions per step of `kernels`, Q8 */
     uint16_t pair_scale;   /* positions per step of `pairs`, Q8 */
-    uint8_t firm;          /* weight that holds a frame in contact at least; 0 where there is none */
+    uint8_t firm;          /* least `hold` of a frame in contact; 0 where there is none */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
-    const uint16_t *edges;              /* state_count x predecessors */
+    const uint16_t *transitions;        /* state_count x predecessors */
 } labial_channel_t;
 
 /* A model. Arrays are row-major in the order given; those marked optional may be null. */
@@ -138,8 +139,9 @@ typedef struct {
     const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
                                 * none; null when F is 0 */
     const uint16_t *contacts;  /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
-                                * neighbours do: it is held firmly, and for LABIAL_CONTACT_FRAMES at least. In silence:
-                                * it is where the channel comes to rest in a pause. Null when F is 0 */
+                                * neighbours do: its `hold` is `firm` at least, for LABIAL_CONTACT_FRAMES frames or
+                                * more. In silence: it is where the channel comes to rest in a pause. Null when F
+                                * is 0 */
     const labial_channel_t *channels; /* 13 */
 } labial_model_t;
 

@@ -22,7 +22,7 @@
  * may be used for any number of faces at once, and is linked only when used.
  *
  * Trusted: rigs that labial_rig_check() has accepted, which it does with all that `labial rig` writes. Not trusted: the
- * FAPs, of which every int16 is allowed, and what `values` holds. With a table that was not checked values may be
+ * FAPs, of which every int16 is allowed, and what is in `values`. With a table that was not checked values may be
  * nonsense and beyond the limits, but nothing except `values` is written and no behaviour is undefined.
  */
 #ifndef LABIAL_RIG_H
@@ -39,7 +39,7 @@ extern "C" {
 /* Version of the tables' meaning. Tables that `labial rig` wrote for another version do not compile. */
 #define LABIAL_RIG_FORMAT 1
 
-/* ---- Limits, which labial_rig_check() holds every table to. With them no sum or product overflows. --------------- */
+/* ---- Limits, beyond which labial_rig_check() refuses a table. With them no sum or product overflows. -------------- */
 
 #define LABIAL_RIG_WEIGHT_SUM_MAX 65535 /* of the weights' absolute values in one output, Q12 */
 #define LABIAL_RIG_GAIN_MAX 268435455   /* largest absolute gain, Q16: just below 4,096 units per FAP unit */
@@ -60,7 +60,7 @@ typedef struct {
     uint8_t reserved;                 /* 0 */
     int32_t gain;                     /* Q16: units per FAP unit; may be negative */
     int32_t neutral;                  /* units: the value of the face at rest; may lie beyond the limits, which then
-                                       * hold: so an output stays at one end until the FAPs have gone some way */
+                                       * apply: so an output stays at one end until the FAPs have gone some way */
     int32_t minimum, maximum;         /* units: no value is ever beyond them, minimum <= maximum */
     int32_t slew;                     /* units per frame that the value changes at most; 0 for no limit */
 } labial_rig_output_t;
@@ -104,9 +104,9 @@ int labial_rig_check(const labial_rig_t *rig);
 int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
 
 /*
- * Moves the rig's `count` values by one frame. `values` is the caller's, one array per face: it holds the frame before,
- * from which outputs with a slew limit go on, and receives this one; a program that converts values keeps them
- * elsewhere. What is beyond an output's limits in it counts as lying at the limit.
+ * Moves the rig's `count` values by one frame. `values` is the caller's, one array per face. On entry it
+ * contains the previous frame's values, from which outputs with a slew limit go on; on return this frame's. A program
+ * that converts values keeps the converted ones elsewhere. A value beyond its output's limits counts as the limit.
  *
  * Call it once per frame, for the slew limit counts in frames. Sums saturate nowhere within the limits of a checked
  * table; a move beyond +-2^30 counts as +-2^30, which every limit is far below.

@@ -70,16 +70,16 @@ static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned rea
     const unsigned predecessors = 2 * reach + 2; /* one at least is repeated */
     unsigned q, p;
     for (q = 0; q < count; q++) {
-        uint16_t *edges = f->edges[c] + q * predecessors;
+        uint16_t *transitions = f->transitions[c] + q * predecessors;
         unsigned n = 0;
         for (p = 0; p < count; p++) {
             const unsigned away = p > q ? p - q : q - p;
             const unsigned cost = away == 0 ? 4 : away == 1 ? 60 : 90;
             if (away <= reach)
-                edges[n++] = (uint16_t)(p | cost << 8);
+                transitions[n++] = (uint16_t)(p | cost << 8);
         }
         for (; n < predecessors; n++)
-            edges[n] = edges[n - 1];
+            transitions[n] = transitions[n - 1];
     }
     f->model.predecessors = (uint8_t)predecessors;
 }
@@ -143,7 +143,7 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
         channel->pair_scale = 256;
         channel->emissions = f->emissions[c];
         channel->states = f->states[c];
-        channel->edges = f->edges[c];
+        channel->transitions = f->transitions[c];
         /* The shapes of the phonemes, and the rest spread over +-300 FAP units. */
         for (q = 0; q < states; q++)
             means[q] = q < count ? position_of_steps(shape_steps(q, 0, c))
@@ -271,6 +271,14 @@ void fixture_laughter(fixture_model_t *fixture)
     fixture->phonemes[FIXTURE_HA].boundary = 1;
     for (i = 0; i < LABIAL_CHANNELS; i++) /* silence near neutral, as that of the speech models */
         fixture->shapes[2 * FIXTURE_LAUGH_SIL * LABIAL_CHANNELS + i] = 5;
+}
+
+void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t *laugh, fixture_model_t *slow)
+{
+    fixture_plain(plain);
+    fixture_rich(rich);
+    fixture_laughter(laugh);
+    fixture_slow(slow);
 }
 
 /* ---- Streams of phonemes ---- */

@@ -55,7 +55,7 @@ typedef struct {
     uint16_t contacts[FIXTURE_FLOORS];
     labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
-    uint16_t edges[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];
+    uint16_t transitions[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];
 } fixture_model_t;
 
 /* Phonemes of the two speech fixtures. */
@@ -84,6 +84,9 @@ void fixture_laughter(fixture_model_t *fixture);
 /* The rich model with LABIAL_STATES_MAX states, of which three frames share one, and kernels that reach as far as they
  * may, to both sides. */
 void fixture_slow(fixture_model_t *fixture);
+
+/* All four. */
+void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t *laugh, fixture_model_t *slow);
 
 /* Shape of the first component of a speech phoneme on one channel, Q4 FAP, `centre` included. */
 int32_t fixture_target(unsigned phoneme, unsigned channel);
@@ -195,14 +198,14 @@ void fixture_complain(fixture_host_t *host, const char *what);
 /* Largest change of any channel from frame - 1 to frame. */
 int fixture_step(const fixture_recorder_t *recorder, size_t frame);
 
-/* ---- Binary models (labial/blob.h) ---- */
+/* ---- Blobs (labial/blob.h) ---- */
 
 uint32_t fixture_crc32(const uint8_t *data, size_t size);
 
-/* Writes `model` as a binary model and returns its size; nothing is written when `room` is too small for it. */
+/* Writes `model` as a blob and returns its size; nothing is written when `room` is too small for it. */
 size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room);
 
-/* Writes size and CRC of a binary model of `size` bytes anew. */
+/* Writes size and CRC of a blob of `size` bytes anew. */
 void fixture_seal(uint8_t *blob, size_t size);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * fixture_blob.c - binary models, written from the description in labial/blob.h alone.
+ * fixture_blob.c - models as blobs, written from the description in labial/blob.h alone.
  */
 #include "fixture.h"
 
@@ -69,7 +69,7 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
     }
     pad(w);
     for (i = 0; i < states * predecessors; i++)
-        put(w, channel->edges[i], 2);
+        put(w, channel->transitions[i], 2);
     pad(w);
 }
 

@@ -50,9 +50,9 @@ static double through(const labial_model_t *model, const labial_channel_t *chann
     if (before->cost[p] >= ORACLE_NONE || (before->ends_unit && p != before->best))
         return ORACLE_NONE;
     for (i = 0; i < model->predecessors; i++) {
-        const unsigned edge = channel->edges[q * model->predecessors + i];
-        if ((edge & 255u) == p && (double)(edge >> 8) < cost)
-            cost = (double)(edge >> 8);
+        const unsigned transition = channel->transitions[q * model->predecessors + i];
+        if ((transition & 255u) == p && (double)(transition >> 8) < cost)
+            cost = (double)(transition >> 8);
     }
     return before->cost[p] + cost;
 }

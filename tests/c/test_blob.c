@@ -1,5 +1,5 @@
 /*
- * test_blob.c - binary models: the serialiser of the fixture writes them from the description in labial/blob.h.
+ * test_blob.c - models as blobs: the serialiser of the fixture writes them from the description in labial/blob.h.
  */
 #include <stdarg.h>
 #include <stddef.h>
@@ -24,10 +24,7 @@ static uint8_t *const bytes = (uint8_t *)written;
 static int setup(void **state)
 {
     (void)state;
-    fixture_plain(&plain);
-    fixture_rich(&rich);
-    fixture_slow(&slow);
-    fixture_laughter(&laugh);
+    fixture_all(&plain, &rich, &laugh, &slow);
     models[0] = &plain.model;
     models[1] = &rich.model;
     models[2] = &slow.model;

@@ -268,21 +268,21 @@ static void random_streams_keep_contact(void **state)
     static oracle_frame_t frames[MANY];
     static int16_t wanted[MANY][LABIAL_CHANNELS];
     static uint16_t touched[MANY];
-    unsigned seed, i, c, held = 0;
+    unsigned seed, i, c, touching = 0;
     (void)state;
     fixture_rich(&rich);
     for (seed = 0; seed < 300; seed++) {
-        const unsigned pieces = COUNT < LABIAL_QUEUE ? COUNT : LABIAL_QUEUE;
+        const unsigned phonemes = COUNT < LABIAL_QUEUE ? COUNT : LABIAL_QUEUE;
         size_t t, count;
-        fixture_stream(input, pieces, seed % 4 ? FIXTURE_CONTACTS : FIXTURE_PAUSES, seed);
+        fixture_stream(input, phonemes, seed % 4 ? FIXTURE_CONTACTS : FIXTURE_PAUSES, seed);
         begin(&rich.model);
-        for (i = 0; i < pieces; i++) {
+        for (i = 0; i < phonemes; i++) {
             input[i].ms %= 1000;
             input[i].model = (uint8_t)(LABIAL_MODELS > 1 && seed % 3 == 0 && i / 7 % 2);
             input[i].phoneme = (uint8_t)(input[i].phoneme % (input[i].model ? FIXTURE_LAUGH_COUNT : FIXTURE_SPEECH_COUNT));
             (void)labial_units_push(&units, input[i].phoneme, input[i].model, input[i].ms, FIXTURE_RATE);
         }
-        count = oracle_units(models, input, pieces, frames, MANY);
+        count = oracle_units(models, input, phonemes, frames, MANY);
         oracle_targets(models, frames, count, wanted, touched);
         assert_int_equal(aim(), count);
         for (t = 0; t < count; t++) {
@@ -291,10 +291,10 @@ static void random_streams_keep_contact(void **state)
             for (c = 0; c < LABIAL_CHANNELS; c++)
                 if (targets[t][c] != wanted[t][c])
                     fail_msg("seed %u, frame %zu, channel %u: %d, not %d", seed, t, c, targets[t][c], wanted[t][c]);
-            held += contacts[t] != 0;
+            touching += contacts[t] != 0;
         }
     }
-    assert_true(held > 5000);
+    assert_true(touching > 5000);
 }
 
 #else

@@ -268,8 +268,8 @@ static unsigned sum_of_shares(const uint8_t *shares, const int16_t *tilts, size_
     return sum;
 }
 
-/* Would catch tables from other statistics, for which the generator, that clamps nothing, is not built: a duration below
- * the shortest, a period beyond its limits, a train without pulses. */
+/* Would catch tables from other statistics, for which the generator, that clamps nothing, is not built: a duration
+ * below the shortest, a period beyond its limits, a train without pulses. */
 static void the_tables_keep_the_limits(void **state)
 {
     size_t i, j;

@@ -52,7 +52,7 @@ static void refuses_null(void **state)
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         TRY(const labial_emission_t *, f.channels[c].emissions, NULL, LABIAL_ERROR_NULL);
         TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
-        TRY(const uint16_t *, f.channels[c].edges, NULL, LABIAL_ERROR_NULL);
+        TRY(const uint16_t *, f.channels[c].transitions, NULL, LABIAL_ERROR_NULL);
     }
 }
 
@@ -98,7 +98,7 @@ static void refuses_counts_out_of_range(void **state)
     REFUSED(uint8_t, f.model.predecessors, LABIAL_STATES_MAX + 1);
     REFUSED(uint8_t, f.model.predecessors, 255);
     for (i = 1; i <= FIXTURE_PREDECESSORS; i++)
-        ACCEPTED(uint8_t, f.model.predecessors, (uint8_t)i); /* the same edges, read as other states' */
+        ACCEPTED(uint8_t, f.model.predecessors, (uint8_t)i); /* the same transitions, read as other states' */
     REFUSED(uint8_t, f.model.search_stride, 0);
     REFUSED(uint8_t, f.model.search_stride, LABIAL_SEARCH_STRIDE_MAX + 1);
     REFUSED(uint8_t, f.model.search_stride, 255);
@@ -134,8 +134,8 @@ static void refuses_bad_phonemes(void **state)
     REFUSED(uint16_t, f.model.component_count, 2 * FIXTURE_SPEECH_COUNT - 1);
 }
 
-/* The low byte of an edge is a state: would catch one that the model does not have, in any of the edges. Costs may be
- * any. */
+/* The low byte of a transition is a state: would catch one that the model does not have, in any of the transitions.
+ * Costs may be any. */
 static void refuses_bad_transitions(void **state)
 {
     const unsigned last = FIXTURE_SPEECH_STATES - 1;
@@ -143,30 +143,30 @@ static void refuses_bad_transitions(void **state)
     (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         for (i = 0; i < FIXTURE_SPEECH_STATES * FIXTURE_PREDECESSORS; i++) {
-            REFUSED(uint16_t, f.edges[c][i], last + 1);
-            REFUSED(uint16_t, f.edges[c][i], 0x0a00 | 0xff);
-            REFUSED(uint16_t, f.edges[c][i], 0x0a00 | (4 * last));
-            ACCEPTED(uint16_t, f.edges[c][i], last);
-            ACCEPTED(uint16_t, f.edges[c][i], 0xff00 | last);
-            ACCEPTED(uint16_t, f.edges[c][i], 0xff00);
+            REFUSED(uint16_t, f.transitions[c][i], last + 1);
+            REFUSED(uint16_t, f.transitions[c][i], 0x0a00 | 0xff);
+            REFUSED(uint16_t, f.transitions[c][i], 0x0a00 | (4 * last));
+            ACCEPTED(uint16_t, f.transitions[c][i], last);
+            ACCEPTED(uint16_t, f.transitions[c][i], 0xff00 | last);
+            ACCEPTED(uint16_t, f.transitions[c][i], 0xff00);
         }
     }
 }
 
-/* Would catch a limit on edges that is narrower than the largest model. */
-static void accepts_edges_of_the_largest_model(void **state)
+/* Would catch a limit on transitions that is narrower than the largest model. */
+static void accepts_transitions_of_the_largest_model(void **state)
 {
-    static uint16_t edges[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+    static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
     unsigned i, c;
     (void)state;
     fixture_slow(&f);
     for (i = 0; i < LABIAL_STATES_MAX * LABIAL_STATES_MAX; i++)
-        edges[i] = (uint16_t)(0x0700 | i % LABIAL_STATES_MAX);
+        transitions[i] = (uint16_t)(0x0700 | i % LABIAL_STATES_MAX);
     for (c = 0; c < LABIAL_CHANNELS; c++)
-        f.channels[c].edges = edges;
+        f.channels[c].transitions = transitions;
     f.model.predecessors = LABIAL_STATES_MAX;
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
-    REFUSED(uint16_t, edges[LABIAL_STATES_MAX * LABIAL_STATES_MAX - 1], 0x0700 | LABIAL_STATES_MAX);
+    REFUSED(uint16_t, transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX - 1], 0x0700 | LABIAL_STATES_MAX);
     REFUSED(uint8_t, f.model.state_count, LABIAL_STATES_MAX - 1);
 }
 
@@ -347,7 +347,7 @@ int main(void)
         cmocka_unit_test_setup(refuses_counts_out_of_range, setup),
         cmocka_unit_test_setup(refuses_bad_phonemes, setup),
         cmocka_unit_test_setup(refuses_bad_transitions, setup),
-        cmocka_unit_test_setup(accepts_edges_of_the_largest_model, setup),
+        cmocka_unit_test_setup(accepts_transitions_of_the_largest_model, setup),
         cmocka_unit_test_setup(refuses_states_out_of_order, setup),
         cmocka_unit_test_setup(refuses_positions_out_of_range, setup),
         cmocka_unit_test_setup(refuses_floors_out_of_range, setup),

@@ -23,10 +23,7 @@ static unsigned long starved, waited;
 static int setup(void **state)
 {
     (void)state;
-    fixture_plain(&plain);
-    fixture_rich(&rich);
-    fixture_laughter(&laugh);
-    fixture_slow(&slow);
+    fixture_all(&plain, &rich, &laugh, &slow);
     return 0;
 }
 

@@ -20,10 +20,7 @@ static fixture_phoneme_t input[COUNT];
 static int setup(void **state)
 {
     (void)state;
-    fixture_plain(&plain);
-    fixture_rich(&rich);
-    fixture_slow(&slow);
-    fixture_laughter(&laugh);
+    fixture_all(&plain, &rich, &laugh, &slow);
     fixture_laughter(&third);
     fixture_laughter(&fourth);
     fixture_plain(&other_rate);

@@ -32,10 +32,7 @@ static double wanted[MAX_FRAMES][LABIAL_CHANNELS];
 static int setup(void **state)
 {
     (void)state;
-    fixture_plain(&plain);
-    fixture_rich(&rich);
-    fixture_laughter(&laugh);
-    fixture_slow(&slow);
+    fixture_all(&plain, &rich, &laugh, &slow);
     return 0;
 }
 

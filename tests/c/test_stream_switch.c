@@ -149,8 +149,8 @@ static void the_other_models_phonemes_are_silence(void **state)
     fixture_close(&b);
 }
 
-/* "A model makes room for another when its phonemes have been decoded and are no longer needed as context": so it must,
- * in turn after turn, where the phonemes between them are many. */
+/* A model makes room for another when its phonemes have been taken up and their frames are no longer needed: so it
+ * must, in turn after turn, where the phonemes between them are many. */
 static void three_models_in_turn_make_room(void **state)
 {
     unsigned seed, i;

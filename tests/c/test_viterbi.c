@@ -19,7 +19,7 @@
 
 static labial_model_t model;
 static labial_emission_t emissions[LABIAL_STATES_MAX];
-static uint16_t edges[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
 static labial_channel_t channel;
 static int32_t position[STEPS];
 static oracle_step_t steps[STEPS];
@@ -47,11 +47,11 @@ static void make(fixture_random_t *random, unsigned states, uint32_t density, ui
     }
     for (q = 0; q < states; q++)
         for (p = 0; p < most; p++)
-            edges[q * most + p] = lists[q][p < counts[q] ? p : counts[q] - 1];
+            transitions[q * most + p] = lists[q][p < counts[q] ? p : counts[q] - 1];
     model.state_count = (uint8_t)states;
     model.predecessors = (uint8_t)most;
     channel.emissions = emissions;
-    channel.edges = edges;
+    channel.transitions = transitions;
     for (q = 0; q < STEPS; q++) {
         position[q] = (int32_t)fixture_below(random, 2 * spread + 1) - (int32_t)spread;
         if (q > 0 && fixture_below(random, 3)) /* mostly near the one before, as speech is */
@@ -80,9 +80,9 @@ static void exhaust(unsigned count, double *least)
             const unsigned to = first[t] + place[t];
             unsigned way = 255; /* every state can be leapt into */
             for (i = 0; t > 0 && i < model.predecessors; i++) {
-                const unsigned edge = edges[to * model.predecessors + i];
-                if ((edge & 255u) == first[t - 1] + place[t - 1] && edge >> 8 < way)
-                    way = edge >> 8;
+                const unsigned transition = transitions[to * model.predecessors + i];
+                if ((transition & 255u) == first[t - 1] + place[t - 1] && transition >> 8 < way)
+                    way = transition >> 8;
             }
             cost += (t > 0 ? way : 0) + oracle_emission(&emissions[to], position[t]);
         }
@@ -206,7 +206,7 @@ static void paths_are_those_of_the_dense_programme(void **state)
 #endif
 }
 
-/* A unit no longer than the lag is decoded as published: the best of all paths into its last step. */
+/* A unit no longer than the lag is searched as published: the best of all paths into its last step. */
 static void a_unit_within_the_lag_has_the_best_path(void **state)
 {
 #if LABIAL_LAG >= 4
@@ -231,8 +231,8 @@ static void a_unit_within_the_lag_has_the_best_path(void **state)
         for (t = 1; t < count; t++) {
             unsigned way = 255;
             for (i = 0; i < model.predecessors; i++) {
-                const unsigned edge = edges[path[t] * model.predecessors + i];
-                way = (edge & 255u) == path[t - 1] && edge >> 8 < way ? edge >> 8 : way;
+                const unsigned transition = transitions[path[t] * model.predecessors + i];
+                way = (transition & 255u) == path[t - 1] && transition >> 8 < way ? transition >> 8 : way;
             }
             cost += way + oracle_emission(&emissions[path[t]], position[t]);
         }
@@ -252,7 +252,7 @@ static void set_up_flat(unsigned states, unsigned predecessors)
     model.state_count = (uint8_t)states;
     model.predecessors = (uint8_t)predecessors;
     channel.emissions = emissions;
-    channel.edges = edges;
+    channel.transitions = transitions;
 }
 
 /* States around the nearest, at every place a position can have: between two, upon one, half-way, beyond both ends, upon
@@ -271,7 +271,7 @@ static void the_window_lies_around_the_nearest_state(void **state)
     set_up_flat(20, 1);
     for (q = 0; q < 20; q++) {
         emissions[q].mean = (int16_t)(q < 9 ? 100 * (q + 1) : q < 12 ? 1000 : 100 * (q - 1));
-        edges[q] = (uint16_t)q;
+        transitions[q] = (uint16_t)q;
     }
     assert_int_equal(LABIAL_SEARCHED, 8); /* what the cases are worked for */
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -283,12 +283,12 @@ static void the_window_lies_around_the_nearest_state(void **state)
     }
 }
 
-/* Costs at the edges of the leap: would catch `<` for `<=` or a leap of another size. The only ways into state 1 are its
- * edge from itself, which is 10 behind, and a leap. */
+/* Costs at the limits of the leap: would catch `<` for `<=` or a leap of another size. The only ways into state 1 are its
+ * transition from itself, which is 10 behind, and a leap. */
 static void a_leap_is_taken_where_no_edge_is_cheaper(void **state)
 {
     static const struct {
-        uint8_t edge;
+        uint8_t transition;
         unsigned score, from;
     } cases[] = { { 3, 6, 1 }, { 244, 247, 1 }, { 245, 248, 0 }, { 246, 248, 0 }, { 255, 248, 0 } };
     unsigned i;
@@ -297,8 +297,8 @@ static void a_leap_is_taken_where_no_edge_is_cheaper(void **state)
         labial_search_t search;
         set_up_flat(2, 2);
         emissions[1].initial = 10;
-        edges[0] = edges[1] = 7u << 8;
-        edges[2] = edges[3] = (uint16_t)((unsigned)cases[i].edge << 8 | 1u);
+        transitions[0] = transitions[1] = 7u << 8;
+        transitions[2] = transitions[3] = (uint16_t)((unsigned)cases[i].transition << 8 | 1u);
         labial_viterbi_begin(&model, &channel, 0, &search);
         labial_viterbi_step(&model, &channel, 0, &search); /* state 0 costs 7 */
         assert_int_equal(search.scores[0], 0);
@@ -322,7 +322,7 @@ static void eight_bits_are_enough(void **state)
         emissions[q].mean = (int16_t)(q * 500 - 16000);
         emissions[q].gain = 65535;
         emissions[q].cost = emissions[q].initial = 255;
-        edges[q] = (uint16_t)(0xff00 | (LABIAL_STATES_MAX - 1 - q));
+        transitions[q] = (uint16_t)(0xff00 | (LABIAL_STATES_MAX - 1 - q));
     }
     for (t = 0; t < STEPS; t++)
         position[t] = t % 2 ? LABIAL_POSITION_MAX : -LABIAL_POSITION_MAX;
@@ -344,7 +344,7 @@ static void ties_go_to_the_lower_state(void **state)
         emissions[q].gain = 100;
         emissions[q].cost = emissions[q].initial = 7;
         for (t = 0; t < 5; t++)
-            edges[q * 5 + t] = (uint16_t)(9u << 8 | t);
+            transitions[q * 5 + t] = (uint16_t)(9u << 8 | t);
     }
     for (t = 0; t < STEPS; t++)
         position[t] = 50;
