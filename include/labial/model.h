@@ -51,11 +51,11 @@ extern "C" {
  * with a pause begins at rest. */
 #define LABIAL_REST_FRAMES 16
 
-/* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c).
- * */ #define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `firm` + twice the largest weight[0] + six times
- * weight[1] */ #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */ #define LABIAL_STIFFNESS_MAX 16     /* a
- * state's weight[1] over its `hold`; weight[0] is not above weight[1] */ #define LABIAL_PULL_MAX 65535       /* Q4:
- * four times the largest weight[i] * |mean[1 + i]|, summed, over the least `hold` */
+/* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */
+#define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `firm` + twice the largest weight[0] + six times weight[1] */
+#define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
+#define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
+#define LABIAL_PULL_MAX 65535       /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over least `hold` */
 
 /* A phoneme: which mixture components are its own and which viseme class its neighbours see. */
 typedef struct {
