@@ -1,3 +1,53 @@
-"""Labial's exporter: trains lip-motion models and writes them as tables for the C library."""
+"""Labial: phonemes and durations in, 13 lip and jaw parameters per frame out, for speech and laughter.
+
+    import labial
+    with labial.Stream() as stream:
+        stream.push("HH", 70)
+        stream.push("AY", 230)
+        stream.laugh(1.5, 0.7)
+        stream.end()
+        for frame in stream:
+            print(frame.number, frame.faps)
+    motion = labial.render([("HH", 70), ("AY", 230)])
+
+This is the run-time (``labial.runtime``), the C library called from Python, which needs nothing but Python;
+docs/python.md is its manual. The other modules are the exporter, which trains models and writes them as tables for C
+and needs numpy.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, List
 
 __version__ = "0.2.0"
+
+if TYPE_CHECKING:
+    from labial.runtime.frame import Frame, Latency
+    from labial.runtime.models import Model
+    from labial.runtime.render import read_timings, render
+    from labial.runtime.rig import Rig
+    from labial.runtime.stream import Stream
+
+    speech_en: Model
+    laughter_synthetic: Model
+
+__all__ = ["Frame", "Latency", "Model", "Rig", "Stream", "laughter_synthetic", "read_timings", "render", "speech_en"]
+
+_HOMES = {"Frame": "frame", "Latency": "frame", "Model": "models", "Rig": "rig", "Stream": "stream",
+          "read_timings": "render", "render": "render"}  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """The run-time's names, loaded with the library when they are first asked for: exporting needs no library."""
+    if name in ("errors", "runtime"):
+        return import_module(f"labial.{name}")
+    if name in ("speech_en", "laughter_synthetic"):
+        return import_module("labial.runtime.models").bundled(name)
+    if name in _HOMES:
+        return getattr(import_module(f"labial.runtime.{_HOMES[name]}"), name)
+    raise AttributeError(f"module 'labial' has no attribute {name!r}")
+
+
+def __dir__() -> List[str]:
+    return sorted([*globals(), *__all__])

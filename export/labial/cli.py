@@ -406,7 +406,13 @@ def _record(options: argparse.Namespace) -> int:
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
-    options = parser().parse_args(arguments)
+    try:
+        options = parser().parse_args(arguments)
+    except ModuleNotFoundError as error:
+        if error.name != "numpy":
+            raise
+        print("labial: the command labial needs the package numpy: install labial[tools]", file=sys.stderr)
+        return 1
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_, **__: print(f"labial: warning: {message}", file=sys.stderr)
         try:

@@ -20,3 +20,11 @@ class DataError(LabialError):
 
 class ModelError(LabialError):
     """A model is inconsistent, not finite, of another version or beyond the library's limits."""
+
+
+class StreamError(LabialError):
+    """The library refuses a call; the message holds its own sentence (``labial_result_text``)."""
+
+    def __init__(self, result: int, message: str) -> None:
+        super().__init__(message)
+        self.result = result  #: LABIAL_ERROR_PHONEME and so on, a negative number (labial/labial.h)

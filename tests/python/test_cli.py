@@ -86,7 +86,7 @@ def test_options_of_one_method_are_not_silently_ignored(
     asked = []
     module = importlib.import_module("labial.train.train")  # the package has a function of this name
     monkeypatch.setattr(module, "train", lambda corpus, **options: asked.append(options) or random_model(3))
-    monkeypatch.setattr("labial.corpus.read_corpus", lambda path, kind: [])
+    monkeypatch.setattr("labial.corpus.corpora.read_corpus", lambda path, kind: [])
     for method, options, warned in (
         ("paper", [], False), ("labial", ["--look-ahead", "60", "--search-stride", "1"], False),
         ("paper", ["--search-stride", "1"], True), ("paper", ["--look-ahead", "60"], True),

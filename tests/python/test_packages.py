@@ -50,8 +50,8 @@ def test_every_manifest_has_the_headers_version() -> None:
     assert re.fullmatch(r"\d+\.\d+\.\d+", version)
     assert set(manifest_versions(SOURCE).values()) == {version}
     assert labial.__version__ == version
-    project = (SOURCE / "export" / "pyproject.toml").read_text(encoding="utf-8")
-    assert 'dynamic = ["version"]' in project and 'attr = "labial.__version__"' in project
+    project = (SOURCE / "pyproject.toml").read_text(encoding="utf-8")
+    assert 'dynamic = ["version"]' in project and 'input = "export/labial/__init__.py"' in project
     assert re.search(rf"^## {re.escape(version)}\b", (SOURCE / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)
 
 

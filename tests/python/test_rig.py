@@ -338,6 +338,6 @@ def test_damaged_descriptions_are_refused_or_sound(tmp_path: Path, seed: int) ->
 
 def test_toml_parser_of_older_pythons_is_declared() -> None:
     """Python below 3.11 has no tomllib: the package that takes its place must be asked for."""
-    project = (library_root() / "export" / "pyproject.toml").read_text()
+    project = (library_root() / "pyproject.toml").read_text()
     assert "tomli>=1.1; python_version < \"3.11\"" in project
     assert sys.version_info < (3, 11) or "tomllib" in sys.modules

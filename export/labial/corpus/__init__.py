@@ -2,114 +2,19 @@
 
 from __future__ import annotations
 
-import os
-import warnings
-from dataclasses import dataclass
-from pathlib import Path
-from typing import List, Sequence, Tuple, Union
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from labial.corpus.avlaughter import laugh_files, read_avlaughter
-from labial.corpus.episode import Episode, Segment, Source
-from labial.corpus.folder import read_folder
-from labial.corpus.iemocap import read_iemocap
-from labial.corpus.talkers import brought_together, with_sources
-from labial.errors import DataError, LabialError
-from labial.phonesets import PHONE_SETS
+if TYPE_CHECKING:
+    from labial.corpus.corpora import Timeline, read_corpora, read_corpus, resample
+    from labial.corpus.episode import Episode, Segment, Source
 
 __all__ = ["Episode", "Segment", "Source", "Timeline", "read_corpora", "read_corpus", "resample"]
 
-#: Samples that are averaged over a frame's duration when the recording's rate is higher.
-_OVERSAMPLING = 16
 
-
-@dataclass(frozen=True)
-class Timeline:
-    """An episode as frames of a fixed rate; T frames and S segments. Frame t covers t/fps to (t + 1)/fps seconds from
-    the start of the first segment."""
-
-    labels: Tuple[str, ...]  #: (S,) phonemes
-    durations: np.ndarray  #: (S,) float64 seconds, as recorded
-    frames_per_segment: np.ndarray  #: (S,) int64, sums to T; 0 for a segment too short for a frame of its own
-    frames: np.ndarray  #: (T, 13) float64 FAP
-    apex_frame: np.ndarray  #: (S,) int64: a segment's frame at its apex, else middle; the nearest frame if it has none
-
-    @property
-    def starts(self) -> np.ndarray:
-        """(S,) int64: first frame of each segment."""
-        return np.cumsum(self.frames_per_segment) - self.frames_per_segment
-
-
-def read_corpus(path: Union[str, os.PathLike], kind: str = "speech") -> List[Episode]:
-    """Reads a corpus, whichever kind of files it has; episodes are sorted by name, labels are phonemes of `kind`.
-
-    Recognised: IEMOCAP by its folders ``Session*/sentences``, AVLaughterCycle (laughter only) by its file names,
-    anything else as a Labial corpus folder; ``corpus.toml`` tells the talkers (:mod:`labial.corpus.talkers`). Raises
-    DataError for what is malformed; recordings that are well-formed but cannot be used are counted in a warning.
-    """
-    if kind not in PHONE_SETS:
-        raise LabialError(f"kind is {kind!r}, not one of {', '.join(PHONE_SETS)}")
-    phone_set = PHONE_SETS[kind]
-    if not Path(path).is_dir():
-        raise DataError(path, None, "no such folder")
-    refused: List[DataError] = []
-    if any(Path(path).glob("Session*/sentences")):
-        episodes = read_iemocap(path, phone_set, refused)
-    elif kind == "laughter" and laugh_files(path):
-        episodes = read_avlaughter(path, phone_set, refused)
-    else:
-        episodes = read_folder(path, phone_set)
-    if refused:
-        count = f"{len(refused)} of {len(refused) + len(episodes)}"
-        warnings.warn(f"{count} recordings were left out, the first for this reason: {refused[0]}", stacklevel=2)
-    return with_sources(path, episodes)
-
-
-def read_corpora(paths: Sequence[Union[str, os.PathLike]], kind: str = "speech") -> List[List[Episode]]:
-    """Reads several corpora as :func:`read_corpus` does, and brings every recording's mean and scale, channel by
-    channel, to those of the first."""
-    return brought_together([read_corpus(path, kind) for path in paths], PHONE_SETS[kind].silence)
-
-
-def resample(episode: Episode, fps: int) -> Timeline:
-    """`episode` at `fps` frames per second.
-
-    Motion is interpolated linearly at the centre of each frame, and held before and after the recorded times. A
-    recording of a higher rate is averaged over each frame's duration instead, so that what is faster than the new rate
-    does not fold back into it. Segments end at the frame nearest to their end, so rounding never adds up; at .5 the
-    later one.
-    """
-    if fps <= 0:
-        raise LabialError(f"{fps} frames per second")
-    if not episode.segments:
-        raise LabialError(f"episode {episode.name} has no segments")
-    origin = episode.segments[0].start
-    ends = [_round((segment.end - origin) * fps) for segment in episode.segments]
-    counts = np.diff([0, *ends]).astype(np.int64)
-    total = ends[-1]
-    if total == 0:
-        raise LabialError(f"episode {episode.name} is shorter than a frame")
-    steps = np.diff(episode.times)
-    dense = len(steps) > 0 and np.median(steps) < 0.99 / fps
-    points = _OVERSAMPLING if dense else 1
-    moments = origin + (np.arange(total * points) + 0.5) / (fps * points)
-    samples = [np.interp(moments, episode.times, channel) for channel in episode.frames.T]
-    frames = np.stack(samples, axis=1).reshape(total, points, -1).mean(axis=1)
-    apexes = []
-    for segment, first, count in zip(episode.segments, np.cumsum(counts) - counts, counts):
-        moment = (segment.start + segment.end) / 2 if segment.apex is None else segment.apex
-        frame = min(max(int(np.floor((moment - origin) * fps + 1e-6)), int(first)), int(first + max(count, 1)) - 1)
-        apexes.append(min(frame, total - 1))
-    return Timeline(
-        tuple(segment.label for segment in episode.segments),
-        np.array([segment.duration for segment in episode.segments]),
-        counts,
-        frames,
-        np.array(apexes, dtype=np.int64),
-    )
-
-
-def _round(value: float) -> int:
-    """To the nearest whole number, halves up even where binary fractions fall just short of them."""
-    return int(np.floor(value + 0.5 + 1e-6))
+def __getattr__(name: str) -> Any:
+    """What needs numpy is loaded when it is asked for: timings are also read where numpy is not installed."""
+    if name not in __all__:
+        raise AttributeError(f"module 'labial.corpus' has no attribute {name!r}")
+    home = "episode" if name in ("Episode", "Segment", "Source") else "corpora"
+    return getattr(import_module(f"labial.corpus.{home}"), name)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import FrozenSet, Optional, Tuple
+from typing import TYPE_CHECKING, FrozenSet, Optional, Tuple
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ class Episode:
 
     def sounding(self, silence: str) -> np.ndarray:
         """(T,) bool: frames within phonemes other than `silence`."""
+        import numpy as np
+
         ends = np.array([segment.end for segment in self.segments])
         voiced = np.array([segment.label != silence for segment in self.segments])
         at = np.searchsorted(ends, self.times, side="right")

@@ -1,0 +1,5 @@
+"""The run-time: the C library, called from Python. Needs neither numpy nor anything else that Python does not bring.
+
+``import labial`` has all of it: :class:`labial.Stream`, :func:`labial.render`, :class:`labial.Model`,
+:class:`labial.Rig`.
+"""
