@@ -23,7 +23,7 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     "README.md": {
         "cmake --workflow --preset test": "this test is a part of it",
         "cmake --workflow --preset bench": "needs every board's tools; a workflow of its own",
-        "pip install './export[train,evaluate]'": "fetches; test_packages_cmake.py installs the exporter without",
+        "pip install '.[train,evaluate]'": "fetches; test_wheel.py installs the package without",
         "labial evaluate CORPUS --splits 20 -o report/": "takes too long; test_evaluate.py runs it on less",
     },
     "record.md": {

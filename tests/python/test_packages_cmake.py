@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import sys
-import sysconfig
 from pathlib import Path
 
 import pytest
@@ -104,27 +102,3 @@ def test_inside_another_project(tmp_path: Path, way: str) -> None:
     assert "Total Tests: 0" in run("ctest", "-N", cwd=tmp_path / "build")
     run(CMAKE, "--install", tmp_path / "build", "--prefix", tmp_path / "prefix")
     assert [path.name for path in (tmp_path / "prefix").rglob("*") if path.is_file()] == ["program"]
-
-
-def test_python_package(tmp_path: Path) -> None:
-    """Installed into a fresh environment, ``labial`` runs and ``labial check`` finds the library that came with it."""
-    tree = tmp_path / "tree"
-    for name in ("include", "lib", "export"):
-        shutil.copytree(SOURCE / name, tree / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info", "build"))
-    run(sys.executable, "-m", "venv", "--without-pip", tmp_path / "venv")
-    python = tmp_path / "venv" / "bin" / "python"
-    # What the package depends on is not fetched, it is that of the environment of the tests.
-    site = Path(run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").strip())
-    (site / "tests.pth").write_text(sysconfig.get_path("purelib") + "\n" + sysconfig.get_path("platlib") + "\n")
-    env = {"PYTHONPATH": "", "PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_NO_INDEX": "1"}
-    run(python, "-m", "pip", "install", "--no-deps", "--no-build-isolation", "--no-cache-dir", tree / "export", env=env)
-    shutil.rmtree(tree)
-    command = tmp_path / "venv" / "bin" / "labial"
-    assert run(command, "--version", env=env).startswith("labial ")
-    where = run(python, "-c", "import labial.native; print(labial.native.library_root())", env=env, cwd=tmp_path)
-    assert Path(where.strip()) == site / "labial" / "library"
-    (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n0.3 0.38 B\n0.38 0.55 EY\n0.55 0.62 B\n0.62 0.8 IY\n"
-                                       "0.8 1 SIL\n")
-    out = run(command, "check", SOURCE / "export" / "models" / "speech_en.npz", tmp_path / "word.lab",
-              env={**env, "OPENBLAS_NUM_THREADS": "1"}, cwd=tmp_path)
-    assert out.startswith("50 frames") and os.sep not in out

@@ -1,0 +1,151 @@
+"""The Python package as a user gets it: a wheel built in a bare environment, installed where there is nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+from typing import Dict, List
+
+import pytest
+
+import labial
+from packages import CC, CMAKE, SOURCE
+from runtime import conformance_frames, conformance_scripts
+from scripts import digest
+
+#: What a build needs beside the compiler; a bare environment has nothing else, and no ninja.
+TOOLS = ("cmake", "make", "sh", "as", "ld")
+
+pytestmark = pytest.mark.skipif(not (CMAKE and all(map(shutil.which, TOOLS))), reason="no cmake or no make")
+
+
+def tools(folder: Path, *more: str) -> Dict[str, str]:
+    """An environment whose PATH has `TOOLS` and `more` alone."""
+    folder.mkdir()
+    for name in (*TOOLS, *more):
+        (folder / name).symlink_to(shutil.which(CMAKE if name == "cmake" else name) or name)
+    return {"PATH": str(folder), "HOME": str(folder), "PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
+
+
+def call(command: List[object], env: Dict[str, str], cwd: Path, text: str = "") -> subprocess.CompletedProcess:
+    """Runs a command with this environment and no other variable."""
+    return subprocess.run([str(part) for part in command], env=env, cwd=cwd, input=text, capture_output=True,
+                          encoding="utf-8", timeout=300, check=False)
+
+
+def venv(folder: Path, *sites: str) -> Path:
+    """The interpreter of a new environment without pip; with the packages of `sites`."""
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
+    python = folder / "bin" / "python"
+    if sites:
+        site = next((folder / "lib").glob("python*")) / "site-packages"
+        (site / "tests.pth").write_text("\n".join(sites) + "\n")
+    return python
+
+
+def build_wheel(folder: Path, env: Dict[str, str]) -> subprocess.CompletedProcess:
+    """``pip wheel .`` in a copy of the sources, with the build's own packages taken from the tests' environment."""
+    tree = folder / "tree"
+    unwanted = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
+    for name in ("include", "lib", "packaging", "cmake", "export/labial"):
+        shutil.copytree(SOURCE / name, tree / name, ignore=unwanted)
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copyfile(SOURCE / name, tree / name)
+    python = venv(folder / "builder", sysconfig.get_path("purelib"), sysconfig.get_path("platlib"))
+    return call([python, "-m", "pip", "wheel", ".", "--no-deps", "--no-build-isolation", "--no-cache-dir", "-w",
+                 folder / "dist"], env, tree)
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("wheel")
+    done = build_wheel(folder, {**tools(folder / "bin"), "CC": str(shutil.which(CC))})
+    assert done.returncode == 0, done.stdout + done.stderr
+    shutil.rmtree(folder / "tree")
+    found = list((folder / "dist").iterdir())
+    assert len(found) == 1
+    return found[0]
+
+
+@pytest.fixture(scope="module")
+def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The interpreter of an environment that holds the wheel and nothing else, not even numpy."""
+    folder = tmp_path_factory.mktemp("installed")
+    python = venv(folder / "venv")
+    subprocess.run([sys.executable, "-m", "pip", "--python", str(python), "install", "-q", "--no-deps", "--no-index",
+                    str(wheel)], check=True)
+    return python
+
+
+def test_wheel_serves_every_python(wheel: Path) -> None:
+    """Nothing of Python's is compiled in, so the tag names the platform alone; all files and no others are there."""
+    python, abi, platform = wheel.stem.split("-")[-3:]
+    assert (python, abi) == ("py3", "none") and platform != "any"
+    names = zipfile.ZipFile(wheel).namelist()
+    assert [name for name in names if name.endswith((".so", ".dll", ".dylib"))] == ["labial/runtime/labial_runtime.so"]
+    wanted = {f"labial/{path.relative_to(SOURCE / 'export' / 'labial').as_posix()}"
+              for path in (SOURCE / "export" / "labial").rglob("*") if path.is_file() and path.suffix != ".pyc"}
+    wanted |= {f"labial/library/{path.relative_to(SOURCE).as_posix()}"
+               for pattern in ("include/labial/*.h", "lib/*.[ch]", "LICENSE") for path in SOURCE.glob(pattern)}
+    rest = {name for name in names if ".dist-info/" not in name} - wanted
+    assert rest == {"labial/runtime/labial_runtime.so"} and wanted <= set(names)
+
+
+def test_installed_wheel_plays_the_conformance_streams(installed: Path, tmp_path: Path) -> None:
+    """The same bytes as everywhere, without numpy."""
+    env = {"PATH": str(tmp_path)}
+    done = call([installed, SOURCE / "tests" / "python" / "runtime_player.py"], env, tmp_path,
+                json.dumps(conformance_scripts()))
+    assert done.returncode == 0, done.stderr
+    wanted = {name: [len(frames), digest(frames)] for name, frames in conformance_frames().items()}
+    found = json.loads(done.stdout)
+    assert set(found) == {"fill", "single", "hungry", "whole"}
+    for feed in found:
+        assert found[feed] == wanted, feed
+
+
+def test_installed_wheel_needs_nothing(installed: Path, tmp_path: Path) -> None:
+    """Frames in three lines, timings from a file and a rig; the exporter says what it needs in one line."""
+    (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n")
+    program = ("import sys, labial\n"
+               "motion = labial.render(labial.read_timings('word.lab'))\n"
+               "assert len(motion) == 15 and all(len(frame) == 13 for frame in motion) and isinstance(motion, list)\n"
+               "assert 'numpy' not in sys.modules\n")
+    if sys.version_info >= (3, 11):  # before that the package asks for a TOML parser, which is not installed here
+        program += "assert labial.Frame(0, motion[5]).rig('arkit')['jawOpen'] > 0\n"
+    done = call([installed, "-c", program], {"PATH": ""}, tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    done = call([installed.with_name("labial"), "synth", "x.npz", "word.lab"], {"PATH": ""}, tmp_path)
+    assert done.returncode == 1
+    assert done.stderr == "labial: the command labial needs the package numpy: install labial[tools]\n"
+
+
+def test_installed_exporter_brings_the_library(installed: Path, tmp_path: Path) -> None:
+    """With numpy, ``labial check`` compiles the sources that came with the package."""
+    env = {"PATH": os.environ["PATH"], "OPENBLAS_NUM_THREADS": "1",
+           "PYTHONPATH": os.pathsep.join((sysconfig.get_path("purelib"), sysconfig.get_path("platlib")))}
+    where = call([installed, "-c", "import labial.native; print(labial.native.library_root())"], env, tmp_path)
+    assert Path(where.stdout.strip()) == next(installed.parents[1].glob("lib/python*")) / "site-packages/labial/library"
+    (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n0.3 0.38 B\n0.38 0.55 EY\n0.55 0.62 B\n0.62 0.8 IY\n"
+                                       "0.8 1 SIL\n")
+    done = call([installed.with_name("labial"), "check", SOURCE / "export" / "models" / "speech_en.npz", "word.lab"],
+                env, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("50 frames") and os.sep not in done.stdout
+    version = call([installed.with_name("labial"), "--version"], env, tmp_path)
+    assert version.stdout == f"labial {labial.__version__}\n"
+
+
+def test_without_a_compiler_the_build_says_so(tmp_path: Path) -> None:
+    """One sentence on one line, instead of CMake's guesses."""
+    done = build_wheel(tmp_path, tools(tmp_path / "bin"))
+    assert done.returncode != 0
+    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
+    assert ("The run-time is C and there is no C compiler: install one (Debian, Raspberry Pi OS: apt-get install "
+            "build-essential) or name it in the variable CC.") in lines
