@@ -271,7 +271,7 @@ static void random_streams_keep_contact(void **state)
     unsigned seed, i, c, touching = 0;
     (void)state;
     fixture_rich(&rich);
-    for (seed = 0; seed < 300; seed++) {
+    for (seed = 0; seed < FIXTURE_ROUNDS(300); seed++) {
         const unsigned phonemes = COUNT < LABIAL_QUEUE ? COUNT : LABIAL_QUEUE;
         size_t t, count;
         fixture_stream(input, phonemes, seed % 4 ? FIXTURE_CONTACTS : FIXTURE_PAUSES, seed);
@@ -294,7 +294,7 @@ static void random_streams_keep_contact(void **state)
             touching += contacts[t] != 0;
         }
     }
-    assert_true(touching > 5000);
+    assert_true(touching > FIXTURE_ROUNDS(5000));
 }
 
 #else

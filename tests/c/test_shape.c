@@ -136,7 +136,7 @@ static void selection_follows_the_formula(void **state)
     fixture_random_t random = {31};
     unsigned round;
     (void)state;
-    for (round = 0; round < 4000; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(4000); round++) {
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
         f.model.soft = (uint8_t)(round / 8 % 2);
@@ -179,7 +179,7 @@ static void extremes_stay_within_the_range(void **state)
     fixture_random_t random = {33};
     unsigned round, i;
     (void)state;
-    for (round = 0; round < 600; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(600); round++) {
         labial_shape_t shape;
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
@@ -220,7 +220,7 @@ static void targets_are_shapes_kernels_and_floors(void **state)
     (void)state;
     fixture_rich(&f);
     memset(f.contacts, 0, sizeof f.contacts);
-    for (round = 0; round < 2000; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(2000); round++) {
         uint8_t labels[2 * LABIAL_REACH + 1];
         int16_t target[LABIAL_CHANNELS];
         labial_shape_t shape;
@@ -264,7 +264,7 @@ static void targets_are_shapes_kernels_and_floors(void **state)
                 fail_msg("%u taps, channel %u: %d, not %g", taps, k, target[k], wanted);
         }
     }
-    assert_true(raised > 500); /* floors were met */
+    assert_true(raised > FIXTURE_ROUNDS(500)); /* floors were met */
 }
 
 /* What a neighbour adds to a knot on channel k; `side` is 128 for the next one. */

@@ -68,7 +68,7 @@ static void one_model_is_the_sum_of_its_steps(void **state)
     unsigned seed, i;
     (void)state;
     for (kind = 0; kind < FIXTURE_MILLI; kind++) {
-        for (seed = 0; seed < 4; seed++) {
+        for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
             models[0] = seed == 0 ? &plain.model : seed < 3 ? &rich.model : &slow.model;
             fixture_stream(input, COUNT, (fixture_kind_t)kind, seed);
             for (i = 0; kind == FIXTURE_PAUSES && i < COUNT; i++)
@@ -123,7 +123,7 @@ static void two_models_are_the_sum_of_their_steps(void **state)
     (void)state;
 #if LABIAL_MODELS > 1
     models[1] = &laugh.model;
-    for (seed = 0; seed < 60; seed++) {
+    for (seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
         fixture_model_t *const f = seed % 4 == 3 ? &slow : &rich;
         uint8_t model = 0;
         const uint8_t own = f->model.search_stride;
@@ -157,7 +157,7 @@ static void rounds_are_the_sum_of_their_steps(void **state)
     (void)state;
     models[0] = &rich.model;
     assert_int_equal(fixture_open(&host, models, 1), LABIAL_OK);
-    for (round = 0; round < 40; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(40); round++) {
         const size_t first = host.recorder.count, count = round % 7 * 4 + 1;
         fixture_stream(input, count, round % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, round);
         if (round > 0)

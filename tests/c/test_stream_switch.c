@@ -72,7 +72,7 @@ static void switching_keeps_time_and_does_not_depend_on_feeding(void **state)
     int feed;
     (void)state;
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        for (seed = 0; seed < 4; seed++) {
+        for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
             fixture_host_t wanted;
             alternate(2, cases[i].longest, cases[i].shortest_ms, cases[i].range_ms, seed);
             play(&wanted, 2, COUNT, FIXTURE_FILL, cases[i].what);
@@ -155,7 +155,7 @@ static void three_models_in_turn_make_room(void **state)
 {
     unsigned seed, i;
     (void)state;
-    for (seed = 0; seed < 4; seed++) {
+    for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
         fixture_host_t host;
         alternate(3, 1, 150, 200, seed);
         for (i = 0; i < COUNT; i++) {
@@ -176,7 +176,7 @@ static void a_model_that_is_refused_does_no_harm(void **state)
     models[0] = &speech.model;
     models[1] = &laugh.model;
     models[2] = &slow.model;
-    for (seed = 0; seed < 6; seed++) {
+    for (seed = 0; seed < FIXTURE_ROUNDS(6); seed++) {
         fixture_host_t host;
         unsigned i = 0, ticks = 0;
         int result;

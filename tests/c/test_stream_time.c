@@ -11,6 +11,7 @@
 #include "fixture.h"
 
 #define MANY 2000
+#define KIND (FIXTURE_ROUNDS(80) + 40) /* phonemes of a stream of one kind */
 
 static fixture_model_t plain, rich;
 static fixture_phoneme_t input[MANY];
@@ -46,9 +47,9 @@ static void every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes(void **st
     (void)state;
     for (kind = 0; kind < FIXTURE_HOUR; kind++) {
         for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
-            fixture_stream(input, 120, (fixture_kind_t)kind, r);
-            play(&plain, rates[r], 120, FIXTURE_FILL, "plain");
-            play(&rich, rates[r], 120, FIXTURE_CHANCE, "rich");
+            fixture_stream(input, KIND, (fixture_kind_t)kind, r);
+            play(&plain, rates[r], KIND, FIXTURE_FILL, "plain");
+            play(&rich, rates[r], KIND, FIXTURE_CHANCE, "rich");
         }
     }
 }
@@ -57,9 +58,9 @@ static void two_thousand_phonemes_are_exact(void **state)
 {
     (void)state;
     fixture_stream(input, MANY, FIXTURE_LONG, 9);
-    play(&rich, 50, MANY, FIXTURE_FILL, "long");
+    play(&rich, 50, FIXTURE_ROUNDS(MANY), FIXTURE_FILL, "long");
     fixture_stream(input, MANY, FIXTURE_MILLI, 9);
-    play(&plain, 30, MANY, FIXTURE_SINGLE, "milliseconds");
+    play(&plain, 30, FIXTURE_ROUNDS(MANY), FIXTURE_SINGLE, "milliseconds");
 }
 
 /* Would catch 16-bit counts of frames, and a window that a phoneme of 180,000 frames overflows. */
@@ -86,7 +87,7 @@ static void every_prefix_is_exact(void **state)
     unsigned r, i, round;
     (void)state;
     for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
-        for (round = 0; round < 8; round++) {
+        for (round = 0; round < FIXTURE_ROUNDS(8); round++) {
             fixture_host_t host;
             const labial_model_t *model = &plain.model;
             uint64_t ms = 0;

@@ -247,12 +247,12 @@ static void ordinary_weights(void **state)
     (void)state;
     worst = sum_of_squares = 0;
     compared = 0;
-    for (round = 0; round < 1500; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(1500); round++) {
         make(&random, 600, 4, 0.02, 0);
         walk(&random, 0, 0);
         compare(1 + round % FRAMES, "ordinary", round);
     }
-    assert_true(compared > 10000);
+    assert_true(compared > FIXTURE_ROUNDS(10000));
     assert_true(sqrt(sum_of_squares / (double)compared) < 0.03); /* rounding to 1/16 alone is 0.018 */
 }
 
@@ -263,7 +263,7 @@ static void any_weights_within_the_limits(void **state)
     fixture_random_t random = { 22 };
     unsigned round;
     (void)state;
-    for (round = 0; round < 6000; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(6000); round++) {
         make(&random, holds[round % 6], LABIAL_STIFFNESS_MAX, round / 6 % 3 / 2.0, 0);
         walk(&random, round / 18 % 2, round / 36 % 2);
         compare(1 + round % 7 * 59 / 6, "any", round);
@@ -278,7 +278,7 @@ static void every_bound(void **state)
     fixture_random_t random = { 23 };
     unsigned round;
     (void)state;
-    for (round = 0; round < 8000; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(8000); round++) {
         make(&random, holds[round % 8], LABIAL_STIFFNESS_MAX, round / 8 % 2, 1);
         walk(&random, round / 16 % 2, round / 32 % 3 > 0);
         compare(round % 5 ? FRAMES : 1 + round / 5 % FRAMES, "bounds", round);
@@ -292,7 +292,7 @@ static void what_rests_stays_at_rest(void **state)
     fixture_random_t random = { 25 };
     unsigned round, q, t;
     (void)state;
-    for (round = 0; round < 500; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(500); round++) {
         const int16_t place = (int16_t)((int)fixture_below(&random, 32767) - LABIAL_POSITION_MAX);
         labial_factors_t factors[FRAMES + 1];
         int16_t motion[FRAMES * LABIAL_CHANNELS];
@@ -319,7 +319,7 @@ static void contact_holds_a_frame_at_its_target(void **state)
     fixture_random_t random = { 27 };
     unsigned round;
     (void)state;
-    for (round = 0; round < 500; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(500); round++) {
         labial_factors_t factors[FRAMES + 1];
         int16_t motion[LABIAL_CHANNELS];
         int both;
@@ -375,7 +375,7 @@ static void the_way_back_crosses_solutions_without_a_trace(void **state)
     fixture_random_t random = { 26 };
     unsigned round, size = FRAMES;
     (void)state;
-    for (round = 0; round < 2000; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(2000); round++) {
         const unsigned first = 1 + fixture_below(&random, 20), second = 1 + fixture_below(&random, 20);
         labial_factors_t factors[FRAMES + 1], ring[FRAMES];
         double wanted[FRAMES];

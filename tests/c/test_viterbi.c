@@ -127,7 +127,7 @@ static void scores_are_those_of_exhaustive_search(void **state)
     fixture_random_t random = { 11 };
     unsigned round, t;
     (void)state;
-    for (round = 0; round < 1500; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(1500); round++) {
         const unsigned many = round % 20 == 0, count = 1 + round % (many ? 3u : (unsigned)EXHAUSTED);
         double least[LABIAL_STATES_MAX];
         labial_search_t search;
@@ -175,7 +175,7 @@ static void paths_are_those_of_the_dense_programme(void **state)
     fixture_random_t random = { 12 };
     unsigned round, t, changed = 0, leaps = 0, units = 0;
     (void)state;
-    for (round = 0; round < 400; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(400); round++) {
         unsigned spans[STEPS], begin = 0;
         labial_search_t search;
         make(&random, 1 + fixture_below(&random, LABIAL_STATES_MAX), round % 3 ? 30 : 256,
@@ -213,7 +213,7 @@ static void a_unit_within_the_lag_has_the_best_path(void **state)
     fixture_random_t random = { 13 };
     unsigned round, t;
     (void)state;
-    for (round = 0; round < 1000; round++) {
+    for (round = 0; round < FIXTURE_ROUNDS(1000); round++) {
         const unsigned count = 1 + round % EXHAUSTED;
         double least[LABIAL_STATES_MAX], cost, best = ORACLE_NONE;
         unsigned path[EXHAUSTED], i;

@@ -12,6 +12,9 @@
 #define STACK_LIMIT 1024u
 #define TICK_STACK_LIMIT 512u
 
+/* Phonemes of speech in the queue, the rest being laughter. */
+#define SPOKEN (LABIAL_QUEUE * 3u / 4u)
+
 static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     (void)user;
@@ -98,10 +101,10 @@ __attribute__((noinline)) static uint32_t depth_of_ticks(void)
     unsigned i;
     TEST_ASSERT_EQUAL_INT(LABIAL_OK,
                           labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
-    for (i = 0; i < 40; i++) {
-        if (i == 30)
+    for (i = 0; i < LABIAL_QUEUE; i++) {
+        if (i == SPOKEN)
             TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_use(stream, &laughter_synthetic));
-        TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_push(stream, i < 30 ? i : i - 30u, 90));
+        TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_push(stream, i % LAUGHTER_SYNTHETIC_PHONEMES, 90));
     }
     TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_end(stream));
     board_stack_paint();
