@@ -26,7 +26,7 @@ static void enter(labial_t *stream, const labial_taken_t *taken)
     frame->contacts = labial_shape_target(stream->models[taken->slot], &stream->shape, taken, frame->target);
     frame->slot = taken->slot;
     frame->marks = taken->marks;
-    if ((taken->marks & LABIAL_BEGINS) && (stream->entered || stream->resumed))
+    if ((taken->marks & LABIAL_BEGINS) && (stream->entered || stream->shown))
         stream->begins[0] |= 1u;
 }
 

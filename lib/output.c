@@ -17,6 +17,7 @@ static void call_back(labial_t *stream, const int16_t motion[LABIAL_CHANNELS])
         faps[k] = (int16_t)((motion[k] + 8) >> 4);
     stream->callback(stream->user, stream->frame, faps);
     stream->frame++;
+    stream->shown = 1;
 }
 
 /* Begins to fade from the pose that was delivered last, which moves on as far as the last frame moved it, half as far

@@ -45,7 +45,7 @@ static void forget_input(labial_t *stream)
     labial_units_forget(&stream->units);
     stream->pending = 0;
     stream->begins[0] = stream->begins[1] = 0;
-    stream->ended = stream->begun = stream->resumed = stream->selected = 0;
+    stream->ended = stream->begun = stream->selected = 0;
     stream->entered = stream->beyond = 0;
     stream->phase = (uint8_t)(stream->stride - 1u);
     stream->frame_place = stream->factor_place = 0;
@@ -199,7 +199,6 @@ int labial_restart(labial_t *stream)
         return LABIAL_ERROR_STATE;
     forget_input(stream);
     memcpy(stream->earlier, stream->pose, sizeof stream->earlier); /* which is at rest */
-    stream->resumed = stream->frame > 0;
     return LABIAL_OK;
 }
 

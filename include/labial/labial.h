@@ -195,7 +195,7 @@ typedef struct {
     uint8_t stride;      /* frames that share a state */
     uint8_t ended;       /* no more phonemes will come */
     uint8_t begun;       /* a frame was delivered since the stream was initialised or taken up again */
-    uint8_t resumed;     /* the first frame fades in from `pose` */
+    uint8_t shown;       /* a frame was delivered since the stream was initialised: what begins fades in from `pose` */
     uint8_t selected;    /* `next_shape` is that of the phoneme that begins next */
     uint8_t entered;     /* frames that were taken, 255 for more */
     uint8_t beyond;      /* ticks since the last frame was taken */

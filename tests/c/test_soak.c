@@ -260,10 +260,36 @@ static void a_day_is_exact_to_the_frame(void **state)
     assert_true(day.laughs > length / 4096u && day.starved > 0);
 }
 
+/* Would catch a frame number that is taken for the count of frames: restarted at number 0, a face that is not neutral
+ * would jump. */
+static void a_restart_at_the_wrap_does_not_jump(void **state)
+{
+    static int16_t before[SENTENCE][LABIAL_CHANNELS], after[SENTENCE][LABIAL_CHANNELS];
+    unsigned c, frames = 10;
+    int moved = 0;
+    (void)state;
+    begin_day(0u - frames);
+    day.kept = before;
+    push(SPEECH_EN_AA, frames * 1000u / RATE);
+    end();
+    assert_int_equal(day.next, 0);
+    day.kept = after;
+    push(SPEECH_EN_UW, 1000);
+    end();
+    assert_int_equal(day.next, RATE);
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        const int step = after[0][c] - before[frames - 1u][c], whole = after[FADE][c] - before[frames - 1u][c];
+        moved |= whole > 40 || whole < -40;
+        assert_true(step * 4 <= (whole < 0 ? -whole : whole) + 40 && -step * 4 <= (whole < 0 ? -whole : whole) + 40);
+    }
+    assert_true(moved);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_day_is_exact_to_the_frame),
+        cmocka_unit_test(a_restart_at_the_wrap_does_not_jump),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
