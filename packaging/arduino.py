@@ -20,6 +20,9 @@ ARCHITECTURES = (
     "nrf52", "renesas_portenta", "renesas_uno", "rp2040", "sam", "samd", "stm32", "zephyr",
 )  # fmt: skip
 
+#: Where the headers lie that sketches share with other examples. A sketch's folder holds copies of them.
+SHARED = (ROOT / "examples" / "talk", ROOT / "examples" / "faces", ROOT / "export" / "labial" / "bake")
+
 
 def properties(source: Source) -> str:
     """library.properties."""
@@ -64,6 +67,17 @@ def umbrella(source: Source) -> str:
     )
 
 
+def _included(file: Path) -> List[Path]:
+    """What of the folders in SHARED a sketch or a header includes in quotes, and what that includes, with the sources of
+    the same name."""
+    found: List[Path] = []
+    for name in re.findall(r'^#include "([^"/]+)"', file.read_text(encoding="utf-8"), re.MULTILINE):
+        for path in (folder / name for folder in SHARED if (folder / name).is_file()):
+            table = path.with_suffix(".c")
+            found += [path, *([table] if table.is_file() else []), *_included(path)]
+    return list(dict.fromkeys(found))
+
+
 def write(source: Source, folder: Path) -> None:
     """Lays the library out in `folder`."""
     src = folder / "src"
@@ -84,8 +98,10 @@ def write(source: Source, folder: Path) -> None:
     ):
         write_text(folder / name, text)
     for sketch in sorted((ROOT / "examples" / "arduino").glob("*/*.ino")):
-        (folder / "examples" / sketch.parent.name).mkdir(parents=True)
-        shutil.copyfile(sketch, folder / "examples" / sketch.parent.name / sketch.name)
+        target = folder / "examples" / sketch.parent.name
+        target.mkdir(parents=True)
+        for path in [sketch, *_included(sketch)]:
+            shutil.copyfile(path, target / path.name)
 
 
 def archive(source: Source, folder: Path) -> Path:

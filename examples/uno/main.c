@@ -28,7 +28,7 @@
 /* Periods that last at least so many milliseconds. */
 #define PERIODS(ms) (uint16_t)(((ms) + PERIOD_MS - 1u) / PERIOD_MS)
 
-static labial_track_t track;
+static labial_player_t player;
 
 /* The pulse of the next period, in microseconds. In fast PWM the pin is high for a count more than the register says. */
 static void servo_show(int32_t pulse)
@@ -80,8 +80,8 @@ static void talk(void)
         serial_write(command[i]);
     /* The last of these periods is the one in which the timer takes frame 0 over. */
     wait_for_period((uint16_t)(PERIODS(COMMAND_MS + DFPLAYER_DELAY_MS) - 2u));
-    talk_begin(&track);
-    while ((frame = talk_next(&track)) != NULL) {
+    talk_begin(&player);
+    while ((frame = talk_next(&player)) != NULL) {
         servo_show(talk_jaw(frame));
         wait_for_period(0);
     }
@@ -89,8 +89,8 @@ static void talk(void)
 
 int main(void)
 {
-    talk_begin(&track);
-    servo_begin(talk_jaw(talk_next(&track)));
+    talk_begin(&player);
+    servo_begin(talk_jaw(talk_next(&player)));
     PORTD |= _BV(PORTD2); /* holds pin 2 high while the button is open */
     serial_begin();
     wait_for_period(PERIODS(DFPLAYER_READY_MS));

@@ -4,9 +4,9 @@
  */
 #include <avr/io.h>
 
-#include "labial_track.h"
+#include "labial_player.h"
 
-static const uint8_t bytes[] LABIAL_TRACK_FLASH = { 1, 2, 3, 4 };
+static const uint8_t bytes[] LABIAL_PLAYER_FLASH = { 1, 2, 3, 4 };
 
 static volatile uint16_t given = 2;
 static volatile int32_t limit = 1900, shown;
@@ -14,11 +14,11 @@ static volatile int32_t limit = 1900, shown;
 int main(void)
 {
 #if defined(PLAYER)
-    static labial_track_t track;
+    static labial_player_t player;
     const uint8_t *frame;
-    labial_track_begin(&track, bytes, given);
-    while ((frame = labial_track_next(&track, given)) != NULL)
-        shown = labial_track_value(frame, given, limit, limit);
+    labial_player_begin(&player, bytes, given);
+    while ((frame = labial_player_next(&player, given)) != NULL)
+        shown = labial_player_value(frame, given, limit, limit);
 #else
     while (given)
         shown = pgm_read_byte(bytes) + limit + limit;

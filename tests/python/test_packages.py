@@ -9,9 +9,17 @@ import zipfile
 from pathlib import Path
 from typing import Dict, List
 
+import numpy as np
 import pytest
 
 import labial
+from labial.model import load
+from labial.phones import read_stream
+from labial.quantise import quantise
+from labial.reference.stream import synthesise
+from labial.reference.tables import ExportedTables
+from labial.rig.description import read
+from labial.rig.table import convert, expected
 from packages import CC, CMAKE, CXX, PROGRAM, SOURCE, expected_frames, pack, run, warnings
 
 STUB = SOURCE / "tests" / "packages" / "arduino_stub"
@@ -130,7 +138,8 @@ def arduino(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def arduino_files(arduino: Path, sketch: str) -> List[Path]:
-    return [arduino / "examples" / sketch / f"{sketch}.ino", *sorted((arduino / "src").rglob("*.c"))]
+    folder = arduino / "examples" / sketch
+    return [folder / f"{sketch}.ino", *sorted(folder.glob("*.c")), *sorted((arduino / "src").rglob("*.c"))]
 
 
 def arduino_options(arduino: Path) -> List[str]:
@@ -155,22 +164,121 @@ def test_arduino_layout(arduino: Path) -> None:
                       for path in arduino.rglob("*") if path.is_file()}
 
 
+def sketch_lines(arduino: Path, folder: Path, sketch: str, *arguments: int, text: str = "") -> List[str]:
+    """What a sketch of the packed library does on the host; `text` comes in over its serial line."""
+    run(CXX, *arduino_options(arduino), "-x", "c++", *arduino_files(arduino, sketch), STUB / "host.cpp",
+        "-o", folder / sketch)
+    return run(folder / sketch, *arguments, text=text).splitlines()
+
+
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_arduino_sketches_run(arduino: Path, tmp_path: Path) -> None:
     """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
-    for sketch in SKETCHES:
-        run(CXX, *arduino_options(arduino), "-x", "c++", *arduino_files(arduino, sketch), STUB / "host.cpp",
-            "-o", tmp_path / sketch)
-    lines = run(tmp_path / "PlotFace", 5000).splitlines()
+    lines = sketch_lines(arduino, tmp_path, "PlotFace", 5000)
     assert 150 < len(lines) < 250
     jaws = [int(re.fullmatch(r"jaw:(-?\d+),upper_lip:(-?\d+),lower_lip:(-?\d+)", line)[1]) for line in lines]
     assert max(jaws) - min(jaws) > 100
-    out = run(tmp_path / "JawServo", 9000, text="HH 70 AH 60 L 80 OW 250\nAA 200 m 80 zz AA 200\n").splitlines()
+    out = sketch_lines(arduino, tmp_path, "JawServo", 9000, text="HH 70 AH 60 L 80 OW 250\nAA 200 m 80 zz AA 200\n")
     angles = [int(line[6:]) for line in out if line.startswith("servo ")]
     assert len(angles) == 1 + 23 + 24 and 80 <= min(angles) and max(angles) <= 110
     vowel, closed, again = angles[24:33], angles[33:39], angles[39:]  # m from 0.2 to 0.28 s of the second line
     assert max(vowel) > 100 and max(again) > 100 and min(closed) < 85
     assert [line for line in out if not line.startswith("servo ")] == ["no phoneme of this name is known"]
+
+
+#: The command that starts file 1 of folder 1, checksum included.
+PLAY = "7e ff 06 0f 00 01 01 fe ea ef"
+#: When the sound of the sketches is heard: 3 s until the module is ready, the command, 11 ms, and the module's delay.
+HEARD = 3000 + 11 + 200
+
+
+def talk_frames() -> np.ndarray:
+    """(T, 13) FAPs of the sketches' sentence, by the float64 reference on the bundled model's tables."""
+    model = load(SOURCE / "export" / "models" / "speech_en.npz")
+    phonemes = read_stream(SOURCE / "examples" / "talk" / "talk.lab", model)
+    return synthesise(ExportedTables(quantise(model, "bundled")), phonemes)
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_uno_sketch_plays_the_track(arduino: Path, tmp_path: Path) -> None:
+    """At reset and when the button is pressed: the module's command, then the track's pulses, one every 20 ms, from the
+    moment at which the sound is heard."""
+    lines = sketch_lines(arduino, tmp_path, "UnoJaw", 12000, 8000)
+    assert [line for line in lines if line.startswith("serial")] == [f"serial 3000 {PLAY}", f"serial 8000 {PLAY}"]
+    pulses = [tuple(map(int, line.split()[1:])) for line in lines if line.startswith("pulse")]
+    text = (SOURCE / "examples" / "talk" / "talk.h").read_text()
+    data = [int(x) for x in re.findall(r"\d+", re.search(r"_bytes\[\d+\][^{]*\{([^}]*)\}", text)[1])]
+    wanted = [round(1400 + 500 * byte / 255) for byte in data]
+    first, *talking = pulses
+    assert first == (0, wanted[0]) and [pulse for _, pulse in talking] == 2 * wanted
+    starts = [3000, 8000]
+    assert [time for time, _ in talking] == [start + HEARD - 3000 + 20 * n for start in starts for n in range(len(data))]
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_face_sketch_moves_five_servos(arduino: Path, tmp_path: Path) -> None:
+    """The library on an ESP32: every frame on the wire when its sound is heard, as the float64 rig has it, but for the
+    jaw, whose speed is limited; and all of it again when the button is pressed."""
+    lines = sketch_lines(arduino, tmp_path, "FaceServos", 12000, 8000)
+    # A millisecond goes to the PCA9685's oscillator first.
+    assert [line for line in lines if line.startswith("serial")] == [f"serial 3001 {PLAY}", f"serial 8000 {PLAY}"]
+    sleep, prescale, wake, rest, *shown = [line.split()[1:] for line in lines if line.startswith("wire")]
+    assert [words[1:] for words in (sleep, prescale, wake)] == [["40", "00", "10"], ["40", "fe", "79"],
+                                                               ["40", "00", "20"]]
+    assert all(words[1:3] == ["40", "06"] and len(words) == 3 + 4 * 5 for words in (rest, *shown))
+    times = [int(words[0]) for words in shown]
+    ticks = np.array([[int(words[3 + 4 * i + 2], 16) + 256 * int(words[3 + 4 * i + 3], 16) for i in range(5)]
+                      for words in shown])
+    frames = talk_frames()
+    count = len(frames)
+    assert times[:count] == [1 + HEARD + 20 * n for n in range(count)] and times[count] == 8000 + HEARD - 3000
+    rig = read(SOURCE / "examples" / "faces" / "servos.toml", "servos")
+    wanted = expected(rig, convert(rig), frames)
+    assert np.abs(ticks[:count, 1:] - wanted[:, 1:]).max() <= 1.5
+    assert np.abs(ticks[:count, 0] - wanted[:, 0]).mean() < 3 and np.ptp(ticks[:count, 0]) > 30
+    # The second time begins with a fade, from the first one's end.
+    assert len(shown) == 2 * count and np.abs(ticks[count + 20 :, 1:] - wanted[20:, 1:]).max() <= 1.5
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_avatar_sketch_opens_the_mouth(arduino: Path, tmp_path: Path) -> None:
+    """The ratio is the lips' opening over 600 FAP units, between 0 and 1, from the seventh period on."""
+    lines = [line.split() for line in sketch_lines(arduino, tmp_path, "AvatarMouth", 9000, 5000)]
+    assert {words[0] for words in lines} == {"mouth"}
+    frames = talk_frames()
+    count = len(frames)
+    ratios = np.array([float(words[2]) for words in lines])
+    assert len(ratios) == 2 * count and [int(words[1]) for words in lines[:2]] == [140, 160]
+    wanted = np.clip(-(frames[:, 3] + frames[:, 4]) / 600, 0, 1)
+    assert np.abs(ratios[:count] - wanted).max() < 0.005 and np.ptp(wanted) > 0.8
+
+
+@pytest.mark.skipif(not shutil.which("avr-g++"), reason="no avr-g++: install gcc-avr and avr-libc")
+def test_uno_sketch_compiles_for_an_uno(arduino: Path, tmp_path: Path) -> None:
+    """The sketch for the processor that it is for: the track stays in flash, and is all that is large."""
+    files = [STUB / "Arduino.h", STUB / "Servo.h", *(arduino / "examples" / "UnoJaw").iterdir()]
+    for path in files:
+        shutil.copyfile(path, tmp_path / path.name)
+    options = [item for item in arduino_options(arduino) if not item.startswith("-I")]
+    run("avr-g++", "-mmcu=atmega328p", *options, "-I.", "-x", "c++", "-c", "UnoJaw.ino", "-o", "sketch.o", cwd=tmp_path)
+    text, data, bss = map(int, run("avr-size", "sketch.o", cwd=tmp_path).splitlines()[1].split()[:3])
+    assert text < 1200 and data == 0 and bss < 40
+
+
+#: The core that the Arduino IDE has for its boards with an AVR, where Debian puts it.
+CORE = Path("/usr/share/arduino/hardware/arduino/avr")
+
+
+@pytest.mark.skipif(not shutil.which("avr-g++") or not CORE.is_dir(),
+                    reason="no Arduino core: install gcc-avr, avr-libc and arduino-core-avr")
+def test_uno_sketch_compiles_with_arduinos_core(arduino: Path, tmp_path: Path) -> None:
+    """What the stub of the core allows and the core itself does not; Servo is not part of the core and stays a stub."""
+    shutil.copyfile(STUB / "Servo.h", tmp_path / "Servo.h")
+    sketch = arduino / "examples" / "UnoJaw"
+    run("avr-g++", "-mmcu=atmega328p", "-DF_CPU=16000000L", "-DARDUINO=10819", "-DARDUINO_AVR_UNO", "-DARDUINO_ARCH_AVR",
+        "-std=gnu++11", "-Os", "-Wall", "-Wextra", "-Werror", f"-I{CORE / 'cores' / 'arduino'}",
+        f"-I{CORE / 'variants' / 'standard'}", f"-I{tmp_path}", "-include", "Arduino.h", "-x", "c++", "-c",
+        sketch / "UnoJaw.ino", "-o", tmp_path / "sketch.o")
 
 
 @pytest.mark.skipif(not shutil.which("arm-none-eabi-g++"),

@@ -14,7 +14,7 @@ from labial.rig.description import read
 from labial.rig.table import convert
 
 #: The player, which is written beside each track.
-PLAYER = "labial_track.h"
+PLAYER = "labial_player.h"
 
 
 def run(source: Source, output: str, kind: str, rig: Optional[str] = None, name: Optional[str] = None) -> List[Path]:

@@ -89,9 +89,9 @@ def _heard(source: Source) -> List[SourceSegment]:
         from labial.align.align import align
     except ModuleNotFoundError as error:
         raise LabialError(f"a sound needs the package {error.name}: install labial[align]") from None
+    found = align(source.path, source.text)
     if source.text is None:
         warnings.warn(f"{source.path}: without its text (--text, --text-file) phonemes are less sure", stacklevel=2)
-    found = align(source.path, source.text)
     return [SourceSegment(item.start, item.end, item.label, None, "arpabet") for item in found]
 
 
@@ -107,13 +107,15 @@ def read_track(source: Source) -> np.ndarray:
             raise LabialError(f"{source.path}: frames need neither a text nor a model")
         motion = read_motion(source.path)
         return _at_rate(source.path, motion.times, motion.frames)
+    from labial.quantise import quantise
     from labial.reference import stream
-    from labial.reference.tables import FloatTables
+    from labial.reference.tables import ExportedTables
 
     model, _, phonemes = read_phonemes(source)
     seconds = sum(milliseconds for _, milliseconds in phonemes) / 1000.0
     _check_length(source.path, seconds)
-    frames = stream.synthesise(FloatTables(model), phonemes)
+    # The tables that a board would have: a choice at a near tie is then the same as there.
+    frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
     if not len(frames):
         raise DataError(source.path, None, "too short for a frame, which is 20 ms")
     return _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)

@@ -1,4 +1,4 @@
-"""``labial bake --as track``: a rig's outputs as bytes, 50 frames a second, which ``labial_track.h`` plays."""
+"""``labial bake --as track``: a rig's outputs as bytes, 50 frames a second, which ``labial_player.h`` plays."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from labial.rig.gestures import GESTURES
 from labial.rig.table import TableOutput, moved
 from labial.rig.units import make_unit
 
-#: LABIAL_TRACK_FORMAT of labial_track.h.
+#: LABIAL_PLAYER_FORMAT of labial_player.h.
 FORMAT = 1
 #: Largest difference of an output's limits, for which the player's sums stay below 2^31.
 SPAN_MAX = 8_000_000
@@ -50,12 +50,12 @@ def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], frame
     about = (f"{name}.h - {len(data) / RATE:.1f} s of motion from {source}, {RATE} frames a second, a byte for each of "
              f"{count} output{'s' * (count > 1)}. Values are {rig.unit.text}.")
     places = ",\n".join(f"    {upper}_{output.name.upper()} = {number}" for number, output in enumerate(table))
-    return f"""{comment(about)}#ifndef LABIAL_TRACK_{upper}_H
-#define LABIAL_TRACK_{upper}_H
+    return f"""{comment(about)}#ifndef LABIAL_BAKED_{upper}_H
+#define LABIAL_BAKED_{upper}_H
 
-#include "labial_track.h"
+#include "labial_player.h"
 
-#if LABIAL_TRACK_FORMAT != {FORMAT}
+#if LABIAL_PLAYER_FORMAT != {FORMAT}
 #error "{name} was written for another version of Labial: run labial bake again."
 #endif
 
@@ -67,20 +67,20 @@ enum {{
 {places}
 }};
 {''.join(_limits(upper, output) for output in table)}{_avr_check(name, data)}
-static const uint8_t {name}_bytes[{data.size}] LABIAL_TRACK_FLASH = {{
+static const uint8_t {name}_bytes[{data.size}] LABIAL_PLAYER_FLASH = {{
 {rows(data.ravel())}
 }};
 
 /* Goes to the beginning. */
-static inline void {name}_begin(labial_track_t *track)
+static inline void {name}_begin(labial_player_t *player)
 {{
-    labial_track_begin(track, {name}_bytes, {upper}_FRAMES);
+    labial_player_begin(player, {name}_bytes, {upper}_FRAMES);
 }}
 
 /* The next frame, every 20 ms, or NULL when the motion is over. */
-static inline const uint8_t *{name}_next(labial_track_t *track)
+static inline const uint8_t *{name}_next(labial_player_t *player)
 {{
-    return labial_track_next(track, {upper}_OUTPUTS);
+    return labial_player_next(player, {upper}_OUTPUTS);
 }}
 {''.join(_reader(name, output, rig) for output in table)}
 #endif
@@ -104,7 +104,7 @@ def _reader(name: str, output: TableOutput, rig: Rig) -> str:
 /* What {output.name} is to do in a frame, {rig.unit.text}. */
 static inline int32_t {name}_{output.name.lower()}(const uint8_t *frame)
 {{
-    return labial_track_value(frame, {upper}_{own}, {upper}_{own}_AT_0, {upper}_{own}_AT_255);
+    return labial_player_value(frame, {upper}_{own}, {upper}_{own}_AT_0, {upper}_{own}_AT_255);
 }}
 """
 

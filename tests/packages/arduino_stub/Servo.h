@@ -10,6 +10,7 @@ class Servo {
 public:
     uint8_t attach(int pin);
     void write(int angle);
+    void writeMicroseconds(int pulse);
 };
 
 #endif

@@ -1,29 +1,55 @@
 /*
  * host.cpp - runs a sketch on a host: one call of loop() per millisecond of a made-up clock, for as many milliseconds
- * as the first argument says. Standard input is the serial line; what the sketch prints or writes to its servo goes to
- * standard output.
+ * as the first argument says; at the time that the second one says, if there is one, each button is pressed for 100 ms.
+ * Standard input is the serial line; what the sketch prints, or does with what is connected, goes to standard output.
  */
 #include <stdio.h>
 
 #include "Arduino.h"
+#include "Avatar.h"
+#include "M5Unified.h"
 #include "Servo.h"
+#include "Wire.h"
 
-HardwareSerial Serial;
-static unsigned long now = 0;
+HardwareSerial Serial, Serial2;
+TwoWire Wire;
+m5::M5Unified M5;
+static unsigned long now = 0, end = 0, press = 0;
 static int peeked = EOF;
+
+static bool pressed()
+{
+    return press > 0 && now >= press && now < press + 100;
+}
 
 unsigned long millis()
 {
     return now;
 }
 
-void delay(unsigned long)
+void delay(unsigned long milliseconds)
 {
-    fflush(stdout);
-    exit(1); // the sketches wait only when something is wrong
+    now += milliseconds;
+    if (now >= end) {
+        fflush(stdout);
+        exit(1); // where something is wrong the sketches wait for ever
+    }
+}
+
+void pinMode(uint8_t, uint8_t)
+{
+}
+
+int digitalRead(uint8_t)
+{
+    return pressed() ? LOW : HIGH;
 }
 
 void HardwareSerial::begin(unsigned long)
+{
+}
+
+void HardwareSerial::begin(unsigned long, uint32_t, int, int)
 {
 }
 
@@ -39,6 +65,15 @@ int HardwareSerial::read()
     const int c = available() ? peeked : -1;
     peeked = EOF;
     return c;
+}
+
+size_t HardwareSerial::write(const uint8_t *bytes, size_t count)
+{
+    printf("serial %lu", now);
+    for (size_t i = 0; i < count; i++)
+        printf(" %02x", (unsigned)bytes[i]);
+    puts("");
+    return count;
 }
 
 void HardwareSerial::print(const char *text)
@@ -71,11 +106,61 @@ void Servo::write(int angle)
     printf("servo %d\n", angle);
 }
 
+void Servo::writeMicroseconds(int pulse)
+{
+    printf("pulse %lu %d\n", now, pulse);
+}
+
+bool TwoWire::begin(int, int, uint32_t)
+{
+    return true;
+}
+
+void TwoWire::beginTransmission(uint8_t address)
+{
+    printf("wire %lu %02x", now, (unsigned)address);
+}
+
+size_t TwoWire::write(uint8_t byte)
+{
+    printf(" %02x", (unsigned)byte);
+    return 1;
+}
+
+uint8_t TwoWire::endTransmission()
+{
+    puts("");
+    return 0;
+}
+
+bool m5::Button_Class::wasPressed() const
+{
+    return press > 0 && now == press;
+}
+
+void m5::M5Unified::begin()
+{
+}
+
+void m5::M5Unified::update()
+{
+}
+
+void m5avatar::Avatar::init()
+{
+}
+
+void m5avatar::Avatar::setMouthOpenRatio(float ratio)
+{
+    printf("mouth %lu %.3f\n", now, (double)ratio);
+}
+
 int main(int argc, char **argv)
 {
-    const unsigned long end = argc > 1 ? strtoul(argv[1], NULL, 10) : 0;
+    end = argc > 1 ? strtoul(argv[1], NULL, 10) : 0;
+    press = argc > 2 ? strtoul(argv[2], NULL, 10) : 0;
     setup();
-    for (now = 1; now < end; now++)
+    for (now++; now < end; now++)
         loop();
     return 0;
 }

@@ -1,61 +1,61 @@
 /*
- * labial_track.h - plays motion that `labial bake` has computed ahead: a byte per output and frame, 50 frames a second.
+ * labial_player.h - plays motion that `labial bake` has computed ahead: a byte per output and frame, 50 frames a second.
  * For boards that are too small to compute it, such as an Arduino Uno; the program that plays it needs nothing else of
  * Labial. `labial bake` writes this file beside each header that needs it; docs/arduino.md leads to a moving jaw.
  *
  *     #include "talk.h"                                  // labial bake talk.wav -o talk.h
- *     static labial_track_t track;
+ *     static labial_player_t player;
  *
- *     talk_begin(&track);                                // when the sound begins
- *     const uint8_t *frame = talk_next(&track);          // every 20 ms
+ *     talk_begin(&player);                                // when the sound begins
+ *     const uint8_t *frame = talk_next(&player);          // every 20 ms
  *     if (frame)                                         // NULL when the motion is over: the servo stays where it is
  *         servo.writeMicroseconds(talk_jaw(frame));
  *
  * C99 and C++. On an AVR the bytes stay in flash. There a player takes 4 bytes of RAM, 8 where pointers have 32 bits;
  * its code is measured in docs/arduino.md. Nothing here is checked at run time, since nothing comes from outside.
  */
-#ifndef LABIAL_TRACK_H
-#define LABIAL_TRACK_H
+#ifndef LABIAL_PLAYER_H
+#define LABIAL_PLAYER_H
 
 #include <stddef.h>
 #include <stdint.h>
 
 #if defined(__AVR__)
 #include <avr/pgmspace.h>
-#define LABIAL_TRACK_FLASH PROGMEM
-#define LABIAL_TRACK_READ(address) pgm_read_byte(address)
+#define LABIAL_PLAYER_FLASH PROGMEM
+#define LABIAL_PLAYER_READ(address) pgm_read_byte(address)
 #else
-#define LABIAL_TRACK_FLASH
-#define LABIAL_TRACK_READ(address) (*(address))
+#define LABIAL_PLAYER_FLASH
+#define LABIAL_PLAYER_READ(address) (*(address))
 #endif
 
 /* Version of what `labial bake` writes. Headers of another version do not compile. */
-#define LABIAL_TRACK_FORMAT 1
+#define LABIAL_PLAYER_FORMAT 1
 
-/* A track that is being played. The program owns it; it may be copied. */
+/* Where in a track a program is. The program owns it; it may be copied. */
 typedef struct {
     const uint8_t *next; /* the frame that comes next, in flash */
     size_t left;         /* frames that are still to come */
-} labial_track_t;
+} labial_player_t;
 
 /* Goes to the beginning of `frames` frames that stand behind each other at `bytes`. */
-static inline void labial_track_begin(labial_track_t *track, const uint8_t *bytes, size_t frames)
+static inline void labial_player_begin(labial_player_t *player, const uint8_t *bytes, size_t frames)
 {
-    track->next = bytes;
-    track->left = frames;
+    player->next = bytes;
+    player->left = frames;
 }
 
 /*
  * Takes the next frame, which has `outputs` bytes. Call it every 20 ms. Returns the frame, which
- * labial_track_value() reads, or NULL when there is none.
+ * labial_player_value() reads, or NULL when there is none.
  */
-static inline const uint8_t *labial_track_next(labial_track_t *track, size_t outputs)
+static inline const uint8_t *labial_player_next(labial_player_t *player, size_t outputs)
 {
-    const uint8_t *frame = track->next;
-    if (track->left == 0)
+    const uint8_t *frame = player->next;
+    if (player->left == 0)
         return NULL;
-    track->left--;
-    track->next = frame + outputs;
+    player->left--;
+    player->next = frame + outputs;
     return frame;
 }
 
@@ -67,9 +67,9 @@ static inline const uint8_t *labial_track_next(labial_track_t *track, size_t out
  *
  * Either may be the larger; they differ by at most 8,000,000.
  */
-static inline int32_t labial_track_value(const uint8_t *frame, size_t output, int32_t at_0, int32_t at_255)
+static inline int32_t labial_player_value(const uint8_t *frame, size_t output, int32_t at_0, int32_t at_255)
 {
-    const int32_t move = (at_255 - at_0) * (int32_t)LABIAL_TRACK_READ(frame + output);
+    const int32_t move = (at_255 - at_0) * (int32_t)LABIAL_PLAYER_READ(frame + output);
     return at_0 + (move + (move < 0 ? -127 : 127)) / 255;
 }
 

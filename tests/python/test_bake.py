@@ -1,0 +1,311 @@
+"""``labial bake``: headers that C compiles and plays, held to the library itself, and every error in a line."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from fractions import Fraction
+from pathlib import Path
+from typing import List, Sequence
+
+import numpy as np
+import pytest
+
+from labial.bake.source import SOUNDS, bundled
+from labial.bake.track import AVR_LARGEST
+from labial.cli import main
+from labial.faps import FAP_COLUMNS
+from labial.rig.description import read
+from labial.rig.table import convert, moved, write
+from packages import CC, CXX, SOURCE, run, warnings
+
+TALK = SOURCE / "examples" / "talk"
+PLAYER = SOURCE / "export" / "labial" / "bake" / "labial_player.h"
+
+#: A face with all that a track can hold: two directions, a slew limit, plain numbers below zero.
+FACE = """
+[output.jaw]
+from = "opening"
+neutral = 1900
+full = 1300
+[output.brow]
+from = "jaw"
+neutral = 1500
+full = 1700
+slew = 20
+"""
+
+
+def frames_file(path: Path, times: Sequence[float], openings: Sequence[float]) -> Path:
+    """A frames file in which the lower lip alone moves, so that the opening is what is given."""
+    lip = FAP_COLUMNS.index("fap52")
+    rows = [",".join([f"{t:.3f}", *(f"{-x if k == lip else 0:.2f}" for k in range(len(FAP_COLUMNS)))])
+            for t, x in zip(times, openings)]
+    path.write_text("\n".join([",".join(("time", *FAP_COLUMNS)), *rows]) + "\n")
+    return path
+
+
+def data(header: Path) -> List[int]:
+    """The bytes of a track, read from the header's text."""
+    table = re.search(r"_bytes\[(\d+)\][^{]*\{([^}]*)\}", header.read_text())
+    assert table
+    found = [int(number) for number in re.findall(r"\d+", table[2])]
+    assert len(found) == int(table[1])
+    return found
+
+
+def same_but_version(one: Path, other: Path) -> bool:
+    def plain(path: Path) -> str:
+        return re.sub(r"labial bake \d+\.\d+\.\d+", "", path.read_text()).replace("\n *", "").replace(" ", "")
+
+    return plain(one) == plain(other)
+
+
+# ---- Both kinds of header, in C --------------------------------------------------------------------------------------
+
+PROGRAM = """\
+#include <stdio.h>
+#include "jaw.h"
+#include "talk.h"
+#include "talk_phonemes.h"
+
+static labial_t stream;
+static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
+static labial_player_t player;
+static int32_t pulse;
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    const uint8_t *baked = talk_next(&player);
+    (void)user;
+    labial_rig_apply(&jaw, faps, &pulse);
+    printf("%u %d %d\\n", (unsigned)frame, (int)pulse, baked ? (int)talk_jaw(baked) : -1);
+}
+
+int main(void)
+{
+    uint32_t next = 0;
+    int result = labial_init(&stream, &speech_en, workspace, sizeof workspace, on_frame, NULL);
+    talk_begin(&player);
+    labial_rig_rest(&jaw, &pulse);
+    while (result >= 0 && result != LABIAL_DONE) {
+        result = talk_phonemes_feed(&stream, &next);
+        if (result == LABIAL_OK)
+            result = labial_tick(&stream);
+    }
+    printf("end %d %d\\n", result, talk_next(&player) != NULL);
+    return 0;
+}
+"""
+
+
+def test_committed_headers_are_what_the_command_writes(tmp_path: Path) -> None:
+    """A change of the model, of the rig or of the header's text that the examples' headers do not have."""
+    assert main(["bake", str(TALK / "talk.lab"), "-o", str(tmp_path / "talk.h")]) == 0
+    assert main(["bake", str(TALK / "talk.lab"), "--as", "phonemes", "-o", str(tmp_path / "talk_phonemes.h")]) == 0
+    for name in ("talk.h", "talk_phonemes.h"):
+        assert same_but_version(tmp_path / name, TALK / name), name
+    assert (tmp_path / "labial_player.h").read_bytes() == PLAYER.read_bytes()
+
+
+@pytest.mark.parametrize("language", ["c", "c++"])
+def test_both_kinds_play_what_the_library_computes(tmp_path: Path, language: str) -> None:
+    """The phonemes through the stream and its rig, the track through the player: the same pulses, frame by frame, but
+    for what a byte and the exported tables round."""
+    if language == "c++" and not CXX:
+        pytest.skip("no C++ compiler")
+    (tmp_path / "main.c").write_text(PROGRAM)
+    faces = SOURCE / "examples" / "faces"
+    models = SOURCE / "lib" / "models"
+    folders = [TALK, PLAYER.parent, faces, models, SOURCE / "include"]
+    options = [CC, "-std=c99"] if language == "c" else [CXX, "-std=c++11", "-x", "c++"]
+    sources = [tmp_path / "main.c", faces / "jaw.c", models / "speech_en.c", *sorted((SOURCE / "lib").glob("*.c"))]
+    run(*options, *warnings(language), *(f"-I{folder}" for folder in folders), *sources, "-o", tmp_path / "main")
+    *lines, last = run(tmp_path / "main").splitlines()
+    rows = np.array([[int(field) for field in line.split()] for line in lines])
+    assert last == "end 3 0"  # LABIAL_DONE, and no frame of the track is left
+    assert len(rows) == 156 and (rows[:, 0] == np.arange(156)).all()  # 3.125 s
+    difference = np.abs(rows[:, 1] - rows[:, 2])
+    assert difference.max() <= 3, difference  # a FAP unit is .83 microseconds, half a byte 1
+    assert np.ptp(rows[:, 1]) > 400
+
+
+def test_jaw_closes_where_lips_do_and_moves_with_the_sound() -> None:
+    """Bytes of another sentence, or shifted by more than a frame or two: p, b, m would no longer lie in its valleys."""
+    track = np.array(data(TALK / "talk.h"))
+    segments = [line.split() for line in (TALK / "talk.lab").read_text().splitlines()]
+    spans = [(round(float(a) * 50), round(float(b) * 50), label) for a, b, label in segments]
+    closed = [track[a:b].min() for a, b, label in spans if label in ("P", "B", "M")]
+    opened = [track[a:b].max() for a, b, label in spans if label in ("AY", "AA", "EY", "OW")]
+    assert len(closed) == 7 and max(closed) < 30 and len(opened) == 5 and min(opened) > 150
+    for shift in (-5, 5):
+        moved_away = np.roll(track, shift)
+        assert max(moved_away[a:b].min() for a, b, label in spans if label in ("P", "B", "M")) > 40
+
+
+def test_sound_is_aligned_first(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """The text of the wrong option, times in other units: the motion of the sound itself is that of its timings."""
+    for package in ("pocketsphinx", "soundfile", "soxr"):
+        pytest.importorskip(package)
+    out = tmp_path / "talk.h"
+    assert main(["bake", str(TALK / "talk.wav"), "--text-file", str(TALK / "talk.txt"), "-o", str(out)]) == 0
+    assert "warning" not in capsys.readouterr().err
+    found, kept = data(out), data(TALK / "talk.h")
+    assert len(found) == len(kept) and np.corrcoef(found, kept)[0, 1] > 0.95
+    assert main(["bake", str(TALK / "talk.wav"), "-o", str(out)]) == 0
+    assert "without its text" in capsys.readouterr().err
+    assert ".wav" in SOUNDS
+
+
+# ---- Bytes -----------------------------------------------------------------------------------------------------------
+
+
+def test_frames_by_hand(tmp_path: Path) -> None:
+    """25 frames a second from .04 s: the first pose is held before, every second frame lies between two, the last frame
+    is held for as long as it lasts. 600 FAP units of opening are 255."""
+    frames_file(tmp_path / "ramp.csv", [0.04, 0.08, 0.12], [0.0, 300.0, 600.0])
+    assert main(["bake", str(tmp_path / "ramp.csv"), "-o", str(tmp_path / "ramp.h")]) == 0
+    assert data(tmp_path / "ramp.h") == [0, 0, 0, 64, 128, 191, 255, 255]
+
+
+def test_limits_and_directions(tmp_path: Path) -> None:
+    """Bytes go from minimum to maximum however the servo is mounted, a slew limit holds them back."""
+    (tmp_path / "face.toml").write_text(FACE)
+    frames = frames_file(tmp_path / "open.csv", [0.0, 0.02, 0.04], [0.0, 2000.0, 300.0])
+    assert main(["bake", str(frames), "--rig", str(tmp_path / "face.toml"), "-o", str(tmp_path / "f.h")]) == 0
+    assert data(tmp_path / "f.h") == [255, 0, 0, 0, 128, 0]
+    text = (tmp_path / "f.h").read_text()
+    assert "#define F_JAW_AT_0 1300\n#define F_JAW_AT_255 1900" in text and "F_BROW = 1" in text
+
+
+def test_bytes_mean_what_the_formula_says(tmp_path: Path) -> None:
+    """All bytes between limits near and far, in both directions, against exact fractions."""
+    limits = [(1400, 1900), (1900, 1400), (0, 1), (-500, 500), (7, 7), (-16000000, -8000000), (400, 2600)]
+    cases = ", ".join(f"{{ {a}, {b} }}" for a, b in limits)
+    (tmp_path / "main.c").write_text(f"""
+#include <stdio.h>
+#include "labial_player.h"
+static const int32_t limits[][2] = {{ {cases} }};
+int main(void)
+{{
+    unsigned i, byte;
+    for (i = 0; i < {len(limits)}; i++)
+        for (byte = 0; byte < 256; byte++) {{
+            const uint8_t frame[2] = {{ 99, (uint8_t)byte }};
+            printf("%ld\\n", (long)labial_player_value(frame, 1, limits[i][0], limits[i][1]));
+        }}
+    return 0;
+}}
+""")
+    run(CC, "-std=c99", *warnings("c"), "-fsanitize=undefined", "-fno-sanitize-recover=all", f"-I{PLAYER.parent}",
+        tmp_path / "main.c", "-o", tmp_path / "main")
+    found = [int(line) for line in run(tmp_path / "main").split()]
+    exact = [low + Fraction((high - low) * byte, 255) for low, high in limits for byte in range(256)]
+    assert len(found) == len(exact) and max(abs(a - b) for a, b in zip(found, exact)) <= Fraction(1, 2)
+
+
+def test_moved_is_labial_rig_apply(tmp_path: Path) -> None:
+    """The rig in integers, slew limits included, is the C library's to the bit, from rest on."""
+    (tmp_path / "face.toml").write_text(FACE)
+    rig = read(tmp_path / "face.toml", "face")
+    table = convert(rig)
+    write(rig, tmp_path)
+    (tmp_path / "main.c").write_text("""
+#include <stdio.h>
+#include "face.h"
+int main(void)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    int32_t values[FACE_OUTPUTS];
+    labial_rig_rest(&face, values);
+    while (fread(faps, sizeof faps[0], LABIAL_CHANNELS, stdin) == LABIAL_CHANNELS) {
+        labial_rig_apply(&face, faps, values);
+        printf("%ld %ld\\n", (long)values[0], (long)values[1]);
+    }
+    return 0;
+}
+""")
+    run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{tmp_path}", tmp_path / "main.c", tmp_path / "face.c",
+        SOURCE / "lib" / "rig.c", "-o", tmp_path / "main")
+    rng = np.random.default_rng(3)
+    frames = np.cumsum(rng.integers(-60, 61, (500, 13)), axis=0).clip(-32768, 32767)
+    frames = np.concatenate([frames, rng.integers(-32768, 32768, (200, 13))])
+    (tmp_path / "frames").write_bytes(frames.astype("<i2").tobytes())
+    out = run("sh", "-c", '"$0" < "$1"', tmp_path / "main", tmp_path / "frames")
+    assert (np.array([[int(x) for x in line.split()] for line in out.splitlines()]) == moved(table, frames)).all()
+
+
+@pytest.mark.skipif(not shutil.which("avr-gcc"), reason="no avr-gcc: install gcc-avr and avr-libc")
+def test_avr_takes_what_fits(tmp_path: Path) -> None:
+    """A track that no array of an AVR holds is refused in words; one of the largest size compiles, and stays in flash."""
+    times = np.arange(AVR_LARGEST + 1) / 50
+    frames_file(tmp_path / "fits.csv", times[:-1], times[:-1])
+    frames_file(tmp_path / "over.csv", times, times)
+    for name in ("fits", "over"):
+        assert main(["bake", str(tmp_path / f"{name}.csv"), "-o", str(tmp_path / f"{name}.h")]) == 0
+        (tmp_path / f"{name}.c").write_text(
+            f'#include "{name}.h"\nlabial_player_t t;\nint main(void) {{ {name}_begin(&t); return *{name}_next(&t); }}\n')
+    command = ["avr-gcc", "-mmcu=atmega1284p", "-std=c99", "-Os", *warnings("c")]
+    assert "Bake the sound in parts" in run(*command, "-c", "over.c", cwd=tmp_path, status=1)
+    run(*command, "fits.c", "-o", "fits.elf", cwd=tmp_path)
+    ram = run("avr-size", "fits.elf", cwd=tmp_path).splitlines()[1].split()[1:3]
+    assert [int(size) for size in ram] == [0, 4]
+
+
+# ---- Errors ----------------------------------------------------------------------------------------------------------
+
+LAB = "0.0 0.2 SIL\n0.2 0.5 AA\n"
+
+
+@pytest.mark.parametrize(("arguments", "complaint"), [
+    (["none.lab"], "none.lab: No such file"),
+    (["bad.lab"], "bad.lab:2: "),
+    (["bad.csv"], "bad.csv:2: 3 columns, not 14"),
+    (["bad.wav"], "bad.wav: "),
+    (["past.csv"], "past.csv: its last time, -1 s, lies before 0"),
+    (["far.csv"], "far.csv: 1000000 s are too long"),
+    (["good.lab", "--text", "ah"], "good.lab: a text goes with a sound"),
+    (["good.csv", "--text", "ah"], "good.csv: frames need neither a text nor a model"),
+    (["good.csv", "--as", "phonemes"], "good.csv: holds frames, which have no phonemes"),
+    (["good.lab", "--as", "phonemes", "--rig", "face.toml"], "--rig goes with --as track"),
+    (["good.lab", "--rig", "wide.toml"], "wide.toml: output.x.maximum: more than 8000000"),
+    (["good.lab", "--rig", "taken.toml"], "taken.toml: output.next: this name is taken"),
+    (["good.lab", "--rig", "broken.toml"], "broken.toml: output.x.full"),
+    (["good.lab", "--model", "good.lab"], "good.lab: "),
+    (["good.lab", "--name", "int"], "'int' is no name for a header"),
+    (["good.lab", "-o", "x.c"], "x.c: what is written is a C header"),
+    (["good.lab", "-o", "labial_player.h"], "labial_player.h: this is the name of the player"),
+    (["good.lab", "-o", "1st.h"], "'1st' is no name for a header"),
+    (["short.lab"], "short.lab: too short for a frame"),
+])  # fmt: skip
+def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
+                              arguments: List[str], complaint: str) -> None:
+    """One line, status 1, and nothing is written."""
+    if "bad.wav" in arguments:
+        pytest.importorskip("pocketsphinx")
+    monkeypatch.chdir(tmp_path)
+    head = ",".join(("time", *FAP_COLUMNS))
+    for name, text in {
+        "good.lab": LAB, "bad.lab": "0.0 0.2 SIL\n0.2 AA\n", "bad.wav": "no sound", "short.lab": "0.0 0.004 AA\n",
+        "bad.csv": f"{head}\n0,1,2\n", "face.toml": FACE,
+        "wide.toml": '[output.x]\nfrom = "jaw"\ngain = 1\nneutral = 0\nminimum = -8000000\nmaximum = 1\n',
+        "taken.toml": FACE.replace("brow", "next"), "broken.toml": '[output.x]\nfrom = "jaw"\nneutral = 1\n',
+    }.items():
+        Path(name).write_text(f'unit = "plain"\n{text}' if name == "wide.toml" else text)
+    frames_file(Path("good.csv"), [0.0, 0.02], [0.0, 1.0])
+    frames_file(Path("past.csv"), [-2.0, -1.0], [0.0, 1.0])
+    frames_file(Path("far.csv"), [0.0, 1000000.0], [0.0, 1.0])
+    before = sorted(tmp_path.iterdir())
+    assert main(["bake", *arguments, *([] if "-o" in arguments else ["-o", "out.h"])]) == 1
+    told = capsys.readouterr().err
+    assert told.startswith(f"labial: {complaint}") and told.count("\n") == 1, told
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_models_are_chosen_by_the_phonemes(tmp_path: Path) -> None:
+    """A laugh needs the laughter model; a name that C cannot have becomes one that it can."""
+    laugh = SOURCE / "examples" / "demo" / "laugh.lab"
+    assert main(["bake", str(laugh), "--as", "phonemes", "-o", str(tmp_path / "my-laugh.h")]) == 0
+    text = (tmp_path / "my-laugh.h").read_text()
+    assert '#include "laughter_synthetic.h"' in text and "my_laugh_feed" in text
+    assert main(["bake", str(laugh), "--model", str(bundled("speech")), "-o", str(tmp_path / "s.h")]) == 0
