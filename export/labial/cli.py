@@ -207,7 +207,7 @@ def _add_export_options(command: argparse.ArgumentParser) -> None:
 
 def _train(options: argparse.Namespace) -> int:
     try:
-        from labial.train.train import train
+        from labial.train import backed_off, train
     except ModuleNotFoundError as error:
         raise LabialError(f"training needs the package {error.name}: install labial[train]") from None
     from labial.corpus import read_corpora
@@ -227,6 +227,8 @@ def _train(options: argparse.Namespace) -> int:
                   progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution,
                   **own)
     save(model, options.output)
+    for line in backed_off(model):
+        print(line)
     print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
           f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")
     return 0

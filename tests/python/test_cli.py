@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 
 import numpy as np
@@ -84,8 +83,8 @@ def test_options_of_one_method_are_not_silently_ignored(
 ) -> None:
     """What asks the published method for what it does not have is told so; nobody else is."""
     asked = []
-    module = importlib.import_module("labial.train.train")  # the package has a function of this name
-    monkeypatch.setattr(module, "train", lambda corpus, **options: asked.append(options) or random_model(3))
+    monkeypatch.setattr("labial.train.train", lambda corpus, **options: asked.append(options) or random_model(3))
+    monkeypatch.setattr("labial.train.backed_off", lambda model: [])
     monkeypatch.setattr("labial.corpus.corpora.read_corpus", lambda path, kind: [])
     for method, options, warned in (
         ("paper", [], False), ("labial", ["--look-ahead", "60", "--search-stride", "1"], False),

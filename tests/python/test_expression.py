@@ -14,14 +14,14 @@ from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
 from labial.train.closures import floors
 from labial.train.expression import AMPLITUDE, restored
-from labial.train.sequences import Sequence
+from labial.train.recordings import Recording
 from labial.train.workers import Workers
 from models import random_model, without_floors
 
 
-def sequence(phonemes: list, frames: np.ndarray, length: int) -> Sequence:
+def sequence(phonemes: list, frames: np.ndarray, length: int) -> Recording:
     count = len(phonemes)
-    return Sequence(
+    return Recording(
         name="made up",
         phoneme=np.array(phonemes),
         duration=np.full(count, length / 50),
@@ -115,6 +115,6 @@ def test_floats_interpolate_between_the_knots_of_pairs() -> None:
     found = targets(FloatTables(bare), *asked)[9:19]  # the third phoneme's ten frames
     steps = np.diff(found, axis=0)
     assert np.allclose(steps, steps[0]) and np.abs(steps).max() > 1
-    ends = FloatTables(bare).select(2, 200, 4, 7)
+    ends = FloatTables(bare).select(*(np.array([value]) for value in (2, 200, 4, 7)))[0]
     assert np.allclose(found[0], ends[0] + 0.05 * (ends[1] - ends[0]))
     assert np.allclose(found[9], ends[0] + 0.95 * (ends[1] - ends[0]))

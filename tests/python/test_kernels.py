@@ -7,18 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from labial.reference.shape import knot_shares
+from labial.reference.shape import Choice, add_kernels, knot_shares, neighbours, shapes
 from labial.train.kernels import (
     PAIR_COUNT,
     Penalties,
-    add_kernels,
     fit_kernels,
     lags,
     pair_codes,
     tapped,
 )
-from labial.train.selection import Choice, shapes
-from labial.train.sequences import Sequence, neighbours
+from labial.train.recordings import Recording
 from labial.train.shapes import ShapeTables
 
 CLASS = np.array([0, 1, 1, 2, 2, 2])  # phoneme 0 is silence, phoneme 5 never occurs
@@ -42,11 +40,11 @@ def tables() -> ShapeTables:
     )
 
 
-def episode(rng: np.random.Generator, count: int) -> Sequence:
+def episode(rng: np.random.Generator, count: int) -> Recording:
     """A random sequence of phonemes 0 to 4 with no motion yet."""
     length = rng.integers(2, 9, count)
     phoneme = np.concatenate([[0], rng.integers(1, 5, count - 2), [0]])
-    return Sequence("x", phoneme, length / FPS, length, np.cumsum(length) - 1, np.zeros((length.sum(), 13)))
+    return Recording("x", phoneme, length / FPS, length, np.cumsum(length) - 1, np.zeros((length.sum(), 13)))
 
 
 def choice_of(material) -> Choice:
@@ -55,7 +53,7 @@ def choice_of(material) -> Choice:
     return Choice(phoneme[:, None], np.ones((len(phoneme), 1)), offset[:, None])
 
 
-def targets(item: Sequence, given: ShapeTables, kernel: np.ndarray) -> np.ndarray:
+def targets(item: Recording, given: ShapeTables, kernel: np.ndarray) -> np.ndarray:
     shape = np.repeat(shapes(given, choice_of([item])), item.length, axis=0)
     return add_kernels(shape, item.phoneme_at(), kernel, lags(FPS), 0)
 
@@ -72,7 +70,7 @@ def planted(seed: int, episodes: int):
     for _ in range(episodes):
         item = episode(rng, 30)
         motion = targets(item, given, kernel)
-        result.append(Sequence(item.name, item.phoneme, item.duration, item.length, item.apex, motion))
+        result.append(Recording(item.name, item.phoneme, item.duration, item.length, item.apex, motion))
     return result, given, kernel
 
 
@@ -118,7 +116,7 @@ def test_equals_the_regression_in_two_parts(monkeypatch: pytest.MonkeyPatch, int
     rng = np.random.default_rng(4)
     material = [episode(rng, 25) for _ in range(6)]
     material = [
-        Sequence(i.name, i.phoneme, i.duration, i.length, i.apex, rng.normal(0, 50, i.frames.shape)) for i in material
+        Recording(i.name, i.phoneme, i.duration, i.length, i.apex, rng.normal(0, 50, i.frames.shape)) for i in material
     ]
     each = np.ones((6, 13))
     if weighted:

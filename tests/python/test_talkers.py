@@ -17,7 +17,7 @@ from labial.evaluate.trajectories import lips
 from labial.model import load
 from labial.phonesets import SPEECH
 from labial.train import train
-from labial.train.sequences import sequences
+from labial.train.recordings import recordings
 from test_train import OPTIONS, episode
 
 TOML = """weight = 3
@@ -51,12 +51,12 @@ def test_the_file_tells_talkers_weights_and_what_is_left_out(tmp_path) -> None:
     assert len({item.source.recording for item in found}) == 3
     assert {(item.source.weight, item.source.left_out, item.source.silences) for item in found} == {
         (3.0, frozenset({1, 2}), False)}
-    first = sequences(found, SPEECH, 50)[0]
+    first = recordings(found, SPEECH, 50)[0]
     assert not first.weights[:50].any() and not first.weights[:, 1:3].any()
     assert (first.weights[50:, 3:] == 3.0).all() and first.learnt().tolist() == [False, True]
     plain = read_corpus(corpus(tmp_path / "plain"))
     assert {(item.source.talker, item.source.weight) for item in plain} == {("plain", 1.0)}
-    assert sequences(plain, SPEECH, 50)[0].weight is None
+    assert recordings(plain, SPEECH, 50)[0].weight is None
 
 
 @pytest.mark.parametrize(("old", "new", "message"), [
@@ -142,7 +142,7 @@ def test_what_is_left_out_does_not_reach_the_model() -> None:
                   for more in (second, [spoilt(item) for item in second]))
     for name in ("kernel", "pair_shape", "state_mean", "state_anchor", "floor"):
         np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-6, atol=1e-6, err_msg=name)
-    pauses = [frames for item in first for frames in resample(item, 50).frames_per_segment[[0, -1]]]
+    pauses = [frames for item in first for frames in resample(item, 50).length[[0, -1]]]
     assert one.training["occurrences"]["SIL"] == sum(1 + (frames > 6) for frames in pauses)  # long ones are cut in two
 
 

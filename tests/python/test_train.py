@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import io
 from dataclasses import replace
 
@@ -16,10 +15,10 @@ from labial.phonesets import SPEECH
 from labial.reference import published
 from labial.reference import stream as carried_on
 from labial.reference.tables import FloatTables
-from labial.train import train
-from labial.train.sequences import Sequence, with_pauses_cut
+from labial.train import backed_off, pipeline, train
+from labial.train.recordings import Recording, with_pauses_cut
 from labial.train.states import DYNAMIC_RANGE, Scales, limit_range, match_states
-from labial.train.train import _unit_ends, codebook_tables, train_channel
+from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
 from labial.train.workers import Workers
 
 LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
@@ -96,11 +95,10 @@ def test_the_published_method_has_nothing_added(models):
     assert model.kernel.shape == (40, 0, 13) and model.log_previous.shape[1] == 0
 
 
-def test_every_phoneme_has_shapes_and_back_offs_are_told(corpus, models, capsys):
+def test_every_phoneme_has_shapes_and_back_offs_are_told(models):
     # Catches a phoneme missing from the model, or replaced without a word.
-    train(corpus, method="paper", jobs=1, **OPTIONS)
-    told = capsys.readouterr().out
     model = models["labial"]
+    told = "\n".join(backed_off(model))
     assert model.phonemes == SPEECH.phonemes and (model.component_count >= 1).all()
     pooled = model.training["pooled"]
     for label in set(SPEECH.phonemes) - {"SIL", *LABELS}:
@@ -167,15 +165,14 @@ def test_matched_states_follow_the_human_under_them():
 def test_training_sees_what_the_run_time_will_do(monkeypatch):
     """Targets and state paths in training are those of the finished model on the same phonemes: a pause that is cut in
     one alone, another grid of blocks or end of a unit, or another target, would train for what never happens."""
-    module = importlib.import_module("labial.train.train")
     seen = {}
 
     def matched(tables, paths, targets, *others):
         seen.update(tables=tables, paths=paths, targets=targets)
         return match_states(tables, paths, targets, *others)
 
-    monkeypatch.setattr(module, "match_states", matched)
-    monkeypatch.setattr(module, "restored", lambda model, material, workers: model)  # would widen what was seen
+    monkeypatch.setattr(pipeline, "match_states", matched)
+    monkeypatch.setattr(pipeline, "restored", lambda model, material, workers: model)  # would widen what was seen
     corpus = [episode(seed, 0.3 + 0.05 * seed) for seed in range(8)]
     model = train(corpus, method="labial", jobs=1, search_stride=3, **OPTIONS)
     tables = FloatTables(replace(model, log_transition=seen["tables"].log_transition))  # those that were searched with
@@ -189,7 +186,7 @@ def test_training_sees_what_the_run_time_will_do(monkeypatch):
 
 def test_pauses_are_cut_by_hand():
     """A pause of 20 frames before a vowel, six of which see it: 280 and 120 ms; apexes stay where they were."""
-    item = Sequence("a", np.array([0, 3, 0]), np.array([0.401, 0.1, 0.12]), np.array([20, 5, 6]),
+    item = Recording("a", np.array([0, 3, 0]), np.array([0.401, 0.1, 0.12]), np.array([20, 5, 6]),
                     np.array([15, 22, 26]), np.zeros((31, 13)))  # fmt: skip
     found = with_pauses_cut(item, 0, 6, 50)
     assert found.phoneme.tolist() == [0, 0, 3, 0] and found.length.tolist() == [14, 6, 5, 6]

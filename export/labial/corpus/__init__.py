@@ -6,10 +6,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from labial.corpus.corpora import Timeline, read_corpora, read_corpus, resample
+    from labial.corpus.corpora import Resampled, read_corpora, read_corpus, resample
     from labial.corpus.episode import Episode, Segment, Source
 
-__all__ = ["Episode", "Segment", "Source", "Timeline", "read_corpora", "read_corpus", "resample"]
+__all__ = ["Episode", "Segment", "Source", "Resampled", "read_corpora", "read_corpus", "resample"]
 
 
 def __getattr__(name: str) -> Any:

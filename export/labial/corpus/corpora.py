@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Sequence, Tuple, Union
+from typing import List, NamedTuple, Sequence, Union
 
 import numpy as np
 
@@ -22,21 +21,13 @@ from labial.phonesets import PHONE_SETS
 _OVERSAMPLING = 16
 
 
-@dataclass(frozen=True)
-class Timeline:
-    """An episode as frames of a fixed rate; T frames and S segments. Frame t covers t/fps to (t + 1)/fps seconds from
-    the start of the first segment."""
+class Resampled(NamedTuple):
+    """The T frames of an episode with S segments, at a fixed rate. Frame t covers t/fps to (t + 1)/fps seconds from the
+    start of the first segment."""
 
-    labels: Tuple[str, ...]  #: (S,) phonemes
-    durations: np.ndarray  #: (S,) float64 seconds, as recorded
-    frames_per_segment: np.ndarray  #: (S,) int64, sums to T; 0 for a segment too short for a frame of its own
-    frames: np.ndarray  #: (T, 13) float64 FAP
-    apex_frame: np.ndarray  #: (S,) int64: a segment's frame at its apex, else middle; the nearest frame if it has none
-
-    @property
-    def starts(self) -> np.ndarray:
-        """(S,) int64: first frame of each segment."""
-        return np.cumsum(self.frames_per_segment) - self.frames_per_segment
+    motion: np.ndarray  #: (T, 13) float64 FAP
+    length: np.ndarray  #: (S,) int64 frames of each segment, T in all; 0 for one that is too short for a frame
+    apex: np.ndarray  #: (S,) int64: a segment's frame at its apex, else middle; the nearest frame if it has none
 
 
 def read_corpus(path: Union[str, os.PathLike], kind: str = "speech") -> List[Episode]:
@@ -70,7 +61,7 @@ def read_corpora(paths: Sequence[Union[str, os.PathLike]], kind: str = "speech")
     return brought_together([read_corpus(path, kind) for path in paths], PHONE_SETS[kind].silence)
 
 
-def resample(episode: Episode, fps: int) -> Timeline:
+def resample(episode: Episode, fps: int) -> Resampled:
     """`episode` at `fps` frames per second.
 
     Motion is interpolated linearly at the centre of each frame, and held before and after the recorded times. A
@@ -99,13 +90,7 @@ def resample(episode: Episode, fps: int) -> Timeline:
         moment = (segment.start + segment.end) / 2 if segment.apex is None else segment.apex
         frame = min(max(int(np.floor((moment - origin) * fps + 1e-6)), int(first)), int(first + max(count, 1)) - 1)
         apexes.append(min(frame, total - 1))
-    return Timeline(
-        tuple(segment.label for segment in episode.segments),
-        np.array([segment.duration for segment in episode.segments]),
-        counts,
-        frames,
-        np.array(apexes, dtype=np.int64),
-    )
+    return Resampled(frames, counts, np.array(apexes, dtype=np.int64))
 
 
 def _round(value: float) -> int:

@@ -97,7 +97,7 @@ def utterance(episode: Episode, phone_set: PhoneSet, fps: int) -> Utterance:
     unknown = sorted({segment.label for segment in episode.segments} - set(number))
     if unknown:
         raise LabialError(f"{episode.name}: labels {', '.join(unknown)} are not in the {phone_set.kind} phone set")
-    human = resample(episode, fps).frames
+    human = resample(episode, fps).motion
     origin = episode.segments[0].start
     bounds = [0, *(round(1000 * (segment.end - origin)) for segment in episode.segments)]
     given = timeline((number[segment.label] for segment in episode.segments), np.diff(bounds), fps)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import io
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Callable, Dict, List, Protocol, Sequence, Set, Tuple, TypeVar
@@ -115,19 +113,18 @@ class Training:
         return self._cells[key]
 
     def model(self, method: str) -> Model:
-        """The model of `method` ("paper" or "labial") trained on this part; its reports of back-offs are dropped."""
+        """The model of `method` ("paper" or "labial") trained on this part."""
         if method not in self._models:
-            with contextlib.redirect_stdout(io.StringIO()):
-                self._models[method] = train(
-                    [*(item.episode for item in self.utterances), *self.added],
-                    kind=self.phone_set.kind,
-                    method=method,
-                    fps=self.fps,
-                    seed=self.seed,
-                    jobs=1,
-                    progress=False,
-                    divide=self._divide,
-                )
+            self._models[method] = train(
+                [*(item.episode for item in self.utterances), *self.added],
+                kind=self.phone_set.kind,
+                method=method,
+                fps=self.fps,
+                seed=self.seed,
+                jobs=1,
+                progress=False,
+                divide=self._divide,
+            )
         return self._models[method]
 
     def derived(self, key: object, make: Callable[[], Setting]) -> Setting:

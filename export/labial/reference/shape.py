@@ -2,13 +2,111 @@
 
 from __future__ import annotations
 
-from typing import Optional, Sequence, Tuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 
-from labial.faps import CHANNELS
 from labial.reference.contact import raised
-from labial.reference.tables import Tables
+from labial.reference.units import MILLISECONDS_MAX
+
+if TYPE_CHECKING:
+    from labial.reference.tables import Tables
+
+#: Durations farther than this many standard deviations from a component's mean change its shape no more.
+SLOPE_LIMIT = 3.0
+
+
+class Mixtures(Protocol):
+    """The mixtures of P phonemes, N components in all, phoneme by phoneme; a :class:`labial.model.Model` is one."""
+
+    component_count: np.ndarray  #: (P,) int64
+    log_weight: np.ndarray  #: (N,)
+    duration_mean: np.ndarray  #: (N,) seconds
+    duration_variance: np.ndarray  #: (N,) seconds squared
+    shape: np.ndarray  #: (N, 13) FAP
+    slope: np.ndarray  #: (N, 13) FAP per second
+    log_previous: np.ndarray  #: (N, V) or (N, 0)
+    log_next: np.ndarray  #: (N, V) or (N, 0)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How (S,) phoneme occurrences share the components; a shape is the sum of share * (shape_c + slope_c * offset)."""
+
+    component: np.ndarray  #: (S, K) int64
+    share: np.ndarray  #: (S, K), sums to 1; 0 beyond a phoneme's own components
+    offset: np.ndarray  #: (S, K) seconds from the component's mean duration, at most SLOPE_LIMIT deviations
+
+
+def choose(
+    mixtures: Mixtures,
+    phoneme: np.ndarray,
+    duration: np.ndarray,
+    previous: np.ndarray,
+    following: np.ndarray,
+    *,
+    soft: bool,
+) -> Choice:
+    """Equation 2 for (S,) phonemes with durations in seconds and neighbours' viseme classes: the best component alone,
+    or with `soft` all by their probability."""
+    first = np.concatenate([[0], np.cumsum(mixtures.component_count)])
+    count = mixtures.component_count[phoneme][:, None]
+    rank = np.arange(int(mixtures.component_count.max()))
+    component = first[phoneme][:, None] + np.where(rank < count, rank, 0)
+    variance = mixtures.duration_variance[component]
+    offset = duration[:, None] - mixtures.duration_mean[component]
+    score = mixtures.log_weight[component] - 0.5 * (np.log(2 * np.pi * variance) + offset**2 / variance)
+    if mixtures.log_previous.shape[1]:
+        score = score + mixtures.log_previous[component, previous[:, None]]
+        score = score + mixtures.log_next[component, following[:, None]]
+    score = np.where(rank < count, score, -np.inf)
+    likelihood = np.exp(score - score.max(axis=1, keepdims=True))
+    share = likelihood / likelihood.sum(axis=1, keepdims=True) if soft else np.eye(len(rank))[score.argmax(axis=1)]
+    reach = SLOPE_LIMIT * np.sqrt(variance)
+    return Choice(component, share, np.clip(offset, -reach, reach))
+
+
+def shapes(mixtures: Mixtures, choice: Choice) -> np.ndarray:
+    """(S, 13) the selected shapes, FAP."""
+    each = mixtures.shape[choice.component] + mixtures.slope[choice.component] * choice.offset[..., None]
+    return np.einsum("sk,skj->sj", choice.share, each)
+
+
+def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
+    """The phonemes before and after each of (S,) phonemes; silence lies beyond both ends."""
+    padded = np.concatenate([[silence], phoneme, [silence]])
+    return padded[:-2], padded[2:]
+
+
+def pairs_beside(
+    key: np.ndarray, shape: np.ndarray, phoneme: np.ndarray, previous: np.ndarray, following: np.ndarray
+) -> np.ndarray:
+    """(S, K, 13) FAP: what the neighbours of (S,) phonemes add to their shapes, from pairs `key` (R, 3), phoneme, side
+    and neighbour, with shapes (R, K, 13)."""
+    rows = {tuple(each): row for row, each in enumerate(key.tolist())}
+    added = np.zeros((len(phoneme), *shape.shape[1:]))
+    for side, others in enumerate((previous, following)):
+        for i, each in enumerate(zip(phoneme.tolist(), [side] * len(others), others.tolist())):
+            if each in rows:
+                added[i] += shape[rows[each]]
+    return added
+
+
+def add_kernels(
+    shape_at: np.ndarray, phoneme_at: np.ndarray, kernel: np.ndarray, lag: np.ndarray, silence: int
+) -> np.ndarray:
+    """(T, 13) the moving target: the frames' shapes (T, 13) plus their neighbours' kernels (P, L, 13), FAP."""
+    if not len(lag):
+        return shape_at
+    return shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
+
+
+def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int) -> np.ndarray:
+    """(T, L) int64: the phoneme at each lag from each of T frames; `silence` outside the utterance."""
+    at = np.arange(len(phoneme_at))[:, None] + lag[None, :]
+    inside = (at >= 0) & (at < len(phoneme_at))
+    return np.where(inside, phoneme_at[np.clip(at, 0, max(len(phoneme_at) - 1, 0))], silence)
 
 
 def knot_shares(length: np.ndarray, knots: int) -> np.ndarray:
@@ -38,17 +136,14 @@ def targets_and_contact(
 ) -> Tuple[np.ndarray, np.ndarray]:
     """The targets (T, 13) of :func:`targets`, and where they are in contact, (T, 13) bool; `rest` (T,) is how far the
     mouth has come to rest in pauses."""
-    held = [i for i, count in enumerate(frames) if count]
-    seen = [tables.silence] + [phonemes[i] for i in held] + [tables.silence]
-    length = np.array([frames[i] for i in held], dtype=np.int64)
-    shapes = np.zeros((len(held), tables.knots, CHANNELS), dtype=tables.dtype)
-    for j, i in enumerate(held):
-        shapes[j] = tables.select(phonemes[i], min(milliseconds[i], 65535), seen[j], seen[j + 2])
-    index = np.repeat(np.arange(len(held)), length)
-    labels = np.array([phonemes[i] for i in held], dtype=np.int64)[index]
-    reach = int(np.abs(tables.lags).max()) if len(tables.lags) else 0
-    padded = np.concatenate([np.full(reach, tables.silence), labels, np.full(reach, tables.silence)]).astype(np.int64)
-    at = np.arange(len(labels))[:, None] + reach + tables.lags[None, :]
-    moving = tables.targets(tables.interpolated(shapes[index], knot_shares(length, tables.knots)), padded[at])
+    length = np.asarray(frames, dtype=np.int64)
+    has_frames = length > 0
+    phoneme, length = np.asarray(phonemes, dtype=np.int64)[has_frames], length[has_frames]
+    duration = np.minimum(np.asarray(milliseconds, dtype=np.int64)[has_frames], MILLISECONDS_MAX)
+    selected = tables.select(phoneme, duration, *neighbours(phoneme, tables.silence))
+    index = np.repeat(np.arange(len(phoneme)), length)
+    labels = phoneme[index]
+    shape_at = tables.interpolated(selected[index], knot_shares(length, tables.knots))
+    moving = tables.targets(shape_at, tapped(labels, tables.lags, tables.silence))
     rest = np.zeros(len(labels), dtype=np.int64) if rest is None else rest
     return raised(moving, labels, length, rest, tables.silence, tables.floor, tables.contact)

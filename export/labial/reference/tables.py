@@ -25,10 +25,8 @@ from labial.fixed import (
 from labial.model import Model
 from labial.quantise import ExportedModel
 from labial.reference.contact import FRAMES
+from labial.reference.shape import choose, pairs_beside, shapes
 from labial.reference.viterbi import LAG, Chains, decode, normal_chains
-
-#: Durations farther than this many standard deviations from a component's mean change its shape no more.
-SLOPE_LIMIT = 3.0
 
 _CHANNEL = np.arange(CHANNELS)
 
@@ -62,32 +60,19 @@ class FloatTables:
         self.ahead = _look_ahead(self.lags, bool(np.isfinite(self.floor).any()))
         self.stride = model.search_stride
         self.chains = normal_chains(model.decode_mean, model.decode_variance, model.log_transition, model.log_initial)
-        self._first = model.first_component()
         self.knots = model.pair_shape.shape[1]  #: K, of the shapes of a phoneme
-        self._pair = {tuple(key): row for row, key in enumerate(np.asarray(model.pair_key).tolist())}
 
-    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
-        """(K, 13) shapes of a phoneme of this duration between these neighbours: the one that it holds, or those at
-        its start and at its end."""
-        model = self.model
-        own = slice(self._first[phoneme], self._first[phoneme + 1])
-        deviation = milliseconds / 1000.0 - model.duration_mean[own]
-        variance = model.duration_variance[own]
-        score = model.log_weight[own] - 0.5 * (np.log(2 * np.pi * variance) + deviation**2 / variance)
-        if model.log_previous.shape[1]:
-            before, after = self.viseme_class[previous], self.viseme_class[following]
-            score = score + model.log_previous[own, before] + model.log_next[own, after]
-        best = int(np.argmax(score))
-        share = np.exp(score - score[best]) if model.soft else (np.arange(len(score)) == best).astype(np.float64)
-        share = share / share.sum()
-        limit = SLOPE_LIMIT * np.sqrt(variance)
-        shapes = model.shape[own] + model.slope[own] * np.clip(deviation, -limit, limit)[:, None]
-        shape = np.repeat((share @ shapes)[None], self.knots, axis=0)
-        for side, neighbour in enumerate((previous, following)):
-            row = self._pair.get((phoneme, side, neighbour))
-            if row is not None:
-                shape = shape + model.pair_shape[row]
-        return shape
+    def select(
+        self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray, following: np.ndarray
+    ) -> np.ndarray:
+        """(S, K, 13) shapes of phonemes (S,) of these durations between these neighbours: the one that each holds, or
+        those at its start and at its end."""
+        model, classes = self.model, self.viseme_class
+        choice = choose(
+            model, phoneme, milliseconds / 1000.0, classes[previous], classes[following], soft=bool(model.soft)
+        )
+        selected = np.repeat(shapes(model, choice)[:, None], self.knots, axis=1)
+        return selected + pairs_beside(model.pair_key, model.pair_shape, phoneme, previous, following)
 
     @staticmethod
     def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -143,12 +128,21 @@ class ExportedTables:
                              self.emission)
         self.knots = exported.pairs.shape[1]
 
-    def select(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
+    def select(
+        self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray, following: np.ndarray
+    ) -> np.ndarray:
         """As :meth:`FloatTables.select`, in positions."""
+        selected = np.zeros((len(phoneme), self.knots, CHANNELS), dtype=self.dtype)
+        for i, one in enumerate(zip(phoneme.tolist(), milliseconds.tolist(), previous.tolist(), following.tolist())):
+            selected[i] = self._select_one(*one)
+        return selected
+
+    def _select_one(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
+        """(K, 13) shapes of one phoneme, in the library's integer arithmetic."""
         model = self.exported
         first = int(model.first_component[phoneme])
         own = slice(first, first + int(model.component_count[phoneme]))
-        distance = min(milliseconds, 65535) - model.duration_mean[own]
+        distance = milliseconds - model.duration_mean[own]
         z = np.minimum((np.abs(distance) * model.duration_gain[own]) >> 12, DURATION_Z_MAX)
         cost = model.cost[own] + z_cost(z)
         if model.contexts is not None:

@@ -7,14 +7,13 @@ phoneme does it fall below what people hardly ever do: protrusion ends at lips a
 
 from __future__ import annotations
 
-from typing import Sequence as SequenceOf
-from typing import Tuple
+from typing import Sequence, Tuple
 
 import numpy as np
 
 from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.phonesets import PhoneSet
-from labial.train.sequences import Sequence
+from labial.train.recordings import Recording
 
 #: Viseme classes that make contact, and the FAPs that do: those of the upper lip, which lower it, and of the lower lip,
 #: which raise it.
@@ -40,7 +39,7 @@ FIRMNESS = 1.5
 FIRMEST = 0.9
 
 
-def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> Tuple[np.ndarray, np.ndarray]:
+def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tuple[np.ndarray, np.ndarray]:
     """(P, 13) FAP: the pose of contact in the phonemes and channels that make it, elsewhere the LEAST percentile; and
     (P, 13) bool: where it is contact.
 
@@ -84,7 +83,7 @@ def floors(material: SequenceOf[Sequence], phone_set: PhoneSet, fps: int) -> Tup
     return result, contacts
 
 
-def _rest(material: SequenceOf[Sequence], silence: int, away: int, least: np.ndarray) -> np.ndarray:
+def _rest(material: Sequence[Recording], silence: int, away: int, least: np.ndarray) -> np.ndarray:
     """(13,) FAP: the median pose of pauses, `away` frames from speech; `least` (13,) where there is none."""
     poses, weights = [np.zeros((0, CHANNELS))], [np.zeros((0, CHANNELS))]
     for item in material:

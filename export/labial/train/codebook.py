@@ -9,8 +9,7 @@ round splits the cells of largest distortion alone.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, List, Tuple
-from typing import Sequence as SequenceOf
+from typing import Callable, List, Sequence, Tuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -120,7 +119,7 @@ class Codebook:
     log_initial: np.ndarray  #: (Q,)
 
 
-def transitions(paths: SequenceOf[np.ndarray], size: int, stride: int = 1) -> np.ndarray:
+def transitions(paths: Sequence[np.ndarray], size: int, stride: int = 1) -> np.ndarray:
     """(Q, Q) log-probabilities [from, to] of going from the state of a frame to that `stride` frames later, from the
     counts of state paths; see NEIGHBOUR_COUNT for the smoothing."""
     counts = np.zeros((size, size))
@@ -131,7 +130,7 @@ def transitions(paths: SequenceOf[np.ndarray], size: int, stride: int = 1) -> np
         return np.log(counts / counts.sum(axis=1, keepdims=True))
 
 
-def initials(paths: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size: int) -> np.ndarray:
+def initials(paths: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: int) -> np.ndarray:
     """(Q,) log-probabilities of the states at the frames `starts` of each path, where units begin."""
     occurring = sum(np.bincount(path, minlength=size) for path in paths) + 1.0
     counts = INITIAL_COUNT * occurring / occurring.sum()
@@ -141,8 +140,8 @@ def initials(paths: SequenceOf[np.ndarray], starts: SequenceOf[np.ndarray], size
 
 
 def train_channel(
-    motion: SequenceOf[np.ndarray],
-    starts: SequenceOf[np.ndarray],
+    motion: Sequence[np.ndarray],
+    starts: Sequence[np.ndarray],
     size: int,
     stride: int = 1,
     divide: Division = lbg,

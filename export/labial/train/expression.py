@@ -6,7 +6,7 @@ goes far in a few phonemes, which widening about the mean takes beyond people's.
 
 from __future__ import annotations
 
-from typing import Sequence as SequenceOf
+from typing import Sequence
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from labial.faps import FAP_NUMBERS
 from labial.model import Model
 from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
-from labial.train.sequences import Sequence
+from labial.train.recordings import Recording
 from labial.train.workers import Workers
 
 #: Standard deviation of the synthetic over that of the human motion, on the training part, that every channel is
@@ -34,7 +34,7 @@ RANGE = (5.0, 95.0)
 LARGEST_GAIN = 1.6
 
 
-def restored(model: Model, material: SequenceOf[Sequence], workers: Workers) -> Model:
+def restored(model: Model, material: Sequence[Recording], workers: Workers) -> Model:
     """The model widened, channel by channel, until its motion outside silence reaches AMPLITUDE or CORNERS."""
     goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS, AMPLITUDE)
     count = min(len(material), EPISODES)
@@ -62,7 +62,7 @@ def _deviation(frames: np.ndarray, learnt: np.ndarray) -> np.ndarray:
     return np.array([values[of].std() if of.any() else 0.0 for values, of in zip(frames.T, learnt.T)])
 
 
-def _motion(task: tuple[Model, Sequence]) -> np.ndarray:
+def _motion(task: tuple[Model, Recording]) -> np.ndarray:
     model, item = task
     bounds = np.rint(np.cumsum(item.length) * 1000 / model.fps).astype(int)
     durations = np.diff(bounds, prepend=0)

@@ -25,17 +25,15 @@ comes out with its class's kernel. Along the taps the prior is a first-order pro
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import List
-from typing import Sequence as SequenceOf
+from typing import List, Sequence
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_matrix, diags, hstack
 
 from labial.quantise import LIMITS
-from labial.reference.shape import knot_shares
-from labial.train.selection import Choice
-from labial.train.sequences import Sequence, neighbours
+from labial.reference.shape import Choice, knot_shares, neighbours, pairs_beside, tapped
+from labial.train.recordings import Recording
 from labial.train.shapes import ShapeTables
 
 #: The taps reach this far to each side and are this far apart, in seconds.
@@ -78,22 +76,6 @@ def lags(fps: int, look_ahead: float = LOOK_AHEAD) -> np.ndarray:
     return np.arange(-behind, ahead + 1, dtype=np.int64) * spacing
 
 
-def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int) -> np.ndarray:
-    """(T, L) int64: the phoneme at each lag from each of T frames; `silence` outside the utterance."""
-    at = np.arange(len(phoneme_at))[:, None] + lag[None, :]
-    inside = (at >= 0) & (at < len(phoneme_at))
-    return np.where(inside, phoneme_at[np.clip(at, 0, len(phoneme_at) - 1)], silence)
-
-
-def add_kernels(
-    shape_at: np.ndarray, phoneme_at: np.ndarray, kernel: np.ndarray, lag: np.ndarray, silence: int
-) -> np.ndarray:
-    """(T, 13) the moving target: the frames' shapes (T, 13) plus their neighbours' kernels, FAP."""
-    if not len(lag):
-        return shape_at
-    return shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
-
-
 def kernel_prior(phoneme_class: np.ndarray, taps: int, penalties: Penalties) -> np.ndarray:
     """(P L, P L) inverse covariance of all phonemes' kernels of one channel, phoneme by phoneme, for a penalty of 1."""
     member = phoneme_class[:, None] == phoneme_class[None, :]
@@ -102,7 +84,7 @@ def kernel_prior(phoneme_class: np.ndarray, taps: int, penalties: Penalties) -> 
     return np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(penalties.smoothness**distance))
 
 
-def pair_codes(material: SequenceOf[Sequence], phonemes: int, silence: int) -> np.ndarray:
+def pair_codes(material: Sequence[Recording], phonemes: int, silence: int) -> np.ndarray:
     """(occurrences, 2): each phoneme with its previous and with its next neighbour, as one number each,
     (2 phoneme + side) P + neighbour."""
     codes = []
@@ -114,7 +96,7 @@ def pair_codes(material: SequenceOf[Sequence], phonemes: int, silence: int) -> n
 
 
 def _design(
-    material: SequenceOf[Sequence],
+    material: Sequence[Recording],
     choice: Choice,
     deviation: np.ndarray,
     phonemes: int,
@@ -193,24 +175,20 @@ class Kernels:
     pair_key: np.ndarray  #: (R, 3) int64: phoneme, side, neighbour
     pair_shape: np.ndarray  #: (R, K, 13) FAP
 
-    def pairs_at(self, item: Sequence, silence: int) -> np.ndarray:
+    def pairs_at(self, item: Recording, silence: int) -> np.ndarray:
         """(T, 13) FAP: what the neighbours of each phoneme of an utterance add to its shape, frame by frame."""
-        rows = {tuple(key): row for row, key in enumerate(self.pair_key.tolist())}
-        added = np.zeros((len(item.phoneme), *self.pair_shape.shape[1:]))
-        for side, others in enumerate(neighbours(item.phoneme, silence)):
-            for i, key in enumerate(zip(item.phoneme.tolist(), [side] * len(others), others.tolist())):
-                if key in rows:
-                    added[i] += self.pair_shape[rows[key]]
+        around = neighbours(item.phoneme, silence)
+        added = pairs_beside(self.pair_key, self.pair_shape, item.phoneme, *around)
         shares = knot_shares(item.length, self.pair_shape.shape[1])
         return np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
 
 
 def fit_kernels(
-    material: SequenceOf[Sequence],
+    material: Sequence[Recording],
     choice: Choice,
     tables: ShapeTables,
     phoneme_class: np.ndarray,
-    stand_in: SequenceOf[int],
+    stand_in: Sequence[int],
     silence: int,
     fps: int,
     penalties: Penalties,
@@ -262,7 +240,7 @@ def fit_kernels(
     return substitute(fitted, stand_in)
 
 
-def substitute(fitted: Kernels, stand_in: SequenceOf[int]) -> Kernels:
+def substitute(fitted: Kernels, stand_in: Sequence[int]) -> Kernels:
     """Gives phonemes that are substituted, (P,) by `stand_in`, all that the phoneme that stands in for them has."""
     owner = np.asarray(stand_in, dtype=np.int64)
     first = np.concatenate([[0], np.cumsum(fitted.tables.component_count)])

@@ -10,8 +10,7 @@ the decoded paths too: smooth targets take far fewer of them than people do, so 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Tuple
-from typing import Sequence as SequenceOf
+from typing import List, Sequence, Tuple
 
 import numpy as np
 
@@ -56,7 +55,7 @@ class StateTables:
     stride: int  #: frames from one state of a path to the next
 
 
-def codebook_tables(codebooks: SequenceOf[Codebook], stride: int) -> StateTables:
+def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
     """The paper's tables: every state as its codebook cell is, no anchors."""
     mean = np.stack([book.mean for book in codebooks])
     variance = np.stack([book.variance for book in codebooks])
@@ -72,7 +71,7 @@ def codebook_tables(codebooks: SequenceOf[Codebook], stride: int) -> StateTables
     )
 
 
-def decode(targets: SequenceOf[np.ndarray], ends: SequenceOf[np.ndarray], tables: StateTables) -> List[np.ndarray]:
+def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: StateTables) -> List[np.ndarray]:
     """(T, 13) int64 each: the state paths of utterances as the run-time decides on them, for targets (T, 13) and the
     frames (T,) that end units."""
     hidden = tables.decode_mean, tables.decode_variance, tables.log_transition, tables.log_initial
@@ -95,10 +94,10 @@ def _state_moments(
 
 def match_states(
     tables: StateTables,
-    paths: SequenceOf[np.ndarray],
-    targets: SequenceOf[np.ndarray],
-    human: SequenceOf[np.ndarray],
-    weights: SequenceOf[np.ndarray],
+    paths: Sequence[np.ndarray],
+    targets: Sequence[np.ndarray],
+    human: Sequence[np.ndarray],
+    weights: Sequence[np.ndarray],
     scales: Scales,
 ) -> StateTables:
     """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, 13) of targets and

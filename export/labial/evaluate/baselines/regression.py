@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix, hstack
 from labial.evaluate.baselines import ridge
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
-from labial.train.sequences import neighbour_classes
+from labial.train.recordings import neighbour_classes
 
 #: Penalties that are tried, frames.
 PENALTIES = (0.1, 1.0, 10.0, 100.0)

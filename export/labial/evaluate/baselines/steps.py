@@ -12,9 +12,9 @@ import numpy as np
 
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
+from labial.reference.shape import choose, shapes
 from labial.train.context import fit_context
-from labial.train.selection import choose, shapes
-from labial.train.sequences import neighbour_classes, occurrences, sequences
+from labial.train.recordings import neighbour_classes, occurrences, recordings
 from labial.train.shapes import Mixture, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
 
 #: Components of each phoneme's mixture (C of equation 1).
@@ -44,7 +44,7 @@ class Steps:
 
 def _fit(training: Training, context: bool) -> Steps:
     phone_set = training.phone_set
-    material = sequences([item.episode for item in training.utterances], phone_set, training.fps)
+    material = recordings([item.episode for item in training.utterances], phone_set, training.fps)
     items = occurrences(material, phone_set)
     plan = back_off(np.bincount(items.phoneme, minlength=len(phone_set.phonemes)), phone_set)
     vectors = items.vectors()

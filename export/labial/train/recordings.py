@@ -1,4 +1,4 @@
-"""Training material: episodes on the model's frame grid, with phonemes as numbers."""
+"""Training material: recordings on the model's frame grid, with phonemes as numbers."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.phonesets import PhoneSet
 from labial.reference.contact import REST
+from labial.reference.shape import neighbours
 from labial.reference.units import pause_cut
 
 
 @dataclass(frozen=True)
-class Sequence:
+class Recording:
     """One episode with S phonemes, of at least a frame each, in T frames. Frame t of the human motion is sampled at
     (t + 1/2) / fps."""
 
@@ -44,38 +45,35 @@ class Sequence:
         """(S,) bool: whether anything of a phoneme's occurrence is learnt."""
         return np.maximum.reduceat(self.weights.max(axis=1), np.cumsum(self.length) - self.length) > 0
 
-    def segment_at(self) -> np.ndarray:
-        """(T,) int64: the phoneme occurrence that each frame belongs to."""
-        return np.repeat(np.arange(len(self.length)), self.length)
-
     def phoneme_at(self) -> np.ndarray:
         """(T,) int64: the phoneme of each frame."""
         return np.repeat(self.phoneme, self.length)
 
 
-def sequences(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Sequence]:
+def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Recording]:
     """Brings every episode to `fps` frames per second and its labels to numbers."""
     number = {label: index for index, label in enumerate(phone_set.phonemes)}
     silence = number[phone_set.silence]
     result = []
     for episode in corpus:
-        timeline = resample(episode, fps)
-        if len(timeline.frames) < 3:
+        resampled = resample(episode, fps)
+        if len(resampled.motion) < 3:
             continue  # too short for a delta-delta
-        unknown = sorted(set(timeline.labels) - set(number))
+        labels = [segment.label for segment in episode.segments]
+        unknown = sorted(set(labels) - set(number))
         if unknown:
             raise LabialError(f"{episode.name}: labels {', '.join(unknown)} are not in the {phone_set.kind} phone set")
-        seen = np.flatnonzero(np.asarray(timeline.frames_per_segment) > 0)  # the run-time skips phonemes of no frame
-        phoneme = np.array([number[timeline.labels[index]] for index in seen], dtype=np.int64)
-        length = np.asarray(timeline.frames_per_segment, dtype=np.int64)[seen]
+        seen = np.flatnonzero(resampled.length > 0)  # the run-time skips phonemes of no frame
+        phoneme = np.array([number[labels[index]] for index in seen], dtype=np.int64)
+        length = resampled.length[seen]
         result.append(
-            Sequence(
+            Recording(
                 name=episode.name,
                 phoneme=phoneme,
-                duration=np.asarray(timeline.durations, dtype=np.float64)[seen],
+                duration=np.array([episode.segments[index].duration for index in seen]),
                 length=length,
-                apex=np.asarray(timeline.apex_frame, dtype=np.int64)[seen],
-                frames=np.asarray(timeline.frames, dtype=np.float64),
+                apex=resampled.apex[seen],
+                frames=resampled.motion,
                 weight=_weights(episode.source, np.repeat(phoneme, length) == silence),
             )
         )
@@ -84,8 +82,8 @@ def sequences(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[
     return result
 
 
-def with_pauses_cut(item: Sequence, silence: int, ahead: int, fps: int) -> Sequence:
-    """The sequence with its pauses cut as the run-time does with kernels that reach `ahead` frames into what follows.
+def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Recording:
+    """The recording with its pauses cut as the run-time does with kernels that reach `ahead` frames into what follows.
 
     The apex stays with the part that it lies in; that of the other part is its middle.
     """
@@ -126,9 +124,8 @@ def _weights(source: Source, silent: np.ndarray) -> Optional[np.ndarray]:
 
 @dataclass(frozen=True)
 class Occurrences:
-    """All S phoneme occurrences of a set of sequences, one after the other."""
+    """All S phoneme occurrences of a set of recordings, one after the other."""
 
-    sequence: np.ndarray  #: (S,) int64, the sequence each comes from
     phoneme: np.ndarray  #: (S,) int64
     duration: np.ndarray  #: (S,) seconds
     previous: np.ndarray  #: (S,) int64, viseme class of the phoneme before; that of silence at the start
@@ -141,25 +138,18 @@ class Occurrences:
         return np.concatenate([self.apex_shape, self.duration[:, None]], axis=1)
 
 
-def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
-    """The phonemes before and after each of (S,) phonemes; silence lies beyond both ends."""
-    padded = np.concatenate([[silence], phoneme, [silence]])
-    return padded[:-2], padded[2:]
-
-
 def neighbour_classes(phoneme: np.ndarray, phoneme_class: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
     """Viseme classes of the phonemes before and after each of (S,) phonemes."""
     before, after = neighbours(phoneme, silence)
     return phoneme_class[before], phoneme_class[after]
 
 
-def occurrences(material: List[Sequence], phone_set: PhoneSet) -> Occurrences:
+def occurrences(material: List[Recording], phone_set: PhoneSet) -> Occurrences:
     """Gathers the phoneme occurrences of `material` in order."""
     silence = phone_set.phonemes.index(phone_set.silence)
     phoneme_class = np.asarray(phone_set.phoneme_class, dtype=np.int64)
     around = [neighbour_classes(item.phoneme, phoneme_class, silence) for item in material]
     return Occurrences(
-        sequence=np.repeat(np.arange(len(material)), [len(item.phoneme) for item in material]),
         phoneme=np.concatenate([item.phoneme for item in material]),
         duration=np.concatenate([item.duration for item in material]),
         previous=np.concatenate([before for before, _ in around]),

@@ -1,0 +1,385 @@
+"""From a corpus to a model: the whole training, in the order of the method (docs/method.md)."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from labial.corpus.episode import Episode
+from labial.errors import LabialError
+from labial.faps import CHANNELS, FAP_COLUMNS
+from labial.model import KINDS, METHODS, Model
+from labial.phonesets import PHONE_SETS, PhoneSet
+from labial.quantise import LIMITS
+from labial.reference.contact import FRAMES, raised
+from labial.reference.shape import Choice, add_kernels, choose, shapes
+from labial.train.closures import FIRMNESS, floors
+from labial.train.codebook import Codebook, Division, lbg, train_channel
+from labial.train.context import fit_context
+from labial.train.expression import restored
+from labial.train.kernels import LOOK_AHEAD, PAIR_KNOTS, REACH, Kernels, Penalties, fit_kernels, lags
+from labial.train.recordings import Occurrences, Recording, occurrences, recordings, with_pauses_cut
+from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
+from labial.train.states import SEARCH_STRIDE, Scales, StateTables, codebook_tables, decode, match_states
+from labial.train.workers import Workers
+
+#: Utterances whose paths are decoded at once.
+BATCH = 40
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """What is asked for."""
+
+    phone_set: PhoneSet
+    extended: bool  #: what goes beyond the published method
+    fps: int
+    codebook: int  #: Q
+    components: int  #: C
+    seed: int
+    look_ahead: float  #: seconds
+    stride: int  #: frames that share a state
+    divide: Division
+    penalties: Penalties
+    scales: Scales
+
+    @property
+    def silence(self) -> int:
+        """Its number."""
+        return self.phone_set.phonemes.index(self.phone_set.silence)
+
+    @property
+    def boundary(self) -> np.ndarray:
+        """(P,) bool: phonemes at which units end."""
+        return np.array(self.phone_set.boundary, dtype=bool)
+
+    @property
+    def phoneme_class(self) -> np.ndarray:
+        """(P,) int64 viseme classes."""
+        return np.array(self.phone_set.phoneme_class, dtype=np.int64)
+
+
+@dataclass(frozen=True)
+class _Shapes:
+    """All that makes targets, and the targets of the training material where states are matched to them."""
+
+    kernels: Kernels
+    floor: np.ndarray  #: (P, 13) FAP
+    contact: np.ndarray  #: (P, 13) bool
+    targets: Optional[List[np.ndarray]] = None  #: (T, 13) each, FAP
+
+
+@dataclass(frozen=True)
+class _MixtureTask:
+    vectors: np.ndarray
+    previous: np.ndarray
+    next: np.ndarray
+    scale: np.ndarray
+    components: int
+    classes: int  # 0: without context
+    seed: int
+
+
+def _mixture(task: _MixtureTask) -> Mixture:
+    mixture = fit_mixture(task.vectors, task.scale, task.components, task.seed)
+    if task.classes:
+        mixture = fit_context(mixture, task.vectors, task.scale, task.previous, task.next, task.classes)
+    return mixture
+
+
+def _mixture_tasks(
+    items: Occurrences, plan: Plan, classes: int, components: int, seed: int
+) -> List[_MixtureTask]:
+    """The mixtures to fit. Their samples count once each, whatever they weigh: what they say, and the regression that
+    follows does not, is how durations and neighbours go together, which weights did not better."""
+    vectors, learnt = items.vectors(), items.learnt
+    scale = corpus_scale(vectors[learnt])
+    tasks = []
+    for members in plan.members:
+        if members is not None:
+            rows = np.flatnonzero(np.isin(items.phoneme, members) & learnt)
+            tasks.append(
+                _MixtureTask(vectors[rows], items.previous[rows], items.next[rows], scale, components, classes, seed)
+            )
+    return tasks
+
+
+def _tables(plan: Plan, fitted: List[Mixture], conditional: bool) -> ShapeTables:
+    """The tables of all phonemes from the mixtures of those that have one of their own."""
+    own = iter(fitted)
+    mixtures: Dict[int, Mixture] = {p: next(own) for p, members in enumerate(plan.members) if members is not None}
+    return shape_tables([mixtures[other] for other in plan.stand_in], conditional=conditional)
+
+
+def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int, Division]) -> Codebook:
+    return train_channel(*task)
+
+
+def _decode(task: Tuple[List[np.ndarray], List[np.ndarray], StateTables]) -> List[np.ndarray]:
+    return decode(*task)
+
+
+def _unit_ends(item: Recording, boundary: np.ndarray) -> np.ndarray:
+    """(T,) bool: the frames that end a unit, the last ones of boundary phonemes and of the utterance."""
+    ends = np.zeros(len(item.frames), dtype=bool)
+    ends[np.cumsum(item.length)[boundary[item.phoneme]] - 1] = True
+    ends[-1] = True
+    return ends
+
+
+def _unit_starts(item: Recording, boundary: np.ndarray) -> np.ndarray:
+    """Frames at which boundary phonemes, and so units, begin; the utterance's first and last phoneme are some too."""
+    starts = np.cumsum(item.length) - item.length
+    begins = boundary[item.phoneme].copy()
+    begins[[0, -1]] = True
+    return starts[begins & (item.length > 0)]
+
+
+def _stretches(
+    material: Sequence[Recording], starts: Sequence[np.ndarray], channel: int
+) -> Tuple[List[np.ndarray], List[np.ndarray]]:
+    """The stretches of one channel's motion (T,) that are learnt from, and the frames at which units begin in each."""
+    motion, begins = [], []
+    for item, start in zip(material, starts):
+        learnt = np.concatenate([[False], item.weights[:, channel] > 0, [False]])
+        edges = np.flatnonzero(learnt[1:] != learnt[:-1]).reshape(-1, 2)
+        for first, end in edges:
+            motion.append(item.frames[first:end, channel])
+            begins.append(start[(start >= first) & (start < end)] - first)
+    return motion, begins
+
+
+def _targets(
+    choice: Choice,
+    fitted: Kernels,
+    material: Sequence[Recording],
+    silence: int,
+    floor: np.ndarray,
+    contact: np.ndarray,
+) -> List[np.ndarray]:
+    """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
+    selected = np.split(shapes(fitted.tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
+    result = []
+    for shape, item in zip(selected, material):
+        held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
+        moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
+        result.append(raised(moving, item.phoneme_at(), item.length, item.rest, silence, floor, contact)[0])
+    return result
+
+
+def _setting(
+    kind: str, method: str, fps: int, codebook: int, components: int, seed: int, look_ahead: float,
+    search_stride: int, divide: Division,
+) -> _Setting:
+    if kind not in KINDS:
+        raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
+    if method not in METHODS:
+        raise LabialError(f"method is {method!r}, not one of {', '.join(METHODS)}")
+    for name, value, most in (
+        ("fps", fps, 250),
+        ("codebook", codebook, LIMITS["states"]),
+        ("components", components, LIMITS["components"]),
+        ("search stride", search_stride, LIMITS["stride"]),
+    ):
+        if not 1 <= value <= most:
+            raise LabialError(f"{name} is {value}, not within 1 .. {most}")
+    if not 0.0 <= look_ahead <= REACH:
+        raise LabialError(f"look-ahead is {look_ahead} s, not within 0 .. {REACH}")
+    extended = method == "labial"
+    return _Setting(PHONE_SETS[kind], extended, fps, codebook, components, seed, look_ahead,
+                    search_stride if extended else 1, divide, Penalties(), Scales())
+
+
+def _own(penalties: Penalties, kind: str) -> Penalties:
+    """The penalties of a kind. Where the mouth rests in an utterance is the talker's in speech; in laughter it is how
+    hard somebody laughs, which the phonemes' grades tell, and no intercept must take that from them."""
+    return penalties if kind == "speech" else replace(penalties, intercept=np.inf)
+
+
+def _check_taught(material: Sequence[Recording]) -> None:
+    untaught = ~np.any([item.weights.any(axis=0) for item in material], axis=0)
+    if untaught.any():
+        names = ", ".join(np.array(FAP_COLUMNS)[untaught])
+        raise LabialError(f"nothing is left to learn {names} from: every corpus leaves this out")
+
+
+def _extent(material: Sequence[Recording], silence: int) -> Dict[str, object]:
+    """How far the channels reach, from their 1st to their 99th percentile, and their mean pose outside silence."""
+    everything = np.concatenate([item.frames for item in material])
+    weight = np.concatenate([item.weights for item in material])
+    reach = [np.ptp(np.percentile(values[of > 0], [1, 99])) for values, of in zip(everything.T, weight.T)]
+    sounding = np.concatenate([item.phoneme_at() != silence for item in material])
+    if sounding.any():
+        everything, weight = everything[sounding], weight[sounding]
+    pose = np.average(everything, axis=0, weights=weight)
+    return {"channel_range": np.round(reach, 3).tolist(), "mean_pose": np.round(pose, 3).tolist()}
+
+
+def _material(corpus: Sequence[Episode], setting: _Setting) -> List[Recording]:
+    material = recordings(corpus, setting.phone_set, setting.fps)
+    if setting.extended:
+        ahead = max(int(lags(setting.fps, setting.look_ahead)[-1]), FRAMES)
+        material = [with_pauses_cut(item, setting.silence, ahead, setting.fps) for item in material]
+    _check_taught(material)
+    return material
+
+
+def _fit_shapes(
+    setting: _Setting, material: Sequence[Recording], items: Occurrences, plan: Plan, workers: Workers
+) -> _Shapes:
+    """Mixtures, and beyond the published method kernels, pairs, floors and contact."""
+    phonemes, classes = len(setting.phone_set.phonemes), len(setting.phone_set.classes)
+    tasks = _mixture_tasks(items, plan, classes if setting.extended else 0, setting.components, setting.seed)
+    tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), setting.extended)
+    if not setting.extended:
+        none = Kernels(np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64), tables,
+                       np.zeros((0, 3), dtype=np.int64), np.zeros((0, 1, CHANNELS)))
+        return _Shapes(none, np.full((phonemes, CHANNELS), -np.inf), np.zeros((phonemes, CHANNELS), dtype=bool))
+    floor, contact = floors(material, setting.phone_set, setting.fps)
+    choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
+    kernels = fit_kernels(
+        material, choice, tables, setting.phoneme_class, plan.stand_in, setting.silence, setting.fps,
+        _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
+    )
+    targets = _targets(choice, kernels, material, setting.silence, floor, contact)
+    return _Shapes(kernels, floor, contact, targets)
+
+
+def _fit_states(
+    setting: _Setting, material: Sequence[Recording], shaped: _Shapes, workers: Workers
+) -> StateTables:
+    """Codebooks, and beyond the published method states matched to what is decoded from the targets."""
+    starts = [_unit_starts(item, setting.boundary) for item in material]
+    motion = [(*_stretches(material, starts, c), setting.codebook, setting.stride, setting.divide)
+              for c in range(CHANNELS)]
+    states = codebook_tables(workers.run("codebooks", _channel, motion), setting.stride)
+    targets = shaped.targets
+    if targets is None:
+        return states
+    ends = [_unit_ends(item, setting.boundary) for item in material]
+    batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
+    decoded = workers.run("matched states", _decode, [(targets[batch], ends[batch], states) for batch in batches])
+    weights = [item.weights for item in material]
+    if shaped.contact[setting.silence].any():  # targets rest where people part their lips
+        weights = [own * (item.rest == 0)[:, None] for own, item in zip(weights, material)]
+    paths = [path for batch in decoded for path in batch]
+    return match_states(states, paths, targets, [item.frames for item in material], weights, setting.scales)
+
+
+def _training(
+    setting: _Setting, material: Sequence[Recording], counts: np.ndarray, plan: Plan
+) -> Dict[str, object]:
+    """What the model says of its training."""
+    training: Dict[str, object] = {
+        **_extent(material, setting.silence),
+        "codebook": setting.codebook,
+        "components": setting.components,
+        "seed": setting.seed,
+        "episodes": len(material),
+        "frames": int(sum(len(item.frames) for item in material)),
+        "occurrences": {label: int(count) for label, count in zip(setting.phone_set.phonemes, counts)},
+        "pooled": dict(plan.pooled),
+    }
+    if setting.extended:
+        training.update(penalties=asdict(setting.penalties), scales=asdict(setting.scales),
+                        look_ahead=setting.look_ahead)
+    return training
+
+
+def _model(
+    setting: _Setting, shaped: _Shapes, states: StateTables, plan: Plan, attribution: str, training: Dict[str, object]
+) -> Model:
+    phone_set, kernels, tables = setting.phone_set, shaped.kernels, shaped.kernels.tables
+    hold = np.median(states.state_precision[..., 0] + states.state_anchor, axis=1)
+    return Model(
+        kind=phone_set.kind,
+        method="labial" if setting.extended else "paper",
+        fps=setting.fps,
+        phonemes=phone_set.phonemes,
+        classes=phone_set.classes,
+        silence=phone_set.silence,
+        soft=setting.extended,
+        search_stride=setting.stride,
+        phoneme_class=setting.phoneme_class,
+        boundary=setting.boundary,
+        component_count=tables.component_count,
+        log_weight=tables.log_weight,
+        duration_mean=tables.duration_mean,
+        duration_variance=tables.duration_variance,
+        shape=tables.shape,
+        slope=tables.slope,
+        log_previous=tables.log_previous,
+        log_next=tables.log_next,
+        kernel=kernels.kernel,
+        kernel_lag=kernels.lag,
+        pair_key=kernels.pair_key,
+        pair_shape=kernels.pair_shape,
+        floor=shaped.floor,
+        contact=shaped.contact,
+        firm=FIRMNESS * hold * shaped.contact.any(axis=0),
+        decode_mean=states.decode_mean,
+        decode_variance=states.decode_variance,
+        state_mean=states.state_mean,
+        state_precision=states.state_precision,
+        state_anchor=states.state_anchor,
+        log_transition=states.log_transition,
+        log_initial=states.log_initial,
+        substitutes=dict(plan.substitutes),
+        attribution=attribution,
+        training=training,
+    )
+
+
+def train(
+    corpus: Sequence[Episode],
+    *,
+    kind: str,
+    method: str,
+    fps: int = 50,
+    codebook: int = 50,
+    components: int = 5,
+    seed: int = 0,
+    jobs: int = 2,
+    progress: bool = True,
+    attribution: str = "",
+    look_ahead: float = LOOK_AHEAD,
+    search_stride: int = SEARCH_STRIDE,
+    divide: Division = lbg,
+) -> Model:
+    """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
+
+    `method` is "paper", the published one, or "labial" with all additions. `codebook` is Q, the states of each channel,
+    `components` C of each phoneme's mixture. `look_ahead` is how far the temporal kernels reach into what follows,
+    seconds; less makes a stream's frames earlier. `search_stride` is how many frames share a state of the decoded path.
+    The published method has neither. `divide` makes the codebooks' cells; with more than one job it must be a module's
+    own function. `attribution` is kept in the model: redistribution requires it. The same arguments give the same
+    model, whatever `jobs`, the number of processes, is. The model keeps what each phoneme backed off to
+    (:func:`backed_off`), the corpus's counts and all options.
+    """
+    setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide)
+    if not 1 <= jobs <= 1024:
+        raise LabialError(f"jobs is {jobs}, not within 1 .. 1024")
+    if not corpus:
+        raise LabialError("the corpus is empty")
+    material = _material(corpus, setting)
+    items = occurrences(material, setting.phone_set)
+    counts = np.bincount(items.phoneme[items.learnt], minlength=len(setting.phone_set.phonemes))
+    plan = back_off(counts, setting.phone_set)
+    with Workers(jobs, progress) as workers, threadpool_limits(1):
+        shaped = _fit_shapes(setting, material, items, plan, workers)
+        states = _fit_states(setting, material, shaped, workers)
+        model = _model(setting, shaped, states, plan, attribution, _training(setting, material, counts, plan))
+        return restored(model, material, workers) if setting.extended else model
+
+
+def backed_off(model: Model) -> List[str]:
+    """A line for each phoneme that had too few samples: how many, and what it uses instead."""
+    training = model.training
+    counts = training["occurrences"]
+    pooled = [f"{label}: {counts[label]} samples, uses those of its viseme class {name}"
+              for label, name in training["pooled"].items()]
+    return pooled + [f"{label}: {counts[label]} samples, uses the shapes of {other}"
+                    for label, other in model.substitutes.items()]
