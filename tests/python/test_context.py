@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import multivariate_normal
 
-from labial.train.context import LOG_FLOOR, Samples, climb, fit_context, log_joint, maximise
 from labial.reference.shape import choose, shapes
+from labial.train.context import LOG_FLOOR, Samples, climb, fit_context, log_joint, maximise
 from labial.train.shapes import DURATION, corpus_scale, fit_mixture, shape_tables
 
 CLASSES = 6

@@ -9,8 +9,8 @@ from sklearn.mixture import GaussianMixture
 
 from labial.errors import LabialError
 from labial.phonesets import SPEECH
-from labial.train.context import log_normal
 from labial.reference.shape import choose, shapes
+from labial.train.context import log_normal
 from labial.train.shapes import (
     MINIMUM_SAMPLES,
     REGULARISATION,

@@ -16,9 +16,9 @@ from labial.reference import published
 from labial.reference import stream as carried_on
 from labial.reference.tables import FloatTables
 from labial.train import backed_off, pipeline, train
+from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
 from labial.train.recordings import Recording, with_pauses_cut
 from labial.train.states import DYNAMIC_RANGE, Scales, limit_range, match_states
-from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
 from labial.train.workers import Workers
 
 LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
