@@ -29,7 +29,7 @@ class Figure:
     @property
     def timed(self) -> bool:
         """Whether it depends on the machine and its load."""
-        return self.unit in ("frames/s", "times real time")
+        return self.unit in ("frames/s", "times real time", "us/frame")
 
     @property
     def versus_others(self) -> bool:

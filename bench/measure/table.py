@@ -27,6 +27,7 @@ GOALS = (
     ("latest frame of the demo's sentence, ms", "delay", "demo sentence: latest frame", 450, False),
     ("stack, Cortex-M0 -Os", "m0", "stack -Os: every function", 512, False),
     ("stack, Cortex-M0 -O2", "m0", "stack -O2: every function", 512, False),
+    ("Python, rendered whole, us per frame", "python", "speech: rendered whole", 5, False),
     (f"x86-64, times real time at {RATE} frames/s", "host", f"speech: speed at {RATE} frames/s", 200, True),
 )
 
@@ -193,6 +194,16 @@ def _delay(bench: Bench) -> List[str]:
     ] if own else []
 
 
+def _runtime(bench: Bench) -> List[str]:
+    own = [figure for figure in bench.figures if figure.target == "python"]
+    return [
+        "## Python", "",
+        "On the host, by bench/runtime.py: utterances rendered whole by `labial.render()`, and frame by frame from a "
+        "`labial.Stream`, parsing of labels included.", "",
+        *_rows(["", "", ""], [[figure.figure, _number(figure.value), figure.unit] for figure in own]),
+    ] if own else []
+
+
 def _profile(profile: Sequence[Row]) -> List[str]:
     total = sum(row.instructions for row in profile)
     rows = [[f"`{row.function}`", f"{row.instructions:,.0f}", f"{100.0 * row.instructions / total:.1f} %",
@@ -236,7 +247,8 @@ def markdown(bench: Bench, profile: Sequence[Row]) -> str:
     tools = sorted({figure.tool for figure in bench.figures if any(c.isdigit() for c in figure.tool)})
     lines = ["# Figures", "", "Measured by `cmake --workflow --preset bench`; `bench.json` has the command of each.",
              f"Tools: {', '.join(tools)}.", ""]
-    lines += [*_cost(bench), *_memory(bench), *_mlpg(bench), *_accuracy(bench), *_delay(bench)]
+    lines += [*_cost(bench), *_memory(bench), *_mlpg(bench), *_accuracy(bench), *_delay(bench),
+              *_runtime(bench)]
     speeds = [[figure.figure, _number(figure.value), figure.unit] for figure in bench.figures if figure.timed]
     lines += ["## Speed of the host, one core", "", *_rows(["", "", ""], speeds)] if speeds else []
     lines += _profile(profile) if profile else []

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ctypes
 import os
+from array import array
 from functools import cache
 from pathlib import Path
 from typing import Dict, Iterable, Tuple, Union
 
 from labial.errors import LabialError
+from labial.faps import CHANNELS
 from labial.runtime.library import RigOutput, RigTable, checked, library
-from labial.runtime.numbers import whole
 
 #: Where the built-in descriptions lie.
 _FOLDER = Path(__file__).resolve().parents[1] / "rig"
@@ -55,6 +56,7 @@ class Rig:
         self._table = RigTable(self._rows, len(rows))
         checked(library().labial_rig_check(self._table), os.fspath(path))
         self._values = (ctypes.c_int32 * len(rows))()
+        self._apply = library().labial_rig_apply
         self.rest()
 
     @classmethod
@@ -78,12 +80,15 @@ class Rig:
 
     def apply(self, faps: Iterable[int]) -> Dict[str, int]:
         """Moves the face on by one frame of 13 FAPs, whole numbers of 16 bits; its values."""
-        numbers = [whole(value, "a FAP") for value in faps]
-        if len(numbers) != 13:
-            raise LabialError(f"a frame has 13 FAPs, not {len(numbers)}")
-        if min(numbers) < -32768 or max(numbers) > 32767:
-            raise LabialError("a FAP is beyond 16 bits")
-        checked(library().labial_rig_apply(self._table, (ctypes.c_int16 * 13)(*numbers), self._values))
+        try:
+            numbers = array("h", faps)
+        except OverflowError:
+            raise LabialError("a FAP is beyond 16 bits") from None
+        except TypeError:
+            raise TypeError("FAPs are whole numbers") from None
+        if len(numbers) != CHANNELS:
+            raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
+        checked(self._apply(self._table, numbers.buffer_info()[0], self._values))
         return self.values
 
     def __repr__(self) -> str:
