@@ -5,6 +5,8 @@ const CHANNELS = 13;
 const DURATION_MAX = 3600000;
 /** Phonemes that may wait for their turn beside those that the library holds. */
 const WAITING_MAX = 65536;
+/** Ticks without a frame after which a stream that has no room for a model will never have. */
+const PATIENCE = 64;
 const OK = 0;
 const STARVED = 2;
 const DONE = 3;
@@ -125,9 +127,7 @@ export class Stream {
         this.#feed(at);
         this.#state = this.#check(this.#labial.wasm.mouth_tick(at));
         if (this.#state !== OK) {
-            if (this.#refused && this.#refused++ > 2 * this.#labial.wasm.mouth_delay(at)) {
-                throw this.#labial.failure(ERROR_MODELS);
-            }
+            if (this.#refused && this.#refused++ > PATIENCE) throw this.#labial.failure(ERROR_MODELS);
             return null;
         }
         this.#number++;
@@ -141,7 +141,9 @@ export class Stream {
         for (;;) {
             let underway = this.#labial.wasm.mouth_delay(this.#open());
             let frame = this.tick();
-            while (!frame && this.#state !== STARVED && this.#state !== DONE && underway-- > 0) frame = this.tick();
+            while (!frame && this.#state !== DONE && (this.#refused || (!this.starved && underway-- > 0))) {
+                frame = this.tick();
+            }
             if (!frame) return;
             yield this.#output === "faps" ? frame.slice() : { ...frame };
         }
@@ -193,11 +195,13 @@ export class Stream {
     drain(add) {
         const at = this.#open();
         let before, frames;
+        let idle = 0;
         do {
             before = this.#waiting.length - this.#head;
             this.#feed(at);
             frames = this.#labial.run(at, add);
-        } while (frames > 0 || this.#waiting.length - this.#head < before);
+            idle = frames > 0 || this.#waiting.length - this.#head < before ? 0 : idle + 1;
+        } while (idle === 0 || (this.#refused && idle < PATIENCE));
         if (this.#refused) throw this.#labial.failure(ERROR_MODELS);
     }
 

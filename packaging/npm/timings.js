@@ -120,12 +120,14 @@ export function fromLab(text) {
         if (fields.length < 3 || (!htk && fields.length > 5)) {
             throw complain(`expected 'start end label${htk ? "" : " [apex [word]]"}', found ${fields.length} columns`);
         }
-        const [start, end] = fields.slice(0, 2).map((field) => {
+        const [start, end, apex] = fields.slice(0, htk ? 2 : 4).map((field, i) => {
+            if (i === 2) return undefined;
             if (htk ? !whole(field) : !/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(field)) {
                 throw complain(`${shown(field)} is not a ${htk ? "whole number of 100 ns" : "finite number"}`);
             }
             return Number(field) / (htk ? TICKS : 1);
-        });
+        }).filter((time) => time !== undefined);
+        if (apex < start - TOLERANCE || apex > end + TOLERANCE) throw complain(`the apex ${apex} s is outside its segment`);
         return { start, end, label: htk ? centre(fields[2]) : fields[2], line };
     }));
 }

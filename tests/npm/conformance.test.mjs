@@ -3,20 +3,13 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { Labial, vectors } from "./setup.mjs";
+import { Labial, crc32, vectors } from "./setup.mjs";
 
 const mouth = await Labial.load();
 
 /** CRC-32 of frames as little-endian int16, as conformance_digest() has it. */
 function crc(frames) {
-    let sum = ~0;
-    for (const value of frames.flatMap((faps) => [...faps])) {
-        for (const byte of [value & 255, (value >> 8) & 255]) {
-            sum ^= byte;
-            for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (0xedb88320 & -(sum & 1));
-        }
-    }
-    return ~sum >>> 0;
+    return crc32(frames.flatMap((faps) => [...faps].flatMap((value) => [value & 255, (value >> 8) & 255])));
 }
 
 /** The labels of a model's phonemes by what they are called in its header. */

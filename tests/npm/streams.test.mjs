@@ -1,0 +1,296 @@
+// What a program does with streams and tracks beside the conformance streams: feeding, laughs, other models, tracks in
+// step with a sound, misuse.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { Labial, LabialError, binary, folder, source, timings } from "./setup.mjs";
+
+const mouth = await Labial.load();
+const WORDS = [["sil", 100], ["HH", 70], ["ə", 60], ["l", 80], ["ˈoʊ", 220], ["m", 80], ["sil", 150]];
+
+function speak(options, feed = (stream) => WORDS.forEach(([label, ms]) => stream.push(label, ms))) {
+    const stream = mouth.stream(options);
+    feed(stream);
+    stream.end();
+    const frames = [...stream];
+    assert.ok(stream.done);
+    stream.free();
+    return frames;
+}
+
+/** The same words as segments, seconds. */
+function segments(words = WORDS) {
+    let end = 0;
+    return words.map(([label, ms]) => ({ start: end, end: (end += ms / 1000), label }));
+}
+
+function rows(frames) {
+    return Array.from(frames, (faps) => [...faps]);
+}
+
+test("ticks deliver what iterating does, later by the delay", () => {
+    const stream = mouth.stream();
+    WORDS.forEach(([label, ms]) => stream.push(label, ms));
+    stream.end();
+    const { delay, frames } = stream.latency;
+    assert.equal(frames, 38);
+    const ticks = [];
+    while (!stream.done) {
+        const frame = stream.tick();
+        ticks.push(frame && [...frame]);
+    }
+    assert.deepEqual(ticks.slice(0, delay), new Array(delay).fill(null));
+    assert.deepEqual(ticks.filter(Boolean), rows(speak()));
+    assert.equal(stream.number, 37);
+    assert.equal(stream.time, 0.74);
+});
+
+test("a tick's frame is the same object, an iterator's is not", () => {
+    const frames = speak();
+    assert.notEqual(frames[0], frames[1]);
+    for (const output of ["faps", "arkit"]) {
+        const stream = mouth.stream({ output });
+        WORDS.forEach(([label, ms]) => stream.push(label, ms));
+        stream.end();
+        const found = new Set();
+        while (!stream.done) found.add(stream.tick());
+        assert.equal(found.size, 2, "a frame and null");
+    }
+});
+
+test("labels of all sets, numbers and words that mean other sounds", () => {
+    assert.equal(mouth.phoneme("y"), mouth.phoneme("j", { labels: "ipa" }));
+    assert.equal(mouth.phoneme("y", { labels: "ipa" }), mouth.phoneme("UW"));
+    assert.equal(mouth.label(mouth.phoneme("tʃ", { labels: "ipa" })), "CH");
+    assert.equal(mouth.phoneme(27), 27);
+    assert.deepEqual(rows(speak({}, (s) => s.push("y", 200, { labels: "ipa" }))), rows(speak({}, (s) => s.push("UW", 200))));
+    assert.throws(() => speak({}, (s) => s.push("ihr", 80)), { name: "LabialError", code: -11,
+        message: '"ihr": no phoneme of this name is known' });
+    assert.deepEqual(rows(speak({ unknown: "nearest" }, (s) => s.push("ihr", 80))), rows(speak({}, (s) => s.push("IH", 80))));
+});
+
+test("a pause, a laugh and speech behind it, longer than the library's queue", () => {
+    const feed = (seed) => (stream) => {
+        stream.push("m", 80);
+        stream.laugh(12.5, 0.7, seed);
+        stream.push("AA", 200);
+    };
+    const frames = speak({}, feed(1));
+    assert.equal(frames.length, Math.round(50 * (0.08 + 12.5 + 0.2)));
+    assert.deepEqual(rows(frames), rows(speak({}, feed(undefined))), "the first laugh has the seed 1");
+    assert.notDeepEqual(rows(frames), rows(speak({}, feed(2))));
+    const widest = (list) => Math.max(...list.map((faps) => -(faps[3] + faps[4])));
+    assert.ok(widest(speak({}, (s) => s.laugh(4, 1))) > widest(speak({}, (s) => s.laugh(4, 0))) + 200);
+});
+
+test("fractions of milliseconds do not drift", () => {
+    assert.equal(speak({}, (s) => {
+        for (let i = 0; i < 3000; i++) s.push(i % 2 ? "AA" : "m", 20 / 3);
+    }).length, 1000);
+});
+
+test("a cancel drops what waits, and what follows a restart fades in", () => {
+    const stream = mouth.stream();
+    for (let i = 0; i < 100; i++) stream.push(i % 2 ? "AA" : "b", 90);
+    const before = [];
+    for (const frame of stream) if (before.push(frame) === 30) break;
+    stream.cancel(100);
+    const eased = [...stream];
+    assert.equal(eased.length, 5);
+    assert.deepEqual([...eased[4]], new Array(13).fill(0));
+    assert.throws(() => stream.push("m", 80), { code: -5 });
+    stream.restart();
+    stream.push("AA", 200);
+    stream.end();
+    assert.equal([...stream].length, 10);
+    assert.equal(stream.number, 44);
+});
+
+test("weights are the rig's, by name", () => {
+    const frames = speak({ output: "arkit" });
+    rows(speak()).forEach((faps, i) => assert.deepEqual(frames[i], mouth.convert(faps, "arkit")));
+    const all = frames.flatMap((weights) => Object.values(weights));
+    assert.ok(Math.min(...all) === 0 && Math.max(...all) > 0.2 && Math.max(...all) <= 1);
+});
+
+test("names of weights are those of the rigs' descriptions", async () => {
+    const { faces } = await import(new URL("faces.js", `file://${folder}/`));
+    for (const [face, names] of Object.entries(faces)) {
+        const text = source(`export/labial/rig/${face}.toml`);
+        assert.deepEqual(names, [...text.matchAll(/^\[output\.(\w+)\]/gm)].map((match) => match[1]), face);
+    }
+});
+
+test("a track is the stream's frames, and between them a line", () => {
+    const track = mouth.render(segments());
+    const frames = rows(speak());
+    assert.deepEqual(rows(track), frames);
+    assert.equal(track.duration, 0.76);
+    assert.deepEqual([...track.at(0.2)], frames[10]);
+    assert.deepEqual([...track.at(0.205)], frames[10].map((value, i) => Math.fround(value + (frames[11][i] - value) / 4)));
+    assert.deepEqual([...track.at(-5)], frames[0]);
+    assert.deepEqual([...track.at(99)], frames.at(-1));
+    assert.equal(track.at(0.1), track.at(0.2), "no garbage");
+    const weights = mouth.render(segments(), { output: "arkit" });
+    assert.deepEqual(weights.at(0.2), mouth.convert(frames[10], "arkit"));
+    assert.deepEqual(weights.frame(10), weights.at(0.2));
+    assert.deepEqual([...weights.faps], frames.flat());
+});
+
+test("gaps are silence, overlaps up to a millisecond are closed, laughs are laughed", () => {
+    const found = mouth.render([{ start: 0.1, end: 0.2, label: "m" }, { start: 0.1995, end: 0.4, label: "AA" },
+        { start: 0.6, end: 0.7, phoneme: "m" }, { start: 0.7, end: 1.9, label: "<laugh:0.7>" }]);
+    const wanted = speak({}, (s) => {
+        [["sil", 100], ["m", 100], ["AA", 200], ["sil", 200], ["m", 100]].forEach(([label, ms]) => s.push(label, ms));
+        s.laugh(1.2, 0.7);
+    });
+    assert.deepEqual(rows(found), rows(wanted));
+    assert.equal(mouth.render([]).length, 0);
+    assert.equal([...mouth.render([]).at(1)].length, 13);
+});
+
+test("sets of labels that a reader tells come first", () => {
+    const one = [{ start: 0, end: 0.3, label: "y", labels: "ipa" }];
+    assert.deepEqual(rows(mouth.render(one)), rows(speak({}, (s) => s.push("UW", 300))));
+    assert.deepEqual(rows(mouth.render(one, { labels: "arpabet" })), rows(speak({}, (s) => s.push("Y", 300))));
+});
+
+test("every sample of the services can be played", () => {
+    const readers = { piper: "fromPiper", azure: "fromAzure", headtts: "fromHeadTTS", kokoro: "fromKokoro" };
+    for (const [name, reader] of Object.entries(readers)) {
+        const read = timings[reader](source(`tests/python/services/${name}.json`));
+        assert.equal(mouth.render(read).length, Math.round(50 * read.at(-1).end), name);
+    }
+});
+
+test("speech and laughter at once", () => {
+    const speech = rows(speak())[20];
+    const laugh = rows(speak({}, (s) => s.laugh(2, 1)))[40];
+    assert.deepEqual([...mouth.blend(speech, laugh, 0, 1)], speech);
+    assert.deepEqual([...mouth.blend(speech, laugh, 1, 0)], laugh);
+    assert.notDeepEqual([...mouth.blend(speech, laugh, 0.6, 1)], speech);
+});
+
+test("the library's pieces of memory are given back", () => {
+    const before = mouth.memory.bytes.length;
+    for (let i = 0; i < 20000; i++) {
+        const stream = mouth.stream();
+        stream.push("m", 20);
+        stream.tick();
+        stream.free();
+        stream.free();
+    }
+    assert.equal(mouth.memory.bytes.length, before);
+    const many = Array.from({ length: 300 }, () => mouth.stream());
+    many.forEach((stream, i) => stream.push("AA", 20 * i));
+    many.forEach((stream) => stream.end());
+    assert.ok(mouth.memory.bytes.length > before, "more than fits at first");
+    many.forEach((stream, i) => assert.equal([...stream].length, i));
+    [...many].sort((a, b) => a.latency.delay - b.latency.delay || Math.sin(many.indexOf(a))).forEach((s) => s.free());
+    const grown = mouth.memory.bytes.length;
+    for (let i = 0; i < 300; i++) many[i] = mouth.stream();
+    assert.equal(mouth.memory.bytes.length, grown);
+    many.forEach((stream) => stream.free());
+});
+
+test("streams that nobody holds are given back, too", { skip: !globalThis.gc }, async () => {
+    for (let round = 0; round < 30; round++) {
+        for (let i = 0; i < 100; i++) mouth.stream().push("m", 20);
+        globalThis.gc();
+        await new Promise((done) => setTimeout(done));
+    }
+    assert.ok(mouth.memory.bytes.length < 3000 * mouth.wasm.mouth_size() / 2);
+});
+
+test("what follows a free is an error in a sentence", () => {
+    const stream = mouth.stream();
+    stream.free();
+    for (const call of [() => stream.tick(), () => stream.push("m", 1), () => stream.laugh(1), () => stream.end(),
+        () => stream.cancel(), () => stream.restart(), () => stream.use("speech"), () => [...stream], () => stream.latency]) {
+        assert.throws(call, new LabialError("the stream was freed"));
+    }
+});
+
+test("hostile values are refused in a sentence, and change nothing", () => {
+    const stream = mouth.stream();
+    stream.push("m", 80);
+    const numbers = [NaN, -1, Infinity, "80", null, undefined, {}, [], true, 1n, Symbol("x"), { valueOf: () => 1 }];
+    const calls = [
+        ...numbers.flatMap((x) => [() => stream.push("m", x), () => stream.laugh(x), () => stream.cancel(x ?? "")]),
+        ...[NaN, -1, 1.1, "1", null].map((x) => () => stream.laugh(1, x)),
+        ...[1e9, 3600001].flatMap((x) => [() => stream.push("m", x), () => stream.laugh(x)]),
+        ...[-1, 40, 0.5, NaN, 2 ** 40, null, {}, "", " ", "zzz", "x".repeat(1e6), "\ud800", "\0", Symbol("x"), () => 0]
+            .map((x) => () => stream.push(x, 80)),
+        ...[null, "x", {}, 5, { at: 16 }, "constructor", "__proto__", Symbol("x"), mouth.models]
+            .flatMap((x) => [() => stream.use(x), () => mouth.stream({ model: x })]),
+        ...["x", null, 5, "toString", {}].flatMap((x) => [() => mouth.stream({ output: x }), () => mouth.stream({ labels: x }),
+            () => mouth.stream({ unknown: x }), () => mouth.render([], { output: x }), () => mouth.convert(new Int16Array(13), x)]),
+        ...[null, 5, "abc", {}, [1], [null], [[]], [{}], [{ start: 0, end: 1 }], [{ start: 0, end: 1, label: 5.5 }],
+            [{ start: 0, end: NaN, label: "m" }], [{ start: 1, end: 0, label: "m" }], [{ start: 0, end: 1e9, label: "m" }],
+            [{ start: 0, end: 1, label: "m" }, { start: 0, end: 1, label: "m" }], [{ start: 0, end: 5000, label: "m" }],
+            [{ start: 0, end: 1, label: "<laugh:2>" }], [{ start: 0, end: 1, label: "<laugh:>" }],
+            [{ start: 0, end: 1, label: "m", labels: "x" }]].map((x) => () => mouth.render(x)),
+        ...[null, 5, "abc", {}, [], new Uint8Array(0), new Uint8Array(7), new ArrayBuffer(4096)].map((x) => () => mouth.model(x)),
+        ...[null, 5, [], [1, 2], new Int16Array(12)].map((x) => () => mouth.convert(x, "arkit")),
+        ...["x", NaN, null, undefined].map((x) => () => mouth.render(segments()).at(x)),
+        ...[-1, 1.5, 1e9, NaN, "0"].map((x) => () => mouth.render(segments()).frame(x)),
+        () => stream.restart(),
+    ];
+    for (const call of calls) {
+        assert.throws(call, (error) => {
+            assert.ok(["LabialError", "TypeError", "RangeError"].includes(error.name), String(error.stack));
+            assert.match(error.message, /^[^\n]{8,200}$/, `${error.stack}`);
+            assert.doesNotMatch(error.message, /undefined \(|Cannot|is not a function|convert/, error.stack);
+            return true;
+        }, call.toString());
+    }
+    stream.end();
+    assert.deepEqual(rows(stream), rows(speak({}, (s) => s.push("m", 80))));
+});
+
+test("a model from a file is the model, and a damaged one is refused", () => {
+    for (const kind of ["speech", "laughter"]) {
+        const bytes = binary(mouth, mouth.models[kind]);
+        const model = mouth.model(bytes);
+        const say = (one) => rows(speak({ model: one }, (s) => [3, 7, 1, 11, 0].forEach((phoneme) => s.push(phoneme, 90))));
+        assert.deepEqual(say(model), say(kind));
+        assert.equal(mouth.label(3, model), mouth.label(3, mouth.models[kind]));
+        const before = mouth.memory.bytes.length;
+        for (let i = 0; i < bytes.length; i += 997) {
+            const damaged = bytes.slice();
+            damaged[i] ^= 1;
+            assert.throws(() => mouth.model(damaged), LabialError);
+            assert.throws(() => mouth.model(bytes.subarray(0, i)), LabialError);
+        }
+        assert.equal(mouth.memory.bytes.length, before);
+    }
+});
+
+test("more than may wait is refused", () => {
+    const stream = mouth.stream();
+    assert.throws(() => {
+        for (;;) stream.push("AA", 1);
+    }, { code: -8, message: "the queue is full; tick and push again" });
+    stream.end();
+    let frames = 0;
+    while (!stream.done) frames += stream.tick() ? 1 : 0;
+    assert.ok(frames > 3000);
+});
+
+test("models that alternate faster than the stream can let them go", () => {
+    const third = mouth.model(binary(mouth, mouth.models.speech));
+    const stream = mouth.stream();
+    for (const model of ["speech", third, "laughter", "speech", third]) {
+        stream.use(model);
+        stream.push(1, 200);
+        stream.push(2, 200);
+    }
+    stream.end();
+    assert.equal([...stream].length, 100);
+    const short = mouth.stream();
+    for (const model of ["speech", third, "laughter"]) {
+        short.use(model);
+        short.push(1, 20);
+    }
+    short.end();
+    assert.throws(() => [...short, ...Array.from({ length: 100 }, () => short.tick())], { code: -10 });
+});
