@@ -5,7 +5,7 @@ export type Faps = Int16Array;
 export type Weights = Record<string, number>;
 
 /** How frames are given out. */
-export type Output = "faps" | "arkit";
+export type Output = "faps" | "arkit" | "vrm" | "oculus";
 
 /** Which labels mean which sounds: "auto" is any of the others, in their order. */
 export type Labels = "auto" | "arpabet" | "ipa" | "xsampa";

@@ -12,12 +12,11 @@
 #include "labial/names.h"
 #include "labial/rig.h"
 #include "laughter_synthetic.h"
+#include "oculus.h"
 #include "speech_en.h"
+#include "vrm.h"
 
 #define EXPORT(name) __attribute__((export_name(#name)))
-
-/* The most outputs that a rig below has. */
-#define VALUES_MAX 32
 
 /* A stream with all that belongs to it. */
 typedef struct {
@@ -26,7 +25,8 @@ typedef struct {
     uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4u];
 } mouth_t;
 
-static const labial_rig_t *const rigs[] = { &arkit };
+/* In the order of faces.js. */
+static const labial_rig_t *const rigs[] = { &arkit, &vrm, &oculus };
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {

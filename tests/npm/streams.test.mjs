@@ -106,17 +106,25 @@ test("a cancel drops what waits, and what follows a restart fades in", () => {
 });
 
 test("weights are the rig's, by name", () => {
-    const frames = speak({ output: "arkit" });
-    rows(speak()).forEach((faps, i) => assert.deepEqual(frames[i], mouth.convert(faps, "arkit")));
-    const all = frames.flatMap((weights) => Object.values(weights));
-    assert.ok(Math.min(...all) === 0 && Math.max(...all) > 0.2 && Math.max(...all) <= 1);
+    for (const output of ["arkit", "vrm", "oculus"]) {
+        const frames = speak({ output });
+        rows(speak()).forEach((faps, i) => assert.deepEqual(frames[i], mouth.convert(faps, output)));
+        const all = frames.flatMap((weights) => Object.values(weights));
+        assert.ok(Math.min(...all) === 0 && Math.max(...all) > 0.2 && Math.max(...all) <= 1);
+    }
+    const opens = { arkit: "jawOpen", vrm: "aa", oculus: "aa" };
+    for (const [output, name] of Object.entries(opens)) {
+        const rest = mouth.convert(new Array(13).fill(0), output);
+        const open = mouth.convert([700, 0, 0, -100, -700, 0, 0, 0, 0, 0, 0, 0, 0], output);
+        assert.ok(rest[name] === 0 && open[name] > 0.5, output);
+    }
 });
 
 test("names of weights are those of the rigs' descriptions", async () => {
     const { faces } = await import(new URL("faces.js", `file://${folder}/`));
     for (const [face, names] of Object.entries(faces)) {
         const text = source(`export/labial/rig/${face}.toml`);
-        assert.deepEqual(names, [...text.matchAll(/^\[output\.(\w+)\]/gm)].map((match) => match[1]), face);
+        assert.deepEqual([...names], [...text.matchAll(/^\[output\.(\w+)\]/gm)].map((match) => match[1]), face);
     }
 });
 

@@ -79,7 +79,7 @@ def assert_alike(folder: Path, cases: List[Tuple[str, str]]) -> None:
 
 
 def test_samples(tmp_path: Path) -> None:
-    """Catches a time that is rounded otherwise, a phoneme that is joined otherwise, a set of labels that is not told."""
+    """Catches a time that is rounded otherwise, a phoneme that is joined otherwise, labels of no set."""
     cases = [(reader, (SAMPLES / name).read_text(encoding="utf-8")) for name, reader in SAMPLE_OF.items()]
     for (name, _), rows in zip(SAMPLE_OF.items(), read_by_node(cases)):
         assert not isinstance(rows, str) and len(rows) > 5, name
