@@ -1,5 +1,5 @@
 /*
- * arkit.h - what moves a face. Values are plain units. Written by labial rig 0.2.0; do not edit.
+ * arkit.h - what moves a face. Values are thousandths of a weight. Written by labial rig 0.2.0; do not edit.
  */
 #ifndef LABIAL_RIG_ARKIT_H
 #define LABIAL_RIG_ARKIT_H
@@ -15,6 +15,14 @@ extern "C" {
 #endif
 
 #define ARKIT_OUTPUTS 20
+
+/* What initialises an array of the outputs' names. */
+#define ARKIT_OUTPUT_NAMES { \
+    "jawOpen", "mouthClose", "mouthFunnel", "mouthPucker", "mouthStretchLeft", "mouthStretchRight", \
+    "mouthSmileLeft", "mouthSmileRight", "mouthFrownLeft", "mouthFrownRight", "mouthUpperUpLeft", \
+    "mouthUpperUpRight", "mouthLowerDownLeft", "mouthLowerDownRight", "mouthPressLeft", "mouthPressRight", \
+    "mouthRollUpper", "mouthRollLower", "mouthShrugLower", "mouthShrugUpper" \
+}
 
 /* Places of the outputs among the values. */
 enum {

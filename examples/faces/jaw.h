@@ -16,6 +16,11 @@ extern "C" {
 
 #define JAW_OUTPUTS 1
 
+/* What initialises an array of the outputs' names. */
+#define JAW_OUTPUT_NAMES { \
+    "jaw" \
+}
+
 /* Places of the outputs among the values. */
 enum {
     JAW_JAW = 0

@@ -1,5 +1,5 @@
 /*
- * oculus.h - what moves a face. Values are plain units. Written by labial rig 0.2.0; do not edit.
+ * oculus.h - what moves a face. Values are thousandths of a weight. Written by labial rig 0.2.0; do not edit.
  */
 #ifndef LABIAL_RIG_OCULUS_H
 #define LABIAL_RIG_OCULUS_H
@@ -15,6 +15,11 @@ extern "C" {
 #endif
 
 #define OCULUS_OUTPUTS 15
+
+/* What initialises an array of the outputs' names. */
+#define OCULUS_OUTPUT_NAMES { \
+    "sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou" \
+}
 
 /* Places of the outputs among the values. */
 enum {

@@ -17,6 +17,11 @@ extern "C" {
 
 #define SERVOS_OUTPUTS 5
 
+/* What initialises an array of the outputs' names. */
+#define SERVOS_OUTPUT_NAMES { \
+    "jaw", "upper_lip", "lower_lip", "corner_left", "corner_right" \
+}
+
 /* What the PCA9685's prescale register must hold for these ticks. */
 #define SERVOS_PCA9685_PRESCALE 121
 

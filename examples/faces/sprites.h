@@ -16,6 +16,11 @@ extern "C" {
 
 #define SPRITES_OUTPUTS 4
 
+/* What initialises an array of the outputs' names. */
+#define SPRITES_OUTPUT_NAMES { \
+    "opening", "smile", "rounding", "upper" \
+}
+
 /* Places of the outputs among the values. */
 enum {
     SPRITES_OPENING = 0,

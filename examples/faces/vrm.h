@@ -1,5 +1,5 @@
 /*
- * vrm.h - what moves a face. Values are plain units. Written by labial rig 0.2.0; do not edit.
+ * vrm.h - what moves a face. Values are thousandths of a weight. Written by labial rig 0.2.0; do not edit.
  */
 #ifndef LABIAL_RIG_VRM_H
 #define LABIAL_RIG_VRM_H
@@ -15,6 +15,11 @@ extern "C" {
 #endif
 
 #define VRM_OUTPUTS 5
+
+/* What initialises an array of the outputs' names. */
+#define VRM_OUTPUT_NAMES { \
+    "aa", "ih", "ou", "ee", "oh" \
+}
 
 /* Places of the outputs among the values. */
 enum {

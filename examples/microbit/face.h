@@ -16,6 +16,11 @@ extern "C" {
 
 #define FACE_OUTPUTS 3
 
+/* What initialises an array of the outputs' names. */
+#define FACE_OUTPUT_NAMES { \
+    "jaw", "upper_lip", "corners" \
+}
+
 /* Places of the outputs among the values. */
 enum {
     FACE_JAW = 0,

@@ -8,11 +8,7 @@
 #include "arkit.h"
 #include "script.h"
 
-static const char *const names[ARKIT_OUTPUTS] = {
-    "jawOpen", "mouthClose", "mouthFunnel", "mouthPucker", "mouthStretchLeft", "mouthStretchRight", "mouthSmileLeft",
-    "mouthSmileRight", "mouthFrownLeft", "mouthFrownRight", "mouthUpperUpLeft", "mouthUpperUpRight",
-    "mouthLowerDownLeft", "mouthLowerDownRight"
-};
+static const char *const names[] = ARKIT_OUTPUT_NAMES;
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {

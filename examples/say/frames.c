@@ -3,7 +3,6 @@
  */
 #include "frames.h"
 
-#include <ctype.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +11,13 @@
 
 /* FAPs of MPEG-4, each with an entry in the mask of a fap file. */
 #define FAP_COUNT 68
+
+static const char *const arkit_outputs[] = ARKIT_OUTPUT_NAMES;
+static const char *const vrm_outputs[] = VRM_OUTPUT_NAMES;
+static const char *const oculus_outputs[] = OCULUS_OUTPUT_NAMES;
+static const frames_face_t face_arkit = {"arkit", &arkit, arkit_outputs};
+static const frames_face_t face_vrm = {"vrm", &vrm, vrm_outputs};
+static const frames_face_t face_oculus = {"oculus", &oculus, oculus_outputs};
 
 static void write_time(const frames_t *frames)
 {
@@ -48,21 +54,21 @@ static void write_livelink_frame(frames_t *frames, const int16_t faps[LABIAL_CHA
     putc('\n', frames->out);
 }
 
-static void write_jsonl_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void write_json_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
-    const char *before = "},\"arkit\":{";
-    labial_rig_apply(&arkit, faps, frames->weights);
+    const frames_face_t *face = frames->face;
+    labial_rig_apply(face->rig, faps, frames->weights);
     fprintf(frames->out, "{\"frame\":%" PRIu32 ",\"time\":", frames->count);
     write_time(frames);
-    for (int i = 0; i < LABIAL_CHANNELS; i++)
-        fprintf(frames->out, "%s\"fap%d\":%d", i == 0 ? ",\"faps\":{" : ",", labial_fap_numbers[i], faps[i]);
-    for (int i = 0; i < LIVELINK_COLUMNS; i++) {
-        const livelink_column_t *column = &livelink_columns[i];
-        if (column->output < 0)
-            continue;
-        fprintf(frames->out, "%s\"%c%s\":", before, tolower((unsigned char)column->name[0]), column->name + 1);
-        write_weight(frames->out, frames->weights[column->output]);
-        before = ",";
+    if (frames->format == FRAMES_JSONL) {
+        for (int i = 0; i < LABIAL_CHANNELS; i++)
+            fprintf(frames->out, "%s\"fap%d\":%d", i == 0 ? ",\"faps\":{" : ",", labial_fap_numbers[i], faps[i]);
+        putc('}', frames->out);
+    }
+    fprintf(frames->out, ",\"%s\":{", face->name);
+    for (unsigned i = 0; i < face->rig->count; i++) {
+        fprintf(frames->out, "%s\"%s\":", i == 0 ? "" : ",", face->outputs[i]);
+        write_weight(frames->out, frames->weights[i]);
     }
     fputs("}}\n", frames->out);
 }
@@ -101,7 +107,8 @@ static void keep_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 
 int frames_format_of(const char *name)
 {
-    static const char *const names[] = {"csv", "fap", "livelink", "jsonl"}; /* in the order of frames_format_t */
+    /* In the order of frames_format_t. */
+    static const char *const names[] = {"csv", "fap", "livelink", "jsonl", "arkit", "vrm", "oculus"};
     for (int i = 0; i < (int)(sizeof names / sizeof names[0]); i++)
         if (strcmp(names[i], name) == 0)
             return i;
@@ -115,7 +122,8 @@ void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char
     frames->format = format;
     frames->name = name;
     frames->frames_per_second = frames_per_second;
-    labial_rig_rest(&arkit, frames->weights);
+    frames->face = format == FRAMES_VRM ? &face_vrm : format == FRAMES_OCULUS ? &face_oculus : &face_arkit;
+    labial_rig_rest(frames->face->rig, frames->weights);
     if (format == FRAMES_CSV) {
         fputs("time", out);
         for (int i = 0; i < LABIAL_CHANNELS; i++)
@@ -137,7 +145,10 @@ void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
     case FRAMES_CSV: write_csv_frame(frames, faps); break;
     case FRAMES_FAP: keep_frame(frames, faps); break;
     case FRAMES_LIVELINK: write_livelink_frame(frames, faps); break;
-    case FRAMES_JSONL: write_jsonl_frame(frames, faps); break;
+    case FRAMES_JSONL:
+    case FRAMES_ARKIT:
+    case FRAMES_VRM:
+    case FRAMES_OCULUS: write_json_frame(frames, faps); break;
     }
     if (!frames->failed)
         frames->count++;

@@ -10,6 +10,9 @@
  *             0 to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
  *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
  *             lips and jaw move, from 0 to 1.
+ *   arkit, vrm, oculus
+ *             a JSON object per line: `frame`, `time` in seconds, and one with the format's name that holds the weights
+ *             of ARKit's blendshapes, VRM's five mouths or the 15 visemes of Oculus LipSync, from 0 to 1.
  */
 #ifndef LABIAL_EXAMPLE_FRAMES_H
 #define LABIAL_EXAMPLE_FRAMES_H
@@ -20,8 +23,31 @@
 
 #include "arkit.h"
 #include "labial/faps.h"
+#include "labial/labial.h"
+#include "oculus.h"
+#include "vrm.h"
 
-typedef enum { FRAMES_CSV, FRAMES_FAP, FRAMES_LIVELINK, FRAMES_JSONL } frames_format_t;
+typedef enum {
+    FRAMES_CSV,
+    FRAMES_FAP,
+    FRAMES_LIVELINK,
+    FRAMES_JSONL,
+    FRAMES_ARKIT,
+    FRAMES_VRM,
+    FRAMES_OCULUS
+} frames_format_t;
+
+/* The formats' names, for messages. */
+#define FRAMES_FORMATS "csv, fap, livelink, jsonl, arkit, vrm or oculus"
+
+#define FRAMES_WEIGHTS_MAX LABIAL_LARGER(ARKIT_OUTPUTS, LABIAL_LARGER(OCULUS_OUTPUTS, VRM_OUTPUTS))
+
+/* A rig whose outputs are weights in thousandths, with the names that engines know. */
+typedef struct {
+    const char *name;
+    const labial_rig_t *rig;
+    const char *const *outputs;
+} frames_face_t;
 
 /* A writer. Private. */
 typedef struct {
@@ -31,12 +57,13 @@ typedef struct {
     unsigned frames_per_second;
     uint32_t count;
     int failed;
-    int32_t weights[ARKIT_OUTPUTS]; /* livelink, jsonl: of the latest frame, thousandths */
+    const frames_face_t *face; /* of those formats that have weights: arkit but where another is asked for */
+    int32_t weights[FRAMES_WEIGHTS_MAX]; /* of the latest frame, thousandths */
     int16_t (*kept)[LABIAL_CHANNELS]; /* fap: `count` frames in room for `room`, owned */
     size_t room;
 } frames_t;
 
-/* The format that `name` names, csv, fap, livelink or jsonl; -1 when it names none. */
+/* The format that `name` names, one of FRAMES_FORMATS; -1 when it names none. */
 int frames_format_of(const char *name);
 
 /* Prepares a writer and writes what precedes the first frame. `name` is the animation's in a fap file and must stay

@@ -52,6 +52,9 @@ static const char usage_text[] =
     "       fap        MPEG-4 text, 23 FAPs; its header holds the number of frames, so it is written at the end\n"
     "       livelink   Live Link Face CSV: ARKit's blendshapes, 0 to 1\n"
     "       jsonl      a JSON object per frame: FAPs and ARKit's blendshapes of the mouth\n"
+    "       arkit      a JSON object per frame: weights, 0 to 1, of ARKit's blendshapes of the mouth,\n"
+    "       vrm        of VRM's aa, ih, ou, ee, oh,\n"
+    "       oculus     of the 15 visemes of Oculus LipSync\n"
     "  --model MODEL   speech_en (default) or laughter_synthetic\n"
     "  --help          print this and exit\n"
     "  --version       print the version and exit\n"
@@ -119,7 +122,7 @@ static int read_options(int argc, char **argv, options_t *options)
         } else if ((value = option_value("--to", argc, argv, &i)) != NULL) {
             const int format = frames_format_of(value);
             if (format < 0)
-                result = wrong_usage("--to is csv, fap, livelink or jsonl, not", value);
+                result = wrong_usage("--to is " FRAMES_FORMATS ", not", value);
             else
                 options->to = (frames_format_t)format;
         } else if ((value = option_value("--tier", argc, argv, &i)) != NULL) {

@@ -50,7 +50,7 @@ int speak_options(int argc, char **argv, const char *program, const char *usage,
         if (strcmp(argv[i], "--to") == 0) {
             const int format = frames_format_of(value);
             if (format < 0)
-                return wrong(program, "--to is csv, fap, livelink or jsonl, not", value);
+                return wrong(program, "--to is " FRAMES_FORMATS ", not", value);
             options->to = (frames_format_t)format;
             i++;
         } else if (strcmp(argv[i], "--voice") == 0) {

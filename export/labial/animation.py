@@ -1,7 +1,8 @@
 """Frames as animation files: MPEG-4 .fap, Live Link Face CSV, JSON lines. CSV is in labial.frames.
 
-The same formats as examples/say/frames.c writes. How FAPs move ARKit's blendshapes is described in rig/arkit.toml, from
-which ``labial rig`` writes examples/faces/arkit.c for it.
+The same formats as examples/say/frames.c writes. How FAPs move ARKit's blendshapes, VRM's mouths and the visemes of
+Oculus LipSync is described in rig/arkit.toml, vrm.toml and oculus.toml, from which ``labial rig`` writes the tables of
+examples/faces for it.
 """
 
 from __future__ import annotations
@@ -10,14 +11,14 @@ import functools
 import json
 import re
 from pathlib import Path
-from typing import Callable, Dict, List, TextIO, Tuple
+from typing import Callable, Dict, Optional, TextIO
 
 import numpy as np
 
 from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.frames import write_csv
 from labial.rig.description import Rig, read
-from labial.rig.table import TableOutput, convert, expected
+from labial.rig.table import convert, expected
 
 #: Columns of a Live Link Face recording: ARKit's 52 blendshapes and 9 rotations.
 LIVE_LINK = """
@@ -35,19 +36,27 @@ LIVE_LINK = """
 _FAPS = 68
 
 
+#: Rigs that are described in labial/rig, each a format of JSON lines.
+FACES = ("arkit", "vrm", "oculus")
+
+
 @functools.cache
-def _face() -> Tuple[Rig, List[TableOutput]]:
-    """The rig of ARKit's blendshapes, in thousandths, and its table."""
-    rig = read(Path(__file__).with_name("rig") / "arkit.toml", "arkit")
-    return rig, convert(rig)
+def face(name: str) -> Rig:
+    """The rig of ARKit's blendshapes, VRM's mouths or the visemes of Oculus LipSync: `name` is one of `FACES`."""
+    return read(Path(__file__).with_name("rig") / f"{name}.toml", name)
+
+
+def outputs(rig: Rig, frames: np.ndarray) -> Dict[str, np.ndarray]:
+    """(T,) values of each output of a rig from (T, 13) frames in FAP units, in the unit of the description: for weights
+    0 .. 1, for servos microseconds. Limits hold; how fast an output may move does not."""
+    values = expected(rig, convert(rig), np.asarray(frames, dtype=np.float64)) / rig.unit.scale
+    return {output.name: column for output, column in zip(rig.outputs, values.T)}
 
 
 def arkit(frames: np.ndarray) -> Dict[str, np.ndarray]:
     """(T,) weights 0 .. 1 of each of ARKit's blendshapes that lips and jaw move, in the order of `LIVE_LINK`, from
     (T, 13) frames in FAP units."""
-    rig, table = _face()
-    weights = expected(rig, table, np.asarray(frames, dtype=np.float64)) / 1000.0
-    found = {output.name: column for output, column in zip(rig.outputs, weights.T)}
+    found = outputs(face("arkit"), frames)
     return {name: found[name] for name in map(_arkit_name, LIVE_LINK) if name in found}
 
 
@@ -80,16 +89,23 @@ def write_live_link(out: TextIO, frames: np.ndarray, fps: int, name: str = "") -
         out.write(",".join((timecode, str(len(LIVE_LINK)), *values)) + "\n")
 
 
-def write_json_lines(out: TextIO, frames: np.ndarray, fps: int, name: str = "") -> None:
-    """Writes (T, 13) frames as one JSON object per line: frame, time in seconds, faps, arkit."""
-    weights = arkit(frames)
-    for number, (frame, values) in enumerate(zip(frames, np.stack(list(weights.values()), axis=1))):
+def write_json_lines(out: TextIO, frames: np.ndarray, fps: int, name: str = "", *, rig: Optional[Rig] = None,
+                     with_faps: bool = True) -> None:
+    """Writes (T, 13) frames as one JSON object per line: frame, time in seconds, faps unless `with_faps` is False, and
+    under the rig's name (ARKit's where none is given) its outputs, as `outputs` gives them."""
+    rig = rig or face("arkit")
+    values = outputs(rig, frames)
+    for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1))):
         out.write(json.dumps({
             "frame": number,
             "time": round(number / fps, 3),
-            "faps": dict(zip(FAP_COLUMNS, np.round(frame, 2).tolist())),
-            "arkit": dict(zip(weights, np.round(values, 3).tolist())),
+            **({"faps": dict(zip(FAP_COLUMNS, np.round(frame, 2).tolist()))} if with_faps else {}),
+            rig.name: dict(zip(values, np.round(row, 3).tolist())),
         }, separators=(",", ":")) + "\n")
+
+
+def _weight_writer(name: str) -> Callable[[TextIO, np.ndarray, int, str], None]:
+    return lambda out, frames, fps, _: write_json_lines(out, frames, fps, rig=face(name), with_faps=False)
 
 
 #: How frames are written in each format: to a text file, (T, 13) frames in FAP units, frames per second, name.
@@ -98,4 +114,5 @@ WRITERS: Dict[str, Callable[[TextIO, np.ndarray, int, str], None]] = {
     "fap": write_fap,
     "livelink": write_live_link,
     "jsonl": write_json_lines,
+    **{name: _weight_writer(name) for name in FACES},
 }

@@ -4,11 +4,12 @@ page, record."""
 from __future__ import annotations
 
 import argparse
+import functools
 import os
 import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Optional
+from typing import TYPE_CHECKING, Callable, List, Optional
 
 from labial import __version__
 from labial.errors import LabialError
@@ -58,8 +59,11 @@ def parser() -> argparse.ArgumentParser:
                        "Piper, Azure, Polly, HeadTTS or Kokoro")
     _add_source(synth)
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
-    synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl"), default="csv",
-                       help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV or JSON lines (csv)")
+    synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl", "arkit", "vrm", "oculus"), default="csv",
+                       help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV, FAPs and ARKit's "
+                       "blendshapes as JSON lines, or only the weights of ARKit, VRM or Oculus LipSync (csv)")
+    synth.add_argument("--rig", metavar="FACE.toml", help="with --to jsonl: a face of your own in place of ARKit's, as "
+                       "labial rig reads it")
     _add_labels(synth)
     synth.add_argument("--whole", action="store_true",
                        help="search and solve the whole utterance at once, not as the run-time does")
@@ -243,15 +247,29 @@ def _synth(options: argparse.Namespace) -> int:
 
     model = load(options.model)
     tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels, options.source)
-    whole = options.whole
+    write, whole = WRITERS[options.to], options.whole
+    if options.rig:
+        write = _rig_writer(options)
     frames = published.synthesise(tables, phonemes, whole=True) if whole else stream.synthesise(tables, phonemes)
     name = Path(options.model).stem
     if options.output:
         with open(options.output, "w", encoding="ascii", newline="\n") as out:
-            WRITERS[options.to](out, frames, model.fps, name)
+            write(out, frames, model.fps, name)
     else:
-        WRITERS[options.to](sys.stdout, frames, model.fps, name)
+        write(sys.stdout, frames, model.fps, name)
     return 0
+
+
+def _rig_writer(options: argparse.Namespace) -> Callable[..., None]:
+    from labial.animation import write_json_lines
+    from labial.rig.description import read
+
+    if options.to != "jsonl":
+        raise LabialError("--rig goes with --to jsonl")
+    name = Path(options.rig).stem
+    if name in ("frame", "time", "faps"):
+        raise LabialError(f"{options.rig}: {name!r} is taken in a line of JSON: name the file otherwise")
+    return functools.partial(write_json_lines, rig=read(options.rig, name))
 
 
 def _timings(options: argparse.Namespace) -> int:

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from labial import animation
-from labial.animation import LIVE_LINK, WRITERS, arkit
+from labial.animation import FACES, LIVE_LINK, WRITERS, arkit, face, outputs
 from labial.cli import main
 from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.model import save
@@ -82,7 +82,7 @@ def read_csv(text: str) -> np.ndarray:
 
 
 def check_all(texts: Dict[str, str], tolerance: float) -> None:
-    """Asserts that the four files of one motion say the same."""
+    """Asserts that the files of one motion say the same."""
     faps = read_csv(texts["csv"])
     assert len(faps) > 20 and np.ptp(faps, axis=0).min() > 0
     _, rate, frames = read_fap(texts["fap"])
@@ -102,6 +102,11 @@ def check_all(texts: Dict[str, str], tolerance: float) -> None:
         assert objects[t]["frame"] == t and objects[t]["time"] == pytest.approx(t / 50)
         assert objects[t]["faps"] == pytest.approx(dict(zip(FAP_COLUMNS, frame)), abs=tolerance)
         assert objects[t]["arkit"] == pytest.approx(expected, abs=0.0006 + tolerance / 100)
+    for name in FACES:  # weights alone; tests of what they show are test_mouths.py's
+        rows = [json.loads(line) for line in texts[name].splitlines()]
+        assert [row["frame"] for row in rows] == list(range(len(faps)))
+        for key, column in outputs(face(name), faps).items():
+            assert [row[name][key] for row in rows] == pytest.approx(column, abs=0.0011 + tolerance / 50), (name, key)
 
 
 @needs_say
@@ -134,6 +139,10 @@ def test_blendshapes_of_a_face() -> None:
     gestures = {
         "jaw": ({3: 400, 52: -400, 57: -400, 58: -400}, {"jawOpen"}, {"mouthClose", "mouthPucker"}),
         "closed": ({3: 400}, {"jawOpen", "mouthClose"}, {"mouthLowerDownLeft"}),
+        "pressed": ({3: 260, 51: 90, 52: -140}, {"mouthClose", "mouthPressLeft", "mouthPressRight", "mouthRollUpper"},
+                    {"mouthUpperUpLeft", "mouthLowerDownLeft", "mouthFunnel", "mouthShrugUpper"}),
+        "lip to teeth": ({3: 260, 51: -35, 52: -100, 55: -35, 56: -35}, {"mouthRollLower", "mouthShrugLower",
+                         "mouthShrugUpper"}, {"mouthPressLeft", "mouthRollUpper", "mouthFunnel"}),
         "round": ({17: 150, 16: 150, 53: -150, 54: -150}, {"mouthPucker"}, {"jawOpen", "mouthSmileLeft", "mouthClose"}),
         "smile": ({53: 150, 54: 150, 59: 150, 60: 150}, {"mouthSmileLeft", "mouthSmileRight"},
                   {"mouthFrownLeft", "mouthPucker", "jawOpen"}),
@@ -151,7 +160,7 @@ def test_blendshapes_of_a_face() -> None:
 def test_columns_are_apples() -> None:
     """Catches a blendshape that is described and that ARKit or Live Link do not know, so that it would go nowhere."""
     described = {output.name for output in read(RIG, "arkit").outputs}
-    assert len(described) == 14 and described <= set(APPLE) and len(LIVE_LINK) == 61
+    assert len(described) == 20 and described <= set(APPLE) and len(LIVE_LINK) == 61
     assert set(arkit(np.zeros((1, len(FAP_NUMBERS))))) == described
 
 

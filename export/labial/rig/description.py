@@ -83,7 +83,7 @@ def _named(top: Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mapping
                                               "at most 32")
         if name.upper() in spelled:
             raise top.error(f"output.{name}", f"is the same in capitals as output.{spelled[name.upper()]}")
-        if name.upper() in ("OUTPUTS", "PCA9685_PRESCALE"):
+        if name.upper() in ("OUTPUTS", "OUTPUT_NAMES", "PCA9685_PRESCALE"):
             raise top.error(f"output.{name}", "this name is taken by the generated header")
         if not isinstance(table, dict):
             raise top.error(f"output.{name}", "is not a table")

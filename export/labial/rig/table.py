@@ -133,6 +133,8 @@ def header(rig: Rig) -> str:
     """NAME.h: the rig's symbol and the numbers of its outputs."""
     upper = rig.name.upper()
     constants = ",\n".join(f"    {upper}_{output.name.upper()} = {number}" for number, output in enumerate(rig.outputs))
+    names = textwrap.fill(", ".join(f'"{output.name}"' for output in rig.outputs), width=110, initial_indent="    ",
+                          subsequent_indent="    ").replace("\n", " \\\n")
     prescale = "" if rig.unit.prescale is None else (
         f"\n/* What the PCA9685's prescale register must hold for these ticks. */\n"
         f"#define {upper}_PCA9685_PRESCALE {rig.unit.prescale}\n")
@@ -150,6 +152,11 @@ extern "C" {{
 #endif
 
 #define {upper}_OUTPUTS {len(rig.outputs)}
+
+/* What initialises an array of the outputs' names. */
+#define {upper}_OUTPUT_NAMES {{ \\
+{names} \\
+}}
 {prescale}
 /* Places of the outputs among the values. */
 enum {{

@@ -14,7 +14,7 @@ _PCA9685_PRESCALE = (3, 255)
 
 @dataclass(frozen=True)
 class Unit:
-    """What one microsecond (or one plain unit) of the description is in the tables."""
+    """What one microsecond (or one weight, or one plain unit) of the description is in the tables."""
 
     name: str
     scale: float  #: table units per unit of the description
@@ -24,7 +24,7 @@ class Unit:
     prescale: Optional[int] = None  #: what the PCA9685's prescale register is set to
 
 
-UNITS = ("us", "quarter_us", "pca9685", "counts", "plain")
+UNITS = ("us", "quarter_us", "pca9685", "counts", "weight", "plain")
 
 
 def make_unit(name: str, parameter: float = 50.0) -> Unit:
@@ -46,4 +46,6 @@ def make_unit(name: str, parameter: float = 50.0) -> Unit:
         if not 1e4 <= parameter <= 1e9:
             raise LabialError(f"{parameter:g} is not within 1e4 .. 1e9 Hz")
         return Unit(name, parameter / 1e6, True, f"counts of a timer at {parameter:.15g} Hz")
+    if name == "weight":
+        return Unit(name, 1000.0, False, "thousandths of a weight", 1000)
     return Unit(name, 1.0, False, "plain units")
