@@ -5,9 +5,7 @@ from __future__ import annotations
 import keyword
 import os
 import re
-import struct
 import textwrap
-import zlib
 from pathlib import Path
 from typing import Dict, Iterable, List, Sequence, Union
 
@@ -16,6 +14,7 @@ import numpy as np
 from labial import __version__
 from labial.errors import ModelError
 from labial.faps import CHANNELS, FAP_NAMES
+from labial.layout import Table, blob, channel_scalars, channel_tables, scalars, shared_tables, table_bytes
 from labial.quantise import FORMAT, ExportedModel
 from labial.reference.contact import FRAMES
 
@@ -57,37 +56,20 @@ def constants_of(name: str, labels: Sequence[str]) -> List[str]:
     return names
 
 
-def table_bytes(model: ExportedModel) -> Dict[str, int]:
-    """Flash bytes of each group of tables on a 32-bit target, without names."""
-    components, states = len(model.cost), model.edges.shape[1]
-    optional = {"contexts": model.contexts, "slopes": model.slopes}
-    return {
-        "phonemes": 6 * len(model.phonemes) + 6 * components,
-        "shapes": CHANNELS * components,
-        **{name: 0 if table is None else int(table.size) for name, table in optional.items()},
-        "kernels": int(model.kernels.size),
-        "pairs": int(model.pairs.size) + 2 * len(model.pair_keys),
-        "floors": (2 * CHANNELS + 2) * (len(model.floors) - 1),
-        "states": CHANNELS * states * 16,
-        "transitions": 2 * int(model.edges.size),
-        "descriptors": 24 * CHANNELS + 64,
-    }
-
-
 def _numbers(values: Iterable[int], indent: str = "    ") -> str:
     return textwrap.fill(", ".join(str(int(v)) for v in values), width=118, initial_indent=indent,
                          subsequent_indent=indent)
 
 
-def _table(declaration: str, values: np.ndarray) -> str:
-    return f"static const {declaration}[{values.size}] = {{\n{_numbers(values.ravel())}\n}};\n"
-
-
-def _records(declaration: str, rows: Iterable[str]) -> str:
-    lines = list(rows)
-    body = textwrap.fill(", ".join(line.replace(" ", "\u00a0") for line in lines), width=118, initial_indent="    ",
-                         subsequent_indent="    ", break_on_hyphens=False).replace("\u00a0", " ")
-    return f"static const {declaration}[{len(lines)}] = {{\n{body}\n}};\n"
+def _table(table: Table) -> str:
+    values = np.asarray(table.rows)
+    if values.ndim == 1:
+        body = _numbers(values)
+    else:
+        rows = [(table.pattern % tuple(row)).replace(" ", "\u00a0") for row in values.tolist()]
+        body = textwrap.fill(", ".join(rows), width=118, initial_indent="    ", subsequent_indent="    ",
+                             break_on_hyphens=False).replace("\u00a0", " ")
+    return f"static const {table.kind} {table.name}[{len(values)}] = {{\n{body}\n}};\n"
 
 
 def _comment(model: ExportedModel, what: str) -> str:
@@ -157,72 +139,20 @@ extern const labial_names_t {model.name}_names;
 def source(model: ExportedModel) -> str:
     """NAME.c: the tables."""
     parts = [_comment(model, f"{model.name}.c - the"), f'#include "{model.name}.h"\n\n#include <stddef.h>\n\n']
-    parts.append(_records("labial_phoneme_t phonemes", (
-        f"{{ {first}, {count}, {viseme}, {boundary}, {floor} }}"
-        for first, count, viseme, boundary, floor in zip(
-            model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor))))
-    parts.append("\n" + _records("labial_component_t components", (
-        f"{{ {cost}, {mean}, {width} }}"
-        for cost, mean, width in zip(model.cost, model.duration_mean, model.duration_gain))))
-    optional = (("contexts", "uint8_t", model.contexts), ("shapes", "int8_t", model.shapes),
-                ("slopes", "int8_t", model.slopes),
-                ("kernels", "int8_t", model.kernels if model.kernels.size else None),
-                ("pair_keys", "uint16_t", model.pair_keys if len(model.pair_keys) else None),
-                ("pairs", "int8_t", model.pairs if len(model.pair_keys) else None),
-                ("floors", "int16_t", model.floors[1:] if len(model.floors) > 1 else None),
-                ("contacts", "uint16_t", model.contacts[1:] if len(model.floors) > 1 else None))
-    for name, kind, table in optional:
-        if table is not None:
-            parts.append("\n" + _table(f"{kind} {name}", table))
+    tables = shared_tables(model)
+    parts.append("\n".join(_table(table) for table in tables if len(table.rows)))
+    channels = []
     for k in range(CHANNELS):
-        parts.append(f"\n/* {FAP_NAMES[k]} */\n")
-        parts.append(_records(f"labial_emission_t emissions_{k}", (
-            f"{{ {mean}, {width}, {cost}, {initial} }}"
-            for mean, width, cost, initial in zip(
-                model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k]))))
-        parts.append(_records(f"labial_state_t states_{k}", (
-            "{ { " + ", ".join(map(str, mean)) + f" }}, {hold}, {share}, {{ {delta}, {bend} }} }}"
-            for mean, hold, share, (delta, bend) in zip(
-                model.state_mean[k].tolist(), model.state_hold[k], model.state_share[k], model.state_weight[k]))))
-        parts.append(_table(f"uint16_t transitions_{k}", model.edges[k]))
-    channels = ",\n".join(
-        f"    {{ {model.centre[k]}, {model.shape_scale[k]}, {model.slope_scale[k]}, {model.kernel_scale[k]}, "
-        f"{model.pair_scale[k]}, {model.firm[k]}, "
-        f"emissions_{k}, states_{k}, transitions_{k} }}"
-        for k in range(CHANNELS))
-    parts.append(f"\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {{\n{channels}\n}};\n")
-    names = {name: name if table is not None else "NULL" for name, _, table in optional}
-    parts.append(f"""
-const labial_model_t {model.name} = {{
-    {FORMAT}, /* format */
-    {model.fps}, /* frames_per_second */
-    {len(model.cost)}, /* component_count */
-    {len(model.phonemes)}, /* phoneme_count */
-    {len(model.classes)}, /* class_count */
-    {model.edges.shape[1]}, /* state_count */
-    {model.edges.shape[2]}, /* predecessors */
-    {model.search_stride}, /* search_stride */
-    {model.silence}, /* silence */
-    {int(model.soft)}, /* soft */
-    {model.kernels.shape[1]}, /* kernel_taps */
-    {model.kernel_stride}, /* kernel_stride */
-    {model.kernel_behind}, /* kernel_behind */
-    {len(model.floors) - 1}, /* floor_count */
-    {model.pairs.shape[1]}, /* pair_knots */
-    {len(model.pair_keys)}, /* pair_count */
-    phonemes,
-    components,
-    {names["contexts"]}, /* contexts */
-    shapes,
-    {names["slopes"]}, /* slopes */
-    {names["kernels"]}, /* kernels */
-    {names["pair_keys"]}, /* pair_keys */
-    {names["pairs"]}, /* pairs */
-    {names["floors"]}, /* floors */
-    {names["contacts"]}, /* contacts */
-    channels
-}};
-""")
+        own = channel_tables(model, k)
+        parts.append(f"\n/* {FAP_NAMES[k]} */\n" + "".join(_table(table) for table in own))
+        members = [*map(str, channel_scalars(model, k)), *(table.name for table in own)]
+        channels.append(f"    {{ {', '.join(members)} }}")
+    parts.append("\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {\n" + ",\n".join(channels) + "\n};\n")
+    counts = [*scalars(model), ("floor_count", len(model.floors) - 1, ""), ("pair_knots", model.pairs.shape[1], ""),
+              ("pair_count", len(model.pair_keys), "")]
+    members = [f"    {value}, /* {name} */" for name, value, _ in counts]
+    members += [f"    {table.name}," if len(table.rows) else f"    NULL, /* {table.name} */" for table in tables]
+    parts.append(f"\nconst labial_model_t {model.name} = {{\n" + "\n".join(members) + "\n    channels\n};\n")
     return "".join(parts)
 
 
@@ -281,46 +211,6 @@ static const char *const labels[{len(model.phonemes)}] = {{
 
 const labial_names_t {model.name}_names = {{ {size}, {len(model.phonemes)}, entries, labels }};
 """
-
-
-def blob(model: ExportedModel) -> bytes:
-    """NAME.lbm: the binary form that ``labial_model_load`` reads (``include/labial/blob.h``)."""
-    states, predecessors = model.edges.shape[1:]
-    optional = (model.contexts is not None) | (model.slopes is not None) << 1 | (model.pairs.shape[1] == 2) << 2
-    parts: List[bytes] = []
-
-    def add(data: bytes) -> None:
-        parts.append(data + bytes(-len(data) % 4))
-
-    def table(values: Union[np.ndarray, None], dtype: str) -> None:
-        if values is not None:
-            add(np.ascontiguousarray(values).astype(dtype).tobytes())
-
-    add(b"".join(struct.pack("<HBBBB", *row) for row in zip(
-        model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor)))
-    add(b"".join(struct.pack("<HHH", *row) for row in zip(model.cost, model.duration_mean, model.duration_gain)))
-    table(model.contexts, "u1")
-    table(model.shapes, "i1")
-    table(model.slopes, "i1")
-    table(model.kernels, "i1")
-    table(model.pair_keys, "<u2")
-    table(model.pairs, "i1")
-    table(model.floors[1:], "<i2")
-    table(model.contacts[1:], "<u2")
-    for k in range(CHANNELS):
-        add(struct.pack("<hHHHHBB", model.centre[k], model.shape_scale[k], model.slope_scale[k],
-                        model.kernel_scale[k], model.pair_scale[k], model.firm[k], 0))
-        add(b"".join(struct.pack("<hHBB", *row) for row in zip(
-            model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k])))
-        add(b"".join(struct.pack("<hhhBBBB", *mean, hold, share, *weight) for mean, hold, share, weight in zip(
-            model.state_mean[k], model.state_hold[k], model.state_share[k], model.state_weight[k])))
-        table(model.edges[k], "<u2")
-    body = struct.pack(
-        "<HHHBBBBBBBBBBBBH", FORMAT, model.fps, len(model.cost), len(model.phonemes), len(model.classes), states,
-        predecessors, model.search_stride, model.silence, int(model.soft), model.kernels.shape[1], model.kernel_stride,
-        model.kernel_behind, optional, len(model.floors) - 1, len(model.pair_keys),
-    ) + b"".join(parts)
-    return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body
 
 
 def write(model: ExportedModel, directory: Union[str, os.PathLike], *, binary: bool = False) -> List[Path]:

@@ -1201,13 +1201,13 @@ const labial_model_t laughter_synthetic = {
     162, /* pair_count */
     phonemes,
     components,
-    contexts, /* contexts */
+    contexts,
     shapes,
-    slopes, /* slopes */
-    kernels, /* kernels */
-    pair_keys, /* pair_keys */
-    pairs, /* pairs */
-    floors, /* floors */
-    contacts, /* contacts */
+    slopes,
+    kernels,
+    pair_keys,
+    pairs,
+    floors,
+    contacts,
     channels
 };

@@ -1779,13 +1779,13 @@ const labial_model_t speech_en = {
     274, /* pair_count */
     phonemes,
     components,
-    contexts, /* contexts */
+    contexts,
     shapes,
-    slopes, /* slopes */
-    kernels, /* kernels */
-    pair_keys, /* pair_keys */
-    pairs, /* pairs */
-    floors, /* floors */
-    contacts, /* contacts */
+    slopes,
+    kernels,
+    pair_keys,
+    pairs,
+    floors,
+    contacts,
     channels
 };

@@ -1,0 +1,134 @@
+"""The tables of an exported model in the order of the C source, the binary form and the report of sizes.
+
+One list says for each table its C type and its layout (``include/labial/model.h``, ``include/labial/blob.h``);
+``labial.emit`` writes it as C, :func:`blob` as bytes, :func:`table_bytes` adds up its sizes.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass
+from typing import Dict, List, Sequence, Tuple
+
+import numpy as np
+
+from labial.faps import CHANNELS
+from labial.quantise import FORMAT, ExportedModel
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of R rows of F integers; without rows it is absent, and the model's pointer to it is NULL."""
+
+    name: str  #: in C
+    kind: str  #: its C type
+    layout: str  #: the F integers of a row as :mod:`struct` has them
+    rows: np.ndarray  #: (R, F) or (R,) int64
+    pattern: str = "%d"  #: a row in C
+    group: str = ""  #: what the report of sizes counts it as; its own name where empty
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return struct.calcsize("<" + self.layout) * len(self.rows)
+
+    def packed(self) -> bytes:
+        """The rows as little-endian bytes."""
+        rows = np.asarray(self.rows).reshape(len(self.rows), -1).tolist()
+        return b"".join(struct.pack("<" + self.layout, *row) for row in rows)
+
+
+def _flat(name: str, kind: str, layout: str, values: np.ndarray, group: str = "") -> Table:
+    return Table(name, kind, layout, np.zeros(0, dtype=np.int64) if values is None else np.ravel(values), group=group)
+
+
+def shared_tables(model: ExportedModel) -> List[Table]:
+    """The tables of all channels together."""
+    phonemes = np.stack(
+        [model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor], axis=1
+    )
+    components = np.stack([model.cost, model.duration_mean, model.duration_gain], axis=1)
+    return [
+        Table("phonemes", "labial_phoneme_t", "HBBBB", phonemes, "{ %d, %d, %d, %d, %d }"),
+        Table("components", "labial_component_t", "HHH", components, "{ %d, %d, %d }", "phonemes"),
+        _flat("contexts", "uint8_t", "B", model.contexts),
+        _flat("shapes", "int8_t", "b", model.shapes),
+        _flat("slopes", "int8_t", "b", model.slopes),
+        _flat("kernels", "int8_t", "b", model.kernels),
+        _flat("pair_keys", "uint16_t", "H", model.pair_keys, "pairs"),
+        _flat("pairs", "int8_t", "b", model.pairs),
+        _flat("floors", "int16_t", "h", model.floors[1:]),  # the first is none at all
+        _flat("contacts", "uint16_t", "H", model.contacts[1:], "floors"),
+    ]
+
+
+def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
+    """The tables of one channel."""
+    k = channel
+    emissions = np.stack(
+        [model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k]], axis=1
+    )
+    states = np.column_stack([model.state_mean[k], model.state_hold[k], model.state_share[k], model.state_weight[k]])
+    return [
+        Table(f"emissions_{k}", "labial_emission_t", "hHBB", emissions, "{ %d, %d, %d, %d }", "states"),
+        Table(f"states_{k}", "labial_state_t", "hhhBBBB", states, "{ { %d, %d, %d }, %d, %d, { %d, %d } }", "states"),
+        _flat(f"transitions_{k}", "uint16_t", "H", model.edges[k], "transitions"),
+    ]
+
+
+def channel_scalars(model: ExportedModel, channel: int) -> List[int]:
+    """What ``labial_channel_t`` has before its pointers: centre, scales of shapes, slopes, kernels, pairs; firmness."""
+    return [int(values[channel]) for values in (
+        model.centre, model.shape_scale, model.slope_scale, model.kernel_scale, model.pair_scale, model.firm)]
+
+
+def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
+    """Name, value and layout of what ``labial_model_t`` and the binary form begin with."""
+    return [
+        ("format", FORMAT, "H"),
+        ("frames_per_second", model.fps, "H"),
+        ("component_count", len(model.cost), "H"),
+        ("phoneme_count", len(model.phonemes), "B"),
+        ("class_count", len(model.classes), "B"),
+        ("state_count", model.edges.shape[1], "B"),
+        ("predecessors", model.edges.shape[2], "B"),
+        ("search_stride", model.search_stride, "B"),
+        ("silence", model.silence, "B"),
+        ("soft", int(model.soft), "B"),
+        ("kernel_taps", model.kernels.shape[1], "B"),
+        ("kernel_stride", model.kernel_stride, "B"),
+        ("kernel_behind", model.kernel_behind, "B"),
+    ]
+
+
+def table_bytes(model: ExportedModel) -> Dict[str, int]:
+    """Flash bytes of each group of tables on a 32-bit target, without names."""
+    sizes: Dict[str, int] = {}
+    for table in _all_tables(model):
+        group = table.group or table.name
+        sizes[group] = sizes.get(group, 0) + table.size
+    return {**sizes, "descriptors": 24 * CHANNELS + 64}
+
+
+def _all_tables(model: ExportedModel) -> List[Table]:
+    return shared_tables(model) + [table for k in range(CHANNELS) for table in channel_tables(model, k)]
+
+
+def _padded(data: bytes) -> bytes:
+    return data + bytes(-len(data) % 4)
+
+
+def _packed(tables: Sequence[Table]) -> bytes:
+    return b"".join(_padded(table.packed()) for table in tables)
+
+
+def blob(model: ExportedModel) -> bytes:
+    """NAME.lbm: the binary form that ``labial_model_load`` reads (``include/labial/blob.h``)."""
+    optional = (model.contexts is not None) | (model.slopes is not None) << 1 | (model.pairs.shape[1] == 2) << 2
+    _, values, codes = zip(*scalars(model))
+    head = struct.pack(f"<{''.join(codes)}BBH", *values, optional, len(model.floors) - 1, len(model.pair_keys))
+    body = head + _packed(shared_tables(model))
+    for k in range(CHANNELS):
+        body += struct.pack("<hHHHHBB", *channel_scalars(model, k), 0) + _packed(channel_tables(model, k))
+    return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body
