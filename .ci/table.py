@@ -1,0 +1,94 @@
+"""Prints what .ci/run ran: for each workflow how many tests ran and passed, its time, and what was left out and why.
+
+    python3 .ci/table.py WORKFLOW=STATUS=SECONDS ...
+
+Reads build/WORKFLOW/junit.xml, which ctest writes, and build/ci/WORKFLOW.log. A line below a workflow is for tests that
+consist of many, such as pytest.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Dict, List, NamedTuple
+
+BUILD = Path(__file__).resolve().parents[1] / "build"
+#: How frameworks report a test that they leave out: Unity, cmocka and pytest, each with a group `why`.
+LEFT_OUT = (re.compile(r"^\S+:\d+:(?P<why>\w+):IGNORE(?P<more>.*)$"), re.compile(r"^\[  SKIPPED \] (?P<why>\w+)$"),
+            re.compile(r"^SKIPPED \[\d+\] (?P<why>.*)$"))
+WANTED = {"unity_fails"}  # suites that leave tests out on purpose
+
+
+class Row(NamedTuple):
+    """A line of the table."""
+
+    suite: str
+    ran: str
+    passed: str
+    left_out: List[str]
+    seconds: str
+
+
+def counts(output: str) -> Dict[str, int]:
+    """What pytest's last line counts, as `passed`, `failed`, `skipped` and so on; empty for other output."""
+    lines = re.findall(r"^=+ (.*) in [\d.]+s.*=+$", output, re.MULTILINE)
+    return {word: int(count) for count, word in re.findall(r"(\d+) (\w+)", lines[-1])} if lines else {}
+
+
+def left_out_within(name: str, output: str) -> List[str]:
+    """What a test that passed left out of itself, and why."""
+    found = (pattern.match(line) for line in output.splitlines() for pattern in LEFT_OUT if name not in WANTED)
+    return [f"{name}: " + "".join(filter(None, match.groups())) for match in found if match]
+
+
+def warnings_of(log: Path) -> List[str]:
+    """What configuring says that it leaves out."""
+    text = log.read_text(encoding="utf-8", errors="replace")
+    blocks = (" ".join(block.split()) for block in re.findall(r"^CMake Warning .*\n((?:  .*\n)+)", text, re.MULTILINE))
+    return [block for block in blocks if "left out" in block]
+
+
+def workflow_rows(name: str, status: str, seconds: str) -> List[Row]:
+    """A workflow's row and those of its tests that count their own."""
+    report, left_out = BUILD / name / "junit.xml", warnings_of(BUILD / "ci" / f"{name}.log")
+    if not report.exists():
+        return [Row(name, "-", "yes" if status == "0" else "failed", left_out, seconds)]
+    ran, passed, rows = 0, 0, []
+    for case in ElementTree.parse(report).getroot().iter("testcase"):
+        test, output = case.get("name", ""), case.findtext("system-out") or ""
+        if case.get("status") != "run" and case.get("status") != "fail":
+            left_out.append(f"{test}: {case.get('status')}")
+            continue
+        ran += 1
+        passed += case.get("status") == "run"
+        if case.get("status") == "fail":
+            left_out.append(f"failed: {test}")
+        own, within = counts(output), left_out_within(test, output)
+        if own:
+            done = sum(own.get(word, 0) for word in ("passed", "failed", "error", "errors"))
+            if "deselected" in own:
+                within.append(f"{own['deselected']} deselected: the corpus that LABIAL_GRID names is not there")
+            time = f"{float(case.get('time', 0)):.0f}"
+            rows.append(Row(f"  {test}", str(done), str(own.get("passed", 0)), within, time))
+        else:
+            left_out += within
+    return [Row(name, str(ran), str(passed), left_out + ["failed"] * (status != "0" and ran == passed), seconds), *rows]
+
+
+def main() -> int:
+    """Runs the command; returns its exit status."""
+    rows = [Row("suite", "ran", "passed", ["left out, or failed"], "seconds")]
+    for argument in sys.argv[1:]:
+        rows += workflow_rows(*argument.split("="))
+    for row in rows:
+        first, *others = row.left_out or [""]
+        print(f"{row.suite:<12} {row.ran:>6} {row.passed:>8} {row.seconds:>8}  {first}".rstrip())
+        for reason in others:
+            print(" " * 39 + reason)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
