@@ -35,7 +35,7 @@ class Table:
 
     def packed(self) -> bytes:
         """The rows as little-endian bytes."""
-        rows = np.asarray(self.rows).reshape(len(self.rows), -1).tolist()
+        rows = self.rows.reshape(len(self.rows), len(self.layout)).tolist()
         return b"".join(struct.pack("<" + self.layout, *row) for row in rows)
 
 
