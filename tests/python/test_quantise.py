@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from labial import fixed
+from labial import emit, fixed
 from labial.errors import ModelError
 from labial.faps import CHANNELS
 from labial.fixed import (
@@ -29,19 +29,23 @@ from labial.loss import measure
 from labial.model import Model
 from labial.native import library_root
 from labial.quantise import FORMAT, LIMITS, ExportedModel, quantise
+from labial.reference import contact
 from labial.reference.stream import DURATION_MAX
 from labial.reference.trajectory import WINDOW
 from labial.reference.viterbi import LAG
 from labial.report import loosened
+from labial.rig import table
 from models import random_model, streams
 
 
 def test_limits_are_the_librarys() -> None:
     """The exporter and the reference write numbers down that the headers define; one that is changed there alone makes
     models that the library refuses, or another motion."""
-    headers = [library_root() / "include" / "labial" / name for name in ("model.h", "labial.h")]
-    text = "\n".join(path.read_text(encoding="utf-8") for path in headers)
-    defined = {name: int(value) for name, value in re.findall(r"^#define LABIAL_(\w+) \(?(-?\d+)u?\)?\s", text, re.M)}
+    sources = [library_root() / "include" / "labial" / name for name in ("model.h", "labial.h", "names.h", "rig.h")]
+    sources += [library_root() / "lib" / name for name in ("shape.c", "viterbi.c")]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
+    pattern = r"^(?:#define )? *(?:LABIAL_)?(\w+)(?: =)? \(?(-?(?:0x[0-9a-f]+|\d+))u?\)?[,\s]"
+    defined = {name: int(value, 0) for name, value in re.findall(pattern, text, re.M)}
     known = {
         "MODEL_FORMAT": FORMAT, "POSITION_MAX": fixed.POSITION_MAX, "NO_FLOOR": fixed.NO_FLOOR,
         "WEIGHT_SUM_MAX": WEIGHT_SUM_MAX, "WEIGHT_MIN": WEIGHT_MIN, "STIFFNESS_MAX": STIFFNESS_MAX,
@@ -49,6 +53,12 @@ def test_limits_are_the_librarys() -> None:
         "PHONEMES_MAX": LIMITS["phonemes"], "CLASSES_MAX": LIMITS["classes"], "STATES_MAX": LIMITS["states"],
         "PHONEME_COMPONENTS_MAX": LIMITS["components"], "KERNEL_TAPS_MAX": LIMITS["taps"],
         "SEARCH_STRIDE_MAX": LIMITS["stride"], "REACH": LIMITS["reach"], "CHANNELS": CHANNELS,
+        "CONTACT_FRAMES": contact.FRAMES, "CONTACT_LONG": contact.LONG, "CONTACT_LAST": contact.LAST,
+        "REST_FRAMES": contact.REST, "DURATION_Z_MAX": fixed.DURATION_Z_MAX, "EMISSION_Z_MAX": fixed.EMISSION_Z_MAX,
+        "NAMES_FORMAT": emit.NAMES_FORMAT, "RIG_FORMAT": table.FORMAT,
+        "RIG_WEIGHT_SUM_MAX": table.WEIGHT_SUM_MAX, "RIG_GAIN_MAX": table.GAIN_MAX,
+        "RIG_VALUE_MAX": table.VALUE_MAX,
+        **{f"LABELS_{name.upper()}": bit for name, bit in emit.SET_BITS.items()},
     }  # fmt: skip
     assert {name: defined.get(name) for name in known} == known
 
