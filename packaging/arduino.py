@@ -68,8 +68,8 @@ def umbrella(source: Source) -> str:
 
 
 def _included(file: Path) -> List[Path]:
-    """What of the folders in SHARED a sketch or a header includes in quotes, and what that includes, with the sources of
-    the same name."""
+    """What of the folders in SHARED a sketch or a header includes in quotes, and what that includes, with the sources
+    of the same name."""
     found: List[Path] = []
     for name in re.findall(r'^#include "([^"/]+)"', file.read_text(encoding="utf-8"), re.MULTILINE):
         for path in (folder / name for folder in SHARED if (folder / name).is_file()):

@@ -37,6 +37,7 @@ LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "toml", "ini", "json", "yam
 TOOLS: Dict[str, str] = {
     "arm-none-eabi-gcc": "the Debian package gcc-arm-none-eabi",
     "arm-none-eabi-g++": "the Debian package libstdc++-arm-none-eabi-newlib",
+    "avr-gcc": "the Debian packages gcc-avr and avr-libc",
     "cmake": "the Debian package cmake",
     "flite": "the Debian package flite",
     "g++": "the Debian package g++",
@@ -49,6 +50,7 @@ TOOLS: Dict[str, str] = {
     "node": "the Debian package nodejs",
     "pkg-config": "the Debian package pkgconf",
     "qemu-system-arm": "the Debian package qemu-system-arm",
+    "simavr": "the Debian packages simavr and libsimavr-dev",
     "valgrind": "the Debian package valgrind",
 }
 

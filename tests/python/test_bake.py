@@ -237,14 +237,16 @@ int main(void)
 
 @pytest.mark.skipif(not shutil.which("avr-gcc"), reason="no avr-gcc: install gcc-avr and avr-libc")
 def test_avr_takes_what_fits(tmp_path: Path) -> None:
-    """A track that no array of an AVR holds is refused in words; one of the largest size compiles, and stays in flash."""
+    """A track that no array of an AVR holds is refused in words; one of the largest size compiles, in flash."""
     times = np.arange(AVR_LARGEST + 1) / 50
     frames_file(tmp_path / "fits.csv", times[:-1], times[:-1])
     frames_file(tmp_path / "over.csv", times, times)
     for name in ("fits", "over"):
         assert main(["bake", str(tmp_path / f"{name}.csv"), "-o", str(tmp_path / f"{name}.h")]) == 0
-        (tmp_path / f"{name}.c").write_text(
-            f'#include "{name}.h"\nlabial_player_t t;\nint main(void) {{ {name}_begin(&t); return *{name}_next(&t); }}\n')
+        (tmp_path / f"{name}.c").write_text(f"""#include "{name}.h"
+labial_player_t player;
+int main(void) {{ {name}_begin(&player); return *{name}_next(&player); }}
+""")
     command = ["avr-gcc", "-mmcu=atmega1284p", "-std=c99", "-Os", *warnings("c")]
     assert "Bake the sound in parts" in run(*command, "-c", "over.c", cwd=tmp_path, status=1)
     run(*command, "fits.c", "-o", "fits.elf", cwd=tmp_path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 from typing import Dict, List
 
@@ -26,6 +27,12 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         "pip install '.[train,evaluate]'": "fetches; test_wheel.py installs the package without",
         "labial evaluate CORPUS --splits 20 -o report/": "takes too long; test_evaluate.py runs it on less",
     },
+    "arduino.md": {
+        "sudo apt-get install -y python3-venv build-essential gcc-avr avr-libc avrdude": "installs",
+        "python3 -m venv tools": "what it makes is there already, with the tests' own packages",
+        'tools/bin/pip install "$LABIAL[align]"': "fetches; test_wheel.py installs the package without",
+        "avrdude -c arduino -p m328p -P /dev/ttyACM0 -U flash:w:jaw.elf": "needs a board; the page simulates one",
+    },
     "record.md": {
         "labial evaluate corpus/ --splits 5 -o report/": "takes too long; test_evaluate.py runs it on less",
     },
@@ -42,11 +49,17 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
 
 
 def prepare(page: Path, folder: Path) -> None:
-    """What a page expects to find: README.md the source tree and its reader's corpus, record.md recordings."""
+    """What a page expects to find: README.md the source tree and its reader's corpus, record.md recordings, arduino.md
+    a recording and the folder into which `labial` was installed."""
     if page.name != "README.md":
         folder.mkdir()
         if page.name == "record.md":
             write_recordings(folder)
+        if page.name == "arduino.md":
+            shutil.copyfile(SOURCE / "examples" / "talk" / "talk.wav", folder / "talk.wav")
+            (folder / "tools" / "bin").mkdir(parents=True)
+            (folder / "tools" / "bin" / "labial").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m labial "$@"\n')
+            (folder / "tools" / "bin" / "labial").chmod(0o755)
         return
     unwanted = shutil.ignore_patterns("build", ".git", "__pycache__", "*.egg-info", ".venv")
     shutil.copytree(SOURCE, folder, ignore=unwanted)

@@ -212,7 +212,8 @@ def test_uno_sketch_plays_the_track(arduino: Path, tmp_path: Path) -> None:
     first, *talking = pulses
     assert first == (0, wanted[0]) and [pulse for _, pulse in talking] == 2 * wanted
     starts = [3000, 8000]
-    assert [time for time, _ in talking] == [start + HEARD - 3000 + 20 * n for start in starts for n in range(len(data))]
+    due = [start + HEARD - 3000 + 20 * n for start in starts for n in range(len(data))]
+    assert [time for time, _ in talking] == due
 
 
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
@@ -275,8 +276,8 @@ def test_uno_sketch_compiles_with_arduinos_core(arduino: Path, tmp_path: Path) -
     """What the stub of the core allows and the core itself does not; Servo is not part of the core and stays a stub."""
     shutil.copyfile(STUB / "Servo.h", tmp_path / "Servo.h")
     sketch = arduino / "examples" / "UnoJaw"
-    run("avr-g++", "-mmcu=atmega328p", "-DF_CPU=16000000L", "-DARDUINO=10819", "-DARDUINO_AVR_UNO", "-DARDUINO_ARCH_AVR",
-        "-std=gnu++11", "-Os", "-Wall", "-Wextra", "-Werror", f"-I{CORE / 'cores' / 'arduino'}",
+    run("avr-g++", "-mmcu=atmega328p", "-DF_CPU=16000000L", "-DARDUINO=10819", "-DARDUINO_AVR_UNO",
+        "-DARDUINO_ARCH_AVR", "-std=gnu++11", "-Os", "-Wall", "-Wextra", "-Werror", f"-I{CORE / 'cores' / 'arduino'}",
         f"-I{CORE / 'variants' / 'standard'}", f"-I{tmp_path}", "-include", "Arduino.h", "-x", "c++", "-c",
         sketch / "UnoJaw.ino", "-o", tmp_path / "sketch.o")
 

@@ -93,6 +93,7 @@ def test_wheel_serves_every_python(wheel: Path) -> None:
               for path in (SOURCE / "export" / "labial").rglob("*") if path.is_file() and path.suffix != ".pyc"}
     wanted |= {f"labial/library/{path.relative_to(SOURCE).as_posix()}"
                for pattern in ("include/labial/*.h", "lib/*.[ch]", "LICENSE") for path in SOURCE.glob(pattern)}
+    wanted |= {f"labial/models/{path.name}" for path in (SOURCE / "export" / "models").glob("*.npz")}
     rest = {name for name in names if ".dist-info/" not in name} - wanted
     assert rest == {"labial/runtime/labial_runtime.so"} and wanted <= set(names)
 
@@ -127,7 +128,7 @@ def test_installed_wheel_needs_nothing(installed: Path, tmp_path: Path) -> None:
 
 
 def test_installed_exporter_brings_the_library(installed: Path, tmp_path: Path) -> None:
-    """With numpy, ``labial check`` compiles the sources that came with the package."""
+    """With numpy, ``labial check`` compiles the sources that came with the package, ``labial bake`` has its models."""
     env = {"PATH": os.environ["PATH"], "OPENBLAS_NUM_THREADS": "1",
            "PYTHONPATH": os.pathsep.join((sysconfig.get_path("purelib"), sysconfig.get_path("platlib")))}
     where = call([installed, "-c", "import labial.native; print(labial.native.library_root())"], env, tmp_path)
@@ -138,6 +139,8 @@ def test_installed_exporter_brings_the_library(installed: Path, tmp_path: Path) 
                 env, tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("50 frames") and os.sep not in done.stdout
+    done = call([installed.with_name("labial"), "bake", "word.lab", "-o", "word.h"], env, tmp_path)
+    assert (done.returncode, done.stdout.split()) == (0, ["word.h", "labial_player.h"]), done.stderr
     version = call([installed.with_name("labial"), "--version"], env, tmp_path)
     assert version.stdout == f"labial {labial.__version__}\n"
 
