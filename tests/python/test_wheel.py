@@ -53,7 +53,7 @@ def build_wheel(folder: Path, env: Dict[str, str]) -> subprocess.CompletedProces
     """``pip wheel .`` in a copy of the sources, with the build's own packages taken from the tests' environment."""
     tree = folder / "tree"
     unwanted = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
-    for name in ("include", "lib", "packaging", "cmake", "export/labial"):
+    for name in ("include", "lib", "packaging", "cmake", "export/labial", "export/models"):
         shutil.copytree(SOURCE / name, tree / name, ignore=unwanted)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copyfile(SOURCE / name, tree / name)
