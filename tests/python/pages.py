@@ -8,6 +8,7 @@ folder that is the page's own:
   the page's other files of the same language; .ino files get the stub of Arduino.h;
 - ``python``: run, or only compiled when it has a name;
 - ``js``: compiled as a module;
+- ``html``: a page, which an ``sh`` block below it looks at;
 - ``cmake``: a CMakeLists.txt, which an ``sh`` block below it hands to cmake;
 - ``toml``, ``ini``, ``json``, ``yaml``: parsed;
 - ``text``: what programs print, drawings; no commands.
@@ -31,13 +32,15 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set
 
 from packages import CC, CXX, SOURCE
 
-LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "toml", "ini", "json", "yaml", "text")
+LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "html", "toml", "ini", "json", "yaml", "text")
 
 #: Tools that a page may use and a machine may lack, and what installs each.
 TOOLS: Dict[str, str] = {
     "arm-none-eabi-gcc": "the Debian package gcc-arm-none-eabi",
     "arm-none-eabi-g++": "the Debian package libstdc++-arm-none-eabi-newlib",
     "avr-gcc": "the Debian packages gcc-avr and avr-libc",
+    "chromium": "the Debian package chromium",
+    "clang": "the Debian package clang",
     "cmake": "the Debian package cmake",
     "flite": "the Debian package flite",
     "g++": "the Debian package g++",
@@ -48,17 +51,19 @@ TOOLS: Dict[str, str] = {
     "labial-say-espeak": "the Debian package libespeak-ng-dev, before the build",
     "labial-say-flite": "the Debian package flite1-dev, before the build",
     "node": "the Debian package nodejs",
+    "npm": "the Debian package npm",
     "pkg-config": "the Debian package pkgconf",
     "qemu-system-arm": "the Debian package qemu-system-arm",
     "simavr": "the Debian packages simavr and libsimavr-dev",
     "valgrind": "the Debian package valgrind",
+    "wasm-ld": "the Debian package lld",
 }
 
 #: Commands that are never run: they fetch toolchains or frameworks when they are first used, or need a board.
 EXTERNAL = ("arduino-cli", "idf.py", "pio", "west")
 
 _FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,})\s*(.*)$")
-_NAME = re.compile(r"^(?:#|//|/\*|;)\s*((?:[\w.-]+/)*[\w-]+\.[A-Za-z]{1,6})(?=[\s,:]|$)")
+_NAME = re.compile(r"^(?:#|//|/\*|;|<!--)\s*((?:[\w.-]+/)*[\w-]+\.[A-Za-z]{1,6})(?=[\s,:]|$)")
 _HEADING = re.compile(r"^#+ +(.*?) *#*$", re.MULTILINE)
 _MAIN = re.compile(r"^int main\(", re.MULTILINE)
 _COMMAND = re.compile(r"^\s*(?:\$ |sudo |(?:labial(?:-\w+)?|cmake|ctest|pip|pio|west|idf\.py|arduino-cli|cc|gcc|git) )")
@@ -256,6 +261,10 @@ class Runner:
             raise PageError('a cmake block begins with "# CMakeLists.txt" or "# FOLDER/CMakeLists.txt"')
         if not any(other.label == "sh" and re.search(r"\bcmake\b", other.text) for other in later):
             raise PageError("no sh block below it runs cmake")
+
+    def _html(self, block: Block, later: Sequence[Block]) -> None:
+        if not block.name or not any(other.label == "sh" for other in later):
+            raise PageError('an html block begins with "<!-- NAME.html -->", and an sh block below it looks at the page')
 
     def _toml(self, block: Block, later: Sequence[Block]) -> None:
         try:
