@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Callable, List, Optional
 
 from labial import __version__
-from labial.errors import LabialError
+from labial.errors import LabialError, needs
 
 if TYPE_CHECKING:
     from labial.model import Model
@@ -210,10 +210,8 @@ def _add_export_options(command: argparse.ArgumentParser) -> None:
 
 
 def _train(options: argparse.Namespace) -> int:
-    try:
+    with needs("training", "train"):
         from labial.train import backed_off, train
-    except ModuleNotFoundError as error:
-        raise LabialError(f"training needs the package {error.name}: install labial[train]") from None
     from labial.corpus import read_corpora
     from labial.model import save
 
@@ -280,10 +278,8 @@ def _timings(options: argparse.Namespace) -> int:
 
 
 def _align(options: argparse.Namespace) -> int:
-    try:
+    with needs("aligning", "align"):
         from labial.align.command import run
-    except ModuleNotFoundError as error:
-        raise LabialError(f"aligning needs the package {error.name}: install labial[align]") from None
 
     text = run(options.sound, options.text, options.text_file,
                progress=not options.quiet and sys.stderr.isatty())
@@ -355,11 +351,9 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _evaluate(options: argparse.Namespace) -> int:
-    try:
+    with needs("evaluating", "train,evaluate"):
         from labial.evaluate.command import run
         from labial.evaluate.protocol import Options
-    except ModuleNotFoundError as error:
-        raise LabialError(f"evaluating needs the package {error.name}: install labial[train,evaluate]") from None
 
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
     if words and options.leave_out_talkers:
@@ -389,10 +383,8 @@ def _rig(options: argparse.Namespace) -> int:
 
 
 def _plot(options: argparse.Namespace) -> int:
-    try:
+    with needs("plotting", "plot"):
         from labial.see.plot import DEFAULT, plot
-    except ModuleNotFoundError as error:
-        raise LabialError(f"plotting needs the package {error.name}: install labial[plot]") from None
     from labial.see.motion import read_bands, read_motions
 
     plot(read_motions(options.frames), read_bands(options.phones, options.labels, options.source), options.output,
@@ -412,10 +404,8 @@ def _page(options: argparse.Namespace) -> int:
 
 
 def _record(options: argparse.Namespace) -> int:
-    try:
+    with needs("recording", "train"):
         from labial.record.record import record
-    except ModuleNotFoundError as error:
-        raise LabialError(f"recording needs the package {error.name}: install labial[train]") from None
     from labial.phonesets import PHONE_SETS
     from labial.record.landmarks import Given, parse_size
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 import os
 import re
 import textwrap
@@ -34,7 +33,7 @@ def check_name(name: str, what: str = "model") -> None:
         raise ModelError(
             f"{name!r} is no name for a {what}: letters, digits and single underscores, a letter first, at most 48"
         )
-    if name in _C_KEYWORDS or keyword.iskeyword(name) or name.startswith("labial"):
+    if name in _C_KEYWORDS or name.startswith("labial"):
         raise ModelError(f"{name!r} is no name for a {what}: C, C++ or the library already uses it")
 
 

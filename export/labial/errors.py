@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import Optional, Union
+from contextlib import contextmanager
+from typing import Iterator, Optional, Union
 
 
 class LabialError(Exception):
@@ -28,3 +29,15 @@ class StreamError(LabialError):
     def __init__(self, result: int, message: str) -> None:
         super().__init__(message)
         self.result = result  #: LABIAL_ERROR_PHONEME and so on, a negative number (labial/labial.h)
+
+
+@contextmanager
+def needs(what: str, extra: str) -> Iterator[None]:
+    """Around the imports of an optional package: LabialError says that `what`, such as "training", needs it, and which
+    `extra` of this package brings it."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] == "labial":
+            raise
+        raise LabialError(f"{what} needs the package {error.name}: install labial[{extra}]") from None

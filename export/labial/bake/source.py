@@ -13,7 +13,7 @@ import numpy as np
 
 from labial.corpus.formats import read_timings
 from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments, text_of
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, needs
 from labial.frames import even
 from labial.model import Model, load
 from labial.phones import Stream, phone_set, stream_of
@@ -85,10 +85,8 @@ def _timed(source: Source) -> List[SourceSegment]:
 
 
 def _heard(source: Source) -> List[SourceSegment]:
-    try:
+    with needs("a sound", "align"):
         from labial.align.align import align
-    except ModuleNotFoundError as error:
-        raise LabialError(f"a sound needs the package {error.name}: install labial[align]") from None
     found = align(source.path, source.text)
     if source.text is None:
         warnings.warn(f"{source.path}: without its text (--text, --text-file) phonemes are less sure", stacklevel=2)

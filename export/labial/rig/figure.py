@@ -7,7 +7,7 @@ from typing import Union
 
 import numpy as np
 
-from labial.errors import LabialError
+from labial.errors import needs
 from labial.rig.description import Rig
 from labial.rig.gestures import POSES
 from labial.rig.table import convert, expected
@@ -18,10 +18,8 @@ _SHARES = np.linspace(0.0, 1.25, 51)
 
 def draw(rig: Rig, path: Union[str, Path]) -> None:
     """Writes the drawing as SVG; the same rig gives the same bytes. Raises LabialError without matplotlib."""
-    try:
+    with needs("drawing (--no-figure leaves it out)", "rig"):
         from labial.see.drawing import COLOURS, STYLE, pyplot, write
-    except ModuleNotFoundError as error:
-        raise LabialError(f"drawing needs the package {error.name}: install labial[rig], or give --no-figure") from None
 
     table = convert(rig)
     columns = min(len(table), 3)
