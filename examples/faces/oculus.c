@@ -14,14 +14,14 @@ static const labial_rig_output_t outputs[15] = {
     /* FF: 9 per FAP unit of (+1.25 open_jaw -1.5 lower_t_midlip_o +1.25 raise_b_midlip_o) */
     { { 5120, 0, 0, -6144, 5120, 0, 0, 0, 0, 0, 0, 0, 0 },
       0, 0, 589824, -800, 0, 1000, 0 },
-    /* TH: 2 per FAP unit of (-1 open_jaw -2 push_t_lip -2 lower_t_midlip_o -1 raise_b_midlip_o +1
+    /* TH: 2 per FAP unit of (-0.5 open_jaw -2 push_t_lip -1 lower_t_midlip_o -1 raise_b_midlip_o +1
      * stretch_l_cornerlip_o +1 stretch_r_cornerlip_o) */
-    { { -4096, 0, -8192, -8192, -4096, 4096, 4096, 0, 0, 0, 0, 0, 0 },
-      0, 0, 131072, 0, 0, 50, 0 },
-    /* DD: 1.20045 per FAP unit of (-0.75 open_jaw -3 push_t_lip -1 lower_t_midlip_o -1 raise_b_midlip_o
+    { { -2048, 0, -8192, -4096, -4096, 4096, 4096, 0, 0, 0, 0, 0, 0 },
+      0, 0, 131072, -140, 0, 50, 0 },
+    /* DD: 1.19956 per FAP unit of (-0.75 open_jaw -3 push_t_lip -1 lower_t_midlip_o -1 raise_b_midlip_o
      * +1.5 stretch_l_cornerlip_o +1.5 stretch_r_cornerlip_o) */
-    { { -3072, 0, -12288, -4096, -4096, 6144, 6144, 0, 0, 0, 0, 0, 0 },
-      0, 0, 78673, -60, 0, 100, 0 },
+    { { -1536, 0, -6144, -2048, -2048, 3072, 3072, 0, 0, 0, 0, 0, 0 },
+      0, 0, 157229, -100, 0, 100, 0 },
     /* kk: 2 per FAP unit of (-0.5 open_jaw -4 push_t_lip +1 lower_t_midlip_o -1 raise_b_midlip_o +2
      * stretch_l_cornerlip_o +2 stretch_r_cornerlip_o) */
     { { -2048, 0, -16384, 4096, -4096, 8192, 8192, 0, 0, 0, 0, 0, 0 },
@@ -30,10 +30,10 @@ static const labial_rig_output_t outputs[15] = {
      * -1.5 stretch_l_cornerlip_o -1.5 stretch_r_cornerlip_o) */
     { { -4096, 0, -6144, -10240, -2048, -6144, -6144, 0, 0, 0, 0, 0, 0 },
       0, 0, 262506, -450, 0, 500, 0 },
-    /* SS: 5 per FAP unit of (-1 open_jaw -2 push_t_lip -2.75 lower_t_midlip_o -0.25 raise_b_midlip_o +3
-     * stretch_l_cornerlip_o +3 stretch_r_cornerlip_o) */
-    { { -4096, 0, -8192, -11264, -1024, 12288, 12288, 0, 0, 0, 0, 0, 0 },
-      0, 0, 327680, -220, 0, 250, 0 },
+    /* SS: 4 per FAP unit of (-1 open_jaw -2 push_t_lip -3 lower_t_midlip_o -0.5 raise_b_midlip_o +1.5
+     * stretch_l_cornerlip_o +1.5 stretch_r_cornerlip_o) */
+    { { -4096, 0, -8192, -12288, -2048, 6144, 6144, 0, 0, 0, 0, 0, 0 },
+      0, 0, 262144, -480, 0, 250, 0 },
     /* nn: 1.20042 per FAP unit of (-0.5 open_jaw -5 push_t_lip -1 lower_t_midlip_o -1 raise_b_midlip_o +2.5
      * stretch_l_cornerlip_o +2.5 stretch_r_cornerlip_o) */
     { { -1024, 0, -10240, -2048, -2048, 5120, 5120, 0, 0, 0, 0, 0, 0 },
@@ -50,10 +50,10 @@ static const labial_rig_output_t outputs[15] = {
      * stretch_l_cornerlip_o +3 stretch_r_cornerlip_o) */
     { { 0, 0, -5120, -7168, -2048, 12288, 12288, 0, 0, 0, 0, 0, 0 },
       0, 0, 196502, -850, 0, 200, 0 },
-    /* ih: 3 per FAP unit of (-1.75 open_jaw -2 push_t_lip -2.75 lower_t_midlip_o -1 raise_b_midlip_o +1.625
-     * stretch_l_cornerlip_o +1.625 stretch_r_cornerlip_o) */
-    { { -7168, 0, -8192, -11264, -4096, 6656, 6656, 0, 0, 0, 0, 0, 0 },
-      0, 0, 196608, -50, 0, 150, 0 },
+    /* ih: 3.49754 per FAP unit of (-1.25 open_jaw -2 push_t_lip -3.5 lower_t_midlip_o -1 raise_b_midlip_o
+     * +1 stretch_l_cornerlip_o +1 stretch_r_cornerlip_o) */
+    { { -2560, 0, -4096, -7168, -2048, 2048, 2048, 0, 0, 0, 0, 0, 0 },
+      0, 0, 458429, -420, 0, 150, 0 },
     /* oh: 2 per FAP unit of (+2 push_t_lip -1 lower_t_midlip_o -1 raise_b_midlip_o -1 stretch_l_cornerlip_o
      * -1 stretch_r_cornerlip_o) */
     { { 0, 0, 8192, -4096, -4096, -4096, -4096, 0, 0, 0, 0, 0, 0 },

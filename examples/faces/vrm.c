@@ -9,10 +9,10 @@ static const labial_rig_output_t outputs[5] = {
      * stretch_l_cornerlip_o -1.25 stretch_r_cornerlip_o) */
     { { 0, 0, -16384, 2048, -4096, -5120, -5120, 0, 0, 0, 0, 0, 0 },
       0, 0, 212863, -650, 0, 800, 0 },
-    /* ih: 3.003 per FAP unit of (-1.75 open_jaw -3 push_t_lip -4 lower_t_midlip_o -1 raise_b_midlip_o +1.5
-     * stretch_l_cornerlip_o +1.5 stretch_r_cornerlip_o) */
-    { { -7168, 0, -12288, -16384, -4096, 6144, 6144, 0, 0, 0, 0, 0, 0 },
-      0, 0, 196805, 0, 0, 350, 0 },
+    /* ih: 3.49754 per FAP unit of (-1.25 open_jaw -2 push_t_lip -3.5 lower_t_midlip_o -1 raise_b_midlip_o
+     * +1 stretch_l_cornerlip_o +1 stretch_r_cornerlip_o) */
+    { { -2560, 0, -4096, -7168, -2048, 2048, 2048, 0, 0, 0, 0, 0, 0 },
+      0, 0, 458429, -420, 0, 350, 0 },
     /* ou: 2.9976 per FAP unit of (-1.5 open_jaw +4 push_t_lip -2.125 lower_t_midlip_o -0.875
      * raise_b_midlip_o -2 stretch_l_cornerlip_o -2 stretch_r_cornerlip_o) */
     { { -6144, 0, 16384, -8704, -3584, -8192, -8192, 0, 0, 0, 0, 0, 0 },

@@ -192,11 +192,17 @@ def test_vowels_differ(word: str) -> None:
 
 
 def test_the_mouth_rests() -> None:
-    """Catches a mouth that is not still in silence: nothing but sil shows."""
+    """Catches a mouth that is not still in silence: nothing but sil shows on the neutral face, and hardly anything
+    in a pause, where a talker's lips are never quite at rest."""
     still = np.zeros((1, 13))
     assert not any(column.any() for name in ("arkit", "vrm") for column in outputs(face(name), still).values())
     weights = {key: column[0] for key, column in outputs(face("oculus"), still).items()}
     assert weights.pop("sil") == 1.0 and not any(weights.values())
+    paused = motion(lab([("SIL", 300), ("AA", 200), ("SIL", 1500), ("M", 100), ("SIL", 1500)])).weights
+    for part in (slice(0, 5), slice(50, 88), slice(130, None)):
+        assert max(column[part].max() for column in paused["vrm"].values()) <= 0.02
+        assert max(column[part].max() for key, column in paused["oculus"].items() if key != "sil") <= 0.02
+        assert paused["oculus"]["sil"][part].min() >= 0.9 and paused["arkit"]["jawOpen"][part].max() <= 0.05
 
 
 def test_faces_of_labial_synth(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
