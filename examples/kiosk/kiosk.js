@@ -1,0 +1,55 @@
+// A page that speaks, laughs when it is tapped, and can be interrupted at any moment.
+import { Labial, timings } from "labial";
+import "labial/labial-mouth.js";
+
+// What is said: a sound and the times of its phonemes. For a server's voice, the two addresses under which it gives them.
+const WORDS = { sound: "welcome.flac", timings: "welcome.lab" };
+
+const [face, voice, status] = ["face", "voice", "status"].map((id) => document.getElementById(id));
+const labial = await Labial.load();
+const laughter = labial.stream();
+let turn = 0; // whoever asked last has the mouth
+
+/** Interrupts what the mouth does. The result is that of `prepare`, once the mouth is at rest; null when somebody else has
+ * asked for the mouth in the meantime. */
+async function interrupt(prepare) {
+    const mine = ++turn;
+    const [ready] = await Promise.all([prepare?.(), face.cancel(200)]);
+    return mine === turn ? (ready ?? true) : null;
+}
+
+async function text(address) {
+    const answer = await fetch(address);
+    if (!answer.ok) throw new Error(`${address}: ${answer.status} ${answer.statusText}`);
+    return answer.text();
+}
+
+async function speak(words) {
+    const lab = await interrupt(() => text(words.timings));
+    if (lab === null) return;
+    face.audio = voice;
+    face.track = labial.render(timings.fromLab(lab), { unknown: "nearest" });
+    voice.src = words.sound;
+    await voice.play();
+}
+
+async function laugh() {
+    if (!(await interrupt())) return;
+    if (laughter.done) laughter.restart();
+    laughter.laugh(1.5, 0.7);
+    laughter.end();
+    face.audio = null; // a laugh without a sound goes by itself
+    face.stream = laughter;
+}
+
+/** On a tap does something, and says what went wrong; that a sound was interrupted is nothing wrong. */
+function onTap(id, action) {
+    document.getElementById(id).addEventListener("click", () => action().catch((error) => {
+        if (error.name !== "AbortError") status.textContent = error.message;
+    }));
+}
+
+onTap("face", laugh);
+onTap("speak", () => speak(WORDS));
+onTap("stop", () => interrupt());
+status.textContent = "Tap the face, and it laughs.";
