@@ -103,7 +103,7 @@ def test_demo_closes_the_lips_it_draws(demo: Page) -> None:
         if p["label"] in ("AA", "AE", "AY", "EH"):
             assert max(gaps) > 4 * LINE, p
     closed = least["P"] + least["B"] + least["M"]
-    assert len(closed) >= 25 and max(closed) < LINE / 1.5
+    assert len(closed) >= 25 and max(closed) < LINE
     assert min(least["F"] + least["V"]) > LINE
 
 

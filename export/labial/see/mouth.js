@@ -21,7 +21,7 @@ export const follow = (next, heard, period) => clamp(next + 0.1 * (heard - next)
 const MW = 170, MNS = 74, HALF = 85, UPPER = 21, LOWER = 29;
 /* Lips that touch press on each other: the first FAP units of opening only relax them. In p, b and m, where lips meet, the
  * talkers' outer contours are up to 75 units farther apart than at rest; in f and v, where they do not, 100 and more. */
-const SEAL = 80 * MNS / 1024;
+const SEAL = 85 * MNS / 1024;
 const STATIONS = Array.from({length: 49}, (_, i) => Math.PI * (i / 48 - 0.5));
 
 /* How far the contour is displaced at each station, from its displacement at the right corner, half way, in the middle,
