@@ -22,7 +22,15 @@ const MW = 170, MNS = 74, HALF = 85, UPPER = 21, LOWER = 29;
 /* Lips that touch press on each other: the first FAP units of opening only relax them. In p, b and m, where lips meet, the
  * talkers' outer contours are up to 75 units farther apart than at rest; in f and v, where they do not, 100 and more. */
 const SEAL = 85 * MNS / 1024;
-const STATIONS = Array.from({length: 49}, (_, i) => Math.PI * (i / 48 - 0.5));
+
+/* Along the mouth, from its right corner to its left one: the angle whose sine is the place, and how thick the neutral
+ * lips are there and where their line runs. */
+const STATIONS = Array.from({length: 49}, (_, i) => {
+  const angle = Math.PI * (i / 48 - 0.5), u = Math.sin(angle), reach = Math.abs(u), arch = 1 - u * u;
+  const bow = 1 - 0.2 * Math.exp(-((u / 0.1) ** 2)) + 0.1 * Math.exp(-(((reach - 0.2) / 0.14) ** 2));
+  return {angle, u, arch, top: UPPER * Math.pow(1 - reach ** 1.5, 0.95) * bow, bottom: LOWER * Math.pow(arch, 0.9),
+    rest: 2.4 * Math.exp(-((u / 0.2) ** 2)) - 1.6 * Math.exp(-(((reach - 0.45) / 0.25) ** 2))};
+});
 
 /* How far the contour is displaced at each station, from its displacement at the right corner, half way, in the middle,
  * half way and at the left corner. In the angle whose sine is the place along the mouth, an ellipse is a smooth curve:
@@ -33,7 +41,7 @@ function displacement(y) {
   for (let i = 1; i < 4; i++)
     m[i] = d[i - 1] * d[i] <= 0 ? 0 : (h[i - 1] + h[i]) * 3 / ((2 * h[i] + h[i - 1]) / d[i - 1] + (h[i] + 2 * h[i - 1]) / d[i]);
   m[0] = 1.25 * d[0] - 0.25 * m[1]; m[4] = 1.25 * d[3] - 0.25 * m[3];
-  return STATIONS.map(at => {
+  return STATIONS.map(({angle: at}) => {
     let i = 0;
     while (i < 3 && at > x[i + 1]) i++;
     const t = (at - x[i]) / h[i], s = 1 - t;
@@ -41,7 +49,10 @@ function displacement(y) {
   });
 }
 
-const points = list => list.map(p => p[0].toFixed(1) + " " + p[1].toFixed(1)).join("L");
+const points = list => list.map(p => p[0].toFixed(1) + " " + p[1].toFixed(1));
+const line = list => "M" + points(list).join("L");
+/* The way along one contour and back along the other one, both as points() writes them. */
+const area = (there, back) => `M${there.join("L")}L${back.slice().reverse().join("L")}Z`;
 
 /** The drawing of a frame: the `d` of each path by its name in the markup, how far the jaw is down, and `gap`, the widest
  * distance between the lips' inner contours; drawing units. `faps` has 13 numbers in the order of CHANNELS. */
@@ -58,11 +69,8 @@ export function mouthShape(faps) {
   const pushTop = clamp(pushUpper / 800, -0.25, 0.3), pushBottom = clamp(pushLower / 800, -0.25, 0.3);
 
   const outerTop = [], outerBottom = [], innerTop = [], innerBottom = [];
-  STATIONS.forEach((angle, i) => {
-    const u = Math.sin(angle), x = u * (u > 0 ? left : right), arch = 1 - u * u, reach = Math.abs(u);
-    const bow = 1 - 0.2 * Math.exp(-((u / 0.1) ** 2)) + 0.1 * Math.exp(-(((reach - 0.2) / 0.14) ** 2));
-    const top = UPPER * Math.pow(1 - reach ** 1.5, 0.95) * bow, bottom = LOWER * Math.pow(arch, 0.9);
-    const rest = 2.4 * Math.exp(-((u / 0.2) ** 2)) - 1.6 * Math.exp(-(((reach - 0.45) / 0.25) ** 2));
+  STATIONS.forEach(({u, top, bottom, rest}, i) => {
+    const x = u * (u > 0 ? left : right);
     outerTop.push([x, up[i] - top * (1 + 0.7 * pushTop)]);
     outerBottom.push([x, down[i] + bottom * (1 + 0.7 * pushBottom)]);
     let a = up[i] + rest + SEAL / 2 + 0.3 * top * pushTop, b = down[i] + rest - SEAL / 2 - 0.3 * bottom * pushBottom;
@@ -72,22 +80,18 @@ export function mouthShape(faps) {
   });
   /* Lips in contact push outwards instead of vanishing. */
   const mid = 24, n = STATIONS.length - 1;
-  STATIONS.forEach((_, i) => {
-    const arch = Math.cos(STATIONS[i]) ** 2;
+  STATIONS.forEach(({arch}, i) => {
     outerTop[i][1] = Math.min(outerTop[i][1], innerTop[i][1] - 7 * arch);
     outerBottom[i][1] = Math.max(outerBottom[i][1], innerBottom[i][1] + 9 * arch);
   });
-  const back = list => list.slice().reverse();
+  const [ot, ob, it, ib] = [outerTop, outerBottom, innerTop, innerBottom].map(points);
   const between = (a, b, share, from, to) => a.map((p, i) => [p[0] * (1 - share) + b[i][0] * share, p[1] * (1 - share) + b[i][1] * share]).slice(from, to);
   const lowest = outerBottom[mid][1], smile = clamp(mns(cornerLeft + cornerRight) / 24 + mw(stretchLeft + stretchRight) / 60, 0, 1);
   const chin = 158 + jaw, [rx, ry] = outerTop[0], [lx, ly] = outerTop[n];
   const paths = {
-    inner: "M" + points(innerTop) + "L" + points(back(innerBottom)) + "Z",
-    outer: "M" + points(outerTop) + "L" + points(back(outerBottom)) + "Z",
-    upperLip: "M" + points(outerTop) + "L" + points(back(innerTop)) + "Z",
-    lowerLip: "M" + points(outerBottom) + "L" + points(back(innerBottom)) + "Z",
-    upperShine: "M" + points(between(outerTop, innerTop, 0.3, 15, 34)),
-    lowerShine: "M" + points(between(outerBottom, innerBottom, 0.52, 15, 34)),
+    inner: area(it, ib), outer: area(ot, ob), upperLip: area(ot, it), lowerLip: area(ob, ib),
+    upperShine: line(between(outerTop, innerTop, 0.3, 15, 34)),
+    lowerShine: line(between(outerBottom, innerBottom, 0.52, 15, 34)),
     under: `M${right * -0.5} ${lowest - 1}Q0 ${lowest + 9} ${left * 0.5} ${lowest - 1}`,
     corners: `M${rx + 3} ${ry}L${rx - 3} ${ry + 1}M${lx - 3} ${ly}L${lx + 3} ${ly + 1}`,
     philtrum: `M-8-64Q-9-45-15 ${outerTop[20][1] - 3}M8-64Q9-45 15 ${outerTop[28][1] - 3}`,
