@@ -11,8 +11,6 @@
 
 typedef char labial_arithmetic_shift_is_required[((-1) >> 1) == -1 ? 1 : -1];
 
-typedef char labial_int_of_32_bits_is_required[sizeof(int) >= 4 && sizeof(unsigned) >= 4 ? 1 : -1];
-
 /* Cores whose widest product is 32 x 32 -> 32 bits make wider ones of several. Set by hand to test that both ways give
  * the same bits. */
 #ifndef LABIAL_NARROW_MULTIPLY

@@ -18,15 +18,6 @@
 
 #define MAGIC 0x4c41424cu /* "LABL" */
 
-typedef char labial_limits_are_sound[LABIAL_WINDOW >= 1 && LABIAL_WINDOW <= 48 && LABIAL_LAG >= 0 &&
-                                             LABIAL_LAG <= 40 &&
-                                             LABIAL_WINDOW + LABIAL_LAG + LABIAL_SEARCH_STRIDE_MAX <= 63 &&
-                                             LABIAL_REACH >= 0 && LABIAL_REACH <= 60 &&
-                                             LABIAL_QUEUE >= LABIAL_REACH + 2 && LABIAL_QUEUE <= 255 &&
-                                             LABIAL_MODELS >= 1 && LABIAL_MODELS <= 255
-                                         ? 1
-                                         : -1];
-
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
     return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride) : 0;

@@ -71,6 +71,31 @@ extern "C" {
 #define LABIAL_MODELS 2
 #endif
 
+/* What does not compile: values out of range, sums without parentheses (which the code would take apart), unsigned ones. */
+#define LABIAL_IS_NUMBER_(x, least, most) \
+    (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
+#if !LABIAL_IS_NUMBER_(LABIAL_WINDOW, 1, 48)
+#error "LABIAL_WINDOW must be a number from 1 to 48."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_LAG, 0, 40)
+#error "LABIAL_LAG must be a number from 0 to 40."
+#endif
+#if LABIAL_WINDOW + LABIAL_LAG > 55
+#error "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_REACH, 0, 60)
+#error "LABIAL_REACH must be a number from 0 to 60."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_QUEUE, 2, 255)
+#error "LABIAL_QUEUE must be a number from 2 to 255."
+#endif
+#if LABIAL_QUEUE < LABIAL_REACH + 2
+#error "LABIAL_QUEUE must be LABIAL_REACH + 2 or more, or a stream could wait for a phoneme that has no room."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_MODELS, 1, 255)
+#error "LABIAL_MODELS must be a number from 1 to 255."
+#endif
+
 /* Longest duration of one phoneme, milliseconds: one hour. */
 #define LABIAL_DURATION_MAX 3600000u
 

@@ -17,7 +17,12 @@
 #ifndef LABIAL_MODEL_H
 #define LABIAL_MODEL_H
 
+#include <limits.h>
 #include <stdint.h>
+
+#if INT_MAX < 2147483647
+#error "Labial needs an int of 32 bits, to which its arithmetic promotes."
+#endif
 
 #ifdef __cplusplus
 extern "C" {

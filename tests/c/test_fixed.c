@@ -16,7 +16,6 @@
 #undef LABIAL_NARROW_MULTIPLY
 #define LABIAL_NARROW_MULTIPLY 1
 #define labial_arithmetic_shift_is_required narrow_arithmetic_shift_is_required
-#define labial_int_of_32_bits_is_required narrow_int_of_32_bits_is_required
 #define labial_part16 narrow_part16
 #define labial_part24 narrow_part24
 #define labial_add narrow_add

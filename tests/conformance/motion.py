@@ -57,14 +57,16 @@ def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray) -> np.ndarray:
     return base + (fresh - base) * smooth(step / (FADE + 1))
 
 
-def part_motion(tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool) -> np.ndarray:
+def part_motion(
+    tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool, **limits: int
+) -> np.ndarray:
     """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without easing. `held` (13,) is the pose
-    from which it fades in when it is `resumed`."""
+    from which it fades in when it is `resumed`; `limits` are the `window` and `lag` of a library built for others."""
     motion = np.zeros((0, CHANNELS))
     faded_until = 0  # the frame behind the last that a fade has touched
     for run in runs(part.pushes, tables["speech"].fps):
         own = tables[run.model]
-        fresh = solution(own, *aims(own, run.phonemes, run.counts), begin=run.begin)
+        fresh = solution(own, *aims(own, run.phonemes, run.counts), begin=run.begin, **limits)
         if run.begin or resumed:
             rests = run.begin < 2 or run.begin <= faded_until
             moved = np.zeros(CHANNELS) if rests else motion[-1] - motion[-2]
@@ -74,14 +76,14 @@ def part_motion(tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed
     return motion[: part.cancel[0]] if part.cancel else motion
 
 
-def script_motion(tables: Dict[str, Tables], script: Script) -> np.ndarray:
-    """(T, 13) float64, FAP: all frames of a stream."""
+def script_motion(tables: Dict[str, Tables], script: Script, **limits: int) -> np.ndarray:
+    """(T, 13) float64, FAP: all frames of a stream; `limits` as in :func:`part_motion`."""
     rate = tables["speech"].fps
     held = np.zeros(CHANNELS)
     shown: List[np.ndarray] = [np.zeros((0, CHANNELS))]
     for part in script.parts:
         resumed = any(len(frames) for frames in shown)
-        motion = part_motion(tables, part, held, resumed)
+        motion = part_motion(tables, part, held, resumed, **limits)
         shown.append(motion)
         held = motion[-1] if len(motion) else held
         if part.cancel:

@@ -36,8 +36,9 @@ def bundled_models() -> Dict[str, ExportedModel]:
             for word, name in MODELS.items()}
 
 
-def library_frames(vectors: str) -> str:
-    """What print_frames.c prints, compiled with `vectors` and the host's compiler."""
+def library_frames(vectors: str, **limits: int) -> str:
+    """What print_frames.c prints, compiled with `vectors` and the host's compiler. `limits` are those of
+    ``labial/labial.h`` that are not the default, `window` for ``LABIAL_WINDOW``."""
     with tempfile.TemporaryDirectory(prefix="labial-") as name:
         folder = Path(name)
         (folder / "vectors.c").write_text(vectors, encoding="ascii")
@@ -45,7 +46,8 @@ def library_frames(vectors: str) -> str:
                    ROOT / "boards" / "host" / "host.c", *sorted((ROOT / "lib").glob("*.c")),
                    *(ROOT / "lib" / "models" / f"{model}.c" for model in MODELS.values())]
         includes = [f"-I{path}" for path in (ROOT / "include", ROOT / "lib" / "models", ROOT / "boards", HERE)]
-        command = [compiler(), "-std=c99", "-O2", '-DBOARD_NAME="host"', *includes, *map(str, sources),
+        defined = [f"-DLABIAL_{limit.upper()}={value}" for limit, value in limits.items()]
+        command = [compiler(), "-std=c99", "-O2", '-DBOARD_NAME="host"', *defined, *includes, *map(str, sources),
                    "-o", str(folder / "print_frames")]
         for step in (command, [str(folder / "print_frames")]):
             done = subprocess.run(step, capture_output=True, text=True)
@@ -54,13 +56,13 @@ def library_frames(vectors: str) -> str:
         return done.stdout
 
 
-def deviations(models: Dict[str, ExportedModel], scripts: Sequence[Script], frames: Frames) -> str:
+def deviations(models: Dict[str, ExportedModel], scripts: Sequence[Script], frames: Frames, **limits: int) -> str:
     """How far the frames are from the float64 reference; raises LabialError when that is too far. In the RMS a pose
-    that is held, which has one rounding, counts once."""
+    that does not move, which has one rounding, counts once. `limits` as in :func:`motion.script_motion`."""
     tables = {word: ExportedTables(model) for word, model in models.items()}
     lines, found = [], []
     for script in scripts:
-        wanted = script_motion(tables, script)
+        wanted = script_motion(tables, script, **limits)
         if wanted.shape != frames[script.name].shape:
             raise LabialError(f"{script.name}: {len(frames[script.name])} frames, the reference has {len(wanted)}")
         difference = frames[script.name] - np.floor(wanted + 0.5)

@@ -20,7 +20,7 @@ QUEUE = 32  # LABIAL_QUEUE
 sys.path.insert(0, str(HERE))
 
 import motion  # noqa: E402
-from regenerate import bundled_models, deviations  # noqa: E402
+from regenerate import bundled_models, deviations, library_frames  # noqa: E402
 from scripts import Frames, Part, Push, Script, as_c, digest, read, read_frames  # noqa: E402
 
 
@@ -182,3 +182,16 @@ def test_faults_in_streams_are_located(
 def test_the_digest_is_the_standard_one() -> None:
     """CRC-32 of the bytes that any language can make of the frames: little-endian, whatever the host."""
     assert digest(np.array([[0x3231, 0x3433, 0x3635, 0x3837]])) == 0x9AE0DAAF  # "12345678"
+
+
+@pytest.mark.parametrize("limits", [{"window": 48}, {"window": 1, "lag": 1}, {"window": 15, "lag": 40}],
+                         ids=lambda limits: "_".join(f"{limit}_{value}" for limit, value in limits.items()))
+def test_other_limits_follow_the_reference(
+    models: Dict[str, ExportedModel], scripts: List[Script], limits: Dict[str, int]
+) -> None:
+    """A library that is built for another window or lag plays the streams as the reference with these does."""
+    short = [script for script in scripts if script.name not in ("minutes", "endless")]
+    frames = read_frames(library_frames(as_c(scripts, models), **limits))
+    assert len(deviations(models, short, frames, **limits).splitlines()) == len(short) + 1
+    with pytest.raises(LabialError):
+        deviations(models, short, frames)
