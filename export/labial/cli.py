@@ -1,5 +1,5 @@
 """The command ``labial``: train, synth, timings, align, bake, export, check, evaluate, laughter-corpus, rig, plot,
-page, record."""
+page, landmarks, record."""
 
 from __future__ import annotations
 
@@ -157,7 +157,8 @@ def parser() -> argparse.ArgumentParser:
     plot.set_defaults(run=_plot)
 
     page = commands.add_parser("page", help="write a page that plays motion")
-    page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv) or .fap")
+    page.add_argument("frames", metavar="FRAMES", help="a frames file (.csv), .fap, or a model (.npz), which speaks "
+                      "the timings")
     page.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
     _add_source(page)
     _add_labels(page)
@@ -165,6 +166,16 @@ def parser() -> argparse.ArgumentParser:
     page.add_argument("--title", help="the file's name without it")
     page.add_argument("-o", "--output", required=True, metavar="OUT.html")
     page.set_defaults(run=_page)
+
+    landmarks = commands.add_parser("landmarks", help="track the face in a video, for record")
+    landmarks.add_argument("video", metavar="VIDEO")
+    landmarks.add_argument("-o", "--output", required=True, metavar="LANDMARKS.npz")
+    landmarks.add_argument("--face", choices=("largest", "left", "right"), help="which is the talker's, where there is "
+                           "more than one, as seen in the picture")
+    landmarks.add_argument("--task", metavar="FILE", help="the model of MediaPipe's Face Landmarker, "
+                           "face_landmarker.task, for a MediaPipe that brings none")
+    landmarks.add_argument("--quiet", action="store_true", help="no progress bar")
+    landmarks.set_defaults(run=_landmarks)
 
     record = commands.add_parser("record", help="make a corpus of tracked video (face landmarks)")
     record.add_argument("landmarks", metavar="LANDMARKS", nargs="+", help="one talker's .npz, .npy or .csv files, or "
@@ -174,6 +185,8 @@ def parser() -> argparse.ArgumentParser:
     record.add_argument("--fps", type=float, metavar="RATE", help="frames per second, where the files do not tell")
     record.add_argument("--size", metavar="WIDTHxHEIGHT", help="of the video in pixels, where coordinates are shares "
                         "of it and the files do not tell")
+    record.add_argument("--offset", type=float, default=0.0, metavar="MS", help="how much later than its sound the "
+                        "picture is, negative where it is earlier (0); an estimate is printed")
     record.add_argument("--cutoff", type=float, default=12.0, metavar="HZ",
                         help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
     record.set_defaults(run=_record)
@@ -393,13 +406,30 @@ def _plot(options: argparse.Namespace) -> int:
 
 
 def _page(options: argparse.Namespace) -> int:
-    from labial.see.motion import read_bands, read_motion
+    from labial.see.motion import read_bands, read_motion, spoken
     from labial.see.page import page
 
     bands = read_bands(options.phones, options.labels, options.source)
-    text = page(read_motion(options.frames), bands, options.audio, options.title)
+    if Path(options.frames).suffix.lower() == ".npz":
+        if options.phones is None:
+            raise LabialError(f"{options.frames}: a model speaks phoneme timings: give --phones")
+        motion = spoken(options.frames, options.phones, options.labels, options.source)
+    else:
+        motion = read_motion(options.frames)
+    text = page(motion, bands, options.audio, options.title)
     with open(options.output, "w", encoding="utf-8", newline="\n") as out:
         out.write(text)
+    return 0
+
+
+def _landmarks(options: argparse.Namespace) -> int:
+    try:
+        from labial.record.track import landmarks
+    except ModuleNotFoundError as error:
+        raise LabialError(f"tracking needs the package {error.name}: install labial[record]") from None
+
+    print(landmarks(options.video, options.output, options.face, options.task,
+                    progress=not options.quiet and sys.stderr.isatty()))
     return 0
 
 
@@ -410,7 +440,8 @@ def _record(options: argparse.Namespace) -> int:
     from labial.record.landmarks import Given, parse_size
 
     size = parse_size(options.size) if options.size else None
-    print(record(options.landmarks, options.output, PHONE_SETS[options.kind], Given(options.fps, size), options.cutoff))
+    print(record(options.landmarks, options.output, PHONE_SETS[options.kind], Given(options.fps, size), options.cutoff,
+                 options.offset / 1000))
     return 0
 
 

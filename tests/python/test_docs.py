@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from labial.corpus.folder import read_frames
-from labial.faps import FAP_COLUMNS, FAP_NUMBERS
+from labial.faps import FAP_COLUMNS
 from packages import CC, SOURCE, run
 from pages import EXTERNAL, LINK, Block, MissingTool, PageError, Runner, command, headings, parse
-from test_record import FACE, SIDE, UP
+from test_record import seen
 from test_see import wav
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
@@ -94,17 +94,7 @@ def write_recordings(folder: Path) -> None:
     (folder / "recordings").mkdir()
     for number, path in enumerate(sorted((folder / "seen").glob("*.csv")), 1):
         times, frames = read_frames(path)
-        fap = dict(zip(FAP_NUMBERS, frames.T))
-        points = np.zeros((len(times), 478, 3))
-        for landmark, place in FACE.items():
-            points[:, landmark] = place
-        for landmark, axis, moved in (
-            (152, 1, fap[3] / UP), (17, 2, -fap[16] / UP), (0, 2, -fap[17] / UP), (0, 1, fap[51] / UP),
-            (17, 1, -fap[52] / UP), (291, 0, fap[53] / SIDE), (61, 0, -fap[54] / SIDE), (269, 1, fap[55] / UP),
-            (39, 1, fap[56] / UP), (405, 1, -fap[57] / UP), (181, 1, -fap[58] / UP), (291, 1, -fap[59] / UP),
-            (61, 1, -fap[60] / UP),
-        ):  # fmt: skip
-            points[:, landmark, axis] += moved
+        points = seen(frames)
         name = folder / "recordings" / f"s{number:02}"
         np.savez(name.with_suffix(".npz"), landmarks=points, fps=50)
         rows = [line.split() for line in path.with_suffix(".lab").read_text().splitlines()]

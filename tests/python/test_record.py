@@ -67,6 +67,22 @@ def talking():
     return points, np.stack([faps[number] for number in FAP_NUMBERS], axis=1)
 
 
+def seen(frames):
+    """(T, 478, 3) landmarks of a still head with these (T, 13) FAPs; FAP 17 goes into the depth of the upper lip."""
+    fap = dict(zip(FAP_NUMBERS, frames.T))
+    points = np.zeros((len(frames), 478, 3))
+    for landmark, place in FACE.items():
+        points[:, landmark] = place
+    for landmark, axis, moved in (
+        (152, 1, fap[3] / UP), (17, 2, -fap[16] / UP), (0, 2, -fap[17] / UP), (0, 1, fap[51] / UP),
+        (17, 1, -fap[52] / UP), (291, 0, fap[53] / SIDE), (61, 0, -fap[54] / SIDE), (269, 1, fap[55] / UP),
+        (39, 1, fap[56] / UP), (405, 1, -fap[57] / UP), (181, 1, -fap[58] / UP), (291, 1, -fap[59] / UP),
+        (61, 1, -fap[60] / UP),
+    ):  # fmt: skip
+        points[:, landmark, axis] += moved
+    return points
+
+
 def turned(points: np.ndarray, flat: bool = False) -> np.ndarray:
     """The same face on a head that nods, shakes and rolls by some 15 degrees, drifts, and comes nearer. Pixels."""
     result = np.empty_like(points)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import List, Tuple
 
 import numpy as np
@@ -11,6 +12,8 @@ import soxr
 from labial.corpus.timings import PathLike
 from labial.errors import DataError
 
+#: Suffixes of files that hold pictures beside their sound.
+VIDEOS = (".mp4", ".mov", ".m4v", ".mkv", ".webm", ".avi", ".ts", ".3gp")
 #: Samples per second of the recogniser's models.
 RATE = 16000
 #: The level that speech is brought to, in dB of full scale, and that of the noise under it. Synthetic speech is silent
@@ -21,7 +24,8 @@ _BLOCK = 10
 
 
 def read_sound(path: PathLike) -> np.ndarray:
-    """A sound file's samples, (N,) float32 at `RATE`, the mean of its channels; full scale is 1.
+    """A sound file's samples, (N,) float32 at `RATE`, the mean of its channels; full scale is 1. Of a video, where the
+    package av is there to read it, its sound from the video's start on.
 
     Raises DataError for what is no sound file, for samples that are not finite and for no samples at all.
     """
@@ -38,9 +42,23 @@ def read_sound(path: PathLike) -> np.ndarray:
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
     except (RuntimeError, ValueError) as error:  # of either library
+        if Path(path).suffix.lower() in VIDEOS:
+            return _of_video(path)
         problem = getattr(error, "error_string", str(error))
         raise DataError(path, None, f"not a sound that can be read: {' '.join(problem.split())}") from None
-    samples = np.concatenate(blocks)
+    return _checked(path, np.concatenate(blocks))
+
+
+def _of_video(path: PathLike) -> np.ndarray:
+    try:
+        from labial.record.video import sound
+    except ModuleNotFoundError as error:
+        raise DataError(path, None, f"the sound of a video needs the package {error.name}: install labial[record]"
+                        ) from None
+    return _checked(path, sound(path, RATE))
+
+
+def _checked(path: PathLike, samples: np.ndarray) -> np.ndarray:
     if not np.isfinite(samples).all():
         raise DataError(path, None, "a sample is not finite")
     if not len(samples):

@@ -96,7 +96,7 @@ def fill(times: np.ndarray, values: np.ndarray) -> np.ndarray:
     if not lost.any():
         return values
     if lost.mean() > MOST_LOST:
-        raise ValueError(f"{lost.mean():.0%} of the frames have no face, at most {MOST_LOST:.0%} may")
+        raise ValueError(f"{lost.mean():.0%} of the frames have no face that can be used, at most {MOST_LOST:.0%} may")
     edges = np.flatnonzero(np.diff(np.concatenate([[0], lost.astype(int), [0]])))
     step = float(np.median(np.diff(times)))
     for first, end in zip(edges[::2], edges[1::2]):

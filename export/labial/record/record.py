@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Sequence, Tuple, Union
 
@@ -17,28 +18,37 @@ from labial.corpus.timings import phoneme_segments
 from labial.errors import DataError, LabialError
 from labial.frames import even, write_csv
 from labial.phonesets import PhoneSet
-from labial.record.landmarks import Given, read_landmarks
+from labial.record.head import facing
+from labial.record.landmarks import Given, Landmarks, read_landmarks
 from labial.record.mouth import Recording, faps, fill
+from labial.record.sync import advice, estimate
 
 PathLike = Union[str, os.PathLike]
 
 _LANDMARKS = (".npz", ".npy", ".csv")
 #: Slower recordings lose closures: half of GRID's /b/ last 70 ms or less, and the lips touch for a part of that.
 _SLOW = 24.0
+_MOST_OFFSET = 5.0  # seconds
 
 
-def record(sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float) -> str:
+def record(
+    sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float, offset: float = 0.0
+) -> str:
     """Writes the corpus folder `output` from one talker's landmark files or folders of them; returns a summary.
 
-    Recordings in which the face is lost for too long are left out with a warning. Raises DataError for what is
-    malformed, before anything is written.
+    The picture is taken as `offset` seconds later than its sound; the summary of speech tells what remains of it.
+    Recordings in which the face is lost or turned away for too long are left out with a warning. Raises DataError for
+    what is malformed, before anything is written.
     """
+    if not -_MOST_OFFSET <= offset <= _MOST_OFFSET:
+        raise LabialError(f"an offset of {1000 * offset:g} ms is not within {-1000 * _MOST_OFFSET:g} .. "
+                          f"{1000 * _MOST_OFFSET:g}")
     if not 0.0 <= cutoff <= 1000.0:
         raise LabialError(f"a cutoff of {cutoff:g} Hz is not within 0 .. 1000")
     folder = Path(output)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise DataError(folder, None, "not a folder that is new or empty")
-    recordings = [_read(path, phone_set, given) for path in _files(sources)]
+    recordings = [_read(path, phone_set, given, offset) for path in _files(sources)]
     kinds = {item.landmarks.points.shape[2] for item in recordings}
     if len(kinds) > 1:
         flat = next(item for item in recordings if item.landmarks.points.shape[2] == 2)
@@ -62,8 +72,16 @@ def record(sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, g
             out.writelines(map(_line, item.segments))
     seconds = sum(len(frames) / fps for _, frames, fps in finished)
     left_out = len(recordings) - len(finished)
-    return (f"{folder}: {len(finished)} recordings, {int(seconds // 60)} min {seconds % 60:.0f} s"
-            + (f"; {left_out} left out" if left_out else ""))
+    lines = [f"{folder}: {len(finished)} recordings, {int(seconds // 60)} min {seconds % 60:.0f} s"
+             + (f"; {left_out} left out" if left_out else "")]
+    if phone_set.kind == "speech":
+        lines += advice(estimate([_episode(*what) for what in finished]), offset)
+    return "\n".join(lines)
+
+
+def _episode(item: Recording, frames: np.ndarray, fps: float) -> Episode:
+    return Episode(item.landmarks.path.stem, item.landmarks.times[0] + np.arange(len(frames)) / fps, frames,
+                   item.segments)
 
 
 def _files(sources: Sequence[PathLike]) -> List[Path]:
@@ -86,8 +104,11 @@ def _files(sources: Sequence[PathLike]) -> List[Path]:
     return sorted(files, key=lambda file: file.stem)
 
 
-def _read(path: Path, phone_set: PhoneSet, given: Given) -> Recording:
-    landmarks = read_landmarks(path, given)
+def _read(path: Path, phone_set: PhoneSet, given: Given, offset: float) -> Recording:
+    landmarks = _earlier(read_landmarks(path, given), offset)
+    landmarks, turned = facing(landmarks)
+    if turned:
+        warnings.warn(f"{path}: {turned}", stacklevel=1)
     timings = _timings(path)
     segments = phoneme_segments(timings, read_timings(timings), phone_set)
     if not segments:
@@ -97,6 +118,19 @@ def _read(path: Path, phone_set: PhoneSet, given: Given) -> Recording:
     if rate < _SLOW:
         warnings.warn(f"{path}: {rate:.3g} frames per second are too few to see lips close", stacklevel=1)
     return Recording(landmarks, segments)
+
+
+def _earlier(landmarks: Landmarks, offset: float) -> Landmarks:
+    """The landmarks `offset` seconds earlier, without those before the sound begins."""
+    if not offset:
+        return landmarks
+    times = landmarks.times - offset
+    kept = times >= 0 if landmarks.times[0] >= 0 else np.ones(len(times), bool)
+    if kept.sum() < 2:
+        raise DataError(landmarks.path, None, f"shorter than the offset of {1000 * offset:g} ms")
+    pucker = landmarks.pucker
+    return replace(landmarks, times=times[kept], points=landmarks.points[kept],
+                   pucker=None if pucker is None else pucker[kept])
 
 
 def _timings(path: Path) -> Path:

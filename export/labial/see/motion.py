@@ -55,6 +55,18 @@ def read_motion(path: PathLike) -> Motion:
     return Motion(name, *read_frames(path))
 
 
+def spoken(model: PathLike, timings: PathLike, labels: str = AUTO, source: Optional[str] = None) -> Motion:
+    """The motion of a model (.npz) that speaks phoneme timings of any format. Raises DataError."""
+    from labial.model import load
+    from labial.phones import read_stream
+    from labial.reference import stream
+    from labial.reference.tables import FloatTables
+
+    read = load(model)
+    frames = stream.synthesise(FloatTables(read), read_stream(timings, read, labels, source))
+    return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames)
+
+
 def read_motions(paths: Sequence[PathLike]) -> List[Motion]:
     """Reads several files; where two have the same name, all are called by their paths."""
     motions = [read_motion(path) for path in paths]

@@ -1,0 +1,49 @@
+"""How far a head is turned away from the camera, and frames in which it is too far to see the mouth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import List, Tuple
+
+import numpy as np
+
+from labial.record.landmarks import INDEX, Landmarks
+
+#: Degrees to a side, and up or down from where the talker's head mostly is. Drawn faces that were turned as far as
+#: MediaPipe then said (docs/record.md) kept their closures to a third of a lip's way within; beyond, a side of closed
+#: lips was seen open, or openings were seen half.
+MOST_YAW, MOST_PITCH = 20.0, 20.0
+
+
+def turns(points: np.ndarray) -> np.ndarray:
+    """(T, 2) yaw and pitch in degrees of landmarks (T, len(USED), 3): by the outer corners of the eyes, and by forehead
+    and chin, which lie about upright in a head that looks straight ahead."""
+    across = points[:, INDEX[263]] - points[:, INDEX[33]]
+    down = points[:, INDEX[152]] - points[:, INDEX[10]]
+    return np.degrees(np.stack([np.arctan2(across[:, 2], across[:, 0]), np.arctan2(down[:, 2], down[:, 1])], axis=1))
+
+
+def facing(landmarks: Landmarks) -> Tuple[Landmarks, str]:
+    """The landmarks without the frames in which the head is turned too far, which become NaN; and what to say of them,
+    nothing where there are none or where landmarks have no depth."""
+    if landmarks.points.shape[2] < 3:
+        return landmarks, ""
+    angles = turns(landmarks.points)
+    angles[:, 1] -= np.nanmedian(angles[:, 1])
+    seen = np.isfinite(angles).all(axis=1)
+    away = seen & (abs(np.where(seen[:, None], angles, 0.0)) > (MOST_YAW, MOST_PITCH)).any(axis=1)
+    if not away.any():
+        return landmarks, ""
+    points = landmarks.points.copy()
+    points[away] = np.nan
+    return replace(landmarks, points=points), _said(landmarks, away, angles)
+
+
+def _said(landmarks: Landmarks, away: np.ndarray, angles: np.ndarray) -> str:
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], away.astype(int), [0]])))
+    times = landmarks.times
+    spans: List[str] = [f"{times[first]:.2f} to {times[end - 1]:.2f}" for first, end in zip(edges[::2], edges[1::2])]
+    more = f" and {len(spans) - 4} times more" if len(spans) > 4 else ""
+    yaw, pitch = abs(angles[away]).max(axis=0)
+    return (f"the head is turned too far from {', '.join(spans[:4])} s{more}: by up to {yaw:.0f} degrees to a side "
+            f"and {pitch:.0f} up or down, {MOST_YAW:.0f} and {MOST_PITCH:.0f} at most; these frames count as lost")

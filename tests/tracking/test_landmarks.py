@@ -1,0 +1,150 @@
+"""labial landmarks with MediaPipe itself, on a photographed face whose mouth and head are drawn frame by frame."""
+
+from __future__ import annotations
+
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Tuple
+
+import av
+import drawn_face
+import numpy as np
+import pytest
+import soundfile
+
+from labial.align.sound import RATE, read_sound
+from labial.cli import main
+from labial.corpus import read_corpus
+from labial.record.landmarks import INDEX, Given, read_landmarks
+from labial.record.video import pictures
+
+SECONDS = 2.4
+STILL = 0.6  # seconds with closed lips, at both ends
+
+
+@lru_cache(maxsize=None)
+def drawn(opening: int, yaw: int = 0) -> np.ndarray:
+    return drawn_face.draw(opening, yaw)
+
+
+def openings(fps: int) -> np.ndarray:
+    """Pixels in each frame: closed lips, which open and close four times, and closed lips."""
+    times = np.arange(round(SECONDS * fps)) / fps
+    talk = (times >= STILL) & (times < SECONDS - STILL)
+    return np.where(talk, 14 * (1 - np.cos(2 * np.pi * (times - STILL) / 0.3)), 0).round().astype(int)
+
+
+def tracked(path: Path, *options: str) -> int:
+    return main(["landmarks", str(path), "-o", str(path.with_suffix(".npz")), "--quiet", *options])
+
+
+def lips(path: Path) -> Tuple[np.ndarray, np.ndarray]:
+    """Times, and pixels between the outer lips."""
+    found = read_landmarks(path.with_suffix(".npz"), Given())
+    return found.times, found.points[:, INDEX[17], 1] - found.points[:, INDEX[0], 1]
+
+
+@pytest.mark.parametrize("fps", [25, 60])
+def test_the_lips_are_found_where_they_were_drawn(tmp_path: Path, fps: int) -> None:
+    """Catches pictures in wrong colours, order or time, axes that are exchanged, and a tracker that lags."""
+    path = drawn_face.write(tmp_path / "a.mp4", [drawn(o) for o in openings(fps)], fps)
+    assert tracked(path) == 0
+    times, found = lips(path)
+    assert len(times) == round(SECONDS * fps) and np.allclose(times, np.arange(len(times)) / fps, atol=1e-3)
+    told = openings(fps)
+    assert np.corrcoef(found, told)[0, 1] > 0.97
+    lags = range(-round(fps / 10), round(fps / 10) + 1)
+    assert max(lags, key=lambda lag: np.corrcoef(np.roll(found, -lag), told)[0, 1]) == 0
+    assert found[told == 28].mean() - found[told == 0].mean() > 14  # of 28 pixels; the tracker holds lips together
+
+
+def test_a_corpus_comes_of_it(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """landmarks, then record: FAPs at the video's own rate, closed where the lips were drawn closed."""
+    path = drawn_face.write(tmp_path / "in" / "a.mp4", [drawn(o) for o in openings(25)], 25)
+    assert tracked(path) == 0
+    end = SECONDS - STILL
+    path.with_suffix(".lab").write_text(f"0 {STILL} SIL\n{STILL} {end} AA\n{end} {SECONDS} SIL\n")
+    assert main(["record", str(tmp_path / "in"), "-o", str(tmp_path / "corpus"), "--cutoff", "0"]) == 0
+    (episode,) = read_corpus(tmp_path / "corpus")
+    opening = -episode.frames[:, 3] - episode.frames[:, 4]
+    told = openings(25)
+    assert len(opening) == len(told) and np.corrcoef(opening, told)[0, 1] > 0.97
+    assert abs(opening[told == 0]).max() < 0.25 * opening.max()
+
+
+def test_a_turned_head_is_told_by_record(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """What MediaPipe says of a head that was drawn turned by 40 degrees is beyond the limit, of 10 degrees within."""
+    plan = [0] * 30 + [10] * 8 + [0] * 12 + [40] * 4 + [0] * 6
+    path = drawn_face.write(tmp_path / "in" / "a.mp4", [drawn(0, yaw) for yaw in plan], 25)
+    assert tracked(path) == 0
+    path.with_suffix(".lab").write_text("0 2.4 SIL\n")
+    assert main(["record", str(tmp_path / "in"), "-o", str(tmp_path / "corpus")]) == 0
+    error = capsys.readouterr().err
+    assert "turned too far from 2.00 to 2.1" in error and error.count(" to ") <= 3
+
+
+def test_two_faces_and_none(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """The talker on the left opens its mouth, the face on the right does not; then nobody is there for half a second."""
+    told = openings(25)
+    empty = np.full((512, 1024, 3), 128, np.uint8)
+    both = [np.concatenate([drawn(o), drawn(0)], axis=1) if not 20 <= t < 32 else empty for t, o in enumerate(told)]
+    path = drawn_face.write(tmp_path / "a.mp4", both, 25)
+    assert tracked(path) == 1
+    assert "a.mp4: two faces, the second from 0.00 to" in capsys.readouterr().err
+    assert not path.with_suffix(".npz").exists()
+    for face, moves in (("left", True), ("right", False)):
+        assert tracked(path, "--face", face) == 0
+        assert "12 without the face, from 0.80 to 1.24 s" in capsys.readouterr().out
+        _, found = lips(path)
+        there = np.isfinite(found)
+        assert np.ptp(found[there]) > 14 if moves else np.ptp(found[there]) < 6
+
+
+def test_what_is_no_video_or_has_no_face(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    def fails(message: str, *options: str) -> None:
+        assert tracked(path, *options) == 1
+        error = capsys.readouterr().err
+        assert message in error and error.count("\n") == 1, error
+
+    path = tmp_path / "a.mp4"
+    fails("a.mp4: not a video")
+    path.write_bytes(b"\0\0\0\x20ftypisom" + os.urandom(400))
+    fails("a.mp4: not a video")
+    soundfile.write(tmp_path / "a.wav", np.zeros(1000), 8000)
+    path = tmp_path / "a.wav"
+    fails("a.wav: no picture, only sound")
+    grey = [np.full((128, 128, 3), 128, np.uint8)] * 5
+    path = drawn_face.write(tmp_path / "b.mp4", grey, 25)
+    fails("b.mp4: no face is found in any frame")
+    path = drawn_face.write(tmp_path / "c.mp4", grey[:1], 25)
+    fails("c.mp4: fewer than two frames")
+    fails("no.task: no such file", "--task", "no.task")
+    (tmp_path / "bad.task").write_bytes(b"x" * 99)
+    fails("bad.task: not a model of MediaPipe", "--task", str(tmp_path / "bad.task"))
+
+
+def test_sound_and_picture_are_on_one_clock(tmp_path: Path) -> None:
+    """A video whose sound begins later than its picture, as some cameras write them: catches a sound from its own
+    first sample on, which would be early."""
+    rate, late = 16000, 0.3
+    click = np.zeros(rate, np.int16)
+    click[rate // 2 : rate // 2 + 160] = 20000
+    path = tmp_path / "a.mkv"
+    with av.open(str(path), "w") as out:
+        video = out.add_stream("mpeg4", rate=25)
+        video.width = video.height = 64
+        video.pix_fmt = "yuv420p"
+        sound = out.add_stream("pcm_s16le", rate=rate, layout="mono")
+        for level in range(40):
+            picture = np.full((64, 64, 3), 200 if level == 20 else 20, np.uint8)
+            out.mux(video.encode(av.VideoFrame.from_ndarray(picture, format="bgr24")))
+        out.mux(video.encode())
+        frame = av.AudioFrame.from_ndarray(click[None], format="s16", layout="mono")
+        frame.sample_rate, frame.pts = rate, round(late * rate)
+        out.mux(sound.encode(frame))
+        out.mux(sound.encode())
+    samples = read_sound(path)
+    assert abs(np.argmax(samples) / RATE - (0.5 + late)) < 0.005 and abs(len(samples) / RATE - 1.3) < 0.01
+    flash = max(pictures(path), key=lambda item: item[1].mean())[0]
+    assert abs(flash - 0.8) < 0.001
