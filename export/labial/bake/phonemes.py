@@ -7,7 +7,7 @@ from typing import Sequence, Tuple
 from labial.bake.text import comment, rows
 from labial.emit import check_name, constants_of
 
-#: An entry is milliseconds times this, and the phoneme's number; no phoneme lasts longer than an hour, below 2^22 ms.
+#: An entry is milliseconds times this, and the phoneme's number; no phoneme lasts longer than an hour, 2^22 ms.
 _SHIFT = 8
 
 

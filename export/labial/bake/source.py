@@ -12,7 +12,7 @@ from typing import List, Optional, Tuple, Union
 import numpy as np
 
 from labial.corpus.formats import read_timings
-from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments, text_of
+from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments
 from labial.errors import DataError, LabialError, needs
 from labial.frames import even
 from labial.model import Model, load
@@ -29,6 +29,8 @@ FRAMES = (".csv", ".fap")
 RATE = 50
 #: Frames that a track has at most: five and a half hours.
 _LONGEST = 1_000_000
+#: LABIAL_DURATION_MAX, milliseconds.
+DURATION_MAX = 3_600_000
 #: The models that Labial comes with, by kind.
 _BUNDLED = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 
@@ -40,8 +42,15 @@ class Source:
     path: str
     model: Optional[str] = None  #: a model's file; that of the bundled ones that knows the labels without it
     text: Optional[str] = None  #: what is said in a sound
+    text_file: Optional[str] = None  #: or a file that holds it
     labels: str = AUTO
     format: Optional[str] = None  #: of the timings; told by the file without it
+    progress: bool = False  #: whether a bar is shown while a sound is gone through
+
+    @property
+    def has_text(self) -> bool:
+        """Whether a text is given, which only sounds have."""
+        return self.text is not None or self.text_file is not None
 
     @property
     def is_sound(self) -> bool:
@@ -75,33 +84,33 @@ def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
         path = bundled(phone_set_of(segments, source.labels).kind)
     model = load(path)
     found = phoneme_segments(source.path, segments, phone_set(model), False, source.labels)
+    for segment in found:
+        if segment.duration * 1000 > DURATION_MAX:
+            raise DataError(source.path, None, f"{segment.label} at {segment.start:g} s lasts {segment.duration:g} s, "
+                            f"a phoneme at most {DURATION_MAX // 1000}")
     return model, path.stem, stream_of(found, model, 0)
 
 
 def _timed(source: Source) -> List[SourceSegment]:
-    if source.text is not None:
+    if source.has_text:
         raise LabialError(f"{source.path}: a text goes with a sound ({', '.join(SOUNDS)}), not with timings or frames")
     return read_timings(source.path, source.format)
 
 
 def _heard(source: Source) -> List[SourceSegment]:
     with needs("a sound", "align"):
-        from labial.align.align import align
-    found = align(source.path, source.text)
-    if source.text is None:
+        from labial.align.command import aligned, said
+    text = said(source.text, source.text_file)
+    found = aligned(source.path, text, source.progress)
+    if text is None:
         warnings.warn(f"{source.path}: without its text (--text, --text-file) phonemes are less sure", stacklevel=2)
     return [SourceSegment(item.start, item.end, item.label, None, "arpabet") for item in found]
-
-
-def said(text: Optional[str], file: Optional[str]) -> Optional[str]:
-    """What is said, from either of the two options."""
-    return text if file is None else text_of(file)
 
 
 def read_track(source: Source) -> np.ndarray:
     """(T, 13) FAPs, float64, 50 frames a second from time 0, of a file of frames, of timings or of a sound."""
     if source.has_frames:
-        if source.text is not None or source.model:
+        if source.has_text or source.model:
             raise LabialError(f"{source.path}: frames need neither a text nor a model")
         motion = read_motion(source.path)
         return _at_rate(source.path, motion.times, motion.frames)
