@@ -11,6 +11,7 @@ folder that is the page's own:
 - ``html``: a page, which an ``sh`` block below it looks at;
 - ``cmake``: a CMakeLists.txt, which an ``sh`` block below it hands to cmake;
 - ``toml``, ``ini``, ``json``, ``yaml``: parsed;
+- ``csharp``, ``gdscript``, ``unreal``: code for engines that no test has; only read;
 - ``text``: what programs print, drawings; no commands.
 
 A block whose first line is a comment that begins with a file's name is saved under that name before anything else;
@@ -32,7 +33,9 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set
 
 from packages import CC, CXX, SOURCE
 
-LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "html", "toml", "ini", "json", "yaml", "text")
+#: Labels of blocks that are only read.
+READ = ("text", "csharp", "gdscript", "unreal")
+LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "html", "toml", "ini", "json", "yaml", *READ)
 
 #: Tools that a page may use and a machine may lack, and what installs each.
 TOOLS: Dict[str, str] = {
@@ -122,7 +125,7 @@ def _block(page: Path, label: str, line: int, lines: Sequence[str]) -> Block:
     if label not in LABELS:
         raise PageError(f'{page}:{line - 1}: a fence with the label "{label}"; known are {", ".join(LABELS)}')
     block = Block(label, line, "\n".join(lines) + "\n")
-    match = _NAME.match(lines[0]) if lines and label not in ("sh", "text") else None
+    match = _NAME.match(lines[0]) if lines and label not in ("sh", *READ) else None
     if match:
         block.name = match[1]
         if ".." in Path(match[1]).parts:
@@ -185,10 +188,11 @@ class Runner:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(block.text, encoding="utf-8")
             try:
-                getattr(self, f"_{block.label}")(block, blocks[i + 1 :])
+                if block.label not in READ:
+                    getattr(self, f"_{block.label}")(block, blocks[i + 1 :])
             except PageError as error:
                 raise PageError(f"{self._page}:{block.line}: {error}") from None
-        return sum(block.label != "text" for block in blocks)
+        return sum(block.label not in READ for block in blocks)
 
     def _call(self, command: Sequence[str], text: Optional[str] = None) -> None:
         try:
@@ -284,9 +288,6 @@ class Runner:
         import yaml
 
         self._parsed(yaml.safe_load, block.text, yaml.YAMLError)
-
-    def _text(self, block: Block, later: Sequence[Block]) -> None:
-        pass
 
     @staticmethod
     def _parsed(parse_text: object, text: str, error: type) -> None:
