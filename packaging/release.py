@@ -5,9 +5,9 @@
     packaging/release.py v0.2.0 -o DIR
 
 DIR gets the sources, the two files, the folders for Arduino, PlatformIO, ESP-IDF and Zephyr as archives, the Python
-package as source and wheel, the npm package, and SHA256SUMS. Everything is built from a fresh copy of the tag, so that
-nothing of the working folder gets in. The tag's version must be that of the sources, and CHANGELOG.md must have a section
-for it that no longer says "unreleased". ``--without python npm`` leaves packages out that need more than Python.
+package as source and wheel, the npm package, and SHA256SUMS. Everything is built from a fresh copy of the tag, so
+that nothing of the working folder gets in. The tag's version must be that of the sources, and CHANGELOG.md must have a
+section for it that no longer says "unreleased". ``--without python npm`` leaves packages out that need more than Python.
 
 Needs git; the Python package pip, cmake and a C compiler; the npm package clang, lld, node and npm.
 """

@@ -39,7 +39,7 @@ def git(root: Path, *arguments: str) -> None:
     subprocess.run(["git", *arguments], cwd=root, check=True, capture_output=True)
 
 
-def release(root: Path, *arguments: object) -> "subprocess.CompletedProcess[str]":
+def release(root: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
     """Runs the script of `root`."""
     return subprocess.run([sys.executable, root / "packaging" / "release.py", *map(str, arguments)],
                           capture_output=True, encoding="utf-8", check=False)
