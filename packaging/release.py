@@ -90,7 +90,7 @@ def release(tag: str, output: Path, without: List[str]) -> List[Path]:
         with tarfile.open(archive) as sources:
             sources.extractall(tree)
         name = f"labial-{check(tree, tag)}"
-        run(["git", "archive", f"--prefix={name}/", f"--output={output / name}.tar.gz", f"refs/tags/{tag}"], ROOT)
+        run(["git", "archive", f"--prefix={name}/", f"--output={output / name}-source.tar.gz", f"refs/tags/{tag}"], ROOT)
         folders(tree, name, output)
         more: Dict[str, Callable[[Path, Path], None]] = {"python": python, "npm": npm}
         for kind in sorted(set(more) - set(without)):

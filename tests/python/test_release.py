@@ -55,11 +55,11 @@ def test_a_tag_becomes_its_packages(repository: Path, tmp_path: Path) -> None:
     name = f"labial-{version}"
     kinds = ("amalgamation", "arduino", "esp-idf", "platformio", "zephyr")
     assert {path.name for path in out.iterdir()} == {
-        "SHA256SUMS", f"{name}.tar.gz", *(f"{name}-{kind}.zip" for kind in kinds)}  # fmt: skip
+        "SHA256SUMS", f"{name}-source.tar.gz", *(f"{name}-{kind}.zip" for kind in kinds)}  # fmt: skip
     for line in (out / "SHA256SUMS").read_text().splitlines():
         digest, package = line.split("  ")
         assert hashlib.sha256((out / package).read_bytes()).hexdigest() == digest
-    with tarfile.open(out / f"{name}.tar.gz") as sources:
+    with tarfile.open(out / f"{name}-source.tar.gz") as sources:
         assert b"no C at all" != sources.extractfile(f"{name}/lib/stream.c").read()
     with zipfile.ZipFile(out / f"{name}-amalgamation.zip") as files:
         assert b"labial_tick" in files.read(f"{name}-amalgamation/labial.c")
