@@ -7,7 +7,7 @@
 DIR gets the sources, the two files, the folders for Arduino, PlatformIO, ESP-IDF and Zephyr as archives, the Python
 package as source and wheel, the npm package, and SHA256SUMS. Everything is built from a fresh copy of the tag, so
 that nothing of the working folder gets in. The tag's version must be that of the sources, and CHANGELOG.md must have a
-section for it that no longer says "unreleased". ``--without python npm`` leaves packages out that need more than Python.
+section for it that no longer says "unreleased". ``--without python npm`` leaves out what needs more than Python.
 
 Needs git; the Python package pip, cmake and a C compiler; the npm package clang, lld, node and npm.
 """
@@ -90,11 +90,13 @@ def release(tag: str, output: Path, without: List[str]) -> List[Path]:
         with tarfile.open(archive) as sources:
             sources.extractall(tree)
         name = f"labial-{check(tree, tag)}"
-        run(["git", "archive", f"--prefix={name}/", f"--output={output / name}-source.tar.gz", f"refs/tags/{tag}"], ROOT)
+        archived = output / f"{name}-source.tar.gz"
+        run(["git", "archive", f"--prefix={name}/", f"--output={archived}", f"refs/tags/{tag}"], ROOT)
         folders(tree, name, output)
         more: Dict[str, Callable[[Path, Path], None]] = {"python": python, "npm": npm}
-        for kind in sorted(set(more) - set(without)):
-            more[kind](tree, output)
+        for kind in more:
+            if kind not in without:
+                more[kind](tree, output)
     packages = sorted(output.iterdir())
     sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in packages]
     (output / "SHA256SUMS").write_text("".join(sums), encoding="ascii")
