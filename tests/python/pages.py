@@ -45,6 +45,7 @@ TOOLS: Dict[str, str] = {
     "chromium": "the Debian package chromium",
     "clang": "the Debian package clang",
     "cmake": "the Debian package cmake",
+    "espeak-ng": "the Debian package espeak-ng",
     "flite": "the Debian package flite",
     "g++": "the Debian package g++",
     "labial-bench": "a build with LABIAL_BUILD_EXAMPLES",
@@ -250,6 +251,8 @@ class Runner:
         except SyntaxError as error:
             raise PageError(str(error)) from None
         if not block.name:
+            if re.search(r"^import labial$", block.text, re.MULTILINE) and not os.environ.get("LABIAL_RUNTIME"):
+                raise MissingTool(f"{self._page.name}:{block.line} needs the run-time: a build with LABIAL_BUILD_TESTS")
             self._call([sys.executable, "-"], block.text)
 
     def _js(self, block: Block, later: Sequence[Block]) -> None:

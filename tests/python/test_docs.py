@@ -33,6 +33,9 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         'tools/bin/pip install "$LABIAL[align]"': "fetches; test_wheel.py installs the package without",
         "avrdude -c arduino -p m328p -P /dev/ttyACM0 -U flash:w:jaw.elf": "needs a board; the page simulates one",
     },
+    "python.md": {
+        "pip install .": "fetches what builds it; test_wheel.py installs the package without",
+    },
     "record.md": {
         "labial evaluate corpus/ --splits 5 -o report/": "takes too long; test_evaluate.py runs it on less",
     },
