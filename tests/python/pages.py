@@ -252,7 +252,7 @@ class Runner:
             raise PageError(str(error)) from None
         if not block.name:
             if re.search(r"^import labial$", block.text, re.MULTILINE) and not os.environ.get("LABIAL_RUNTIME"):
-                raise MissingTool(f"{self._page.name}:{block.line} needs the run-time: a build with LABIAL_BUILD_TESTS")
+                raise MissingTool(f"{self._page.name}:{block.line} needs the run-time: build labial-python")
             self._call([sys.executable, "-"], block.text)
 
     def _js(self, block: Block, later: Sequence[Block]) -> None:
