@@ -1,5 +1,5 @@
 // Where the tables of a model lie in the module's memory (labial_model_t of include/labial/model.h, for 32-bit targets):
-// what the packer and the tests know of it.
+// what the tests know of it.
 
 const CHANNELS = 13;
 
