@@ -1,13 +1,14 @@
 // The scripts as they are packed: node strip.mjs FOLDER SCRIPT... writes them without comments and indentation, by a third
-// smaller. The comments begin their lines; index.d.ts keeps those that users need.
+// smaller. The comments begin their lines; index.d.ts keeps those that users need. A script with a text of
+// several lines stays as it is.
 import { readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 
 const [, , folder, ...scripts] = process.argv;
 for (const path of scripts) {
     const text = readFileSync(path, "utf8");
-    if (/`[^`]*\n[^`]*`/.test(text.replace(/`[^`\n]*`/g, ""))) throw new Error(`${path}: a text of several lines`);
-    writeFileSync(join(folder, basename(path)), text
+    const whole = /`[^`]*\n[^`]*`/.test(text.replace(/`[^`\n]*`/g, "")); // its lines are not all lines of code
+    writeFileSync(join(folder, basename(path)), whole ? text : text
         .replace(/^[ \t]*\/\*\*[^]*?\*\/\n/gm, "")
         .replace(/^[ \t]*\/\/.*\n/gm, "")
         .replace(/^\s+/gm, ""));
