@@ -33,24 +33,24 @@ static const labial_rig_output_t outputs[20] = {
      * raise_r_cornerlip_o) */
     { { 3277, 0, 0, 0, 0, 0, 8192, 0, 0, 0, 0, 0, 8192 },
       0, 0, 104676, -150, 0, 1000, 0 },
-    /* mouthFrownLeft: 4 per FAP unit of (-0.4 open_jaw -1 raise_l_cornerlip_o) */
+    /* mouthFrownLeft: 4.4 per FAP unit of (-0.4 open_jaw -1 raise_l_cornerlip_o) */
     { { -3277, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -8192, 0 },
-      0, 0, 131072, 0, 0, 1000, 0 },
-    /* mouthFrownRight: 4 per FAP unit of (-0.4 open_jaw -1 raise_r_cornerlip_o) */
+      0, 0, 144179, -100, 0, 1000, 0 },
+    /* mouthFrownRight: 4.4 per FAP unit of (-0.4 open_jaw -1 raise_r_cornerlip_o) */
     { { -3277, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -8192 },
-      0, 0, 131072, 0, 0, 1000, 0 },
-    /* mouthUpperUpLeft: 5 per FAP unit of (-1 lower_t_lip_lm_o) */
+      0, 0, 144179, -100, 0, 1000, 0 },
+    /* mouthUpperUpLeft: 5.5 per FAP unit of (-1 lower_t_lip_lm_o) */
     { { 0, 0, 0, 0, 0, 0, 0, -4096, 0, 0, 0, 0, 0 },
-      0, 0, 327680, 0, 0, 1000, 0 },
-    /* mouthUpperUpRight: 5 per FAP unit of (-1 lower_t_lip_rm_o) */
+      0, 0, 360448, -100, 0, 1000, 0 },
+    /* mouthUpperUpRight: 5.5 per FAP unit of (-1 lower_t_lip_rm_o) */
     { { 0, 0, 0, 0, 0, 0, 0, 0, -4096, 0, 0, 0, 0 },
-      0, 0, 327680, 0, 0, 1000, 0 },
-    /* mouthLowerDownLeft: 3.33333 per FAP unit of (-0.9 open_jaw -1 raise_b_lip_lm_o) */
-    { { -14746, 0, 0, 0, 0, 0, 0, 0, 0, -16384, 0, 0, 0 },
-      0, 0, 54613, 0, 0, 1000, 0 },
-    /* mouthLowerDownRight: 3.33333 per FAP unit of (-0.9 open_jaw -1 raise_b_lip_rm_o) */
-    { { -14746, 0, 0, 0, 0, 0, 0, 0, 0, 0, -16384, 0, 0 },
-      0, 0, 54613, 0, 0, 1000, 0 },
+      0, 0, 360448, -100, 0, 1000, 0 },
+    /* mouthLowerDownLeft: 3.66667 per FAP unit of (-0.9 open_jaw -1 raise_b_lip_lm_o) */
+    { { -7373, 0, 0, 0, 0, 0, 0, 0, 0, -8192, 0, 0, 0 },
+      0, 0, 120149, -100, 0, 1000, 0 },
+    /* mouthLowerDownRight: 3.66667 per FAP unit of (-0.9 open_jaw -1 raise_b_lip_rm_o) */
+    { { -7373, 0, 0, 0, 0, 0, 0, 0, 0, 0, -8192, 0, 0 },
+      0, 0, 120149, -100, 0, 1000, 0 },
     /* mouthPressLeft: 6.94444 per FAP unit of (+0.25 open_jaw +1.25 lower_t_midlip_o +0.25
      * raise_b_midlip_o) */
     { { 1024, 0, 0, 5120, 1024, 0, 0, 0, 0, 0, 0, 0, 0 },

@@ -28,7 +28,7 @@ class Rig:
     Attributes:
         name: the description's name without its suffix.
         outputs: names of the outputs.
-        unit: what the values count: us, quarter_us, pca9685, counts or plain.
+        unit: what the values count: us, quarter_us, pca9685, counts, weight (thousandths) or plain.
         prescale: what the PCA9685's prescale register must hold, where the unit is its ticks; else None.
         values: value of each output now, by name; the face at rest before the first frame.
     """
