@@ -50,16 +50,23 @@ def venv(folder: Path, *sites: str) -> Path:
 
 
 def build_wheel(folder: Path, env: Dict[str, str]) -> subprocess.CompletedProcess:
-    """``pip wheel .`` in a copy of the sources, with the build's own packages taken from the tests' environment."""
+    """``pip wheel`` of the source distribution, with the build's own packages from the tests' environment."""
     tree = folder / "tree"
     unwanted = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
     for name in ("include", "lib", "packaging", "cmake", "export/labial", "export/models"):
         shutil.copytree(SOURCE / name, tree / name, ignore=unwanted)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copyfile(SOURCE / name, tree / name)
+    (tree / "export" / "labial" / "__pycache__").mkdir()
+    (tree / "export" / "labial" / "__pycache__" / "left.pyc").touch()
     python = venv(folder / "builder", sysconfig.get_path("purelib"), sysconfig.get_path("platlib"))
-    return call([python, "-m", "pip", "wheel", ".", "--no-deps", "--no-build-isolation", "--no-cache-dir", "-w",
-                 folder / "dist"], env, tree)
+    packing = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
+    done = call([python, "-c", packing, folder], env, tree)
+    assert done.returncode == 0, done.stdout + done.stderr
+    shutil.rmtree(tree)
+    (archive,) = folder.glob("labial-*.tar.gz")
+    return call([python, "-m", "pip", "wheel", archive, "--no-deps", "--no-build-isolation", "--no-cache-dir", "-w",
+                 folder / "dist"], env, folder)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +74,6 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
     done = build_wheel(folder, {**tools(folder / "bin"), "CC": str(shutil.which(CC))})
     assert done.returncode == 0, done.stdout + done.stderr
-    shutil.rmtree(folder / "tree")
     found = list((folder / "dist").iterdir())
     assert len(found) == 1
     return found[0]
