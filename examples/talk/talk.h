@@ -1,5 +1,5 @@
 /*
- * talk.h - 3.1 s of motion from talk.lab, 50 frames a second, a byte for each of 1 output. Values are microseconds.
+ * talk.h - 3.5 s of motion from talk.lab, 50 frames a second, a byte for each of 1 output. Values are microseconds.
  * Written by labial bake 0.2.0; do not edit.
  */
 #ifndef LABIAL_BAKED_TALK_H
@@ -11,7 +11,7 @@
 #error "talk was written for another version of Labial: run labial bake again."
 #endif
 
-#define TALK_FRAMES 156u
+#define TALK_FRAMES 174u
 #define TALK_OUTPUTS 1u
 
 /* Places of the outputs among a frame's bytes. */
@@ -25,14 +25,14 @@ enum {
 #define TALK_JAW_AT_255 1900
 #endif
 
-static const uint8_t talk_bytes[156] LABIAL_PLAYER_FLASH = {
+static const uint8_t talk_bytes[174] LABIAL_PLAYER_FLASH = {
     1, 9, 17, 26, 39, 54, 68, 83, 100, 116, 137, 154, 165, 171, 177, 182, 183, 184, 190, 198, 198, 189, 184, 177, 176,
     176, 179, 175, 166, 157, 149, 142, 124, 98, 47, 21, 14, 18, 35, 67, 88, 106, 111, 100, 75, 38, 22, 24, 52, 122,
     182, 216, 229, 240, 244, 245, 241, 241, 245, 249, 248, 252, 249, 242, 243, 252, 255, 247, 223, 187, 135, 54, 26,
     36, 83, 112, 133, 143, 141, 132, 108, 79, 36, 20, 24, 62, 154, 209, 243, 255, 255, 255, 253, 218, 154, 52, 17, 12,
     22, 35, 62, 85, 108, 131, 167, 180, 186, 178, 174, 174, 186, 207, 221, 234, 241, 247, 252, 255, 255, 255, 245,
     176, 58, 26, 52, 111, 123, 103, 50, 27, 21, 19, 26, 54, 123, 150, 136, 96, 44, 24, 24, 43, 90, 121, 132, 125, 113,
-    105, 86, 59, 39, 30, 29, 30, 34, 37
+    105, 89, 68, 52, 39, 32, 29, 27, 27, 24, 22, 21, 18, 16, 14, 12, 11, 9, 8, 8, 7, 7, 8, 8, 8, 8, 8
 };
 
 /* Goes to the beginning. */

@@ -124,7 +124,7 @@ def test_both_kinds_play_what_the_library_computes(tmp_path: Path, language: str
     *lines, last = run(tmp_path / "main").splitlines()
     rows = np.array([[int(field) for field in line.split()] for line in lines])
     assert last == "end 3 0"  # LABIAL_DONE, and no frame of the track is left
-    assert len(rows) == 156 and (rows[:, 0] == np.arange(156)).all()  # 3.125 s
+    assert len(rows) == 174 and (rows[:, 0] == np.arange(174)).all()  # 2.98 s, and half a second of rest
     difference = np.abs(rows[:, 1] - rows[:, 2])
     assert difference.max() <= 3, difference  # a FAP unit is .83 microseconds, half a byte 1
     assert np.ptp(rows[:, 1]) > 400
@@ -285,7 +285,6 @@ LAB = "0.0 0.2 SIL\n0.2 0.5 AA\n"
     (["good.lab", "-o", "x.c"], "x.c: what is written is a C header"),
     (["good.lab", "-o", "labial_player.h"], "labial_player.h: this is the name of the player"),
     (["good.lab", "-o", "1st.h"], "'1st' is no name for a header"),
-    (["short.lab"], "short.lab: too short for a frame"),
     (["pause.lab", "--as", "phonemes"], "pause.lab: SIL at 1 s lasts 3601 s, a phoneme at most 3600"),
     (["good.lab", "--text-file", "good.lab"], "good.lab: a text goes with a sound"),
 ])  # fmt: skip
@@ -297,7 +296,7 @@ def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, c
     monkeypatch.chdir(tmp_path)
     head = ",".join(("time", *FAP_COLUMNS))
     for name, text in {
-        "good.lab": LAB, "bad.lab": "0.0 0.2 SIL\n0.2 AA\n", "bad.wav": "no sound", "short.lab": "0.0 0.004 AA\n",
+        "good.lab": LAB, "bad.lab": "0.0 0.2 SIL\n0.2 AA\n", "bad.wav": "no sound",
         "pause.lab": "0 1 AA\n1 3602 SIL\n3602 3603 AA\n",
         "bad.csv": f"{head}\n0,1,2\n", "face.toml": FACE,
         "wide.toml": '[output.x]\nfrom = "jaw"\ngain = 1\nneutral = 0\nminimum = -8000000\nmaximum = 1\n',
@@ -312,6 +311,16 @@ def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, c
     told = capsys.readouterr().err
     assert told.startswith(f"labial: {complaint}") and told.count("\n") == 1, told
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_mouth_comes_to_rest_at_the_end(tmp_path: Path) -> None:
+    """A recording that is cut behind its last vowel would leave the jaw hanging; one that ends in silence stays as it
+    is."""
+    for name, end, count in (("cut", "", 50), ("short", "0.5 0.6 SIL\n", 50), ("long", "0.5 2 SIL\n", 100)):
+        (tmp_path / f"{name}.lab").write_text(f"0 0.2 SIL\n0.2 0.5 AA\n{end}")
+        assert main(["bake", str(tmp_path / f"{name}.lab"), "--name", "x", "-o", str(tmp_path / "x.h")]) == 0
+        found = data(tmp_path / "x.h")
+        assert len(found) == count and max(found) > 150 and found[-1] < 20, name
 
 
 def test_models_are_chosen_by_the_phonemes(tmp_path: Path) -> None:

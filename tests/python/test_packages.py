@@ -211,9 +211,11 @@ HEARD = 3000 + 11 + 200
 
 
 def talk_frames() -> np.ndarray:
-    """(T, 13) FAPs of the sketches' sentence, by the float64 reference on the bundled model's tables."""
+    """(T, 13) FAPs of the sketches' sentence and half a second of rest, by the float64 reference on the bundled model's
+    tables."""
     model = load(SOURCE / "export" / "models" / "speech_en.npz")
     phonemes = read_stream(SOURCE / "examples" / "talk" / "talk.lab", model)
+    phonemes[-1] = (phonemes[-1][0], 500)
     return synthesise(ExportedTables(quantise(model, "bundled")), phonemes)
 
 

@@ -31,6 +31,8 @@ RATE = 50
 _LONGEST = 1_000_000
 #: LABIAL_DURATION_MAX, milliseconds.
 DURATION_MAX = 3_600_000
+#: Milliseconds of silence that what is baked ends with. In a long pause a mouth comes to rest within 16 frames.
+REST = 500
 #: The models that Labial comes with, by kind.
 _BUNDLED = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 
@@ -74,7 +76,8 @@ def bundled(kind: str) -> Path:
 
 
 def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
-    """The model, what the model is called, and the phonemes of timings or of a sound. Raises DataError."""
+    """The model, what the model is called, and the phonemes of timings or of a sound, to rest at the end. Raises
+    DataError."""
     if source.has_frames:
         raise DataError(source.path, None, "holds frames, which have no phonemes; --as track takes frames")
     segments = _heard(source) if source.is_sound else _timed(source)
@@ -88,7 +91,14 @@ def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
         if segment.duration * 1000 > DURATION_MAX:
             raise DataError(source.path, None, f"{segment.label} at {segment.start:g} s lasts {segment.duration:g} s, "
                             f"a phoneme at most {DURATION_MAX // 1000}")
-    return model, path.stem, stream_of(found, model, 0)
+    return model, path.stem, _rested(stream_of(found, model, 0), model)
+
+
+def _rested(phonemes: Stream, model: Model) -> Stream:
+    """Phonemes that end with `REST` of silence at least: the mouth comes to rest behind a sound that is cut close."""
+    silence = model.phonemes.index(model.silence)
+    last = phonemes[-1][1] if phonemes and phonemes[-1][0] == silence else 0
+    return [*(phonemes[:-1] if last else phonemes), (silence, max(last, REST))]
 
 
 def _timed(source: Source) -> List[SourceSegment]:
@@ -123,8 +133,6 @@ def read_track(source: Source) -> np.ndarray:
     _check_length(source.path, seconds)
     # The tables that a board would have: a choice at a near tie is then the same as there.
     frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
-    if not len(frames):
-        raise DataError(source.path, None, "too short for a frame, which is 20 ms")
     return _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
 
 
