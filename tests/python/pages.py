@@ -271,7 +271,7 @@ class Runner:
 
     def _html(self, block: Block, later: Sequence[Block]) -> None:
         if not block.name or not any(other.label == "sh" for other in later):
-            raise PageError('an html block begins with "<!-- NAME.html -->", and an sh block below it looks at the page')
+            raise PageError('an html block begins with "<!-- NAME.html -->", and an sh block below it looks at it')
 
     def _toml(self, block: Block, later: Sequence[Block]) -> None:
         try:
