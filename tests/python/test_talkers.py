@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from labial.model import load
 from labial.phonesets import SPEECH
 from labial.train import train
 from labial.train.recordings import recordings
+from packages import SOURCE
 from test_train import OPTIONS, episode
 
 TOML = """weight = 3
@@ -124,6 +126,19 @@ def test_channels_that_nobody_teaches_are_refused() -> None:
     source = Source(left_out=frozenset({1}))
     with pytest.raises(LabialError, match="fap16"):
         train([replace(episode(1), source=source)], method="paper", **OPTIONS)
+
+
+def test_what_every_corpus_leaves_out_is_learnt_with_a_warning(tmp_path) -> None:
+    # Catches the corpus that the repository holds, trained on alone, that is refused.
+    addresses = SOURCE / "export" / "corpora" / "addresses"
+    with pytest.warns(UserWarning, match="every corpus leaves out fap16, fap17, silences: learnt all the same"):
+        (corpus,) = read_corpora([addresses])
+    assert all(not item.source.left_out and item.source.silences and item.source.weight == 2 for item in corpus)
+    folder = tmp_path / "all"
+    shutil.copytree(addresses, folder)
+    (folder / "corpus.toml").unlink()
+    _, other = read_corpora([folder, addresses])
+    assert all(item.source.left_out == {1, 2} and not item.source.silences for item in other)
 
 
 def test_what_is_left_out_does_not_reach_the_model() -> None:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
-from functools import lru_cache
+import shlex
+import shutil
+import subprocess
+from functools import cache
 from pathlib import Path
 from typing import Tuple
 
@@ -23,7 +26,7 @@ SECONDS = 2.4
 STILL = 0.6  # seconds with closed lips, at both ends
 
 
-@lru_cache(maxsize=None)
+@cache
 def drawn(opening: int, yaw: int = 0) -> np.ndarray:
     return drawn_face.draw(opening, yaw)
 
@@ -85,7 +88,7 @@ def test_a_turned_head_is_told_by_record(tmp_path: Path, capsys: pytest.CaptureF
 
 
 def test_two_faces_and_none(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    """The talker on the left opens its mouth, the face on the right does not; then nobody is there for half a second."""
+    """The talker on the left opens its mouth, the face on the right does not; for half a second both are gone."""
     told = openings(25)
     empty = np.full((512, 1024, 3), 128, np.uint8)
     both = [np.concatenate([drawn(o), drawn(0)], axis=1) if not 20 <= t < 32 else empty for t, o in enumerate(told)]
@@ -148,3 +151,50 @@ def test_sound_and_picture_are_on_one_clock(tmp_path: Path) -> None:
     assert abs(np.argmax(samples) / RATE - (0.5 + late)) < 0.005 and abs(len(samples) / RATE - 1.3) < 0.01
     flash = max(pictures(path), key=lambda item: item[1].mean())[0]
     assert abs(flash - 0.8) < 0.001
+
+
+SENTENCES = ("My baby may be happy when we play by the pool.",
+             "Put the butter on the table, and pour me a cup of coffee.",
+             "Thank you very much for your visit, and have a pleasant journey home.",
+             "Bob may bring a map of the village and five more apples.")
+
+
+def speaking(path: Path, sentence: str) -> None:
+    """A video of the face that says `sentence`, its mouth as open as flite is loud, and the sentence beside it."""
+    sound = path.with_suffix(".wav")
+    subprocess.run(["flite", "-t", sentence, "-o", str(sound)], check=True)
+    samples, rate = soundfile.read(sound, dtype="int16")
+    loud = np.array([np.abs(part.astype(float)).mean() for part in np.array_split(samples, len(samples) * 25 // rate)])
+    with av.open(str(path), "w") as out:
+        video, heard = out.add_stream("mpeg4", rate=25), out.add_stream("aac", rate=rate)
+        video.width = video.height = 512
+        video.pix_fmt, video.bit_rate = "yuv420p", 8_000_000
+        for level in np.sqrt(loud / loud.max()):
+            out.mux(video.encode(av.VideoFrame.from_ndarray(drawn(2 * round(13 * level)), format="bgr24")))
+        out.mux(video.encode())
+        frame = av.AudioFrame.from_ndarray(samples[None], format="s16", layout="mono")
+        frame.sample_rate, frame.pts = rate, 0
+        out.mux(heard.encode(frame))
+        out.mux(heard.encode())
+    sound.unlink()
+    path.with_suffix(".txt").write_text(sentence)
+
+
+@pytest.mark.skipif(not shutil.which("flite"), reason="needs the Debian package flite")
+def test_the_five_commands_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first block of docs/record.md as it stands there, the first two lines for each of four videos."""
+    page = (Path(os.environ["LABIAL_SOURCE"]) / "docs" / "record.md").read_text(encoding="utf-8")
+    lines = page.split("```sh\n")[1].split("```")[0].splitlines()
+    assert [line.split()[1] for line in lines] == ["landmarks", "align", "record", "train", "page"]
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "recordings").mkdir()
+    names = [f"s{number:02}" for number in range(1, 1 + len(SENTENCES))]
+    for name, sentence in zip(names, SENTENCES):
+        speaking(tmp_path / "recordings" / f"{name}.mp4", sentence)
+    for line in lines[:2]:
+        for name in names:
+            assert main(shlex.split(line.replace("s01", name))[1:]) == 0
+    for line in lines[2:]:
+        assert main(shlex.split(line)[1:]) == 0
+    assert "data:audio/mp4" in (tmp_path / "me.html").read_text(encoding="utf-8")
+    assert len(read_corpus(tmp_path / "corpus")) == len(SENTENCES)

@@ -13,7 +13,7 @@ from labial.corpus.avlaughter import laugh_files, read_avlaughter
 from labial.corpus.episode import Episode
 from labial.corpus.folder import read_folder
 from labial.corpus.iemocap import read_iemocap
-from labial.corpus.talkers import brought_together, with_sources
+from labial.corpus.talkers import brought_together, with_something_left, with_sources
 from labial.errors import DataError, LabialError
 from labial.phonesets import PHONE_SETS
 
@@ -57,8 +57,9 @@ def read_corpus(path: Union[str, os.PathLike], kind: str = "speech") -> List[Epi
 
 def read_corpora(paths: Sequence[Union[str, os.PathLike]], kind: str = "speech") -> List[List[Episode]]:
     """Reads several corpora as :func:`read_corpus` does, and brings every recording's mean and scale, channel by
-    channel, to those of the first."""
-    return brought_together([read_corpus(path, kind) for path in paths], PHONE_SETS[kind].silence)
+    channel, to those of the first. What every corpus leaves out is learnt all the same, with a warning."""
+    corpora = with_something_left([read_corpus(path, kind) for path in paths])
+    return brought_together(corpora, PHONE_SETS[kind].silence)
 
 
 def resample(episode: Episode, fps: int) -> Resampled:

@@ -18,6 +18,7 @@ channel by channel, both taken outside silence.
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -96,6 +97,21 @@ def _talkers(table: Table, names: Iterable[str]) -> Dict[str, Tuple[str, str]]:
     if nobody is not None:
         raise table.error("talkers", f"nobody is told to speak in {nobody}")
     return told
+
+
+def with_something_left(corpora: Sequence[Sequence[Episode]]) -> List[List[Episode]]:
+    """The corpora with what all of them leave out learnt after all, for there is nothing better; warns of it."""
+    sources = [item.source for corpus in corpora for item in corpus]
+    nowhere = frozenset.intersection(*(source.left_out for source in sources)) if sources else frozenset()
+    silences = not any(source.silences for source in sources)
+    if not nowhere and not silences:
+        return [list(corpus) for corpus in corpora]
+    names = [FAP_COLUMNS[channel] for channel in sorted(nowhere)] + ["silences"] * silences
+    warnings.warn(f"every corpus leaves out {', '.join(names)}: learnt all the same, for want of anything better",
+                  stacklevel=3)
+    return [[replace(item, source=replace(item.source, left_out=item.source.left_out - nowhere,
+                                          silences=item.source.silences or silences)) for item in corpus]
+            for corpus in corpora]
 
 
 def brought_together(corpora: Sequence[Sequence[Episode]], silence: str) -> List[List[Episode]]:
