@@ -302,6 +302,7 @@ static void every_blob_is_refused(void **state)
 {
     unsigned m;
     (void)state;
+    assert_int_equal(labial_model_load(NULL, bytes, 0), LABIAL_ERROR_NULL);
     for (m = 0; m < 4; m++) {
         const size_t size = serialise(models[m]);
         labial_blob_t blob;
@@ -317,7 +318,6 @@ static int run_big_endian(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_serialisers_checksum_is_the_known_one),
         cmocka_unit_test(every_blob_is_refused),
-        cmocka_unit_test(null_is_refused),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }
