@@ -29,12 +29,20 @@ static void onFrame(void *, uint32_t, const int16_t faps[LABIAL_CHANNELS])
     avatar.setMouthOpenRatio((float)thousandths / 1000.0f);
 }
 
-// Begins the sentence; start your sound here. The first frame comes labial_latency().delay ticks later, 140 ms.
+// Takes one frame up, and delivers the one of `delay` frames ago.
+static void nextTick()
+{
+    talking = talk_phonemes_feed(&face, &nextPhoneme) == LABIAL_OK && labial_tick(&face) != LABIAL_DONE;
+}
+
+// Takes up as many frames as the first one waits for, which is then shown at once: start your sound at the end of this.
 static void talk()
 {
     nextPhoneme = 0;
-    nextFrame = (uint32_t)millis();
     talking = true;
+    for (unsigned ahead = labial_latency(&face).delay; ahead > 0 && talking; ahead--)
+        nextTick();
+    nextFrame = (uint32_t)millis();
 }
 
 void setup()
@@ -54,7 +62,6 @@ void loop()
             talk();
     } else if ((int32_t)((uint32_t)millis() - nextFrame) >= 0) {
         nextFrame += 1000 / SPEECH_EN_FPS;
-        if (talk_phonemes_feed(&face, &nextPhoneme) < 0 || labial_tick(&face) == LABIAL_DONE)
-            talking = false;
+        nextTick();
     }
 }
