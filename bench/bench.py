@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 from typing import Callable, List
 
-from measure import baseline, boards, host, loss, mlpg, profile, readme, runtime, sizes, stack, table
+from measure import baseline, boards, host, loss, mlpg, npm, profile, readme, runtime, sizes, stack, table
 from measure.core import Bench, LeftOut
 
 
@@ -53,6 +53,7 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
     print("Host: speed, instructions, equation 3, loss", flush=True)
     attempt(host.measure, compiler)
     attempt(runtime.measure, compiler)
+    attempt(npm.measure)
     attempt(mlpg.measure, compiler)
     attempt(mlpg.hts_engine)
     attempt(mlpg.sptk)

@@ -28,6 +28,9 @@ GOALS = (
     ("stack, Cortex-M0 -Os", "m0", "stack -Os: every function", 512, False),
     ("stack, Cortex-M0 -O2", "m0", "stack -O2: every function", 512, False),
     ("Python, rendered whole, us per frame", "python", "speech: rendered whole", 5, False),
+    ("npm package, packed, bytes", "wasm", "packed package", 70 * 1024, False),
+    ("node, rendered whole, us per frame", "wasm", "speech: rendered whole", 10, False),
+    ("node, rendered for the first time, us per frame", "wasm", "speech: rendered whole, the first time", 10, False),
     (f"x86-64, times real time at {RATE} frames/s", "host", f"speech: speed at {RATE} frames/s", 200, True),
 )
 
@@ -204,6 +207,17 @@ def _runtime(bench: Bench) -> List[str]:
     ] if own else []
 
 
+def _npm(bench: Bench) -> List[str]:
+    own = [figure for figure in bench.figures if figure.target == "wasm"]
+    return [
+        "## WebAssembly", "",
+        "The npm package under node, on the host, by bench/npm.mjs: utterances rendered whole by `labial.render()`, "
+        "ticks of a `labial.stream()`, and `track.at()`, 60 times per second. Compressed by gzip at its highest "
+        "level.", "",
+        *_rows(["", "", ""], [[figure.figure, _number(figure.value), figure.unit] for figure in own]),
+    ] if own else []
+
+
 def _profile(profile: Sequence[Row]) -> List[str]:
     total = sum(row.instructions for row in profile)
     rows = [[f"`{row.function}`", f"{row.instructions:,.0f}", f"{100.0 * row.instructions / total:.1f} %",
@@ -248,7 +262,7 @@ def markdown(bench: Bench, profile: Sequence[Row]) -> str:
     lines = ["# Figures", "", "Measured by `cmake --workflow --preset bench`; `bench.json` has the command of each.",
              f"Tools: {', '.join(tools)}.", ""]
     lines += [*_cost(bench), *_memory(bench), *_mlpg(bench), *_accuracy(bench), *_delay(bench),
-              *_runtime(bench)]
+              *_runtime(bench), *_npm(bench)]
     speeds = [[figure.figure, _number(figure.value), figure.unit] for figure in bench.figures if figure.timed]
     lines += ["## Speed of the host, one core", "", *_rows(["", "", ""], speeds)] if speeds else []
     lines += _profile(profile) if profile else []

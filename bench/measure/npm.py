@@ -1,0 +1,40 @@
+"""The npm package: bytes of the module, of what a browser fetches, of the packed package; microseconds per frame."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+
+from measure.core import Bench, run, tool, version
+
+
+def measure(bench: Bench) -> None:
+    """Builds the package and measures it under node. Compressed bytes are those of gzip at its highest level."""
+    what = "The npm package"
+    for name, package in (("clang", "clang"), ("wasm-ld", "lld"), ("node", "nodejs"), ("npm", "npm")):
+        tool(name, package, what)
+    folder = bench.build / "wasm"
+    toolchain = bench.source / "boards" / "toolchains" / "wasm.cmake"
+    run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={toolchain}", "-DCMAKE_BUILD_TYPE=Release",
+         "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF"])
+    run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
+    compiler = version("clang")
+    module = folder / "npm" / "labial.wasm"
+    names = ("index.js", "faces.js", "memory.js", "stream.js", "timings.js", "track.js")
+    scripts = [folder / "npm" / name for name in names]
+    (packed,) = folder.glob("labial-*.tgz")
+    bench.add("wasm", "module with both models", module.stat().st_size, "bytes", ["ls", "-l", module], compiler)
+    bench.add("wasm", "module with both models, compressed", _compressed(module), "bytes",
+              ["gzip", "-9c", module, "|", "wc", "-c"], compiler)
+    bench.add("wasm", "scripts, each compressed", sum(map(_compressed, scripts)), "bytes",
+              ["gzip", "-9c", folder / "npm" / "*.js", "|", "wc", "-c", "#", *names], compiler)
+    bench.add("wasm", "packed package", packed.stat().st_size, "bytes", ["ls", "-l", packed], compiler)
+    command = ["node", bench.source / "bench" / "npm.mjs", folder / "npm"]
+    engine = "node " + run(["node", "--version"]).stdout.decode().strip().lstrip("v")
+    for way, value in json.loads(run(command).stdout).items():
+        bench.add("wasm", f"speech: {way}", value, "us/frame", command, f"{engine}, {compiler}")
+
+
+def _compressed(path: Path) -> int:
+    return len(gzip.compress(path.read_bytes(), 9, mtime=0))
