@@ -129,7 +129,9 @@ def test_built_in_rigs() -> None:
     motion = labial.render(WORD)
     for name in labial.Rig.BUILTIN:
         for row in motion.tolist():
-            assert all(0 <= value <= 1000 for value in labial.Frame(0, tuple(row)).rig(name).values())
+            values = labial.Frame(0, tuple(row)).rig(name)
+            assert all(0 <= value <= 1000 for value in values.values())
+            assert values == labial.Rig(name).apply(row)  # what is kept under a name has no memory
     assert max(labial.Frame(0, tuple(row)).rig("arkit")["jawOpen"] for row in motion.tolist()) > 100
     servos = labial.Rig(SOURCE / "examples" / "faces" / "servos.toml")
     assert servos.unit == "pca9685" and servos.prescale == 121

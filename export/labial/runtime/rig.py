@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import threading
 from array import array
 from functools import cache
 from pathlib import Path
@@ -22,7 +23,7 @@ class Rig:
 
     ``Rig("face.toml")`` reads a description, ``Rig("arkit")`` takes a built-in one; ``Rig.BUILTIN`` names those. The
     values are those of ``labial_rig_apply()``, bit for bit. A rig remembers the last frame's values, from which outputs
-    with a limit of speed go on: each face, and each thread, has a rig of its own. Raises DataError, which names the
+    with a limit of speed go on: each face has a rig of its own. Raises DataError, which names the
     file and the key, for what is wrong in a description.
 
     Attributes:
@@ -57,6 +58,7 @@ class Rig:
         checked(library().labial_rig_check(self._table), os.fspath(path))
         self._values = (ctypes.c_int32 * len(rows))()
         self._apply = library().labial_rig_apply
+        self._lock = threading.Lock()  # from moving the values until they are read
         self.rest()
 
     @classmethod
@@ -75,8 +77,9 @@ class Rig:
 
     def rest(self) -> Dict[str, int]:
         """Puts the face at rest; its values."""
-        checked(library().labial_rig_rest(self._table, self._values))
-        return self.values
+        with self._lock:
+            checked(library().labial_rig_rest(self._table, self._values))
+            return self.values
 
     def apply(self, faps: Iterable[int]) -> Dict[str, int]:
         """Moves the face on by one frame of 13 FAPs, whole numbers of 16 bits; its values."""
@@ -88,8 +91,9 @@ class Rig:
             raise TypeError("FAPs are whole numbers") from None
         if len(numbers) != CHANNELS:
             raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
-        checked(self._apply(self._table, numbers.buffer_info()[0], self._values))
-        return self.values
+        with self._lock:
+            checked(self._apply(self._table, numbers.buffer_info()[0], self._values))
+            return self.values
 
     def __repr__(self) -> str:
         return f"<labial.Rig {self.name}: {', '.join(self.outputs)}>"
