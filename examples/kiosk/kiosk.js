@@ -2,16 +2,16 @@
 import { Labial, timings } from "labial";
 import "labial/labial-mouth.js";
 
-// What is said: a sound and the times of its phonemes. For a server's voice, the two addresses under which it gives them.
-const WORDS = { sound: "welcome.flac", timings: "welcome.lab" };
+// What is said: a sound, the times of its phonemes, and who reads these. For a server's voice, change this line.
+const WORDS = { sound: "welcome.flac", timings: "welcome.lab", read: timings.fromLab };
 
 const [face, voice, status] = ["face", "voice", "status"].map((id) => document.getElementById(id));
 const labial = await Labial.load();
 const laughter = labial.stream();
 let turn = 0; // whoever asked last has the mouth
 
-/** Interrupts what the mouth does. The result is that of `prepare`, once the mouth is at rest; null when somebody else has
- * asked for the mouth in the meantime. */
+/** Interrupts what the mouth does. The result is that of `prepare`, once the mouth is at rest; null when somebody else
+ * has asked for the mouth in the meantime. */
 async function interrupt(prepare) {
     const mine = ++turn;
     const [ready] = await Promise.all([prepare?.(), face.cancel(200)]);
@@ -25,10 +25,10 @@ async function text(address) {
 }
 
 async function speak(words) {
-    const lab = await interrupt(() => text(words.timings));
-    if (lab === null) return;
+    const times = await interrupt(() => text(words.timings));
+    if (times === null) return;
     face.audio = voice;
-    face.track = labial.render(timings.fromLab(lab), { unknown: "nearest" });
+    face.track = labial.render(words.read(times), { unknown: "nearest" });
     voice.src = words.sound;
     await voice.play();
 }

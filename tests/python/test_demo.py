@@ -16,6 +16,8 @@ from typing import Any, Dict, List, Optional, Tuple
 import numpy as np
 import pytest
 
+from labial.cli import main
+
 PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
 pytestmark = pytest.mark.skipif(not PAGE, reason="LABIAL_DEMO_PAGE does not name the built page")
 
@@ -255,6 +257,21 @@ def test_sound_is_what_flite_says(tmp_path: Path) -> None:
         length = int(float(bear[-2].split(":")[1]) * rate) - rate // 100 if name == "bear" else len(spoken)
         at = begin * rate // 1000
         assert np.array_equal(samples[at : at + length], spoken[:length]), name
+
+
+def test_the_kiosks_sound_is_what_flite_says(tmp_path: Path) -> None:
+    """examples/kiosk: sound and timings are what the commands of its README.md make."""
+    soundfile = pytest.importorskip("soundfile")
+    if not shutil.which("flite"):
+        pytest.skip("needs the Debian package flite")
+    kiosk = DEMO.parent / "kiosk"
+    said = re.search(r"```sh\n(flite .*?welcome\.flite)\n", (kiosk / "README.md").read_text(encoding="utf-8"), re.S)
+    assert said
+    subprocess.run(said[1], shell=True, cwd=tmp_path, check=True, timeout=60)
+    assert main(["timings", str(tmp_path / "welcome.flite"), "-o", str(tmp_path / "welcome.lab")]) == 0
+    assert (tmp_path / "welcome.lab").read_text() == (kiosk / "welcome.lab").read_text()
+    sound, wanted = (soundfile.read(path, dtype="int16") for path in (kiosk / "welcome.flac", tmp_path / "welcome.wav"))
+    assert sound[1] == wanted[1] and np.array_equal(sound[0], wanted[0])
 
 
 def test_nothing_is_requested(text: str, page: _Page) -> None:
