@@ -1,7 +1,7 @@
 /*
  * board.h - what a firmware image can ask of its board: text, an exit status, an instruction counter, stack depth.
  *
- *     cmake --workflow --preset m0      builds every image for a board and runs it under QEMU; also m3, m4, m7, rv32
+ *     cmake --workflow --preset m0      builds every image for a board and runs it under QEMU; see boards/presets.json
  *
  * An image is a program with main(), made by the CMake function
  *

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
-from typing import Dict, List
+from pathlib import Path
+from typing import Dict, List, Tuple
 
 from measure.core import Bench, run, tool, version
 
@@ -37,13 +38,19 @@ class Board:
 _ARM = ("arm-none-eabi-", "gcc-arm-none-eabi", "qemu-system-arm", "qemu-system-arm")
 _RISCV = ("riscv64-unknown-elf-", "gcc-riscv64-unknown-elf", "qemu-system-riscv32", "qemu-system-misc")
 
-BOARDS = (
-    Board("m0", "Cortex-M0", *_ARM, 16, "nRF51822 of the micro:bit"),
-    Board("m3", "Cortex-M3", *_ARM, 72, "STM32F103"),
-    Board("m4", "Cortex-M4F", *_ARM, 64, "nRF52840"),
-    Board("m7", "Cortex-M7", *_ARM, 216, "STM32F746"),
-    Board("rv32", "RV32IMAC", *_RISCV, 108, "GD32VF103"),
-)
+def _boards() -> Tuple[Board, ...]:
+    """The boards whose toolchain file names the core and a usual chip's clock, by name."""
+    found = []
+    for path in sorted((Path(__file__).parents[2] / "boards" / "toolchains").glob("*.cmake")):
+        text = path.read_text(encoding="utf-8")
+        said = dict(re.findall(r'^set\(LABIAL_BOARD_(\w+) "?([^")]*)"?\)$', text, re.MULTILINE))
+        if "CORE" in said:
+            tools = _ARM if "/arm.cmake" in text else _RISCV
+            found.append(Board(path.stem, said["CORE"], *tools, int(said["CLOCK"]), said["CHIP"]))
+    return tuple(found)
+
+
+BOARDS = _boards()
 
 
 def compiler(board: Board) -> str:

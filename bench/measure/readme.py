@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from typing import Dict, Sequence, Tuple
 
+from measure.boards import BOARDS
 from measure.core import Figure
 
 #: Columns of README.md's table of instructions.
-TARGETS = ("m0", "m3", "m4", "m7", "rv32", "host")
+TARGETS = (*(board.preset for board in BOARDS), "host")
 
 
 def updated(text: str, figures: Sequence[Figure]) -> str:
