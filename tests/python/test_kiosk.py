@@ -221,9 +221,13 @@ def test_a_tap_makes_it_laugh_and_speech_interrupts_that(browser: Browser, addre
     opening = np.array([-(row[7] + row[8]) for row in laughing if row[3] > laughing[-1][3] - 1], dtype=float)
     tops = np.flatnonzero((opening[1:-1] > opening[:-2]) & (opening[1:-1] >= opening[2:]))
     assert corners[-1].min() > 20 and len(tops) >= 3 and np.ptp(opening) > 60
+    tapped = page.evaluate("performance.now() / 1000")
     tap(page, "speak")
     page.wait_for("voice.currentTime > 0.5 && face.track")
-    smooth(page.evaluate("seen"))
+    seen = page.evaluate("seen")
+    smooth(seen)
+    at_rest = next(row[3] for row in seen if row[3] > tapped and not any(row[4:]))
+    assert 0.15 < at_rest - tapped < 0.7  # the stream's own way to rest takes 0.2 s
     tap(page, "face")
     page.wait_for("face.stream && face.stream.done", 5.0)
     assert page.errors() == []
