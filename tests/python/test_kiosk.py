@@ -348,3 +348,16 @@ def test_the_element_by_itself(browser: Browser, address: str) -> None:
     assert page.errors() == []
     with pytest.raises(PageFailed, match='a frame has 13 FAPs; what is drawn has the output "faps"'):
         page.evaluate("face.stream = said({output: 'arkit'}); turn(0)")
+
+
+@pytest.mark.parametrize("lost", ["welcome.lab", "welcome.flac"])
+def test_what_is_missing_is_said(browser: Browser, address: str, lost: str) -> None:
+    """Without its timings or its sound the page says so, and the mouth rests; the next laugh is as ever."""
+    page = opened(browser, address)
+    page.command("Network.enable")
+    page.command("Network.setBlockedURLs", {"urls": [f"*{lost}"]})
+    tap(page, "speak")
+    page.wait_for("document.getElementById('status').textContent !== 'Tap the face, and it laughs.'")
+    assert page.evaluate("document.getElementById('status').textContent.length") > 10
+    tap(page, "face")
+    page.wait_for("face.stream && face.stream.number > 30")
