@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -48,15 +49,15 @@ def test_the_same_frames_as_the_c_program(tmp_path: Path, voice: str, text: str)
                           check=True)
     wanted = [[int(float(value)) for value in line.split(",")[1:]] for line in done.stdout.splitlines()[1:]]
     # Another process, since espeak-ng's second sentence is not its first.
-    script = ("import sys, espeak, labial\n"
+    script = ("import json, sys, espeak, labial\n"
               "said = espeak.Espeak(sys.argv[1]).say(sys.argv[2])\n"
               "open('py.raw', 'wb').write(said.sound)\n"
-              "print(labial.render(said.timings, labels=said.labels, nearest=True).tolist())\n")
+              "print(json.dumps(labial.render(said.timings, labels=said.labels, nearest=True).tolist()))\n")
     done = subprocess.run([sys.executable, "-c", script, voice, text], capture_output=True, text=True, check=True,
                           cwd=tmp_path, env={**os.environ, "PYTHONPATH": f"{PI}{os.pathsep}{SOURCE / 'export'}"})
     with wave.open(str(tmp_path / "c.wav")) as sound:
         assert sound.readframes(sound.getnframes()) == (tmp_path / "py.raw").read_bytes()
-    assert eval(done.stdout) == wanted and len(wanted) > 40
+    assert json.loads(done.stdout) == wanted and len(wanted) > 40
 
 
 @needs_espeak
