@@ -159,6 +159,20 @@ typedef struct {
  */
 int labial_model_check(const labial_model_t *model);
 
+/*
+ * How much work the model makes: an upper estimate of the instructions that one labial_tick() takes on a Cortex-M0, the
+ * slowest of the processors that the library is measured on; the others take about three quarters of them. No input makes
+ * a tick with this model dearer; one in which the model changes takes at most what both models cost together. The bundled
+ * models cost about 40,000, of which a tick takes 22,000 at most. A model that labial_model_check() accepts can cost
+ * 200,000, so a program that plays models of others compares this number with what its processor has for a frame:
+ *
+ *     if (labial_model_load(&blob, data, size) != LABIAL_OK || labial_model_cost(&blob.model) > 50000)
+ *         return -1; // 50,000 instructions 50 times a second are about a quarter of a Cortex-M0 at 16 MHz
+ *
+ * `model` is one that labial_model_check() accepts; 0 for a null pointer. Linked only when used.
+ */
+uint32_t labial_model_cost(const labial_model_t *model);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,66 @@
+/*
+ * cost.c - how much work a model's tables make.
+ *
+ * Each term is the number of times that a step can be taken in one tick, times the instructions that a Cortex-M0 takes
+ * for it at most, as GCC compiles it with -Os or -O2. tests/device/model_cost.c counts them.
+ */
+#include "labial/labial.h"
+
+enum {
+    PER_TICK = 3500,      /* the queue, floors and contact, fades, the callback's frame */
+    PER_TAP = 190,        /* of the kernels, in all channels */
+    PER_COMPONENT = 700,  /* of a phoneme whose shape is selected, in all channels */
+    PER_KNOT = 400,       /* of a pair, in all channels */
+    PER_COMPARISON = 20,  /* of a binary search */
+    PER_SEARCH = 300,     /* of one channel */
+    PER_STATE = 150,      /* that is searched */
+    PER_TRANSITION = 20,  /* into such a state */
+    PER_LAG = 60,         /* frame of the lag, in one channel */
+    PER_ROW = 650,        /* of equation 3 */
+    PER_STEP_BACK = 32    /* of the way back */
+};
+
+/* Shapes that one tick can select: that of the phoneme which begins, and that of the next. */
+#define SELECTED 2u
+
+/* Comparisons that a binary search among `count` takes. */
+static uint32_t comparisons(uint32_t count)
+{
+    uint32_t result = 0;
+    for (; count > 0; count >>= 1)
+        result++;
+    return result;
+}
+
+static uint32_t selection(const labial_model_t *model)
+{
+    uint32_t most = 0, pairs = 0;
+    unsigned p;
+    for (p = 0; p < model->phoneme_count; p++)
+        if (model->phonemes[p].component_count > most)
+            most = model->phonemes[p].component_count;
+    if (model->pair_count) /* with the phoneme before and with the one behind */
+        pairs = 2u * (comparisons(model->pair_count) * PER_COMPARISON + (uint32_t)model->pair_knots * PER_KNOT);
+    return most * PER_COMPONENT + pairs;
+}
+
+/* What one channel takes in its turn: a step of the search, the rows of its frames and one more at the end, the way
+ * back. */
+static uint32_t turn(const labial_model_t *model, uint32_t stride)
+{
+    const uint32_t states = model->state_count < LABIAL_SEARCHED ? model->state_count : LABIAL_SEARCHED;
+    return PER_SEARCH + comparisons(model->state_count) * PER_COMPARISON + LABIAL_LAG * PER_LAG +
+           states * (PER_STATE + (uint32_t)model->predecessors * PER_TRANSITION) + (stride + 1u) * PER_ROW +
+           (LABIAL_WINDOW + 1u + stride) * PER_STEP_BACK;
+}
+
+uint32_t labial_model_cost(const labial_model_t *model)
+{
+    uint32_t stride, channels;
+    if (!model || model->search_stride == 0)
+        return 0;
+    stride = model->search_stride;
+    channels = (LABIAL_CHANNELS + stride - 1u) / stride;
+    return PER_TICK + (uint32_t)model->kernel_taps * PER_TAP + SELECTED * selection(model) +
+           channels * turn(model, stride);
+}
