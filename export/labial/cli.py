@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING, Callable, List, Optional
 from labial import __version__
 from labial.errors import LabialError, needs
 
+#: Predecessors that are kept for each state by default.
+PREDECESSORS = 4
+
 if TYPE_CHECKING:
     from labial.model import Model
 
@@ -215,12 +218,10 @@ def _add_said(command: argparse.ArgumentParser) -> None:
 
 
 def _add_export_options(command: argparse.ArgumentParser) -> None:
-    from labial.quantise import DEFAULT_PREDECESSORS
-
     command.add_argument("--amplitude", type=float, default=1.0, metavar="FACTOR",
                          help="widen (over 1) or calm (below 1) the motion about its mean; 1 is the least error (1)")
-    command.add_argument("--predecessors", type=_positive, default=DEFAULT_PREDECESSORS,
-                         help=f"transitions kept into each state ({DEFAULT_PREDECESSORS})")
+    command.add_argument("--predecessors", type=_positive, default=PREDECESSORS,
+                         help=f"transitions kept into each state ({PREDECESSORS})")
 
 
 def _train(options: argparse.Namespace) -> int:
@@ -448,17 +449,12 @@ def _record(options: argparse.Namespace) -> int:
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
-    try:
-        options = parser().parse_args(arguments)
-    except ModuleNotFoundError as error:
-        if error.name != "numpy":
-            raise
-        print("labial: the command labial needs the package numpy: install labial[tools]", file=sys.stderr)
-        return 1
+    options = parser().parse_args(arguments)
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_, **__: print(f"labial: warning: {message}", file=sys.stderr)
         try:
-            return int(options.run(options))
+            with needs(f"labial {options.command}", "tools"):
+                return int(options.run(options))
         except LabialError as error:
             print(f"labial: {error}", file=sys.stderr)
             return 1

@@ -35,9 +35,6 @@ FORMAT = 3
 #: The library's limits.
 LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
 
-#: Predecessors that are kept for each state by default.
-DEFAULT_PREDECESSORS = 4
-
 #: Steps after which the states of a chain are taken to be as frequent as in the long run.
 STATIONARY_STEPS = 2000
 
@@ -104,7 +101,7 @@ class ExportedModel:
         return dense
 
 
-def quantise(model: Model, name: str, *, predecessors: int = DEFAULT_PREDECESSORS) -> ExportedModel:
+def quantise(model: Model, name: str, *, predecessors: int = 4) -> ExportedModel:
     """The exported tables of `model`, with the `predecessors` likeliest transitions into each state kept.
 
     Raises ModelError where the model exceeds the library's limits.

@@ -130,7 +130,9 @@ def test_installed_wheel_needs_nothing(installed: Path, tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     done = call([installed.with_name("labial"), "synth", "x.npz", "word.lab"], {"PATH": ""}, tmp_path)
     assert done.returncode == 1
-    assert done.stderr == "labial: the command labial needs the package numpy: install labial[tools]\n"
+    assert done.stderr == "labial: labial synth needs the package numpy: install labial[tools]\n"
+    done = call([installed.with_name("labial"), "--version"], {"PATH": ""}, tmp_path)
+    assert (done.returncode, done.stdout) == (0, f"labial {labial.__version__}\n")
 
 
 def test_installed_exporter_brings_the_library(installed: Path, tmp_path: Path) -> None:
