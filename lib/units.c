@@ -141,59 +141,64 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
         *label++ = silence;
 }
 
-/* Leaves the oldest segment, all of whose frames were taken. */
-static void drop(labial_units_t *units, const labial_segment_t *segment)
+/* How far the mouth has come to rest in a pause that does not yet lead on to something. */
+static uint8_t rest_of(labial_units_t *units)
 {
+    if (units->taken == 0)
+        units->rested = units->begins; /* nothing leads to where it rests */
+    return (uint8_t)(units->taken < LABIAL_REST_FRAMES && !units->rested ? units->taken + 1u : LABIAL_REST_FRAMES);
+}
+
+/* Goes on to the next frame, of the next segment where this one ends; returns the marks of the frame that was taken. */
+static unsigned go_on(labial_units_t *units, const labial_segment_t *segment, int is_boundary, int is_last)
+{
+    unsigned marks = units->begins ? (unsigned)LABIAL_BEGINS : 0u;
+    units->begins = 0;
+    units->taken++;
+    units->frames--;
+    if (units->taken < segment->frames)
+        return marks;
+    if (is_last)
+        marks |= LABIAL_ENDS | LABIAL_UNIT_ENDS;
+    else if (is_boundary)
+        marks |= LABIAL_UNIT_ENDS;
+    units->begins = (uint8_t)is_last;
     units->before = segment->phoneme;
     units->taken = 0;
     units->head = (uint8_t)(units->head + 1u < LABIAL_QUEUE ? units->head + 1u : 0u);
     units->count--;
+    return marks;
 }
 
 int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_taken_t *taken)
 {
-    const labial_segment_t *segment = segment_at(units, 0), *next = NULL;
+    const labial_segment_t *segment = segment_at(units, 0);
     const labial_model_t *model;
-    uint32_t head, begin, frames;
+    uint32_t head, begin, end;
     unsigned ahead;
+    int is_last; /* of its solution */
 
     if (units->count == 0)
         return ended ? LABIAL_DONE : LABIAL_STARVED;
     model = models[segment->slot];
     ahead = look_ahead(model);
     head = head_of(segment, model);
-    if (units->count > 1u)
-        next = segment_at(units, 1);
-    if (!ended && units->taken >= head && (!next || units->frames <= ahead))
+    is_last = units->count == 1u || segment_at(units, 1)->slot != segment->slot;
+    begin = units->taken < head ? 0u : head;
+    end = units->taken < head ? head : segment->frames;
+    if (!ended && begin == head && (units->count == 1u || units->frames <= ahead))
         return LABIAL_STARVED;
 
     relabel(units, segment->slot, model->silence, ahead);
     taken->labels = units->labels + LABIAL_REACH;
     taken->slot = segment->slot;
-    taken->is_first = units->taken == 0 || units->taken == head;
-    begin = units->taken < head ? 0u : head;
-    frames = (units->taken < head ? head : segment->frames) - begin;
-    taken->share = share_of(units->taken - begin, frames);
-    if (units->taken == 0)
-        units->rested = units->begins; /* nothing leads to where it rests */
+    taken->is_first = units->taken == begin;
+    taken->share = share_of(units->taken - begin, end - begin);
     taken->rest = 0;
-    if (head > 0 && (units->taken < head || !next || next->slot != segment->slot))
-        taken->rest = (uint8_t)(units->taken < LABIAL_REST_FRAMES && !units->rested ? units->taken + 1u
-                                                                                    : LABIAL_REST_FRAMES);
-    taken->is_open = frames >= LABIAL_CONTACT_LONG && segment->frames - units->taken > LABIAL_CONTACT_LAST;
-    taken->marks = (uint8_t)(units->begins ? LABIAL_BEGINS : 0);
-    units->begins = 0;
-    units->taken++;
-    units->frames--;
-    if (units->taken == segment->frames) {
-        if (!next || next->slot != segment->slot) {
-            taken->marks |= LABIAL_ENDS | LABIAL_UNIT_ENDS;
-            units->begins = 1;
-        } else if (model->phonemes[segment->phoneme].boundary) {
-            taken->marks |= LABIAL_UNIT_ENDS;
-        }
-        drop(units, segment);
-    }
+    if (head > 0 && (begin < head || is_last))
+        taken->rest = rest_of(units);
+    taken->is_open = end - begin >= LABIAL_CONTACT_LONG && segment->frames - units->taken > LABIAL_CONTACT_LAST;
+    taken->marks = (uint8_t)go_on(units, segment, model->phonemes[segment->phoneme].boundary, is_last);
     return LABIAL_OK;
 }
