@@ -51,6 +51,7 @@ def parser() -> argparse.ArgumentParser:
                        "share a state of the decoded path (3); 1 decodes every frame, as --method paper always does")
     train.add_argument("--seed", type=int, default=0)
     train.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, help="processes; the result is the same")
+    _add_engine(train)
     train.add_argument("--attribution", default="", help="what whoever passes the model on must say; kept in the model")
     train.add_argument("--quiet", action="store_true", help="no progress bars")
     train.set_defaults(run=_train)
@@ -130,6 +131,7 @@ def parser() -> argparse.ArgumentParser:
     evaluate.add_argument("--methods", default="all", metavar="A,B,...", help="methods to compare (all)")
     evaluate.add_argument("--fps", type=_positive, default=50, help="frames per second (50)")
     evaluate.add_argument("--jobs", type=_positive, default=2, help="splits at a time (2); the result is the same")
+    _add_engine(evaluate)
     evaluate.add_argument("--hold-out-words", default="", metavar="W1,W2,...",
                           help="train without the episodes that hold these words, judge these words' frames alone")
     evaluate.add_argument("--leave-out-talkers", action="store_true", help="train without each talker of the second "
@@ -197,6 +199,11 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _add_engine(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--engine", metavar="dask=ADDRESS", help="work on the Dask cluster whose scheduler is at "
+                         "ADDRESS, in place of this machine's processes; the result is the same")
+
+
 def _add_source(command: argparse.ArgumentParser) -> None:
     from labial.corpus.formats import READERS
 
@@ -241,8 +248,8 @@ def _train(options: argparse.Namespace) -> int:
     episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
     model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
-                  progress=not options.quiet and sys.stderr.isatty(), attribution=options.attribution,
-                  **own)
+                  engine=options.engine, progress=not options.quiet and sys.stderr.isatty(),
+                  attribution=options.attribution, **own)
     save(model, options.output)
     for line in backed_off(model):
         print(line)
@@ -375,7 +382,7 @@ def _evaluate(options: argparse.Namespace) -> int:
         raise LabialError("--hold-out-words and --leave-out-talkers do not go together")
     asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
                     options.leave_out_talkers)
-    for path in run(options.corpus, options.output, asked, jobs=options.jobs,
+    for path in run(options.corpus, options.output, asked, jobs=options.jobs, engine=options.engine,
                     progress=not options.quiet and sys.stderr.isatty()):
         print(path)
     return 0
@@ -425,10 +432,8 @@ def _page(options: argparse.Namespace) -> int:
 
 
 def _landmarks(options: argparse.Namespace) -> int:
-    try:
+    with needs("tracking", "record"):
         from labial.record.track import landmarks
-    except ModuleNotFoundError as error:
-        raise LabialError(f"tracking needs the package {error.name}: install labial[record]") from None
 
     print(landmarks(options.video, options.output, options.face, options.task,
                     progress=not options.quiet and sys.stderr.isatty()))

@@ -19,7 +19,6 @@ from labial.train import backed_off, pipeline, train
 from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
 from labial.train.recordings import Recording, with_pauses_cut
 from labial.train.states import DYNAMIC_RANGE, Scales, limit_range, match_states
-from labial.train.workers import Workers
 
 LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
 OPTIONS = {"kind": "speech", "codebook": 12, "components": 2, "progress": False, "attribution": "synthetic"}
@@ -230,14 +229,3 @@ def test_labels_and_corpora_that_cannot_be_used(corpus):
     strange = replace(corpus[0], segments=(replace(corpus[0].segments[0], label="QQ"), *corpus[0].segments[1:]))
     with pytest.raises(LabialError, match="QQ"):
         train([strange], method="paper", **OPTIONS)
-
-
-def test_works_in_one_process_where_the_system_refuses_more(monkeypatch, recwarn):
-    # Catches a training that fails on a machine without shared memory.
-    def refuse():
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr("multiprocessing.Lock", refuse)
-    with Workers(2, False) as workers:
-        assert workers.run("numbers", abs, [-1, 2]) == [1, 2]
-    assert "one process" in str(recwarn.pop().message)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Sequence
+from typing import Dict, List, Optional, Sequence
 
 from labial.corpus import read_corpora
 from labial.corpus.laughter import is_synthetic
@@ -23,13 +23,15 @@ def processor_time(outcomes: Sequence[Outcome]) -> str:
     return f"processor time per split: {sum(total.values()):.1f} s ({each})"
 
 
-def run(corpora: Sequence[str], output: str, options: Options, *, jobs: int, progress: bool) -> List[Path]:
+def run(
+    corpora: Sequence[str], output: str, options: Options, *, jobs: int, engine: Optional[str], progress: bool
+) -> List[Path]:
     """Evaluates and writes the report into the folder `output`; returns what was written."""
     select(options.methods)  # before the corpora are read
     options = replace(options, synthetic=is_synthetic(corpora[0]))
     first, *others = read_corpora(corpora, options.kind)
     further = [episode for corpus in others for episode in corpus]
-    outcomes = evaluate(first, options, further=further, jobs=jobs, progress=progress)
+    outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress)
     folder = Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     drawn = plots.write(outcomes, options, folder)

@@ -3,16 +3,11 @@ judged)."""
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
-from queue import Empty
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
-from tqdm import tqdm
 
 from labial.corpus.episode import Episode
 from labial.errors import LabialError
@@ -25,7 +20,7 @@ from labial.evaluate.readability import LipReader
 from labial.evaluate.splits import Split, leave_talkers_out, make_splits
 from labial.evaluate.training import Training
 from labial.phonesets import PHONE_SETS, PhoneSet
-from labial.train.workers import usable_jobs
+from labial.train.workers import Workers
 
 #: The human's own motion goes through the same measures under this name.
 HUMAN = "human"
@@ -67,10 +62,6 @@ class Outcome:
     example: Optional[Example] = None
 
 
-def _say_nothing() -> None:
-    pass
-
-
 def _processor_seconds() -> float:
     """This process's and its finished children's, the C library's and its compiler's among them."""
     spent = os.times()
@@ -90,8 +81,8 @@ def _most_shown(test: Sequence[Utterance], phone_set: PhoneSet, split: Split) ->
     return int(np.argmax([last - first + 1 for first, last in shown]))
 
 
-def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell: Callable = _say_nothing) -> Outcome:
-    """Fits and measures all methods on one split. `tell` is called after each method."""
+def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Outcome:
+    """Fits and measures all methods on one split."""
     phone_set = PHONE_SETS[options.kind]
     learnt = [corpus[i] for i in split.training]
     training = Training(learnt, phone_set, options.fps, options.seed + split.number, unseen_words=bool(split.words),
@@ -117,7 +108,6 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
         measures[method.name] = measured(made)
         seconds[method.name] = _processor_seconds() - begun
         motion[method.name] = made[shown]
-        tell()
     example = None
     if split.number == 0:
         item = test[shown]
@@ -126,27 +116,17 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options, tell:
     return Outcome(split, judge.frames, measures, seconds, example)
 
 
-_corpus: List[Utterance] = []  # of a worker process
-_told = None  # queue to the process that shows progress
-
-
-def _begin(corpus: List[Utterance], told) -> None:
-    global _corpus, _told
-    _corpus, _told = corpus, told
-
-
-def _run(task: Tuple[Split, Options]) -> Outcome:
-    with threadpool_limits(1):
-        return run_split(_corpus, *task, tell=lambda: _told.put(1))
+def _run(task: Tuple[List[Utterance], Split, Options]) -> Outcome:
+    return run_split(*task)
 
 
 def evaluate(
     episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
-    progress: bool = True,
+    engine: Optional[str] = None, progress: bool = True,
 ) -> List[Outcome]:
     """All splits of `episodes` in order; Labial's models are trained on `further` ones too, of whose talkers one after
     the other is left out and judged where the options say so. The outcomes do not depend on `jobs`, the number of
-    processes."""
+    processes, nor on `engine` (:class:`labial.train.workers.Workers`)."""
     phone_set = PHONE_SETS[options.kind]
     corpus = utterances(episodes, phone_set, options.fps)
     first = len(corpus)
@@ -156,25 +136,5 @@ def evaluate(
     else:
         splits = [replace(split, added=tuple(range(first, len(corpus))))
                   for split in make_splits(corpus[:first], options.splits, options.seed, options.held_out)]
-    total = len(splits) * len(select(options.methods))
-    jobs = usable_jobs(jobs)
-    with tqdm(total=total, desc="methods", disable=not progress, leave=False) as bar:
-        if jobs == 1:
-            with threadpool_limits(1):
-                return [run_split(corpus, split, options, bar.update) for split in splits]
-        with multiprocessing.Manager() as manager:
-            told = manager.Queue()
-            with ProcessPoolExecutor(jobs, initializer=_begin, initargs=(corpus, told)) as pool:
-                waiting = [pool.submit(_run, (split, options)) for split in splits]
-                while not all(item.done() for item in waiting):
-                    if any(item.done() and item.exception() for item in waiting):
-                        break
-                    try:
-                        bar.update(told.get(timeout=0.5))
-                    except Empty:
-                        continue
-                for item in waiting:
-                    if item.done() and item.exception():
-                        pool.shutdown(wait=False, cancel_futures=True)
-                        raise item.exception()
-                return [item.result() for item in waiting]
+    with Workers(jobs, progress, engine) as workers:
+        return workers.run("splits", _run, [(corpus, split, options) for split in splits])

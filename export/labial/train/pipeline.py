@@ -343,6 +343,7 @@ def train(
     components: int = 5,
     seed: int = 0,
     jobs: int = 2,
+    engine: Optional[str] = None,
     progress: bool = True,
     attribution: str = "",
     look_ahead: float = LOOK_AHEAD,
@@ -356,8 +357,8 @@ def train(
     seconds; less makes a stream's frames earlier. `search_stride` is how many frames share a state of the decoded path.
     The published method has neither. `divide` makes the codebooks' cells; with more than one job it must be a module's
     own function. `attribution` is kept in the model: redistribution requires it. The same arguments give the same
-    model, whatever `jobs`, the number of processes, is. The model keeps what each phoneme backed off to
-    (:func:`backed_off`), the corpus's counts and all options.
+    model, whatever `jobs`, the number of processes, and `engine` are (:class:`labial.train.workers.Workers`). The model
+    keeps what each phoneme backed off to (:func:`backed_off`), the corpus's counts and all options.
     """
     setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide)
     if not 1 <= jobs <= 1024:
@@ -368,7 +369,7 @@ def train(
     items = occurrences(material, setting.phone_set)
     counts = np.bincount(items.phoneme[items.learnt], minlength=len(setting.phone_set.phonemes))
     plan = back_off(counts, setting.phone_set)
-    with Workers(jobs, progress) as workers, threadpool_limits(1):
+    with Workers(jobs, progress, engine) as workers, threadpool_limits(1):
         shaped = _fit_shapes(setting, material, items, plan, workers)
         states = _fit_states(setting, material, shaped, workers)
         model = _model(setting, shaped, states, plan, attribution, _training(setting, material, counts, plan))

@@ -1,0 +1,129 @@
+"""The same results from one core, from several, and from a Dask cluster."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Iterator, Tuple
+
+import numpy as np
+import pytest
+from threadpoolctl import threadpool_info
+
+from labial.cli import main
+from labial.corpus.folder import HEADER
+from labial.errors import LabialError
+from labial.train.workers import Workers
+from packages import SOURCE
+from test_train import OPTIONS, episode
+
+SETTING = ["--codebook", str(OPTIONS["codebook"]), "--components", str(OPTIONS["components"]), "--quiet"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small corpus."""
+    made = tmp_path_factory.mktemp("corpus")
+    for seed in range(8):
+        item = replace(episode(seed), name=f"e{seed}")
+        rows = [",".join([f"{time:.3f}", *(f"{value:.2f}" for value in frame)])
+                for time, frame in zip(item.times, item.frames)]
+        (made / f"{item.name}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
+        (made / f"{item.name}.lab").write_text("".join(f"{s.start} {s.end} {s.label}\n" for s in item.segments))
+    return made
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[str]:
+    """The address of a Dask scheduler with two workers, each a process of its own."""
+    distributed = pytest.importorskip("distributed", reason="the Dask cluster needs the package distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
+                                  host="127.0.0.1", silence_logs=50) as local:
+        yield local.scheduler_address
+
+
+def trained(folder: Path, out: Path, *options: str) -> bytes:
+    assert main(["train", str(folder), "-o", str(out), *SETTING, *options]) == 0
+    return out.read_bytes()
+
+
+def where(number: int) -> Tuple[int, int, int]:
+    """The number's square, the process, and the most threads that numerical libraries use there."""
+    np.ones((4, 4)) @ np.ones((4, 4))
+    return number**2, os.getpid(), max((item["num_threads"] for item in threadpool_info()), default=1)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_results_are_in_order_and_libraries_keep_to_one_thread(jobs: int) -> None:
+    """Catches results in the order in which they were ready, and sums whose order depends on the cores."""
+    with Workers(jobs, False) as workers:
+        found = workers.run("squares", where, range(20))
+    assert [square for square, _, _ in found] == [number**2 for number in range(20)]
+    assert {threads for _, _, threads in found} == {1}
+    assert (os.getpid() in {process for _, process, _ in found}) == (jobs == 1)
+
+
+def test_a_cluster_trains_the_same_bytes(folder: Path, cluster: str, tmp_path: Path) -> None:
+    """Catches work that is done here after all, an order that depends on who is first, and floats that were rounded on
+    their way."""
+    with Workers(1, False, f"dask={cluster}") as workers:
+        found = workers.run("squares", where, range(20))
+    assert [square for square, _, _ in found] == [number**2 for number in range(20)]
+    assert os.getpid() not in {process for _, process, _ in found} and {threads for _, _, threads in found} == {1}
+    one = trained(folder, tmp_path / "one.npz", "--jobs", "1")
+    assert trained(folder, tmp_path / "two.npz", "--jobs", "2") == one
+    assert trained(folder, tmp_path / "many.npz", "--engine", f"dask={cluster}") == one
+
+
+def test_a_cluster_evaluates_the_same_bytes(folder: Path, cluster: str, tmp_path: Path,
+                                            capsys: pytest.CaptureFixture) -> None:
+    arguments = ["evaluate", str(folder), "--splits", "2", "--methods", "mean,paper", "--quiet"]
+    for name, more in (("one", ["--jobs", "1"]), ("many", ["--engine", f"dask={cluster}"])):
+        assert main([*arguments, "-o", str(tmp_path / name), *more]) == 0
+    names = sorted(file.name for file in (tmp_path / "one").iterdir())
+    assert "report.md" in names and names == sorted(file.name for file in (tmp_path / "many").iterdir())
+    for name in names:
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "many" / name).read_bytes(), name
+
+
+def test_engines_that_cannot_be_used(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """One line each, and no model."""
+    pytest.importorskip("distributed", reason="the Dask cluster needs the package distributed")
+    for engine, message in (("ray", "not dask=ADDRESS"), ("dask", "not dask=ADDRESS"), ("dask=", "not dask=ADDRESS"),
+                            ("dask=nowhere", "no Dask scheduler answers at nowhere"),
+                            ("dask=ftp://127.0.0.1:1", "no Dask scheduler answers at ftp://127.0.0.1:1")):
+        assert main(["train", str(folder), "-o", str(tmp_path / "no.npz"), *SETTING, "--engine", engine]) == 1
+        error = capsys.readouterr().err
+        assert message in error and error.count("\n") == 1, error
+    assert not (tmp_path / "no.npz").exists()
+
+
+def test_other_versions_are_refused(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Catches a cluster whose numbers differ in the last digit."""
+    import labial
+
+    monkeypatch.setattr(labial, "__version__", "99")
+    with pytest.raises(LabialError, match="other versions of labial"):
+        Workers(1, False, f"dask={cluster}").__enter__()
+
+
+def test_works_where_the_system_refuses_shared_memory(tmp_path: Path) -> None:
+    """Catches a training that fails on a machine without semaphores: it goes on in one process."""
+    script = tmp_path / "alone.py"
+    script.write_text("""
+import _multiprocessing, os, sys
+class Refused(_multiprocessing.SemLock):
+    def __new__(cls, *_, **__):
+        raise PermissionError(13, "Permission denied")
+_multiprocessing.SemLock = Refused
+from labial.train.workers import Workers
+with Workers(2, False) as workers:
+    assert workers.run("numbers", abs, [-1, 2]) == [1, 2]
+print("done")
+""")
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": str(SOURCE / "export")})
+    assert done.returncode == 0 and done.stdout == "done\n", done.stderr
