@@ -204,7 +204,7 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
     const int8_t *rows[LABIAL_KERNEL_TAPS_MAX]; /* what each tap's phoneme adds */
     const uint8_t *labels = taken->labels;
     const unsigned taps = model->kernel_taps;
-    int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, as no pointer may pass the array's end */
+    int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, for no pointer may pass the end */
     unsigned k, tap;
     for (tap = 0; tap < taps; tap++, lag += model->kernel_stride)
         rows[tap] = model->kernels + ((size_t)labels[lag] * taps + tap) * LABIAL_CHANNELS;

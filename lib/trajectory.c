@@ -89,7 +89,8 @@ static int32_t filtered(const labial_solver_t *solver, int32_t g)
     const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
     const int32_t q = solver->q1, moved = (q - solver->q2) * (1 << BEND_BITS);
     const int32_t pull = shift < 7u ? solver->pull >> (7u - shift) : solver->pull * (1 << (shift - 7u));
-    return q + 2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
+    return q +
+           2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
 }
 
 /* Factors the pending frame; c is its second off-diagonal, `delta` the weight of the row after it. */

@@ -63,7 +63,7 @@ static void solve(const turn_t *turn, int age, int last, int searched)
     const labial_frame_t *const frames_end = stream->frames + stream->stride + LABIAL_LAG, *frame;
     const labial_factors_t *const factors_end = turn->factors + LABIAL_FACTORS_(stream->stride);
     labial_factors_t *previous, *own;
-    unsigned decoded = LABIAL_STATES_MAX;
+    unsigned current = LABIAL_STATES_MAX;
     labial_terms_t terms = { 0, 0, 0, 0, 0, 0, 0, 0, 0 };
     if (age < last)
         return;
@@ -72,9 +72,9 @@ static void solve(const turn_t *turn, int age, int last, int searched)
     for (; age >= last; age--) {
         const unsigned state = labial_viterbi_state(&turn->track->search, (unsigned)(age - searched));
         own = previous + 1 < factors_end ? previous + 1 : turn->factors;
-        if (state != decoded || (frame->marks & LABIAL_BEGINS))
+        if (state != current || (frame->marks & LABIAL_BEGINS))
             labial_trajectory_terms(&stream->models[frame->slot]->channels[turn->channel], state, &terms);
-        decoded = state;
+        current = state;
         labial_trajectory_row(&turn->track->solver, &terms, frame->target[turn->channel],
                               frame->contacts >> turn->channel & 1, frame->marks, previous, own);
         previous = own;

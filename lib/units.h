@@ -32,7 +32,7 @@ typedef struct {
     uint8_t slot;          /* its model */
     uint8_t is_first;      /* of its phoneme */
     uint8_t is_open;       /* it lies in a phoneme that swallowed a pause, before the closing */
-    uint8_t rest;          /* how far the mouth has come to rest in a pause, of LABIAL_REST_FRAMES; 0 where it leads on */
+    uint8_t rest;          /* how far the mouth has come to rest in a pause, of LABIAL_REST_FRAMES; 0 elsewhere */
     uint8_t marks;
 } labial_taken_t;
 

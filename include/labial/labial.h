@@ -71,7 +71,8 @@ extern "C" {
 #define LABIAL_MODELS 2
 #endif
 
-/* What does not compile: values out of range, sums without parentheses (which the code would take apart), unsigned ones. */
+/* What does not compile: values out of range, sums without parentheses (which the code would take apart), unsigned
+ * ones. */
 #define LABIAL_IS_NUMBER_(x, least, most) \
     (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
 #if !LABIAL_IS_NUMBER_(LABIAL_WINDOW, 1, 48)
@@ -272,8 +273,8 @@ uint32_t labial_workspace_size(const labial_model_t *model);
  * `workspace` is aligned to four bytes and has at least labial_workspace_size() bytes of the largest model that the
  * stream will use; it belongs to the stream until it is initialised anew or no longer used.
  *
- * The model stays where it is for as long, and is trusted: one that was compiled in, or that labial_model_load()
- * accepted. `callback` receives the frames, with `user` as its first argument.
+ * The model must stay where it is for the same time. It is trusted: it was compiled in, or labial_model_load() accepted
+ * it. `callback` receives the frames, with `user` as its first argument.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_WORKSPACE. After an error the stream is
  * unusable until it is initialised successfully.

@@ -161,10 +161,13 @@ int labial_model_check(const labial_model_t *model);
 
 /*
  * How much work the model makes: an upper estimate of the instructions that one labial_tick() takes on a Cortex-M0, the
- * slowest of the processors that the library is measured on; the others take about three quarters of them. No input makes
- * a tick with this model dearer; one in which the model changes takes at most what both models cost together. The bundled
- * models cost about 40,000, of which a tick takes 22,000 at most. A model that labial_model_check() accepts can cost
- * 200,000, so a program that plays models of others compares this number with what its processor has for a frame:
+ * slowest of the processors that the library is measured on; the others take about three quarters of them. It holds for
+ * whatever is pushed. Where models change, a tick takes at most the sum of their costs, one for each run of a model's
+ * phonemes within the latest `search_stride` frames.
+ *
+ * The bundled models cost about 40,000, and their ticks take 22,000 at most. A model that labial_model_check() accepts
+ * can cost 200,000, so a program that plays models of others compares this number with what its processor has for a
+ * frame:
  *
  *     if (labial_model_load(&blob, data, size) != LABIAL_OK || labial_model_cost(&blob.model) > 50000)
  *         return -1; // 50,000 instructions 50 times a second are about a quarter of a Cortex-M0 at 16 MHz

@@ -39,7 +39,7 @@ extern "C" {
 /* Version of the tables' meaning. Tables that `labial rig` wrote for another version do not compile. */
 #define LABIAL_RIG_FORMAT 1
 
-/* ---- Limits, beyond which labial_rig_check() refuses a table. With them no sum or product overflows. -------------- */
+/* ---- Limits, beyond which labial_rig_check() refuses a table. With them no sum or product overflows. ------------- */
 
 #define LABIAL_RIG_WEIGHT_SUM_MAX 65535 /* of the weights' absolute values in one output, Q12 */
 #define LABIAL_RIG_GAIN_MAX 268435455   /* largest absolute gain, Q16: just below 4,096 units per FAP unit */

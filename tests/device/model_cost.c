@@ -16,7 +16,7 @@
 #define PAIRS 8u
 #define LEAST_SHARE 45u /* percent of what is said that a Cortex-M0 must take */
 
-/* ---- Tables for the largest model that there can be; smaller ones read less of them ------------------------------- */
+/* ---- Tables for the largest model that there can be; smaller ones read less of them ------------------------------ */
 
 #define FOUR(...) __VA_ARGS__ __VA_ARGS__ __VA_ARGS__ __VA_ARGS__
 #define SIXTEEN(...) FOUR(__VA_ARGS__) FOUR(__VA_ARGS__) FOUR(__VA_ARGS__) FOUR(__VA_ARGS__)
@@ -105,7 +105,7 @@ static void make(const recipe_t *recipe)
     model.channels = channels;
 }
 
-/* ---- Counting ------------------------------------------------------------------------------------------------------ */
+/* ---- Counting ---------------------------------------------------------------------------------------------------- */
 
 static void expect(int holds, const char *what)
 {

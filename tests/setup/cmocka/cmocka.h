@@ -1,6 +1,6 @@
 /*
- * cmocka.h - what the C suites use of cmocka, for targets that it is not packaged for. A suite is one source, and so all
- * of it stands here.
+ * cmocka.h - what the C suites use of cmocka, for targets that it is not packaged for. A suite is one source, and so
+ * all of it stands here.
  */
 #ifndef LABIAL_TEST_CMOCKA_H
 #define LABIAL_TEST_CMOCKA_H
@@ -36,7 +36,8 @@ static inline void shim_fail(const char *file, int line, const char *format, ...
     longjmp(shim_end_of_test, 1);
 }
 
-static inline int shim_run(const struct CMUnitTest *tests, size_t count, int (*setup)(void **), int (*teardown)(void **))
+static inline int shim_run(const struct CMUnitTest *tests, size_t count, int (*setup)(void **),
+                           int (*teardown)(void **))
 {
     static void *state;
     static size_t i, failures; /* not lost by longjmp() */
