@@ -53,7 +53,7 @@ static inline int32_t labial_part16(int32_t x, uint32_t f)
 {
 #if LABIAL_NARROW_MULTIPLY
     const uint32_t low = ((uint32_t)x & 0xffffu) * f; /* below 2^32 */
-    return (int32_t)((uint32_t)(x >> 16) * f + (low >> 16));
+    return (x >> 16) * (int32_t)f + (int32_t)(low >> 16);
 #else
     return (int32_t)(((int64_t)x * (int32_t)f) >> 16);
 #endif

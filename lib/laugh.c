@@ -255,7 +255,7 @@ int labial_laugh_next(labial_laugh_t *laugh, unsigned *phoneme, uint32_t *millis
         return LABIAL_ERROR_NULL;
     if (laugh->left == 0u)
         return LABIAL_DONE;
-    while (laugh->first == laugh->count)
+    while (laugh->first >= laugh->count)
         compose(laugh);
     length = laugh->durations[laugh->first];
     if (laugh->left < length + SHORTEST)
