@@ -58,14 +58,14 @@ static int put_character(timings_t *t, unsigned char byte)
             t->line++;
         return result;
     }
-    if (t->comment && byte != '\0')
+    if (timings_is_control(byte))
+        return timings_malformed(t, "byte 0x%02x is not text", (unsigned)byte);
+    if (t->comment)
         return 0;
     if (byte == ' ' || byte == '\t' || byte == '\r') {
         result = timings_end_field(t);
         return result == 0 && t->format == TIMINGS_TEXTGRID ? continue_as_textgrid(t, byte) : result;
     }
-    if (byte < 0x20 || byte == 0x7f)
-        return timings_malformed(t, "byte 0x%02x is not text", (unsigned)byte);
     if (byte == ';' && t->length == 0 && (t->format == TIMINGS_PHO || (t->format == TIMINGS_AUTO && t->count == 0))) {
         t->format = TIMINGS_PHO;
         t->comment = 1;

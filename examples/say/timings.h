@@ -20,6 +20,10 @@
  * `<laugh>` or `<laugh:INTENSITY>` in the place of a phoneme's, in every format, laughs for the time that the row gives
  * it. Intensity is 0 to 1, 0.5 without it.
  *
+ * Numbers, fields and lines have one grammar, that of export/labial/grammar.py; tests/grammar holds both to the same
+ * cases. A line ends with LF; blanks, tabs and CRs separate fields; a number is
+ * [-](digits[.[digits]]|.digits)[(e|E)[+|-]digits].
+ *
  * The parser of the line formats holds no more than five fields of a line, so that a line may be as long as it likes
  * and each phoneme is reported with the byte that completes it: the blank behind a flite token, the end of a line
  * otherwise. Times are integer microseconds; phoneme boundaries, not durations, are rounded to milliseconds, so that

@@ -7,9 +7,6 @@
 
 #include "timings_private.h"
 
-/* Overlaps and gaps up to this many microseconds come from rounding. */
-#define TOLERANCE 1000u
-
 int timings_malformed(timings_t *t, const char *format, ...)
 {
     va_list arguments;
@@ -22,6 +19,11 @@ int timings_malformed(timings_t *t, const char *format, ...)
     return TIMINGS_MALFORMED;
 }
 
+int timings_is_control(unsigned char byte)
+{
+    return (byte < 0x20 && byte != '\t' && byte != '\r' && byte != '\n') || byte == 0x7f;
+}
+
 /* ---- Numbers --------------------------------------------------------------------------------------------------- */
 
 static int is_digit(char c)
@@ -29,38 +31,76 @@ static int is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/*
- * Reads `digits[.digits]` as an integer number of 1/10^places, rounding what lies beyond. Decimal digits are exact
- * where strtod() is not, and know neither signs, exponents nor nan.
- */
+/* Exponents are not told apart beyond this: no field has so many digits. */
+#define EXPONENT_MAX 100000
+
+/* The parts of a number: how many digits it has, how many of them stand before the point, and its power of ten. */
+typedef struct {
+    const char *digits; /* with the point among them */
+    long count, before, exponent;
+    int negative;
+} parts_t;
+
+/* Takes `text` apart by the one grammar of numbers, [-](digits[.[digits]]|.digits)[(e|E)[+|-]digits]; 0 when it is
+ * none. */
+static int take_apart(const char *text, parts_t *number)
+{
+    memset(number, 0, sizeof *number);
+    number->negative = *text == '-';
+    number->digits = text + number->negative;
+    for (text = number->digits; is_digit(*text); text++)
+        number->before++;
+    number->count = number->before;
+    if (*text == '.')
+        for (text++; is_digit(*text); text++)
+            number->count++;
+    if (number->count == 0)
+        return 0;
+    if (*text == 'e' || *text == 'E') {
+        const int below = text[1] == '-';
+        text += below || text[1] == '+' ? 2 : 1;
+        if (!is_digit(*text))
+            return 0;
+        for (; is_digit(*text); text++)
+            if (number->exponent < EXPONENT_MAX)
+                number->exponent = number->exponent * 10 + (*text - '0');
+        if (below)
+            number->exponent = -number->exponent;
+    }
+    return *text == '\0';
+}
+
+/* Reads a number as an integer number of 1/10^places, rounding what lies beyond. Digits are exact where strtod() is
+ * not, and know no nan. */
 int timings_read_decimal(const char *text, unsigned places, uint64_t maximum, uint64_t *value)
 {
-    uint64_t sum = 0;
-    unsigned digits = 0;
-    for (; is_digit(*text); text++, digits++) {
-        sum = sum * 10u + (uint64_t)(*text - '0');
+    parts_t number;
+    uint64_t sum = 0, carry = 0;
+    int other_than_zero = 0;
+    long i = 0;
+    if (!take_apart(text, &number))
+        return 0;
+    const long taken = number.before + number.exponent + (long)places; /* digits that the result has */
+    for (const char *c = number.digits; i < number.count; c++) {
+        if (*c == '.')
+            continue;
+        const unsigned digit = (unsigned)(*c - '0');
+        other_than_zero |= digit != 0;
+        if (i < taken)
+            sum = sum * 10u + digit;
+        else if (i == taken)
+            carry = digit >= 5;
+        if (sum > maximum)
+            return 0;
+        i++;
+    }
+    for (; i < taken && sum > 0; i++) {
+        sum *= 10u;
         if (sum > maximum)
             return 0;
     }
-    unsigned taken = 0;
-    uint64_t carry = 0;
-    if (*text == '.') {
-        for (text++; is_digit(*text); text++, digits++) {
-            if (taken < places) {
-                sum = sum * 10u + (uint64_t)(*text - '0');
-                taken++;
-            } else if (taken == places) {
-                carry = *text >= '5';
-                taken++;
-            }
-        }
-    }
-    if (digits == 0 || *text != '\0')
-        return 0;
-    for (; taken < places; taken++)
-        sum *= 10u;
     *value = sum + carry;
-    return *value <= maximum;
+    return *value <= maximum && !(number.negative && other_than_zero);
 }
 
 int timings_read_seconds(const char *text, uint64_t *microseconds)
@@ -84,8 +124,8 @@ int timings_is_whole(const char *text)
 
 int timings_is_number(const char *text)
 {
-    uint64_t ignored;
-    return timings_read_seconds(*text == '-' || *text == '+' ? text + 1 : text, &ignored);
+    parts_t number;
+    return take_apart(text, &number);
 }
 
 /* ---- Phonemes -------------------------------------------------------------------------------------------------- */
@@ -141,13 +181,13 @@ int timings_emit_between(timings_t *t, const char *label, uint64_t start, uint64
 {
     start += t->origin;
     end += t->origin;
-    if (start + TOLERANCE < t->end)
+    if (start + TIMINGS_TOLERANCE < t->end)
         return timings_malformed(t, "'%.63s' starts at %llu.%06llu s, before the phoneme before it ends",
                                  label ? label : "", (unsigned long long)(start / 1000000u),
                                  (unsigned long long)(start % 1000000u));
     if (end > TIMINGS_TIME_MAX)
         return timings_malformed(t, "'%.63s' ends later than 1000000 seconds", label ? label : "");
-    if (start > t->end + TOLERANCE) {
+    if (start > t->end + TIMINGS_TOLERANCE) {
         const int result = hand_on(t, NULL, -1, start);
         if (result != 0)
             return result;

@@ -34,7 +34,7 @@ static int too_few(timings_t *t, const char *expected)
 static int lab_line(timings_t *t)
 {
     field_t *f = t->fields;
-    uint64_t start, end;
+    uint64_t start, end, apex = 0;
     if (t->count < 3)
         return too_few(t, "start end label");
     if (!timings_read_seconds(f[0], &start))
@@ -43,6 +43,10 @@ static int lab_line(timings_t *t)
         return timings_malformed(t, "the end '%.63s' is not a time from 0 to 1000000 seconds", f[1]);
     if (end < start)
         return timings_malformed(t, "'%.63s' ends at %.20s, before its start at %.20s", f[2], f[1], f[0]);
+    if (t->count > 3 && !timings_read_seconds(f[3], &apex))
+        return timings_malformed(t, "the apex '%.63s' is not a time from 0 to 1000000 seconds", f[3]);
+    if (t->count > 3 && (apex + TIMINGS_TOLERANCE < start || apex > end + TIMINGS_TOLERANCE))
+        return timings_malformed(t, "the apex '%.63s' is outside its segment", f[3]);
     return timings_emit_between(t, f[2], start, end);
 }
 
@@ -160,7 +164,8 @@ static int unknown_format(timings_t *t)
 
 /* A first line that starts with a number: all its fields are needed to tell. Times of lab have decimal points; where
  * they have none, an end beyond TIMINGS_DURATION_MAX is not in seconds. A first field of digits alone may also be an
- * MBROLA phoneme (French has `2` and `9`), with numbers behind it. */
+ * MBROLA phoneme (French has `2` and `9`), with a duration and pitch points behind it; two numbers alone are a line
+ * that lacks its label. */
 static int tell_numbers(timings_t *t, int line_ends)
 {
     uint64_t end;
@@ -168,15 +173,11 @@ static int tell_numbers(timings_t *t, int line_ends)
         t->format = t->heading ? TIMINGS_MARY : TIMINGS_LAB;
     else if (t->count >= 3 && timings_is_number(t->fields[2]))
         t->format = TIMINGS_PHO;
-    else if (t->count >= 3 && t->heading)
-        t->format = TIMINGS_MARY;
-    else if (t->count >= 3 && timings_is_whole(t->fields[0]) && timings_is_whole(t->fields[1]) &&
+    else if (!t->heading && t->count >= 3 && timings_is_whole(t->fields[0]) && timings_is_whole(t->fields[1]) &&
              timings_read_decimal(t->fields[1], 0, UINT64_MAX / 16u, &end) && end > TIMINGS_DURATION_MAX / 1000u)
         t->format = TIMINGS_HTK;
-    else if (t->count >= 3)
-        t->format = TIMINGS_LAB;
-    else if (line_ends)
-        t->format = TIMINGS_PHO;
+    else if (t->count >= 3 || line_ends)
+        t->format = t->heading ? TIMINGS_MARY : TIMINGS_LAB;
     return 0;
 }
 
@@ -186,7 +187,7 @@ static int tell_format(timings_t *t, int line_ends)
 {
     const char *first = t->fields[0];
     uint64_t ignored;
-    if (timings_is_whole(first) || timings_read_seconds(first, &ignored))
+    if (timings_is_number(first))
         return tell_numbers(t, line_ends);
     const char *colon = strrchr(first, ':');
     if (colon && colon != first && timings_is_number(colon + 1))
@@ -209,9 +210,6 @@ static int tell_format(timings_t *t, int line_ends)
 /* What can be wrong with a field that is not kept until the end of its line. */
 static int check_field(timings_t *t, const char *field)
 {
-    uint64_t apex;
-    if (t->format == TIMINGS_LAB && t->count == 4 && !timings_read_seconds(field, &apex))
-        return timings_malformed(t, "the apex '%.63s' is not a time from 0 to 1000000 seconds", field);
     if (t->format == TIMINGS_LAB && t->count > 5)
         return timings_malformed(t, "a line has five fields at most: start, end, label, apex, word");
     if (t->format == TIMINGS_PHO && t->count > 2 && !timings_is_number(field))

@@ -14,13 +14,19 @@ __attribute__((format(printf, 2, 3)))
 #endif
 int timings_malformed(timings_t *t, const char *format, ...);
 
-/* Each reads all of `text` as an unsigned decimal number without exponent. Return 0 when it is none or too large. */
+/* Overlaps and gaps up to this many microseconds come from rounding. */
+#define TIMINGS_TOLERANCE 1000u
+
+/* Each reads all of `text` as a number from 0 on. Return 0 when it is none or too large. */
 int timings_read_decimal(const char *text, unsigned places, uint64_t maximum, uint64_t *value);
 int timings_read_seconds(const char *text, uint64_t *microseconds);
 int timings_read_milliseconds(const char *text, uint64_t *microseconds);
 int timings_is_whole(const char *text);
 
-/* Any number with a sign, whose value does not matter. */
+/* Whether a byte is no text: a control character but tab, CR and LF. */
+int timings_is_control(unsigned char byte);
+
+/* Any number, whose value does not matter. */
 int timings_is_number(const char *text);
 
 /* Hands on a phoneme that runs from where the latest one ended to `end`, microseconds; `label` is null for silence. */

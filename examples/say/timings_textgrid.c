@@ -203,26 +203,9 @@ static int text_token(timings_t *t)
     return result;
 }
 
-/* Reads a time, in Praat's form: it writes small numbers with an exponent. */
-static int read_time(timings_t *t, char *text, uint64_t *microseconds)
+static int read_time(timings_t *t, const char *text, uint64_t *microseconds)
 {
-    char *exponent = strpbrk(text, "eE");
-    unsigned places = 6;
-    if (strcmp(text, "-0") == 0)
-        text++;
-    if (exponent) {
-        uint64_t power;
-        if (exponent[1] != '-' || !timings_read_decimal(exponent + 2, 0, 400, &power))
-            return timings_malformed(t, "'%.63s' is not a time from 0 to 1000000 seconds", text);
-        *exponent = '\0';
-        places = power < 6 ? 6u - (unsigned)power : 0u;
-        if (!timings_read_decimal(text, places, TIMINGS_TIME_MAX, microseconds))
-            return timings_malformed(t, "'%.63s' is not a time from 0 to 1000000 seconds", text);
-        if (power > 6)
-            *microseconds = 0;
-        return 0;
-    }
-    if (!timings_read_decimal(text, places, TIMINGS_TIME_MAX, microseconds))
+    if (!timings_read_seconds(text, microseconds))
         return timings_malformed(t, "'%.63s' is not a time from 0 to 1000000 seconds", text);
     return 0;
 }
@@ -301,7 +284,7 @@ int timings_textgrid_put(timings_t *t, unsigned char byte)
     timings_textgrid_t *g = &t->grid;
     const int blank = byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
     int result = 0;
-    if (!blank && (byte < 0x20 || byte == 0x7f))
+    if (timings_is_control(byte))
         return timings_malformed(t, "byte 0x%02x is not text", (unsigned)byte);
     if (g->lexer == QUOTE_IN_QUOTED) {
         if (byte == '"') { /* doubled: it belongs to the text */

@@ -7,15 +7,17 @@ import math
 import os
 import re
 import sys
-from pathlib import Path
 from typing import Any, Dict, Iterable, Mapping, Union
 
 from labial.errors import DataError
+from labial.grammar import read_bytes
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:  # pragma: no cover - the same parser under the name it had before it became a part of Python
     import tomli as tomllib
+#: Bytes that a file has at most.
+LARGEST = 1_000_000
 
 
 class Table:
@@ -69,7 +71,7 @@ def meant(name: str, known: Iterable[str]) -> str:
 def read_toml(path: Union[str, os.PathLike]) -> Dict[str, Any]:
     """The content of a TOML file. Raises DataError, which names the file and the line, for what is not TOML."""
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        return tomllib.loads(read_bytes(path, LARGEST).decode("utf-8"))
     except UnicodeDecodeError as error:
         raise DataError(path, None, f"not UTF-8 text: byte {error.start}") from None
     except ValueError as error:  # TOMLDecodeError, or a number of more digits than Python takes

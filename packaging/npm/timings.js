@@ -17,6 +17,10 @@ const LONGEST = 86400;
 /** No phoneme is longer, in seconds: a file whose first one would be is in HTK's units. */
 const LONGEST_PHONEME = 3600;
 
+/** The one grammar of numbers and of what is text, that of export/labial/grammar.py. */
+const NUMBER = /^-?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?$/;
+const CONTROL = /[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]/;
+
 const PAIRS = new Set("aɪ aʊ ɔɪ eɪ oʊ əʊ tʃ dʒ ɜɹ".split(" "));
 /** Kokoro's letters that are not the IPA's. */
 const MISAKI = { A: "eɪ", I: "aɪ", O: "oʊ", Q: "əʊ", W: "aʊ", Y: "ɔɪ", T: "ɾ", "ᵊ": "ə" };
@@ -110,9 +114,8 @@ export function fromPolly(source) {
 /** Lines of `start end label [apex [word]]`, seconds; or HTK's labels, in units of 100 ns. */
 export function fromLab(text) {
     if (typeof text !== "string") throw new TypeError(`the labels are ${shown(text)}, not text`);
-    const rows = text.replace(/^\uFEFF/, "").split(/\r\n|\r|\n/)
-        .map((line, i) => [i + 1, line.trim().split(/\s+/)]).filter(([, fields]) => fields[0]);
-    const whole = (field) => /^\d{1,18}$/.test(field);
+    const rows = linesOf(text).map((line, i) => [i + 1, line.match(/[^ \t\r]+/g)]).filter(([, fields]) => fields);
+    const whole = (field) => /^0*[0-9]{1,18}$/.test(field);
     const first = rows.length ? rows[0][1] : [];
     const htk = first.length >= 3 && whole(first[0]) && whole(first[1]) && Number(first[1]) > LONGEST_PHONEME;
     return checked(rows.map(([line, fields]) => {
@@ -122,7 +125,7 @@ export function fromLab(text) {
         }
         const [start, end, apex] = fields.slice(0, htk ? 2 : 4).map((field, i) => {
             if (i === 2) return undefined;
-            if (htk ? !whole(field) : !/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(field)) {
+            if (htk ? !whole(field) : !NUMBER.test(field)) {
                 throw complain(`${shown(field)} is not a ${htk ? "whole number of 100 ns" : "finite number"}`);
             }
             return Number(field) / (htk ? TICKS : 1);
@@ -278,13 +281,14 @@ class Entry {
 function entriesOf(source) {
     if (typeof source !== "string") return (Array.isArray(source) ? source : [source]).map(entry);
     const text = source.replace(/^\uFEFF/, "");
+    linesOf(text);
     try {
         const document = JSON.parse(text);
         return (Array.isArray(document) ? document : [document]).map(entry);
     } catch (error) {
         if (!(error instanceof SyntaxError)) throw error;
     }
-    const lines = text.split(/\r\n|\r|\n/).map((line, i) => [i + 1, line]).filter(([, line]) => line.trim());
+    const lines = linesOf(text).map((line, i) => [i + 1, line]).filter(([, line]) => !/^[ \t\r]*$/.test(line));
     return lines.map(([number, line]) => {
         try {
             return new Entry(JSON.parse(line), number, number);
@@ -292,6 +296,20 @@ function entriesOf(source) {
             throw error instanceof SyntaxError ? new LabialError(`line ${number}: not JSON`) : error;
         }
     });
+}
+
+/** The lines of a text, each of which ends with LF. */
+function linesOf(text) {
+    const lines = text.replace(/^\uFEFF/, "").split("\n");
+    lines.forEach((line, i) => {
+        const strange = line.match(CONTROL);
+        if (strange) throw new LabialError(`line ${i + 1}: byte 0x${hex(strange[0])} is not text`);
+    });
+    return lines;
+}
+
+function hex(character) {
+    return character.charCodeAt(0).toString(16).padStart(2, "0");
 }
 
 function entry(fields, i) {
@@ -306,7 +324,8 @@ function checked(segments) {
         const { start, end } = segment;
         const where = line ? `line ${line}` : `interval ${i + 1}`;
         const complain = (problem) => new LabialError(`${where}: ${problem}`);
-        if (Math.max(Math.abs(start), Math.abs(end)) > LONGEST) {
+        if (Math.min(start, end) < 0) throw complain(`${start} s is before the beginning, 0`);
+        if (!(Math.max(start, end) <= LONGEST)) {
             throw complain(`${end} s is more than a day; are these seconds?`);
         }
         if (end < start) throw complain(`the segment ends at ${end} s, before its start ${start} s`);

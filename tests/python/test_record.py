@@ -273,9 +273,9 @@ def test_what_cannot_be_used_names_the_file(tmp_path, change, message):
     ("time,x33\n", "a.csv:1: no column y33, "),
     ("{head}\n0,{row}\n0.1,{row},7\n", "a.csv:3: 48 columns, not 47"),
     ("{head}\n0,{row}\n0,{row}\n", "a.csv:3: time 0 does not follow"),
-    ("{head}\n0,{row}\n0.1,{bad}\n", "a.csv:3: not a number: 'x'"),
+    ("{head}\n0,{row}\n0.1,{bad}\n", "a.csv:3: value 'x' is not a finite number"),
     ("{head}\n0,{row}\n\n0.1,{row}\n", "a.csv:3: empty line"),
-    ("{head}\n0,{row}\n0.1,{inf}\n", "a.csv:3: a value is infinite"),
+    ("{head}\n0,{row}\n0.1,{inf}\n", "a.csv:3: value 'inf' is not a finite number"),
     ("{head},time\n", "a.csv:1: two columns"),
 ])  # fmt: skip
 def test_malformed_csv_names_the_line(tmp_path, text, message):

@@ -91,7 +91,7 @@ def test_fap_files_hold_the_same_motion(tmp_path: Path, entries: int) -> None:
     (fap([3], [[1]]).replace("0 0", "0 2", 1), "2: expected a mask"),
     (fap([3], [[1]], entries=60), "2: expected a mask"),
     (fap([3], [[1]]).replace("0 1\n", "0 x\n"), "3: not a whole number"),
-    (fap([3], [[10**400]]), "3: a value is beyond"),
+    (fap([3], [[10**400]]), "3: not a whole number"), (fap([3], [[-2000000]]), "3: the value -2e+06 is beyond"),
 ])  # fmt: skip
 def test_malformed_fap_names_the_line(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "a.fap"

@@ -8,7 +8,8 @@ from tqdm import tqdm
 
 from labial.align.align import align
 from labial.corpus.episode import Segment
-from labial.corpus.timings import lab_of, text_of
+from labial.corpus.timings import lab_of
+from labial.grammar import read_text
 
 
 def run(sound: str, text: Optional[str], text_file: Optional[str], progress: bool) -> str:
@@ -19,7 +20,7 @@ def run(sound: str, text: Optional[str], text_file: Optional[str], progress: boo
 
 def said(text: Optional[str], text_file: Optional[str]) -> Optional[str]:
     """What is said, from either of the two options."""
-    return text if text_file is None else text_of(text_file)
+    return text if text_file is None else read_text(text_file)
 
 
 def aligned(sound: str, text: Optional[str], progress: bool) -> Tuple[Segment, ...]:

@@ -17,7 +17,8 @@ from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span, read_frames
-from labial.corpus.timings import SourceSegment, phoneme_segments, read_textgrid_tiers
+from labial.corpus.textgrid import read_textgrid_tiers
+from labial.corpus.timings import SourceSegment, phoneme_segments
 from labial.errors import DataError
 from labial.phonesets import LAUGHTER, PhoneSet
 

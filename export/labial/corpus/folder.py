@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 import os
 from pathlib import Path
-from typing import Dict, List, Tuple, Union
+from typing import Dict, List, Sequence, Tuple, Union
 
 import numpy as np
 
 from labial.corpus.episode import Episode
 from labial.corpus.formats import read_timings
-from labial.corpus.lines import read_lines, table_rows
-from labial.corpus.timings import phoneme_segments
+from labial.corpus.timings import LONGEST, phoneme_segments
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_COLUMNS
+from labial.grammar import columns_of, number, read_lines, table_rows
 from labial.phonesets import PhoneSet
 
 PathLike = Union[str, os.PathLike]
@@ -23,21 +22,21 @@ PathLike = Union[str, os.PathLike]
 HEADER = ",".join(("time", *FAP_COLUMNS))
 #: Phonemes may go on for this many seconds where there is no motion; more means that two files do not go together.
 SLACK = 1.0
+#: Seconds between two frames of an episode at most: nothing can be learnt from motion that is made up for longer.
+LONGEST_GAP = 10.0
+#: No FAP is larger, FAP units: a face is some thousands wide.
+LARGEST = 1e6
 
 
 def read_frames(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     """Reads a frames file: (T,) times in seconds, strictly increasing, and (T, 13) FAPs, both float64."""
     lines = read_lines(path)
-    if not lines or [name.strip() for name in lines[0].split(",")] != HEADER.split(","):
+    if not lines or columns_of(lines[0]) != HEADER.split(","):
         raise DataError(path, 1, f"the header is not {HEADER!r}")
     rows: List[List[float]] = []
     for line, fields in table_rows(path, lines, CHANNELS + 1):
-        try:
-            row = [float(field) for field in fields]
-        except ValueError as error:
-            raise DataError(path, line, f"not a number: {error}") from None
-        if not all(map(math.isfinite, row)):
-            raise DataError(path, line, "a value is not finite")
+        row = [number(path, line, field) for field in fields]
+        check_range(path, line, row[0], row[1:])
         if rows and row[0] <= rows[-1][0]:
             raise DataError(path, line, f"time {row[0]:g} does not follow {rows[-1][0]:g}")
         rows.append(row)
@@ -45,6 +44,15 @@ def read_frames(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
         raise DataError(path, None, "no frames")
     table = np.array(rows)
     return table[:, 0].copy(), table[:, 1:].copy()
+
+
+def check_range(path: PathLike, line: int, time: float, values: Sequence[float]) -> None:
+    """Raises DataError for a time beyond a day and for FAPs beyond `LARGEST`."""
+    if abs(time) > LONGEST:
+        raise DataError(path, line, f"time {time:g} s is more than a day")
+    largest = max(values, key=abs)
+    if abs(largest) > LARGEST:
+        raise DataError(path, line, f"the value {largest:g} is beyond {LARGEST:.0f} FAP units")
 
 
 def read_episode(frames: PathLike, timings: PathLike, phone_set: PhoneSet) -> Episode:
@@ -57,11 +65,16 @@ def read_episode(frames: PathLike, timings: PathLike, phone_set: PhoneSet) -> Ep
 
 
 def check_span(path: PathLike, episode: Episode) -> None:
-    """Raises DataError, which names `path`, when phonemes lie over `SLACK` seconds before or after the motion."""
+    """Raises DataError, which names `path`, when phonemes lie over `SLACK` seconds before or after the motion, or where
+    motion is missing for `LONGEST_GAP`."""
     first, last = episode.segments[0].start, episode.segments[-1].end
     if episode.times[0] > first + SLACK or episode.times[-1] < last - SLACK:
         raise DataError(path, None, f"phonemes last from {first:g} to {last:g} s, "
                         f"motion from {episode.times[0]:g} to {episode.times[-1]:g} s")
+    gaps = np.diff(episode.times)
+    if len(gaps) and gaps.max() > LONGEST_GAP:
+        at = episode.times[int(gaps.argmax())]
+        raise DataError(path, None, f"no motion from {at:g} to {at + gaps.max():g} s, longer than {LONGEST_GAP:g} s")
 
 
 def read_folder(path: PathLike, phone_set: PhoneSet) -> List[Episode]:

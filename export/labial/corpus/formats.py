@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from typing import Callable, Dict, List, Optional
+from typing import Callable, Dict, List, Optional, Sequence
 
 from labial.corpus import services
+from labial.corpus.textgrid import read_textgrid
 from labial.corpus.timings import (
     PathLike,
     SourceSegment,
-    is_number,
     lab_of,
     phone_set_of,
     phoneme_segments,
@@ -20,10 +19,9 @@ from labial.corpus.timings import (
     read_mary,
     read_pho,
     read_phseg,
-    read_textgrid,
-    text_of,
 )
 from labial.errors import DataError
+from labial.grammar import fields_of, is_number, lines_of, read_text
 from labial.phonesets import AUTO
 
 Reader = Callable[[PathLike], List[SourceSegment]]
@@ -62,24 +60,44 @@ def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None) -> 
 
 
 def _told_by_content(path: PathLike) -> str:
-    head = text_of(path, ("utf-8-sig", "utf-16")).lstrip()[:4000]
-    first = next((line.split() for line in head.splitlines() if line.strip() and not line.lstrip().startswith(";")), [])
-    found: Optional[str] = None
+    text = read_text(path)
+    head = text[:4000].lstrip(" \t\r\n")
     if head[:1] in ("{", "["):
         found = services.service_of(path)
     elif "ooTextFile" in head[:200]:
         found = "textgrid"
-    elif first and first[0].lower() == "sfrm":
-        found = "phseg"
-    elif first and all(re.fullmatch(r".+:\d+(\.\d*)?", item) for item in first):
-        found = "flite"
-    elif first and first[0].startswith("#"):
-        found = "mary"
-    elif len(first) >= 3 and is_number(first[0]) and is_number(first[1]):
-        found = "lab"
-    elif len(first) >= 2 and is_number(first[1]):
-        found = "pho"
+    else:
+        found = _told_by_lines(text)
     if found is None:
         raise DataError(path, None, "no known format of phoneme timings (.lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, "
                         "flite -psdur; JSON of Piper, Azure, Polly, HeadTTS, Kokoro or of phoneme, start and end)")
     return found
+
+
+def _told_by_lines(text: str) -> Optional[str]:
+    """The format of lines, by the first one that holds more than MaryTTS's ``#``; as ``examples/say/timings_lines.c``
+    tells it."""
+    hash_stood = False
+    for line in lines_of(text):
+        fields = fields_of(line)
+        if fields == ["#"]:
+            hash_stood = True
+        elif fields and fields[0].startswith(";"):
+            return "pho"
+        elif fields:
+            return _told_by_fields(fields, hash_stood)
+    return "pho" if hash_stood else None
+
+
+def _told_by_fields(fields: Sequence[str], hash_stood: bool) -> Optional[str]:
+    first = fields[0]
+    label, _, end = first.rpartition(":")
+    if is_number(first):  # a time; or MBROLA's phoneme, such as French 2 and 9, before two numbers and more
+        if "." not in first and len(fields) >= 3 and is_number(fields[2]):
+            return "pho"
+        return "mary" if hash_stood else "lab"
+    if label and is_number(end):
+        return "flite"
+    if first.lower() == "sfrm":
+        return "phseg"
+    return "pho" if len(fields) >= 2 and is_number(fields[1]) else None

@@ -26,12 +26,12 @@ from typing import Dict, List, Optional, Tuple, Union
 import numpy as np
 
 from labial.corpus.episode import Episode, Segment
-from labial.corpus.folder import check_span
-from labial.corpus.lines import read_lines
+from labial.corpus.folder import LARGEST, check_span
 from labial.corpus.pose import align_head
 from labial.corpus.timings import phoneme_segments, read_phseg
 from labial.errors import DataError
 from labial.faps import CHANNELS
+from labial.grammar import fields_of, number_or_nan, read_lines
 from labial.phonesets import SPEECH, PhoneSet
 
 PathLike = Union[str, os.PathLike]
@@ -83,7 +83,7 @@ def read_markers(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     """Reads a motion file: (T,) times in seconds from its first frame, and (T, len(MOUTH + NOSTRILS + HEAD), 3)
     positions of those markers, NaN where missing."""
     lines = read_lines(path)
-    names = lines[0].split() if lines else []
+    names = fields_of(lines[0]) if lines else []
     if names[:2] != ["Frame#", "Time"]:
         raise DataError(path, 1, "the header does not begin with 'Frame# Time'")
     missing = [name for name in _MARKERS if name not in names]
@@ -91,21 +91,20 @@ def read_markers(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
         raise DataError(path, 1, f"no marker {', '.join(missing)}")
     columns = [1] + [2 + 3 * (names.index(name) - 2) + axis for name in _MARKERS for axis in range(3)]
     width = 2 + 3 * (len(names) - 2)
-    if len(lines) < 2 or "X01" not in lines[1].split():
+    if len(lines) < 2 or "X01" not in fields_of(lines[1]):
         raise DataError(path, 2, "expected the axis labels 'X01 Y01 Z01 ...'")
     rows = []
     for line, text in enumerate(lines[2:], 3):
-        fields = text.split()
+        fields = fields_of(text)
         if not fields:
             continue
         if len(fields) != width:
             raise DataError(path, line, f"{len(fields)} columns, not {width}")
-        try:
-            rows.append([float(fields[column]) for column in columns])
-        except ValueError as error:
-            raise DataError(path, line, f"not a number: {error}") from None
-        if any(map(math.isinf, rows[-1])) or math.isnan(rows[-1][0]):
-            raise DataError(path, line, "a value is infinite or the time is missing")
+        rows.append([number_or_nan(path, line, fields[column]) for column in columns])
+        if math.isnan(rows[-1][0]):
+            raise DataError(path, line, "the time is missing")
+        if any(abs(value) > LARGEST for value in rows[-1]):
+            raise DataError(path, line, f"a value is beyond {LARGEST:.0f}")
         if len(rows) > 1 and rows[-1][0] <= rows[-2][0]:
             raise DataError(path, line, f"time {rows[-1][0]:g} does not follow {rows[-2][0]:g}")
     if len(rows) < 2:

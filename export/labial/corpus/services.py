@@ -18,9 +18,10 @@ import unicodedata
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
-from labial.corpus.timings import PathLike, SourceSegment, checked, text_of
+from labial.corpus.timings import PathLike, SourceSegment, checked
 from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
 from labial.errors import DataError
+from labial.grammar import is_blank, lines_of, read_text
 
 #: A blank between words, or what a service leaves out between two phonemes, is a pause from here on, in seconds.
 LONGEST_BLANK = 0.15
@@ -97,13 +98,13 @@ class Entry:
 
 def read_entries(path: PathLike) -> List[Entry]:
     """The objects of a file: those of a list, a single one, or one per line."""
-    text = text_of(path, ("utf-8-sig", "utf-16"))
+    text = read_text(path)
     try:
         document = _loads(path, text)
         items = document if isinstance(document, list) else [document]
         return [_entry(path, None, number, item) for number, item in enumerate(items, 1)]
     except json.JSONDecodeError as error:
-        lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+        lines = [(number, line) for number, line in enumerate(lines_of(text), 1) if not is_blank(line)]
         if len(lines) < 2 or not _is_document(lines[0][1]):
             raise DataError(path, error.lineno, f"not JSON: {error.msg}") from None
     entries = []

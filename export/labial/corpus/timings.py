@@ -1,22 +1,21 @@
 """Phoneme timings: what aligners and synthesisers write, as lists of segments in seconds.
 
-Every reader checks that times are finite, that no segment ends before it begins and that segments are in order and
-do not overlap by more than `TOLERANCE`; anything else is a DataError with file and line. Labels stay as they are in the
-file until :func:`phoneme_segments` maps them to a phone set and fills the gaps with its silence.
+Every reader checks that times are finite and from 0 on, that no segment ends before it begins and that segments are in
+order and do not overlap by more than `TOLERANCE`; anything else is a DataError with file and line. Labels stay as they
+are in the file until :func:`phoneme_segments` maps them to a phone set and fills the gaps with its silence.
 """
 
 from __future__ import annotations
 
 import math
 import os
-import re
 import warnings
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple, Union
+from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
+from labial.grammar import fields_of, is_number, is_whole, lines_of, number, read_text, shown
 from labial.phonesets import AUTO, LAUGHTER, SPEECH, PhoneSet
 
 PathLike = Union[str, os.PathLike]
@@ -31,17 +30,11 @@ PHSEG_RATE = 100.0
 _HTK_RATE = 1e7
 #: No phoneme is longer, in seconds: a file whose first one would be is in HTK's units.
 _LONGEST_PHONEME = 3600
-#: An interval tier's class, name, two times and count, in either form of a TextGrid.
-_TIER_SIZE = re.compile(
-    r'"IntervalTier"\s+(?:name\s*=\s*)?"(?:[^"]|"")*"\s+'
-    r"(?:(?:xmin\s*=\s*|xmax\s*=\s*)?[-+.\deE]+\s+){2}"
-    r"(?:intervals\s*:\s*size\s*=\s*)?(\d+)"
-)
 
 
 @dataclass(frozen=True)
 class SourceSegment(Segment):
-    """A segment with the line it was read from; None in a TextGrid, whose intervals are numbered instead."""
+    """A segment with the line it was read from; None where lines tell nothing, as in a JSON document."""
 
     line: Optional[int] = None
     labels: str = AUTO  #: the set that the format's labels are of
@@ -56,9 +49,9 @@ def read_lab(path: PathLike) -> List[SourceSegment]:
     for line, fields in rows:
         if not 3 <= len(fields) <= 5:
             raise DataError(path, line, f"expected 'start end label [apex [word]]', found {len(fields)} columns")
-        apex = _number(path, line, fields[3], "apex") if len(fields) > 3 else None
+        apex = number(path, line, fields[3], "apex") if len(fields) > 3 else None
         word = fields[4] if len(fields) > 4 else None
-        start, end = _number(path, line, fields[0], "start"), _number(path, line, fields[1], "end")
+        start, end = number(path, line, fields[0], "start"), number(path, line, fields[1], "end")
         segments.append(SourceSegment(start, end, fields[2], apex, word, line))
     return checked(path, segments)
 
@@ -72,7 +65,7 @@ def read_htk(path: PathLike) -> List[SourceSegment]:
     for line, fields in _rows(path):
         if len(fields) < 3:
             raise DataError(path, line, f"expected 'start end label', found {len(fields)} columns")
-        if not (_is_whole(fields[0]) and _is_whole(fields[1])):
+        if not (is_whole(fields[0]) and is_whole(fields[1])):
             raise DataError(path, line, f"times {fields[0]!r} and {fields[1]!r} are not whole numbers of 100 ns")
         start, end = int(fields[0]) / _HTK_RATE, int(fields[1]) / _HTK_RATE
         segments.append(SourceSegment(start, end, _centre(fields[2]), line=line))
@@ -88,9 +81,10 @@ def read_mary(path: PathLike) -> List[SourceSegment]:
             continue
         if len(fields) != 3:
             raise DataError(path, line, f"expected 'end number label', found {len(fields)} columns")
-        _number(path, line, fields[1], "second field")
+        if not is_number(fields[1]):
+            raise DataError(path, line, f"second field {shown(fields[1])} is not a number")
         start = segments[-1].end if segments else 0.0
-        end = _number(path, line, fields[0], "end")
+        end = number(path, line, fields[0], "end")
         segments.append(SourceSegment(start, end, fields[2], line=line, labels="xsampa"))
     return checked(path, segments)
 
@@ -106,14 +100,14 @@ def read_phseg(path: PathLike) -> List[SourceSegment]:
     rows = _rows(path)
     if not rows or [name.lower() for name in rows[0][1][:4]] != ["sfrm", "efrm", "segascr", "phone"]:
         raise DataError(path, rows[0][0] if rows else None, "expected the header 'SFrm EFrm SegAScr Phone'")
-    for number, (line, fields) in enumerate(rows[1:], 2):
+    for count, (line, fields) in enumerate(rows[1:], 2):
         if fields[0].lower() == "total":
-            if number != len(rows):
+            if count != len(rows):
                 raise DataError(path, line, "the total score is not the last line")
             break
         if len(fields) < 4:
             raise DataError(path, line, f"expected 'SFrm EFrm SegAScr Phone', found {len(fields)} columns")
-        if not (_is_whole(fields[0]) and _is_whole(fields[1])):
+        if not (is_whole(fields[0]) and is_whole(fields[1])):
             raise DataError(path, line, f"frames {fields[0]!r} and {fields[1]!r} are not whole numbers")
         first, last = int(fields[0]), int(fields[1])
         if last < first:
@@ -123,86 +117,42 @@ def read_phseg(path: PathLike) -> List[SourceSegment]:
 
 
 def read_flite(path: PathLike) -> List[SourceSegment]:
-    """Reads what ``flite -psdur`` prints: ``label:end`` for every phoneme, `end` in seconds from the beginning."""
+    """Reads what ``flite -psdur`` prints: ``label:end`` for every phoneme. A line is an utterance, behind the line
+    before it; `end` is in seconds from its beginning."""
     segments: List[SourceSegment] = []
     for line, fields in _rows(path):
+        origin = segments[-1].end if segments else 0.0
         for item in fields:
             label, colon, end = item.rpartition(":")
             if not colon or not label:
                 raise DataError(path, line, f"{item!r} is not 'label:end'")
             start = segments[-1].end if segments else 0.0
-            segments.append(SourceSegment(start, _number(path, line, end, "end"), label, line=line))
+            segments.append(SourceSegment(start, origin + number(path, line, end, "end"), label, line=line))
     return checked(path, segments)
 
 
 def read_pho(path: PathLike) -> List[SourceSegment]:
-    """Reads an MBROLA .pho: lines of ``phoneme milliseconds [position pitch]...``; ``;`` begins a comment.
+    """Reads an MBROLA .pho: lines of ``phoneme milliseconds [position pitch]...``; a field that starts with ``;``
+    begins a comment.
 
     Times are summed in milliseconds, so that long files do not drift.
     """
     segments: List[SourceSegment] = []
     elapsed = 0.0
-    for line, fields in _rows(path, comment=";"):
+    for line, fields in _rows(path, comment=True):
         if fields == ["#"]:  # MBROLA's flush mark
             continue
-        if len(fields) < 2:
+        if len(fields) < 2 or len(fields) % 2:
             raise DataError(path, line, "expected 'phoneme milliseconds [position pitch]...'")
-        duration, *_pitch = [_number(path, line, text, "value") for text in fields[1:]]
+        duration = number(path, line, fields[1], "duration")
+        for text in fields[2:]:
+            if not is_number(text):
+                raise DataError(path, line, f"{shown(text)} is not part of a pitch point, a number")
         if duration < 0:
             raise DataError(path, line, f"the duration {fields[1]} is negative")
         start, elapsed = elapsed, elapsed + duration
         segments.append(SourceSegment(start / 1000, elapsed / 1000, fields[0], line=line, labels="xsampa"))
     return checked(path, segments)
-
-
-def read_textgrid(path: PathLike, tier: Optional[str] = None) -> List[SourceSegment]:
-    """Reads an interval tier of a Praat TextGrid, long or short, UTF-8 or UTF-16.
-
-    The tier is the one named `tier`; else "phones", "phonemes", "phone" or "phoneme" in any case (also after
-    "speaker - "); else the only or the first interval tier. Unlabelled intervals are kept with the label "".
-    """
-    tiers = read_textgrid_tiers(path)
-    if tier is not None:
-        if tier not in tiers:
-            raise DataError(path, None, f"no interval tier {tier!r}; there are {', '.join(map(repr, tiers)) or 'none'}")
-        return tiers[tier]
-    if not tiers:
-        raise DataError(path, None, "no interval tier")
-    plain = {name.lower().split(" - ")[-1].strip(): name for name in reversed(list(tiers))}
-    for name in ("phones", "phonemes", "phone", "phoneme"):
-        if name in plain:
-            return tiers[plain[name]]
-    return next(iter(tiers.values()))
-
-
-def read_textgrid_tiers(path: PathLike) -> Dict[str, List[SourceSegment]]:
-    """Reads all interval tiers of a TextGrid, in order. A second tier of the same name is called "name_2"."""
-    try:  # whoever has no TextGrids needs no reader of them
-        from praatio import textgrid
-        from praatio.data_classes.interval_tier import IntervalTier
-        from praatio.utilities.errors import PraatioException
-    except ModuleNotFoundError as error:
-        raise DataError(path, None, f"TextGrids need the package {error.name}: install labial[train]") from None
-
-    text = text_of(path, ("utf-8-sig", "utf-16"))
-    if "ooTextFile" not in text[:200] or "TextGrid" not in text[:200]:
-        raise DataError(path, 1, "not a TextGrid in text form")
-    _refuse_signs(path, text)
-    try:
-        grid = textgrid.openTextgrid(os.fspath(path), True, reportingMode="silence", duplicateNamesMode="rename")
-    except (PraatioException, ValueError, LookupError, AttributeError, TypeError) as error:
-        raise DataError(path, None, f"not a well-formed TextGrid: {' '.join(str(error).split())}") from None
-    # The library drops what follows a malformed short interval without a word, so its counts are held to the file's.
-    declared = _TIER_SIZE.findall(text)
-    interval_tiers = [item for item in grid.tiers if isinstance(item, IntervalTier)]
-    found = [len(item.entries) for item in interval_tiers]
-    if [count.lstrip("0") or "0" for count in declared] != list(map(str, found)):  # a count may have any length
-        raise DataError(path, None, f"interval tiers should have {', '.join(declared) or 'no'} intervals, "
-                        f"but {', '.join(map(str, found)) or 'none'} could be read")
-    result = {}
-    for item in interval_tiers:
-        result[item.name] = checked(path, [SourceSegment(float(a), float(b), label) for a, b, label in item.entries])
-    return result
 
 
 def phone_set_of(segments: Sequence[SourceSegment], labels: str = AUTO) -> PhoneSet:
@@ -234,11 +184,11 @@ def phoneme_segments(
     """
     result: List[Segment] = []
     unknown: Set[str] = set()
-    previous = min(0.0, segments[0].start) if segments else 0.0
-    for number, item in enumerate(segments, 1):
+    previous = 0.0
+    for place, item in enumerate(segments, 1):
         label = meaning(item, phone_set, labels)
         if label is None:
-            where = f"interval {number}: " if item.line is None else ""
+            where = f"interval {place}: " if item.line is None else ""
             problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}")
             if strict:
                 raise problem
@@ -256,36 +206,25 @@ def phoneme_segments(
     return tuple(result)
 
 
-def text_of(path: PathLike, encodings: Sequence[str] = ("utf-8-sig",)) -> str:
-    """A file's text, in the first of `encodings` that it fits."""
-    try:
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise DataError(path, None, error.strerror or str(error)) from None
-    for encoding in encodings:
-        try:
-            return data.decode(encoding)
-        except UnicodeError:
-            continue
-    raise DataError(path, None, f"not {' or '.join(encodings)} text")
-
-
 def lab_of(segments: Iterable[Segment]) -> str:
     """Segments as lines of ``start end label``, seconds."""
     return "".join(f"{item.start:.4f} {item.end:.4f} {item.label}\n" for item in segments)
 
 
-def _rows(path: PathLike, comment: str = "") -> List[Tuple[int, List[str]]]:
+def _rows(path: PathLike, comment: bool = False) -> List[Tuple[int, List[str]]]:
+    """Line number and fields of each line that has any, where `comment` without those of a comment behind a ``;``."""
     rows = []
-    for line, text in enumerate(text_of(path).splitlines(), 1):
-        fields = (text.split(comment)[0] if comment else text).split()
+    for line, text in enumerate(lines_of(read_text(path)), 1):
+        fields = fields_of(text)
+        if comment:
+            fields = fields[: next((n for n, field in enumerate(fields) if field.startswith(";")), len(fields))]
         if fields:
             rows.append((line, fields))
     return rows
 
 
 def _is_htk(fields: Sequence[str]) -> bool:
-    return len(fields) >= 3 and all(map(_is_whole, fields[:2])) and int(fields[1]) > _LONGEST_PHONEME
+    return len(fields) >= 3 and all(map(is_whole, fields[:2])) and int(fields[1]) > _LONGEST_PHONEME
 
 
 def _centre(label: str) -> str:
@@ -298,43 +237,18 @@ def _centre(label: str) -> str:
     return label[0] + label[1:].split("+")[0]
 
 
-def _is_whole(text: str) -> bool:
-    """Whether `text` is a whole number, of at most 18 digits: times of a file are far from that."""
-    return text.isdecimal() and len(text) <= 18
-
-
-def is_number(text: str) -> bool:
-    """Whether `text` is a finite number."""
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
-
-
-def _number(path: PathLike, line: int, text: str, what: str) -> float:
-    if not is_number(text):
-        raise DataError(path, line, f"{what} {text!r} is not a finite number")
-    return float(text)
-
-
-def _refuse_signs(path: PathLike, text: str) -> None:
-    """Times below zero would lose their sign in the library (it allows for a start of -0)."""
-    for line, content in enumerate(text.splitlines(), 1):
-        match = re.fullmatch(r"\s*(?:(?:xmin|xmax|number)\s*=\s*)?(-[\d.]+)\s*", content)
-        if match and is_number(match.group(1)) and float(match.group(1)) != 0:
-            raise DataError(path, line, f"the time {match.group(1)} is negative")
-
-
 def checked(path: PathLike, segments: List[SourceSegment]) -> List[SourceSegment]:
     """`segments`, or a DataError where times are late, turned round, overlap, or there are none."""
     if not segments:
         raise DataError(path, None, "no segments")
     previous = -math.inf
-    for number, item in enumerate(segments, 1):
-        where = f"interval {number}: " if item.line is None else ""
+    for place, item in enumerate(segments, 1):
+        where = f"interval {place}: " if item.line is None else ""
         times = [item.start, item.end] + ([] if item.apex is None else [item.apex])
-        if max(map(abs, times)) > LONGEST:
-            raise DataError(path, item.line, f"{where}{max(times, key=abs):g} s is more than a day; are these seconds?")
+        if min(times) < 0:
+            raise DataError(path, item.line, f"{where}{min(times):g} s is before the beginning, 0")
+        if max(times) > LONGEST:
+            raise DataError(path, item.line, f"{where}{max(times):g} s is more than a day; are these seconds?")
         if item.end < item.start:
             raise DataError(path, item.line, f"{where}the segment ends at {item.end:g} s, "
                             f"before its start {item.start:g} s")

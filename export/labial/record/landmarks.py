@@ -24,8 +24,8 @@ from typing import Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
-from labial.corpus.lines import read_lines, table_rows
 from labial.errors import DataError, LabialError
+from labial.grammar import columns_of, number_or_nan, read_lines, table_rows
 
 PathLike = Union[str, os.PathLike]
 
@@ -63,7 +63,7 @@ class Landmarks:
 
 def parse_size(text: str) -> Tuple[int, int]:
     """Width and height from "1280x720"; raises LabialError."""
-    match = re.fullmatch(r"(\d{1,6})[xX](\d{1,6})", text.strip())
+    match = re.fullmatch(r"([0-9]{1,6})[xX]([0-9]{1,6})", text.strip())
     if not match:
         raise LabialError(f"the size {text!r} is not WIDTHxHEIGHT in pixels, such as 1280x720")
     size = int(match.group(1)), int(match.group(2))
@@ -203,10 +203,10 @@ def _numbers(path: PathLike, name: str, array: np.ndarray) -> np.ndarray:
 
 def _read_csv(path: PathLike) -> Tuple[Optional[np.ndarray], np.ndarray, Optional[np.ndarray]]:
     lines = read_lines(path)
-    names = [name.strip() for name in lines[0].split(",")] if lines else []
+    names = columns_of(lines[0]) if lines else []
     if len(set(names)) != len(names):
         raise DataError(path, 1, "two columns have the same name")
-    axes = "xyz" if any(re.fullmatch(r"z\d+", name) for name in names) else "xy"
+    axes = "xyz" if any(re.fullmatch(r"z[0-9]+", name) for name in names) else "xy"
     wanted = [f"{axis}{number}" for number in USED for axis in axes]
     missing = [name for name in wanted if name not in names]
     if missing:
@@ -217,24 +217,14 @@ def _read_csv(path: PathLike) -> Tuple[Optional[np.ndarray], np.ndarray, Optiona
     times: List[float] = []
     scores: List[float] = []
     for line, fields in table_rows(path, lines, len(names)):
-        rows.append([_field(path, line, fields[column]) for column in columns])
+        rows.append([number_or_nan(path, line, fields[column]) for column in columns])
         if extra[0] is not None:
-            times.append(_field(path, line, fields[extra[0]]))
+            times.append(number_or_nan(path, line, fields[extra[0]]))
             if not math.isfinite(times[-1]) or (len(times) > 1 and times[-1] <= times[-2]):
-                raise DataError(path, line, f"time {fields[extra[0]].strip()} does not follow the one before")
+                raise DataError(path, line, f"time {fields[extra[0]]} does not follow the one before")
         if extra[1] is not None:
-            scores.append(_field(path, line, fields[extra[1]]))
+            scores.append(number_or_nan(path, line, fields[extra[1]]))
             if scores[-1] < 0 or scores[-1] > 1:
                 raise DataError(path, line, f"the score pucker is {scores[-1]:g}, not within 0 .. 1")
     points = np.array(rows, dtype=np.float64).reshape(len(rows), len(USED), len(axes))
     return np.array(times) if times else None, points, np.array(scores) if scores else None
-
-
-def _field(path: PathLike, line: int, text: str) -> float:
-    try:
-        value = float(text) if text.strip() else math.nan
-    except ValueError:
-        raise DataError(path, line, f"not a number: {text.strip()!r}") from None
-    if math.isinf(value):
-        raise DataError(path, line, "a value is infinite")
-    return value

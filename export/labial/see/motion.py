@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,12 +9,12 @@ from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.corpus.folder import read_frames
+from labial.corpus.folder import check_range, read_frames
 from labial.corpus.formats import read_timings
-from labial.corpus.lines import read_lines
 from labial.corpus.timings import SourceSegment, meaning, phone_set_of
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
+from labial.grammar import fields_of, is_blank, is_number, is_whole, read_lines, shown
 from labial.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
 
 PathLike = Union[str, os.PathLike]
@@ -24,8 +23,6 @@ PathLike = Union[str, os.PathLike]
 KINDS = ("vowel", "closed", "labiodental", "silence", "other")
 #: FAPs that MPEG-4 defines, each with an entry in the mask of a .fap file.
 _MASK = 68
-#: No value of a .fap file is larger: whole numbers there have 32 bits.
-_LARGEST = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -83,14 +80,12 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     that a frame does not set keeps its value, 0 to begin with.
     """
     lines = read_lines(path)
-    rows = [(line, text.split()) for line, text in enumerate(lines, 1) if text.strip()]
+    rows = [(line, fields_of(text)) for line, text in enumerate(lines, 1) if not is_blank(text)]
     head = rows[0][1] if rows else []
-    try:
-        fps, count = float(head[-2]), int(head[-1])
-        version = float(head[0])
-    except (IndexError, ValueError):
-        raise DataError(path, 1, "the header is not 'VERSION NAME FPS FRAMES'") from None
-    if len(head) < 4 or not math.isfinite(version) or not 0 < fps <= 1000 or count < 1:
+    if len(head) < 4 or not is_number(head[0]) or not is_number(head[-2]) or not is_whole(head[-1]):
+        raise DataError(path, 1, "the header is not 'VERSION NAME FPS FRAMES'")
+    fps, count = float(head[-2]), int(head[-1])
+    if not 0.001 <= fps <= 1000 or count < 1:
         raise DataError(path, 1, "the header is not 'VERSION NAME FPS FRAMES' with 1 or more frames")
     if len(rows) != 1 + 2 * count:
         raise DataError(path, rows[-1][0], f"{count} frames need {2 * count} lines after the header, "
@@ -102,15 +97,14 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
         if len(mask) not in (_MASK, _MASK + 1) or set(mask) - {"0", "1"}:
             raise DataError(path, mask_line, f"expected a mask of {_MASK} zeros and ones")
         chosen = [number for number, bit in enumerate(mask, 1) if bit == "1"]
-        try:
-            numbers = [int(value) for value in values]
-        except ValueError as error:
-            raise DataError(path, line, f"not a whole number: {error}") from None
+        wrong = next((value for value in values if not is_whole(value[value.startswith("-") :])), None)
+        if wrong is not None:
+            raise DataError(path, line, f"not a whole number: {shown(wrong)}")
+        numbers = [int(value) for value in values]
         if len(numbers) != 1 + len(chosen):
             raise DataError(path, line, f"expected the frame's number and {len(chosen)} values, as the mask says, "
                             f"found {len(numbers)}")
-        if max(map(abs, numbers)) > _LARGEST:
-            raise DataError(path, line, f"a value is beyond {_LARGEST}")
+        check_range(path, line, index / fps, numbers)
         for number, value in zip(chosen, numbers[1:]):
             if number <= _MASK:
                 held[number] = value
