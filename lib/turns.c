@@ -63,8 +63,8 @@ static void solve(const turn_t *turn, int age, int last, int searched)
     const labial_frame_t *const frames_end = stream->frames + stream->stride + LABIAL_LAG, *frame;
     const labial_factors_t *const factors_end = turn->factors + LABIAL_FACTORS_(stream->stride);
     labial_factors_t *previous, *own;
-    unsigned current = LABIAL_STATES_MAX;
-    labial_terms_t terms = { 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    unsigned current = LABIAL_STATES_MAX; /* none, so that the first frame decides on the terms */
+    labial_terms_t terms;
     if (age < last)
         return;
     frame = frame_of(stream, age);
