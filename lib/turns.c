@@ -56,6 +56,12 @@ static int search(const turn_t *turn, int age)
     return age;
 }
 
+/* The terms of a frame whose state is `state`. */
+static void terms_of(const turn_t *turn, const labial_frame_t *frame, unsigned state, labial_terms_t *terms)
+{
+    labial_trajectory_terms(&turn->stream->models[frame->slot]->channels[turn->channel], state, terms);
+}
+
 /* Takes up the rows of the frames from age `age` to `last`; the search stands at the frame of age `searched`. */
 static void solve(const turn_t *turn, int age, int last, int searched)
 {
@@ -63,22 +69,26 @@ static void solve(const turn_t *turn, int age, int last, int searched)
     const labial_frame_t *const frames_end = stream->frames + stream->stride + LABIAL_LAG, *frame;
     const labial_factors_t *const factors_end = turn->factors + LABIAL_FACTORS_(stream->stride);
     labial_factors_t *previous, *own;
-    unsigned current = LABIAL_STATES_MAX; /* none, so that the first frame decides on the terms */
     labial_terms_t terms;
+    unsigned current, state;
     if (age < last)
         return;
     frame = frame_of(stream, age);
     previous = &turn->factors[factor_place(stream, age + 1)];
-    for (; age >= last; age--) {
-        const unsigned state = labial_viterbi_state(&turn->track->search, (unsigned)(age - searched));
+    current = labial_viterbi_state(&turn->track->search, (unsigned)(age - searched));
+    terms_of(turn, frame, current, &terms);
+    for (;;) {
         own = previous + 1 < factors_end ? previous + 1 : turn->factors;
-        if (state != current || (frame->marks & LABIAL_BEGINS))
-            labial_trajectory_terms(&stream->models[frame->slot]->channels[turn->channel], state, &terms);
-        current = state;
         labial_trajectory_row(&turn->track->solver, &terms, frame->target[turn->channel],
                               frame->contacts >> turn->channel & 1, frame->marks, previous, own);
+        if (age == last)
+            return;
         previous = own;
         frame = frame + 1 < frames_end ? frame + 1 : stream->frames;
+        state = labial_viterbi_state(&turn->track->search, (unsigned)(--age - searched));
+        if (state != current || (frame->marks & LABIAL_BEGINS))
+            terms_of(turn, frame, state, &terms);
+        current = state;
     }
 }
 
