@@ -22,8 +22,7 @@ from labial.rig.gestures import SOURCES
 from labial.rig.table import FAP_MAX, convert, expected
 
 FACES = library_root() / "examples" / "faces"
-#: Descriptions whose tables are kept, with the tables' folder; the exporter itself reads that of the blendshapes.
-#: Each kept description and the folder of its tables; that of examples/pi is read by Python and has none.
+#: Descriptions whose tables are kept, with the tables' folder; that of examples/pi is read by Python and has none.
 EXAMPLES = {path: path.parent for path in sorted((library_root() / "examples").glob("*/*.toml"))
             if path.parent.name != "pi"}
 EXAMPLES.update(dict.fromkeys(sorted((library_root() / "export" / "labial" / "rig").glob("*.toml")), FACES))
