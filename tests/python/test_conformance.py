@@ -51,6 +51,7 @@ def test_a_wrong_frame_is_not_accepted(
     models: Dict[str, ExportedModel], scripts: List[Script], frames: Frames
 ) -> None:
     """The comparison above can fail: on one number, on a frame too many, on small errors everywhere."""
+    scripts = [script for script in scripts if script.name in ("cancelled", "switch")]
     one = {name: motion.copy() for name, motion in frames.items()}
     one["cancelled"][40, 3] += 3
     with pytest.raises(LabialError, match="cancelled: frame 40, channel 3"):
