@@ -26,7 +26,7 @@ static unsigned first_of_window(const labial_model_t *model, const labial_channe
         else
             high = middle;
     }
-    if (low == states || (low > 0 && position - emissions[low - 1u].mean <= emissions[low].mean - position))
+    if (low >= states || (low > 0 && position - emissions[low - 1u].mean <= emissions[low].mean - position))
         low--;
     low = low > size / 2u ? low - size / 2u : 0u;
     return low + size < states ? low : states - size;
@@ -78,6 +78,7 @@ static inline uint32_t enter(labial_search_t *search, unsigned size, const uint1
                              unsigned i)
 {
     const unsigned first = search->first;
+    const uint16_t *const end = transition + predecessors;
     uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
 #if LABIAL_LAG > 0
     search->back[0][i] = search->best;
@@ -96,7 +97,7 @@ static inline uint32_t enter(labial_search_t *search, unsigned size, const uint1
             }
         }
         transition++;
-    } while (--predecessors > 0);
+    } while (transition < end);
     return least;
 }
 
