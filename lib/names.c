@@ -88,7 +88,7 @@ static size_t leading_length(const char *at, size_t left)
         return 2;
     if (left > 1u && at[0] == '\xca' && at[1] == '\x94')
         return 2;
-    return left > 0u && is_one_of(at[0], "'\",%?") ? 1u : 0u;
+    return is_one_of(at[0], "'\",%?") ? 1u : 0u;
 }
 
 /* Bytes of X-SAMPA's, Kaldi's and eSpeak's marks at the end of `length` bytes; what is left is not empty. */

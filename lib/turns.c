@@ -116,7 +116,8 @@ static void take_turn(const turn_t *turn)
     while (age >= beyond) {
         const int searched = search(turn, age);
         solve(turn, row, searched + LABIAL_LAG, searched);
-        row = row < searched + LABIAL_LAG ? row : searched + LABIAL_LAG - 1;
+        if (row >= searched + LABIAL_LAG)
+            row = searched + LABIAL_LAG - 1;
         age = searched - 1;
     }
     solve(turn, row, newest, beyond);

@@ -10,8 +10,10 @@
 #include <string.h>
 
 #include "labial/labial.h"
+#include "fixture.h"
 #include "labial/laugh.h"
 #include "laugh_table.h"
+#include "laughs.h"
 #include "laughter_synthetic.h"
 
 typedef struct {
@@ -87,6 +89,40 @@ static void no_phoneme_fills_the_rest(void **state)
         assert_true(sum_of(1800, 128, seed).longest <= 920);
         assert_true(sum_of(1800, 128, seed).phonemes >= 5);
     }
+}
+
+/* Would catch a step of the grammar, a draw or a rounding that is not the exporter's: each laugh is the reference's, phoneme
+ * by phoneme. */
+static void laughs_are_those_of_the_reference(void **state)
+{
+    unsigned i;
+    (void)state;
+    for (i = 0; i < sizeof laughs / sizeof laughs[0]; i++) {
+        static uint8_t bytes[3 * 2000];
+        labial_laugh_t laugh;
+        unsigned phoneme;
+        uint32_t count = 0, ms;
+        assert_int_equal(labial_laugh_begin(&laugh, laughs[i].milliseconds, laughs[i].intensity, laughs[i].seed),
+                         LABIAL_OK);
+        for (; labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK; count++) {
+            assert_true(3u * count < sizeof bytes && ms < 65536u);
+            bytes[3u * count] = (uint8_t)phoneme;
+            bytes[3u * count + 1u] = (uint8_t)ms;
+            bytes[3u * count + 2u] = (uint8_t)(ms >> 8);
+        }
+        if (count != laughs[i].count || fixture_crc32(bytes, 3u * count) != laughs[i].crc)
+            fail_msg("laugh %u is another", i);
+    }
+}
+
+/* Would catch an intensity that is not cut off at the highest. */
+static void more_than_the_highest_intensity_is_the_highest(void **state)
+{
+    const sum_t most = sum_of(9000, LABIAL_LAUGH_FULL, 3), more = sum_of(9000, LABIAL_LAUGH_FULL + 1u, 3),
+                far = sum_of(9000, 70000u, 3);
+    (void)state;
+    assert_memory_equal(&most, &more, sizeof most);
+    assert_memory_equal(&most, &far, sizeof most);
 }
 
 /* Would catch a seed that is not used, or used up to a few bits only. */
@@ -301,6 +337,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(totals_are_exact),          cmocka_unit_test(no_phoneme_fills_the_rest),
+        cmocka_unit_test(laughs_are_those_of_the_reference),
+        cmocka_unit_test(more_than_the_highest_intensity_is_the_highest),
         cmocka_unit_test(seeds_give_different_laughs), cmocka_unit_test(intensity_opens_the_mouth),
         cmocka_unit_test(errors),                    cmocka_unit_test(the_numbers_are_the_bundled_models),
         cmocka_unit_test(intensity_reaches_the_mouth), cmocka_unit_test(the_tables_keep_the_limits),

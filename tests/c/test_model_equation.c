@@ -161,6 +161,28 @@ static void refuses_states_that_nothing_holds(void **state)
     }
 }
 
+/* Would catch a check whose own products leave 32 bits: weights and means as large as they can be, which amount to little
+ * modulo 2^32, and a delta-delta that is light enough for its hold and too heavy by itself. */
+static void refuses_products_that_overflow(void **state)
+{
+    unsigned c;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++) {
+        labial_state_t *const s = &f.states[c][c % FIXTURE_SPEECH_STATES];
+        hold_all(c, not_above(500), 0, 0);
+        s->mean[1] = s->mean[2] = 16383;
+        s->weight[0] = s->weight[1] = 0xb0;
+        REFUSED(uint8_t, s->hold, 0x30);
+        REFUSED(uint8_t, s->hold, 0xa0);
+        s->weight[0] = s->weight[1] = 0xff;
+        REFUSED(uint8_t, s->hold, 0xff);
+        s->mean[1] = s->mean[2] = 0;
+        s->weight[0] = 0;
+        s->weight[1] = above(LABIAL_WEIGHT_SUM_MAX / 6);
+        REFUSED(uint8_t, s->hold, not_above(500));
+    }
+}
+
 static int setup(void **state)
 {
     (void)state;
@@ -176,6 +198,7 @@ int main(void)
         cmocka_unit_test_setup(refuses_motion_that_is_too_stiff, setup),
         cmocka_unit_test_setup(refuses_pulls_beyond_the_largest, setup),
         cmocka_unit_test_setup(refuses_states_that_nothing_holds, setup),
+        cmocka_unit_test_setup(refuses_products_that_overflow, setup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,6 +32,12 @@ def test_the_table_is_the_corpus() -> None:
     assert (SOURCE / "lib/laugh_table.h").read_text(encoding="ascii") == table_header()
 
 
+def test_the_c_suite_knows_the_laughs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Catches laughs that changed and are not written for test_laugh.c: run tests/c/laughs.py then."""
+    monkeypatch.syspath_prepend(str(SOURCE / "tests/c"))
+    assert (SOURCE / "tests/c/laughs.h").read_text(encoding="ascii") == __import__("laughs").table()
+
+
 def test_library_and_exporter_laugh_alike(library: ctypes.CDLL) -> None:
     """Catches a step of the grammar, a draw or a rounding that one of the two makes otherwise."""
     state, phoneme, length = (ctypes.c_uint32 * 16)(), ctypes.c_uint(), ctypes.c_uint32()

@@ -1,0 +1,255 @@
+/*
+ * test_marks.c - which marks do not change a label's sound: every character of the first plane of Unicode and every pair
+ * of ASCII's is tried before or behind a label, and held against the lists of labial/names.h, by their code points.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "labial/labial.h"
+#include "labial/names.h"
+
+#define ANY LABIAL_LABELS_AUTO
+#define B 4       /* the phoneme of "B" */
+#define AA 1      /* and of "AA", in ARPABET alone */
+#define SCHWA 9   /* of U+0259 */
+#define SILENCE 77
+
+static const uint8_t entries[] = {B, 1 | 0xe0, 'B', AA, 2 | 0x20, 'A', 'A', 7, 3 | 0xe0, 'A', '_', 'Z',
+                                  SCHWA, 2 | 0x40, 0xc9, 0x99};
+static const labial_names_t names = {sizeof entries, 10, entries, NULL};
+static const labial_names_t without_schwa = {sizeof entries - 4, 10, entries, NULL};
+
+/* Looks `length` bytes up at the very end of a heap block. */
+static int find(const char *name, size_t length)
+{
+    char *copy = (char *)malloc(length ? length : 1);
+    int result;
+    assert_non_null(copy);
+    memcpy(copy, name, length);
+    result = labial_find(&names, copy, length);
+    free(copy);
+    return result;
+}
+
+static int nearest(const char *name, size_t length)
+{
+    return labial_find_nearest(&names, ANY, name, length, SILENCE);
+}
+
+/* Writes a code point of U+0080 .. U+FFFF in UTF-8; returns its bytes. */
+static size_t encode(unsigned point, char *out)
+{
+    if (point < 0x800u) {
+        out[0] = (char)(0xc0u | point >> 6);
+        out[1] = (char)(0x80u | (point & 63u));
+        return 2;
+    }
+    out[0] = (char)(0xe0u | point >> 12);
+    out[1] = (char)(0x80u | (point >> 6 & 63u));
+    out[2] = (char)(0x80u | (point & 63u));
+    return 3;
+}
+
+static int is_one_of(unsigned point, const unsigned *points, size_t count)
+{
+    for (; count > 0; count--)
+        if (points[count - 1] == point)
+            return 1;
+    return 0;
+}
+
+/* Would catch a mark that is forgotten, a range that is too long by one, and half a mark. */
+static void every_character_is_a_mark_or_none(void **state)
+{
+    static const unsigned signs[] = {0x2b0, 0x2b2, 0x2b7, 0x2d0, 0x2d1, 0x2e0, 0x2e1, 0x2e4, 0x207f};
+    static const unsigned stress[] = {0x2c8, 0x2cc, 0x294};
+    unsigned point;
+    (void)state;
+    for (point = 0x80; point < 0x10000; point++) {
+        char text[8] = "B";
+        const int is_mark = (point >= 0x300 && point <= 0x36f && point != 0x327) ||
+                            is_one_of(point, signs, sizeof signs / sizeof signs[0]);
+        const int leads = is_mark || is_one_of(point, stress, sizeof stress / sizeof stress[0]);
+        const size_t bytes = encode(point, text + 1);
+        if ((find(text, 1 + bytes) == B) != is_mark)
+            fail_msg("U+%04X behind a label", point);
+        if (find(text, bytes) == B) /* without its last byte */
+            fail_msg("half of U+%04X behind a label", point);
+        encode(point, text);
+        text[bytes] = 'B';
+        if ((find(text, bytes + 1) == B) != leads)
+            fail_msg("U+%04X before a label", point);
+    }
+}
+
+/* Would catch a mark made of bytes that are no character: every pair of which the first is not ASCII. */
+static void two_bytes_are_a_mark_where_they_are_a_character(void **state)
+{
+    unsigned a, b;
+    (void)state;
+    for (a = 0x80; a < 0x100; a++)
+        for (b = 0; b < 0x100; b++) {
+            const char behind[] = {'B', (char)a, (char)b}, before[] = {(char)a, (char)b, 'B'};
+            const int is_character = a >= 0xc2 && a < 0xe0 && b >= 0x80 && b < 0xc0;
+            if (!is_character && (find(behind, 3) == B || find(before, 3) == B))
+                fail_msg("bytes %02x %02x", a, b);
+        }
+}
+
+/* Would catch an ASCII mark that is forgotten, taken at the wrong end, or dropped behind a blank. */
+static void every_sign_is_a_mark_or_none(void **state)
+{
+    unsigned c;
+    (void)state;
+    for (c = 0; c < 0x80; c++) {
+        const char one = (char)c;
+        const int is_blank = c == ' ' || c == '\t' || c == '\r' || c == '\n';
+        const char behind[] = {'B', one}, before[] = {one, 'B'}, apart[] = {'B', ' ', one}, stressed[] = {'A', 'A', one};
+        const char suffix[] = {'B', '_', one}, distant[] = {'B', ' ', '_', one}, third[] = {'A', 'A', '_', one};
+        const int is_behind = c != 0 && strchr(":=~;.^\"-", one) != NULL, is_before = c != 0 && strchr("'\",%?", one);
+        const int is_suffix = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                              (c != 0 && strchr("=~^", one) != NULL);
+        if ((find(behind, 2) == B) != (is_blank || is_behind))
+            fail_msg("%u behind a label", c);
+        if ((find(before, 2) == B) != (is_blank || is_before))
+            fail_msg("%u before a label", c);
+        if ((find(apart, 3) == B) != is_blank)
+            fail_msg("%u behind a blank", c);
+        if ((find(stressed, 3) == AA) != (is_blank || is_behind || (c >= '0' && c <= '2')))
+            fail_msg("%u behind two letters", c);
+        if ((find(suffix, 3) == B) != is_suffix)
+            fail_msg("_ and %u behind a label", c);
+        if (find(distant, 4) == B)
+            fail_msg("_ and %u behind a blank", c);
+        if ((find(third, 4) == AA) != is_suffix)
+            fail_msg("_ and %u behind two letters", c);
+    }
+}
+
+/* Would catch a Praat sequence that is forgotten, or a backslash that takes what follows with it. */
+static void every_backslash_sequence_is_a_mark_or_none(void **state)
+{
+    unsigned a, b;
+    (void)state;
+    for (a = 1; a < 0x80; a++)
+        for (b = 1; b < 0x80; b++) {
+            const char behind[] = {'B', '\\', (char)a, (char)b}, before[] = {'\\', (char)a, (char)b, 'B'};
+            const int is_mark = (strchr("|0OT-+:~NUDn3cv'`^", (int)a) && strchr("v^()", (int)b)) ||
+                                ((a == ':' || a == '.') && b == 'f') || (a == '\'' && (b == '1' || b == '2'));
+            if ((find(behind, 4) == B) != is_mark || (find(before, 4) == B) != is_mark)
+                fail_msg("\\%c%c", (int)a, (int)b);
+            if (find(behind, 3) == B)
+                fail_msg("\\%c alone", (int)a);
+        }
+}
+
+/* Would catch marks that are looked for beyond what is left of a label, and lengths that are off by one. */
+static void what_is_left_decides(void **state)
+{
+    char text[70];
+    size_t length;
+    (void)state;
+    assert_int_equal(find("_h", 2), LABIAL_ERROR_NAME);
+    assert_int_equal(find("B::::", 5), B);
+    assert_int_equal(find("B_h_h:", 6), B);
+    assert_int_equal(find("''B", 3), B);
+    assert_int_equal(find("A_Z", 3), 7); /* as it stands, before _Z is taken for a mark */
+    assert_int_equal(find("AA9", 3), LABIAL_ERROR_NAME);
+    assert_int_equal(find("1A1", 3), LABIAL_ERROR_NAME);
+    assert_int_equal(find("AA11", 4), LABIAL_ERROR_NAME);
+    assert_int_equal(find("1B1", 3), LABIAL_ERROR_NAME);
+    assert_int_equal(find("B'", 2), LABIAL_ERROR_NAME);
+    assert_int_equal(find("B\xcb\x88", 3), LABIAL_ERROR_NAME); /* stress is a mark before a label */
+    assert_int_equal(find("B\xe2\x81", 3), LABIAL_ERROR_NAME);
+    for (length = 1; length < sizeof text; length++) { /* marks do not count, whatever is in front of the label */
+        memset(text, ':', sizeof text);
+        text[0] = 'B';
+        assert_int_equal(find(text, length), length <= 32 ? B : LABIAL_ERROR_NAME);
+        memset(text, '\'', sizeof text);
+        text[length - 1] = 'B';
+        assert_int_equal(find(text, length), B);
+    }
+}
+
+/* Would catch brackets that need not match, letters beyond ASCII that count for none, and a vowel that stands for noise. */
+static void what_is_no_sound_is_silence(void **state)
+{
+    static const char open[] = "<[({+*#", close[] = ">])}+*#";
+    char text[40];
+    unsigned i, k, c;
+    (void)state;
+    for (i = 0; i < 7; i++)
+        for (k = 0; k < 7; k++) {
+            text[0] = open[i];
+            text[1] = 'B';
+            text[2] = close[k];
+            assert_int_equal(nearest(text, 3), i == k ? SILENCE : B);
+            assert_int_equal(nearest(text, 2), B);
+            assert_int_equal(nearest(text + 1, 2), B);
+        }
+    assert_int_equal(nearest("[]", 2), SILENCE);
+    assert_int_equal(nearest("+", 1), SILENCE); /* not the one and the other sign of a pair */
+    assert_int_equal(labial_find_nearest(&names, ANY, "+", 1, 5), 5);
+    for (c = 1; c < 0x80; c++) { /* of a lone sign only letters may be sounds */
+        const char one = (char)c;
+        const int is_letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+        assert_int_equal(nearest(&one, 1), one == 'B' ? B : is_letter ? SCHWA : SILENCE);
+    }
+    assert_int_equal(nearest("\xd0\xb6", 2), SCHWA); /* a letter of another alphabet */
+    assert_int_equal(labial_find_nearest(&without_schwa, ANY, "z", 1, SILENCE), SILENCE);
+    assert_int_equal(nearest("\xc9\x99", 2), SCHWA);
+    memset(text, 'z', sizeof text); /* what is looked at ends after 32 bytes */
+    text[31] = 'B';
+    assert_int_equal(nearest(text, sizeof text), B);
+    text[31] = 'z';
+    text[32] = 'B';
+    assert_int_equal(nearest(text, sizeof text), SCHWA);
+}
+
+/* Would catch the shortest beginning taken for the longest, and letters that are skipped though a label begins there. */
+static void the_longest_beginning_comes_first(void **state)
+{
+    (void)state;
+    assert_int_equal(nearest("AAB", 3), AA);
+    assert_int_equal(nearest("BAA", 3), B);
+    assert_int_equal(nearest("zAAB", 4), AA);
+    assert_int_equal(nearest("xAzB", 4), B);
+    assert_int_equal(labial_find_nearest(&names, LABIAL_LABELS_IPA, "AAB", 3, SILENCE), B);
+}
+
+static void null_is_an_error(void **state)
+{
+    labial_names_t none = names;
+    uint8_t *byte = (uint8_t *)malloc(1);
+    (void)state;
+    assert_non_null(byte);
+    none.entries = NULL;
+    assert_int_equal(labial_find_in(&none, ANY, "B", 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_find_nearest(&none, ANY, "B", 1, 0), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_find_nearest(&names, ANY, NULL, 1, 0), LABIAL_ERROR_NULL);
+    none.entries = (const uint8_t *)memset(byte, B, 1);
+    none.size = 1; /* half an entry is none */
+    assert_int_equal(labial_find_in(&none, ANY, "B", 1), LABIAL_ERROR_NAME);
+    free(byte);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_character_is_a_mark_or_none),
+        cmocka_unit_test(two_bytes_are_a_mark_where_they_are_a_character),
+        cmocka_unit_test(every_sign_is_a_mark_or_none),
+        cmocka_unit_test(every_backslash_sequence_is_a_mark_or_none),
+        cmocka_unit_test(what_is_left_decides),
+        cmocka_unit_test(what_is_no_sound_is_silence),
+        cmocka_unit_test(the_longest_beginning_comes_first),
+        cmocka_unit_test(null_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

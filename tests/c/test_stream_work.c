@@ -1,0 +1,122 @@
+/*
+ * test_stream_work.c - the even share of ticks: which channels a tick searches and solves, and when it selects a shape.
+ * What is delivered does not tell, but a tick that does the work of several is late on a small processor.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <string.h>
+
+#include "fixture.h"
+#include "speech_en.h"
+
+static fixture_model_t rich, slow;
+
+static int setup(void **state)
+{
+    (void)state;
+    fixture_rich(&rich);
+    fixture_slow(&slow);
+    return 0;
+}
+
+static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)user;
+    (void)frame;
+    (void)faps;
+}
+
+typedef struct {
+    labial_t stream;
+    uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4];
+} place_t;
+
+static place_t place;
+
+static void begin(const labial_model_t *model)
+{
+    assert_int_equal(labial_init(&place.stream, model, place.workspace, sizeof place.workspace, ignore, NULL), LABIAL_OK);
+}
+
+/* Fills the queue with phonemes of three frames and more; ends the stream once `left` is 0. */
+static void feed(unsigned phonemes, unsigned *left)
+{
+    while (*left > 0 && labial_room(&place.stream) > 0) {
+        assert_int_equal(labial_push(&place.stream, *left * 7u % phonemes, 60u + *left % 5u * 20u), LABIAL_OK);
+        --*left;
+    }
+    if (*left == 0)
+        assert_int_equal(labial_end(&place.stream), LABIAL_OK);
+}
+
+/* Would catch a channel whose turn comes in another's tick, twice or never: ticks that do more than their share. */
+static void channels_take_turns(const labial_model_t *model)
+{
+    labial_track_t before[LABIAL_CHANNELS];
+    const unsigned stride = model->search_stride;
+    unsigned left = 60, tick, c, moved = 0, turns = 0;
+    begin(model);
+    for (tick = 0;; tick++) {
+        feed(model->phoneme_count, &left);
+        memcpy(before, place.stream.tracks, sizeof before);
+        if (labial_tick(&place.stream) == LABIAL_DONE)
+            break;
+        for (c = 0; c < LABIAL_CHANNELS; c++) {
+            const int changed = memcmp(&before[c], &place.stream.tracks[c], sizeof before[c]) != 0;
+            if (c % stride != tick % stride && changed)
+                fail_msg("tick %u works on channel %u", tick, c);
+            turns += c % stride == tick % stride;
+            moved += (unsigned)changed;
+        }
+    }
+    assert_true(turns > 400 && moved * 10 > turns * 8);
+}
+
+static void channels_take_turns_in_every_stride(void **state)
+{
+    (void)state;
+    channels_take_turns(&rich.model);
+    channels_take_turns(&slow.model);
+    channels_take_turns(&speech_en);
+}
+
+/* Would catch a shape that is selected when its phoneme begins, in a tick that has enough to do: where phonemes are known
+ * and last as many frames as channels have turns, it is selected before, and in a tick with fewer channels. */
+static void shapes_are_selected_ahead(void **state)
+{
+    unsigned left = 120, tick, begun = 0, selected = 0;
+    (void)state;
+    begin(&speech_en);
+    for (tick = 0;; tick++) {
+        const uint8_t was_selected = place.stream.selected;
+        const labial_shape_t was = place.stream.next_shape, spoken = place.stream.shape;
+        int has_begun;
+        feed(SPEECH_EN_PHONEMES, &left);
+        if (labial_tick(&place.stream) == LABIAL_DONE)
+            break;
+        has_begun = memcmp(&spoken, &place.stream.shape, sizeof spoken) != 0;
+        if (has_begun && tick > 0 && !was_selected)
+            fail_msg("tick %u selects the shape that it uses", tick);
+        if (memcmp(&was, &place.stream.next_shape, sizeof was) != 0) {
+            selected++;
+            if (tick % speech_en.search_stride == 0 && tick > 0)
+                fail_msg("tick %u selects though it has most channels", tick);
+        }
+        begun += (unsigned)has_begun;
+    }
+    assert_in_range(begun, 100, 130);
+    assert_in_range(selected, 100, 130);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(channels_take_turns_in_every_stride),
+        cmocka_unit_test(shapes_are_selected_ahead),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

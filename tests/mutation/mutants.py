@@ -1,0 +1,168 @@
+"""Small changes of C sources, each of which some test should notice."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, Iterator, List, Sequence, Tuple
+
+#: What an operator becomes; the left operand of a binary one ends with a word, a number or a closing bracket.
+BINARY: Dict[str, Tuple[str, ...]] = {
+    "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",), "!=": ("==",),
+    "+": ("-",), "-": ("+",), "*": ("+",), "/": ("*",), "%": ("*",), "<<": (">>",), ">>": ("<<",),
+    "&": ("|",), "|": ("&",), "^": ("&",), "&&": ("||",), "||": ("&&",),
+    "+=": ("-=",), "-=": ("+=",), "*=": ("+=",), "|=": ("&=",), "&=": ("|=",), "<<=": (">>=",), ">>=": ("<<=",),
+    "^=": ("&=",),
+}  # fmt: skip
+#: What a unary operator becomes, wherever it stands.
+UNARY: Dict[str, Tuple[str, ...]] = {"!": ("",), "-": ("",), "~": ("",), "++": ("--",), "--": ("++",)}
+
+_TOKEN = re.compile(
+    r"(?P<space>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:[^\n\\]|\\\n)*)"
+    r"|(?P<text>\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
+    r"|(?P<number>0[xX][0-9a-fA-F]+[uUlL]*|\d+[uUlL]*)"
+    r"|(?P<word>[A-Za-z_]\w*)"
+    r"|(?P<sign><<=|>>=|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||[-+*/%&|^]=|.)",
+    re.DOTALL | re.MULTILINE,
+)
+#: Words behind which - or * stands alone, and those that begin no statement that could go.
+_KEYWORDS = set("return case else do sizeof goto break continue default switch for while if".split())
+_DECLARATION = re.compile(r"(?:const|static|extern|unsigned|signed|int|char|typedef|enum|struct|\w+_t|return|case)\b")
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A change of `old` to `new` at the character `start` of a file."""
+
+    file: str
+    start: int
+    old: str
+    new: str
+    line: int
+    key: str  #: names the change as long as its line stays as it is, wherever that moves
+
+    def apply(self, source: str) -> str:
+        """The changed source."""
+        return source[: self.start] + self.new + source[self.start + len(self.old) :]
+
+
+@dataclass(frozen=True)
+class _Token:
+    kind: str
+    text: str
+    start: int
+
+
+def _tokens(source: str) -> List[_Token]:
+    found = ((match.lastgroup or "", match.group(), match.start()) for match in _TOKEN.finditer(source))
+    return [_Token(*token) for token in found if token[0] != "space"]
+
+
+def _number_changes(text: str) -> Iterator[str]:
+    digits = re.match(r"0[xX][0-9a-fA-F]+|\d+", text)
+    assert digits
+    value, suffix = int(digits.group(), 0), text[digits.end() :]
+    yield f"{value + 1}{suffix}"
+    if value > 0:
+        yield f"{value - 1}{suffix}"
+
+
+def _bodies(tokens: Sequence[_Token]) -> Iterator[Tuple[int, int]]:
+    """The ranges of tokens within the braces of functions."""
+    depth, begin, is_function = 0, 0, False
+    for i, token in enumerate(tokens):
+        if token.text == "{":
+            if depth == 0:
+                begin, is_function = i, i > 0 and tokens[i - 1].text == ")"
+            depth += 1
+        elif token.text == "}":
+            depth -= 1
+            if depth == 0 and is_function:
+                yield begin, i
+
+
+def _statement(source: str, tokens: Sequence[_Token], i: int) -> str:
+    """The expression statement that begins with token `i`, without its semicolon; empty where none does."""
+    if tokens[i - 1].text not in "{};" or tokens[i].kind != "word" or tokens[i].text in _KEYWORDS:
+        return ""
+    depth = 0
+    for token in tokens[i:]:
+        depth += (token.text in "([") - (token.text in ")]")
+        if depth < 0 or token.text in "{}":
+            return ""
+        if token.text == ";":
+            text = source[tokens[i].start : token.start]
+            return "" if _DECLARATION.match(text) or text.startswith("(void)") else text
+    return ""
+
+
+def _changes(source: str, tokens: Sequence[_Token], i: int) -> Iterator[Tuple[str, str]]:
+    """What stands at token `i` and may become something else: old text, new text."""
+    token, before = tokens[i], tokens[i - 1]
+    is_binary = (before.kind in ("word", "number") and before.text not in _KEYWORDS) or before.text in (")", "]")
+    if token.kind == "number":
+        for new in _number_changes(token.text):
+            yield token.text, new
+    elif token.text in BINARY and is_binary and not _is_cast(tokens, i):
+        for new in BINARY[token.text]:
+            yield token.text, new
+    elif token.text in UNARY and (token.text in ("++", "--") or not is_binary):
+        for new in UNARY[token.text]:
+            yield token.text, new
+    elif token.text in ("if", "while") and tokens[i + 1].text == "(":
+        condition = _bracket(source, tokens, i + 1)
+        yield condition, f"(!{condition})"
+    statement = _statement(source, tokens, i)
+    if statement:
+        yield statement, ""
+
+
+def _is_cast(tokens: Sequence[_Token], i: int) -> bool:
+    """Whether `*` or `-` at token `i` stands behind a type in brackets or in a declaration."""
+    before = tokens[i - 1]
+    if before.text == ")":
+        j = i - 2
+        while tokens[j].kind == "word" or tokens[j].text == "*":
+            j -= 1
+        inner = [token.text for token in tokens[j + 1 : i - 1]]
+        return tokens[j].text == "(" and any(word.endswith("_t") or word in ("int", "unsigned", "void", "char", "float")
+                                             for word in inner)
+    return tokens[i].text == "*" and (before.text.endswith("_t") or before.text in ("void", "char", "const", "int"))
+
+
+def _bracket(source: str, tokens: Sequence[_Token], i: int) -> str:
+    depth = 0
+    for token in tokens[i:]:
+        depth += (token.text == "(") - (token.text == ")")
+        if depth == 0:
+            return source[tokens[i].start : token.start + 1]
+    raise ValueError("a bracket is not closed")
+
+
+def mutants(path: Path) -> List[Mutant]:
+    """All changes of the functions of a file."""
+    source = path.read_text(encoding="utf-8")
+    tokens, found, seen = _tokens(source), [], {}  # type: List[_Token], List[Mutant], Dict[str, int]
+    for begin, end in _bodies(tokens):
+        for i in range(begin + 1, end):
+            for old, new in _changes(source, tokens, i):
+                start = tokens[i + 1].start if old.startswith("(") else tokens[i].start
+                line = source.count("\n", 0, start) + 1
+                text = " ".join(source.splitlines()[line - 1].split())
+                key = f"{path.name} | {text} | {_brief(old)} -> {_brief(new)}"
+                seen[key] = seen.get(key, 0) + 1
+                if seen[key] > 1:
+                    key += f" ({seen[key]})"
+                found.append(Mutant(path.name, start, old, new, line, key))
+    return found
+
+
+def _brief(text: str) -> str:
+    return " ".join(text.split()) or "nothing"
+
+
+def chosen(candidates: Sequence[Mutant], seed: int) -> List[Mutant]:
+    """The candidates in an order that the seed gives, and in which each keeps its place when others change."""
+    return sorted(candidates, key=lambda mutant: hashlib.sha256(f"{seed} {mutant.key}".encode()).digest())

@@ -1,0 +1,239 @@
+"""Changes the library in small ways and says which changes no test notices.
+
+    python3 tests/mutation/mutate.py --build build/mutate [--count 300] [--seed 1] [--jobs 2] [--list]
+
+Each mutant is one change of one operator, number, condition or statement in lib/ (mutants.py), chosen by a seed. It is
+compiled with sanitizers, and the C suites, the conformance streams and the device tests run on it, the file's own suite
+first and then the fastest first, until one fails or takes far too long: then it is killed. A mutant whose optimised
+code is that of the library is no mutant, and another takes its place. Those that survive everything must stand in
+survivors.txt with a reason; at least 95 % must be killed. Needs gcc or clang with sanitizers, and cmocka.
+"""
+
+from __future__ import annotations
+
+import argparse
+import concurrent.futures
+import itertools
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, List, Optional, Sequence
+
+from mutants import Mutant, chosen, mutants
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+LIB = ROOT / "lib"
+SURVIVORS = HERE / "survivors.txt"
+#: Of the mutants, killed.
+REQUIRED = 0.95
+#: A test that takes this many times as long as without a change, and more, hangs.
+PATIENCE, LEAST_SECONDS = 10.0, 10.0
+#: Builds of the library that every mutant is tried in, in this order: name, definitions.
+BUILDS = {"default": [], "lag": ["-DLABIAL_LAG=40", "-DLABIAL_WINDOW=15"]}
+#: Suites whose verdict depends on the limits, for all builds but the first.
+LIMITED = ("test_units", "test_contact", "test_viterbi", "test_trajectory", "test_stream", "test_stream_delay",
+           "test_stream_errors", "test_stream_steps")
+#: With fewer rounds of what repeats with other numbers (tests/c/fixture.h).
+FLAGS = ["-std=c99", "-O1", "-g0", "-fPIC", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
+         "-DLABIAL_TEST_SHARE=5"]
+INCLUDES = [f"-I{ROOT / folder}" for folder in ("include", "lib/models", "lib", "tests/c", "tests/conformance",
+                                                "tests/device", "tests/device/stand_in/src", "boards")]
+MODELS = sorted((LIB / "models").glob("*.c"))
+
+
+@dataclass
+class Test:
+    """A program on one build of the library, and how long it takes."""
+
+    name: str
+    build: str
+    program: Path
+    seconds: float = 0.0
+
+    def is_of(self, step: str) -> bool:
+        """Whether the program is the suite of a step of the library, which is the likeliest to notice."""
+        return self.name.startswith(f"test_{step}") and self.seconds < 5
+
+
+def run(command: Sequence[object], **options: object) -> subprocess.CompletedProcess:
+    """Runs a command of the build itself, which must succeed."""
+    return subprocess.run([str(part) for part in command], check=True, capture_output=True, **options)  # type: ignore
+
+
+class Bench:
+    """The library and the tests, built once; mutants replace one object of the library."""
+
+    def __init__(self, folder: Path, compiler: str, cmocka: Sequence[str]) -> None:
+        self.folder, self.compiler, self.cmocka = folder, compiler, list(cmocka)
+        self.sources = sorted(LIB.glob("*.c"))
+        self.reference: Dict[str, bytes] = {}
+        self.tests: List[Test] = []
+        folder.mkdir(parents=True, exist_ok=True)
+        for build in BUILDS:
+            (folder / build).mkdir(exist_ok=True)
+            for source in self.sources:
+                run(self.compile(build, source, folder / build / f"{source.stem}.o"))
+            self.link(build, folder / build, {})
+            self.build_tests(build)
+
+    def compile(self, build: str, source: Path, target: Path) -> List[object]:
+        """The command that compiles a file of the library, from wherever it lies."""
+        return [self.compiler, *FLAGS, *BUILDS[build], *INCLUDES, "-c", source, "-o", target]
+
+    def optimised(self, source: Path, target: Path) -> bytes:
+        """The optimised code of a file in all builds, for comparison."""
+        code = b""
+        for build, definitions in BUILDS.items():
+            run([self.compiler, "-std=c99", "-O2", "-g0", *definitions, *INCLUDES, "-c", source, "-o", target])
+            code += build.encode() + target.read_bytes()
+        return code
+
+    def link(self, build: str, folder: Path, replaced: Dict[str, Path]) -> None:
+        """Links liblabial.so in `folder`, some of its objects being replaced."""
+        objects = [replaced.get(source.stem, self.folder / build / f"{source.stem}.o") for source in self.sources]
+        run([self.compiler, *FLAGS, "-shared", *objects, "-o", folder / "liblabial.so"])
+
+    def build_tests(self, build: str) -> None:
+        """Compiles and links the tests of a build, and measures them."""
+        suites = ROOT / "tests" / "c"
+        helpers = [path for path in sorted(suites.glob("*.c")) if not path.name.startswith("test_")] + MODELS
+        archive = self.folder / build / "helpers"
+        archive.mkdir(exist_ok=True)
+        for path in helpers:
+            run([self.compiler, *FLAGS, *BUILDS[build], *INCLUDES, "-c", path, "-o", archive / f"{path.stem}.o"])
+        objects = sorted(archive.glob("*.o"))
+        programs: Dict[str, List[object]] = {
+            path.stem: [path, *objects, *self.cmocka] for path in sorted(suites.glob("test_*.c"))
+            if build == "default" or path.stem in LIMITED}
+        if build == "default":
+            streams = [ROOT / "tests" / "conformance" / name for name in ("player.c", "vectors.c")]
+            board = ['-DBOARD_NAME="host"', ROOT / "boards/text.c", ROOT / "boards/host/host.c"]
+            device = ROOT / "tests" / "device"
+            programs["conformance"] = [ROOT / "tests/conformance/conformance.c", *streams, *board, *objects]
+            programs["device_tests"] = [*sorted(device.glob("test_*.c")), device / "device_tests.c",
+                                        device / "stand_in/src/unity.c", *streams, *board, *objects]
+        for name, parts in programs.items():
+            program = self.folder / build / name
+            libraries = [f"-L{self.folder / build}", "-llabial", "-lm"]
+            run([self.compiler, *FLAGS, *BUILDS[build], *INCLUDES, *parts, *libraries, "-o", program])
+            test = Test(name, build, program)
+            began = time.monotonic()
+            if self.fails(test, self.folder / build, limit=600):
+                raise SystemExit(f"{name} fails on the library as it is")
+            test.seconds = time.monotonic() - began
+            self.tests.append(test)
+        self.tests.sort(key=lambda test: test.seconds)
+
+    def fails(self, test: Test, folder: Path, limit: float) -> bool:
+        """Whether a test fails or hangs on the library in `folder`."""
+        environment = {**os.environ, "LD_LIBRARY_PATH": str(folder), "ASAN_OPTIONS": "detect_leaks=0"}
+        try:
+            done = subprocess.run([str(test.program)], env=environment, timeout=limit, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL)
+        except subprocess.TimeoutExpired:
+            return True
+        return done.returncode != 0
+
+    def verdict(self, mutant: Mutant) -> Optional[str]:
+        """What kills a mutant: the name of a test, or `compiler`. Empty for a survivor; None where it is no change."""
+        source = LIB / mutant.file
+        with tempfile.TemporaryDirectory(dir=self.folder) as name:
+            folder = Path(name)
+            changed = folder / mutant.file
+            changed.write_text(mutant.apply(source.read_text(encoding="utf-8")), encoding="utf-8")
+            for build in BUILDS:
+                (folder / build).mkdir()
+                target = folder / build / f"{source.stem}.o"
+                try:
+                    run(self.compile(build, changed, target))
+                    self.link(build, folder / build, {source.stem: target})
+                except subprocess.CalledProcessError:
+                    return "compiler"
+                for test in sorted(self.tests, key=lambda test: not test.is_of(source.stem)):
+                    limit = max(LEAST_SECONDS, PATIENCE * test.seconds)
+                    if test.build == build and self.fails(test, folder / build, limit):
+                        return test.name
+            return None if self.optimised(changed, folder / "code.o") == self.original(mutant.file) else ""
+
+    def original(self, file: str) -> bytes:
+        """The optimised code of a file of the library, compiled under the same name as its mutants."""
+        if file not in self.reference:
+            with tempfile.TemporaryDirectory(dir=self.folder) as name:
+                copy = Path(name) / file
+                shutil.copy(LIB / file, copy)
+                self.reference[file] = self.optimised(copy, Path(name) / "code.o")
+        return self.reference[file]
+
+
+def known_survivors() -> Dict[str, str]:
+    """Reasons by mutants, from survivors.txt: a line for the mutant, then one, indented, for the reason."""
+    known: Dict[str, str] = {}
+    key = ""
+    for line in SURVIVORS.read_text(encoding="utf-8").splitlines() if SURVIVORS.exists() else []:
+        if line.startswith("    "):
+            known[key] = (known.get(key, "") + " " + line.strip()).strip()
+        elif line and not line.startswith("#"):
+            key = line
+    return known
+
+
+def tried(bench: Bench, candidates: Sequence[Mutant], count: int, jobs: int) -> Dict[Mutant, str]:
+    """The verdicts on the first `count` candidates that are mutants."""
+    verdicts: Dict[Mutant, str] = {}
+    rest = iter(candidates)
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        while len(verdicts) < count:
+            batch = list(itertools.islice(rest, min(count - len(verdicts), 8 * jobs)))
+            if not batch:
+                break
+            for mutant, verdict in zip(batch, pool.map(bench.verdict, batch)):
+                if verdict is None or verdict == "compiler":
+                    continue
+                verdicts[mutant] = verdict
+                if not verdict:
+                    print(f"survives: {mutant.file}:{mutant.line}\n  {mutant.key}", flush=True)
+            print(f"{len(verdicts)} of {count}", flush=True)
+    return verdicts
+
+
+def main() -> int:
+    """Runs the command; returns its exit status."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--build", type=Path, required=True, help="folder for what is built")
+    parser.add_argument("--count", type=int, default=300, help="mutants (300)")
+    parser.add_argument("--seed", type=int, default=1, help="which ones (1)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="mutants at a time")
+    parser.add_argument("--compiler", default=os.environ.get("CC", "cc"))
+    parser.add_argument("--cmocka", nargs=2, metavar=("INCLUDE", "LIBRARY"), help="where cmocka is, if not installed")
+    parser.add_argument("--files", nargs="*", help="of lib/, instead of all")
+    parser.add_argument("--list", action="store_true", help="print the mutants and do nothing")
+    options = parser.parse_args()
+    files = [path for path in sorted(LIB.glob("*.c")) if not options.files or path.name in options.files]
+    candidates = chosen([mutant for path in files for mutant in mutants(path)], options.seed)
+    if options.list:
+        for mutant in candidates[: options.count]:
+            print(f"{mutant.line}: {mutant.key}")
+        return 0
+    cmocka = [f"-I{options.cmocka[0]}", options.cmocka[1]] if options.cmocka else ["-lcmocka"]
+    bench = Bench(options.build.resolve(), options.compiler, cmocka)
+    verdicts = tried(bench, candidates, options.count, options.jobs)
+    known = known_survivors()
+    survivors = [mutant for mutant, verdict in verdicts.items() if not verdict]
+    unknown = [mutant for mutant in survivors if mutant.key not in known]
+    equivalent = [mutant for mutant in survivors if known.get(mutant.key, "").startswith("Equivalent")]
+    killed = len(verdicts) - len(survivors)
+    print(f"{killed} of {len(verdicts)} mutants are killed ({killed / len(verdicts):.1%}); "
+          f"{len(survivors)} survive, of which {len(equivalent)} are equivalent.")
+    for mutant in unknown:
+        print(f"No reason in survivors.txt: {mutant.file}:{mutant.line}\n{mutant.key}")
+    return 1 if unknown or killed < REQUIRED * len(verdicts) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
