@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "oracle.h"
@@ -266,18 +267,29 @@ static void compose(int kind, uint32_t seed)
 
 static unsigned long compared, waits, cuts, open, rested;
 
-/* Where the frame lies in its phoneme, whether that is open, how far the mouth came to rest. */
-static void compare_place(const labial_taken_t *taken, const oracle_frame_t *frame, size_t at)
+/* Where the frame lies in its phoneme, whether that is open, how far the mouth came to rest. The frames of a phoneme divide
+ * it evenly: their shares ascend in equal steps, to rounding, and mirror each other; only its beginning is open. */
+static void check_place(const labial_taken_t *taken, const oracle_frame_t *frame, size_t at)
 {
-    const double share = 16384.0 * ((double)frame->number + 0.5) / (double)frame->whole;
-    const int is_open = frame->whole >= 15 && frame->whole - frame->number > 8;
-    if (taken->share > share || taken->share <= share - 1.0) /* rounded down */
-        fail_msg("frame %zu: share %u, not %g", at, taken->share, share);
-    if (frame->phoneme != models[frame->model]->silence && taken->is_open != is_open)
-        fail_msg("frame %zu: open %u, not %d", at, taken->is_open, is_open);
+    static int shares[MANY], was_open;
+    const size_t first = at - (size_t)frame->number;
+    size_t i;
+    shares[at] = taken->share;
+    for (i = first; frame->number + 1 == frame->whole && i <= at; i++) {
+        const int mirrored = shares[i] + shares[first + at - i];
+        if (mirrored != 16384 && mirrored != 16384 - 1)
+            fail_msg("frame %zu: share %d, and %d at the other end", i, shares[i], shares[first + at - i]);
+        if (i > first && abs(shares[i] - shares[i - 1] - (shares[first + 1] - shares[first])) > 1)
+            fail_msg("frame %zu: share %d behind %d, a step unlike the first", i, shares[i], shares[i - 1]);
+    }
+    if (frame->phoneme != models[frame->model]->silence) {
+        if (taken->is_open && ((frame->number > 0 && !was_open) || frame->number + 1 == frame->whole))
+            fail_msg("frame %zu: open, behind a closed one or at the phoneme's end", at);
+        open += taken->is_open;
+    }
+    was_open = taken->is_open;
     if (taken->rest != frame->rest)
         fail_msg("frame %zu: rest %u, not %u", at, taken->rest, frame->rest);
-    open += frame->phoneme != models[frame->model]->silence && is_open;
     rested += frame->rest == 16;
 }
 
@@ -313,7 +325,7 @@ static void compare(const labial_taken_t *taken, size_t at, size_t count)
     const int ahead = (model->kernel_taps ? model->kernel_taps - 1 - model->kernel_behind : 0) * model->kernel_stride;
     const int behind = model->kernel_behind * model->kernel_stride;
     int k;
-    compare_place(taken, frame, at);
+    check_place(taken, frame, at);
     if (taken->slot != frame->model || taken->is_first != frame->is_first || taken->marks != marks)
         fail_msg("frame %zu: model %u, first %u, marks %u, not %u, %d, %u", at, taken->slot, taken->is_first,
                  taken->marks, frame->model, frame->is_first, marks);

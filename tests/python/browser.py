@@ -6,7 +6,6 @@ opened.
 
 from __future__ import annotations
 
-import base64
 import itertools
 import json
 import os
@@ -153,7 +152,3 @@ class Page:
         """A press and release of the mouse."""
         for kind in ("mousePressed", "mouseReleased"):
             self.command("Input.dispatchMouseEvent", {"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1})
-
-    def screenshot(self, path: Path) -> None:
-        """What is to be seen, as PNG."""
-        path.write_bytes(base64.b64decode(self.command("Page.captureScreenshot")["data"]))

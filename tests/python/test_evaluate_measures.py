@@ -15,8 +15,7 @@ from labial.phonesets import LAUGHTER, SPEECH
 from test_evaluate_material import planted
 
 FPS = 50
-OPEN_JAW, BOTTOM, CORNER, TOP = (FAP_NAMES.index(name) for name in (
-    "open_jaw", "raise_b_midlip_o", "stretch_l_cornerlip_o", "push_t_lip"))  # fmt: skip
+BOTTOM, CORNER, TOP = (FAP_NAMES.index(name) for name in ("raise_b_midlip_o", "stretch_l_cornerlip_o", "push_t_lip"))
 
 
 def item(labels: List[str], frames: List[int], human: np.ndarray, phone_set=SPEECH) -> Utterance:
