@@ -98,6 +98,7 @@ static void contacts_and_knots_are_read(void **state)
     assert_int_equal(labial_model_load(&blob, bytes, serialise(&plain.model)), LABIAL_OK);
     assert_int_equal(blob.model.pair_knots, 1);
     assert_null(blob.model.contacts);
+    assert_null(blob.model.pairs);
 }
 
 static void every_truncation_is_refused(void **state)

@@ -6,7 +6,8 @@ Each mutant is one change of one operator, number, condition or statement in lib
 compiled with sanitizers, and the C suites, the conformance streams and the device tests run on it, the file's own suite
 first and then the fastest first, until one fails or hangs: then it is killed. A mutant whose optimised
 code is that of the library is no mutant, and another takes its place. Those that survive everything must stand in
-survivors.txt with a reason; at least 95 % must be killed. Needs gcc or clang with sanitizers, and cmocka.
+survivors.txt with a reason; of those that are not equivalent at least 95 % must be killed. Needs gcc or clang with
+sanitizers, and cmocka.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 LIB = ROOT / "lib"
 SURVIVORS = HERE / "survivors.txt"
-#: Of the mutants, killed.
+#: The mutation score, the share of killed mutants among those that are not equivalent to the library.
 REQUIRED = 0.95
 #: A test that takes this many times as much of the processor as without a change, and more, hangs.
 PATIENCE, LEAST_SECONDS = 10.0, 5.0
@@ -227,11 +228,12 @@ def main() -> int:
     unknown = [mutant for mutant in survivors if mutant.key not in known]
     equivalent = [mutant for mutant in survivors if known.get(mutant.key, "").startswith("Equivalent")]
     killed = len(verdicts) - len(survivors)
-    print(f"{killed} of {len(verdicts)} mutants are killed ({killed / len(verdicts):.1%}); "
-          f"{len(survivors)} survive, of which {len(equivalent)} are equivalent.")
+    score = killed / max(1, len(verdicts) - len(equivalent))
+    print(f"{killed} of {len(verdicts)} mutants are killed; {len(survivors)} survive, of which {len(equivalent)} are "
+          f"equivalent: a mutation score of {score:.1%}.")
     for mutant in unknown:
         print(f"No reason in survivors.txt: {mutant.file}:{mutant.line}\n{mutant.key}")
-    return 1 if unknown or killed < REQUIRED * len(verdicts) else 0
+    return 1 if unknown or score < REQUIRED else 0
 
 
 if __name__ == "__main__":
