@@ -1,3 +1,6 @@
+/*
+ * blob.c - a model laid over bytes from a file or a flash page (labial/blob.h).
+ */
 #include "labial/blob.h"
 
 #include "labial/labial.h"

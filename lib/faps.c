@@ -1,3 +1,6 @@
+/*
+ * faps.c - the channels' MPEG-4 numbers, and the 23 FAPs made from them (labial/faps.h).
+ */
 #include "labial/faps.h"
 
 #include <stddef.h>

@@ -1,3 +1,6 @@
+/*
+ * names.c - phonemes by name (labial/names.h).
+ */
 #include "labial/names.h"
 
 #include <string.h>

@@ -1,3 +1,6 @@
+/*
+ * result.c - a sentence for each result (labial/labial.h).
+ */
 #include "labial/labial.h"
 
 const char *labial_result_text(int result)

@@ -1,3 +1,6 @@
+/*
+ * shape.c - phonemes to targets (shape.h): equation 2, pairs, kernels, floors and contact, rest.
+ */
 #include "shape.h"
 
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /*
- * shape.h - phonemes to targets: which shape a phoneme takes, and where every frame is drawn to.
+ * shape.h - phonemes to targets: the shape of each phoneme, and the target of each frame.
  */
 #ifndef LABIAL_SHAPE_H
 #define LABIAL_SHAPE_H
@@ -8,8 +8,8 @@
 #include "units.h"
 
 /*
- * Shape selection (paper, eq. 2; DESIGN.md for context and soft selection): the shape of `phoneme`
- * lasting `ms` milliseconds between the given neighbours, with what these add to it as a pair.
+ * Shape selection (equation 2 of docs/method.md, with its context, conditional mean and pairs): the shape of `phoneme`,
+ * which lasts `ms` milliseconds, between the given neighbours.
  */
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
                          labial_shape_t *shape);

@@ -27,7 +27,7 @@ static inline uint8_t labial_ring_next(unsigned place, unsigned size)
 void labial_input_select(labial_t *stream);
 
 /*
- * Moves on by a tick: puts the target of the next frame into the ring of frames or, behind the last one, lets those
+ * Advances by a tick: puts the target of the next frame into the ring of frames or, after the last one, lets the frames
  * that were taken run out.
  *
  * Returns LABIAL_OK, LABIAL_STARVED when more phonemes must be known, or LABIAL_DONE when nothing is left.

@@ -1,4 +1,6 @@
 /*
+ * trajectory.c - states to motion (trajectory.h).
+ *
  * The matrix of equation 3 is symmetric, positive definite and pentadiagonal, and its rows sum to the hold of each
  * frame, since deltas of a constant are zero. L D L' written with these sums keeps apart the hold of a frame (g), what
  * ties it to its neighbours (f, c), and has no small difference of large numbers. With h the hold of frame t, d and dd

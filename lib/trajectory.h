@@ -4,10 +4,10 @@
  *     (W' U^-1 W + A) m = W' U^-1 mu_q + A x
  *
  * q is the state path, U the diagonal of the states' variances, A that of the anchors' precisions and x the targets.
- * Rows of W whose delta window would leave the solution are dropped. The factorisation runs on from frame to frame;
- * the way back starts LABIAL_WINDOW frames ahead of those that are wanted, as if all beyond were equal to the first of
- * them. With weights that labial_model_check() accepts the error is below a tenth of a FAP unit (as the
- * tests show).
+ * Rows of W whose delta window would leave the solution are dropped. The factorisation continues from frame to frame;
+ * the way back starts LABIAL_WINDOW frames ahead of those that are wanted, as if all frames beyond were equal to the
+ * first of them. With weights that labial_model_check() accepts, the error is below a tenth of a FAP unit (as the tests
+ * show).
  */
 #ifndef LABIAL_TRAJECTORY_H
 #define LABIAL_TRAJECTORY_H
@@ -16,7 +16,7 @@
 
 /* What a state adds to equation 3 in each of its frames. */
 typedef struct {
-    int32_t position;    /* Q12 FAP: where the static feature draws a frame */
+    int32_t position;    /* Q12 FAP: the mean of the static feature */
     int32_t origin;      /* the target, a position, at which the anchor agrees with it */
     int32_t share;       /* of the anchor in `hold`, in 1/256 */
     int32_t hold;        /* weight */
@@ -31,9 +31,9 @@ typedef struct {
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms);
 
 /*
- * Takes up the row of a frame, whose target is `position`; in `contact` its hold is `firm` at least and draws it there.
- * `marks` say whether it is the solution's first or last. Every row but the first factors the frame before it, for
- * which it needs `before`, its place in the ring; the last one factors its own frame too, `own`.
+ * Adds the row of a frame, whose target is `position`; in `contact` its hold is at least `firm` and ties it to this
+ * target. `marks` say whether it is the solution's first or last. Every row but the first factors the frame before it,
+ * for which it needs `before`, its place in the ring; the last one factors its own frame too, `own`.
  */
 void labial_trajectory_row(labial_solver_t *solver, const labial_terms_t *terms, int32_t position, int contact,
                            unsigned marks, labial_factors_t *before, labial_factors_t *own);

@@ -1,3 +1,6 @@
+/*
+ * units.c - phonemes to frames (units.h).
+ */
 #include "units.h"
 
 #include <string.h>

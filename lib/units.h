@@ -1,9 +1,9 @@
 /*
  * units.h - phonemes to frames: the queue of what was pushed, taken frame by frame.
  *
- * A frame is taken when all is known that its target depends on: what its model's kernels reach, and the phoneme
- * behind its own. So what is taken never depends on when it was pushed. A pause delays nothing: a silence that is
- * longer than the kernels look ahead is taken as two phonemes, of which the first needs nothing of what follows.
+ * A frame is taken when everything that its target depends on is known: what its model's kernels reach, and the next
+ * phoneme. So frames never depend on when their phonemes were pushed. A pause delays nothing: a silence that is longer
+ * than the kernels look ahead is treated as two phonemes, the first of which does not depend on what follows.
  *
  *     pushed    | m |  ey  | b |   iy   |          silence           | m |
  *     taken     | m |  ey  | b |   iy   |      silence     | silence | m |
@@ -17,7 +17,8 @@
 
 #include "labial/labial.h"
 
-/* A phoneme as its model sees it: its neighbours are the model's silence where they are another's, or none. */
+/* A phoneme as its model sees it: a neighbour that belongs to another model, or does not exist, is the model's
+ * silence. */
 typedef struct {
     uint8_t slot; /* its model */
     uint8_t phoneme, previous, next;
@@ -31,7 +32,7 @@ typedef struct {
     uint16_t share;        /* how far it lies from the start of its phoneme to its end, Q14 */
     uint8_t slot;          /* its model */
     uint8_t is_first;      /* of its phoneme */
-    uint8_t is_open;       /* it lies in a phoneme that swallowed a pause, before the closing */
+    uint8_t is_open;       /* it lies in a phoneme that includes a pause, before its contact */
     uint8_t rest;          /* how far the mouth has come to rest in a pause, of LABIAL_REST_FRAMES; 0 elsewhere */
     uint8_t marks;
 } labial_taken_t;
@@ -57,7 +58,8 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
 int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_taken_t *taken);
 
-/* Tells the phoneme that begins next, with the next frame or later; returns whether all is known that it depends on. */
+/* Finds the phoneme that begins next, with the next frame or later; returns whether everything that it depends on is
+ * known. */
 int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_spoken_t *spoken);
 

@@ -1,3 +1,6 @@
+/*
+ * viterbi.c - targets to states (viterbi.h).
+ */
 #include "viterbi.h"
 
 #include <string.h>

@@ -1,16 +1,15 @@
 /*
  * viterbi.h - targets to states: the most likely path of one channel through its codebook, step by step.
  *
- * A score is the cost of the best path into a state above that of the best one, at most LABIAL_DEAD. Beside its
- * predecessors every state can be entered from the best state of the step before, at the cost LABIAL_DEAD, the highest
- * of a transition: so that what is as far behind as that need not be kept, and eight bits are enough.
+ * A score is the cost of the best path into a state, less that of the best state, at most LABIAL_DEAD. Besides from its
+ * predecessors every state can be entered from the best state of the previous step, at the cost LABIAL_DEAD, the
+ * highest of a transition: so a state that is this far behind need not be kept, and eight bits are enough.
  *
- * Only the LABIAL_SEARCHED states around the one that is nearest to the target are looked at; the others are dead.
- * Likely paths hardly leave this window, and it makes all steps alike.
+ * Only the LABIAL_SEARCHED states around the one that is nearest to the target are searched; the others are dead.
+ * Probable paths hardly leave this window, and it makes all steps take the same work.
  *
- * Which state was the right one for a step is decided LABIAL_LAG steps later, by the way back from the state that is
- * best then, or from the end of the unit when that comes earlier; nothing before the end of a unit is decided after
- * it.
+ * The state of a step is decided LABIAL_LAG frames later, by tracing back from the state that is best then, or at the
+ * end of the unit if that comes earlier; nothing before the end of a unit is decided after it.
  */
 #ifndef LABIAL_VITERBI_H
 #define LABIAL_VITERBI_H

@@ -15,9 +15,9 @@
  *
  *     out[c] = s[c] + (l[c] - s[c]) * intensity * (1 - words * (1 - share[c] * free[c]))     rounded to the nearest
  *
- * With words = 1 a channel follows the laugh by its share, while lips that meet keep their meeting: `free` is 0 where
- * the speech needs the channel for a closure, 1 where it does not, and 3 x^2 - 2 x^3 in between. Closures are seen in
- * the speech frame itself, which therefore need not bring its phonemes with it:
+ * With words = 1 a channel follows the laugh by its share, while lips that meet stay together: `free` is 0 where the
+ * speech needs the channel for a closure, 1 where it does not, and 3 x^2 - 2 x^3 in between. Closures are read from the
+ * speech frame itself, so that its phonemes are not needed:
  *
  *     opening = -(FAP 51 + FAP 52)   how far the middles of the lips are apart: small in p, b, m
  *     drop    = -FAP 52              how far the lower lip has gone down: small in f, v, where it touches the teeth
@@ -28,8 +28,8 @@
  *                                              meet; free where l <= s
  *     protrusion (16, 17), corners (53, 54, 59, 60)      always free: one smiles with closed lips, too
  *
- * With words = 0 nothing is kept closed and the mouth laughs alone: pauses of speech have closed lips, which are no
- * closures that a laugh should keep.
+ * With words = 0 nothing is kept closed and the mouth laughs alone: in pauses of speech the lips are closed, too, and a
+ * laugh should open them.
  *
  * Every value lies between the speech's and the laugh's, so that nothing overflows or leaves the range of FAPs. With
  * intensity = 0, and with share[c] * free[c] = 0 while words = 1, it is exactly the speech's; with intensity = 1 and
@@ -52,7 +52,7 @@ extern "C" {
 /* One, in shares, intensities and words: Q8. */
 #define LABIAL_BLEND_FULL 256u
 
-/* How a face laughs while it speaks. 34 bytes. Any values are safe; what is said of them is what makes sense. */
+/* How a face laughs while it speaks. 34 bytes. Any values are safe; the comments say which make sense. */
 typedef struct {
     /* Q8, 0 .. LABIAL_BLEND_FULL, more counts as that: how far the channel follows the laugh at full intensity while
      * words are spoken. */
@@ -66,8 +66,8 @@ typedef struct {
 /*
  * A face that laughs with the corners of its mouth and speaks with its lips and jaw: corners .9, protrusion .6, jaw and
  * lips .35. Lips are closed up to 120 FAP units of opening, free from 240 on; the lower lip touches up to 150 units of
- * drop and is free from 270 on. These limits suit the bundled voice, whose p, b, m close below 120 units in nearly
- * all cases; for a talker whose lips close less, or more, take other ones.
+ * drop and is free from 270 on. These limits suit the bundled voice, whose p, b, m close below 120 units in nearly all
+ * cases; a talker whose lips close less, or more, needs other limits.
  */
 extern const labial_blend_t labial_blend_default;
 

@@ -3,9 +3,9 @@
  *
  * A blob is a model as bytes; `labial export --blob` writes it as the file NAME.lbm. It is little-endian and is used in
  * place: nothing is copied, and the bytes must stay where they are for as long as the model is used. A blob is not
- * trusted: labial_model_load() checks every length before it takes a pointer, and labial_model_check() every value.
- * What passes plays safely, but may take several times the work of the bundled models: labial_model_cost()
- * (labial/model.h) says how much, before it is played.
+ * trusted: labial_model_load() checks every length before it takes a pointer, and labial_model_check() every value. An
+ * accepted model plays safely, but may take several times the work of the bundled models: labial_model_cost()
+ * (labial/model.h) returns how much before it is played.
  *
  *   bytes 0-3    "LBM1"
  *   bytes 4-7    size of the whole model in bytes, uint32

@@ -11,15 +11,15 @@
  *     while (labial_tick(&stream) != LABIAL_DONE) // once per frame period, from the main loop or a timer
  *         wait_for_next_frame();
  *
- * The library never allocates, keeps no state outside `stream` and `workspace`, computes in integers only and gives
- * the same bits on every target. A stream is not reentrant: calls on one stream must not overlap, calls on different
+ * The library never allocates, keeps no state outside `stream` and `workspace`, computes in integers only and gives the
+ * same bits on every target. A stream is not reentrant: calls on one stream must not overlap, calls on different
  * streams may. The structure may be moved or copied between calls as long as the workspace stays where it is and only
- * one copy is used on. Nothing needs to be released.
+ * one copy continues to be used. Nothing needs to be released.
  *
- * Trusted: models that the exporter wrote and the program was linked with; labial_init() and labial_use() look at their
- * format and frame rate alone. Not trusted: phoneme numbers, durations, the order of calls, and models from files,
- * which are not to be used before labial_model_load() (labial/blob.h) has accepted them: no value of these can make the
- * library read or write outside its memory.
+ * Trusted: models that the exporter wrote and the program was linked with; labial_init() and labial_use() check only
+ * their format and frame rate. Not trusted: phoneme numbers, durations, the order of calls, and models from files: no
+ * value of these can make the library read or write outside its memory. A model from a file may be used only after
+ * labial_model_load() (labial/blob.h) has accepted it.
  */
 #ifndef LABIAL_H
 #define LABIAL_H
@@ -46,9 +46,10 @@ extern "C" {
 #define LABIAL_WINDOW 4
 #endif
 
-/* How many frames after a step the search decides on its state, if the unit does not end earlier, 0 .. 40. Each frame
- * makes the path likelier and costs a frame of delay and about 175 bytes of workspace; with the bundled models the
- * difference cannot be seen. With a lag as long as the longest unit, units are searched as the method was published. */
+/* How many frames after a step the search decides on its state, if the unit does not end earlier, 0 .. 40. Each
+ * frame makes the path more probable and costs a frame of delay and about 175 bytes of workspace; with the bundled
+ * models the difference is not visible. With a lag as long as the longest unit, units are searched as the method was
+ * published. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0
 #endif
@@ -59,14 +60,15 @@ extern "C" {
 #define LABIAL_QUEUE 32
 #endif
 
-/* Distance of the farthest tap of a model's kernels from the frame, in frames to either side, 0 .. 60. Each frame costs
- * 2 bytes of the stream. A generated model does not compile where it needs more, and a blob is refused. */
+/* Distance of the farthest tap of a model's kernels from the frame, in frames to either side, 0 .. 60. Each frame
+ * costs 2 bytes of the stream. A generated model that needs more does not compile, and a blob that needs more is
+ * refused. */
 #ifndef LABIAL_REACH
 #define LABIAL_REACH 20
 #endif
 
-/* Models whose phonemes can be in a stream at the same time, 1 .. 255. A model makes room for another when its phonemes
- * have been taken up, and after them as many frames as the search takes at a time. */
+/* Models whose phonemes can be in a stream at the same time, 1 .. 255. Another model can replace a model when all
+ * its phonemes have been taken in, and after them as many frames as share a state. */
 #ifndef LABIAL_MODELS
 #define LABIAL_MODELS 2
 #endif
@@ -220,7 +222,7 @@ typedef struct {
     uint8_t slot;        /* model of the next push */
     uint8_t stride;      /* frames that share a state */
     uint8_t ended;       /* no more phonemes will come */
-    uint8_t begun;       /* a frame was delivered since the stream was initialised or taken up again */
+    uint8_t begun;       /* a frame was delivered since the stream was initialised or restarted */
     uint8_t shown;       /* a frame was delivered since the stream was initialised: what begins fades in from `pose` */
     uint8_t selected;    /* `next_shape` is that of the phoneme that begins next */
     uint8_t entered;     /* frames that were taken, 255 for more */
@@ -258,7 +260,7 @@ typedef struct {
                 (((stride) + LABIAL_LAG) * sizeof(labial_frame_t) + (stride) * 2u * LABIAL_CHANNELS + 3u) / 4u * 4u))
 #define LABIAL_FACTORS_(stride) (LABIAL_WINDOW + (stride) + 1u)
 
-/* Frames between one that is taken and the one that is delivered in the same tick. */
+/* Ticks from taking a frame in to delivering it. */
 #define LABIAL_DELAY(stride) (LABIAL_WINDOW + LABIAL_LAG + (stride))
 
 /* The same for a given model; 0 for a null pointer. */
@@ -283,9 +285,9 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
                 labial_frame_fn callback, void *user);
 
 /*
- * Makes the next pushes phonemes of `model`, speech or laughter. Each model takes the other's phonemes for silence;
- * where the stream passes from one to the other, the earlier motion runs out while the later one fades in, over 8
- * frames. The model is trusted as that of labial_init() is.
+ * Makes the next pushes phonemes of `model`, speech or laughter. Each model treats the other's phonemes as silence;
+ * where the stream changes from one to the other, the motion fades over 8 frames. The model is trusted as that of
+ * labial_init() is.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
  * LABIAL_ERROR_RATE (frames per second and search stride are those of the stream's first model) or LABIAL_ERROR_MODELS.
@@ -297,9 +299,9 @@ int labial_use(labial_t *stream, const labial_model_t *model);
  * added exactly: after any number of pushes the frames amount to the rounded sum of the durations. A phoneme that gets
  * no frame of its own is skipped, and its time is added to the next.
  *
- * How a phoneme looks depends on what follows: its frames wait until the phoneme behind it and all that the kernels
- * reach are known, or until labial_end(). Pauses of any length delay nothing: a silence is pushed whole when it
- * begins.
+ * How a phoneme looks depends on what follows: its frames wait until the next phoneme and everything within the
+ * kernels' reach are known, or until labial_end(). Pauses of any length delay nothing: a silence is pushed whole when
+ * it begins.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
  * labial_cancel()), LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION or LABIAL_ERROR_FULL.
@@ -313,9 +315,9 @@ unsigned labial_room(const labial_t *stream);
 int labial_end(labial_t *stream);
 
 /*
- * Call once per frame period. Takes up one frame of what was pushed and delivers the one that was taken up
- * LABIAL_DELAY(stride) ticks before; every call does about the same work. When phonemes came too late, the stream lags
- * behind by the ticks that returned LABIAL_STARVED, and catches up by as many extra calls (docs/kiosk.md).
+ * Call once per frame period. Takes in one frame of what was pushed and delivers the one that was taken in
+ * LABIAL_DELAY(stride) ticks before; every call does about the same work. When phonemes come too late, the stream is
+ * late by one frame for each tick that returned LABIAL_STARVED, and catches up by as many extra calls (docs/kiosk.md).
  *
  * Returns LABIAL_OK when the callback was called, once; LABIAL_WAITING, LABIAL_STARVED or LABIAL_DONE when there was
  * nothing to deliver; LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
@@ -332,8 +334,8 @@ int labial_tick(labial_t *stream);
 int labial_cancel(labial_t *stream, uint32_t milliseconds);
 
 /*
- * Takes up a stream again that is done or was cancelled: phonemes can be pushed, frames are numbered on, and the first
- * of them are cross-faded from the frame delivered last, so that there is no jump. The current model stays.
+ * Continues a stream that is done or was cancelled: phonemes can be pushed again, frame numbers continue, and the first
+ * frames are cross-faded from the frame delivered last, so that there is no jump. The current model stays.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (before labial_init(), or while frames are still to come).
  */
@@ -343,8 +345,8 @@ int labial_restart(labial_t *stream);
 typedef struct {
     uint32_t frames;       /* pushed and not yet delivered */
     uint32_t milliseconds; /* the same as time, rounded to the nearest */
-    unsigned phonemes;     /* in the queue: pushed, and not yet taken up to their last frame */
-    unsigned delay;        /* frames between one that is taken up and the one that is delivered: LABIAL_DELAY() */
+    unsigned phonemes;     /* in the queue: pushed, with frames that are not yet taken in */
+    unsigned delay;        /* ticks from taking a frame in to delivering it: LABIAL_DELAY() */
 } labial_latency_t;
 
 /* The stream's look-ahead at this moment; all zero for a null or uninitialised stream. */

@@ -25,10 +25,11 @@ extern "C" {
 #endif
 
 /* The highest intensity. At 0 a laugh is a hum behind nearly closed lips, at the highest the mouth is wide open, and
- * jaw, lips and corners go all steps between: the generator yields soft, plain and loud grades of the phonemes,
- * between two grades both by turns, and the model knows how far each opens. Pulses get softer along a train and from
- * train to train. Half of it has the corpus's rhythm; more makes trains longer, pauses shorter and vowels longer and
- * more open, less has more pulses hummed with closed lips. */
+ * in between jaw, lips and corners change gradually: the generator yields soft, plain and loud grades of the
+ * phonemes and alternates between two grades where the loudness lies between them; the model has the opening of
+ * each. Pulses get softer along a train and from train to train. Half the highest intensity has the corpus's rhythm;
+ * a higher one makes trains longer, pauses shorter and vowels longer and more open, a lower one hums more pulses
+ * with closed lips. */
 #define LABIAL_LAUGH_FULL 256u
 
 /* The phonemes of every laughter model that the exporter writes, in the order of their numbers: twelve, then the soft
@@ -79,7 +80,7 @@ typedef struct {
 
 /*
  * Begins a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts
- * as that). Every `seed` gives another laugh. Below about half a second it is a single breath or pulse.
+ * as that). Each `seed` gives a different laugh. Below about half a second it is a single breath or pulse.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_DURATION.
  */

@@ -45,15 +45,15 @@ extern "C" {
 #define LABIAL_NO_FLOOR (-16384)         /* in `floors`: below every position */
 #define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
 
-/* Frames that a contact lasts at least: a shorter phoneme borrows the frame before it, and if it has one frame the one
- * behind it as well. One of LABIAL_CONTACT_LONG frames or more has swallowed a pause, and closes for its last
- * LABIAL_CONTACT_LAST frames only. */
+/* Frames that a contact lasts at least: a shorter phoneme borrows the frame before it and, if it has only one frame,
+ * the frame after it as well. A phoneme of LABIAL_CONTACT_LONG frames or more includes a pause, and is in contact
+ * only in its last LABIAL_CONTACT_LAST frames. */
 #define LABIAL_CONTACT_FRAMES 3
 #define LABIAL_CONTACT_LONG 15
 #define LABIAL_CONTACT_LAST 8
 
-/* Frames in which a mouth comes to rest in a pause, but for its last, which lead to what follows; a stream that begins
- * with a pause begins at rest. */
+/* Frames over which a mouth comes to rest in a pause. The last frames of a pause lead to what follows instead; a
+ * stream that begins with a pause begins at rest. */
 #define LABIAL_REST_FRAMES 16
 
 /* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */
@@ -78,7 +78,7 @@ typedef struct {
     uint16_t duration_gain; /* gain of sigma_c, milliseconds */
 } labial_component_t;
 
-/* How a codebook entry looks to the Viterbi search: a Gaussian on the static feature alone. */
+/* A codebook entry in the Viterbi search: a Gaussian on the static feature alone. */
 typedef struct {
     int16_t mean;    /* position */
     uint16_t gain;   /* gain of the standard deviation in positions */
@@ -86,8 +86,8 @@ typedef struct {
     uint8_t initial; /* cost of starting here */
 } labial_emission_t;
 
-/* What a codebook entry asks of the trajectory (equation 3): means of m, its delta and its delta-delta, per frame, and
- * an anchor that ties the frame to its target, which the published method does not have. */
+/* What a codebook entry contributes to the trajectory (equation 3): means of m, its delta and its delta-delta, per
+ * frame, and an anchor that ties the frame to its target, which the published method does not have. */
 typedef struct {
     int16_t mean[3];   /* Q4: position; positions per frame; positions per frame squared */
     uint8_t hold;      /* weight of static feature and anchor together */

@@ -17,8 +17,8 @@ extern "C" {
 
 /*
  * Sets of labels. Some labels mean different sounds in different sets: `y` is the first sound of "yes" in ARPABET and
- * the rounded vowel of German "ue" in the IPA, `th` one fricative in ARPABET and an aspirated stop in the IPA,
- * `N S T D Z V` other sounds in X-SAMPA. Whoever knows which set the labels are of should say so.
+ * the rounded vowel of German "ue" in the IPA, `th` one fricative in ARPABET and an aspirated stop in the IPA, `N S T D
+ * Z V` other sounds in X-SAMPA. A program that knows the set of its labels should name it.
  */
 typedef enum {
     LABIAL_LABELS_ARPABET = 0x20, /* also flite's, CMU Sphinx's and TIMIT's */
@@ -28,10 +28,10 @@ typedef enum {
 } labial_labels_t;
 
 /*
- * The names of one model. Labels and aliases stand one behind the other, without pointers, which would take more room
- * than they do: for each the phoneme's number, a byte of the name's length (1 .. 31) and the sets in which it means
- * this phoneme (the bits of labial_labels_t), and the name in UTF-8. A look-up reads them all, 3 KB for English, which
- * is little beside the work of one frame.
+ * The names of one model. Labels and aliases follow each other without pointers, which would take more memory than the
+ * names. Each entry has the phoneme's number, a byte with the name's length (1 .. 31) and the sets in which it means
+ * this phoneme (the bits of labial_labels_t), and the name in UTF-8. A look-up reads all entries, 3 KB for English,
+ * which is little compared with the work of one frame.
  */
 typedef struct {
     uint16_t size;             /* of `entries`, bytes */
@@ -53,7 +53,7 @@ typedef struct {
  */
 int labial_find_in(const labial_names_t *names, labial_labels_t labels, const char *name, size_t length);
 
-/* The same where nobody knows the set: LABIAL_LABELS_AUTO. */
+/* The same for labels of an unknown set: LABIAL_LABELS_AUTO. */
 int labial_find(const labial_names_t *names, const char *name, size_t length);
 
 /*

@@ -89,8 +89,8 @@ typedef struct {
 /* ---- Calls ------------------------------------------------------------------------------------------------------- */
 
 /*
- * Whether a table keeps the limits above: at least one output, weights, gain, neutral, minimum, maximum and slew within
- * their ranges, minimum <= maximum, slew >= 0, `invert` 0 or 1, `reserved` 0.
+ * Checks that a table is within the limits above: at least one output, weights, gain, neutral, minimum, maximum and
+ * slew within their ranges, minimum <= maximum, slew >= 0, `invert` 0 or 1, `reserved` 0.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_RIG.
  */
@@ -104,9 +104,9 @@ int labial_rig_check(const labial_rig_t *rig);
 int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
 
 /*
- * Moves the rig's `count` values by one frame. `values` is the caller's, one array per face. On entry it
- * contains the previous frame's values, from which outputs with a slew limit go on; on return this frame's. A program
- * that converts values keeps the converted ones elsewhere. A value beyond its output's limits counts as the limit.
+ * Moves the rig's `count` values by one frame. `values` is the caller's, one array per face. On entry it contains the
+ * previous frame's values, from which outputs with a slew limit continue; on return this frame's. A program that
+ * converts values stores the converted ones elsewhere. A value beyond its output's limits counts as the limit.
  *
  * Call it once per frame, for the slew limit counts in frames. Sums saturate nowhere within the limits of a checked
  * table; a move beyond +-2^30 counts as +-2^30, which every limit is far below.

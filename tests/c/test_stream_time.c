@@ -176,8 +176,8 @@ static void latency_is_what_was_pushed_and_not_delivered(void **state)
     fixture_close(&host);
 }
 
-/* "A phoneme that gets no frame of its own leaves no trace but its time": not as a neighbour, not in the kernels, not
- * as a boundary. The rich model sees all of these. */
+/* "A phoneme that gets no frame of its own is skipped": it is no neighbour, has no part in the kernels and is no
+ * boundary. The rich model sees all of these. */
 static void phonemes_without_time_leave_no_trace(void **state)
 {
     static fixture_phoneme_t padded[3 * 100];
