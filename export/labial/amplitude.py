@@ -1,7 +1,7 @@
 """How far the mouth moves: the trade between the smallest average error and motion as wide as a human's.
 
-What is learned by least squares is an average, and averages move less than what they were taken from: lips that follow
-them mumble. Widening the motion about its mean gives the range back; the average error grows, slowly at first.
+Least squares learns averages, and averages move less than the motions that they are averages of: lips that follow them
+mumble. Widening the motion about its mean restores the range; the average error grows, slowly at first.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Holds an exported model, run by the C library, to the limits below."""
+"""Compares an exported model, run by the C library, with the reference, within the limits below."""
 
 from __future__ import annotations
 

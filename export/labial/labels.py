@@ -1,6 +1,6 @@
 """Labels of phonemes, stripped of what does not change the mouth's shape.
 
-The C library does the same to the letter (lib/names.c): every rule here is one of characters in a row, none asks a
+The C library does exactly the same (lib/names.c): every rule here compares sequences of characters, and none needs a
 Unicode table.
 """
 

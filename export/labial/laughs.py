@@ -4,8 +4,8 @@ This is what lib/laugh.c computes, number for number, and the source of its tabl
 and the statistics are those of the synthetic corpus (labial.corpus.laughter): trains of pulses 210 ms apart, pauses
 with an inhalation between them. All arithmetic is in integers, so that both give the same laugh.
 
-Loudness is the corpus's too: the intensity, less from pulse to pulse and from train to train, asks for soft, plain or
-loud grades of the phonemes that have some. The rhythm does not depend on it.
+Loudness is the corpus's, too: the intensity, which decreases from pulse to pulse and from train to train, selects soft,
+plain or loud grades of the phonemes that have grades. The rhythm does not depend on it.
 
 At intensity 0.5 the rhythm is the corpus's. Towards 1 trains become longer, pauses shorter, vowels longer and more
 often open, and cackles more frequent; towards 0 it is the other way round and more pulses are hummed with closed lips.

@@ -1,4 +1,4 @@
-"""The trained float model: what it holds, and the .npz file it is kept in.
+"""The trained float model: its contents, and the .npz file in which it is stored.
 
 Shapes use P phonemes, N mixture components (of all phonemes), V viseme classes, Q states, L kernel taps, K knots of a
 pair and the 13 channels of :mod:`labial.faps`. Positions are FAP units, durations seconds, probabilities natural

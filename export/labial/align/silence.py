@@ -1,4 +1,4 @@
-"""Where a sound is silent, no phoneme is, but for stops: they begin in their silence."""
+"""Silent stretches of a sound contain no phoneme, except for stops: they begin in their silence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Phoneme timings as JSON: what speech services and neural synthesisers tell of the speech they make.
+"""Phoneme timings as JSON, as speech services and neural synthesisers report them.
 
 Each reader returns segments in seconds, as those of :mod:`labial.corpus.timings` do, and checks them the same way. A
 file is one JSON document, or one per line. Errors are DataErrors with the line where each line is a document of its
@@ -6,8 +6,8 @@ own, else with the number of the entry.
 
 What comes character by character, as from Piper and Kokoro, becomes phonemes: a stress mark's time goes to the vowel
 that follows, that of a length mark or diacritic to what it follows, the two halves of a diphthong or affricate are one
-phoneme, and punctuation is silence. The blank between two words takes time, too, but nobody's lips rest there: up to
-`LONGEST_BLANK` it goes to the phoneme before it.
+phoneme, and punctuation is silence. The blank between two words takes time, too, but lips do not rest there: up to
+`LONGEST_BLANK`, its time is added to the phoneme before it.
 """
 
 from __future__ import annotations

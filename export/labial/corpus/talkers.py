@@ -1,10 +1,10 @@
 """Whose mouths a corpus holds: the file ``corpus.toml`` in its folder, and several talkers on one scale.
 
-Two faces differ in what their channels rest at and how far they go, and so do two recordings of one face. What they
-share is how they move: so every recording's motion is brought to the first corpus's mean and standard deviation,
-channel by channel, both taken outside silence.
+Two faces differ in where their channels rest and how far they move, and so do two recordings of one face. So every
+recording's motion is brought to the first corpus's mean and standard deviation, channel by channel, both measured
+outside silence.
 
-``corpus.toml`` may hold, all of it optional::
+``corpus.toml`` may contain the following, all of it optional::
 
     weight = 3                          # how much a frame counts beside those of a corpus without this key
     leave_out = ["fap16", "fap17"]      # channels that are not learnt from

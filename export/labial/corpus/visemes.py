@@ -1,9 +1,9 @@
 """Visemes of speech services, and the phoneme that stands for each.
 
-A service tells fewer visemes than there are phonemes. The one that stands for a viseme is the most frequent in English
-speech of those that it covers; where two are as frequent, the one that the viseme is named after. Two visemes in a row
-that only one English phoneme has are that phoneme; and rounded lips are W before a vowel, else UW. What is lost is what
-lips do not show, and the difference between neighbouring vowels.
+A service reports fewer visemes than there are phonemes. Each viseme becomes the phoneme that is most frequent in
+English speech among those that it covers or, if two are equally frequent, the one that the viseme is named after. Two
+visemes in a row that occur together in only one English phoneme become that phoneme; rounded lips are W before a vowel,
+else UW. Differences that lips do not show are lost, and so is the difference between neighbouring vowels.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The measures: one method's motion on the test part, held against the human's, as named numbers (docs/method.md, How
+"""The measures: one method's motion on the test part, compared with the human's, as named numbers (docs/method.md, How
 it is judged)."""
 
 from __future__ import annotations

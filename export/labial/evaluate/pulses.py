@@ -1,4 +1,4 @@
-"""Pulses, which make laughter what it is: how far the mouth opens in each vowel-like phoneme."""
+"""Pulses of laughter: how far the mouth opens in each vowel-like phoneme."""
 
 from __future__ import annotations
 

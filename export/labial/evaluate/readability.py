@@ -1,27 +1,28 @@
 """Readability: how well a lip-reader who learned from people reads the words of a method's motion.
 
 The reader is Fisher's linear discriminant analysis with a shrunk covariance (scikit-learn), one for each class of words
-that stand for each other. What it sees of a word is the motion of all 13 channels from MARGIN before to MARGIN after
-it, sampled at POINTS moments that are spread evenly over that time, so that durations tell nothing, less each channel's
-mean over them, so that where a talker's lips rest tells nothing either: (13 POINTS,) features.
+that stand for each other. Its features of a word are the motion of all 13 channels from MARGIN before to MARGIN after
+it, sampled at POINTS moments that are spread evenly over that time, so that durations carry no information, less each
+channel's mean over them, so that the talker's resting position carries none either: (13 POINTS,) features.
 
 * **Known words.** Trained on human motion of the training part, it reads the test part. The words of a corpus whose
   utterances all have the same number of words, and each word one place, as in a command grammar, are in classes by
   place; otherwise all words are one class. Those that the training part holds less than LEAST times are left out.
-* **Unseen words**, where the words that are judged were held out of training: these alone are told apart. Nobody learns
-  to read a word without having seen people say it, so here the reader is trained on human motion of the test part, in
-  FOLDS parts: the tokens of each part, in every method's motion and in the human's, are read by a reader that was
-  trained on the human tokens of the other parts. All tokens of an utterance are in the same part, drawn by the seed.
+* **Unseen words**, where the words that are judged were held out of training: only these are distinguished. A reader
+  cannot read a word without having seen people say it, so here it is trained on human motion of the test part, in FOLDS
+  parts: the tokens of each part, in every method's motion and in the human's, are read by a reader that was trained on
+  the human tokens of the other parts. All tokens of an utterance are in the same part, drawn by the seed.
 
-A class counts with its share of correctly read tokens; readability is the mean of that over the classes, the larger
-ones counting no more than the small. It is not corrected for chance.
+Readability is the share of correctly read tokens in each class, averaged over the classes, all with the same weight. It
+is not corrected for chance.
 
-Synthetic motion is a mean, without what people vary from time to time, so that a reader of people finds it clearer or
-stranger than it is. *With residual* each token therefore has the residual of a token of another utterance added: what
-the reader sees of a human token that it was trained on, less the mean of all human tokens of that one's word, times
-sqrt(n / (n - 1)) for the n of them that the mean was taken over. That is the variation within words which the reader
-itself expects. Tokens are drawn by the seed, REPEATS times each, and the same ones for every method. The human's motion
-is given the same and so varies twice: it is the human without residual that methods with residual are held to.
+Synthetic motion is a mean, without the variation of people from one utterance to the next, so that a reader trained on
+people finds it clearer or stranger than it is. *With residual* each token therefore has the residual of a token of
+another utterance added: what the reader sees of a human token that it was trained on, less the mean of all human tokens
+of that one's word, times sqrt(n / (n - 1)) for the n of them that the mean was taken over. That is the variation within
+words which the reader itself expects. Tokens are drawn by the seed, REPEATS times each, and the same ones for every
+method. The human's motion gets a residual as well and so varies twice: methods with residual are compared with the
+human without residual.
 """
 
 from __future__ import annotations

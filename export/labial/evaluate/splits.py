@@ -1,4 +1,4 @@
-"""Who is trained on and who is judged (docs/method.md, How it is judged)."""
+"""Which episodes are trained on and which are judged (docs/method.md, How it is judged)."""
 
 from __future__ import annotations
 

@@ -5,11 +5,11 @@ head: what is left is the mouth's own motion. (2) The head's axes are its own: x
 the chin at rest, z at right angles to both. (3) The neutral mouth is the median over the talker's silences. (4) FAPs
 are displacements from it in 1/1024 of the neutral face's mouth-nose separation (MNS) or mouth width (MW).
 
-Two channels lean on substitutes. FAP 17, the top lip's protrusion, is 400 times the tracker's mouthPucker score, since
-the trackers' depth of the top lip has the wrong sign; where no score was kept, it is estimated from the corners'
-narrowing. FAP 16, the bottom lip's, is the tracker's depth, which is weak; from landmarks without depth it is estimated
-from FAP 52. Both estimates were fitted on the 803 utterances of GRID's talker s1: FAP 17 with a correlation of .91 and
-an RMS error of 12 (standard deviation 27), FAP 16 with .91 and 46 (106).
+Two channels are estimated. FAP 17, the top lip's protrusion, is 400 times the tracker's mouthPucker score, since the
+trackers' depth of the top lip has the wrong sign; where no score was kept, it is estimated from the corners' narrowing.
+FAP 16, the bottom lip's, is the tracker's depth, which is weak; from landmarks without depth it is estimated from FAP
+52. Both estimates were fitted on the 803 utterances of GRID's talker s1: FAP 17 with a correlation of .91 and an RMS
+error of 12 (standard deviation 27), FAP 16 with .91 and 46 (106).
 """
 
 from __future__ import annotations

@@ -1,12 +1,13 @@
 """How much later the picture of a recording is than its sound, from what lips do in its phonemes.
 
-Lips close in p, b, m and are apart in open vowels. The track of what the phonemes ask for, -1, +1 and 0 elsewhere, both
-smoothed, is compared with the lips' opening at every lag l within `FURTHEST`, by the correlation sum
+Lips close in p, b, m and are apart in open vowels. The opening that the phonemes require (-1 in p, b, m, +1 in open
+vowels, 0 elsewhere) is compared with the lips' opening, both smoothed, at every lag l within `FURTHEST`, by the
+correlation sum
 
     c(l) = sum_t expected(t) opening(t + l)
 
-whose largest value tells the lag. How far it can be trusted is told by resampling: pieces of the recordings are drawn
-with replacement, and the share of the draws whose lag is within `AGREEMENT` of the first is the confidence.
+whose largest value is at the estimated lag. Its confidence comes from resampling: pieces of the recordings are drawn
+with replacement, and the confidence is the share of the draws whose lag is within `AGREEMENT` of the first.
 """
 
 from __future__ import annotations

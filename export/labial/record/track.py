@@ -1,7 +1,7 @@
 """``labial landmarks``: MediaPipe's face landmarks of a video.
 
-MediaPipe up to 0.10.21 brings its Face Mesh in its wheel (Python 3.9 to 3.12); with the model file of its Face
-Landmarker, which it does not bring, any release tracks with that, and also scores how the lips are puckered.
+MediaPipe up to 0.10.21 contains its Face Mesh in its wheel (Python 3.9 to 3.12). With the model file of its Face
+Landmarker, which is a separate download, any release tracks with that, and also scores how the lips are puckered.
 """
 
 from __future__ import annotations

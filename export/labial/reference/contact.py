@@ -1,9 +1,9 @@
 """Contact: lips that meet in p, b, m, the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
 
-In contact a target does not fall below its floor, and equation 3 holds the frame there firmly. A phoneme shorter than
-FRAMES borrows the frame before it, and of one frame also the one behind it. One of LONG frames or more has swallowed a
-pause; it closes for its LAST frames. In a pause the mouth comes to rest, but for its last frames, which lead to what
-follows.
+In contact a target does not fall below its floor, and equation 3 ties the frame to it firmly. A phoneme shorter than
+FRAMES borrows the frame before it and, if it has only one frame, the frame after it as well. A phoneme of LONG frames
+or more includes a pause; it is in contact only in its LAST frames. In a pause the mouth comes to rest, except in the
+last frames, which lead to what follows.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""The method as published, unit by unit: each is searched as a whole, solved as a whole, and cross-faded with the next.
+"""The method as published: each unit is searched as a whole, solved as a whole, and cross-faded with the next.
 
-The run-time carries search and solution on instead. This is what it is compared with: for models of `--method paper`
-the method to the letter (docs/method.md, States to Equation 3), and with `whole` both over the whole utterance.
+The run-time continues search and solution from frame to frame instead, and is compared with this module: with models of
+`--method paper` this is exactly the published method (docs/method.md, States to Equation 3); with `whole`, search and
+solution cover the whole utterance.
 """
 
 from __future__ import annotations

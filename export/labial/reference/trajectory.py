@@ -1,8 +1,9 @@
 """States to motion: equation 3 of the paper, with anchors, as a factorisation that runs on (``lib/trajectory.c``).
 
-The matrix W' U^-1 W + A is pentadiagonal and, but for what holds the frames, static weights and anchors, its rows sum
-to zero: constants have neither delta nor delta-delta. So it is factored as L D L' by way of its row sums, and each
-frame continues those beyond it, drawn by a share of its own towards what it would be if they all equalled it.
+The matrix W' U^-1 W + A is pentadiagonal. Each of its rows sums to the hold of its frame, the weight of the static
+feature plus that of the anchor, since constants have neither delta nor delta-delta. So the matrix is factored as L D L'
+by means of its row sums. On the way back each frame continues the motion of the frames after it, drawn by a fraction of
+its own (rho) towards the position that it would have if all frames after it were equal to it.
 """
 
 from __future__ import annotations

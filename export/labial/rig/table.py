@@ -1,4 +1,5 @@
-"""A rig as the C table that ``labial/rig.h`` declares, and the float64 computation that the C library is held to."""
+"""A rig as the C table that ``labial/rig.h`` declares, and the float64 computation with which the C library is
+compared."""
 
 from __future__ import annotations
 

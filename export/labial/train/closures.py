@@ -1,8 +1,8 @@
 """Closures: how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v.
 
-A sum of learned curves cannot promise contact: an open vowel on either side pulls the lips of a /b/ apart. So the
-target in such a phoneme does not fall below a *floor*, which is what speakers do on average. And in no
-phoneme does it fall below what people hardly ever do: protrusion ends at lips at rest, which a sum does not know.
+A sum of learned curves does not guarantee contact: an open vowel on either side pulls the lips of a /b/ apart. So the
+target in such a phoneme does not fall below a *floor*, the mean of what speakers do. In no phoneme does the target fall
+below what people hardly ever do: protrusion ends at lips at rest, which a sum of curves does not respect.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Context-aware mixtures: naive Bayes over shape, duration and the neighbours' viseme classes (docs/method.md,
 Context).
 
-To each component of equation 1 come two categorical distributions, over the class of the previous and of the next
-phoneme, fitted in the same EM. Its target is the posterior density of the parameters, with conjugate priors
-that keep rare phonemes sane:
+Each component of equation 1 also has two categorical distributions, over the class of the previous and of the next
+phoneme, fitted in the same EM. It maximises the posterior density of the parameters, with conjugate priors that keep
+the estimates for rare phonemes plausible:
 
     weights       Dirichlet, WEIGHT_PRIOR counts per component
     classes       Dirichlet, CLASS_PRIOR counts per class (additive smoothing)

@@ -1,7 +1,7 @@
 """Amplitude: the gain of each channel that makes the trained model move as far as people do.
 
 The channel is widened about the middle of its range, not about its mean: protrusion rests at 0 for most of the time and
-goes far in a few phonemes, which widening about the mean takes beyond people's.
+goes far in a few phonemes, in which widening about the mean would exceed human motion.
 """
 
 from __future__ import annotations

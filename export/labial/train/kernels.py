@@ -8,18 +8,18 @@ The target of a frame is the shape of its phoneme plus one tap of the kernel of 
          + sum over taps i of kernel[phoneme(t + lag_i), i]
 
 The shares p_c come from the context-aware mixtures; shapes, slopes, pairs and kernels are then fitted jointly to the
-human motion by ridge regression, for a shape that was taken at the apex without regard to kernels says the same twice.
-Pairs are kept for what occurs often enough; all others are left to the classes and the kernels. A pair holds K knots,
-shapes at even distances from the phoneme's start to its end, between which its frames interpolate.
+human motion by ridge regression, since a shape measured at the apex already includes what the kernels add. Only pairs
+that occur often enough are kept; the classes and the kernels account for all others. A pair has K knots, shapes at even
+distances from the phoneme's start to its end, between which its frames interpolate.
 
-Where a talker's lips rest in an utterance no phoneme tells: each training utterance has an intercept in the regression,
-shrunk towards 0, which is dropped afterwards. Values count by their weight; penalties are multiplied by the largest
-weight of the channel, so that what counts more must say as much to be believed.
+The phonemes do not determine where a talker's lips rest in an utterance: each training utterance has an intercept in
+the regression, shrunk towards 0, which is dropped afterwards. Values count by their weight; penalties are multiplied by
+the largest weight of the channel, so that a larger weight does not weaken the prior.
 
 A phoneme's kernel is its viseme class's kernel plus a residual of its own, with penalties 1 : RESIDUAL_PENALTY on their
 squares. Summed over both parts that is one Gaussian prior on the phonemes' kernels, with covariance M M' + I /
-RESIDUAL_PENALTY between phonemes (M: P x V membership), and this is how it is solved: a phoneme that never occurs
-comes out with its class's kernel. Along the taps the prior is a first-order process of correlation SMOOTHNESS.
+RESIDUAL_PENALTY between phonemes (M: P x V membership), and this is how it is solved: a phoneme that never occurs gets
+its class's kernel. Along the taps the prior is a first-order process of correlation SMOOTHNESS.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Matched states (docs/method.md, Matched states): what a state of the decoded path says about human motion.
 
-The codebook's variances describe human motion inside a cell. What the run-time decodes is a state path for a target,
-which is another thing: it rests and jumps where the mouth glides. So the training set is decoded from its own targets,
-and each state's three means and variances are taken from the human frames that fell under it. The same frames say how
-far the human motion strays from the target: the inverse of that variance is the anchor. Transitions are counted on
-the decoded paths too: smooth targets take far fewer of them than people do, so that an exporter can keep few.
+The codebook's variances describe human motion inside a cell. But the run-time decodes a state path for a target, which
+rests and jumps where the mouth glides. So the training set is decoded from its own targets, and each state's three
+means and variances are estimated from the human frames that were decoded as this state. The same frames show how far
+human motion strays from the target: the inverse of that variance is the anchor. Transitions are counted on the decoded
+paths, too: smooth targets use far fewer of them than people do, so that the exporter can keep few.
 """
 
 from __future__ import annotations
