@@ -1,0 +1,121 @@
+# Python: the exporter, and library and exporter together. Included by tests/CMakeLists.txt.
+
+# Debian's Python comes without ensurepip; what takes its place is the wheel of pip that Debian packages for others.
+find_package(Python3 3.9 COMPONENTS Interpreter)
+set(have_pip FALSE)
+set(pip_wheel "")
+if(Python3_Interpreter_FOUND)
+  execute_process(COMMAND "${Python3_EXECUTABLE}" -c "import ensurepip" RESULT_VARIABLE failed ERROR_QUIET)
+  if(failed)
+    labial_debian_packages(root "${PROJECT_BINARY_DIR}/debian" python3-pip-whl)
+    file(GLOB pip_wheel "${root}/usr/share/python-wheels/pip-*.whl")
+  endif()
+  if(pip_wheel OR NOT failed)
+    set(have_pip TRUE)
+  endif()
+endif()
+if(NOT have_pip)
+  labial_left_out("The Python tests are left out, they need Python 3.9 or later with venv and pip: "
+                  "install the Debian packages python3 and python3-venv.")
+  labial_disabled_test(pytest)
+  labial_disabled_test(ruff)
+  return()
+endif()
+
+# SPTK's mlpg and lbg are oracles for the trajectory and the codebook.
+function(labial_find_sptk)
+  find_path(LABIAL_SPTK mlpg HINTS ${ARGN} PATHS /usr/libexec/sptk /usr/lib/sptk /usr/local/SPTK PATH_SUFFIXES bin)
+  mark_as_advanced(LABIAL_SPTK)
+endfunction()
+
+labial_find_sptk()
+if(NOT LABIAL_SPTK)
+  labial_debian_packages(root "${PROJECT_BINARY_DIR}/debian" sptk)
+  if(root)
+    labial_find_sptk("${root}/usr/libexec/sptk" "${root}/usr/lib/sptk")
+  endif()
+endif()
+if(NOT LABIAL_SPTK)
+  labial_left_out("The comparisons with SPTK are left out: install the Debian package sptk.")
+endif()
+
+find_program(LABIAL_CHROMIUM NAMES chromium chromium-browser google-chrome)
+mark_as_advanced(LABIAL_CHROMIUM)
+if(NOT LABIAL_CHROMIUM)
+  labial_left_out("The tests of pages in a browser are left out: install the Debian package chromium.")
+endif()
+
+option(LABIAL_TRACKING "Track a face with MediaPipe in the tests, which fetches 300 MB" "${LABIAL_REQUIRE_ALL}")
+
+# A test and not a part of the build, so that the C suites run where the packages cannot be had.
+set(environment "${PROJECT_BINARY_DIR}/python")
+set(python "${environment}/bin/python")
+add_test(NAME python_environment COMMAND "${CMAKE_COMMAND}" -D "PYTHON=${Python3_EXECUTABLE}"
+  -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt" -D "DIRECTORY=${environment}"
+  -D "PIP_WHEEL=${pip_wheel}" -P "${LABIAL_TEST_SETUP}/python_environment.cmake")
+set_tests_properties(python_environment PROPERTIES FIXTURES_SETUP python TIMEOUT 1800)
+
+add_test(NAME ruff WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+  COMMAND "${python}" -m ruff check --no-cache bench examples export packaging tests)
+set_tests_properties(ruff PROPERTIES FIXTURES_REQUIRED python)
+
+set(variables
+  "PYTHONPATH=${PROJECT_SOURCE_DIR}/export"
+  PYTHONDONTWRITEBYTECODE=1
+  OMP_NUM_THREADS=1 # the tests themselves run in parallel
+  "LABIAL_SOURCE=${PROJECT_SOURCE_DIR}"
+  "LABIAL_CC=${CMAKE_C_COMPILER}"
+  "LABIAL_CXX=${LABIAL_CXX}"
+  "LABIAL_CMAKE=${CMAKE_COMMAND}")
+if(LABIAL_SPTK)
+  list(APPEND variables "LABIAL_SPTK=${LABIAL_SPTK}")
+endif()
+if(TARGET labial-say)
+  list(APPEND variables "LABIAL_SAY=$<TARGET_FILE:labial-say>" "LABIAL_DEMO_PAGE=${LABIAL_DEMO_PAGE}"
+    "LABIAL_PROGRAMS=$<TARGET_FILE_DIR:labial-say>:$<TARGET_FILE_DIR:labial-bench>")
+endif()
+if(TARGET labial-python)
+  list(APPEND variables "LABIAL_RUNTIME=$<TARGET_FILE:labial-python>")
+endif()
+if(TARGET labial-rig-jaw)
+  list(APPEND variables "LABIAL_RIG_EXAMPLES=$<TARGET_FILE_DIR:labial-rig-jaw>")
+endif()
+foreach(synthesiser IN ITEMS flite espeak)
+  if(TARGET labial-say-${synthesiser})
+    string(TOUPPER ${synthesiser} name)
+    list(APPEND variables "LABIAL_SAY_${name}=$<TARGET_FILE:labial-say-${synthesiser}>")
+  endif()
+endforeach()
+if(LABIAL_NPM_PACKAGE)
+  list(APPEND variables "LABIAL_NPM_PACKAGE=${LABIAL_NPM_PACKAGE}")
+endif()
+# What needs a corpus that Labial does not come with is nothing that can be installed: it runs where one is named.
+set(deselected "")
+if(NOT DEFINED ENV{LABIAL_GRID})
+  set(deselected --deselect tests/python/test_folder.py::test_grid)
+endif()
+add_test(NAME pytest WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
+  COMMAND "${python}" -m pytest -p no:cacheprovider -n 2 -ra --durations=10
+    --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/python" ${deselected})
+set_tests_properties(pytest PROPERTIES FIXTURES_REQUIRED "python;npm" PROCESSORS 2 TIMEOUT 1800 ENVIRONMENT "${variables}")
+if(LABIAL_REQUIRE_ALL)
+  set_tests_properties(pytest PROPERTIES FAIL_REGULAR_EXPRESSION "[0-9]+ skipped")
+endif()
+
+# Face tracking has an environment of its own, see tracking/requirements.txt.
+if(NOT LABIAL_TRACKING)
+  message(STATUS "The tests of face tracking are left out, they fetch 300 MB: -DLABIAL_TRACKING=ON runs them.")
+elseif(Python3_VERSION VERSION_GREATER_EQUAL 3.13)
+  labial_left_out("The tests of face tracking are left out, they need Python 3.9 to 3.12.")
+  labial_disabled_test(tracking)
+else()
+  set(environment "${PROJECT_BINARY_DIR}/tracking")
+  add_test(NAME tracking_environment COMMAND "${CMAKE_COMMAND}" -D "PYTHON=${Python3_EXECUTABLE}"
+    -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/tracking/requirements.txt" -D "DIRECTORY=${environment}"
+    -D "PIP_WHEEL=${pip_wheel}" -P "${LABIAL_TEST_SETUP}/python_environment.cmake")
+  set_tests_properties(tracking_environment PROPERTIES FIXTURES_SETUP tracking TIMEOUT 1800)
+  add_test(NAME tracking WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
+    COMMAND "${environment}/bin/python" -m pytest -p no:cacheprovider
+      --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/tracking")
+  set_tests_properties(tracking PROPERTIES FIXTURES_REQUIRED tracking TIMEOUT 600 ENVIRONMENT "${variables}")
+endif()

@@ -1,0 +1,88 @@
+# What the library is made of: its symbols, what must not compile, headers and C++11. Included by tests/CMakeLists.txt.
+
+if(CMAKE_EXECUTABLE_FORMAT STREQUAL "ELF" AND CMAKE_NM)
+  foreach(library IN ITEMS labial ${LABIAL_BUNDLED_MODELS})
+    if(library STREQUAL "labial")
+      set(target labial)
+      set(names "labial_[a-z0-9_]+")
+    else()
+      set(target labial_${library})
+      set(names "${library}(_names)?")
+    endif()
+    add_test(NAME symbols_${library} COMMAND "${CMAKE_COMMAND}" -D "NM=${CMAKE_NM}"
+      -D "LIBRARY=$<TARGET_FILE:${target}>" -D "NAMES=${names}" -P "${LABIAL_TEST_SETUP}/check_symbols.cmake")
+  endforeach()
+else()
+  labial_left_out("The check of the library's symbols is left out, it needs nm and the ELF format.")
+  labial_disabled_test(symbols)
+endif()
+
+# What the library relies on and cannot have: it must not compile, and the compiler must say why.
+function(labial_refused name compiler file sentence)
+  add_test(NAME refuses_${name} COMMAND "${CMAKE_COMMAND}" -D "COMPILER=${compiler}"
+    -D "OPTIONS=-std=c99;-I${PROJECT_SOURCE_DIR}/include;-I${PROJECT_SOURCE_DIR}/lib;${ARGN}"
+    -D "FILE=${PROJECT_SOURCE_DIR}/lib/${file}" -D "REASON=${sentence}" -P "${LABIAL_TEST_SETUP}/check_refused.cmake")
+endfunction()
+
+# labial_refused_limit(<limit> <least> <most> <other options>...): neither what is beyond the limits, nor an expression
+# that another operator would take apart, nor an unsigned number, nor none.
+function(labial_refused_limit limit least most)
+  math(EXPR below "${least} - 1")
+  math(EXPR above "${most} + 1")
+  math(EXPR part "${most} - 1")
+  foreach(value IN ITEMS "${below}" "${above}" "${part}+1" "-${most}" "${most}u" "${most}.5" "")
+    string(MAKE_C_IDENTIFIER "${limit}_${value}" name)
+    string(TOLOWER "${name}" name)
+    set(sentence "${limit} must be a number from ${least} to ${most}")
+    if(value MATCHES "[.]" OR value STREQUAL "") # the preprocessor has a sentence of its own
+      set(sentence "${limit}")
+    endif()
+    labial_refused(${name} "${CMAKE_C_COMPILER}" stream.c "${sentence}" "-D${limit}=${value}" ${ARGN})
+  endforeach()
+endfunction()
+
+labial_refused_limit(LABIAL_WINDOW 1 48)
+labial_refused_limit(LABIAL_LAG 0 40)
+labial_refused_limit(LABIAL_REACH 0 60 -DLABIAL_QUEUE=255)
+labial_refused_limit(LABIAL_QUEUE 2 255 -DLABIAL_REACH=0)
+labial_refused_limit(LABIAL_MODELS 1 255)
+labial_refused(window_and_lag "${CMAKE_C_COMPILER}" stream.c
+  "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together"
+  -DLABIAL_LAG=40 -DLABIAL_WINDOW=16)
+labial_refused(short_queue "${CMAKE_C_COMPILER}" stream.c "LABIAL_QUEUE must be LABIAL_REACH . 2 or more"
+  -DLABIAL_REACH=20 -DLABIAL_QUEUE=21)
+
+find_program(LABIAL_AVR_GCC avr-gcc)
+mark_as_advanced(LABIAL_AVR_GCC)
+if(LABIAL_AVR_GCC)
+  foreach(source IN LISTS library_sources)
+    get_filename_component(name "${source}" NAME)
+    labial_refused(int_of_16_bits_${name} "${LABIAL_AVR_GCC}" ${name} "Labial needs an int of 32 bits" -mmcu=atmega2560)
+  endforeach()
+else()
+  labial_left_out("The check that int of 16 bits is refused is left out, it needs avr-gcc: "
+                  "install the Debian package gcc-avr.")
+  labial_disabled_test(refuses_int_of_16_bits)
+endif()
+
+file(GLOB public_headers CONFIGURE_DEPENDS
+  "${PROJECT_SOURCE_DIR}/include/labial/*.h" "${PROJECT_SOURCE_DIR}/lib/models/*.h")
+file(GLOB private_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/lib/*.h")
+set(include_paths "-I${PROJECT_SOURCE_DIR}/include" "-I${PROJECT_SOURCE_DIR}/lib")
+
+function(labial_source_check name compiler language options)
+  add_test(NAME ${name} COMMAND "${CMAKE_COMMAND}" -D "COMPILER=${compiler}" -D LANGUAGE=${language}
+    -D "OPTIONS=${options};${LABIAL_WARNINGS};${include_paths}" -D "FILES=${ARGN}"
+    -P "${LABIAL_TEST_SETUP}/check_sources.cmake")
+endfunction()
+
+labial_source_check(headers_c99 "${CMAKE_C_COMPILER}" c -std=c99 ${public_headers} ${private_headers})
+if(LABIAL_CXX)
+  labial_source_check(headers_cxx11 "${LABIAL_CXX}" c++ -std=c++11 ${public_headers})
+  labial_source_check(library_cxx11 "${LABIAL_CXX}" c++ -std=c++11 ${library_sources})
+else()
+  labial_left_out("The check that Labial compiles as C++11 is left out, it needs a C++ compiler: "
+                  "install the Debian package g++.")
+  labial_disabled_test(headers_cxx11)
+  labial_disabled_test(library_cxx11)
+endif()
