@@ -5,14 +5,18 @@ from __future__ import annotations
 
 import argparse
 import functools
+import io
+import math
 import os
 import sys
+import traceback
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Callable, List, Optional
+from typing import TYPE_CHECKING, Callable, List, NoReturn, Optional
 
 from labial import __version__
 from labial.errors import LabialError, needs
+from labial.grammar import is_number, is_whole
 
 #: Predecessors that are kept for each state by default.
 PREDECESSORS = 4
@@ -21,16 +25,39 @@ if TYPE_CHECKING:
     from labial.model import Model
 
 
-def _positive(text: str) -> int:
-    value = int(text) if text.isdecimal() and len(text) < 10 else 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+class _Parser(argparse.ArgumentParser):
+    """Says in one line what is wrong with the arguments."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {_one_line(message)}\n")
+
+
+def _one_line(text: str) -> str:
+    """`text` as one line that shows: of control characters and of bytes of a name that are no UTF-8 the escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def _whole(low: int, high: int, text: str) -> int:
+    value = int(text) if is_whole(text) else -1
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number within {low} .. {high}")
     return value
+
+
+def _number(text: str) -> float:
+    if not is_number(text) or math.isinf(float(text)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return float(text)
+
+
+#: Counts; more of nothing here is of use. Seeds, as NumPy and scikit-learn take them.
+_positive = functools.partial(_whole, 1, 1_000_000)
+_seed = functools.partial(_whole, 0, 2**32 - 1)
 
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    top = argparse.ArgumentParser(
+    top = _Parser(
         prog="labial", description="Trains lip-motion models and exports them for the C library."
     )
     top.add_argument("--version", action="version", version=f"labial {__version__}")
@@ -45,11 +72,11 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument("--fps", type=_positive, default=50, help="frames per second (50)")
     train.add_argument("--codebook", type=_positive, default=50, help="states per channel (50)")
     train.add_argument("--components", type=_positive, default=5, help="mixture components per phoneme (5)")
-    train.add_argument("--look-ahead", type=int, metavar="MS", help="--method labial: how far the kernels reach into "
-                       "what follows, 0 .. 360 ms (120); less is less latency")
+    train.add_argument("--look-ahead", type=functools.partial(_whole, 0, 360), metavar="MS", help="--method labial: "
+                       "how far the kernels reach into what follows, 0 .. 360 ms (120); less is less latency")
     train.add_argument("--search-stride", type=_positive, metavar="FRAMES", help="--method labial: frames that "
                        "share a state of the decoded path (3); 1 decodes every frame, as --method paper always does")
-    train.add_argument("--seed", type=int, default=0)
+    train.add_argument("--seed", type=_seed, default=0)
     train.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, help="processes; the result is the same")
     _add_engine(train)
     train.add_argument("--attribution", default="", help="what whoever passes the model on must say; kept in the model")
@@ -127,7 +154,7 @@ def parser() -> argparse.ArgumentParser:
     evaluate.add_argument("-o", "--output", required=True, metavar="REPORT", help="folder for tables and plots")
     evaluate.add_argument("--kind", choices=("speech", "laughter"), default="speech")
     evaluate.add_argument("--splits", type=_positive, default=20, help="random 80/20 splits by episode (20)")
-    evaluate.add_argument("--seed", type=int, default=0)
+    evaluate.add_argument("--seed", type=_seed, default=0)
     evaluate.add_argument("--methods", default="all", metavar="A,B,...", help="methods to compare (all)")
     evaluate.add_argument("--fps", type=_positive, default=50, help="frames per second (50)")
     evaluate.add_argument("--jobs", type=_positive, default=2, help="splits at a time (2); the result is the same")
@@ -142,7 +169,7 @@ def parser() -> argparse.ArgumentParser:
     laughter = commands.add_parser("laughter-corpus", help="generate the synthetic laughter corpus")
     laughter.add_argument("output", metavar="OUT", help="folder, new or empty")
     laughter.add_argument("--episodes", type=_positive, default=200)
-    laughter.add_argument("--seed", type=int, default=0)
+    laughter.add_argument("--seed", type=_seed, default=0)
     laughter.set_defaults(run=_laughter_corpus)
 
     rig = commands.add_parser("rig", help="write a description of servos or blendshapes as a C table")
@@ -188,12 +215,12 @@ def parser() -> argparse.ArgumentParser:
                         "folders of them, each with its phoneme timings (NAME.lab, .TextGrid, ...) beside it")
     record.add_argument("-o", "--output", required=True, metavar="CORPUS", help="folder, new or empty")
     record.add_argument("--kind", choices=("speech", "laughter"), default="speech")
-    record.add_argument("--fps", type=float, metavar="RATE", help="frames per second, where the files do not tell")
+    record.add_argument("--fps", type=_number, metavar="RATE", help="frames per second, where the files do not tell")
     record.add_argument("--size", metavar="WIDTHxHEIGHT", help="of the video in pixels, where coordinates are shares "
                         "of it and the files do not tell")
-    record.add_argument("--offset", type=float, default=0.0, metavar="MS", help="how much later than its sound the "
+    record.add_argument("--offset", type=_number, default=0.0, metavar="MS", help="how much later than its sound the "
                         "picture is, negative where it is earlier (0); an estimate is printed")
-    record.add_argument("--cutoff", type=float, default=12.0, metavar="HZ",
+    record.add_argument("--cutoff", type=_number, default=12.0, metavar="HZ",
                         help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
     record.set_defaults(run=_record)
     return top
@@ -225,7 +252,7 @@ def _add_said(command: argparse.ArgumentParser) -> None:
 
 
 def _add_export_options(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--amplitude", type=float, default=1.0, metavar="FACTOR",
+    command.add_argument("--amplitude", type=_number, default=1.0, metavar="FACTOR",
                          help="widen (over 1) or calm (below 1) the motion about its mean; 1 is the least error (1)")
     command.add_argument("--predecessors", type=_positive, default=PREDECESSORS,
                          help=f"transitions kept into each state ({PREDECESSORS})")
@@ -453,22 +480,44 @@ def _record(options: argparse.Namespace) -> int:
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
+    """Runs the command; returns its exit status: 0; 1 when something given cannot be used; 3 for a defect of ours."""
     options = parser().parse_args(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="surrogateescape")  # names of files are written as they are
     with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_, **__: print(f"labial: warning: {message}", file=sys.stderr)
+        warnings.showwarning = lambda message, *_, **__: _complain(f"warning: {message}")
         try:
-            with needs(f"labial {options.command}", "tools"):
-                return int(options.run(options))
+            return int(options.run(options))
         except LabialError as error:
-            print(f"labial: {error}", file=sys.stderr)
-            return 1
+            _complain(str(error))
         except BrokenPipeError:  # whoever reads the output has seen enough
             sys.stderr.close()
-            return 1
         except OSError as error:
-            print(f"labial: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
-            return 1
+            _complain(f"{_name(error)}: {error.strerror or error}")
+        except MemoryError:
+            _complain("there is not enough memory for this")
+        except KeyboardInterrupt:
+            _complain("interrupted")
+            return 130
+        except Exception as error:
+            _complain(_defect(error))
+            return 3
+    return 1
+
+
+def _complain(text: str) -> None:
+    print(f"labial: {_one_line(text)}", file=sys.stderr)
+
+
+def _name(error: OSError) -> str:
+    return os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes, os.PathLike)) else "the output"
+
+
+def _defect(error: Exception) -> str:
+    """What to say of an error that is none of the user's."""
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    return (f"this is a defect of labial, please report it: {type(error).__name__}: {error} "
+            f"({Path(place.filename).name}, line {place.lineno})")
 
 
 if __name__ == "__main__":

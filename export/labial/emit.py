@@ -71,13 +71,21 @@ def _table(table: Table) -> str:
     return f"static const {table.kind} {table.name}[{len(values)}] = {{\n{body}\n}};\n"
 
 
+def block_comment(text: str, width: int = 114) -> str:
+    """`text` as a comment of C, in lines of at most `width` columns, that nothing in it ends or begins anew; characters
+    that do not show are question marks."""
+    shown = "".join(c if c.isprintable() else " " if c.isspace() else "?" for c in text)
+    apart = shown.replace("*/", "* /").replace("/*", "/ *")
+    body = textwrap.fill(apart, width=width, initial_indent=" * ", subsequent_indent=" * ")
+    return f"/*\n{body}\n */\n"
+
+
 def _comment(model: ExportedModel, what: str) -> str:
     text = (f"{what} {model.kind} model, method {model.method}, {model.fps} frames per second. "
             f"Written by labial export {__version__}; do not edit.")
     if model.attribution:
         text += f" {model.attribution}"
-    body = textwrap.fill(text.replace("*/", "* /"), width=114, initial_indent=" * ", subsequent_indent=" * ")
-    return f"/*\n{body}\n */\n"
+    return block_comment(text)
 
 
 def _reach_check(model: ExportedModel) -> str:

@@ -13,8 +13,21 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
+from labial.errors import ModelError
 from labial.faps import CHANNELS
 from labial.quantise import FORMAT, ExportedModel
+
+
+def check_fits(name: str, code: str, values: np.ndarray) -> None:
+    """Raises ModelError, which calls the table `name`, unless all of `values` (R,) are whole numbers that the C type
+    holds which :mod:`struct` calls `code`."""
+    bits = 8 * struct.calcsize("<" + code)
+    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if code.islower() else (0, (1 << bits) - 1)
+    wrong = ~((values >= low) & (values <= high) & (values == np.rint(values)))
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ModelError(f"the table {name} cannot be written: in row {row} a value is {values[row]:g}, not a whole "
+                         f"number within {low} .. {high}")
 
 
 @dataclass(frozen=True)
@@ -32,6 +45,12 @@ class Table:
     def size(self) -> int:
         """Bytes."""
         return struct.calcsize("<" + self.layout) * len(self.rows)
+
+    def __post_init__(self) -> None:
+        """Raises ModelError, which names the table and the row, for a value that its C type does not hold."""
+        rows = np.reshape(self.rows, (len(self.rows), len(self.layout)))
+        for column, code in enumerate(self.layout):
+            check_fits(self.name, code, rows[:, column])
 
     def packed(self) -> bytes:
         """The rows as little-endian bytes."""
@@ -77,15 +96,22 @@ def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
     ]
 
 
+#: The layout of what :func:`channel_scalars` gives.
+CHANNEL_SCALARS = "hHHHHB"
+
+
 def channel_scalars(model: ExportedModel, channel: int) -> List[int]:
     """What ``labial_channel_t`` has before its pointers: centre, scales of shapes, slopes, kernels, pairs; firmness."""
-    return [int(values[channel]) for values in (
+    values = [int(values[channel]) for values in (
         model.centre, model.shape_scale, model.slope_scale, model.kernel_scale, model.pair_scale, model.firm)]
+    for code, value in zip(CHANNEL_SCALARS, values):
+        check_fits(f"channels[{channel}]", code, np.array([value]))
+    return values
 
 
 def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
     """Name, value and layout of what ``labial_model_t`` and the binary form begin with."""
-    return [
+    values = [
         ("format", FORMAT, "H"),
         ("frames_per_second", model.fps, "H"),
         ("component_count", len(model.cost), "H"),
@@ -100,6 +126,9 @@ def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
         ("kernel_stride", model.kernel_stride, "B"),
         ("kernel_behind", model.kernel_behind, "B"),
     ]
+    for name, value, code in values:
+        check_fits(name, code, np.array([value]))
+    return values
 
 
 def table_bytes(model: ExportedModel) -> Dict[str, int]:
@@ -130,5 +159,5 @@ def blob(model: ExportedModel) -> bytes:
     head = struct.pack(f"<{''.join(codes)}BBH", *values, optional, len(model.floors) - 1, len(model.pair_keys))
     body = head + _packed(shared_tables(model))
     for k in range(CHANNELS):
-        body += struct.pack("<hHHHHBB", *channel_scalars(model, k), 0) + _packed(channel_tables(model, k))
+        body += struct.pack(f"<{CHANNEL_SCALARS}B", *channel_scalars(model, k), 0) + _packed(channel_tables(model, k))
     return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body

@@ -12,10 +12,11 @@ import json
 import os
 import zipfile
 from dataclasses import dataclass, field, fields
-from typing import Dict, Tuple, Union
+from typing import Any, Dict, Tuple, Union
 
 import numpy as np
 
+from labial.arrays import ArrayError, array, read_zip
 from labial.errors import ModelError
 from labial.faps import CHANNELS
 
@@ -32,6 +33,25 @@ _TEXT = (
     "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
     "attribution", "training",
 )  # fmt: skip
+
+
+#: Bytes that a file has at most, packed or not; the bundled ones have half a million.
+LARGEST = 64_000_000
+
+_POSITION, _LOGARITHM, _PRECISION = (-1e5, 1e5), (-1e5, 1e-9), (1e-15, 1e15)
+#: The least and the largest value of each array; beyond them the library's tables hold nothing, however scaled.
+_BOUNDS: Dict[str, Tuple[float, float]] = {
+    "phoneme_class": (0, 255), "boundary": (0, 1), "component_count": (1, 255), "log_weight": _LOGARITHM,
+    "duration_mean": (0, 3600), "duration_variance": (1e-15, 1e7), "shape": _POSITION, "slope": (-1e7, 1e7),
+    "log_previous": _LOGARITHM, "log_next": _LOGARITHM, "kernel": _POSITION, "kernel_lag": (-1000, 1000),
+    "pair_key": (0, 65535), "pair_shape": _POSITION, "floor": _POSITION, "contact": (0, 1), "firm": (0, 1e15),
+    "decode_mean": _POSITION, "decode_variance": _PRECISION, "state_mean": _POSITION, "state_precision": _PRECISION,
+    "state_anchor": (0, 1e15), "log_transition": _LOGARITHM, "log_initial": _LOGARITHM,
+}  # fmt: skip
+#: Arrays of whole numbers; those that may hold -inf; and those from which others' sizes are taken, with their axes.
+_WHOLE = ("phoneme_class", "boundary", "component_count", "kernel_lag", "pair_key", "contact")
+_MAY_BE_NONE = ("floor", "log_transition", "log_initial")
+_AXES = {"component_count": 1, "kernel_lag": 1, "pair_key": 2, "pair_shape": 3, "log_previous": 2, "log_initial": 2}
 
 
 @dataclass(frozen=True)
@@ -91,24 +111,52 @@ def _expect(condition: bool, message: str) -> None:
 
 
 def check(model: Model) -> None:
-    """Raises ModelError unless every array has its shape, is finite and means what its name says."""
+    """Raises ModelError unless every array has its shape, is finite, within bounds and means what its name says."""
     p, v = len(model.phonemes), len(model.classes)
-    n = int(np.sum(model.component_count))
-    q = np.shape(model.log_initial)[-1]
-    taps = len(model.kernel_lag)
-    pairs = len(model.pair_key)
-    knots = np.shape(model.pair_shape)[1] if np.ndim(model.pair_shape) == 3 else 0
-    context = np.shape(model.log_previous)[-1]
-    _expect(model.kind in KINDS, f"kind is {model.kind!r}, not one of {', '.join(KINDS)}")
-    _expect(model.method in METHODS, f"method is {model.method!r}, not one of {', '.join(METHODS)}")
+    _expect(model.kind in KINDS, f"kind is {model.kind!r:.40}, not one of {', '.join(KINDS)}")
+    _expect(model.method in METHODS, f"method is {model.method!r:.40}, not one of {', '.join(METHODS)}")
     _expect(isinstance(model.fps, int) and 1 <= model.fps <= 250, "fps is not a whole number from 1 to 250")
     _expect(isinstance(model.search_stride, int) and 1 <= model.search_stride <= 8,
             "search_stride is not a whole number from 1 to 8")
     _expect(p > 0 and len(set(model.phonemes)) == p, "phoneme labels are missing or not unique")
-    _expect(model.silence in model.phonemes, f"the silence phoneme {model.silence!r} is not a phoneme")
+    _expect(all(label and label.isprintable() for label in (*model.phonemes, *model.classes)), "a label is no text")
+    _expect(model.silence in model.phonemes, f"the silence phoneme {model.silence!r:.40} is not a phoneme")
+    for name, shape in _shapes(model).items():
+        value = np.asarray(getattr(model, name))
+        _expect(value.shape == shape, f"{name} has shape {value.shape}, not {shape}")
+        _check_values(name, value)
+    key = np.asarray(model.pair_key)
+    _expect(bool(((key >= 0) & (key < [p, 2, p])).all()), "a pair names a phoneme or a side that does not exist")
+    _expect(len(np.unique(key, axis=0)) == len(key), "a pair is there twice")
+    _expect(((model.phoneme_class >= 0) & (model.phoneme_class < v)).all(), "a phoneme's viseme class does not exist")
+    _expect(not (np.asarray(model.contact, dtype=bool) & np.isneginf(model.floor)).any(), "contact without a floor")
+    _expect((np.diff(model.decode_mean, axis=1) >= 0).all(), "decode_mean is not ascending, states are not in order")
+    _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
+    _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
+    lag = np.asarray(model.kernel_lag)
+    _expect(len(lag) < 2 or (len(np.unique(np.diff(lag))) == 1 and lag[1] > lag[0]),
+            "kernel lags are not evenly spaced and increasing")
+    for alias, label in model.aliases.items():
+        _expect(label in model.phonemes, f"alias {alias!r:.40} names the unknown phoneme {label!r:.40}")
+    for missing, label in model.substitutes.items():
+        known = missing in model.phonemes and label in model.phonemes
+        _expect(known, f"substitute {missing!r:.40} -> {label!r:.40} is not known")
+
+
+def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
+    """The shape that each array must have; those of what the sizes are taken from are checked first."""
+    for name, axes in _AXES.items():
+        shape = np.shape(getattr(model, name))
+        _expect(len(shape) == axes, f"{name} has shape {shape}, not {axes} axes")
+    p, v = len(model.phonemes), len(model.classes)
+    _check_values("component_count", np.asarray(model.component_count))
+    n, q = int(np.sum(model.component_count)), np.shape(model.log_initial)[-1]
+    taps, pairs, knots = len(model.kernel_lag), len(model.pair_key), np.shape(model.pair_shape)[1]
+    context = np.shape(model.log_previous)[-1]
+    _expect(q > 0, "there are no states")
     _expect(context in (0, v), f"context tables have {context} classes, the model {v}")
     _expect(knots in (1, 2), f"pair_shape has shape {np.shape(model.pair_shape)}, not one or two knots")
-    shapes = {
+    return {
         "phoneme_class": (p,),
         "boundary": (p,),
         "component_count": (p,),
@@ -134,36 +182,19 @@ def check(model: Model) -> None:
         "log_transition": (CHANNELS, q, q),
         "log_initial": (CHANNELS, q),
     }
-    for name, shape in shapes.items():
-        value = getattr(model, name)
-        _expect(np.shape(value) == shape, f"{name} has shape {np.shape(value)}, not {shape}")
-        if name == "floor":
-            _expect(not np.isnan(value).any() and (value < np.inf).all(), "floor holds NaN or infinity")
-        elif name in ("log_transition", "log_initial"):
-            _expect(not np.isnan(value).any() and (value < 1e-9).all(), f"{name} holds NaN or values above 0")
-        else:
-            _expect(bool(np.isfinite(value).all()), f"{name} holds NaN or infinities")
-    key = np.asarray(model.pair_key)
-    _expect(bool(((key >= 0) & (key < [p, 2, p])).all()), "a pair names a phoneme or a side that does not exist")
-    _expect(len(np.unique(key, axis=0)) == pairs, "a pair is there twice")
-    _expect((model.component_count >= 1).all(), "a phoneme has no mixture component")
-    _expect(((model.phoneme_class >= 0) & (model.phoneme_class < v)).all(), "a phoneme's viseme class does not exist")
-    for name in ("duration_variance", "decode_variance", "state_precision"):
-        _expect((getattr(model, name) > 0).all(), f"{name} must be positive")
-    _expect((model.state_anchor >= 0).all(), "state_anchor must not be negative")
-    _expect((model.firm >= 0).all(), "firm must not be negative")
-    _expect(not (np.asarray(model.contact, dtype=bool) & np.isneginf(model.floor)).any(), "contact without a floor")
-    _expect((np.diff(model.decode_mean, axis=1) >= 0).all(), "decode_mean is not ascending, states are not in order")
-    _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
-    _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
-    if taps > 1:
-        _expect(len(np.unique(np.diff(model.kernel_lag))) == 1 and model.kernel_lag[1] > model.kernel_lag[0],
-                "kernel lags are not evenly spaced and increasing")
-    for alias, label in model.aliases.items():
-        _expect(label in model.phonemes, f"alias {alias!r} names the unknown phoneme {label!r}")
-    for missing, label in model.substitutes.items():
-        known = missing in model.phonemes and label in model.phonemes
-        _expect(known, f"substitute {missing!r} -> {label!r} is not known")
+
+
+def _check_values(name: str, value: np.ndarray) -> None:
+    """Raises ModelError, which names the array and the first index, for a value beyond the bounds of `name`."""
+    kinds = "biu" if name in _WHOLE else "biuf"
+    _expect(value.dtype.kind in kinds, f"{name} has the type {value.dtype}")
+    low, high = _BOUNDS[name]
+    wrong = ~((value >= low) & (value <= high))
+    if name in _MAY_BE_NONE:
+        wrong &= ~np.isneginf(value)
+    if wrong.any():
+        at = tuple(int(index) for index in np.unravel_index(int(np.argmax(wrong)), value.shape))
+        raise ModelError(f"{name}[{', '.join(map(str, at))}] is {float(value[at]):g}, not within {low:g} .. {high:g}")
 
 
 def save(model: Model, path: Union[str, os.PathLike]) -> None:
@@ -187,21 +218,46 @@ def save(model: Model, path: Union[str, os.PathLike]) -> None:
 def load(path: Union[str, os.PathLike]) -> Model:
     """Reads and checks a model. Raises ModelError, which names the file, for anything that is not one."""
     try:
-        with zipfile.ZipFile(path) as archive:
-            text = json.loads(archive.read("model.json"))
-            version = text.pop("format", None)
-            _expect(version == FORMAT, f"format {version}, but this version of labial reads format {FORMAT}")
-            values = {name: text[name] for name in _TEXT}
-            for item in fields(Model):
-                if item.name not in _TEXT:
-                    with archive.open(item.name + ".npy") as member:
-                        values[item.name] = np.lib.format.read_array(member, allow_pickle=False)
-        values["phonemes"] = tuple(values["phonemes"])
-        values["classes"] = tuple(values["classes"])
+        members = read_zip(path, None, LARGEST)
+        for name in ("model.json", *(f"{item.name}.npy" for item in fields(Model) if item.name not in _TEXT)):
+            _expect(name in members, f"not a labial model: it holds no {name}")
+        values = _texts(members["model.json"])
+        for item in fields(Model):
+            if item.name not in _TEXT:
+                values[item.name] = array(item.name, members[item.name + ".npy"])
         return Model(**values)
-    except FileNotFoundError:
-        raise ModelError(f"{os.fspath(path)}: no such file") from None
+    except OSError as error:
+        raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
+    except ArrayError as error:
+        raise ModelError(f"{os.fspath(path)}: not a labial model: {error}") from None
     except ModelError as error:
         raise ModelError(f"{os.fspath(path)}: {error}") from None
-    except (OSError, KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
-        raise ModelError(f"{os.fspath(path)}: not a labial model ({error})") from None
+
+
+def _texts(data: bytes) -> Dict[str, Any]:
+    """What model.json holds, of the types that a model has."""
+    try:
+        text = json.loads(data.decode("utf-8"))
+        json.dumps(text, ensure_ascii=False).encode("utf-8")  # half a pair of surrogates is no text
+    except (ValueError, RecursionError) as error:
+        problem = "nested too deeply" if isinstance(error, RecursionError) else str(error)
+        raise ModelError(f"model.json: not JSON ({problem[:80]})") from None
+    _expect(isinstance(text, dict), "model.json: not an object")
+    _expect(text.get("format") == FORMAT,
+            f"format {text.get('format')!r:.40}, but this version of labial reads format {FORMAT}")
+    for name in _TEXT:
+        _expect(name in text, f"model.json: no {name}")
+    for name in ("kind", "method", "silence", "attribution"):
+        _expect(isinstance(text[name], str), f"model.json: {name} is not text")
+    for name in ("phonemes", "classes"):
+        _expect(isinstance(text[name], list) and all(isinstance(label, str) for label in text[name]),
+                f"model.json: {name} is not a list of texts")
+    for name in ("fps", "search_stride"):
+        _expect(type(text[name]) is int, f"model.json: {name} is not a whole number")
+    _expect(isinstance(text["soft"], bool), "model.json: soft is neither true nor false")
+    for name in ("aliases", "substitutes"):
+        _expect(isinstance(text[name], dict) and all(isinstance(label, str) for label in text[name].values()),
+                f"model.json: {name} is not an object of texts")
+    _expect(isinstance(text["training"], dict), "model.json: training is not an object")
+    values = {name: text[name] for name in _TEXT}
+    return {**values, "phonemes": tuple(text["phonemes"]), "classes": tuple(text["classes"])}

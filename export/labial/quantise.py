@@ -110,11 +110,11 @@ def quantise(model: Model, name: str, *, predecessors: int = 4) -> ExportedModel
     first, kept = _shared_components(model)
     centre = _centres(model)
     lags = np.asarray(model.kernel_lag)
-    shapes, shape_scale = _steps(model.shape - centre / POSITION_SCALE, 32767, "shapes")
+    shapes, shape_scale = _steps(model.shape - centre / POSITION_SCALE, 32767, "shape")
     deviation = np.sqrt(np.maximum(model.duration_variance, _DURATION_DEVIATION_MIN**2))
-    slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slopes")
-    kernels, kernel_scale = _steps(model.kernel, 65535, "kernels")
-    pairs, pair_scale = _steps(model.pair_shape, 65535, "pairs")
+    slopes, slope_scale = _steps(model.slope * deviation[:, None] * np.sqrt(2.0), 16383, "slope")
+    kernels, kernel_scale = _steps(model.kernel, 65535, "kernel")
+    pairs, pair_scale = _steps(model.pair_shape, 65535, "pair_shape")
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
     floor, floors, contacts = _floors(model, centre)
@@ -206,11 +206,13 @@ def _centres(model: Model) -> np.ndarray:
 
 def _positions(values: np.ndarray, what: str) -> np.ndarray:
     """Values in FAP units as positions."""
-    positions = np.rint(values * POSITION_SCALE).astype(np.int64)
-    if np.abs(positions).max() > POSITION_MAX:
-        raise ModelError(f"{what} lies {np.abs(values).max():.0f} FAP units from the channel's centre, "
+    positions = np.rint(values * POSITION_SCALE)
+    far = np.abs(positions)
+    if not far.max() <= POSITION_MAX:
+        at = ", ".join(map(str, np.unravel_index(int(far.argmax()), far.shape)))
+        raise ModelError(f"{what}[{at}] lies {np.abs(values).max():.0f} FAP units from the channel's centre, "
                          f"the library's limit is {POSITION_MAX // POSITION_SCALE}")
-    return positions
+    return positions.astype(np.int64)
 
 
 def _steps(values: np.ndarray, largest: int, what: str) -> Tuple[np.ndarray, np.ndarray]:
@@ -218,9 +220,11 @@ def _steps(values: np.ndarray, largest: int, what: str) -> Tuple[np.ndarray, np.
     if not values.size:
         return np.zeros(values.shape, dtype=np.int64), np.zeros(CHANNELS, dtype=np.int64)
     extent = np.abs(values).reshape(-1, CHANNELS).max(axis=0)
-    scale = np.ceil(extent * POSITION_SCALE * 256.0 / 127.0).astype(np.int64)
-    if scale.max() > largest:
-        raise ModelError(f"{what} reach {extent.max():.0f} FAP units, which is more than the tables hold")
+    scale = np.ceil(extent * POSITION_SCALE * 256.0 / 127.0)
+    if not scale.max() <= largest:
+        at = ", ".join(map(str, np.unravel_index(int(np.abs(values).argmax()), values.shape)))
+        raise ModelError(f"{what}[{at}] reaches {extent.max():.0f} FAP units, which is more than the tables hold")
+    scale = scale.astype(np.int64)
     steps = np.rint(values * POSITION_SCALE * 256.0 / np.maximum(scale, 1)).astype(np.int64)
     return np.clip(steps, -127, 127), scale
 

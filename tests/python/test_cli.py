@@ -55,7 +55,7 @@ def test_check_compares_with_both_references(given: Path, capsys: pytest.Capture
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["synth", "missing.npz", "phones.lab"], "missing.npz: no such file"),
+        (["synth", "missing.npz", "phones.lab"], "missing.npz: No such file"),
         (["synth", "phones.lab", "phones.lab"], "phones.lab: not a labial model"),
         (["synth", "model.npz", "missing.lab"], "missing.lab"),
         (["synth", "model.npz", "overlap.lab"], "overlap.lab:2:"),

@@ -60,7 +60,7 @@ def test_refuses_a_state_that_cannot_be_reached() -> None:
 def test_names_the_file_that_is_no_model(tmp_path: Path) -> None:
     """Missing, truncated and foreign files end in a message with their name, not in a traceback."""
     path = tmp_path / "model.npz"
-    with pytest.raises(ModelError, match="model.npz: no such file"):
+    with pytest.raises(ModelError, match="model.npz: No such file"):
         load(path)
     save(random_model(1), path)
     data = path.read_bytes()

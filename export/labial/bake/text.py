@@ -6,12 +6,12 @@ import textwrap
 from typing import Iterable
 
 from labial import __version__
+from labial.emit import block_comment
 
 
 def comment(text: str) -> str:
     """A header's first comment."""
-    whole = f"{text} Written by labial bake {__version__}; do not edit.".replace("*/", "* /")
-    return "/*\n" + textwrap.fill(whole, width=118, initial_indent=" * ", subsequent_indent=" * ") + "\n */\n"
+    return block_comment(f"{text} Written by labial bake {__version__}; do not edit.", width=118)
 
 
 def rows(values: Iterable[object]) -> str:

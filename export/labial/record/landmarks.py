@@ -14,18 +14,18 @@ x grows to the right of the image, y down, z away from the camera in the unit of
 
 from __future__ import annotations
 
-import math
 import os
 import re
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
+from labial.arrays import ArrayError, array, read_zip
+from labial.corpus.timings import LONGEST
 from labial.errors import DataError, LabialError
-from labial.grammar import columns_of, number_or_nan, read_lines, table_rows
+from labial.grammar import columns_of, number_or_nan, read_bytes, read_lines, table_rows
 
 PathLike = Union[str, os.PathLike]
 
@@ -38,9 +38,13 @@ USED = (*HEAD, *MOUTH, 152, 4, 2)
 #: Where a landmark stands in `USED`.
 INDEX = {number: place for place, number in enumerate(USED)}
 
+#: Bytes that a file has at most, packed or not: over an hour of a video, 478 landmarks as float32.
+LARGEST = 1_000_000_000
+_ARRAYS = ("landmarks", "fps", "times", "size", "pucker")
 _COUNTS = (468, 478)
 _SIDES = (16, 100000)  # pixels
 _RATES = (1.0, 1000.0)  # frames per second
+_LARGEST_COORDINATE = 1e6  # pixels
 
 
 @dataclass(frozen=True)
@@ -126,27 +130,27 @@ def _check_orientation(path: PathLike, points: np.ndarray) -> None:
 
 def _load(path: PathLike) -> Dict[str, np.ndarray]:
     try:
-        content = np.load(path, allow_pickle=False)
-        if isinstance(content, np.ndarray):
-            return {"landmarks": content}
-        with content:
-            return {name: content[name] for name in content.files}
-    except FileNotFoundError:
-        raise DataError(path, None, "no such file") from None
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
-        raise DataError(path, None, f"not a NumPy file: {' '.join(str(error).split())}") from None
+        if Path(path).suffix.lower() == ".npy":
+            return {"landmarks": array("the array", read_bytes(path, LARGEST))}
+        members = read_zip(path, [f"{name}.npy" for name in _ARRAYS], LARGEST)
+        return {name[:-4]: array(name[:-4], data) for name, data in members.items()}
+    except OSError as error:
+        raise DataError(path, None, error.strerror or str(error)) from None
+    except ArrayError as error:
+        raise DataError(path, None, f"not a NumPy file: {error}") from None
 
 
 def _array(path: PathLike, table: Dict[str, np.ndarray]) -> np.ndarray:
     if "landmarks" not in table:
-        raise DataError(path, None, f"no array 'landmarks'; there are {', '.join(sorted(table)) or 'none'}")
-    points = _numbers(path, "landmarks", table["landmarks"])
+        raise DataError(path, None, "no array 'landmarks'")
+    points = table["landmarks"]
     if points.ndim != 3 or points.shape[1] not in _COUNTS or points.shape[2] not in (2, 3):
         raise DataError(path, None, f"landmarks have the shape {points.shape}, not (frames, 468 or 478, 2 or 3)")
-    infinite = np.isinf(points).any(axis=(1, 2))
-    if infinite.any():
-        raise DataError(path, None, f"frame {int(np.argmax(infinite))}: a coordinate is infinite")
-    return points[:, list(USED)]
+    points = _numbers(path, "landmarks", points[:, list(USED)])
+    wrong = (np.abs(points) > _LARGEST_COORDINATE).any(axis=(1, 2))
+    if wrong.any():
+        raise DataError(path, None, f"frame {int(np.argmax(wrong))}: a coordinate is beyond {_LARGEST_COORDINATE:g}")
+    return points
 
 
 def _scores(path: PathLike, table: Dict[str, np.ndarray]) -> Optional[np.ndarray]:
@@ -169,7 +173,7 @@ def _times(path: PathLike, table: Dict[str, np.ndarray], count: int, given: Give
         if times.shape != (count,):
             raise DataError(path, None, f"times have the shape {times.shape}, but there are {count} frames")
         for frame in range(count):
-            if not math.isfinite(times[frame]) or (frame and times[frame] <= times[frame - 1]):
+            if not abs(times[frame]) <= LONGEST or (frame and times[frame] <= times[frame - 1]):
                 raise DataError(path, None, f"frame {frame}: time {times[frame]:g} does not follow the one before")
         return times
     if "fps" not in table:
@@ -218,9 +222,11 @@ def _read_csv(path: PathLike) -> Tuple[Optional[np.ndarray], np.ndarray, Optiona
     scores: List[float] = []
     for line, fields in table_rows(path, lines, len(names)):
         rows.append([number_or_nan(path, line, fields[column]) for column in columns])
+        if any(abs(value) > _LARGEST_COORDINATE for value in rows[-1]):
+            raise DataError(path, line, f"a coordinate is beyond {_LARGEST_COORDINATE:g}")
         if extra[0] is not None:
             times.append(number_or_nan(path, line, fields[extra[0]]))
-            if not math.isfinite(times[-1]) or (len(times) > 1 and times[-1] <= times[-2]):
+            if not abs(times[-1]) <= LONGEST or (len(times) > 1 and times[-1] <= times[-2]):
                 raise DataError(path, line, f"time {fields[extra[0]]} does not follow the one before")
         if extra[1] is not None:
             scores.append(number_or_nan(path, line, fields[extra[1]]))
