@@ -298,7 +298,7 @@ def test_files_that_are_no_arrays(tmp_path):
     np.save(tmp_path / "e.npy", np.array([{}, {}], dtype=object))  # would run code if it were unpickled
     with pytest.raises(DataError, match="e.npy: not a NumPy file"):
         read_landmarks(tmp_path / "e.npy", Given(fps=50))
-    with pytest.raises(DataError, match="f.npy: no such file"):
+    with pytest.raises(DataError, match="f.npy: No such file"):
         read_landmarks(tmp_path / "f.npy", Given(fps=50))
 
 
