@@ -170,6 +170,25 @@ static void pauses_are_cut_in_two(void **state)
 #endif
 }
 
+/* A model that looks ahead by a single frame has pauses with a tail of one, too. */
+static void pauses_are_cut_where_one_frame_is_seen(void **state)
+{
+#if LABIAL_REACH >= 1
+    labial_model_t near = rich.model;
+    labial_taken_t taken;
+    near.kernel_taps = 2;
+    near.kernel_behind = 0;
+    near.kernel_stride = 1;
+    near.floor_count = 0;
+    begin(&near);
+    push(FIXTURE_SIL, 0, 3);
+    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK); /* the head, whatever ends the pause */
+    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
+#endif
+    (void)state;
+}
+
 /* Takes `count` frames and wants their shares of 4096, and whether they are open, as text. */
 static void expect_places(const unsigned *shares, const char *wanted_open, size_t count)
 {
@@ -417,6 +436,7 @@ int main(void)
         cmocka_unit_test(solutions_end_where_models_change),
         cmocka_unit_test(frames_wait_for_the_next_phoneme),
         cmocka_unit_test(pauses_are_cut_in_two),
+        cmocka_unit_test(pauses_are_cut_where_one_frame_is_seen),
         cmocka_unit_test(frames_know_their_place_in_the_phoneme),
         cmocka_unit_test(pauses_come_to_rest),
         cmocka_unit_test(random_streams_are_taken_frame_by_frame),
