@@ -9,9 +9,9 @@ set(LABIAL_C_WARNINGS -Wstrict-prototypes -Wmissing-prototypes)
 set(LABIAL_SANITIZERS -fsanitize=address,undefined,alignment -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 if(LABIAL_INSTRUMENT STREQUAL "sanitize")
-  set(LABIAL_INSTRUMENT_OPTIONS ${LABIAL_SANITIZERS})
+  set(LABIAL_INSTRUMENT_OPTIONS ${LABIAL_SANITIZERS} -DLABIAL_CHECKED) # lib/fixed.h
 elseif(LABIAL_INSTRUMENT STREQUAL "fuzz")
-  set(LABIAL_INSTRUMENT_OPTIONS -fsanitize=fuzzer-no-link ${LABIAL_SANITIZERS})
+  set(LABIAL_INSTRUMENT_OPTIONS -fsanitize=fuzzer-no-link ${LABIAL_SANITIZERS} -DLABIAL_CHECKED)
 elseif(LABIAL_INSTRUMENT STREQUAL "coverage")
   set(LABIAL_INSTRUMENT_OPTIONS --coverage)
 elseif(LABIAL_INSTRUMENT MATCHES "^(none|memcheck|prove|mutate)$")

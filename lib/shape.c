@@ -66,6 +66,9 @@ static void weigh(const uint32_t *costs, unsigned count, unsigned best, uint16_t
         likelihoods[c] = likelihood(costs[c] - costs[best]);
         sum += likelihoods[c];
     }
+    /* The best one's likelihood alone is that. */
+    /*@ assert sum >= 32768; */
+    LABIAL_CHECK(sum >= 32768u);
     for (c = 0; c < count; c++) {
         shares[c] = (uint16_t)(likelihoods[c] * (uint32_t)ONE / sum);
         rest -= shares[c];
@@ -102,6 +105,10 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, ui
             if (model->slopes)
                 change += tilts[c] * model->slopes[first + c * LABIAL_CHANNELS];
         }
+        /* The shares add up to one, and so the tilts to 136 / 64 at most. */
+        /*@ assert -524288 <= mean <= 524288; */
+        /*@ assert -1118208 <= change <= 1118208; */
+        LABIAL_CHECK(labial_clamp(mean, 524288) == mean && labial_clamp(change, 1118208) == change);
         mean = ((mean >> 4) * channel->shape_scale + 32768) >> 16;
         change = ((change >> 4) * channel->slope_scale + 32768) >> 16;
         shape[k] = (int16_t)labial_clamp(mean + change, LABIAL_POSITION_MAX);
@@ -122,13 +129,13 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
     unsigned low = 0, high = model->pair_count, j, k;
     const int8_t *row;
     while (low < high) {
-        const unsigned middle = low + (high - low) / 2u;
+        const unsigned middle = (low + high) / 2u;
         if (model->pair_keys[middle] < key)
             low = middle + 1u;
         else
             high = middle;
     }
-    if (low == model->pair_count || model->pair_keys[low] != key)
+    if (low >= model->pair_count || model->pair_keys[low] != key)
         return;
     row = model->pairs + (size_t)low * knots * LABIAL_CHANNELS;
     for (j = 0; j < knots; j++)
@@ -161,8 +168,13 @@ static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
 /* Brings those of the channels that come to rest in silence `rest` of LABIAL_REST_FRAMES of the way there. */
 static void settle(const labial_model_t *model, unsigned channels, int32_t rest, int16_t target[LABIAL_CHANNELS])
 {
-    const int16_t *pose = model->floors + (model->phonemes[model->silence].floor - 1u) * LABIAL_CHANNELS;
+    const unsigned floor = model->phonemes[model->silence].floor;
+    const int16_t *pose;
     unsigned k;
+    /* Channels come to rest by the contacts of silence, which only a floor has. */
+    /*@ assert floor > 0; */
+    LABIAL_CHECK(floor > 0u);
+    pose = model->floors + (floor - 1u) * LABIAL_CHANNELS;
     for (k = 0; k < LABIAL_CHANNELS; k++, channels >>= 1)
         if (channels & 1u)
             target[k] = (int16_t)(target[k] + (pose[k] - target[k]) * rest / LABIAL_REST_FRAMES);

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "fixed.h"
+
 /* The i-th segment of the queue, the oldest being 0. */
 static const labial_segment_t *segment_at(const labial_units_t *units, unsigned i)
 {
@@ -66,6 +68,9 @@ static unsigned look_ahead(const labial_model_t *model)
 /* The middle of frame `frame` of `frames` from 0 to 1, Q14. */
 static uint16_t share_of(uint32_t frame, uint32_t frames)
 {
+    /* No phoneme is empty, nor either of the two that a silence is taken as. */
+    /*@ assert frames > 0; */
+    LABIAL_CHECK(frames > 0);
     for (; frames >= 65536u; frames >>= 1)
         frame >>= 1;
     return (uint16_t)(((2u * frame + 1u) << 13) / frames);
@@ -124,23 +129,23 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
  * solution ends. */
 static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsigned ahead)
 {
-    uint8_t *label = units->labels + LABIAL_REACH;
+    uint8_t *label = units->labels + LABIAL_REACH, *const last = label + ahead;
     uint32_t left = segment_at(units, 0)->frames - units->taken;
     unsigned i = 0;
     if (units->begins)
         memset(units->labels, silence, sizeof units->labels);
     else
         memmove(units->labels, units->labels + 1, LABIAL_REACH);
-    for (ahead++; ahead > 0 && i < units->count; i++) {
+    for (; label <= last && i < units->count; i++) {
         const labial_segment_t *segment = segment_at(units, i);
         if (segment->slot != slot)
             break;
         if (i > 0)
             left = segment->frames;
-        for (; left > 0 && ahead > 0; left--, ahead--)
+        for (; left > 0 && label <= last; left--)
             *label++ = segment->phoneme;
     }
-    for (; ahead > 0; ahead--)
+    while (label <= last)
         *label++ = silence;
 }
 

@@ -38,6 +38,7 @@ static void any_states(void)
     FILL(emissions);
     FILL(states);
     FILL(transitions);
+    /*@ loop unroll 64; */
     for (i = 0; i < LABIAL_STATES_MAX; i++) {
         emissions[i].mean = any_position();
         states[i].mean[0] = any_position();
@@ -66,6 +67,7 @@ static void any_channel(labial_channel_t *channel)
 static void any_phonemes(int count)
 {
     unsigned i;
+    /*@ loop unroll 128; */
     for (i = 0; i < LABIAL_PHONEMES_MAX; i++) {
         phonemes[i].first_component = (uint16_t)Frama_C_interval(0, COMPONENTS - count);
         phonemes[i].component_count = (uint8_t)count;
@@ -89,8 +91,7 @@ static void any_model(labial_model_t *model, int count)
     FILL(pairs);
     FILL(floors);
     FILL(contacts);
-    for (i = 0; i < FLOORS * LABIAL_CHANNELS; i++)
-        floors[i] = (int16_t)Frama_C_interval(LABIAL_NO_FLOOR, LABIAL_POSITION_MAX);
+    /*@ loop unroll 13; */
     for (i = 0; i < LABIAL_CHANNELS; i++)
         any_channel(&channels[i]);
     model->format = LABIAL_MODEL_FORMAT;

@@ -1,9 +1,9 @@
 # Frama-C's EVA analyses a driver with files of the library. It must reach every function that they offer, and of the
-# statements of all functions that it reaches at least REACHED %; it must find as many alarms as stated, no more and no
-# fewer, so that what the documentation says of them stays true.
+# statements of all functions that it reaches at least REACHED %; it must find as many alarms, and take as many assertions
+# unproven, as stated, no more and no fewer, so that what the documentation says of them stays true.
 #
 #   cmake -D FRAMA_C=frama-c -D "OPTIONS=-eva-precision;3;..." -D DRIVER=prove_rig.c -D "SOURCES=lib/rig.c"
-#         -D ALARMS=0 -D REACHED=98 -P prove.cmake
+#         -D ALARMS=0 -D ASSERTED=0 -D REACHED=98 -P prove.cmake
 cmake_minimum_required(VERSION 3.22...3.31)
 
 execute_process(COMMAND "${FRAMA_C}" -eva -eva-no-show-progress -warn-invalid-pointer -metrics -metrics-eva-cover ${OPTIONS} "${DRIVER}" ${SOURCES}
@@ -19,6 +19,16 @@ elseif(NOT CMAKE_MATCH_1 EQUAL ALARMS)
   string(APPEND wrong "${CMAKE_MATCH_1} alarms instead of ${ALARMS}.\n")
 endif()
 set(alarms "${CMAKE_MATCH_1}")
+string(REGEX MATCH "Assertions +[0-9]+ valid +([0-9]+) unknown +([0-9]+) invalid" assertions "${said}")
+set(asserted "${CMAKE_MATCH_1}")
+if(assertions STREQUAL "")
+  set(asserted 0)
+elseif(NOT CMAKE_MATCH_2 EQUAL 0)
+  string(APPEND wrong "An assertion is wrong.\n")
+endif()
+if(NOT asserted EQUAL ASSERTED)
+  string(APPEND wrong "${asserted} assertions are unproven instead of ${ASSERTED}.\n")
+endif()
 if(NOT said MATCHES "\n  No errors or warnings raised during the analysis")
   string(APPEND wrong "There are errors or warnings.\n")
 endif()
@@ -45,4 +55,4 @@ endforeach()
 if(wrong)
   message(FATAL_ERROR "${DRIVER}:\n${wrong}\n${said}")
 endif()
-message("${alarms} alarms, ${reached} of ${all} statements reached")
+message("${alarms} alarms, ${asserted} assertions unproven, ${reached} of ${all} statements reached")
