@@ -121,7 +121,7 @@ extern "C" {{
 
 #define {upper}_FPS {model.fps}
 #define {upper}_PHONEMES {len(model.phonemes)}
-#define {upper}_STATES {model.edges.shape[1]}
+#define {upper}_STATES {model.transitions.shape[1]}
 #define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({model.search_stride})
 
 /* Phoneme numbers. */

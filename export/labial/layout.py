@@ -92,7 +92,7 @@ def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
     return [
         Table(f"emissions_{k}", "labial_emission_t", "hHBB", emissions, "{ %d, %d, %d, %d }", "states"),
         Table(f"states_{k}", "labial_state_t", "hhhBBBB", states, "{ { %d, %d, %d }, %d, %d, { %d, %d } }", "states"),
-        _flat(f"transitions_{k}", "uint16_t", "H", model.edges[k], "transitions"),
+        _flat(f"transitions_{k}", "uint16_t", "H", model.transitions[k], "transitions"),
     ]
 
 
@@ -117,8 +117,8 @@ def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
         ("component_count", len(model.cost), "H"),
         ("phoneme_count", len(model.phonemes), "B"),
         ("class_count", len(model.classes), "B"),
-        ("state_count", model.edges.shape[1], "B"),
-        ("predecessors", model.edges.shape[2], "B"),
+        ("state_count", model.transitions.shape[1], "B"),
+        ("predecessors", model.transitions.shape[2], "B"),
         ("search_stride", model.search_stride, "B"),
         ("silence", model.silence, "B"),
         ("soft", int(model.soft), "B"),

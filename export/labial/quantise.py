@@ -90,14 +90,14 @@ class ExportedModel:
     state_share: np.ndarray  #: (13, Q) codes of the anchor's share of it
     state_weight: np.ndarray  #: (13, Q, 2) codes of a quarter of delta's and of delta-delta's weight
     search_stride: int
-    edges: np.ndarray  #: (13, Q, K), predecessor | cost << 8
+    transitions: np.ndarray  #: (13, Q, K), predecessor | cost << 8
 
     def dense_transitions(self) -> np.ndarray:
-        """(13, Q, Q) costs [from, to], inf where there is no edge."""
-        states = self.edges.shape[1]
+        """(13, Q, Q) costs [from, to], inf where there is none."""
+        states = self.transitions.shape[1]
         dense = np.full((CHANNELS, states, states), np.inf)
-        channel, to, _ = np.indices(self.edges.shape)
-        np.minimum.at(dense, (channel, self.edges & 255, to), self.edges >> 8)
+        channel, to, _ = np.indices(self.transitions.shape)
+        np.minimum.at(dense, (channel, self.transitions & 255, to), self.transitions >> 8)
         return dense
 
 
@@ -168,7 +168,7 @@ def quantise(model: Model, name: str, *, predecessors: int = 4) -> ExportedModel
         state_share=share_code(model.state_anchor / (model.state_precision[..., 0] + model.state_anchor)),
         state_weight=weights,
         search_stride=model.search_stride,
-        edges=_transitions(model, predecessors),
+        transitions=_transitions(model, predecessors),
     )
 
 
@@ -283,11 +283,11 @@ def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
 
 
 def _transitions(model: Model, predecessors: int) -> np.ndarray:
-    """Edges (13, Q, K): for each state the predecessors that it is entered from most often, itself among them, in
+    """Transitions (13, Q, K): for each state the predecessors that it is entered from most often, itself among them, in
     ascending order. Where there are fewer the last one is repeated."""
     states = model.log_initial.shape[1]
     kept_count = min(predecessors, states)
-    edges = np.zeros((CHANNELS, states, kept_count), dtype=np.int64)
+    kept_transitions = np.zeros((CHANNELS, states, kept_count), dtype=np.int64)
     for k in range(CHANNELS):
         cost = np.minimum(np.rint(-COST_SCALE * model.log_transition[k]), 1e9)
         usage = _stationary(model.log_transition[k])[:, None] * np.exp(model.log_transition[k])
@@ -297,8 +297,8 @@ def _transitions(model: Model, predecessors: int) -> np.ndarray:
             if q not in kept:
                 kept = kept[: kept_count - 1] + [q]
             kept = sorted(kept) + [max(kept)] * (kept_count - len(kept))
-            edges[k, q] = [p | int(min(cost[p, q], 255)) << 8 for p in kept]
-    return edges
+            kept_transitions[k, q] = [p | int(min(cost[p, q], 255)) << 8 for p in kept]
+    return kept_transitions
 
 
 def _stationary(log_transition: np.ndarray) -> np.ndarray:

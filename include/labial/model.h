@@ -161,8 +161,8 @@ int labial_model_check(const labial_model_t *model);
 
 /*
  * How much work the model makes: an upper estimate of the instructions that one labial_tick() takes on a Cortex-M0, the
- * slowest of the processors that the library is measured on; the others take about three quarters of them. It holds for
- * whatever is pushed. Where models change, a tick takes at most the sum of their costs, one for each run of a model's
+ * slowest of the processors that the library is measured on; the others take about three quarters of them. It is valid
+ * for any input. Where models change, a tick takes at most the sum of their costs, one for each run of a model's
  * phonemes within the latest `search_stride` frames.
  *
  * The bundled models cost about 40,000, and their ticks take 22,000 at most. A model that labial_model_check() accepts

@@ -28,7 +28,7 @@ export function tables(buffer, model) {
     for (let k = 0; k < CHANNELS; k++) {
         const at = channels + 24 * k;
         add("scales", at, 1, 12);
-        [["emissions", 6], ["states", 10], ["edges", 2 * predecessors]].forEach(([name, width], i) =>
+        [["emissions", 6], ["states", 10], ["transitions", 2 * predecessors]].forEach(([name, width], i) =>
             add(name, view.getUint32(at + 12 + 4 * i, true), states, width));
     }
     return found;

@@ -269,10 +269,10 @@ def test_substitutes_share_components() -> None:
 
 def test_keeps_the_asked_number_of_predecessors_and_always_the_state_itself() -> None:
     """Without its own state as predecessor a state could not be held."""
-    assert quantise(random_model(6), "model").edges.shape == (13, 12, 4)  # the default
+    assert quantise(random_model(6), "model").transitions.shape == (13, 12, 4)  # the default
     exported = quantise(random_model(6), "model", predecessors=5)
-    assert exported.edges.shape == (13, 12, 5)
-    predecessor = exported.edges & 255
+    assert exported.transitions.shape == (13, 12, 5)
+    predecessor = exported.transitions & 255
     assert (predecessor == np.arange(12)[:, None]).any(axis=2).all() and (np.diff(predecessor) > 0).all()
 
 
@@ -283,7 +283,7 @@ def test_fewer_predecessors_than_asked_for_are_repeated() -> None:
     exported = quantise(dataclasses.replace(model, log_transition=rare), "model", predecessors=4)
     dense = exported.dense_transitions()
     assert (np.isfinite(dense) == np.isfinite(rare)).all()
-    np.testing.assert_array_equal(exported.edges[:, 0, 1:], np.repeat(exported.edges[:, 0, :1], 3, axis=1))
+    np.testing.assert_array_equal(exported.transitions[:, 0, 1:], np.repeat(exported.transitions[:, 0, :1], 3, axis=1))
 
 
 def test_keeps_the_predecessors_that_are_used_most() -> None:
@@ -294,7 +294,7 @@ def test_keeps_the_predecessors_that_are_used_most() -> None:
     with np.errstate(divide="ignore"):
         logs = np.broadcast_to(np.log(step), (13, 3, 3))
     exported = quantise(dataclasses.replace(model, log_transition=logs), "model", predecessors=2)
-    np.testing.assert_array_equal(exported.edges[0, 2] & 255, [0, 2])
+    np.testing.assert_array_equal(exported.transitions[0, 2] & 255, [0, 2])
 
 
 def test_quantisation_loss_is_small_where_paths_agree() -> None:

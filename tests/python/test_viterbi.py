@@ -143,7 +143,7 @@ def scalar_search(model: ExportedModel, channel: int, target: np.ndarray, ends: 
                 enter, origin[q] = int(model.initial[channel, q]), None
             else:
                 enter, origin[q] = 255, best
-                for edge in model.edges[channel, q]:
+                for edge in model.transitions[channel, q]:
                     p, cost = int(edge) & 255, int(edge) >> 8
                     if p in scores and scores[p] + cost < enter:
                         enter, origin[q] = scores[p] + cost, p
