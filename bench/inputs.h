@@ -21,24 +21,36 @@ typedef struct {
 /* `name` is SPEECH or LAUGHTER, or a macro that is; the other model is then not linked. */
 #define BENCH_INPUT(name) BENCH_JOIN(name)
 #define BENCH_JOIN(name) BENCH_##name
-#define BENCH_SPEECH { &speech_en, bench_sentence, sizeof bench_sentence / sizeof *bench_sentence }
-#define BENCH_LAUGHTER { &laughter_synthetic, bench_laugh, sizeof bench_laugh / sizeof *bench_laugh }
+#define BENCH_SPEECH                                                                                                   \
+    {                                                                                                                  \
+        &speech_en, bench_sentence, sizeof bench_sentence / sizeof *bench_sentence                                     \
+    }
+#define BENCH_LAUGHTER                                                                                                 \
+    {                                                                                                                  \
+        &laughter_synthetic, bench_laugh, sizeof bench_laugh / sizeof *bench_laugh                                     \
+    }
 
-#define S(label, ms) { SPEECH_EN_##label, ms }
-#define L(label, ms) { LAUGHTER_SYNTHETIC_##label, ms }
+#define S(label, ms)                                                                                                   \
+    {                                                                                                                  \
+        SPEECH_EN_##label, ms                                                                                          \
+    }
+#define L(label, ms)                                                                                                   \
+    {                                                                                                                  \
+        LAUGHTER_SYNTHETIC_##label, ms                                                                                 \
+    }
 
 static const bench_phoneme_t bench_sentence[] = {
-    S(SIL, 220), S(M, 71),  S(AY, 152), S(B, 90),  S(EY, 197), S(B, 85),   S(IY, 89),  S(M, 80),  S(EY, 139), S(B, 84),
-    S(IY, 110),  S(HH, 92), S(AE, 106), S(P, 127), S(IY, 192), S(SIL, 220), S(W, 53),   S(EH, 70), S(R, 43),   S(W, 47),
-    S(ER, 66),   S(Y, 84),  S(UW, 115), S(F, 112), S(AY, 155), S(V, 45),   S(Y, 63),   S(IH, 85), S(R, 73),   S(Z, 70),
-    S(AH, 60),   S(G, 122), S(OW, 204), S(SIL, 220)
+    S(SIL, 220), S(M, 71),   S(AY, 152), S(B, 90),   S(EY, 197), S(B, 85),   S(IY, 89),   S(M, 80), S(EY, 139),
+    S(B, 84),    S(IY, 110), S(HH, 92),  S(AE, 106), S(P, 127),  S(IY, 192), S(SIL, 220), S(W, 53), S(EH, 70),
+    S(R, 43),    S(W, 47),   S(ER, 66),  S(Y, 84),   S(UW, 115), S(F, 112),  S(AY, 155),  S(V, 45), S(Y, 63),
+    S(IH, 85),   S(R, 73),   S(Z, 70),   S(AH, 60),  S(G, 122),  S(OW, 204), S(SIL, 220)
 };
 
-static const bench_phoneme_t bench_laugh[] = {
-    L(FRICATIVE, 110), L(A, 104),     L(FRICATIVE, 112), L(A, 100),  L(FRICATIVE, 114), L(A, 90),
-    L(FRICATIVE, 122), L(E, 84),      L(FRICATIVE, 120), L(CACKLE, 48), L(SILENCE, 180), L(NE, 240),
-    L(FRICATIVE, 120), L(E, 92),      L(FRICATIVE, 118), L(IC, 80),  L(NASAL, 80),      L(SILENCE, 200)
-};
+static const bench_phoneme_t bench_laugh[] = { L(FRICATIVE, 110), L(A, 104),      L(FRICATIVE, 112), L(A, 100),
+                                               L(FRICATIVE, 114), L(A, 90),       L(FRICATIVE, 122), L(E, 84),
+                                               L(FRICATIVE, 120), L(CACKLE, 48),  L(SILENCE, 180),   L(NE, 240),
+                                               L(FRICATIVE, 120), L(E, 92),       L(FRICATIVE, 118), L(IC, 80),
+                                               L(NASAL, 80),      L(SILENCE, 200) };
 
 #undef S
 #undef L

@@ -201,6 +201,7 @@ int main(int argc, char **argv)
 #endif
     }
     fputs("usage: labial-bench-mlpg labial|hts|compare|sptk|about N\n"
-          "hts and compare where it was built with hts_engine\n", stderr);
+          "hts and compare where it was built with hts_engine\n",
+          stderr);
     return 2;
 }

@@ -6,8 +6,8 @@
 
 #include "labial/labial.h"
 
-#define BENCH_UNIT 42  /* frames */
-#define BENCH_HOLD 3u  /* frames that a state lasts, and that a channel's turn takes */
+#define BENCH_UNIT 42   /* frames */
+#define BENCH_HOLD 3u   /* frames that a state lasts, and that a channel's turn takes */
 #define BENCH_SOLVE 400 /* frames that bench_solve() takes at most */
 
 /* Bytes that the solver needs of a channel, as the workspace holds them. */

@@ -100,12 +100,12 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     if (optional & HAS_SLOPES)
         model->slopes = (const int8_t *)table(reader, shape, 1u);
     if (model->kernel_taps)
-        model->kernels = (const int8_t *)table(
-            reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
+        model->kernels =
+            (const int8_t *)table(reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
     if (model->pair_count) {
         model->pair_keys = (const uint16_t *)table(reader, model->pair_count, 2u);
-        model->pairs = (const int8_t *)table(reader, (uint32_t)model->pair_count * model->pair_knots * LABIAL_CHANNELS,
-                                               1u);
+        model->pairs =
+            (const int8_t *)table(reader, (uint32_t)model->pair_count * model->pair_knots * LABIAL_CHANNELS, 1u);
     }
     if (model->floor_count) {
         model->floors = (const int16_t *)table(reader, (uint32_t)model->floor_count * LABIAL_CHANNELS, 2u);

@@ -7,17 +7,17 @@
 #include "labial/labial.h"
 
 enum {
-    PER_TICK = 3500,      /* the queue, floors and contact, fades, the callback's frame */
-    PER_TAP = 190,        /* of the kernels, in all channels */
-    PER_COMPONENT = 700,  /* of a phoneme whose shape is selected, in all channels */
-    PER_KNOT = 400,       /* of a pair, in all channels */
-    PER_COMPARISON = 20,  /* of a binary search */
-    PER_SEARCH = 300,     /* of one channel */
-    PER_STATE = 150,      /* that is searched */
-    PER_TRANSITION = 20,  /* into such a state */
-    PER_LAG = 60,         /* frame of the lag, in one channel */
-    PER_ROW = 650,        /* of equation 3 */
-    PER_STEP_BACK = 32    /* of the way back */
+    PER_TICK = 3500,     /* the queue, floors and contact, fades, the callback's frame */
+    PER_TAP = 190,       /* of the kernels, in all channels */
+    PER_COMPONENT = 700, /* of a phoneme whose shape is selected, in all channels */
+    PER_KNOT = 400,      /* of a pair, in all channels */
+    PER_COMPARISON = 20, /* of a binary search */
+    PER_SEARCH = 300,    /* of one channel */
+    PER_STATE = 150,     /* that is searched */
+    PER_TRANSITION = 20, /* into such a state */
+    PER_LAG = 60,        /* frame of the lag, in one channel */
+    PER_ROW = 650,       /* of equation 3 */
+    PER_STEP_BACK = 32   /* of the way back */
 };
 
 /* Shapes that one tick can select: that of the phoneme which begins, and that of the next. */

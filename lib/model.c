@@ -90,8 +90,7 @@ static int phonemes_are_sound(const labial_model_t *model)
         const labial_phoneme_t *phoneme = &model->phonemes[p];
         if (!is_within(phoneme->component_count, 1, LABIAL_PHONEME_COMPONENTS_MAX) ||
             (uint32_t)phoneme->first_component + phoneme->component_count > model->component_count ||
-            phoneme->viseme_class >= model->class_count || phoneme->boundary > 1 ||
-            phoneme->floor > model->floor_count)
+            phoneme->viseme_class >= model->class_count || phoneme->boundary > 1 || phoneme->floor > model->floor_count)
             return 0;
     }
     return 1;

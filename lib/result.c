@@ -6,8 +6,8 @@
 const char *labial_result_text(int result)
 {
     switch (result) {
-#define LABIAL_RESULT_TEXT(name, value, text) \
-    case value:                               \
+#define LABIAL_RESULT_TEXT(name, value, text)                                                                          \
+    case value:                                                                                                        \
         return text;
         LABIAL_RESULTS(LABIAL_RESULT_TEXT)
 #undef LABIAL_RESULT_TEXT

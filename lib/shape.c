@@ -40,8 +40,8 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
         const unsigned index = phoneme->first_component + c;
         const labial_component_t *component = &model->components[index];
         const int32_t distance = (int32_t)ms - component->duration_mean;
-        const uint32_t z = labial_z((uint32_t)(distance < 0 ? -distance : distance), component->duration_gain,
-                                    DURATION_Z_MAX);
+        const uint32_t z =
+            labial_z((uint32_t)(distance < 0 ? -distance : distance), component->duration_gain, DURATION_Z_MAX);
         const int32_t reach = z < SLOPE_Z_MAX ? (int32_t)z : SLOPE_Z_MAX;
         uint32_t cost = component->cost + labial_z_cost(z);
         if (model->contexts) {

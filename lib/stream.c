@@ -127,8 +127,7 @@ int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
         return LABIAL_ERROR_DURATION;
     if (stream->units.count == LABIAL_QUEUE)
         return LABIAL_ERROR_FULL;
-    stream->pending += labial_units_push(&stream->units, phoneme, stream->slot, milliseconds,
-                                         model->frames_per_second);
+    stream->pending += labial_units_push(&stream->units, phoneme, stream->slot, milliseconds, model->frames_per_second);
     return LABIAL_OK;
 }
 

@@ -34,12 +34,10 @@
 /* 2^54 / d for 2^30 <= d < 2^31, to about 24 bits: a table of eight bits and two Newton steps x += x (1 - d x). */
 static uint32_t reciprocal(uint32_t d)
 {
-    static const uint8_t table[64] = {
-        254, 250, 246, 243, 239, 236, 232, 229, 226, 223, 220, 217, 214, 211, 209, 206, 204, 201, 199, 196,
-        194, 192, 189, 187, 185, 183, 181, 179, 177, 175, 173, 172, 170, 168, 166, 165, 163, 161, 160, 158,
-        157, 155, 154, 152, 151, 150, 148, 147, 146, 144, 143, 142, 141, 139, 138, 137, 136, 135, 134, 133,
-        132, 131, 130, 129
-    };
+    static const uint8_t table[64] = { 254, 250, 246, 243, 239, 236, 232, 229, 226, 223, 220, 217, 214, 211, 209, 206,
+                                       204, 201, 199, 196, 194, 192, 189, 187, 185, 183, 181, 179, 177, 175, 173, 172,
+                                       170, 168, 166, 165, 163, 161, 160, 158, 157, 155, 154, 152, 151, 150, 148, 147,
+                                       146, 144, 143, 142, 141, 139, 138, 137, 136, 135, 134, 133, 132, 131, 130, 129 };
     const int32_t rough = table[(d >> 24) & 63u];
     const int32_t x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(d >> 15) * rough * 2)) >> 16);
     const int32_t error = ((int32_t)1 << 30) - labial_part16((int32_t)d, (uint32_t)x);
@@ -87,7 +85,7 @@ static int32_t filtered(const labial_solver_t *solver, int32_t g)
 {
     const unsigned shift = headroom((uint32_t)g);
     const uint32_t inverse = reciprocal((uint32_t)g << shift);
-    const uint32_t hold = (uint32_t)solver->hold << (shift + 1u);        /* below 2^16 */
+    const uint32_t hold = (uint32_t)solver->hold << (shift + 1u); /* below 2^16 */
     const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
     const int32_t q = solver->q1, moved = (q - solver->q2) * (1 << BEND_BITS);
     const int32_t pull = shift < 7u ? solver->pull >> (7u - shift) : solver->pull * (1 << (shift - 7u));

@@ -86,8 +86,7 @@ static uint32_t head_of(const labial_segment_t *segment, const labial_model_t *m
 int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
 {
     const labial_segment_t *segment = segment_at(units, 0);
-    return units->count > 0 &&
-           (units->taken == 0 || units->taken == head_of(segment, models[segment->slot]));
+    return units->count > 0 && (units->taken == 0 || units->taken == head_of(segment, models[segment->slot]));
 }
 
 int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,

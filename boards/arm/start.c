@@ -60,12 +60,14 @@ typedef struct {
     void (*handlers[15 + BOARD_INTERRUPTS])(void);
 } vectors_t;
 
+/* clang-format off */
 __attribute__((section(".vectors"), used)) static const vectors_t vectors = {
     board_stack_end,
     { board_reset, board_fault, board_fault, board_fault, board_fault, board_fault, 0, 0, 0, 0, board_fault,
       board_fault, 0, board_fault, board_fault, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS,
       FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS }
 };
+/* clang-format on */
 
 __attribute__((noinline)) void board_count_start(void)
 {

@@ -14,8 +14,8 @@
 #include "speech_en.h"
 #include "together.h"
 
-static const score_voice_t speech = {&speech_en, &speech_en_names, "speech"};
-static const score_voice_t laughter = {&laughter_synthetic, &laughter_synthetic_names, "laughter"};
+static const score_voice_t speech = { &speech_en, &speech_en_names, "speech" };
+static const score_voice_t laughter = { &laughter_synthetic, &laughter_synthetic_names, "laughter" };
 
 static int out_of_memory(void)
 {
@@ -47,7 +47,7 @@ static int show_phonemes(page_t *page, const score_t *score)
 {
     for (size_t i = 0; i < score->phoneme_count; i++) {
         const score_phoneme_t *phoneme = &score->phonemes[i];
-        page_phoneme_t shown = {.label = phoneme->label, .kind = phoneme->kind};
+        page_phoneme_t shown = { .label = phoneme->label, .kind = phoneme->kind };
         shown.start_frame = frame_at(phoneme->begin);
         shown.frames = frame_at(phoneme->begin + phoneme->milliseconds) - shown.start_frame;
         if (shown.frames > 0 && page_add_phoneme(page, &shown) != 0)
@@ -158,8 +158,8 @@ static const char usage[] =
 
 int main(int argc, char **argv)
 {
-    demo_t demo = {.page.title = "Labial: a sentence, a laugh, and both at once"};
-    parts_t parts = {NULL, NULL, NULL, 0, 0, 0};
+    demo_t demo = { .page.title = "Labial: a sentence, a laugh, and both at once" };
+    parts_t parts = { NULL, NULL, NULL, 0, 0, 0 };
     const char *sound = NULL;
     int wrong = argc < 7 || argc % 2 == 0;
     for (int i = 7; !wrong && i < argc; i += 2) {

@@ -12,8 +12,7 @@
 
 int page_add_frame(page_t *page, const int16_t faps[LABIAL_CHANNELS])
 {
-    int16_t (*frames)[LABIAL_CHANNELS] =
-        grow(page->frames, page->frame_count, &page->frame_room, sizeof *page->frames);
+    int16_t(*frames)[LABIAL_CHANNELS] = grow(page->frames, page->frame_count, &page->frame_room, sizeof *page->frames);
     if (!frames)
         return -1;
     page->frames = frames;

@@ -93,7 +93,7 @@ static void mark_laughing(score_t *score, size_t first)
 int score_read(score_t *score, const char *path, const score_voice_t *voice)
 {
     const size_t first = score->phoneme_count;
-    reader_t reader = {.score = score, .voice = voice, .path = path, .begin = score->end};
+    reader_t reader = { .score = score, .voice = voice, .path = path, .begin = score->end };
     FILE *in = fopen(path, "r");
     if (!in) {
         fprintf(stderr, "labial-demo: %s: cannot open\n", path);

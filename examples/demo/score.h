@@ -32,10 +32,10 @@ typedef struct {
 /* A laugh, in milliseconds from the start of the score: begin <= alone <= words <= end, each no earlier than the end of
  * the laugh before. */
 typedef struct {
-    uint64_t begin; /* sets in under the words */
-    uint64_t alone; /* the words stop */
-    uint64_t words; /* they go on */
-    uint64_t end;   /* has died away */
+    uint64_t begin;     /* sets in under the words */
+    uint64_t alone;     /* the words stop */
+    uint64_t words;     /* they go on */
+    uint64_t end;       /* has died away */
     unsigned intensity; /* of labial_laugh_begin() */
 } score_laugh_t;
 

@@ -21,7 +21,7 @@
 #define TIMER_CLEAR(timer) NRF51_REGISTER((timer) + 0x00cu)
 #define TIMER_CAPTURE(timer, channel) NRF51_REGISTER((timer) + 0x040u + 4u * (channel))
 #define TIMER_COMPARE(timer, channel) NRF51_REGISTER((timer) + 0x140u + 4u * (channel)) /* event */
-#define TIMER_SHORTS(timer) NRF51_REGISTER((timer) + 0x200u) /* bit n: compare n clears the timer */
+#define TIMER_SHORTS(timer) NRF51_REGISTER((timer) + 0x200u)   /* bit n: compare n clears the timer */
 #define TIMER_INTENSET(timer) NRF51_REGISTER((timer) + 0x304u) /* bit 16 + n: compare n interrupts */
 #define TIMER_BITMODE(timer) NRF51_REGISTER((timer) + 0x508u)
 #define TIMER_PRESCALER(timer) NRF51_REGISTER((timer) + 0x510u)

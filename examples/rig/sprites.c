@@ -18,12 +18,10 @@ static const struct {
     const char *name;
     int16_t features[SPRITES_OUTPUTS]; /* opening, smile, rounding, upper lip */
 } pictures[PICTURES] = {
-    { "rest", { 0, 0, 0, 0 } },              { "p b m", { 50, 60, 30, -140 } },
-    { "f v", { 80, 50, 100, 20 } },          { "parted", { 150, 20, 40, -10 } },
-    { "small", { 240, 0, 80, 0 } },          { "eh", { 340, 90, 0, 80 } },
-    { "open", { 450, 20, 60, 70 } },         { "wide open", { 580, 90, 0, 80 } },
-    { "w", { 220, -70, 170, -50 } },         { "oh", { 240, -170, 380, -80 } },
-    { "smile", { 20, 260, -100, 50 } },      { "laugh", { 150, 310, -100, 80 } },
+    { "rest", { 0, 0, 0, 0 } },         { "p b m", { 50, 60, 30, -140 } },   { "f v", { 80, 50, 100, 20 } },
+    { "parted", { 150, 20, 40, -10 } }, { "small", { 240, 0, 80, 0 } },      { "eh", { 340, 90, 0, 80 } },
+    { "open", { 450, 20, 60, 70 } },    { "wide open", { 580, 90, 0, 80 } }, { "w", { 220, -70, 170, -50 } },
+    { "oh", { 240, -170, 380, -80 } },  { "smile", { 20, 260, -100, 50 } },  { "laugh", { 150, 310, -100, 80 } },
 };
 
 static uint32_t distance(const int32_t features[SPRITES_OUTPUTS], unsigned picture)

@@ -15,9 +15,9 @@
 static const char *const arkit_outputs[] = ARKIT_OUTPUT_NAMES;
 static const char *const vrm_outputs[] = VRM_OUTPUT_NAMES;
 static const char *const oculus_outputs[] = OCULUS_OUTPUT_NAMES;
-static const frames_face_t face_arkit = {"arkit", &arkit, arkit_outputs};
-static const frames_face_t face_vrm = {"vrm", &vrm, vrm_outputs};
-static const frames_face_t face_oculus = {"oculus", &oculus, oculus_outputs};
+static const frames_face_t face_arkit = { "arkit", &arkit, arkit_outputs };
+static const frames_face_t face_vrm = { "vrm", &vrm, vrm_outputs };
+static const frames_face_t face_oculus = { "oculus", &oculus, oculus_outputs };
 
 static void write_time(const frames_t *frames)
 {
@@ -92,7 +92,7 @@ static void keep_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
     if (frames->count >= frames->room) {
         const size_t room = frames->room ? frames->room * 2u : 1024u;
-        int16_t (*kept)[LABIAL_CHANNELS] = NULL;
+        int16_t(*kept)[LABIAL_CHANNELS] = NULL;
         if (room <= SIZE_MAX / sizeof *kept)
             kept = realloc(frames->kept, room * sizeof *kept);
         if (!kept) {
@@ -108,7 +108,7 @@ static void keep_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 int frames_format_of(const char *name)
 {
     /* In the order of frames_format_t. */
-    static const char *const names[] = {"csv", "fap", "livelink", "jsonl", "arkit", "vrm", "oculus"};
+    static const char *const names[] = { "csv", "fap", "livelink", "jsonl", "arkit", "vrm", "oculus" };
     for (int i = 0; i < (int)(sizeof names / sizeof names[0]); i++)
         if (strcmp(names[i], name) == 0)
             return i;
@@ -142,13 +142,21 @@ void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
     if (frames->failed)
         return;
     switch (frames->format) {
-    case FRAMES_CSV: write_csv_frame(frames, faps); break;
-    case FRAMES_FAP: keep_frame(frames, faps); break;
-    case FRAMES_LIVELINK: write_livelink_frame(frames, faps); break;
+    case FRAMES_CSV:
+        write_csv_frame(frames, faps);
+        break;
+    case FRAMES_FAP:
+        keep_frame(frames, faps);
+        break;
+    case FRAMES_LIVELINK:
+        write_livelink_frame(frames, faps);
+        break;
     case FRAMES_JSONL:
     case FRAMES_ARKIT:
     case FRAMES_VRM:
-    case FRAMES_OCULUS: write_json_frame(frames, faps); break;
+    case FRAMES_OCULUS:
+        write_json_frame(frames, faps);
+        break;
     }
     if (!frames->failed)
         frames->count++;

@@ -57,9 +57,9 @@ typedef struct {
     unsigned frames_per_second;
     uint32_t count;
     int failed;
-    const frames_face_t *face; /* of those formats that have weights: arkit but where another is asked for */
+    const frames_face_t *face;           /* of those formats that have weights: arkit but where another is asked for */
     int32_t weights[FRAMES_WEIGHTS_MAX]; /* of the latest frame, thousandths */
-    int16_t (*kept)[LABIAL_CHANNELS]; /* fap: `count` frames in room for `room`, owned */
+    int16_t (*kept)[LABIAL_CHANNELS];    /* fap: `count` frames in room for `room`, owned */
     size_t room;
 } frames_t;
 

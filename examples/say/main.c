@@ -28,7 +28,7 @@ typedef struct {
 } say_t;
 
 /* In the order of timings_format_t. */
-static const char *const format_names[] = {"auto", "flite", "lab", "htk", "pho", "mary", "phseg", "textgrid"};
+static const char *const format_names[] = { "auto", "flite", "lab", "htk", "pho", "mary", "phseg", "textgrid" };
 
 static const char usage_text[] =
     "usage: labial-say [--from FORMAT] [--to FORMAT] [--model MODEL] < timings > motion\n"
@@ -102,8 +102,10 @@ static int read_labels(options_t *options, const char *value)
     static const struct {
         const char *name;
         labial_labels_t labels;
-    } sets[] = {{"auto", LABIAL_LABELS_AUTO}, {"arpabet", LABIAL_LABELS_ARPABET}, {"ipa", LABIAL_LABELS_IPA},
-                {"xsampa", LABIAL_LABELS_XSAMPA}};
+    } sets[] = { { "auto", LABIAL_LABELS_AUTO },
+                 { "arpabet", LABIAL_LABELS_ARPABET },
+                 { "ipa", LABIAL_LABELS_IPA },
+                 { "xsampa", LABIAL_LABELS_XSAMPA } };
     for (size_t s = 0; s < sizeof sets / sizeof sets[0]; s++)
         if (strcmp(value, sets[s].name) == 0) {
             options->labels = sets[s].labels;
@@ -208,7 +210,7 @@ int main(int argc, char **argv)
         printf("labial-say %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
         return 0;
     }
-    options_t options = {TIMINGS_AUTO, FRAMES_CSV, &mouth_speech, NULL, LABIAL_LABELS_AUTO};
+    options_t options = { TIMINGS_AUTO, FRAMES_CSV, &mouth_speech, NULL, LABIAL_LABELS_AUTO };
     const int result = read_options(argc, argv, &options);
     if (result != 0)
         return result;

@@ -7,8 +7,8 @@
 
 #include "labial/laugh.h"
 
-const mouth_voice_t mouth_speech = {"speech_en", &speech_en, &speech_en_names};
-const mouth_voice_t mouth_laughter = {"laughter_synthetic", &laughter_synthetic, &laughter_synthetic_names};
+const mouth_voice_t mouth_speech = { "speech_en", &speech_en, &speech_en_names };
+const mouth_voice_t mouth_laughter = { "laughter_synthetic", &laughter_synthetic, &laughter_synthetic_names };
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -85,16 +85,15 @@ int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, 
     mouth->program = program;
     mouth->voice = voice;
     mouth->current = voice;
-    const int result = labial_init(&mouth->stream, voice->model, mouth->workspace, sizeof mouth->workspace, on_frame,
-                                   mouth);
+    const int result =
+        labial_init(&mouth->stream, voice->model, mouth->workspace, sizeof mouth->workspace, on_frame, mouth);
     if (result < 0)
         return failed(mouth, "", labial_result_text(result));
     frames_init(&mouth->frames, out, format, voice->name, voice->model->frames_per_second);
     return 0;
 }
 
-int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_labels_t labels,
-              uint32_t milliseconds)
+int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_labels_t labels, uint32_t milliseconds)
 {
     const mouth_voice_t *voice = mouth->voice;
     int phoneme = voice->model->silence;

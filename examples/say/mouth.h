@@ -50,8 +50,7 @@ int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, 
  *
  * Returns 0, or -1 after the error was printed.
  */
-int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_labels_t labels,
-              uint32_t milliseconds);
+int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_labels_t labels, uint32_t milliseconds);
 
 /* Adds a laugh of `intensity`, 0 to LABIAL_LAUGH_FULL. Returns as mouth_say() does. */
 int mouth_laugh(mouth_t *mouth, const char *where, uint32_t milliseconds, unsigned intensity);

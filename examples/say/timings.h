@@ -75,10 +75,10 @@ typedef int (*timings_sink_t)(void *user, const timings_phoneme_t *phoneme);
 
 /* What a TextGrid needs beside the fields of a line. Private. */
 typedef struct {
-    int lexer, expected; /* states, of timings_textgrid.c */
-    int wanted;          /* what becomes of the current tier */
-    int found;           /* the tier of phonemes was met */
-    int truncated;       /* the text was longer than a field and is not whole */
+    int lexer, expected;       /* states, of timings_textgrid.c */
+    int wanted;                /* what becomes of the current tier */
+    int found;                 /* the tier of phonemes was met */
+    int truncated;             /* the text was longer than a field and is not whole */
     uint64_t tiers, intervals; /* still to come */
     uint64_t start, stop;      /* of the interval, microseconds */
     char *kept;                /* intervals of the first tier: records of their times, line and label; owned */
@@ -103,8 +103,8 @@ typedef struct {
     int encoding;                          /* of timings.c */
     unsigned pending[3];                   /* bytes and units whose meaning depends on the next ones */
     unsigned pending_count;
-    uint64_t origin;                       /* what the times of the text count from, microseconds */
-    uint64_t end;                          /* where the latest phoneme ends, microseconds */
+    uint64_t origin; /* what the times of the text count from, microseconds */
+    uint64_t end;    /* where the latest phoneme ends, microseconds */
     timings_textgrid_t grid;
 } timings_t;
 

@@ -264,12 +264,23 @@ int timings_end_line(timings_t *t)
         result = tell_format(t, 1);
     if (result == 0 && t->count > 0) {
         switch (t->format) {
-        case TIMINGS_LAB: result = lab_line(t); break;
-        case TIMINGS_HTK: result = htk_line(t); break;
-        case TIMINGS_PHO: result = pho_line(t); break;
-        case TIMINGS_MARY: result = mary_line(t); break;
-        case TIMINGS_PHSEG: result = phseg_line(t); break;
-        default: break;
+        case TIMINGS_LAB:
+            result = lab_line(t);
+            break;
+        case TIMINGS_HTK:
+            result = htk_line(t);
+            break;
+        case TIMINGS_PHO:
+            result = pho_line(t);
+            break;
+        case TIMINGS_MARY:
+            result = mary_line(t);
+            break;
+        case TIMINGS_PHSEG:
+            result = phseg_line(t);
+            break;
+        default:
+            break;
         }
     }
     if (t->format == TIMINGS_FLITE)

@@ -13,9 +13,23 @@ enum { BETWEEN, WORD, QUOTED, QUOTE_IN_QUOTED, FLAG, COMMENT };
 
 /* What the grammar expects next. */
 enum {
-    FILE_TYPE, OBJECT_CLASS, GRID_START, GRID_END, TIERS_EXIST, TIER_COUNT,
-    TIER_CLASS, TIER_NAME, TIER_START, TIER_END, INTERVAL_COUNT,
-    INTERVAL_START, INTERVAL_END, INTERVAL_TEXT, POINT_TIME, POINT_TEXT, NOTHING
+    FILE_TYPE,
+    OBJECT_CLASS,
+    GRID_START,
+    GRID_END,
+    TIERS_EXIST,
+    TIER_COUNT,
+    TIER_CLASS,
+    TIER_NAME,
+    TIER_START,
+    TIER_END,
+    INTERVAL_COUNT,
+    INTERVAL_START,
+    INTERVAL_END,
+    INTERVAL_TEXT,
+    POINT_TIME,
+    POINT_TEXT,
+    NOTHING
 };
 
 /* What becomes of a tier's intervals. */
@@ -29,7 +43,7 @@ enum { SKIPPED, KEPT, WANTED, POINTS };
 /* Whether a tier's name, behind the last " - ", is one of phonemes in any case. */
 static int is_phoneme_tier(const char *name)
 {
-    static const char *const known[] = {"phones", "phonemes", "phone", "phoneme"};
+    static const char *const known[] = { "phones", "phonemes", "phone", "phoneme" };
     char word[16];
     size_t length = 0;
     for (const char *dash; (dash = strstr(name, " - ")) != NULL;)
@@ -74,7 +88,7 @@ typedef struct {
 static int keep(timings_t *t)
 {
     timings_textgrid_t *g = &t->grid;
-    const record_t record = {g->start, g->stop, t->line};
+    const record_t record = { g->start, g->stop, t->line };
     const size_t label = strlen(TEXT(t)) + 1;
     if (g->kept_room - g->kept_size < sizeof record + label) {
         const size_t room = g->kept_room * 2 + 65536;
@@ -157,11 +171,23 @@ static void next_interval(timings_textgrid_t *g)
 
 static int unexpected(timings_t *t)
 {
-    static const char *const names[] = {
-        "the file type \"ooTextFile\"", "the object class \"TextGrid\"", "the start of the grid", "the end of the grid",
-        "<exists>", "the number of tiers", "a tier's class", "a tier's name", "a tier's start", "a tier's end",
-        "the number of intervals", "an interval's start", "an interval's end", "an interval's text", "a point's time",
-        "a point's mark", "the end of the file"};
+    static const char *const names[] = { "the file type \"ooTextFile\"",
+                                         "the object class \"TextGrid\"",
+                                         "the start of the grid",
+                                         "the end of the grid",
+                                         "<exists>",
+                                         "the number of tiers",
+                                         "a tier's class",
+                                         "a tier's name",
+                                         "a tier's start",
+                                         "a tier's end",
+                                         "the number of intervals",
+                                         "an interval's start",
+                                         "an interval's end",
+                                         "an interval's text",
+                                         "a point's time",
+                                         "a point's mark",
+                                         "the end of the file" };
     return timings_malformed(t, "'%.63s' stands where %s should be", TEXT(t), names[t->grid.expected]);
 }
 

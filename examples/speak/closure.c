@@ -55,7 +55,7 @@ uint64_t closure_begin(const closure_t *closure, uint64_t before, uint64_t burst
 int closure_is_stop(const char *label)
 {
     /* In UTF-8 the IPA's g, t and d with tails, barred j and small capital g. */
-    static const char *const others[] = {"\xc9\xa1", "\xca\x88", "\xc9\x96", "\xc9\x9f", "\xc9\xa2"};
+    static const char *const others[] = { "\xc9\xa1", "\xca\x88", "\xc9\x96", "\xc9\x9f", "\xc9\xa2" };
     if (label[0] != '\0' && strchr("ptkbdgcq", label[0]))
         return 1;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)

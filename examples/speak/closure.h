@@ -14,9 +14,9 @@
 /* Private. */
 typedef struct {
     unsigned rate;
-    uint64_t samples; /* so far */
-    uint64_t sum;     /* of the magnitudes in the frame that is not yet full */
-    unsigned count;   /* of its samples */
+    uint64_t samples;               /* so far */
+    uint64_t sum;                   /* of the magnitudes in the frame that is not yet full */
+    unsigned count;                 /* of its samples */
     uint16_t level[CLOSURE_FRAMES]; /* mean magnitude of frame k at k % CLOSURE_FRAMES */
 } closure_t;
 

@@ -45,8 +45,7 @@ typedef struct {
 static int is_mark(const char *label)
 {
     const unsigned char *c = (const unsigned char *)label;
-    while ((c[0] >= '0' && c[0] <= '9') || (c[0] == 0xcau && c[1] >= 0xb0u) ||
-           (c[0] == 0xcbu && c[1] >= 0x80u))
+    while ((c[0] >= '0' && c[0] <= '9') || (c[0] == 0xcau && c[1] >= 0xb0u) || (c[0] == 0xcbu && c[1] >= 0x80u))
         c += c[0] >= 0x80u ? 2 : 1;
     return *c == '\0';
 }
@@ -125,9 +124,9 @@ int main(int argc, char **argv)
     int result = speak_options(argc, argv, "labial-say-espeak", usage, &options);
     if (result != 0)
         return result - 1;
-    const int rate = espeak_Initialize(AUDIO_OUTPUT_SYNCHRONOUS, 0, NULL,
-                                       espeakINITIALIZE_PHONEME_EVENTS | espeakINITIALIZE_PHONEME_IPA |
-                                           espeakINITIALIZE_DONT_EXIT);
+    const int rate =
+        espeak_Initialize(AUDIO_OUTPUT_SYNCHRONOUS, 0, NULL,
+                          espeakINITIALIZE_PHONEME_EVENTS | espeakINITIALIZE_PHONEME_IPA | espeakINITIALIZE_DONT_EXIT);
     const char *voice = options.voice ? options.voice : "en-us";
     if (rate <= 0) {
         fprintf(stderr, "labial-say-espeak: espeak-ng finds no data: install the Debian package espeak-ng-data\n");

@@ -105,13 +105,13 @@ static int write_header(speak_t *speak)
     const uint32_t bytes = (uint32_t)(speak->samples * 2u);
     memcpy(header, "RIFF....WAVEfmt ", 16);
     put_little_endian(header + 4, HEADER_BYTES - 8u + bytes, 4);
-    put_little_endian(header + 16, 16, 4);              /* bytes of the format */
-    put_little_endian(header + 20, 1, 2);               /* PCM */
-    put_little_endian(header + 22, 1, 2);               /* channels */
+    put_little_endian(header + 16, 16, 4); /* bytes of the format */
+    put_little_endian(header + 20, 1, 2);  /* PCM */
+    put_little_endian(header + 22, 1, 2);  /* channels */
     put_little_endian(header + 24, speak->rate, 4);
     put_little_endian(header + 28, speak->rate * 2u, 4); /* bytes per second */
-    put_little_endian(header + 32, 2, 2);               /* bytes per sample */
-    put_little_endian(header + 34, 16, 2);              /* bits per sample */
+    put_little_endian(header + 32, 2, 2);                /* bytes per sample */
+    put_little_endian(header + 34, 16, 2);               /* bits per sample */
     memcpy(header + 36, "data", 4);
     put_little_endian(header + 40, bytes, 4);
     return fwrite(header, 1, sizeof header, speak->sound) == sizeof header ? 0 : sound_failed(speak, "cannot write");

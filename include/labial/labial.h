@@ -75,8 +75,7 @@ extern "C" {
 
 /* What does not compile: values out of range, sums without parentheses (which the code would take apart), unsigned
  * ones. */
-#define LABIAL_IS_NUMBER_(x, least, most) \
-    (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
+#define LABIAL_IS_NUMBER_(x, least, most) (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
 #if !LABIAL_IS_NUMBER_(LABIAL_WINDOW, 1, 48)
 #error "LABIAL_WINDOW must be a number from 1 to 48."
 #endif
@@ -104,29 +103,29 @@ extern "C" {
 
 /* ---- Results. Zero is success, a positive value says how a stream stands, a negative one is an error. ------------ */
 
-#define LABIAL_RESULTS(X)                                                                                        \
-    X(LABIAL_OK, 0, "success")                                                                                   \
-    X(LABIAL_WAITING, 1, "the first frame is on its way or waits for phonemes")                                  \
-    X(LABIAL_STARVED, 2, "the next frame waits for more phonemes")                                               \
-    X(LABIAL_DONE, 3, "the stream has ended and every frame was delivered")                                      \
-    X(LABIAL_ERROR_NULL, -1, "a pointer that is needed is null")                                                 \
-    X(LABIAL_ERROR_VERSION, -2, "the model was exported for another version of the library")                     \
-    X(LABIAL_ERROR_MODEL, -3, "the model's tables are out of range")                                             \
-    X(LABIAL_ERROR_WORKSPACE, -4, "the workspace is too small or not aligned to four bytes")                     \
-    X(LABIAL_ERROR_STATE, -5, "the call is not allowed now: not initialised, or a push after the end")           \
-    X(LABIAL_ERROR_PHONEME, -6, "the model has no phoneme of this number")                                       \
-    X(LABIAL_ERROR_DURATION, -7, "the duration exceeds LABIAL_DURATION_MAX")                                     \
-    X(LABIAL_ERROR_FULL, -8, "the queue is full; tick and push again")                                           \
-    X(LABIAL_ERROR_RATE, -9, "the model's frame rate or search stride is not the stream's")                      \
-    X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still to be played")                 \
-    X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                \
+#define LABIAL_RESULTS(X)                                                                                              \
+    X(LABIAL_OK, 0, "success")                                                                                         \
+    X(LABIAL_WAITING, 1, "the first frame is on its way or waits for phonemes")                                        \
+    X(LABIAL_STARVED, 2, "the next frame waits for more phonemes")                                                     \
+    X(LABIAL_DONE, 3, "the stream has ended and every frame was delivered")                                            \
+    X(LABIAL_ERROR_NULL, -1, "a pointer that is needed is null")                                                       \
+    X(LABIAL_ERROR_VERSION, -2, "the model was exported for another version of the library")                           \
+    X(LABIAL_ERROR_MODEL, -3, "the model's tables are out of range")                                                   \
+    X(LABIAL_ERROR_WORKSPACE, -4, "the workspace is too small or not aligned to four bytes")                           \
+    X(LABIAL_ERROR_STATE, -5, "the call is not allowed now: not initialised, or a push after the end")                 \
+    X(LABIAL_ERROR_PHONEME, -6, "the model has no phoneme of this number")                                             \
+    X(LABIAL_ERROR_DURATION, -7, "the duration exceeds LABIAL_DURATION_MAX")                                           \
+    X(LABIAL_ERROR_FULL, -8, "the queue is full; tick and push again")                                                 \
+    X(LABIAL_ERROR_RATE, -9, "the model's frame rate or search stride is not the stream's")                            \
+    X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still to be played")                       \
+    X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                      \
     X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")
 
 typedef enum {
 #define LABIAL_RESULT_VALUE(name, value, text) name = value,
     LABIAL_RESULTS(LABIAL_RESULT_VALUE)
 #undef LABIAL_RESULT_VALUE
-    LABIAL_RESULT_LAST_ = LABIAL_ERROR_RIG
+        LABIAL_RESULT_LAST_ = LABIAL_ERROR_RIG
 } labial_result_t;
 
 /* A sentence for any result, "unknown result" for other numbers. Linked only when used. */
@@ -179,9 +178,9 @@ typedef struct {
     uint8_t scores[LABIAL_SEARCHED];
     uint8_t path[LABIAL_LAG + 1]; /* states of the last steps, the latest first */
 #if LABIAL_LAG > 0
-    uint8_t spans[LABIAL_LAG + 1]; /* frames of these steps */
-    uint8_t undecided;             /* steps before the last whose states may still change */
-    uint8_t firsts[LABIAL_LAG];    /* windows of the steps before the last */
+    uint8_t spans[LABIAL_LAG + 1];             /* frames of these steps */
+    uint8_t undecided;                         /* steps before the last whose states may still change */
+    uint8_t firsts[LABIAL_LAG];                /* windows of the steps before the last */
     uint8_t back[LABIAL_LAG][LABIAL_SEARCHED]; /* and where in them the states of the next step come from */
 #endif
 } labial_search_t;
@@ -218,24 +217,24 @@ typedef struct {
 
 /* The stream's state (stream.c). Small members come first, where small instructions reach them. */
 typedef struct {
-    uint32_t magic;      /* set while the stream is initialised */
-    uint8_t slot;        /* model of the next push */
-    uint8_t stride;      /* frames that share a state */
-    uint8_t ended;       /* no more phonemes will come */
-    uint8_t begun;       /* a frame was delivered since the stream was initialised or restarted */
-    uint8_t shown;       /* a frame was delivered since the stream was initialised: what begins fades in from `pose` */
-    uint8_t selected;    /* `next_shape` is that of the phoneme that begins next */
-    uint8_t entered;     /* frames that were taken, 255 for more */
-    uint8_t beyond;      /* ticks since the last frame was taken */
-    uint8_t phase;       /* channels whose turn it is */
-    uint8_t frame_place; /* of the latest frame in the ring of frames */
+    uint32_t magic;       /* set while the stream is initialised */
+    uint8_t slot;         /* model of the next push */
+    uint8_t stride;       /* frames that share a state */
+    uint8_t ended;        /* no more phonemes will come */
+    uint8_t begun;        /* a frame was delivered since the stream was initialised or restarted */
+    uint8_t shown;        /* a frame was delivered since the stream was initialised: what begins fades in from `pose` */
+    uint8_t selected;     /* `next_shape` is that of the phoneme that begins next */
+    uint8_t entered;      /* frames that were taken, 255 for more */
+    uint8_t beyond;       /* ticks since the last frame was taken */
+    uint8_t phase;        /* channels whose turn it is */
+    uint8_t frame_place;  /* of the latest frame in the ring of frames */
     uint8_t factor_place; /* likewise */
     uint8_t fade_step;    /* 0 when nothing fades */
     uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
     uint16_t ease_step;
-    uint32_t frame;   /* number of the next frame */
-    uint32_t pending; /* frames pushed and not yet delivered */
-    uint32_t begins[2]; /* bit i: a solution begins with the frame that was taken i ticks ago */
+    uint32_t frame;         /* number of the next frame */
+    uint32_t pending;       /* frames pushed and not yet delivered */
+    uint32_t begins[2];     /* bit i: a solution begins with the frame that was taken i ticks ago */
     labial_track_t *tracks; /* the workspace: LABIAL_CHANNELS, and behind them their rings of factors */
     labial_frame_t *frames; /* a ring of stride + LABIAL_LAG */
     int16_t *motion;        /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
@@ -255,9 +254,9 @@ typedef struct {
  * when `stride` is. Its parts are, in this order: the channels' tracks; their factors, in rings; the
  * frames whose targets are still needed, in a ring; the motion that is not yet delivered, likewise.
  */
-#define LABIAL_WORKSPACE_SIZE(stride)                                                                     \
-    ((uint32_t)(LABIAL_CHANNELS * (LABIAL_FACTORS_(stride) * sizeof(labial_factors_t) + sizeof(labial_track_t)) + \
-                (((stride) + LABIAL_LAG) * sizeof(labial_frame_t) + (stride) * 2u * LABIAL_CHANNELS + 3u) / 4u * 4u))
+#define LABIAL_WORKSPACE_SIZE(stride)                                                                                  \
+    ((uint32_t)(LABIAL_CHANNELS * (LABIAL_FACTORS_(stride) * sizeof(labial_factors_t) + sizeof(labial_track_t)) +      \
+                (((stride) + LABIAL_LAG) * sizeof(labial_frame_t) + (stride)*2u * LABIAL_CHANNELS + 3u) / 4u * 4u))
 #define LABIAL_FACTORS_(stride) (LABIAL_WINDOW + (stride) + 1u)
 
 /* Ticks from taking a frame in to delivering it. */

@@ -71,9 +71,9 @@ typedef struct {
     uint16_t intensity;    /* 0 .. LABIAL_LAUGH_FULL */
     uint16_t durations[6]; /* of the phonemes that are decided, milliseconds */
     uint8_t phonemes[6];
-    uint8_t first, count; /* of these, the next one and how many there are */
-    uint8_t pulses;       /* to come in the current train */
-    uint8_t kind, vowel;  /* of these pulses */
+    uint8_t first, count;             /* of these, the next one and how many there are */
+    uint8_t pulses;                   /* to come in the current train */
+    uint8_t kind, vowel;              /* of these pulses */
     uint8_t train_loudness, loudness; /* of the current train's first and of its next pulse, 255 the intensity's own */
     uint8_t turn;                     /* between two grades, 1/256 */
 } labial_laugh_t;

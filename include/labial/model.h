@@ -36,14 +36,14 @@ extern "C" {
 #define LABIAL_CHANNELS 13
 
 /* Limits that the run-time's arithmetic and memory are built for; labial_model_check() refuses a model beyond them. */
-#define LABIAL_PHONEMES_MAX 128          /* phonemes of one model */
-#define LABIAL_CLASSES_MAX 32            /* viseme classes of one model */
-#define LABIAL_PHONEME_COMPONENTS_MAX 8  /* mixture components of one phoneme */
-#define LABIAL_STATES_MAX 64             /* codebook entries of one channel */
-#define LABIAL_KERNEL_TAPS_MAX 32        /* taps of one temporal kernel */
-#define LABIAL_SEARCH_STRIDE_MAX 8       /* frames that share a state */
-#define LABIAL_NO_FLOOR (-16384)         /* in `floors`: below every position */
-#define LABIAL_POSITION_MAX 16383        /* Q4: +-1023.9 FAP units around the channel's centre */
+#define LABIAL_PHONEMES_MAX 128         /* phonemes of one model */
+#define LABIAL_CLASSES_MAX 32           /* viseme classes of one model */
+#define LABIAL_PHONEME_COMPONENTS_MAX 8 /* mixture components of one phoneme */
+#define LABIAL_STATES_MAX 64            /* codebook entries of one channel */
+#define LABIAL_KERNEL_TAPS_MAX 32       /* taps of one temporal kernel */
+#define LABIAL_SEARCH_STRIDE_MAX 8      /* frames that share a state */
+#define LABIAL_NO_FLOOR (-16384)        /* in `floors`: below every position */
+#define LABIAL_POSITION_MAX 16383       /* Q4: +-1023.9 FAP units around the channel's centre */
 
 /* Frames that a contact lasts at least: a shorter phoneme borrows the frame before it and, if it has only one frame,
  * the frame after it as well. A phoneme of LABIAL_CONTACT_LONG frames or more includes a pause, and is in contact
@@ -60,7 +60,7 @@ extern "C" {
 #define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `firm` + twice the largest weight[0] + six times weight[1] */
 #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
 #define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
-#define LABIAL_PULL_MAX 65535       /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over least `hold` */
+#define LABIAL_PULL_MAX 65535 /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over least `hold` */
 
 /* A phoneme: which mixture components are its own and which viseme class its neighbours see. */
 typedef struct {
@@ -99,12 +99,12 @@ typedef struct {
  * possible predecessors as the model says, in ascending order, the last repeated where there are fewer: the predecessor
  * in the low byte of a transition, the transition's cost in the high one. */
 typedef struct {
-    int16_t centre;        /* Q4 FAP: added to every position on output */
-    uint16_t shape_scale;  /* positions per step of `shapes`, Q8; at most 32767 */
-    uint16_t slope_scale;  /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
-    uint16_t kernel_scale; /* positions per step of `kernels`, Q8 */
-    uint16_t pair_scale;   /* positions per step of `pairs`, Q8 */
-    uint8_t firm;          /* least `hold` of a frame in contact; 0 where there is none */
+    int16_t centre;                     /* Q4 FAP: added to every position on output */
+    uint16_t shape_scale;               /* positions per step of `shapes`, Q8; at most 32767 */
+    uint16_t slope_scale;               /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
+    uint16_t kernel_scale;              /* positions per step of `kernels`, Q8 */
+    uint16_t pair_scale;                /* positions per step of `pairs`, Q8 */
+    uint8_t firm;                       /* least `hold` of a frame in contact; 0 where there is none */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
     const uint16_t *transitions;        /* state_count x predecessors */

@@ -79,11 +79,11 @@ typedef struct {
  * a talker is often open while the lips are closed (p, b, m). `closed` and `open` are integer constants in units of the
  * output, either may be the larger.
  */
-#define LABIAL_RIG_JAW(closed, open)                                                                               \
-    {                                                                                                              \
-        { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 0,                               \
-            LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open), \
-            (closed) < (open) ? (open) : (closed), 0                                                               \
+#define LABIAL_RIG_JAW(closed, open)                                                                                   \
+    {                                                                                                                  \
+        { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 0,                                   \
+            LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open),   \
+            (closed) < (open) ? (open) : (closed), 0                                                                   \
     }
 
 /* ---- Calls ------------------------------------------------------------------------------------------------------- */

@@ -31,7 +31,7 @@ static const labial_rig_t *const rigs[] = { &arkit, &vrm, &oculus };
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     (void)frame;
-    memcpy(((mouth_t *)user)->faps, faps, sizeof ((mouth_t *)user)->faps);
+    memcpy(((mouth_t *)user)->faps, faps, sizeof((mouth_t *)user)->faps);
 }
 
 /* ---- Sizes and places of what there is --------------------------------------------------------------------------- */

@@ -32,7 +32,7 @@ typedef struct {
     uint32_t capacity;                   /* of `frames` */
     uint32_t delivered;                  /* frames that the last run delivered */
     uint32_t number;                     /* of the latest frame, counted since the stream was opened */
-    const labial_model_t *model; /* of the next push */
+    const labial_model_t *model;         /* of the next push */
     labial_t stream;
     uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4u];
 } labial_python_t;

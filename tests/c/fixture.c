@@ -202,7 +202,7 @@ static void add_floors(fixture_model_t *f)
 static void enrich(fixture_model_t *f)
 {
     unsigned i, c, q;
-    fixture_random_t random = {7};
+    fixture_random_t random = { 7 };
     f->model.soft = 1;
     f->model.search_stride = FIXTURE_STRIDE;
     reach(f, FIXTURE_TAPS, 4, LABIAL_REACH / 4 < 3 ? LABIAL_REACH / 4 : 3);

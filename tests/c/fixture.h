@@ -36,7 +36,7 @@ uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit 
 #define FIXTURE_TAPS 7
 #define FIXTURE_FLOORS 4
 #define FIXTURE_PREDECESSORS 8 /* of each state, at most */
-#define FIXTURE_PAIR_SIDE 3 /* known neighbours of each phoneme, to either side */
+#define FIXTURE_PAIR_SIDE 3    /* known neighbours of each phoneme, to either side */
 #define FIXTURE_PAIRS (6 * 2 * FIXTURE_PAIR_SIDE)
 
 /* A model with the tables that it points to. Must not be moved: fixture_*() are called on the place it stays in. */
@@ -131,9 +131,9 @@ int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate);
 typedef struct {
     int16_t (*frames)[LABIAL_CHANNELS];
     size_t count, capacity;
-    uint32_t next;      /* number that the next frame must have */
+    uint32_t next;        /* number that the next frame must have */
     unsigned misnumbered; /* frames that had another */
-    unsigned calls;     /* since it was last cleared by the host */
+    unsigned calls;       /* since it was last cleared by the host */
 } fixture_recorder_t;
 
 /* labial_frame_fn: `user` is a fixture_recorder_t. */
@@ -150,12 +150,12 @@ typedef enum {
 #define FIXTURE_MODELS 4 /* of one host */
 
 typedef struct {
-    labial_t *stream;          /* on the heap, so that overruns are seen */
-    uint32_t *workspace;       /* on the heap, exactly as large as is demanded */
+    labial_t *stream;    /* on the heap, so that overruns are seen */
+    uint32_t *workspace; /* on the heap, exactly as large as is demanded */
     const labial_model_t *models[FIXTURE_MODELS];
     unsigned model_count, current;
     fixture_recorder_t recorder;
-    int moving;                /* move the stream's structure before every tick */
+    int moving; /* move the stream's structure before every tick */
     fixture_random_t random;
 
     /* What happened so far. */

@@ -24,8 +24,8 @@ void fixture_record(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNE
     recorder->next = frame + 1;
     if (recorder->count == recorder->capacity) {
         recorder->capacity = recorder->capacity ? recorder->capacity * 2 : 256;
-        recorder->frames = (int16_t(*)[LABIAL_CHANNELS])realloc(recorder->frames,
-                                                                recorder->capacity * sizeof recorder->frames[0]);
+        recorder->frames =
+            (int16_t(*)[LABIAL_CHANNELS])realloc(recorder->frames, recorder->capacity * sizeof recorder->frames[0]);
         if (!recorder->frames)
             abort();
     }

@@ -21,7 +21,8 @@ double oracle_emission(const labial_emission_t *state, int32_t position)
  * to the position in order. */
 static int is_nearer(const labial_emission_t *emissions, unsigned a, unsigned b, int32_t position)
 {
-    const double from_a = fabs((double)position - emissions[a].mean), from_b = fabs((double)position - emissions[b].mean);
+    const double from_a = fabs((double)position - emissions[a].mean),
+                 from_b = fabs((double)position - emissions[b].mean);
     if (from_a != from_b)
         return from_a < from_b;
     if (emissions[a].mean != emissions[b].mean)

@@ -143,7 +143,7 @@ static void the_ends_are_exact(void **state)
  * open any further than it does in speech. */
 static void closures_are_kept(void **state)
 {
-    static const uint8_t upper[] = {3, 7, 8}, lower[] = {4, 9, 10};
+    static const uint8_t upper[] = { 3, 7, 8 }, lower[] = { 4, 9, 10 };
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     unsigned c;
     int i;
@@ -169,7 +169,7 @@ static void closures_are_kept(void **state)
 /* Would catch lips that are held always, which the test above would not mind: vowels laugh, corners laugh anywhere. */
 static void what_is_free_laughs(void **state)
 {
-    int16_t speech[LABIAL_CHANNELS] = {0}, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    int16_t speech[LABIAL_CHANNELS] = { 0 }, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     const labial_blend_t *blend = &labial_blend_default;
     unsigned c;
     (void)state;
@@ -224,8 +224,8 @@ static void monotone_in_intensity_and_words(void **state)
 /* Would catch any overflow: a value beyond both of those that it was made of. */
 static void extremes_stay_between(void **state)
 {
-    static const int16_t ends[] = {INT16_MIN, INT16_MIN + 1, -1, 0, 1, INT16_MAX - 1, INT16_MAX};
-    static const unsigned levels[] = {0, 1, 127, 128, 255, 256, 257, 65536, UINT32_MAX};
+    static const int16_t ends[] = { INT16_MIN, INT16_MIN + 1, -1, 0, 1, INT16_MAX - 1, INT16_MAX };
+    static const unsigned levels[] = { 0, 1, 127, 128, 255, 256, 257, 65536, UINT32_MAX };
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     labial_blend_t blend;
     unsigned c;
@@ -313,7 +313,7 @@ static void in_place_and_beyond_full(void **state)
 
 static void null_writes_nothing(void **state)
 {
-    const int16_t in[LABIAL_CHANNELS] = {1, 2, 3};
+    const int16_t in[LABIAL_CHANNELS] = { 1, 2, 3 };
     int16_t out[LABIAL_CHANNELS], kept[LABIAL_CHANNELS];
     (void)state;
     memset(out, 0x33, sizeof out);
@@ -328,10 +328,14 @@ static void null_writes_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(follows_the_equation),     cmocka_unit_test(the_ends_are_exact),
-        cmocka_unit_test(closures_are_kept),        cmocka_unit_test(what_is_free_laughs),
-        cmocka_unit_test(monotone_in_intensity_and_words), cmocka_unit_test(extremes_stay_between),
-        cmocka_unit_test(continuous),               cmocka_unit_test(in_place_and_beyond_full),
+        cmocka_unit_test(follows_the_equation),
+        cmocka_unit_test(the_ends_are_exact),
+        cmocka_unit_test(closures_are_kept),
+        cmocka_unit_test(what_is_free_laughs),
+        cmocka_unit_test(monotone_in_intensity_and_words),
+        cmocka_unit_test(extremes_stay_between),
+        cmocka_unit_test(continuous),
+        cmocka_unit_test(in_place_and_beyond_full),
         cmocka_unit_test(null_writes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -155,7 +155,7 @@ static void every_truncation_that_is_sealed_is_refused(void **state)
 /* Would catch bytes that the checksum does not cover, and a checksum that is not compared in full. */
 static void every_damaged_byte_is_refused(void **state)
 {
-    static const uint8_t flips[] = {0x01, 0x80, 0xff};
+    static const uint8_t flips[] = { 0x01, 0x80, 0xff };
     const size_t size = serialise(&rich.model);
     labial_blob_t blob;
     size_t n;
@@ -183,7 +183,7 @@ static void damage_that_is_sealed_is_refused_or_plays(void **state)
     size_t n;
     (void)state;
     for (n = 12; n < size; n += LABIAL_TEST_SHARE) {
-        static const uint8_t values[] = {0x00, 0xff, 0x80, 0x7f};
+        static const uint8_t values[] = { 0x00, 0xff, 0x80, 0x7f };
         const uint8_t was = bytes[n];
         labial_blob_t blob;
         void *copy;
@@ -202,8 +202,8 @@ static void damage_that_is_sealed_is_refused_or_plays(void **state)
             }
             if (fixture_run(&host, &blob.model, input, 8, FIXTURE_FILL) != 0)
                 fail_msg("byte %zu: %s", n, host.complaint);
-            assert_true(fixture_is_exact(host.recorder.count, fixture_duration(input, 8),
-                                         blob.model.frames_per_second));
+            assert_true(
+                fixture_is_exact(host.recorder.count, fixture_duration(input, 8), blob.model.frames_per_second));
             fixture_close(&host);
             played++;
         } else {
@@ -231,7 +231,9 @@ static void misaligned_data_is_refused(void **state)
 
 static void other_formats_are_refused(void **state)
 {
-    static const uint8_t formats[][2] = {{LABIAL_MODEL_FORMAT + 1, 0}, {0, 0}, {LABIAL_MODEL_FORMAT, 1}, {0xff, 0xff}};
+    static const uint8_t formats[][2] = {
+        { LABIAL_MODEL_FORMAT + 1, 0 }, { 0, 0 }, { LABIAL_MODEL_FORMAT, 1 }, { 0xff, 0xff }
+    };
     const size_t size = serialise(&plain.model);
     labial_blob_t blob;
     unsigned i;
@@ -272,11 +274,12 @@ static void counts_that_lie_are_refused(void **state)
         unsigned at;
         uint8_t value;
     } lies[] = {
-        {16, 0},   {17, 0xff}, {18, 1},   {18, 7},   {18, 255}, {19, 1},   {19, 32}, {20, 1},   {20, 64}, {20, 255},
-        {21, 0},   {21, 4},    {21, 7},   {21, 12},  {21, 64},  {21, 255}, {22, 0},  {22, 9},   {22, 255},
-        {23, 6},   {24, 2},    {25, 0},   {25, 8},   {26, 255}, {27, 7},   {28, 0},  {28, 1},   {28, 2},
-        {28, 3},   {28, 8},    {28, 15},  {28, 255},
-        {29, 0},   {29, 1},    {29, 5},   {29, 255}, {30, 0},   {30, 1},   {30, 35}, {30, 37},  {30, 255}, {31, 1},
+        { 16, 0 },   { 17, 0xff }, { 18, 1 },   { 18, 7 },   { 18, 255 }, { 19, 1 },   { 19, 32 },
+        { 20, 1 },   { 20, 64 },   { 20, 255 }, { 21, 0 },   { 21, 4 },   { 21, 7 },   { 21, 12 },
+        { 21, 64 },  { 21, 255 },  { 22, 0 },   { 22, 9 },   { 22, 255 }, { 23, 6 },   { 24, 2 },
+        { 25, 0 },   { 25, 8 },    { 26, 255 }, { 27, 7 },   { 28, 0 },   { 28, 1 },   { 28, 2 },
+        { 28, 3 },   { 28, 8 },    { 28, 15 },  { 28, 255 }, { 29, 0 },   { 29, 1 },   { 29, 5 },
+        { 29, 255 }, { 30, 0 },    { 30, 1 },   { 30, 35 },  { 30, 37 },  { 30, 255 }, { 31, 1 },
     };
     unsigned i;
     (void)state;

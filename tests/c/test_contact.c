@@ -279,7 +279,8 @@ static void random_streams_keep_contact(void **state)
         for (i = 0; i < phonemes; i++) {
             input[i].ms %= 1000;
             input[i].model = (uint8_t)(LABIAL_MODELS > 1 && seed % 3 == 0 && i / 7 % 2);
-            input[i].phoneme = (uint8_t)(input[i].phoneme % (input[i].model ? FIXTURE_LAUGH_COUNT : FIXTURE_SPEECH_COUNT));
+            input[i].phoneme =
+                (uint8_t)(input[i].phoneme % (input[i].model ? FIXTURE_LAUGH_COUNT : FIXTURE_SPEECH_COUNT));
             (void)labial_units_push(&units, input[i].phoneme, input[i].model, input[i].ms, FIXTURE_RATE);
         }
         count = oracle_units(models, input, phonemes, frames, MANY);

@@ -14,7 +14,7 @@
 /* Would catch a channel out of order: every model trained with the right order would move the wrong point. */
 static void channels_have_their_numbers(void **state)
 {
-    static const uint8_t numbers[LABIAL_CHANNELS] = {3, 16, 17, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60};
+    static const uint8_t numbers[LABIAL_CHANNELS] = { 3, 16, 17, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60 };
     (void)state;
     assert_memory_equal(labial_fap_numbers, numbers, sizeof numbers);
 }
@@ -39,7 +39,7 @@ static void inner_lip_moves_as_the_outer(void **state)
 {
     struct {
         int16_t before, faps[LABIAL_FAPS_EXPANDED], after;
-    } out = {-77, {0}, -78};
+    } out = { -77, { 0 }, -78 };
     int16_t in[LABIAL_CHANNELS];
     unsigned i;
     (void)state;
@@ -70,7 +70,7 @@ static void extreme_values_are_copied(void **state)
 
 static void null_does_nothing(void **state)
 {
-    const int16_t in[LABIAL_CHANNELS] = {1};
+    const int16_t in[LABIAL_CHANNELS] = { 1 };
     int16_t out[LABIAL_FAPS_EXPANDED], kept[LABIAL_FAPS_EXPANDED];
     (void)state;
     memset(out, 0x33, sizeof out);
@@ -84,8 +84,10 @@ static void null_does_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(channels_have_their_numbers), cmocka_unit_test(expanded_numbers_ascend),
-        cmocka_unit_test(inner_lip_moves_as_the_outer), cmocka_unit_test(extreme_values_are_copied),
+        cmocka_unit_test(channels_have_their_numbers),
+        cmocka_unit_test(expanded_numbers_ascend),
+        cmocka_unit_test(inner_lip_moves_as_the_outer),
+        cmocka_unit_test(extreme_values_are_copied),
         cmocka_unit_test(null_does_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -38,10 +38,11 @@
 #undef labial_ease
 #undef labial_clamp
 
-static const int32_t corners[] = {0,      1,       -1,        2,          -2,         3,         255,       -256,
-                                  32767,  32768,   -32768,    -32769,     65535,      65536,     -65536,    -65537,
-                                  98304,  1 << 20, 0x7fff8000, 0x7fffffff, -0x7fffffff, INT32_MIN, INT32_MIN + 1,
-                                  0x55555555};
+static const int32_t corners[] = {
+    0,     1,       -1,         2,          -2,          3,         255,           -256,
+    32767, 32768,   -32768,     -32769,     65535,       65536,     -65536,        -65537,
+    98304, 1 << 20, 0x7fff8000, 0x7fffffff, -0x7fffffff, INT32_MIN, INT32_MIN + 1, 0x55555555
+};
 
 #define CORNERS (sizeof corners / sizeof corners[0])
 
@@ -67,7 +68,7 @@ static void check_product(int32_t a, int32_t b, unsigned shift)
 /* Would catch a lost carry between the four small products, and rounding that differs from target to target. */
 static void products_are_rounded_alike_and_exactly(void **state)
 {
-    fixture_random_t random = {1};
+    fixture_random_t random = { 1 };
     unsigned i, k, shift;
     (void)state;
     for (shift = 16; shift <= 31; shift++) {
@@ -86,7 +87,7 @@ static void products_are_rounded_alike_and_exactly(void **state)
  * the halves of x, and a target whose parts differ from another's. */
 static void parts_are_rounded_alike(void **state)
 {
-    fixture_random_t random = {2};
+    fixture_random_t random = { 2 };
     unsigned i;
     (void)state;
     for (i = 0; i < 400000; i++) {
@@ -127,7 +128,7 @@ static void weights_are_minifloats(void **state)
 /* z = x * gain / 2^12 in Q6 and z^2 / 2^7 the exponent, both rounded down; z ends at the limit. */
 static void gaussian_costs_follow_their_formula(void **state)
 {
-    fixture_random_t random = {3};
+    fixture_random_t random = { 3 };
     unsigned i;
     (void)state;
     for (i = 0; i < 200000; i++) {
@@ -183,10 +184,12 @@ static void clamping(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(products_are_rounded_alike_and_exactly), cmocka_unit_test(sums_wrap),
+        cmocka_unit_test(products_are_rounded_alike_and_exactly),
+        cmocka_unit_test(sums_wrap),
         cmocka_unit_test(parts_are_rounded_alike),
         cmocka_unit_test(weights_are_minifloats),
-        cmocka_unit_test(gaussian_costs_follow_their_formula),    cmocka_unit_test(easing_follows_its_curve),
+        cmocka_unit_test(gaussian_costs_follow_their_formula),
+        cmocka_unit_test(easing_follows_its_curve),
         cmocka_unit_test(clamping),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

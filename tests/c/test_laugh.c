@@ -152,7 +152,7 @@ static void seeds_give_different_laughs(void **state)
 /* Would catch an intensity that changes nothing, or the wrong way. */
 static void intensity_opens_the_mouth(void **state)
 {
-    uint32_t seed, open[3] = {0, 0, 0}, hummed[3] = {0, 0, 0}, a[3] = {0, 0, 0};
+    uint32_t seed, open[3] = { 0, 0, 0 }, hummed[3] = { 0, 0, 0 }, a[3] = { 0, 0, 0 };
     unsigned i;
     (void)state;
     for (i = 0; i < 3; i++)
@@ -336,12 +336,16 @@ static void the_tables_keep_the_limits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(totals_are_exact),          cmocka_unit_test(no_phoneme_fills_the_rest),
+        cmocka_unit_test(totals_are_exact),
+        cmocka_unit_test(no_phoneme_fills_the_rest),
         cmocka_unit_test(laughs_are_those_of_the_reference),
         cmocka_unit_test(more_than_the_highest_intensity_is_the_highest),
-        cmocka_unit_test(seeds_give_different_laughs), cmocka_unit_test(intensity_opens_the_mouth),
-        cmocka_unit_test(errors),                    cmocka_unit_test(the_numbers_are_the_bundled_models),
-        cmocka_unit_test(intensity_reaches_the_mouth), cmocka_unit_test(the_tables_keep_the_limits),
+        cmocka_unit_test(seeds_give_different_laughs),
+        cmocka_unit_test(intensity_opens_the_mouth),
+        cmocka_unit_test(errors),
+        cmocka_unit_test(the_numbers_are_the_bundled_models),
+        cmocka_unit_test(intensity_reaches_the_mouth),
+        cmocka_unit_test(the_tables_keep_the_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,15 +15,15 @@
 #include "labial/names.h"
 
 #define ANY LABIAL_LABELS_AUTO
-#define B 4       /* the phoneme of "B" */
-#define AA 1      /* and of "AA", in ARPABET alone */
-#define SCHWA 9   /* of U+0259 */
+#define B 4     /* the phoneme of "B" */
+#define AA 1    /* and of "AA", in ARPABET alone */
+#define SCHWA 9 /* of U+0259 */
 #define SILENCE 77
 
-static const uint8_t entries[] = {B, 1 | 0xe0, 'B', AA, 2 | 0x20, 'A', 'A', 7, 3 | 0xe0, 'A', '_', 'Z',
-                                  SCHWA, 2 | 0x40, 0xc9, 0x99};
-static const labial_names_t names = {sizeof entries, 10, entries, NULL};
-static const labial_names_t without_schwa = {sizeof entries - 4, 10, entries, NULL};
+static const uint8_t entries[] = { B,        1 | 0xe0, 'B', AA,  2 | 0x20, 'A',      'A',  7,
+                                   3 | 0xe0, 'A',      '_', 'Z', SCHWA,    2 | 0x40, 0xc9, 0x99 };
+static const labial_names_t names = { sizeof entries, 10, entries, NULL };
+static const labial_names_t without_schwa = { sizeof entries - 4, 10, entries, NULL };
 
 /* Looks `length` bytes up at the very end of a heap block. */
 static int find(const char *name, size_t length)
@@ -67,8 +67,8 @@ static int is_one_of(unsigned point, const unsigned *points, size_t count)
 /* Would catch a mark that is forgotten, a range that is too long by one, and half a mark. */
 static void every_character_is_a_mark_or_none(void **state)
 {
-    static const unsigned signs[] = {0x2b0, 0x2b2, 0x2b7, 0x2d0, 0x2d1, 0x2e0, 0x2e1, 0x2e4, 0x207f};
-    static const unsigned stress[] = {0x2c8, 0x2cc, 0x294};
+    static const unsigned signs[] = { 0x2b0, 0x2b2, 0x2b7, 0x2d0, 0x2d1, 0x2e0, 0x2e1, 0x2e4, 0x207f };
+    static const unsigned stress[] = { 0x2c8, 0x2cc, 0x294 };
     unsigned point;
     (void)state;
     for (point = 0x80; point < 0x10000; point++) {
@@ -95,7 +95,7 @@ static void two_bytes_are_a_mark_where_they_are_a_character(void **state)
     (void)state;
     for (a = 0x80; a < 0x100; a++)
         for (b = 0; b < 0x100; b++) {
-            const char behind[] = {'B', (char)a, (char)b}, before[] = {(char)a, (char)b, 'B'};
+            const char behind[] = { 'B', (char)a, (char)b }, before[] = { (char)a, (char)b, 'B' };
             const int is_character = a >= 0xc2 && a < 0xe0 && b >= 0x80 && b < 0xc0;
             if (!is_character && (find(behind, 3) == B || find(before, 3) == B))
                 fail_msg("bytes %02x %02x", a, b);
@@ -110,8 +110,9 @@ static void every_sign_is_a_mark_or_none(void **state)
     for (c = 0; c < 0x80; c++) {
         const char one = (char)c;
         const int is_blank = c == ' ' || c == '\t' || c == '\r' || c == '\n';
-        const char behind[] = {'B', one}, before[] = {one, 'B'}, apart[] = {'B', ' ', one}, stressed[] = {'A', 'A', one};
-        const char suffix[] = {'B', '_', one}, distant[] = {'B', ' ', '_', one}, third[] = {'A', 'A', '_', one};
+        const char behind[] = { 'B', one }, before[] = { one, 'B' }, apart[] = { 'B', ' ', one },
+                   stressed[] = { 'A', 'A', one };
+        const char suffix[] = { 'B', '_', one }, distant[] = { 'B', ' ', '_', one }, third[] = { 'A', 'A', '_', one };
         const int is_behind = c != 0 && strchr(":=~;.^\"-", one) != NULL, is_before = c != 0 && strchr("'\",%?", one);
         const int is_suffix = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
                               (c != 0 && strchr("=~^", one) != NULL);
@@ -139,7 +140,7 @@ static void every_backslash_sequence_is_a_mark_or_none(void **state)
     (void)state;
     for (a = 1; a < 0x80; a++)
         for (b = 1; b < 0x80; b++) {
-            const char behind[] = {'B', '\\', (char)a, (char)b}, before[] = {'\\', (char)a, (char)b, 'B'};
+            const char behind[] = { 'B', '\\', (char)a, (char)b }, before[] = { '\\', (char)a, (char)b, 'B' };
             const int is_mark = (strchr("|0OT-+:~NUDn3cv'`^", (int)a) && strchr("v^()", (int)b)) ||
                                 ((a == ':' || a == '.') && b == 'f') || (a == '\'' && (b == '1' || b == '2'));
             if ((find(behind, 4) == B) != is_mark || (find(before, 4) == B) != is_mark)

@@ -45,8 +45,8 @@ static void refuses_null(void **state)
     TRY(const labial_phoneme_t *, f.model.phonemes, NULL, LABIAL_ERROR_NULL);
     TRY(const labial_component_t *, f.model.components, NULL, LABIAL_ERROR_NULL);
     TRY(const int8_t *, f.model.shapes, NULL, LABIAL_ERROR_NULL);
-    TRY(const int8_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL); /* there are taps */
-    TRY(const int16_t *, f.model.floors, NULL, LABIAL_ERROR_NULL); /* there are floors */
+    TRY(const int8_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL);    /* there are taps */
+    TRY(const int16_t *, f.model.floors, NULL, LABIAL_ERROR_NULL);    /* there are floors */
     TRY(const uint16_t *, f.model.contacts, NULL, LABIAL_ERROR_NULL); /* there are floors, contact or not */
     TRY(const labial_channel_t *, f.model.channels, NULL, LABIAL_ERROR_NULL);
     for (c = 0; c < LABIAL_CHANNELS; c++) {

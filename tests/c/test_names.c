@@ -24,17 +24,18 @@ static const struct {
     uint8_t phoneme;
     uint8_t sets;
 } entries[] = {
-    {"2", 5, XSAMPA},       {"A", 9, ANY},    {"AA", 1, ARPABET}, {"AA1", 2, ARPABET}, {"AE", 3, ARPABET},
-    {"B", 4, ANY},          {"S", 3, ARPABET}, {"S", 7, XSAMPA},  {"_:", 8, ANY},      {"a", 5, ARPABET | IPA},
-    {"a\xca\x8a", 6, IPA}, {"sil", 0, ANY},  {"\xc9\x91", 1, IPA}, /* a + upsilon; alpha */
-    {"\xca\x83", 7, IPA}, /* esh, the last entry */
+    { "2", 5, XSAMPA },     { "A", 9, ANY },           { "AA", 1, ARPABET },    { "AA1", 2, ARPABET },
+    { "AE", 3, ARPABET },   { "B", 4, ANY },           { "S", 3, ARPABET },     { "S", 7, XSAMPA },
+    { "_:", 8, ANY },       { "a", 5, ARPABET | IPA }, { "a\xca\x8a", 6, IPA }, { "sil", 0, ANY },
+    { "\xc9\x91", 1, IPA }, /* a + upsilon; alpha */
+    { "\xca\x83", 7, IPA }, /* esh, the last entry */
 };
 
-static const char *const labels[] = {"sil", "AA", "AA1", "AE", "B", "a", "a\xca\x8a", "\xca\x83", "_:", "A"};
+static const char *const labels[] = { "sil", "AA", "AA1", "AE", "B", "a", "a\xca\x8a", "\xca\x83", "_:", "A" };
 
 #define COUNT (sizeof entries / sizeof entries[0])
 
-static labial_names_t names = {0, sizeof labels / sizeof labels[0], NULL, labels};
+static labial_names_t names = { 0, sizeof labels / sizeof labels[0], NULL, labels };
 
 /* Packs the first `count` names at the very end of a heap block. */
 static uint8_t *pack(labial_names_t *packed, unsigned count)
@@ -144,8 +145,10 @@ static void length_is_obeyed(void **state)
 
 static void unknown_names_are_refused(void **state)
 {
-    static const char *const unknown[] = {"AAA", "0", "ZZ", "b", "AB", "AAx", "Zzzzzzzzzzzzzzzzzzzzzzzzzzzz", "si",
-                                          "sill", "\xff", "\xca", "\xca\x8a", "x1", "1AA"};
+    static const char *const unknown[] = {
+        "AAA", "0",    "ZZ",   "b",    "AB",       "AAx", "Zzzzzzzzzzzzzzzzzzzzzzzzzzzz",
+        "si",  "sill", "\xff", "\xca", "\xca\x8a", "x1",  "1AA"
+    };
     unsigned i;
     (void)state;
     for (i = 0; i < sizeof unknown / sizeof unknown[0]; i++)
@@ -162,7 +165,7 @@ static void empty_names_are_refused(void **state)
 
 static void null_is_an_error(void **state)
 {
-    static const uint8_t nothing[1] = {0};
+    static const uint8_t nothing[1] = { 0 };
     labial_names_t none;
     (void)state;
     memset(&none, 0, sizeof none);
@@ -207,15 +210,18 @@ static void ipa_marks_are_dropped(void **state)
 /* Would catch a mark taken for a name, half a mark, and a length that wraps below zero. */
 static void marks_alone_are_unknown(void **state)
 {
-    static const char *const marks[] = {"\xcb\x88", "\xcb\x8c", "\xcb\x90", "\xcb\x88\xcb\x90", "\xcb", "\x88",
-                                        "\xcb\x88\xcb\x88", "1", "00", "\x90", "\xcb\x88\x31"};
+    static const char *const marks[] = { "\xcb\x88", "\xcb\x8c", "\xcb\x90",         "\xcb\x88\xcb\x90",
+                                         "\xcb",     "\x88",     "\xcb\x88\xcb\x88", "1",
+                                         "00",       "\x90",     "\xcb\x88\x31" };
     unsigned i;
     (void)state;
     for (i = 0; i < sizeof marks / sizeof marks[0]; i++)
         if (find(marks[i]) != LABIAL_ERROR_NAME)
             fail_msg("mark %u is %d", i, find(marks[i]));
     assert_int_equal(find("AA\xcb"), LABIAL_ERROR_NAME);
-    assert_int_equal(find("\xcb" "AA"), LABIAL_ERROR_NAME);
+    assert_int_equal(find("\xcb"
+                          "AA"),
+                     LABIAL_ERROR_NAME);
 }
 
 /* Would catch a mark that is dropped at the wrong end, and letters that are taken for marks. */
@@ -233,7 +239,9 @@ static void other_marks_are_dropped(void **state)
     assert_int_equal(find("B\xca\xb0"), 4);         /* aspirated */
     assert_int_equal(find("a\xcd\xa1\xca\x8a"), 6); /* tied: a, double breve, upsilon */
     assert_int_equal(find("a\\~^"), 5);
-    assert_int_equal(find("\\'1" "a\\:f"), 5);
+    assert_int_equal(find("\\'1"
+                          "a\\:f"),
+                     5);
     assert_int_equal(find(" AA\r"), 1);
     assert_int_equal(find("a\xcc\xa7"), LABIAL_ERROR_NAME); /* the cedilla makes another letter */
     assert_int_equal(find("a'"), LABIAL_ERROR_NAME);
@@ -293,14 +301,20 @@ static void tables_of_every_size(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_entry_is_found), cmocka_unit_test(length_is_obeyed),
-        cmocka_unit_test(unknown_names_are_refused), cmocka_unit_test(empty_names_are_refused),
-        cmocka_unit_test(null_is_an_error), cmocka_unit_test(stress_digits_are_dropped),
-        cmocka_unit_test(a_name_as_it_stands_comes_first), cmocka_unit_test(ipa_marks_are_dropped),
-        cmocka_unit_test(other_marks_are_dropped), cmocka_unit_test(sets_have_labels_of_their_own),
+        cmocka_unit_test(every_entry_is_found),
+        cmocka_unit_test(length_is_obeyed),
+        cmocka_unit_test(unknown_names_are_refused),
+        cmocka_unit_test(empty_names_are_refused),
+        cmocka_unit_test(null_is_an_error),
+        cmocka_unit_test(stress_digits_are_dropped),
+        cmocka_unit_test(a_name_as_it_stands_comes_first),
+        cmocka_unit_test(ipa_marks_are_dropped),
+        cmocka_unit_test(other_marks_are_dropped),
+        cmocka_unit_test(sets_have_labels_of_their_own),
         cmocka_unit_test(lone_digits_are_of_x_sampa),
         cmocka_unit_test(every_label_has_a_nearest_phoneme),
-        cmocka_unit_test(marks_alone_are_unknown), cmocka_unit_test(tables_of_every_size),
+        cmocka_unit_test(marks_alone_are_unknown),
+        cmocka_unit_test(tables_of_every_size),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

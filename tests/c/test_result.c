@@ -15,10 +15,10 @@
 #define UNKNOWN "unknown result"
 
 static const int codes[] = {
-    LABIAL_OK, LABIAL_WAITING, LABIAL_STARVED, LABIAL_DONE, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION,
-    LABIAL_ERROR_MODEL, LABIAL_ERROR_WORKSPACE, LABIAL_ERROR_STATE, LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION,
-    LABIAL_ERROR_FULL, LABIAL_ERROR_RATE, LABIAL_ERROR_MODELS, LABIAL_ERROR_NAME,
-    LABIAL_ERROR_RIG,
+    LABIAL_OK,          LABIAL_WAITING,       LABIAL_STARVED,        LABIAL_DONE,
+    LABIAL_ERROR_NULL,  LABIAL_ERROR_VERSION, LABIAL_ERROR_MODEL,    LABIAL_ERROR_WORKSPACE,
+    LABIAL_ERROR_STATE, LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION, LABIAL_ERROR_FULL,
+    LABIAL_ERROR_RATE,  LABIAL_ERROR_MODELS,  LABIAL_ERROR_NAME,     LABIAL_ERROR_RIG,
 };
 
 #define CODES (sizeof codes / sizeof codes[0])
@@ -56,7 +56,7 @@ static void every_code_has_its_own_text(void **state)
 
 static void other_numbers_are_unknown(void **state)
 {
-    static const int others[] = {4, 5, 6, 255, -13, -14, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1};
+    static const int others[] = { 4, 5, 6, 255, -13, -14, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
     unsigned i;
     (void)state;
     for (i = 0; i < sizeof others / sizeof others[0]; i++)
@@ -66,7 +66,8 @@ static void other_numbers_are_unknown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(zero_is_success_and_errors_are_negative), cmocka_unit_test(every_code_has_its_own_text),
+        cmocka_unit_test(zero_is_success_and_errors_are_negative),
+        cmocka_unit_test(every_code_has_its_own_text),
         cmocka_unit_test(other_numbers_are_unknown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

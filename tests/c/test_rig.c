@@ -83,12 +83,12 @@ static void gain_and_weights_multiply(void **state)
     assert_int_equal(moved(&output, 1500, 100), 1650);
     output.weights[FAP3] = -LABIAL_RIG_ONE / 2;
     assert_int_equal(moved(&output, 1500, 100), 1425);
-    output.gain = LABIAL_RIG_GAIN(1, 10); /* 65536 / 10, cut to 6553: half of it is .04999 */
-    assert_int_equal(moved(&output, 1500, 90), 1496);  /* -4.49959 is nearer to -4 */
-    assert_int_equal(moved(&output, 1500, 91), 1495);  /* -4.54958 to -5 */
+    output.gain = LABIAL_RIG_GAIN(1, 10);             /* 65536 / 10, cut to 6553: half of it is .04999 */
+    assert_int_equal(moved(&output, 1500, 90), 1496); /* -4.49959 is nearer to -4 */
+    assert_int_equal(moved(&output, 1500, 91), 1495); /* -4.54958 to -5 */
     output.gain = LABIAL_RIG_GAIN(1, 4);
-    assert_int_equal(moved(&output, 1500, 4), 1500);   /* -0.5 goes up to 0 */
-    assert_int_equal(moved(&output, 1500, -4), 1501);  /* 0.5 goes up to 1 */
+    assert_int_equal(moved(&output, 1500, 4), 1500);  /* -0.5 goes up to 0 */
+    assert_int_equal(moved(&output, 1500, -4), 1501); /* 0.5 goes up to 1 */
 }
 
 static void every_fap_has_its_weight(void **state)
@@ -182,8 +182,8 @@ static void jaw_macro_closes_and_opens(void **state)
         int16_t top, bottom;
         int32_t up;
     } poses[] = {
-        { 0, 0, 1400 },    { 90, -90, 1400 },   { 0, -600, 1900 }, { -100, -500, 1900 },
-        { 0, -300, 1650 }, { 90, -390, 1650 },  { 200, 0, 1400 },  { -32768, -32768, 1900 },
+        { 0, 0, 1400 },    { 90, -90, 1400 },  { 0, -600, 1900 }, { -100, -500, 1900 },
+        { 0, -300, 1650 }, { 90, -390, 1650 }, { 200, 0, 1400 },  { -32768, -32768, 1900 },
     };
     unsigned i;
     (void)state;
@@ -395,13 +395,13 @@ static void null_and_empty_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_is_neutral_within_limits), cmocka_unit_test(gain_and_weights_multiply),
-        cmocka_unit_test(every_fap_has_its_weight), cmocka_unit_test(limits_hold_whatever_the_faps),
-        cmocka_unit_test(inversion_mirrors_the_move), cmocka_unit_test(neutral_beyond_a_limit_is_a_threshold),
+        cmocka_unit_test(rest_is_neutral_within_limits),    cmocka_unit_test(gain_and_weights_multiply),
+        cmocka_unit_test(every_fap_has_its_weight),         cmocka_unit_test(limits_hold_whatever_the_faps),
+        cmocka_unit_test(inversion_mirrors_the_move),       cmocka_unit_test(neutral_beyond_a_limit_is_a_threshold),
         cmocka_unit_test(slew_bounds_the_change_per_frame), cmocka_unit_test(last_value_is_not_trusted),
-        cmocka_unit_test(jaw_macro_closes_and_opens), cmocka_unit_test(random_rigs_equal_double),
-        cmocka_unit_test(unchecked_tables_stay_defined), cmocka_unit_test(check_names_every_fault),
-        cmocka_unit_test(check_accepts_the_very_limits), cmocka_unit_test(null_and_empty_are_refused),
+        cmocka_unit_test(jaw_macro_closes_and_opens),       cmocka_unit_test(random_rigs_equal_double),
+        cmocka_unit_test(unchecked_tables_stay_defined),    cmocka_unit_test(check_names_every_fault),
+        cmocka_unit_test(check_accepts_the_very_limits),    cmocka_unit_test(null_and_empty_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -133,7 +133,7 @@ static void compare(unsigned count, unsigned ms, unsigned previous, unsigned nex
 /* All combinations of what a model may have, on random tables and durations from none to beyond every component. */
 static void selection_follows_the_formula(void **state)
 {
-    fixture_random_t random = {31};
+    fixture_random_t random = { 31 };
     unsigned round;
     (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(4000); round++) {
@@ -152,7 +152,7 @@ static void selection_follows_the_formula(void **state)
 /* Would catch previous and next taken for each other. */
 static void context_has_a_direction(void **state)
 {
-    fixture_random_t random = {32};
+    fixture_random_t random = { 32 };
     labial_shape_t shape;
     (void)state;
     make(&random, 2);
@@ -176,7 +176,7 @@ static void context_has_a_direction(void **state)
 /* Of the longest durations and the strangest tables: within the range of positions. */
 static void extremes_stay_within_the_range(void **state)
 {
-    fixture_random_t random = {33};
+    fixture_random_t random = { 33 };
     unsigned round, i;
     (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(600); round++) {
@@ -206,7 +206,9 @@ static void extremes_stay_within_the_range(void **state)
 
 static double limited(double value)
 {
-    return value > LABIAL_POSITION_MAX ? LABIAL_POSITION_MAX : value < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX : value;
+    return value > LABIAL_POSITION_MAX    ? LABIAL_POSITION_MAX
+           : value < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX
+                                          : value;
 }
 
 /* The shape between its knots plus, for every tap i, the curve of the phoneme at (i - behind) * stride, and not below the
@@ -215,7 +217,7 @@ static double limited(double value)
 static void targets_are_shapes_kernels_and_floors(void **state)
 {
     static int8_t kernels[FIXTURE_SPEECH_COUNT * LABIAL_KERNEL_TAPS_MAX * LABIAL_CHANNELS];
-    fixture_random_t random = {34};
+    fixture_random_t random = { 34 };
     unsigned round, i, k, raised = 0;
     (void)state;
     fixture_rich(&f);
@@ -305,7 +307,7 @@ static unsigned compare_pairs(unsigned number, unsigned previous, unsigned next)
 static void pairs_add_their_row_and_others_nothing(void **state)
 {
     static labial_phoneme_t many[LABIAL_PHONEMES_MAX];
-    fixture_random_t random = {35};
+    fixture_random_t random = { 35 };
     unsigned number, round, k, added = 0;
     (void)state;
     fixture_rich(&f);
@@ -333,7 +335,7 @@ static void pairs_move_from_start_to_end(void **state)
     static const struct {
         unsigned share;
         int wanted;
-    } cases[] = { { 0, 160 },     { 2048, 120 },   { 4096, 80 },   { 6144, 40 },     { 8192, 0 },
+    } cases[] = { { 0, 160 },     { 2048, 120 },  { 4096, 80 },    { 6144, 40 },   { 8192, 0 },
                   { 10240, -40 }, { 12288, -80 }, { 14336, -120 }, { 16384, -160 } };
     uint8_t labels[2 * LABIAL_REACH + 1];
     int16_t target[LABIAL_CHANNELS];

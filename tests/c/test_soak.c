@@ -38,11 +38,11 @@ typedef struct {
     memory_t memory;
     fixture_random_t random;
     labial_laugh_t laugh;
-    unsigned phonemes;  /* of speech that are still to be said before something else is chosen */
+    unsigned phonemes; /* of speech that are still to be said before something else is chosen */
     int laughing;
-    uint32_t next;      /* number of the frame that is due */
-    unsigned calls;     /* of the callback, since the last tick began */
-    uint64_t day;       /* frames since midnight */
+    uint32_t next;       /* number of the frame that is due */
+    unsigned calls;      /* of the callback, since the last tick began */
+    uint64_t day;        /* frames since midnight */
     uint64_t ms, frames; /* pushed and delivered since the stream began or was taken up again */
     unsigned ends, cancels, laughs, starved, wraps;
     int16_t (*kept)[LABIAL_CHANNELS]; /* where frames go, or null */
@@ -50,7 +50,7 @@ typedef struct {
 
 static day_t day;
 
-static const labial_model_t *const models[] = {&speech_en, &laughter_synthetic};
+static const labial_model_t *const models[] = { &speech_en, &laughter_synthetic };
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {

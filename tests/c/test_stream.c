@@ -112,8 +112,8 @@ static void two_streams_do_not_disturb_each_other(void **state)
     fixture_host_t alone[2], together[2];
     const labial_model_t *models[2];
     const fixture_phoneme_t *inputs[2];
-    size_t next[2] = {0, 0};
-    int done[2] = {0, 0};
+    size_t next[2] = { 0, 0 };
+    int done[2] = { 0, 0 };
     unsigned i, rounds = 0;
     (void)state;
     models[0] = &rich.model;

@@ -60,7 +60,7 @@ static size_t drain(fixture_host_t *host)
 
 static int is_neutral(const int16_t *frame)
 {
-    static const int16_t neutral[LABIAL_CHANNELS] = {0};
+    static const int16_t neutral[LABIAL_CHANNELS] = { 0 };
     return memcmp(frame, neutral, sizeof neutral) == 0;
 }
 
@@ -72,10 +72,25 @@ static void easing_takes_the_time_asked_for_rounded_up(void **state)
         uint32_t ms;
         size_t frames;
     } cases[] = {
-        {50, 0, 1},     {50, 1, 1},     {50, 20, 1},       {50, 21, 2},          {50, 200, 10},
-        {30, 100, 3},   {30, 101, 4},   {50, 20000, 1000}, {50, 20001, 1000},    {50, 3600000, 1000},
-        {250, 17179870, 1000}, {50, 85899346, 1000}, {250, UINT32_MAX, 1000}, {10, 1, 1}, {10, 2001, 21},
-        {50, UINT32_MAX, 1000}, {250, 4000, 1000}, {250, 3997, 1000}, {250, 3996, 999},
+        { 50, 0, 1 },
+        { 50, 1, 1 },
+        { 50, 20, 1 },
+        { 50, 21, 2 },
+        { 50, 200, 10 },
+        { 30, 100, 3 },
+        { 30, 101, 4 },
+        { 50, 20000, 1000 },
+        { 50, 20001, 1000 },
+        { 50, 3600000, 1000 },
+        { 250, 17179870, 1000 },
+        { 50, 85899346, 1000 },
+        { 250, UINT32_MAX, 1000 },
+        { 10, 1, 1 },
+        { 10, 2001, 21 },
+        { 50, UINT32_MAX, 1000 },
+        { 250, 4000, 1000 },
+        { 250, 3997, 1000 },
+        { 250, 3996, 999 },
     };
     unsigned i;
     (void)state;
@@ -95,7 +110,7 @@ static void easing_takes_the_time_asked_for_rounded_up(void **state)
 /* Would catch an overshoot, a turn on the way and a jump at its beginning. */
 static void easing_is_monotonic_and_even(void **state)
 {
-    static const unsigned lengths[] = {1, 2, 3, 7, 10, 50, 333, 1000};
+    static const unsigned lengths[] = { 1, 2, 3, 7, 10, 50, 333, 1000 };
     unsigned i, c, moved = 0;
     size_t t;
     (void)state;
@@ -198,8 +213,8 @@ static void a_stream_is_taken_up_where_it_stopped(void **state)
         far += apart > 60;
         for (i = first; i < first + FADE; i++) {
             const int step = abs(host.recorder.frames[i][c] - host.recorder.frames[i - 1][c]);
-            const int own = i == first ? 0 : abs(fresh.recorder.frames[i - first][c] -
-                                                 fresh.recorder.frames[i - first - 1][c]);
+            const int own =
+                i == first ? 0 : abs(fresh.recorder.frames[i - first][c] - fresh.recorder.frames[i - first - 1][c]);
             if (step > apart / 3 + own + 2)
                 fail_msg("channel %u, frame %zu: a step of %d where %d are to be bridged", c, i - first, step, apart);
         }
@@ -235,7 +250,7 @@ static void a_cancelled_stream_is_taken_up_from_neutral(void **state)
 static void many_rounds(void **state)
 {
     fixture_host_t host;
-    fixture_random_t random = {5};
+    fixture_random_t random = { 5 };
     unsigned round;
     (void)state;
     begin(&host, FIXTURE_RATE, 10);

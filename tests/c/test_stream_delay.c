@@ -47,7 +47,8 @@ static void foretell(const labial_model_t *const *models, unsigned model_count, 
         quiet = quiet > 0 ? quiet - 1 : fixture_below(&random, longest + 1);
         if (pushed == COUNT && !host.ended)
             fixture_end(&host);
-        is_moving = taken < count ? host.ended || pushed >= frames[taken].needs : host.ended && host.recorder.count < count;
+        is_moving =
+            taken < count ? host.ended || pushed >= frames[taken].needs : host.ended && host.recorder.count < count;
         taken += is_moving && taken < count;
         moved += (size_t)is_moving;
         if (is_moving && moved > delay)
@@ -78,7 +79,7 @@ static void every_tick_is_foretold(void **state)
     uint32_t seed;
     (void)state;
     for (kind = 0; kind < FIXTURE_HOUR; kind++)
-        for (seed = 0; seed < 24; seed += LABIAL_TEST_SHARE > 1 ? 5 : 1) {
+        for (seed = 0; seed<24; seed += LABIAL_TEST_SHARE> 1 ? 5 : 1) {
             fixture_model_t *const f = all[seed % 3];
             const labial_model_t *const model = &f->model;
             const uint8_t own = f->model.search_stride;

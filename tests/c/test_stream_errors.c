@@ -131,7 +131,7 @@ static void check_unusable(labial_t *stream)
 /* Would catch the use of pointers that were never set. */
 static void nothing_works_before_init(void **state)
 {
-    static const int fills[] = {0x00, 0xff, 0x01, 0xa5, 0x7f};
+    static const int fills[] = { 0x00, 0xff, 0x01, 0xa5, 0x7f };
     labial_t *stream = (labial_t *)malloc(sizeof *stream);
     unsigned i, k;
     (void)state;
@@ -141,7 +141,7 @@ static void nothing_works_before_init(void **state)
         check_unusable(stream);
     }
     for (i = 0; i < 20; i++) {
-        fixture_random_t random = {i + 1};
+        fixture_random_t random = { i + 1 };
         for (k = 0; k < sizeof *stream; k++)
             ((uint8_t *)stream)[k] = (uint8_t)fixture_random(&random);
         check_unusable(stream);
@@ -301,7 +301,7 @@ static void too_many_models_are_refused_until_ticks_make_room(void **state)
     (void)state;
     assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
     assert_in_range(LABIAL_MODELS, 1, FIXTURE_MODELS - 1); /* what this test is written for */
-    if (LABIAL_QUEUE <= LABIAL_MODELS) { /* too short to hold phonemes of so many */
+    if (LABIAL_QUEUE <= LABIAL_MODELS) {                   /* too short to hold phonemes of so many */
         fixture_close(&host);
         return;
     }
@@ -312,7 +312,8 @@ static void too_many_models_are_refused_until_ticks_make_room(void **state)
     for (i = 0; i < LABIAL_MODELS; i++)
         assert_int_equal(labial_use(host.stream, models[i]), LABIAL_OK); /* known already */
 #if LABIAL_MODELS > 1
-    assert_int_equal(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE), LABIAL_OK); /* so that the last begins */
+    assert_int_equal(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE),
+                     LABIAL_OK); /* so that the last begins */
 #endif
     while (labial_use(host.stream, models[LABIAL_MODELS]) == LABIAL_ERROR_MODELS && ticks < 400) {
         (void)fixture_tick(&host);

@@ -164,9 +164,8 @@ static void rounds_are_the_sum_of_their_steps(void **state)
             fixture_restart(&host);
         if (fixture_play(&host, input, count, FIXTURE_FILL) != 0)
             fail_msg("%s", host.complaint);
-        judge(&host.recorder, first,
-              oracle_stream(models, input, count, first > 0 ? held : NULL, wanted, MAX_FRAMES), FADED_TOLERANCE,
-              "rounds", round);
+        judge(&host.recorder, first, oracle_stream(models, input, count, first > 0 ? held : NULL, wanted, MAX_FRAMES),
+              FADED_TOLERANCE, "rounds", round);
         for (c = 0; c < LABIAL_CHANNELS && host.recorder.count > 0; c++)
             held[c] = host.recorder.frames[host.recorder.count - 1][c] * 16.0;
     }

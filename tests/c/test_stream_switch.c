@@ -35,8 +35,8 @@ static void alternate(unsigned models, uint32_t longest, uint32_t shortest_ms, u
         uint32_t run = 1 + fixture_below(&random, longest);
         for (; run > 0 && i < COUNT; run--, i++) {
             input[i].model = (uint8_t)model;
-            input[i].phoneme = (uint8_t)fixture_below(
-                &random, model == 1 ? (uint32_t)FIXTURE_LAUGH_COUNT : (uint32_t)FIXTURE_SPEECH_COUNT);
+            input[i].phoneme = (uint8_t)fixture_below(&random, model == 1 ? (uint32_t)FIXTURE_LAUGH_COUNT
+                                                                          : (uint32_t)FIXTURE_SPEECH_COUNT);
             input[i].ms = shortest_ms + fixture_below(&random, range_ms);
         }
         model = (model + 1) % models;
@@ -65,8 +65,8 @@ static void switching_keeps_time_and_does_not_depend_on_feeding(void **state)
         uint32_t longest, shortest_ms, range_ms;
         const char *what;
     } cases[] = {
-        {12, 40, 200, "words"},       {1, 0, 60, "single short phonemes"}, {1, 20, 1, "single frames"},
-        {3, 0, 400, "short runs"},    {4, 0, 3, "less than a frame"},      {2, 600, 3000, "pauses"},
+        { 12, 40, 200, "words" },    { 1, 0, 60, "single short phonemes" }, { 1, 20, 1, "single frames" },
+        { 3, 0, 400, "short runs" }, { 4, 0, 3, "less than a frame" },      { 2, 600, 3000, "pauses" },
     };
     unsigned i, seed;
     int feed;

@@ -41,7 +41,7 @@ static void play(fixture_model_t *f, unsigned rate, size_t count, fixture_feed_t
 /* Would catch rounding per phoneme, dropped or shortened phonemes, frames lost where units are cut or joined. */
 static void every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes(void **state)
 {
-    static const unsigned rates[] = {1, 24, 30, 50, 60, 99, 250};
+    static const unsigned rates[] = { 1, 24, 30, 50, 60, 99, 250 };
     unsigned r;
     int kind;
     (void)state;
@@ -83,7 +83,7 @@ static int is_nearest_ms(uint64_t ms, uint64_t frames, unsigned rate)
 /* The same for every number of pushes, not only at the end. */
 static void every_prefix_is_exact(void **state)
 {
-    static const unsigned rates[] = {1, 7, 24, 30, 50, 60, 240, 250};
+    static const unsigned rates[] = { 1, 7, 24, 30, 50, 60, 240, 250 };
     unsigned r, i, round;
     (void)state;
     for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
@@ -143,7 +143,7 @@ static void latency_is_what_was_pushed_and_not_delivered(void **state)
 {
     fixture_host_t host;
     const labial_model_t *model = &rich.model;
-    fixture_random_t random = {3};
+    fixture_random_t random = { 3 };
     size_t i = 0;
     uint32_t pushed = 0;
     int result = LABIAL_WAITING;
@@ -182,7 +182,7 @@ static void phonemes_without_time_leave_no_trace(void **state)
 {
     static fixture_phoneme_t padded[3 * 100];
     fixture_host_t without, with;
-    fixture_random_t random = {6};
+    fixture_random_t random = { 6 };
     size_t i, n = 0;
     (void)state;
     fixture_stream(input, 100, FIXTURE_RANDOM, 17);

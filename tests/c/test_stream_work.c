@@ -39,7 +39,8 @@ static place_t place;
 
 static void begin(const labial_model_t *model)
 {
-    assert_int_equal(labial_init(&place.stream, model, place.workspace, sizeof place.workspace, ignore, NULL), LABIAL_OK);
+    assert_int_equal(labial_init(&place.stream, model, place.workspace, sizeof place.workspace, ignore, NULL),
+                     LABIAL_OK);
 }
 
 /* Fills the queue with phonemes of three frames and more; ends the stream once `left` is 0. */

@@ -186,10 +186,11 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
         const double own = LABIAL_WEIGHT_MIN * pow(hold / LABIAL_WEIGHT_MIN, r);
         s->hold = not_above(own + 1e-6);
         weakest = least(weakest, fixture_weight_value(s->hold));
-        s->weight[1] = not_above(least(room, fixture_weight_value(s->hold) * stiff * (only_bounds ? 1.0 :
-                                       pow(1000.0, -(double)fixture_below(random, 1001) / 1000.0))));
-        s->weight[0] = only_bounds && fixture_below(random, 2) ? s->weight[1]
-                                                               : (uint8_t)fixture_below(random, s->weight[1] + 1u);
+        s->weight[1] = not_above(
+            least(room, fixture_weight_value(s->hold) * stiff *
+                            (only_bounds ? 1.0 : pow(1000.0, -(double)fixture_below(random, 1001) / 1000.0))));
+        s->weight[0] =
+            only_bounds && fixture_below(random, 2) ? s->weight[1] : (uint8_t)fixture_below(random, s->weight[1] + 1u);
         s->share = fixture_below(random, 2) ? shares[fixture_below(random, 8)] : (uint8_t)fixture_below(random, 256);
         s->mean[0] = (int16_t)((int)fixture_below(random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
     }
@@ -232,9 +233,11 @@ static void walk(fixture_random_t *random, int restless, int extreme)
     make_firm(random);
     for (t = 0; t < FRAMES; t++) {
         const int anywhere = (int)fixture_below(random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX;
-        path[t] = (uint8_t)(t > 0 && !restless && fixture_below(random, 3) ? path[t - 1] : fixture_below(random, STATES));
-        target[t] = (int16_t)(!extreme ? anywhere : (t + fixture_below(random, 8) / 7) % 2 ? LABIAL_POSITION_MAX
-                                                                                         : -LABIAL_POSITION_MAX);
+        path[t] =
+            (uint8_t)(t > 0 && !restless && fixture_below(random, 3) ? path[t - 1] : fixture_below(random, STATES));
+        target[t] = (int16_t)(!extreme                                 ? anywhere
+                              : (t + fixture_below(random, 8) / 7) % 2 ? LABIAL_POSITION_MAX
+                                                                       : -LABIAL_POSITION_MAX);
         contact[t] = (uint16_t)(fixture_below(random, 3) < touching);
     }
 }
@@ -396,7 +399,8 @@ static void the_way_back_crosses_solutions_without_a_trace(void **state)
         labial_trajectory_back(ring, size, (place + first + second - 1) % size, first + second, first, place % 7, 7,
                                motion);
         for (t = 0; t < first && t < 7; t++) /* the earliest seven overwrite the others */
-            judge("two", round, first, t, motion[(place % 7 + 7 - (first - 1 - t) % 7) % 7 * LABIAL_CHANNELS], wanted[t]);
+            judge("two", round, first, t, motion[(place % 7 + 7 - (first - 1 - t) % 7) % 7 * LABIAL_CHANNELS],
+                  wanted[t]);
     }
 }
 

@@ -269,7 +269,7 @@ static void pauses_come_to_rest(void **state)
 /* Random phonemes of one or two models. */
 static void compose(int kind, uint32_t seed)
 {
-    fixture_random_t random = {seed + 100};
+    fixture_random_t random = { seed + 100 };
     uint8_t current = 0;
     unsigned i;
     fixture_stream(input, COUNT, (fixture_kind_t)kind, seed);
@@ -361,7 +361,7 @@ static void compare(const labial_taken_t *taken, size_t at, size_t count)
  * what it needs is known, none later, whatever the feeding. */
 static void follow(int kind, uint32_t seed, int hungry)
 {
-    fixture_random_t random = {seed + 7};
+    fixture_random_t random = { seed + 7 };
     labial_taken_t taken;
     size_t count, at = 0, pushed = 0;
     int result = LABIAL_STARVED;

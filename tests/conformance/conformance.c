@@ -11,8 +11,8 @@ static uint32_t workspace[CONFORMANCE_WORKSPACE / 4];
 static int passes(const conformance_stream_t *script, conformance_feed_t feed)
 {
     conformance_digest_t digest = { 0, 0 };
-    const char *complaint = conformance_play(script, feed, &stream, workspace, sizeof workspace, conformance_digest,
-                                             &digest);
+    const char *complaint =
+        conformance_play(script, feed, &stream, workspace, sizeof workspace, conformance_digest, &digest);
     const int same = digest.crc == script->digest && digest.frames == script->frames;
     board_print(script->name);
     board_print(", ");

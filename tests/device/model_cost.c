@@ -10,8 +10,8 @@
 #include "laughter_synthetic.h"
 #include "speech_en.h"
 
-#define PUSHES 200u  /* phonemes of one frame, each unlike the one before it */
-#define PHONEMES 3u  /* silence and two that follow each other */
+#define PUSHES 200u /* phonemes of one frame, each unlike the one before it */
+#define PHONEMES 3u /* silence and two that follow each other */
 #define COMPONENTS 8u
 #define PAIRS 8u
 #define LEAST_SHARE 45u /* percent of what is said that a Cortex-M0 must take */

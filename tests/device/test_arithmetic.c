@@ -162,26 +162,14 @@ static void transitions_are_smooth(void)
         uint16_t step, steps;
         int16_t gone; /* of 16384: 3 s^2 - 2 s^3, each product and quotient rounded down */
     } transitions[] = {
-        { 0, 1, 0 },
-        { 1, 1, 16384 },
-        { 1, 2, 8192 },
-        { 1, 3, 4246 },
-        { 2, 3, 12133 },
-        { 1, 9, 561 },
-        { 4, 9, 6829 },
-        { 8, 9, 15821 },
-        { 7, 20, 4613 },
-        { 499, 1000, 8166 },
-        { 999, 1000, 16383 },
-        { 1, 65535, 0 },
-        { 32768, 65535, 8192 },
-        { 65534, 65535, 16383 },
-        { 65535, 65535, 16384 },
+        { 0, 1, 0 },          { 1, 1, 16384 }, { 1, 2, 8192 },         { 1, 3, 4246 },          { 2, 3, 12133 },
+        { 1, 9, 561 },        { 4, 9, 6829 },  { 8, 9, 15821 },        { 7, 20, 4613 },         { 499, 1000, 8166 },
+        { 999, 1000, 16383 }, { 1, 65535, 0 }, { 32768, 65535, 8192 }, { 65534, 65535, 16383 }, { 65535, 65535, 16384 },
     };
     unsigned i;
     for (i = 0; i < sizeof transitions / sizeof transitions[0]; i++)
-        TEST_ASSERT_EQUAL_INT32(transitions[i].gone, labial_ease((unsigned)hide(transitions[i].step),
-                                                                 (unsigned)hide(transitions[i].steps)));
+        TEST_ASSERT_EQUAL_INT32(transitions[i].gone,
+                                labial_ease((unsigned)hide(transitions[i].step), (unsigned)hide(transitions[i].steps)));
 }
 
 void test_arithmetic(void)

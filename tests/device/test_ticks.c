@@ -38,8 +38,8 @@ static void the_delay_is_constant(void)
     unsigned i;
     begin();
     for (i = 0; i < 10; i++) /* vowels and consonants of ten frames */
-        TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_push(&device_memory.stream, i % 2u ? SPEECH_EN_S : SPEECH_EN_AA,
-                                                     10000u / SPEECH_EN_FPS));
+        TEST_ASSERT_EQUAL_INT(
+            LABIAL_OK, labial_push(&device_memory.stream, i % 2u ? SPEECH_EN_S : SPEECH_EN_AA, 10000u / SPEECH_EN_FPS));
     TEST_ASSERT_EQUAL_INT(LABIAL_OK, labial_end(&device_memory.stream));
     TEST_ASSERT_EQUAL_UINT(DELAY, labial_latency(&device_memory.stream).delay);
     tick(DELAY, LABIAL_WAITING);

@@ -44,8 +44,8 @@ static size_t sound_model(unsigned choice, const uint8_t **bytes)
     static uint8_t made[SOUND][ROOM];
     static size_t lengths[SOUND];
     static fixture_model_t small[3];
-    const labial_model_t *const models[SOUND] = {&small[0].model, &small[1].model, &small[2].model, &speech_en,
-                                                 &laughter_synthetic};
+    const labial_model_t *const models[SOUND] = { &small[0].model, &small[1].model, &small[2].model, &speech_en,
+                                                  &laughter_synthetic };
     unsigned i;
     if (lengths[0] == 0) {
         fixture_plain(&small[0]);

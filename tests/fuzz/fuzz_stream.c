@@ -43,14 +43,14 @@ static uint32_t take(bytes_t *bytes, unsigned count)
 /* What the stream must have become. */
 typedef struct {
     labial_t *stream;
-    uint32_t next;      /* frame number that is due */
-    unsigned calls;     /* of the callback, since the last tick began */
+    uint32_t next;       /* frame number that is due */
+    unsigned calls;      /* of the callback, since the last tick began */
     uint64_t ms, frames; /* pushed and delivered since the stream began or was taken up again */
     int ended, cancelled, done, begun;
-    unsigned on_way;    /* ticks that waited though nothing was lacking */
+    unsigned on_way;            /* ticks that waited though nothing was lacking */
     unsigned phonemes, silence; /* of the current model */
     unsigned ticks;
-    const labial_model_t *first; /* the stream's first model */
+    const labial_model_t *first;     /* the stream's first model */
     const labial_model_t *models[5]; /* that it may be asked to use */
 } watch_t;
 
@@ -247,9 +247,10 @@ static void make_models(void)
 /* The models of a stream, the first of which it begins with. */
 static void choose_models(watch_t *watch, unsigned choice)
 {
-    const labial_model_t *const small[] = {&speech.model, &laugh.model, &plain.model, &slow.model, &other_rate.model};
+    const labial_model_t *const small[] = { &speech.model, &laugh.model, &plain.model, &slow.model, &other_rate.model };
 #if HAS_BUNDLED
-    const labial_model_t *const bundled[] = {&speech_en, &laughter_synthetic, &slow.model, &laugh.model, &speech.model};
+    const labial_model_t *const bundled[] = { &speech_en, &laughter_synthetic, &slow.model, &laugh.model,
+                                              &speech.model };
 #else
     const labial_model_t *const *const bundled = small;
 #endif

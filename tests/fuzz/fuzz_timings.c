@@ -72,8 +72,8 @@ static void parse(const uint8_t *data, size_t size, timings_format_t format, con
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const timings_format_t formats[] = {TIMINGS_AUTO, TIMINGS_FLITE, TIMINGS_LAB,   TIMINGS_HTK,
-                                        TIMINGS_PHO,  TIMINGS_MARY,  TIMINGS_PHSEG, TIMINGS_TEXTGRID};
+    const timings_format_t formats[] = { TIMINGS_AUTO, TIMINGS_FLITE, TIMINGS_LAB,   TIMINGS_HTK,
+                                         TIMINGS_PHO,  TIMINGS_MARY,  TIMINGS_PHSEG, TIMINGS_TEXTGRID };
     unsigned i;
     for (i = 0; i < sizeof formats / sizeof formats[0]; i++)
         parse(data, size, formats[i], NULL, 0);

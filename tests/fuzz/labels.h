@@ -16,8 +16,8 @@
  */
 static void look_up(const labial_names_t *names, const char *label, size_t length)
 {
-    static const labial_labels_t sets[] = {LABIAL_LABELS_ARPABET, LABIAL_LABELS_IPA, LABIAL_LABELS_XSAMPA,
-                                           LABIAL_LABELS_AUTO};
+    static const labial_labels_t sets[] = { LABIAL_LABELS_ARPABET, LABIAL_LABELS_IPA, LABIAL_LABELS_XSAMPA,
+                                            LABIAL_LABELS_AUTO };
     char *copy = (char *)malloc(length ? length : 1), *padded = (char *)malloc(length + 2);
     int found, nearest;
     size_t i;

@@ -60,7 +60,7 @@ static size_t plain(char *text)
         if (*c != '\\') {
             *out++ = *c;
         } else if (*++c == 'x') {
-            const char digits[3] = {c[1], c[2], '\0'};
+            const char digits[3] = { c[1], c[2], '\0' };
             *out++ = (char)strtol(digits, NULL, 16);
             c += 2;
         } else {
@@ -89,11 +89,11 @@ static int number_differs(unsigned long line, const char *number, const char *ex
         timings_format_t format;
         const char *before, *behind;
     } texts[] = {
-        {TIMINGS_LAB, "0 ", " m\n"},
-        {TIMINGS_FLITE, "m:", "\n"},
-        {TIMINGS_MARY, "#\n", " 1 m\n"},
-        {TIMINGS_TEXTGRID, "\"ooTextFile\"\n\"TextGrid\"\n0\n1\n<exists>\n1\n\"IntervalTier\"\n\"phones\"\n0\n1\n1\n0\n",
-         "\n\"m\"\n"},
+        { TIMINGS_LAB, "0 ", " m\n" },
+        { TIMINGS_FLITE, "m:", "\n" },
+        { TIMINGS_MARY, "#\n", " 1 m\n" },
+        { TIMINGS_TEXTGRID,
+          "\"ooTextFile\"\n\"TextGrid\"\n0\n1\n<exists>\n1\n\"IntervalTier\"\n\"phones\"\n0\n1\n1\n0\n", "\n\"m\"\n" },
     };
     char text[LINE_MAX_BYTES];
     int differing = 0;
@@ -106,7 +106,7 @@ static int number_differs(unsigned long line, const char *number, const char *ex
 
 int main(int argc, char **argv)
 {
-    static const char *const names[] = {"auto", "flite", "lab", "htk", "pho", "mary", "phseg", "textgrid"};
+    static const char *const names[] = { "auto", "flite", "lab", "htk", "pho", "mary", "phseg", "textgrid" };
     static char row[LINE_MAX_BYTES];
     unsigned long line = 0, cases = 0;
     int differing = 0;

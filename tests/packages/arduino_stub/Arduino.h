@@ -16,8 +16,9 @@
 #define INPUT_PULLUP 0x2
 #define SERIAL_8N1 0x800001c /* the ESP32's */
 
-class HardwareSerial {
-public:
+class HardwareSerial
+{
+  public:
     void begin(unsigned long baud);
     void begin(unsigned long baud, uint32_t config, int rx_pin, int tx_pin); /* the ESP32's */
     int available();

@@ -4,10 +4,12 @@
 #ifndef ARDUINO_STUB_AVATAR_H
 #define ARDUINO_STUB_AVATAR_H
 
-namespace m5avatar {
+namespace m5avatar
+{
 
-class Avatar {
-public:
+class Avatar
+{
+  public:
     void init();
     void setMouthOpenRatio(float ratio);
 };

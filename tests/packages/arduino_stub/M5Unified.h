@@ -4,15 +4,18 @@
 #ifndef ARDUINO_STUB_M5UNIFIED_H
 #define ARDUINO_STUB_M5UNIFIED_H
 
-namespace m5 {
+namespace m5
+{
 
-class Button_Class {
-public:
+class Button_Class
+{
+  public:
     bool wasPressed() const;
 };
 
-class M5Unified {
-public:
+class M5Unified
+{
+  public:
     void begin();
     void update();
     Button_Class BtnA;

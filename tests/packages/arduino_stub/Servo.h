@@ -6,8 +6,9 @@
 
 #include <stdint.h>
 
-class Servo {
-public:
+class Servo
+{
+  public:
     uint8_t attach(int pin);
     void write(int angle);
     void writeMicroseconds(int pulse);

@@ -7,8 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-class TwoWire {
-public:
+class TwoWire
+{
+  public:
     bool begin(int sda_pin, int scl_pin, uint32_t frequency);
     void beginTransmission(uint8_t address);
     size_t write(uint8_t byte);

@@ -17,10 +17,15 @@ struct CMUnitTest {
     int (*setup)(void **state);
 };
 
-#define cmocka_unit_test(function) { #function, function, NULL }
-#define cmocka_unit_test_setup(function, setup) { #function, function, setup }
-#define cmocka_run_group_tests(tests, setup, teardown) \
-    shim_run(tests, sizeof(tests) / sizeof *(tests), setup, teardown)
+#define cmocka_unit_test(function)                                                                                     \
+    {                                                                                                                  \
+#function, function, NULL                                                                                      \
+    }
+#define cmocka_unit_test_setup(function, setup)                                                                        \
+    {                                                                                                                  \
+#function, function, setup                                                                                     \
+    }
+#define cmocka_run_group_tests(tests, setup, teardown) shim_run(tests, sizeof(tests) / sizeof *(tests), setup, teardown)
 
 static jmp_buf shim_end_of_test;
 
@@ -61,10 +66,10 @@ static inline int shim_run(const struct CMUnitTest *tests, size_t count, int (*s
 #define fail_msg(...) shim_fail(__FILE__, __LINE__, __VA_ARGS__)
 #define print_message(...) printf(__VA_ARGS__)
 
-#define shim_require(condition, text)                      \
-    do {                                                   \
-        if (!(condition))                                  \
-            shim_fail(__FILE__, __LINE__, "%s", text);     \
+#define shim_require(condition, text)                                                                                  \
+    do {                                                                                                               \
+        if (!(condition))                                                                                              \
+            shim_fail(__FILE__, __LINE__, "%s", text);                                                                 \
     } while (0)
 
 /* Numbers are compared as unsigned ones, as cmocka compares them. */
@@ -79,7 +84,7 @@ static inline void shim_numbers(uintmax_t a, uintmax_t b, int wanted_equal, cons
 #define assert_non_null(pointer) shim_require((pointer) != NULL, #pointer " is null")
 #define assert_int_equal(a, b) shim_numbers((uintmax_t)(a), (uintmax_t)(b), 1, __FILE__, __LINE__)
 #define assert_int_not_equal(a, b) shim_numbers((uintmax_t)(a), (uintmax_t)(b), 0, __FILE__, __LINE__)
-#define assert_in_range(x, least, most)                                                                        \
+#define assert_in_range(x, least, most)                                                                                \
     shim_require((uintmax_t)(x) >= (uintmax_t)(least) && (uintmax_t)(x) <= (uintmax_t)(most), #x " is out of range")
 #define assert_memory_equal(a, b, size) shim_require(memcmp(a, b, size) == 0, #a " differs from " #b)
 #define assert_string_equal(a, b) shim_require(strcmp(a, b) == 0, #a " differs from " #b)

@@ -82,7 +82,7 @@ void stand_in_ignore(unsigned line, const char *message)
 void stand_in_compare(uint32_t wanted, uint32_t actual, char relation, int is_signed, unsigned line,
                       const char *message)
 {
-    const int holds = relation == '=' ? actual == wanted
+    const int holds = relation == '='   ? actual == wanted
                       : relation == '<' ? actual < wanted
                       : relation == '>' ? actual > wanted
                                         : actual <= wanted;

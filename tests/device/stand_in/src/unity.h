@@ -32,14 +32,14 @@ void stand_in_compare(uint32_t wanted, uint32_t actual, char relation, int is_si
 
 #define TEST_FAIL_MESSAGE(message) stand_in_fail(__LINE__, "", message)
 #define TEST_IGNORE_MESSAGE(message) stand_in_ignore(__LINE__, message)
-#define TEST_ASSERT_TRUE_MESSAGE(condition, message)              \
-    do {                                                          \
-        if (!(condition))                                         \
-            stand_in_fail(__LINE__, "expected TRUE was FALSE", message); \
+#define TEST_ASSERT_TRUE_MESSAGE(condition, message)                                                                   \
+    do {                                                                                                               \
+        if (!(condition))                                                                                              \
+            stand_in_fail(__LINE__, "expected TRUE was FALSE", message);                                               \
     } while (0)
 #define TEST_ASSERT_NULL(pointer) TEST_ASSERT_TRUE_MESSAGE((pointer) == 0, "expected NULL")
 
-#define STAND_IN_COMPARE_(wanted, actual, relation, is_signed, message) \
+#define STAND_IN_COMPARE_(wanted, actual, relation, is_signed, message)                                                \
     stand_in_compare((uint32_t)(wanted), (uint32_t)(actual), relation, is_signed, __LINE__, message)
 #define TEST_ASSERT_EQUAL_INT(wanted, actual) STAND_IN_COMPARE_(wanted, actual, '=', 1, 0)
 #define TEST_ASSERT_EQUAL_INT32(wanted, actual) STAND_IN_COMPARE_(wanted, actual, '=', 1, 0)
