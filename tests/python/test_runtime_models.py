@@ -142,7 +142,7 @@ def test_what_is_no_rig(tmp_path: Path) -> None:
     path.write_text('[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 9000\n')
     with pytest.raises(DataError, match="face.toml: output.jaw.maximum: 9000 is not a servo's pulse"):
         labial.Rig(path)
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(DataError, match="nothing.toml: No such file"):
         labial.Rig("nothing.toml")
     frame = labial.Frame(0, (0,) * 13)
     with pytest.raises(LabialError, match="no built-in rig is called 'nothing.toml'"):
