@@ -127,6 +127,7 @@ def sounds(folder: Path) -> List[Path]:
     return [folder / f"{name}.wav" for name in made]
 
 
+@pytest.mark.slow
 def test_what_is_no_speech_is_told(tmp_path: Path) -> None:
     """No crash, and a warning or an error, with a text and without."""
     for path in sounds(tmp_path):

@@ -185,6 +185,7 @@ def test_the_digest_is_the_standard_one() -> None:
     assert digest(np.array([[0x3231, 0x3433, 0x3635, 0x3837]])) == 0x9AE0DAAF  # "12345678"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limits", [{"window": 48}, {"window": 1, "lag": 1}, {"window": 15, "lag": 40}],
                          ids=lambda limits: "_".join(f"{limit}_{value}" for limit, value in limits.items()))
 def test_other_limits_follow_the_reference(

@@ -18,6 +18,8 @@ from test_record import seen
 from test_see import wav
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
+#: Pages that build packages, simulate boards or train.
+SLOW = ("arduino.md", "browser.md", "kiosk.md", "packages.md", "porting.md", "record.md")
 
 #: Lines of pages that are not run, and why.
 NOT_RUN: Dict[str, Dict[str, str]] = {
@@ -107,7 +109,8 @@ def write_recordings(folder: Path) -> None:
     (folder / "recordings" / "s01.mp4").write_bytes(wav())  # a page tells sounds by their content
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", [pytest.param(page, marks=[pytest.mark.slow] if page.name in SLOW else [])
+                                  for page in PAGES], ids=lambda page: page.name)
 def test_page_works(page: Path, tmp_path: Path, objects: List[Path]) -> None:
     """A command with a wrong option, a program that does not compile, a step that was forgotten."""
     folder = tmp_path / "page"

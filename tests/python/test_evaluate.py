@@ -80,6 +80,7 @@ def test_the_trained_rows_decode_as_they_say(corpus) -> None:
     assert np.abs(trained.fit_paper(training).predict(given) - unlike).max() > 1
 
 
+@pytest.mark.slow
 def test_the_same_bytes_for_any_number_of_jobs(folder, tmp_path, capsys) -> None:
     # Catches results in the order they arrive, seeds of the process, times and paths in the report.
     for name, jobs in (("one", "1"), ("two", "2")):

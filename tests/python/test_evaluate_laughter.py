@@ -139,6 +139,7 @@ def test_every_table_of_the_synthetic_corpus_says_so(corpus, tmp_path, capsys) -
     assert (tmp_path / "error_per_phoneme.png").stat().st_size > 0
 
 
+@pytest.mark.slow
 def test_numbers_of_the_synthetic_corpus_are_those_of_a_laugh(corpus, tmp_path) -> None:
     # Catches pulses that no method could miss or reach, and a regression that learns nothing from phonemes.
     evaluate(corpus, tmp_path, jobs=2)

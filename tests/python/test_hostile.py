@@ -243,6 +243,7 @@ COMMANDS = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "count", "arguments"), COMMANDS, ids=[f"{a[0]}-{n}" for n, _, a in COMMANDS])
 def test_damaged_inputs(given: Path, told: Told, name: str, count: int, arguments: List[str]) -> None:
     """Would catch a traceback, a hang or memory without bound, whatever a file holds."""

@@ -244,6 +244,7 @@ def counters(page: Page) -> Dict[str, int]:
     return found
 
 
+@pytest.mark.slow
 def test_ten_minutes_take_no_memory(browser: Browser, address: str) -> None:
     """Ten minutes of speaking, laughing, stops and rest by a clock that the test turns, 20 drawings a second. Catches
     what a kiosk that runs for weeks would die of."""

@@ -45,6 +45,7 @@ def release(root: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
                           capture_output=True, encoding="utf-8", check=False)
 
 
+@pytest.mark.slow
 def test_a_tag_becomes_its_packages(repository: Path, tmp_path: Path) -> None:
     """Catches a package that is built from the working folder, that lacks the library, or whose sum is wrong."""
     (repository / "lib" / "stream.c").write_text("no C at all", encoding="utf-8")  # not what was tagged

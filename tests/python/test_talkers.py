@@ -161,6 +161,7 @@ def test_what_is_left_out_does_not_reach_the_model() -> None:
     assert one.training["occurrences"]["SIL"] == sum(1 + (frames > 6) for frames in pauses)  # long ones are cut in two
 
 
+@pytest.mark.slow
 def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     # Catches a command that reads the first corpus alone; the talkers' table is held to the correlation itself.
     def write(folder: Path, seeds) -> Path:

@@ -22,7 +22,8 @@ from scripts import digest
 #: What a build needs beside the compiler; a bare environment has nothing else, and no ninja.
 TOOLS = ("cmake", "make", "sh", "as", "ld")
 
-pytestmark = pytest.mark.skipif(not (CMAKE and all(map(shutil.which, TOOLS))), reason="no cmake or no make")
+pytestmark = [pytest.mark.slow,
+              pytest.mark.skipif(not (CMAKE and all(map(shutil.which, TOOLS))), reason="no cmake or no make")]
 
 
 def tools(folder: Path, *more: str) -> Dict[str, str]:

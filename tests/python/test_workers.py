@@ -66,6 +66,7 @@ def test_results_are_in_order_and_libraries_keep_to_one_thread(jobs: int) -> Non
     assert (os.getpid() in {process for _, process, _ in found}) == (jobs == 1)
 
 
+@pytest.mark.slow
 def test_a_cluster_trains_the_same_bytes(folder: Path, cluster: str, tmp_path: Path) -> None:
     """Catches work that is done here after all, an order that depends on who is first, and floats that were rounded on
     their way."""
@@ -78,6 +79,7 @@ def test_a_cluster_trains_the_same_bytes(folder: Path, cluster: str, tmp_path: P
     assert trained(folder, tmp_path / "many.npz", "--engine", f"dask={cluster}") == one
 
 
+@pytest.mark.slow
 def test_a_cluster_evaluates_the_same_bytes(folder: Path, cluster: str, tmp_path: Path,
                                             capsys: pytest.CaptureFixture) -> None:
     arguments = ["evaluate", str(folder), "--splits", "2", "--methods", "mean,paper", "--quiet"]
@@ -101,6 +103,7 @@ def test_engines_that_cannot_be_used(folder: Path, tmp_path: Path, capsys: pytes
     assert not (tmp_path / "no.npz").exists()
 
 
+@pytest.mark.slow
 def test_other_versions_are_refused(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Catches a cluster whose numbers differ in the last digit."""
     import labial

@@ -67,6 +67,9 @@ set(variables
   "LABIAL_CC=${CMAKE_C_COMPILER}"
   "LABIAL_CXX=${LABIAL_CXX}"
   "LABIAL_CMAKE=${CMAKE_COMMAND}")
+if(LABIAL_REQUIRE_ALL)
+  list(APPEND variables LABIAL_REQUIRE_ALL=ON)
+endif()
 if(LABIAL_SPTK)
   list(APPEND variables "LABIAL_SPTK=${LABIAL_SPTK}")
 endif()
@@ -100,6 +103,8 @@ add_test(NAME pytest WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
 set_tests_properties(pytest PROPERTIES FIXTURES_REQUIRED "python;npm" PROCESSORS 2 TIMEOUT 1800 ENVIRONMENT "${variables}")
 if(LABIAL_REQUIRE_ALL)
   set_tests_properties(pytest PROPERTIES FAIL_REGULAR_EXPRESSION "[0-9]+ skipped")
+else()
+  message(STATUS "Python tests marked `slow` are left to .ci/run: -DLABIAL_REQUIRE_ALL=ON runs them, too.")
 endif()
 
 # Face tracking has an environment of its own, see tracking/requirements.txt.
