@@ -86,3 +86,26 @@ else()
   labial_disabled_test(headers_cxx11)
   labial_disabled_test(library_cxx11)
 endif()
+
+# How the C is laid out, by .clang-format; other versions of clang-format lay some lines out otherwise. What programs
+# wrote stays as they wrote it.
+find_program(LABIAL_CLANG_FORMAT NAMES clang-format-14 clang-format)
+mark_as_advanced(LABIAL_CLANG_FORMAT)
+set(format_version "")
+if(LABIAL_CLANG_FORMAT)
+  execute_process(COMMAND "${LABIAL_CLANG_FORMAT}" --version OUTPUT_VARIABLE format_version)
+endif()
+if(format_version MATCHES "version 14\\.")
+  set(laid_out "")
+  foreach(folder IN ITEMS bench boards examples include lib packaging tests)
+    file(GLOB_RECURSE files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.[ch]")
+    list(APPEND laid_out ${files})
+  endforeach()
+  list(FILTER laid_out EXCLUDE REGEX
+    "/lib/models/|/examples/faces/|/examples/talk/|/microbit/face\\.|/laugh_table\\.h|/vectors\\.c|/laughs\\.h")
+  add_test(NAME layout_of_c COMMAND "${LABIAL_CLANG_FORMAT}" --dry-run --Werror ${laid_out})
+else()
+  labial_left_out("The check of the layout of C is left out, it needs clang-format 14: "
+                  "install the Debian package clang-format-14.")
+  labial_disabled_test(layout_of_c)
+endif()
