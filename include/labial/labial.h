@@ -34,7 +34,7 @@ extern "C" {
 #endif
 
 #define LABIAL_VERSION_MAJOR 0
-#define LABIAL_VERSION_MINOR 2
+#define LABIAL_VERSION_MINOR 3
 #define LABIAL_VERSION_PATCH 0
 
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
