@@ -101,6 +101,7 @@ def test_held_out_words_from_the_command_line(folder, tmp_path) -> None:
     assert "judged on the words beta, gamma" in text and "7 episodes trained on, 9 held out" in text
 
 
+@pytest.mark.slow
 def test_tables_hold_the_mean_and_deviation_of_the_splits(folder, tmp_path) -> None:
     # Catches tables that were not made from the splits beside them.
     arguments = ["evaluate", str(folder), "--splits", "3", "--methods", "mean", "--quiet", "-o", str(tmp_path)]

@@ -135,6 +135,7 @@ def test_models_that_are_none(tmp_path: Path, told: Told, name: str, content: by
     assert line.startswith(f"labial: {path}: ") and complaint in line and not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_archives_that_are_damaged(tmp_path: Path, told: Told) -> None:
     """Would catch a bit that nobody misses, an encrypted archive, and every other damage that is not foreseen."""
     path, chance = tmp_path / "m.npz", random.Random(1)
@@ -181,7 +182,7 @@ def test_values_beyond_the_tables_are_named(tmp_path: Path, value: float) -> Non
 def test_tables_hold_what_is_written() -> None:
     """Would catch a table that the exporter packs without its C type's range."""
     exported = quantise(random_model(2), "m")
-    for name in ("cost", "shapes", "slopes", "kernels", "pairs", "emission_gain", "initial", "state_mean", "edges",
+    for name in ("cost", "shapes", "slopes", "kernels", "pairs", "emission_gain", "initial", "state_mean", "transitions",
                  "state_weight", "centre", "firm", "duration_mean", "floors", "contexts", "shape_scale"):  # fmt: skip
         table = getattr(exported, name).astype(np.int64)
         for value in (-(2**63), 70000, -40000):

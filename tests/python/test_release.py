@@ -66,6 +66,7 @@ def test_a_tag_becomes_its_packages(repository: Path, tmp_path: Path) -> None:
         assert b"labial_tick" in files.read(f"{name}-amalgamation/labial.c")
 
 
+@pytest.mark.slow
 def test_what_is_no_release_is_refused(repository: Path, tmp_path: Path) -> None:
     """Catches packages of another version than their tag's, of no tag, and of a version that is still being made."""
     git(repository, "tag", "-f", "v9.9.9")

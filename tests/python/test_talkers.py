@@ -141,6 +141,7 @@ def test_what_every_corpus_leaves_out_is_learnt_with_a_warning(tmp_path) -> None
     assert all(item.source.left_out == {1, 2} and not item.source.silences for item in other)
 
 
+@pytest.mark.slow
 def test_what_is_left_out_does_not_reach_the_model() -> None:
     # Catches silences and channels that are learnt from all the same: here they hold nonsense.
     first = [episode(seed) for seed in range(16)]
