@@ -121,7 +121,8 @@ static void take_turn(const turn_t *turn)
         age = searched - 1;
     }
     solve(turn, row, newest, beyond);
-    go_back(turn, beyond > LABIAL_LAG || (frame_of(stream, newest)->marks & LABIAL_ENDS) ? newest : newest + 1);
+    if (LABIAL_LAG == 0 || newest < entered) /* else nothing is due yet */
+        go_back(turn, beyond > LABIAL_LAG || (frame_of(stream, newest)->marks & LABIAL_ENDS) ? newest : newest + 1);
 }
 
 void labial_turns_take(labial_t *stream)
