@@ -487,7 +487,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_, **__: _complain(f"warning: {message}")
         try:
-            return int(options.run(options))
+            with needs(f"labial {options.command}", "tools"):
+                return int(options.run(options))
         except LabialError as error:
             _complain(str(error))
         except BrokenPipeError:  # whoever reads the output has seen enough
