@@ -27,26 +27,3 @@ void board_exit(int status)
 {
     wasm_exit(status); /* does not return */
 }
-
-void board_count_start(void)
-{
-}
-
-uint32_t board_count(void)
-{
-    return 0;
-}
-
-void board_stack_paint(void)
-{
-}
-
-uint32_t board_stack_depth(void)
-{
-    return 0;
-}
-
-uint32_t board_stack_left(void)
-{
-    return UINT32_MAX;
-}
