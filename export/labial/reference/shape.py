@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Optional, Protocol, Sequence, Tuple
+from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -11,14 +11,17 @@ from labial.reference.contact import raised
 from labial.reference.units import MILLISECONDS_MAX
 
 if TYPE_CHECKING:
+    from labial.model import Model
     from labial.reference.tables import Tables
 
 #: Durations farther than this many standard deviations from a component's mean change its shape no more.
 SLOPE_LIMIT = 3.0
 
 
-class Mixtures(Protocol):
-    """The mixtures of P phonemes, N components in all, phoneme by phoneme; a :class:`labial.model.Model` is one."""
+@dataclass(frozen=True)
+class ShapeTables:
+    """The mixtures of P phonemes as the run-time reads them: N components, phoneme by phoneme. A
+    :class:`labial.model.Model` has the same members, and so is taken as well."""
 
     component_count: np.ndarray  #: (P,) int64
     log_weight: np.ndarray  #: (N,)
@@ -40,7 +43,7 @@ class Choice:
 
 
 def choose(
-    mixtures: Mixtures,
+    mixtures: Union[ShapeTables, Model],
     phoneme: np.ndarray,
     duration: np.ndarray,
     previous: np.ndarray,
@@ -67,7 +70,7 @@ def choose(
     return Choice(component, share, np.clip(offset, -reach, reach))
 
 
-def shapes(mixtures: Mixtures, choice: Choice) -> np.ndarray:
+def shapes(mixtures: Union[ShapeTables, Model], choice: Choice) -> np.ndarray:
     """(S, 13) the selected shapes, FAP."""
     each = mixtures.shape[choice.component] + mixtures.slope[choice.component] * choice.offset[..., None]
     return np.einsum("sk,skj->sj", choice.share, each)

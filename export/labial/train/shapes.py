@@ -21,6 +21,7 @@ from sklearn.mixture import GaussianMixture
 from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.phonesets import PhoneSet, substitute_for
+from labial.reference.shape import ShapeTables
 
 #: A component is worth having for this many samples. A full covariance of 14 dimensions takes about as many.
 SAMPLES_PER_COMPONENT = 15
@@ -111,20 +112,6 @@ def back_off(counts: np.ndarray, phone_set: PhoneSet) -> Plan:
             substitutes[label] = substitute_for(label, available)
             stand_in[index] = labels.index(substitutes[label])
     return Plan(tuple(members), tuple(stand_in), pooled, substitutes)
-
-
-@dataclass(frozen=True)
-class ShapeTables:
-    """The mixtures of P phonemes as the run-time reads them: N components, phoneme by phoneme; see labial.model."""
-
-    component_count: np.ndarray  #: (P,) int64
-    log_weight: np.ndarray  #: (N,)
-    duration_mean: np.ndarray  #: (N,) seconds
-    duration_variance: np.ndarray  #: (N,) seconds squared
-    shape: np.ndarray  #: (N, 13) FAP
-    slope: np.ndarray  #: (N, 13) FAP per second
-    log_previous: np.ndarray  #: (N, V) or (N, 0)
-    log_next: np.ndarray  #: (N, V) or (N, 0)
 
 
 def shape_tables(mixtures: List[Mixture], *, conditional: bool) -> ShapeTables:
