@@ -3,7 +3,7 @@
     python3 .ci/table.py WORKFLOW=STATUS=SECONDS ...
 
 Reads build/WORKFLOW/junit.xml, which ctest writes, and build/ci/WORKFLOW.log. A line below a workflow is for tests that
-consist of many, such as pytest.
+consist of many, such as pytest. What failed is printed below the table, at the end where it is found.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ BUILD = Path(__file__).resolve().parents[1] / "build"
 LEFT_OUT = (re.compile(r"^\S+:\d+:(?P<why>\w+):IGNORE(?P<more>.*)$"), re.compile(r"^\[  SKIPPED \] (?P<why>\w+)$"),
             re.compile(r"^SKIPPED \[\d+\] (?P<why>.*)$"))
 WANTED = {"unity_fails"}  # suites that leave tests out on purpose
+#: How many characters of a failed test's output are printed: its end, where frameworks say what went wrong.
+SHOWN = 6000
 
 
 class Row(NamedTuple):
@@ -48,6 +50,14 @@ def warnings_of(log: Path) -> List[str]:
     text = log.read_text(encoding="utf-8", errors="replace")
     blocks = (" ".join(block.split()) for block in re.findall(r"^CMake Warning .*\n((?:  .*\n)+)", text, re.MULTILINE))
     return [block for block in blocks if "left out" in block]
+
+
+def failures(name: str) -> List[str]:
+    """What the failed tests of a workflow printed at last, each below a line with its name."""
+    report = BUILD / name / "junit.xml"
+    cases = ElementTree.parse(report).getroot().iter("testcase") if report.exists() else ()
+    return [f"---- {name}: {case.get('name')}\n{(case.findtext('system-out') or '').strip()[-SHOWN:]}"
+            for case in cases if case.get("status") == "fail"]
 
 
 def workflow_rows(name: str, status: str, seconds: str) -> List[Row]:
@@ -87,6 +97,9 @@ def main() -> int:
         print(f"{row.suite:<12} {row.ran:>6} {row.passed:>8} {row.seconds:>8}  {first}".rstrip())
         for reason in others:
             print(" " * 39 + reason)
+    for argument in sys.argv[1:]:
+        for failure in failures(argument.split("=")[0]):
+            print(f"\n{failure}")
     return 0
 
 

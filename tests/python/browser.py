@@ -26,7 +26,7 @@ _OPTIONS = (
     "--autoplay-policy=no-user-gesture-required", "--disable-dev-shm-usage", "--disable-background-networking",
     "--disable-renderer-backgrounding", "--hide-scrollbars", "--window-size=1200,900",
 )  # fmt: skip
-_PATIENCE = 30.0  # seconds for an answer
+_PATIENCE = 60.0  # seconds for an answer; a machine may be busy otherwise
 
 
 class PageFailed(AssertionError):
@@ -128,7 +128,7 @@ class Page:
             raise PageFailed(details.get("exception", {}).get("description") or details["text"])
         return result["result"].get("value")
 
-    def wait_for(self, expression: str, seconds: float = 10.0) -> None:
+    def wait_for(self, expression: str, seconds: float = 30.0) -> None:
         """Returns as soon as an expression is true."""
         end = time.monotonic() + seconds
         while not self.evaluate(expression):
