@@ -1,8 +1,8 @@
 """Frames as animation files: MPEG-4 .fap, Live Link Face CSV, JSON lines. CSV is in labial.frames.
 
-The same formats as examples/say/frames.c writes. How FAPs move ARKit's blendshapes, VRM's mouths and the visemes of
-Oculus LipSync is described in rig/arkit.toml, vrm.toml and oculus.toml, from which ``labial rig`` writes the tables of
-examples/faces for it.
+`FORMATS` is the one list of them, with the names of examples/say/frames.c. How FAPs move ARKit's blendshapes, VRM's
+mouths and the visemes of Oculus LipSync is described in the folder rig, and each description there is a format. What
+needs numpy or a parser of TOML is imported where it is used: the command line asks for the names of formats alone.
 """
 
 from __future__ import annotations
@@ -10,15 +10,15 @@ from __future__ import annotations
 import functools
 import json
 import re
-from pathlib import Path
-from typing import Callable, Dict, Optional, TextIO
-
-import numpy as np
+from typing import TYPE_CHECKING, Callable, Dict, NamedTuple, Optional, TextIO
 
 from labial.faps import FAP_COLUMNS, FAP_NUMBERS
-from labial.frames import write_csv
-from labial.rig.description import Rig, read
-from labial.rig.table import convert, expected
+from labial.rig import FACES, description_of
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from labial.rig.description import Rig
 
 #: Columns of a Live Link Face recording: ARKit's 52 blendshapes and 9 rotations.
 LIVE_LINK = """
@@ -36,19 +36,21 @@ LIVE_LINK = """
 _FAPS = 68
 
 
-#: Rigs that are described in labial/rig, each a format of JSON lines.
-FACES = ("arkit", "vrm", "oculus")
-
-
 @functools.cache
 def face(name: str) -> Rig:
-    """The rig of ARKit's blendshapes, VRM's mouths or the visemes of Oculus LipSync: `name` is one of `FACES`."""
-    return read(Path(__file__).with_name("rig") / f"{name}.toml", name)
+    """A rig that Labial comes with: `name` is one of `labial.rig.FACES`."""
+    from labial.rig.description import read
+
+    return read(description_of(name), name)
 
 
 def outputs(rig: Rig, frames: np.ndarray) -> Dict[str, np.ndarray]:
     """(T,) values of each output of a rig from (T, 13) frames in FAP units, in the unit of the description: for weights
     0 .. 1, for servos microseconds. Limits hold; how fast an output may move does not."""
+    import numpy as np
+
+    from labial.rig.table import convert, expected
+
     values = expected(rig, convert(rig), np.asarray(frames, dtype=np.float64)) / rig.unit.scale
     return {output.name: column for output, column in zip(rig.outputs, values.T)}
 
@@ -67,6 +69,8 @@ def _arkit_name(column: str) -> str:
 def write_fap(out: TextIO, frames: np.ndarray, fps: int, name: str) -> None:
     """Writes (T, 13) frames as MPEG-4 text: a header, then per frame a mask of 68 and the values of the 23 FAPs of the
     mouth, inner lips (4 to 13) moving as the outer ones (51 to 60)."""
+    import numpy as np
+
     columns = {fap: index for index, fap in enumerate(FAP_NUMBERS)}
     columns.update({fap: columns[fap + 47] for fap in range(4, 14)})
     used = sorted(columns)
@@ -78,6 +82,8 @@ def write_fap(out: TextIO, frames: np.ndarray, fps: int, name: str) -> None:
 
 def write_live_link(out: TextIO, frames: np.ndarray, fps: int, name: str = "") -> None:
     """Writes (T, 13) frames as Live Link Face records them: timecode ``HH:MM:SS:FF.000``, 61, then the columns."""
+    import numpy as np
+
     out.write(",".join(("Timecode", "BlendShapeCount", *LIVE_LINK)) + "\n")
     weights = arkit(frames)
     still = np.zeros(len(frames))
@@ -93,6 +99,8 @@ def write_json_lines(out: TextIO, frames: np.ndarray, fps: int, name: str = "", 
                      with_faps: bool = True) -> None:
     """Writes (T, 13) frames as one JSON object per line: frame, time in seconds, faps unless `with_faps` is False, and
     under the rig's name (ARKit's where none is given) its outputs, as `outputs` gives them."""
+    import numpy as np
+
     rig = rig or face("arkit")
     values = outputs(rig, frames)
     for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1))):
@@ -104,15 +112,30 @@ def write_json_lines(out: TextIO, frames: np.ndarray, fps: int, name: str = "", 
         }, separators=(",", ":")) + "\n")
 
 
-def _weight_writer(name: str) -> Callable[[TextIO, np.ndarray, int, str], None]:
-    return lambda out, frames, fps, _: write_json_lines(out, frames, fps, rig=face(name), with_faps=False)
+def _write_csv(out: TextIO, frames: np.ndarray, fps: int, _: str) -> None:
+    from labial.frames import write_csv
+
+    write_csv(out, frames, fps)
 
 
-#: How frames are written in each format: to a text file, (T, 13) frames in FAP units, frames per second, name.
-WRITERS: Dict[str, Callable[[TextIO, np.ndarray, int, str], None]] = {
-    "csv": lambda out, frames, fps, name: write_csv(out, frames, fps),
-    "fap": write_fap,
-    "livelink": write_live_link,
-    "jsonl": write_json_lines,
-    **{name: _weight_writer(name) for name in FACES},
+def _write_weights(name: str, out: TextIO, frames: np.ndarray, fps: int, _: str) -> None:
+    write_json_lines(out, frames, fps, rig=face(name), with_faps=False)
+
+
+class Format(NamedTuple):
+    """A format of output."""
+
+    about: str  #: what ``--help`` says of it
+    #: Writes to a text file: (T, 13) frames in FAP units, frames per second, name of the motion.
+    write: Callable[[TextIO, np.ndarray, int, str], None]
+
+
+#: Every format by its name, which ``--to`` takes.
+FORMATS: Dict[str, Format] = {
+    "csv": Format("FAPs, a line per frame", _write_csv),
+    "fap": Format("MPEG-4 text", write_fap),
+    "livelink": Format("Live Link Face CSV, ARKit's blendshapes", write_live_link),
+    "jsonl": Format("FAPs and ARKit's blendshapes, a line of JSON per frame", write_json_lines),
+    **{name: Format("weights alone, a line of JSON per frame", functools.partial(_write_weights, name))
+       for name in FACES},
 }

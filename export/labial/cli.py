@@ -12,7 +12,7 @@ import sys
 import traceback
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Callable, List, NoReturn, Optional
+from typing import TYPE_CHECKING, Callable, Dict, List, NoReturn, Optional
 
 from labial import __version__
 from labial.errors import LabialError, needs
@@ -90,9 +90,7 @@ def parser() -> argparse.ArgumentParser:
                        "Piper, Azure, Polly, HeadTTS or Kokoro")
     _add_source(synth)
     synth.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
-    synth.add_argument("--to", choices=("csv", "fap", "livelink", "jsonl", "arkit", "vrm", "oculus"), default="csv",
-                       help="FAPs as CSV or MPEG-4 text, ARKit's blendshapes as Live Link Face CSV, FAPs and ARKit's "
-                       "blendshapes as JSON lines, or only the weights of ARKit, VRM or Oculus LipSync (csv)")
+    _add_format(synth)
     synth.add_argument("--rig", metavar="FACE.toml", help="with --to jsonl: a face of your own in place of ARKit's, as "
                        "labial rig reads it")
     _add_labels(synth)
@@ -231,6 +229,16 @@ def _add_engine(command: argparse.ArgumentParser) -> None:
                          "ADDRESS, in place of this machine's processes; the result is the same")
 
 
+def _add_format(command: argparse.ArgumentParser) -> None:
+    from labial.animation import FORMATS
+
+    names: Dict[str, List[str]] = {}
+    for name, item in FORMATS.items():
+        names.setdefault(item.about, []).append(name)
+    about = "; ".join(f"{', '.join(same)}: {text}" for text, same in names.items())
+    command.add_argument("--to", choices=tuple(FORMATS), metavar="FORMAT", default="csv", help=f"{about} (csv)")
+
+
 def _add_source(command: argparse.ArgumentParser) -> None:
     from labial.corpus.formats import READERS
 
@@ -286,7 +294,7 @@ def _train(options: argparse.Namespace) -> int:
 
 
 def _synth(options: argparse.Namespace) -> int:
-    from labial.animation import WRITERS
+    from labial.animation import FORMATS
     from labial.model import load
     from labial.phones import read_stream
     from labial.reference import published, stream
@@ -294,7 +302,7 @@ def _synth(options: argparse.Namespace) -> int:
 
     model = load(options.model)
     tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels, options.source)
-    write, whole = WRITERS[options.to], options.whole
+    write, whole = FORMATS[options.to].write, options.whole
     if options.rig:
         write = _rig_writer(options)
     frames = published.synthesise(tables, phonemes, whole=True) if whole else stream.synthesise(tables, phonemes)

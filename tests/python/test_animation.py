@@ -15,15 +15,14 @@ from typing import Dict, List, Tuple
 import numpy as np
 import pytest
 
-from labial import animation
-from labial.animation import FACES, LIVE_LINK, WRITERS, arkit, face, outputs
+from labial.animation import FORMATS, LIVE_LINK, arkit, face, outputs
 from labial.cli import main
 from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.model import save
+from labial.rig import FACES, description_of
 from labial.rig.description import read
 from models import random_model
 
-RIG = Path(animation.__file__).with_name("rig") / "arkit.toml"
 SAY = os.environ.get("LABIAL_SAY", "")
 needs_say = pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")
 SENTENCE = "pau:0.220 m:0.290 ay:0.440 b:0.530 ey:0.730 b:0.810 iy:0.900 pau:1.120\n<laugh 1.5 1.0>\nuw:0.3 pau:0.4\n"
@@ -113,7 +112,7 @@ def check_all(texts: Dict[str, str], tolerance: float) -> None:
 def test_files_of_labial_say() -> None:
     """Catches a format that its readers refuse, and a blendshape that C and Python weigh differently."""
     texts = {}
-    for name in WRITERS:
+    for name in FORMATS:
         done = subprocess.run([SAY, "--to", name], input=SENTENCE.encode(), capture_output=True, timeout=60, check=True)
         texts[name] = done.stdout.decode("ascii")
     check_all(texts, 0.0)
@@ -125,7 +124,7 @@ def test_files_of_labial_synth(tmp_path: Path) -> None:
     save(random_model(3), model)
     (tmp_path / "a.lab").write_text("0 0.2 SIL\n0.2 0.5 P1\n0.5 0.8 P2\n0.8 1.2 P4\n")
     texts = {}
-    for name in WRITERS:
+    for name in FORMATS:
         out = tmp_path / f"out.{name}"
         assert main(["synth", str(model), str(tmp_path / "a.lab"), "-o", str(out), "--to", name]) == 0
         texts[name] = out.read_text(encoding="ascii")
@@ -159,7 +158,7 @@ def test_blendshapes_of_a_face() -> None:
 
 def test_columns_are_apples() -> None:
     """Catches a blendshape that is described and that ARKit or Live Link do not know, so that it would go nowhere."""
-    described = {output.name for output in read(RIG, "arkit").outputs}
+    described = {output.name for output in read(description_of("arkit"), "arkit").outputs}
     assert len(described) == 20 and described <= set(APPLE) and len(LIVE_LINK) == 61
     assert set(arkit(np.zeros((1, len(FAP_NUMBERS))))) == described
 

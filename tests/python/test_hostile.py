@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from labial import emit
+from labial.animation import FORMATS
 from labial.cli import main
 from labial.errors import ModelError
 from labial.faps import FAP_COLUMNS
@@ -331,7 +332,7 @@ def test_names_that_are_not_utf8(given: Path) -> None:
     asked = [["timings", f"{name}.lab"], ["bake", f"{name}.csv", "-o", "o.h"], ["page", f"{name}.csv", "-o", "o.html"],
              ["rig", "face.toml", "-o", name, "--no-figure"]]
     asked += [["synth", f"{name}.npz", "a.lab", "-o", f"{name}.{kind}", "--to", kind]
-              for kind in ("csv", "fap", "livelink", "jsonl", "arkit", "vrm", "oculus")]
+              for kind in FORMATS]
     for arguments, status in ((asked, 0), ([["timings", f"{name}.none"]], 1)):
         command = [sys.executable, "-c", script, *map("|".join, arguments)]
         done = subprocess.run(command, check=False, capture_output=True)

@@ -12,10 +12,8 @@ from typing import Dict, Iterable, Tuple, Union
 
 from labial.errors import LabialError
 from labial.faps import CHANNELS
+from labial.rig import FACES, description_of
 from labial.runtime.library import RigOutput, RigTable, checked, library
-
-#: Where the built-in descriptions lie.
-_FOLDER = Path(__file__).resolve().parents[1] / "rig"
 
 
 class Rig:
@@ -34,7 +32,7 @@ class Rig:
         values: value of each output now, by name; the face at rest before the first frame.
     """
 
-    BUILTIN: Tuple[str, ...] = tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+    BUILTIN: Tuple[str, ...] = FACES
 
     def __init__(self, description: Union[str, os.PathLike]) -> None:
         from labial.rig.description import read  # with a TOML parser, which older Pythons lack
@@ -42,7 +40,7 @@ class Rig:
 
         path = Path(description)
         if isinstance(description, str) and description in self.BUILTIN:
-            path = _FOLDER / f"{description}.toml"
+            path = description_of(description)
         rig = read(path, path.stem)
         rows = convert(rig)
         self.name, self.unit, self.prescale = rig.name, rig.unit.name, rig.unit.prescale
