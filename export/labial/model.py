@@ -17,17 +17,12 @@ from typing import Any, Dict, Tuple, Union
 import numpy as np
 
 from labial.arrays import ArrayError, array, read_zip
+from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError
 from labial.faps import CHANNELS
 
 #: Version of the .npz layout.
 FORMAT = 3
-
-#: Methods a model may be trained with.
-METHODS = ("paper", "labial")
-
-#: Kinds of corpora and models.
-KINDS = ("speech", "laughter")
 
 _TEXT = (
     "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",

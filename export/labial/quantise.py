@@ -7,6 +7,7 @@ from typing import Dict, Optional, Tuple
 
 import numpy as np
 
+from labial.defaults import PREDECESSORS
 from labial.errors import ModelError
 from labial.faps import CHANNELS
 from labial.fixed import (
@@ -101,7 +102,7 @@ class ExportedModel:
         return dense
 
 
-def quantise(model: Model, name: str, *, predecessors: int = 4) -> ExportedModel:
+def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> ExportedModel:
     """The exported tables of `model`, with the `predecessors` likeliest transitions into each state kept.
 
     Raises ModelError where the model exceeds the library's limits.

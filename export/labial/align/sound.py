@@ -10,7 +10,7 @@ import soundfile
 import soxr
 
 from labial.corpus.timings import PathLike
-from labial.errors import DataError
+from labial.errors import DataError, needs
 
 #: Suffixes of files that hold pictures beside their sound.
 VIDEOS = (".mp4", ".mov", ".m4v", ".mkv", ".webm", ".avi", ".ts", ".3gp")
@@ -50,11 +50,8 @@ def read_sound(path: PathLike) -> np.ndarray:
 
 
 def _of_video(path: PathLike) -> np.ndarray:
-    try:
+    with needs(f"{path}: the sound of a video", "record"):
         from labial.record.video import sound
-    except ModuleNotFoundError as error:
-        raise DataError(path, None, f"the sound of a video needs the package {error.name}: install labial[record]"
-                        ) from None
     return _checked(path, sound(path, RATE))
 
 

@@ -44,15 +44,9 @@ class Source:
     path: str
     model: Optional[str] = None  #: a model's file; that of the bundled ones that knows the labels without it
     text: Optional[str] = None  #: what is said in a sound
-    text_file: Optional[str] = None  #: or a file that holds it
     labels: str = AUTO
     format: Optional[str] = None  #: of the timings; told by the file without it
     progress: bool = False  #: whether a bar is shown while a sound is gone through
-
-    @property
-    def has_text(self) -> bool:
-        """Whether a text is given, which only sounds have."""
-        return self.text is not None or self.text_file is not None
 
     @property
     def is_sound(self) -> bool:
@@ -102,17 +96,16 @@ def _rested(phonemes: Stream, model: Model) -> Stream:
 
 
 def _timed(source: Source) -> List[SourceSegment]:
-    if source.has_text:
+    if source.text is not None:
         raise LabialError(f"{source.path}: a text goes with a sound ({', '.join(SOUNDS)}), not with timings or frames")
     return read_timings(source.path, source.format)
 
 
 def _heard(source: Source) -> List[SourceSegment]:
     with needs("a sound", "align"):
-        from labial.align.command import aligned, said
-    text = said(source.text, source.text_file)
-    found = aligned(source.path, text, source.progress)
-    if text is None:
+        from labial.align.progress import align_with_bar
+    found = align_with_bar(source.path, source.text, source.progress)
+    if source.text is None:
         warnings.warn(f"{source.path}: without its text (--text, --text-file) phonemes are less sure", stacklevel=2)
     return [SourceSegment(item.start, item.end, item.label, None, "arpabet") for item in found]
 
@@ -120,7 +113,7 @@ def _heard(source: Source) -> List[SourceSegment]:
 def read_track(source: Source) -> np.ndarray:
     """(T, 13) FAPs, float64, 50 frames a second from time 0, of a file of frames, of timings or of a sound."""
     if source.has_frames:
-        if source.has_text or source.model:
+        if source.text is not None or source.model:
             raise LabialError(f"{source.path}: frames need neither a text nor a model")
         motion = read_motion(source.path)
         return _at_rate(source.path, motion.times, motion.frames)

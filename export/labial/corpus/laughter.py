@@ -31,6 +31,7 @@ from typing import List, Tuple, Union
 import numpy as np
 
 from labial.corpus.folder import HEADER
+from labial.defaults import EPISODES
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.phonesets import LAUGHTER_GRADES
@@ -93,7 +94,7 @@ _UNGRADED = {graded: label for label, grades in LAUGHTER_GRADES.items() for grad
 _Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
 
 
-def generate(out_dir: Union[str, os.PathLike], episodes: int = 200, seed: int = 0) -> None:
+def generate(out_dir: Union[str, os.PathLike], episodes: int = EPISODES, seed: int = 0) -> None:
     """Writes a Labial corpus folder of `episodes` bouts of laughter; the same seed gives the same bytes.
 
     Raises DataError when `out_dir` exists and is not empty: another run's episodes would mix with these.

@@ -10,6 +10,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from labial.corpus.episode import Episode
+from labial.defaults import FPS, KINDS, SPLITS
 from labial.errors import LabialError
 from labial.evaluate.baselines import steps
 from labial.evaluate.material import Utterance, utterances
@@ -30,11 +31,11 @@ HUMAN = "human"
 class Options:
     """What an evaluation is asked to do."""
 
-    kind: str = "speech"
+    kind: str = KINDS[0]
     methods: str = "all"
-    splits: int = 20
+    splits: int = SPLITS
     seed: int = 0
-    fps: int = 50
+    fps: int = FPS
     held_out: Tuple[str, ...] = ()
     leave_out_talkers: bool = False  #: in place of random splits
     synthetic: bool = False  #: the motion was computed, not recorded; every table and plot says so

@@ -31,6 +31,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_matrix, diags, hstack
 
+from labial.defaults import LOOK_AHEAD
 from labial.quantise import LIMITS
 from labial.reference.shape import Choice, knot_shares, neighbours, pairs_beside, tapped
 from labial.train.recordings import Recording
@@ -38,9 +39,6 @@ from labial.train.shapes import ShapeTables
 
 #: The taps reach this far to each side and are this far apart, in seconds.
 REACH = 0.36
-
-#: How far they reach into what follows by default, seconds; see DESIGN.md for what more would buy.
-LOOK_AHEAD = 0.12
 SPACING = 0.04
 
 #: But never farther than the device's memory of phonemes, in frames.

@@ -9,9 +9,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from labial.corpus.episode import Episode
+from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE
 from labial.errors import LabialError
 from labial.faps import CHANNELS, FAP_COLUMNS
-from labial.model import KINDS, METHODS, Model
+from labial.model import Model
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.quantise import LIMITS
 from labial.reference.contact import FRAMES, raised
@@ -20,10 +21,10 @@ from labial.train.closures import FIRMNESS, floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
 from labial.train.expression import restored
-from labial.train.kernels import LOOK_AHEAD, PAIR_KNOTS, REACH, Kernels, Penalties, fit_kernels, lags
+from labial.train.kernels import PAIR_KNOTS, REACH, Kernels, Penalties, fit_kernels, lags
 from labial.train.recordings import Occurrences, Recording, occurrences, recordings, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
-from labial.train.states import SEARCH_STRIDE, Scales, StateTables, codebook_tables, decode, match_states
+from labial.train.states import Scales, StateTables, codebook_tables, decode, match_states
 from labial.train.workers import Workers
 
 #: Utterances whose paths are decoded at once.
@@ -338,9 +339,9 @@ def train(
     *,
     kind: str,
     method: str,
-    fps: int = 50,
-    codebook: int = 50,
-    components: int = 5,
+    fps: int = FPS,
+    codebook: int = CODEBOOK,
+    components: int = COMPONENTS,
     seed: int = 0,
     jobs: int = 2,
     engine: Optional[str] = None,

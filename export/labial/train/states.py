@@ -26,9 +26,6 @@ PRIOR_FRAMES = 20.0
 #: carry WEIGHT_SUM_MAX / WEIGHT_MIN, a little more.
 DYNAMIC_RANGE = 2000.0
 
-#: Frames that share a state of the decoded path. Targets move slowly enough that more states change nothing.
-SEARCH_STRIDE = 3
-
 
 @dataclass(frozen=True)
 class Scales:

@@ -1,4 +1,4 @@
-"""The command ``labial bake``."""
+"""A C header of baked motion or phonemes, and the player that plays the motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from labial.rig.table import convert
 PLAYER = "labial_player.h"
 
 
-def run(source: Source, output: str, kind: str, rig: Optional[str] = None, name: Optional[str] = None) -> List[Path]:
+def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name: Optional[str] = None) -> List[Path]:
     """Writes a header of `kind`, "track" or "phonemes", and beside a track its player; returns their paths.
 
     `rig` is a rig's description, for a track; a jaw without it. `name` is what C calls it, the file's name without it.

@@ -1,4 +1,4 @@
-"""The command ``labial evaluate``."""
+"""An evaluation from the corpora to the files of its report."""
 
 from __future__ import annotations
 

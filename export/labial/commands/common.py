@@ -1,0 +1,102 @@
+"""What several commands have in common: types of arguments, groups of arguments, and how a command shows its work."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import math
+import sys
+from typing import Optional
+
+from labial.defaults import FPS, KINDS
+from labial.grammar import is_number, is_whole, read_text
+
+
+def whole(low: int, high: int, text: str) -> int:
+    """`text` as a whole number within `low` .. `high`; with both given, a type of :mod:`argparse`."""
+    value = int(text) if is_whole(text) else -1
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number within {low} .. {high}")
+    return value
+
+
+def number(text: str) -> float:
+    """`text` as a finite number: a type of :mod:`argparse`."""
+    if not is_number(text) or math.isinf(float(text)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return float(text)
+
+
+#: Counts; more of nothing here is of use. Seeds, as NumPy and scikit-learn take them.
+positive = functools.partial(whole, 1, 1_000_000)
+seed = functools.partial(whole, 0, 2**32 - 1)
+
+
+def add_kind(command: argparse.ArgumentParser) -> None:
+    """``--kind``."""
+    command.add_argument("--kind", choices=KINDS, default=KINDS[0])
+
+
+def add_fps(command: argparse.ArgumentParser) -> None:
+    """``--fps`` of a model."""
+    command.add_argument("--fps", type=positive, default=FPS, help=f"frames per second ({FPS})")
+
+
+def add_engine(command: argparse.ArgumentParser) -> None:
+    """``--engine``, as :class:`labial.train.workers.Workers` takes it."""
+    command.add_argument("--engine", metavar="dask=ADDRESS", help="work on the Dask cluster whose scheduler is at "
+                         "ADDRESS, in place of this machine's processes; the result is the same")
+
+
+def add_source(command: argparse.ArgumentParser) -> None:
+    """``--from``, the format of timings, as `options.source`."""
+    from labial.corpus.formats import READERS
+
+    command.add_argument("--from", dest="source", choices=tuple(READERS), metavar="FORMAT",
+                         help=f"format of the timings: {', '.join(READERS)} (told by the file)")
+
+
+def add_labels(command: argparse.ArgumentParser) -> None:
+    """``--labels``, the set that the labels of timings are of."""
+    command.add_argument("--labels", choices=("auto", "arpabet", "ipa", "xsampa"), default="auto",
+                         help="what set the phonemes' labels are of; auto takes any, and where they differ X-SAMPA "
+                         "in .pho and MaryTTS, the IPA of Piper, HeadTTS and Kokoro, elsewhere ARPABET (auto)")
+
+
+def add_phones(command: argparse.ArgumentParser) -> None:
+    """``--phones``, timings beside a motion, with their format and labels."""
+    command.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
+    add_source(command)
+    add_labels(command)
+
+
+def add_said(command: argparse.ArgumentParser) -> None:
+    """``--text`` and ``--text-file``, what is said in a sound; see :func:`said`."""
+    group = command.add_mutually_exclusive_group()
+    group.add_argument("--text", help="what is said in a sound; without it the likeliest words are looked for, which "
+                       "is less sure")
+    group.add_argument("--text-file", metavar="FILE", help="a file with the text, UTF-8")
+
+
+def said(options: argparse.Namespace) -> Optional[str]:
+    """What is said in the sound, None where it is not known."""
+    return read_text(options.text_file) if options.text_file is not None else options.text
+
+
+def add_quiet(command: argparse.ArgumentParser, bars: str = "bar") -> None:
+    """``--quiet``; see :func:`shows_progress`."""
+    command.add_argument("--quiet", action="store_true", help=f"no progress {bars}")
+
+
+def shows_progress(options: argparse.Namespace) -> bool:
+    """Whether a progress bar is shown: on a terminal, unless the command is to be quiet."""
+    return not options.quiet and sys.stderr.isatty()
+
+
+def put(text: str, path: Optional[str]) -> None:
+    """Writes a text to a file, or to standard output without one."""
+    if path:
+        with open(path, "w", encoding="utf-8", newline="\n") as out:
+            out.write(text)
+    else:
+        sys.stdout.write(text)

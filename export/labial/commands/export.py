@@ -1,0 +1,61 @@
+"""``labial export``: a model as C tables."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Tuple
+
+from labial.commands.common import number, positive
+from labial.defaults import PREDECESSORS
+from labial.errors import LabialError
+
+if TYPE_CHECKING:
+    from labial.model import Model
+    from labial.quantise import ExportedModel
+
+
+def add_arguments(command: argparse.ArgumentParser) -> None:
+    """A model, and what it is called in C."""
+    command.add_argument("model", metavar="MODEL.npz")
+    command.add_argument("--name", required=True, help="of the C symbol and the files")
+    command.add_argument("-o", "--output", required=True, metavar="DIR")
+    command.add_argument("--blob", action="store_true", help="write NAME.lbm for labial_model_load() too")
+    add_table_options(command)
+
+
+def add_table_options(command: argparse.ArgumentParser) -> None:
+    """What :func:`exported` does to a model."""
+    command.add_argument("--amplitude", type=number, default=1.0, metavar="FACTOR",
+                         help="widen (over 1) or calm (below 1) the motion about its mean; 1 is the least error (1)")
+    command.add_argument("--predecessors", type=positive, default=PREDECESSORS,
+                         help=f"transitions kept into each state ({PREDECESSORS})")
+
+
+def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedModel]:
+    """The float model that the options name, of the amplitude that they ask for, and its exported tables."""
+    from labial.amplitude import widened
+    from labial.model import load
+    from labial.quantise import quantise
+
+    model, factor = load(options.model), options.amplitude
+    if not 0.0 <= factor <= 4.0:
+        raise LabialError(f"amplitude {factor} is not within 0 .. 4")
+    if factor != 1.0:
+        model = widened(model, factor)
+    return model, quantise(model, name, predecessors=options.predecessors)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Writes the C files, and prints what memory they take and what is lost in them."""
+    from labial import emit, report
+    from labial.loss import measure
+    from labial.phones import drawn_streams
+
+    emit.check_name(options.name)
+    model, tables = exported(options, options.name)
+    loss = measure(model, tables, drawn_streams(model))
+    for path in emit.write(tables, options.output, binary=options.blob):
+        print(path)
+    print(report.memory(tables))
+    print(report.quantisation(loss, model, tables))
+    return 0

@@ -1,0 +1,32 @@
+"""``labial rig``: a description of servos or blendshapes as a C table."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_arguments(command: argparse.ArgumentParser) -> None:
+    """The description, and where its files go."""
+    command.add_argument("description", metavar="FACE.toml")
+    command.add_argument("-o", "--output", required=True, metavar="DIR")
+    command.add_argument("--name", help="of the C symbol and the files; the description's file name without it")
+    command.add_argument("--no-figure", action="store_true", help="do not draw NAME.svg")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Writes NAME.h, NAME.c and, unless told not to, NAME.svg."""
+    from labial.emit import check_name
+    from labial.rig import figure, table
+    from labial.rig.description import read
+
+    name = options.name or Path(options.description).stem
+    check_name(name, "rig")
+    rig = read(options.description, name)
+    paths = table.write(rig, options.output)
+    if not options.no_figure:
+        paths.append(Path(options.output) / f"{name}.svg")
+        figure.draw(rig, paths[-1])
+    for path in paths:
+        print(path)
+    return 0

@@ -1,0 +1,74 @@
+"""``labial synth``: motion from a model and phoneme timings, by the float64 reference."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import sys
+from pathlib import Path
+from typing import Callable, Dict, List
+
+from labial.commands.common import add_labels, add_source
+from labial.errors import LabialError
+
+
+def add_arguments(command: argparse.ArgumentParser) -> None:
+    """A model, timings and the form of the frames."""
+    command.add_argument("model", metavar="MODEL.npz")
+    command.add_argument("phones", metavar="PHONES",
+                         help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur, JSON of "
+                         "Piper, Azure, Polly, HeadTTS or Kokoro")
+    add_source(command)
+    command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
+    _add_format(command)
+    command.add_argument("--rig", metavar="FACE.toml", help="with --to jsonl: a face of your own in place of ARKit's, "
+                         "as labial rig reads it")
+    add_labels(command)
+    command.add_argument("--whole", action="store_true",
+                         help="search and solve the whole utterance at once, not as the run-time does")
+
+
+def _add_format(command: argparse.ArgumentParser) -> None:
+    from labial.animation import FORMATS
+
+    names: Dict[str, List[str]] = {}
+    for name, item in FORMATS.items():
+        names.setdefault(item.about, []).append(name)
+    about = "; ".join(f"{', '.join(same)}: {text}" for text, same in names.items())
+    command.add_argument("--to", choices=tuple(FORMATS), metavar="FORMAT", default="csv", help=f"{about} (csv)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Writes the frames."""
+    from labial.animation import FORMATS
+    from labial.model import load
+    from labial.phones import read_stream
+    from labial.reference import published, stream
+    from labial.reference.tables import FloatTables
+
+    model = load(options.model)
+    tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels, options.source)
+    write = _rig_writer(options) if options.rig else FORMATS[options.to].write
+    if options.whole:
+        frames = published.synthesise(tables, phonemes, whole=True)
+    else:
+        frames = stream.synthesise(tables, phonemes)
+    name = Path(options.model).stem
+    if options.output:
+        with open(options.output, "w", encoding="ascii", newline="\n") as out:
+            write(out, frames, model.fps, name)
+    else:
+        write(sys.stdout, frames, model.fps, name)
+    return 0
+
+
+def _rig_writer(options: argparse.Namespace) -> Callable[..., None]:
+    from labial.animation import write_json_lines
+    from labial.rig.description import read
+
+    if options.to != "jsonl":
+        raise LabialError("--rig goes with --to jsonl")
+    name = Path(options.rig).stem
+    if name in ("frame", "time", "faps"):
+        raise LabialError(f"{options.rig}: {name!r} is taken in a line of JSON: name the file otherwise")
+    return functools.partial(write_json_lines, rig=read(options.rig, name))

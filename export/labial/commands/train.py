@@ -1,0 +1,73 @@
+"""``labial train``: from corpora to a model."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import os
+import warnings
+from typing import Any, Dict
+
+from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, positive, seed, shows_progress, whole
+from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE
+from labial.errors import needs
+
+
+def add_arguments(command: argparse.ArgumentParser) -> None:
+    """Corpora, the method and its sizes, and how the work is done."""
+    command.add_argument("corpus", nargs="+", help="Labial corpus folder, IEMOCAP or AVLaughterCycle; of several, all "
+                         "talkers are brought to the first one's mean and scale, and corpus.toml in a folder tells "
+                         "more")
+    command.add_argument("-o", "--output", required=True, metavar="MODEL.npz")
+    add_kind(command)
+    command.add_argument("--method", choices=METHODS, default=METHODS[-1])
+    add_fps(command)
+    command.add_argument("--codebook", type=positive, default=CODEBOOK, help=f"states per channel ({CODEBOOK})")
+    command.add_argument("--components", type=positive, default=COMPONENTS,
+                         help=f"mixture components per phoneme ({COMPONENTS})")
+    command.add_argument("--look-ahead", type=functools.partial(whole, 0, 360), metavar="MS", help="--method labial: "
+                         f"how far the kernels reach into what follows, 0 .. 360 ms ({1000 * LOOK_AHEAD:.0f}); less "
+                         "is less latency")
+    command.add_argument("--search-stride", type=positive, metavar="FRAMES", help="--method labial: frames that "
+                         f"share a state of the decoded path ({SEARCH_STRIDE}); 1 decodes every frame, as --method "
+                         "paper always does")
+    command.add_argument("--seed", type=seed, default=0)
+    command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1,
+                         help="processes; the result is the same")
+    add_engine(command)
+    command.add_argument("--attribution", default="",
+                         help="what whoever passes the model on must say; kept in the model")
+    add_quiet(command, "bars")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Trains, writes the model, and says what its phonemes backed off to."""
+    with needs("training", "train"):
+        from labial.train import backed_off, train
+    from labial.corpus import read_corpora
+    from labial.model import save
+
+    own = _labials_own(options)
+    episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
+    model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
+                  codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
+                  engine=options.engine, progress=shows_progress(options), attribution=options.attribution, **own)
+    save(model, options.output)
+    for line in backed_off(model):
+        print(line)
+    print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
+          f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")
+    return 0
+
+
+def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
+    """What only ``--method labial`` has; warns where it is given for another."""
+    own: Dict[str, Any] = {}
+    if options.look_ahead is not None:
+        own["look_ahead"] = options.look_ahead / 1000.0
+    if options.search_stride is not None:
+        own["search_stride"] = options.search_stride
+    if own and options.method == "paper":
+        names = " and ".join("--" + name.replace("_", "-") for name in own)
+        warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)
+    return own
