@@ -20,7 +20,7 @@ def mean_pose(model: Model) -> np.ndarray:
     known = model.training.get("mean_pose")
     if isinstance(known, list) and len(known) == CHANNELS:
         return np.asarray(known, dtype=np.float64)
-    return model.decode_mean.mean(axis=1)
+    return model.emission_mean.mean(axis=1)
 
 
 def widened(model: Model, gain: Union[float, np.ndarray], centre: Optional[np.ndarray] = None) -> Model:

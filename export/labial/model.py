@@ -22,7 +22,7 @@ from labial.errors import ModelError
 from labial.faps import CHANNELS
 
 #: Version of the .npz layout.
-FORMAT = 3
+FORMAT = 4
 
 _TEXT = (
     "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
@@ -36,15 +36,15 @@ LARGEST = 64_000_000
 _POSITION, _LOGARITHM, _PRECISION = (-1e5, 1e5), (-1e5, 1e-9), (1e-15, 1e15)
 #: The least and the largest value of each array; beyond them the library's tables hold nothing, however scaled.
 _BOUNDS: Dict[str, Tuple[float, float]] = {
-    "phoneme_class": (0, 255), "boundary": (0, 1), "component_count": (1, 255), "log_weight": _LOGARITHM,
+    "viseme_class": (0, 255), "boundary": (0, 1), "component_count": (1, 255), "log_weight": _LOGARITHM,
     "duration_mean": (0, 3600), "duration_variance": (1e-15, 1e7), "shape": _POSITION, "slope": (-1e7, 1e7),
     "log_previous": _LOGARITHM, "log_next": _LOGARITHM, "kernel": _POSITION, "kernel_lag": (-1000, 1000),
     "pair_key": (0, 65535), "pair_shape": _POSITION, "floor": _POSITION, "contact": (0, 1), "firm": (0, 1e15),
-    "decode_mean": _POSITION, "decode_variance": _PRECISION, "state_mean": _POSITION, "state_precision": _PRECISION,
+    "emission_mean": _POSITION, "emission_variance": _PRECISION, "state_mean": _POSITION, "state_precision": _PRECISION,
     "state_anchor": (0, 1e15), "log_transition": _LOGARITHM, "log_initial": _LOGARITHM,
 }  # fmt: skip
 #: Arrays of whole numbers; those that may hold -inf; and those from which others' sizes are taken, with their axes.
-_WHOLE = ("phoneme_class", "boundary", "component_count", "kernel_lag", "pair_key", "contact")
+_WHOLE = ("viseme_class", "boundary", "component_count", "kernel_lag", "pair_key", "contact")
 _MAY_BE_NONE = ("floor", "log_transition", "log_initial")
 _AXES = {"component_count": 1, "kernel_lag": 1, "pair_key": 2, "pair_shape": 3, "log_previous": 2, "log_initial": 2}
 
@@ -62,7 +62,7 @@ class Model:
     silence: str  #: the label that stands before and after an utterance
     soft: bool  #: shapes are the mixture's conditional mean, not its best component's
     search_stride: int  #: frames from one state of a path to the next
-    phoneme_class: np.ndarray  #: (P,) int64, index into `classes`
+    viseme_class: np.ndarray  #: (P,) int64, index into `classes`
     boundary: np.ndarray  #: (P,) bool, units begin and end here
     component_count: np.ndarray  #: (P,) int64, sums to N; components are stored phoneme by phoneme
     log_weight: np.ndarray  #: (N,) log a_c, normalised per phoneme
@@ -80,8 +80,8 @@ class Model:
     floor: np.ndarray  #: (P, 13) FAP that the target does not fall below in the phoneme; -inf where none
     contact: np.ndarray  #: (P, 13) bool, where that is contact, as of the lips in p, b, m
     firm: np.ndarray  #: (13,) precision that holds a frame in contact at least
-    decode_mean: np.ndarray  #: (13, Q) static mean that the Viterbi search sees, FAP
-    decode_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
+    emission_mean: np.ndarray  #: (13, Q) mean of the static feature that a state emits in the Viterbi search, FAP
+    emission_variance: np.ndarray  #: (13, Q) and its variance, FAP^2
     state_mean: np.ndarray  #: (13, Q, 3) of m, delta m, delta-delta m for equation 3, FAP (per frame, per frame^2)
     state_precision: np.ndarray  #: (13, Q, 3) their precisions, > 0
     state_anchor: np.ndarray  #: (13, Q) precision that ties a frame to its target; 0 in the published method
@@ -123,9 +123,10 @@ def check(model: Model) -> None:
     key = np.asarray(model.pair_key)
     _expect(bool(((key >= 0) & (key < [p, 2, p])).all()), "a pair names a phoneme or a side that does not exist")
     _expect(len(np.unique(key, axis=0)) == len(key), "a pair is there twice")
-    _expect(((model.phoneme_class >= 0) & (model.phoneme_class < v)).all(), "a phoneme's viseme class does not exist")
+    _expect(((model.viseme_class >= 0) & (model.viseme_class < v)).all(), "a phoneme's viseme class does not exist")
     _expect(not (np.asarray(model.contact, dtype=bool) & np.isneginf(model.floor)).any(), "contact without a floor")
-    _expect((np.diff(model.decode_mean, axis=1) >= 0).all(), "decode_mean is not ascending, states are not in order")
+    _expect((np.diff(model.emission_mean, axis=1) >= 0).all(),
+            "emission_mean is not ascending, states are not in order")
     _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
     _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
     lag = np.asarray(model.kernel_lag)
@@ -152,7 +153,7 @@ def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
     _expect(context in (0, v), f"context tables have {context} classes, the model {v}")
     _expect(knots in (1, 2), f"pair_shape has shape {np.shape(model.pair_shape)}, not one or two knots")
     return {
-        "phoneme_class": (p,),
+        "viseme_class": (p,),
         "boundary": (p,),
         "component_count": (p,),
         "log_weight": (n,),
@@ -169,8 +170,8 @@ def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
         "floor": (p, CHANNELS),
         "contact": (p, CHANNELS),
         "firm": (CHANNELS,),
-        "decode_mean": (CHANNELS, q),
-        "decode_variance": (CHANNELS, q),
+        "emission_mean": (CHANNELS, q),
+        "emission_variance": (CHANNELS, q),
         "state_mean": (CHANNELS, q, 3),
         "state_precision": (CHANNELS, q, 3),
         "state_anchor": (CHANNELS, q),
@@ -214,12 +215,13 @@ def load(path: Union[str, os.PathLike]) -> Model:
     """Reads and checks a model. Raises ModelError, which names the file, for anything that is not one."""
     try:
         members = read_zip(path, None, LARGEST)
-        for name in ("model.json", *(f"{item.name}.npy" for item in fields(Model) if item.name not in _TEXT)):
-            _expect(name in members, f"not a labial model: it holds no {name}")
+        _expect("model.json" in members, "not a labial model: it holds no model.json")
         values = _texts(members["model.json"])
         for item in fields(Model):
             if item.name not in _TEXT:
-                values[item.name] = array(item.name, members[item.name + ".npy"])
+                member = f"{item.name}.npy"
+                _expect(member in members, f"not a labial model: it holds no {member}")
+                values[item.name] = array(item.name, members[member])
         return Model(**values)
     except OSError as error:
         raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None

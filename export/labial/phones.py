@@ -23,7 +23,7 @@ def phone_set(model: Model) -> PhoneSet:
         kind=model.kind,
         phonemes=model.phonemes,
         classes=model.classes,
-        phoneme_class=tuple(int(c) for c in model.phoneme_class),
+        viseme_class=tuple(int(c) for c in model.viseme_class),
         boundary=tuple(bool(b) for b in model.boundary),
         silence=model.silence,
         aliases=aliases_for(model.kind, model.phonemes, model.aliases),

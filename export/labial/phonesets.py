@@ -29,7 +29,7 @@ class PhoneSet:
     kind: str
     phonemes: Tuple[str, ...]  #: P labels, silence first; the order is part of the model's interface
     classes: Tuple[str, ...]  #: names of the viseme classes
-    phoneme_class: Tuple[int, ...]  #: (P,) index into `classes`
+    viseme_class: Tuple[int, ...]  #: (P,) index into `classes`
     boundary: Tuple[bool, ...]  #: (P,) units begin and end here
     silence: str
     aliases: Dict[str, Dict[str, str]]  #: set of labels -> other label -> phoneme
@@ -91,7 +91,7 @@ def candidates_for(label: str) -> List[str]:
     phone_set = next((item for item in (SPEECH, LAUGHTER) if label in item.phonemes), None)
     if phone_set is None:
         raise ValueError(f"{label!r} is not a phoneme")
-    class_of = dict(zip(phone_set.phonemes, phone_set.phoneme_class))
+    class_of = dict(zip(phone_set.phonemes, phone_set.viseme_class))
     boundary = dict(zip(phone_set.phonemes, phone_set.boundary))
     sounding = [item for item in phone_set.phonemes if item != phone_set.silence]
     order = [label, *_ALIKE.get(label, "").split()]

@@ -137,7 +137,7 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
         soft=model.soft,
         first_component=first,
         component_count=np.asarray(model.component_count),
-        viseme_class=np.asarray(model.phoneme_class),
+        viseme_class=np.asarray(model.viseme_class),
         classes=model.classes,
         boundary=np.asarray(model.boundary).astype(np.int64),
         cost=_component_costs(model, deviation)[kept],
@@ -160,9 +160,9 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
         slope_scale=slope_scale,
         kernel_scale=kernel_scale,
         pair_scale=pair_scale,
-        emission_mean=_positions(model.decode_mean - centre[:, None] / POSITION_SCALE, "decode_mean"),
-        emission_gain=gain(np.sqrt(model.decode_variance) * POSITION_SCALE),
-        emission_cost=_costs(-0.5 * np.log(model.decode_variance), 255),
+        emission_mean=_positions(model.emission_mean - centre[:, None] / POSITION_SCALE, "emission_mean"),
+        emission_gain=gain(np.sqrt(model.emission_variance) * POSITION_SCALE),
+        emission_cost=_costs(-0.5 * np.log(model.emission_variance), 255),
         initial=_costs(model.log_initial, 255),
         state_mean=state_mean,
         state_hold=hold,
@@ -201,7 +201,7 @@ def _taps_behind(lags: np.ndarray) -> int:
 
 def _centres(model: Model) -> np.ndarray:
     """(13,) middle of what the channel's states and shapes span, Q4."""
-    values = np.concatenate([model.state_mean[..., 0], model.decode_mean], axis=1)
+    values = np.concatenate([model.state_mean[..., 0], model.emission_mean], axis=1)
     return np.rint((values.min(axis=1) + values.max(axis=1)) / 2.0 * POSITION_SCALE).astype(np.int64)
 
 

@@ -22,7 +22,7 @@ def one_thread():
 
 
 SHAPES = shape_of_phoneme()
-CLASS = np.array(SPEECH.phoneme_class)
+CLASS = np.array(SPEECH.viseme_class)
 
 
 def held(given: Timeline) -> np.ndarray:

@@ -35,7 +35,7 @@ def test_round_trip_and_same_bytes(tmp_path: Path) -> None:
         ("state_precision", -1.0),
         ("state_anchor", -1e-9),
         ("log_transition", 0.5),
-        ("phoneme_class", 99),
+        ("viseme_class", 99),
         ("component_count", 0),
     ],
 )
@@ -69,6 +69,15 @@ def test_names_the_file_that_is_no_model(tmp_path: Path) -> None:
         path.write_bytes(damaged)
         with pytest.raises(ModelError, match="model.npz"):
             load(path)
+
+
+def test_says_that_a_model_is_of_another_format(tmp_path: Path) -> None:
+    """Whoever has a file of another version is told so, and not that an array is missing in it."""
+    path = tmp_path / "model.npz"
+    save(random_model(1), path)
+    path.write_bytes(_with(_without(path.read_bytes(), "emission_mean.npy"), "model.json", b'{"format": 3}'))
+    with pytest.raises(ModelError, match="format 3, but this version of labial reads format 4"):
+        load(path)
 
 
 def _rewritten(data: bytes, skip: str) -> tuple[io.BytesIO, zipfile.ZipFile]:

@@ -189,7 +189,7 @@ def test_labels_of_espeak_look_as_the_chart_says() -> None:
         symbol = label.lstrip("ʔ?ʰ")[:1] or label[:1]
         for symbols, classes in CHART.items():
             if symbol in symbols and phoneme != "-" and label not in OTHERWISE:
-                name = SPEECH.classes[SPEECH.phoneme_class[SPEECH.phonemes.index(phoneme)]]
+                name = SPEECH.classes[SPEECH.viseme_class[SPEECH.phonemes.index(phoneme)]]
                 assert name in classes, (label, phoneme)
                 checked += 1
     assert checked > 230

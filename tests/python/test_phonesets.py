@@ -12,8 +12,8 @@ def test_every_phoneme_has_a_class_and_every_alias_a_phoneme(phone_set):
     """Catches a phoneme that was left out of the class table, an unused class, or an alias that shadows a phoneme."""
     assert phone_set.phonemes[0] == phone_set.silence
     assert len(set(phone_set.phonemes)) == len(phone_set.phonemes)
-    assert len(phone_set.phoneme_class) == len(phone_set.boundary) == len(phone_set.phonemes)
-    assert set(phone_set.phoneme_class) == set(range(len(phone_set.classes)))
+    assert len(phone_set.viseme_class) == len(phone_set.boundary) == len(phone_set.phonemes)
+    assert set(phone_set.viseme_class) == set(range(len(phone_set.classes)))
     assert set(phone_set.aliases) == {"arpabet", "ipa", "xsampa"}
     for aliases in phone_set.aliases.values():
         assert set(aliases.values()) <= set(phone_set.phonemes)

@@ -28,11 +28,11 @@ from test_viterbi import hidden_markov_model, likeliest
 def unit_by_other_means(tables: FloatTables, target: np.ndarray, channel: int) -> np.ndarray:
     """(T,) one channel of a unit: hmmlearn's path for its targets (T, 13), and the dense solution of equation 3."""
     model = tables.model
-    hidden = GaussianHMM(model.decode_mean.shape[1], covariance_type="diag")
+    hidden = GaussianHMM(model.emission_mean.shape[1], covariance_type="diag")
     hidden.n_features = 1
     hidden.startprob_ = np.exp(model.log_initial[channel])
     hidden.transmat_ = np.exp(model.log_transition[channel])
-    hidden.means_, hidden.covars_ = model.decode_mean[channel][:, None], model.decode_variance[channel][:, None]
+    hidden.means_, hidden.covars_ = model.emission_mean[channel][:, None], model.emission_variance[channel][:, None]
     path = hidden.decode(target[:, channel : channel + 1])[1]
     states = model.state_precision[channel, path][:, None], model.state_mean[channel, path][:, None]
     anchor, aim = model.state_anchor[channel, path][:, None], target[:, channel : channel + 1]

@@ -229,10 +229,10 @@ def test_share_is_the_anchors() -> None:
 def test_states_must_be_sorted() -> None:
     """The search looks for the nearest state by halves."""
     model = random_model(6)
-    mean = model.decode_mean.copy()
+    mean = model.emission_mean.copy()
     mean[4, [2, 3]] = mean[4, [3, 2]]
-    with pytest.raises(ModelError, match="decode_mean is not ascending"):
-        dataclasses.replace(model, decode_mean=mean)
+    with pytest.raises(ModelError, match="emission_mean is not ascending"):
+        dataclasses.replace(model, emission_mean=mean)
     assert (np.diff(quantise(model, "model").emission_mean, axis=1) >= 0).all()
 
 

@@ -156,7 +156,7 @@ def test_matched_states_follow_the_human_under_them():
     np.testing.assert_allclose(matched.state_mean[:, :, 0], np.tile([-100.0, 100.0], (13, 1)), atol=2)
     np.testing.assert_allclose(0.5 / matched.state_precision[0, :, 0], 25, rtol=0.2)
     np.testing.assert_allclose(2.0 / matched.state_anchor[12], 400, rtol=0.2)
-    np.testing.assert_array_equal(matched.decode_mean, tables.decode_mean)
+    np.testing.assert_array_equal(matched.emission_mean, tables.emission_mean)
     # From one state to the other every 500 frames, that is every 250 of the path's steps, and half a count more.
     np.testing.assert_allclose(np.exp(matched.log_transition[:, 0, 1]), 4.5 / 1001, rtol=0.01)
 

@@ -58,7 +58,7 @@ def silence_of(phone_set: PhoneSet) -> int:
 
 def _closing(phone_set: PhoneSet) -> np.ndarray:
     """(P,) bool: phonemes that close the lips."""
-    return np.array([phone_set.classes[c] in CLOSED_CLASSES for c in phone_set.phoneme_class], dtype=bool)
+    return np.array([phone_set.classes[c] in CLOSED_CLASSES for c in phone_set.viseme_class], dtype=bool)
 
 
 def groups(phone_set: PhoneSet) -> Tuple[str, Tuple[str, ...], np.ndarray]:
@@ -68,7 +68,7 @@ def groups(phone_set: PhoneSet) -> Tuple[str, Tuple[str, ...], np.ndarray]:
     """
     if phone_set.kind == "laughter":
         return "phoneme", phone_set.phonemes, np.arange(len(phone_set.phonemes))
-    return "class", phone_set.classes, np.array(phone_set.phoneme_class)
+    return "class", phone_set.classes, np.array(phone_set.viseme_class)
 
 
 def least_openness(item: Utterance, frames: np.ndarray, mask: np.ndarray, phone_set: PhoneSet, fps: int) -> np.ndarray:

@@ -57,7 +57,7 @@ def _contact(models: Sequence[Model]) -> Optional[float]:
     """The distance of the lips at which a model holds its bilabials at most; None where no model holds them."""
     for model in models:
         upper, lower = (model.floor[:, FAP_NUMBERS.index(number)] for number in (51, 52))
-        held = np.isfinite(upper + lower) & (model.phoneme_class == _bilabial(model))
+        held = np.isfinite(upper + lower) & (model.viseme_class == _bilabial(model))
         if held.any():
             return float(-(upper + lower)[held].mean())
     return None
@@ -71,7 +71,7 @@ def _kinds(model: Model) -> List[str]:
     """(P,) kinds of bands, by what the model knows of its phonemes."""
     known = {"silence": "silence", "bilabial": "closed", "labiodental": "labiodental"}
     return [known.get(model.classes[number], "vowel" if boundary else "other")
-            for number, boundary in zip(model.phoneme_class, model.boundary)]
+            for number, boundary in zip(model.viseme_class, model.boundary)]
 
 
 def _motion(model: Model, given: Stream) -> np.ndarray:

@@ -53,13 +53,15 @@ class FloatTables:
         self.phonemes = model.phonemes
         self.silence = model.phonemes.index(model.silence)
         self.boundary = np.asarray(model.boundary, dtype=bool)
-        self.viseme_class = np.asarray(model.phoneme_class)
+        self.viseme_class = np.asarray(model.viseme_class)
         self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
         self.floor = np.asarray(model.floor)  #: (P, 13)
         self.contact = np.asarray(model.contact)  #: (P, 13) bool
         self.ahead = _look_ahead(self.lags, bool(np.isfinite(self.floor).any()))
         self.stride = model.search_stride
-        self.chains = normal_chains(model.decode_mean, model.decode_variance, model.log_transition, model.log_initial)
+        self.chains = normal_chains(
+            model.emission_mean, model.emission_variance, model.log_transition, model.log_initial
+        )
         self.knots = model.pair_shape.shape[1]  #: K, of the shapes of a phoneme
 
     def select(

@@ -137,7 +137,7 @@ def kind_of(label: str, phones: PhoneSet) -> str:
     if phones.kind == "speech":
         if label in VOWELS.split():
             return "vowel"
-        name = phones.classes[phones.phoneme_class[phones.phonemes.index(label)]]
+        name = phones.classes[phones.viseme_class[phones.phonemes.index(label)]]
         return {"bilabial": "closed", "labiodental": "labiodental"}.get(name, "other")
     return "vowel" if phones.boundary[phones.phonemes.index(label)] else "other"
 

@@ -51,7 +51,7 @@ def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tupl
     least = np.array([np.percentile(values[of], LEAST) for values, of in zip(frames.T, counts.T)])
     result = np.tile(least, (len(phone_set.phonemes), 1))
     contacts = np.zeros(result.shape, dtype=bool)
-    classes = np.array(phone_set.phoneme_class)
+    classes = np.array(phone_set.viseme_class)
     margin = round(MARGIN * fps)
     for name, faps in CONTACTS.items():
         if name not in phone_set.classes:

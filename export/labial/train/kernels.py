@@ -74,10 +74,10 @@ def lags(fps: int, look_ahead: float = LOOK_AHEAD) -> np.ndarray:
     return np.arange(-behind, ahead + 1, dtype=np.int64) * spacing
 
 
-def kernel_prior(phoneme_class: np.ndarray, taps: int, penalties: Penalties) -> np.ndarray:
+def kernel_prior(viseme_class: np.ndarray, taps: int, penalties: Penalties) -> np.ndarray:
     """(P L, P L) inverse covariance of all phonemes' kernels of one channel, phoneme by phoneme, for a penalty of 1."""
-    member = phoneme_class[:, None] == phoneme_class[None, :]
-    between_phonemes = member + np.eye(len(phoneme_class)) / penalties.residual
+    member = viseme_class[:, None] == viseme_class[None, :]
+    between_phonemes = member + np.eye(len(viseme_class)) / penalties.residual
     distance = np.abs(np.subtract.outer(np.arange(taps), np.arange(taps)))
     return np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(penalties.smoothness**distance))
 
@@ -185,7 +185,7 @@ def fit_kernels(
     material: Sequence[Recording],
     choice: Choice,
     tables: ShapeTables,
-    phoneme_class: np.ndarray,
+    viseme_class: np.ndarray,
     stand_in: Sequence[int],
     silence: int,
     fps: int,
@@ -195,11 +195,11 @@ def fit_kernels(
 ) -> Kernels:
     """Fits kernels, shapes and slopes to the human motion of `material`; `choice` are its occurrences' components.
 
-    `phoneme_class` is (P,), `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is
+    `viseme_class` is (P,), `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is
     in seconds; `knots` is K.
     """
     lag = lags(fps, look_ahead)
-    phonemes, taps, components = len(phoneme_class), len(lag), len(tables.shape)
+    phonemes, taps, components = len(viseme_class), len(lag), len(tables.shape)
     deviation = np.sqrt(tables.duration_variance)
     learnt = np.concatenate([item.learnt() for item in material])
     code, count = np.unique(pair_codes(material, phonemes, silence)[learnt], return_counts=True)
@@ -214,7 +214,7 @@ def fit_kernels(
 
     prior = np.zeros((design.shape[1], design.shape[1]))
     kernels = slice(0, phonemes * taps)
-    prior[kernels, kernels] = penalties.kernel * kernel_prior(phoneme_class, taps, penalties)
+    prior[kernels, kernels] = penalties.kernel * kernel_prior(viseme_class, taps, penalties)
     index = np.arange(phonemes * taps, len(prior))
     prior[index, index] = np.repeat(
         [penalties.shape, penalties.slope, penalties.pair], [components, components, knots * len(pairs)]

@@ -58,9 +58,9 @@ class _Setting:
         return np.array(self.phone_set.boundary, dtype=bool)
 
     @property
-    def phoneme_class(self) -> np.ndarray:
+    def viseme_class(self) -> np.ndarray:
         """(P,) int64 viseme classes."""
-        return np.array(self.phone_set.phoneme_class, dtype=np.int64)
+        return np.array(self.phone_set.viseme_class, dtype=np.int64)
 
 
 @dataclass(frozen=True)
@@ -242,7 +242,7 @@ def _fit_shapes(
     floor, contact = floors(material, setting.phone_set, setting.fps)
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
     kernels = fit_kernels(
-        material, choice, tables, setting.phoneme_class, plan.stand_in, setting.silence, setting.fps,
+        material, choice, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
         _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
     )
     targets = _targets(choice, kernels, material, setting.silence, floor, contact)
@@ -304,7 +304,7 @@ def _model(
         silence=phone_set.silence,
         soft=setting.extended,
         search_stride=setting.stride,
-        phoneme_class=setting.phoneme_class,
+        viseme_class=setting.viseme_class,
         boundary=setting.boundary,
         component_count=tables.component_count,
         log_weight=tables.log_weight,
@@ -321,8 +321,8 @@ def _model(
         floor=shaped.floor,
         contact=shaped.contact,
         firm=FIRMNESS * hold * shaped.contact.any(axis=0),
-        decode_mean=states.decode_mean,
-        decode_variance=states.decode_variance,
+        emission_mean=states.emission_mean,
+        emission_variance=states.emission_variance,
         state_mean=states.state_mean,
         state_precision=states.state_precision,
         state_anchor=states.state_anchor,

@@ -138,17 +138,17 @@ class Occurrences:
         return np.concatenate([self.apex_shape, self.duration[:, None]], axis=1)
 
 
-def neighbour_classes(phoneme: np.ndarray, phoneme_class: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
+def neighbour_classes(phoneme: np.ndarray, viseme_class: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
     """Viseme classes of the phonemes before and after each of (S,) phonemes."""
     before, after = neighbours(phoneme, silence)
-    return phoneme_class[before], phoneme_class[after]
+    return viseme_class[before], viseme_class[after]
 
 
 def occurrences(material: List[Recording], phone_set: PhoneSet) -> Occurrences:
     """Gathers the phoneme occurrences of `material` in order."""
     silence = phone_set.phonemes.index(phone_set.silence)
-    phoneme_class = np.asarray(phone_set.phoneme_class, dtype=np.int64)
-    around = [neighbour_classes(item.phoneme, phoneme_class, silence) for item in material]
+    viseme_class = np.asarray(phone_set.viseme_class, dtype=np.int64)
+    around = [neighbour_classes(item.phoneme, viseme_class, silence) for item in material]
     return Occurrences(
         phoneme=np.concatenate([item.phoneme for item in material]),
         duration=np.concatenate([item.duration for item in material]),

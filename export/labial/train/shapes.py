@@ -89,7 +89,7 @@ class Plan:
 def back_off(counts: np.ndarray, phone_set: PhoneSet) -> Plan:
     """Decides for every phoneme, from its samples (P,), whether it has its own mixture, its class's or another's."""
     labels = phone_set.phonemes
-    classes = np.asarray(phone_set.phoneme_class, dtype=np.int64)
+    classes = np.asarray(phone_set.viseme_class, dtype=np.int64)
     members: List[Optional[Tuple[int, ...]]] = []
     pooled: Dict[str, str] = {}
     for index, label in enumerate(labels):

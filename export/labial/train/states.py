@@ -42,8 +42,8 @@ class Scales:
 class StateTables:
     """The tables of all channels for decoding and for equation 3; see labial.model."""
 
-    decode_mean: np.ndarray  #: (13, Q) FAP
-    decode_variance: np.ndarray  #: (13, Q) FAP^2
+    emission_mean: np.ndarray  #: (13, Q) FAP
+    emission_variance: np.ndarray  #: (13, Q) FAP^2
     state_mean: np.ndarray  #: (13, Q, 3)
     state_precision: np.ndarray  #: (13, Q, 3)
     state_anchor: np.ndarray  #: (13, Q)
@@ -57,8 +57,8 @@ def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
     mean = np.stack([book.mean for book in codebooks])
     variance = np.stack([book.variance for book in codebooks])
     return StateTables(
-        decode_mean=mean[..., 0].copy(),
-        decode_variance=variance[..., 0].copy(),
+        emission_mean=mean[..., 0].copy(),
+        emission_variance=variance[..., 0].copy(),
         state_mean=mean,
         state_precision=1.0 / variance,
         state_anchor=np.zeros(mean.shape[:2]),
@@ -71,7 +71,7 @@ def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
 def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: StateTables) -> List[np.ndarray]:
     """(T, 13) int64 each: the state paths of utterances as the run-time decides on them, for targets (T, 13) and the
     frames (T,) that end units."""
-    hidden = tables.decode_mean, tables.decode_variance, tables.log_transition, tables.log_initial
+    hidden = tables.emission_mean, tables.emission_variance, tables.log_transition, tables.log_initial
     return viterbi.decode(viterbi.normal_chains(*hidden), targets, ends, tables.stride)
 
 
@@ -101,7 +101,7 @@ def match_states(
     human motion (T, 13) in FAP, whose values count by `weights` (T, 13). What the search sees of a target stays as it
     is."""
     path, target, motion, weight = (np.concatenate(items) for items in (paths, targets, human, weights))
-    size = tables.decode_mean.shape[1]
+    size = tables.emission_mean.shape[1]
     mean = np.empty((CHANNELS, size, 3))
     variance = np.empty((CHANNELS, size, 3))
     anchor = np.empty((CHANNELS, size))
@@ -119,8 +119,8 @@ def match_states(
     scale = np.array([scales.static, scales.delta, scales.acceleration])
     precision, anchor = limit_range(scale / variance, anchor)
     return StateTables(
-        decode_mean=tables.decode_mean,
-        decode_variance=tables.decode_variance,
+        emission_mean=tables.emission_mean,
+        emission_variance=tables.emission_variance,
         state_mean=mean,
         state_precision=precision,
         state_anchor=anchor,

@@ -77,8 +77,8 @@ def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np
     return share / share.sum(axis=1, keepdims=True), decay
 
 
-def _rate_index(around: Near, phoneme_class: np.ndarray) -> np.ndarray:
-    return 2 * phoneme_class[around.phoneme] + (around.distance > 0)
+def _rate_index(around: Near, viseme_class: np.ndarray) -> np.ndarray:
+    return 2 * viseme_class[around.phoneme] + (around.distance > 0)
 
 
 def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
@@ -86,15 +86,15 @@ def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
 
 
 def objective(
-    around: Near, wanted: np.ndarray, centre: np.ndarray, phoneme_class: np.ndarray, exponent: float, prior: float
+    around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class: np.ndarray, exponent: float, prior: float
 ) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
     """The function to be minimised, which returns its value and gradient at a vector of parameters, and where to begin.
 
     `wanted` (T,) is one channel's motion, `centre` (P,) the phonemes' means, where the targets begin.
     """
     power = np.abs(around.distance) ** exponent
-    rate_at = _rate_index(around, phoneme_class)
-    phonemes, rates = len(centre), 2 * (int(phoneme_class.max()) + 1)
+    rate_at = _rate_index(around, viseme_class)
+    phonemes, rates = len(centre), 2 * (int(viseme_class.max()) + 1)
     flat_phoneme, flat_rate = around.phoneme.ravel(), rate_at.ravel()
 
     def loss(x: np.ndarray) -> Tuple[float, np.ndarray]:
@@ -119,11 +119,11 @@ def objective(
 
 
 def fit_channel(
-    around: Near, motion: np.ndarray, start: np.ndarray, phoneme_class: np.ndarray, exponent: float, prior: float
+    around: Near, motion: np.ndarray, start: np.ndarray, viseme_class: np.ndarray, exponent: float, prior: float
 ) -> Parameters:
     """Fits one channel's motion (T,); `start` (P,) are the phonemes' means. Both FAP."""
     scale = max(float(motion.std()), 1e-9)
-    loss, begin = objective(around, motion / scale, start / scale, phoneme_class, exponent, prior)
+    loss, begin = objective(around, motion / scale, start / scale, viseme_class, exponent, prior)
     found = minimize(loss, begin, jac=True, method="L-BFGS-B", options={"maxiter": ITERATIONS}).x
     found = _unpack(found, len(start))
     return Parameters(found.target * scale, found.strength, found.rate)
@@ -134,7 +134,7 @@ class Dominance:
     """Fitted dominance functions of the channels."""
 
     channels: Tuple[Parameters, ...]
-    phoneme_class: np.ndarray  #: (P,)
+    viseme_class: np.ndarray  #: (P,)
     exponent: float
     fps: int
 
@@ -142,7 +142,7 @@ class Dominance:
         """(T, 13)."""
         around = near(timeline, self.fps)
         power = np.abs(around.distance) ** self.exponent
-        rate_at = _rate_index(around, self.phoneme_class)
+        rate_at = _rate_index(around, self.viseme_class)
         motion: List[np.ndarray] = []
         for parameters in self.channels:
             share, _ = _shares(around, power, parameters, rate_at)
@@ -162,7 +162,7 @@ def _phoneme_means(utterances: Sequence[Utterance], phonemes: int) -> np.ndarray
 def _fit(
     utterances: Sequence[Utterance], training: Training, exponent: float, prior: float, channels: Sequence[int]
 ) -> Dominance:
-    phoneme_class = np.array(training.phone_set.phoneme_class, dtype=np.int64)
+    viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
     speech = [item.timeline.phoneme_at != training.silence for item in utterances]
     parts = [near(item.timeline, training.fps) for item in utterances]
     around = Near(
@@ -172,14 +172,14 @@ def _fit(
         )
     )
     motion = np.concatenate([item.human[mask] for item, mask in zip(utterances, speech)])
-    means = _phoneme_means(utterances, len(phoneme_class))
-    phonemes = len(phoneme_class)
-    still = Parameters(np.zeros(phonemes), np.zeros(phonemes), np.zeros((int(phoneme_class.max()) + 1, 2)))
+    means = _phoneme_means(utterances, len(viseme_class))
+    phonemes = len(viseme_class)
+    still = Parameters(np.zeros(phonemes), np.zeros(phonemes), np.zeros((int(viseme_class.max()) + 1, 2)))
     fitted = [
-        fit_channel(around, motion[:, k], means[:, k], phoneme_class, exponent, prior) if k in channels else still
+        fit_channel(around, motion[:, k], means[:, k], viseme_class, exponent, prior) if k in channels else still
         for k in range(CHANNELS)
     ]
-    return Dominance(tuple(fitted), phoneme_class, exponent, training.fps)
+    return Dominance(tuple(fitted), viseme_class, exponent, training.fps)
 
 
 def fit(training: Training) -> Dominance:

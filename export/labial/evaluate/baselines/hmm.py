@@ -48,7 +48,7 @@ def features(frames: np.ndarray) -> np.ndarray:
 
 def contexts(phoneme: np.ndarray, phone_set: PhoneSet, silence: int) -> np.ndarray:
     """(H, 4) int64 keys of H phonemes in a row: class, phoneme, class context, triphone."""
-    of = np.array(phone_set.phoneme_class, dtype=np.int64)
+    of = np.array(phone_set.viseme_class, dtype=np.int64)
     around = np.concatenate([[silence], phoneme, [silence]])
     before, after = around[:-2], around[2:]
     count = len(of)

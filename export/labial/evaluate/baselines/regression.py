@@ -26,14 +26,14 @@ def _onehot(label: np.ndarray, count: int, value: np.ndarray) -> csr_matrix:
 
 
 def _design(training: Training) -> ridge.Design:
-    phoneme_class = np.array(training.phone_set.phoneme_class, dtype=np.int64)
-    phonemes, classes, silence = len(phoneme_class), len(training.phone_set.classes), training.silence
+    viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
+    phonemes, classes, silence = len(viseme_class), len(training.phone_set.classes), training.silence
 
     def rows(timeline: Timeline) -> ridge.Rows:
         held = timeline.held
         length = timeline.length[held]
         phoneme = timeline.phoneme[held]
-        before, after = (np.repeat(item, length) for item in neighbour_classes(phoneme, phoneme_class, silence))
+        before, after = (np.repeat(item, length) for item in neighbour_classes(phoneme, viseme_class, silence))
         position = (np.arange(timeline.frames) + 0.5 - np.repeat(timeline.start[held], length)) / np.repeat(
             length, length
         )

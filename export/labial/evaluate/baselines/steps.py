@@ -26,7 +26,7 @@ class Steps:
     """Selected shapes; hard and without context as the paper has it, or soft and with it."""
 
     tables: ShapeTables
-    phoneme_class: np.ndarray  #: (P,)
+    viseme_class: np.ndarray  #: (P,)
     silence: int
     soft: bool
 
@@ -34,7 +34,7 @@ class Steps:
         """(H, 13) FAP: the shape of every segment that has frames."""
         phoneme = timeline.phoneme[timeline.held]
         seconds = timeline.milliseconds[timeline.held] / 1000.0
-        before, after = neighbour_classes(phoneme, self.phoneme_class, self.silence)
+        before, after = neighbour_classes(phoneme, self.viseme_class, self.silence)
         return shapes(self.tables, choose(self.tables, phoneme, seconds, before, after, soft=self.soft))
 
     def predict(self, timeline: Timeline) -> np.ndarray:
@@ -62,7 +62,7 @@ def _fit(training: Training, context: bool) -> Steps:
         fitted[members] = mixture
     mixtures = [fitted[plan.members[stand_in]] for stand_in in plan.stand_in]
     tables = shape_tables(mixtures, conditional=context)
-    return Steps(tables, np.array(phone_set.phoneme_class, dtype=np.int64), training.silence, context)
+    return Steps(tables, np.array(phone_set.viseme_class, dtype=np.int64), training.silence, context)
 
 
 def fit(training: Training, context: bool = False) -> Steps:

@@ -50,8 +50,8 @@ def shifted(stream: np.ndarray, lag: np.ndarray) -> np.ndarray:
 
 
 def _design(training: Training, of_class: bool, stream: Optional[steps.Steps]) -> ridge.Design:
-    phoneme_class = np.array(training.phone_set.phoneme_class, dtype=np.int64)
-    label_of = phoneme_class if of_class else np.arange(len(phoneme_class))
+    viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
+    label_of = viseme_class if of_class else np.arange(len(viseme_class))
     lag = window(training.fps)
     wide = window(training.fps, max(1, round(SPACING * training.fps)))
     count = int(label_of.max()) + 1
