@@ -193,6 +193,35 @@ static void what_is_free_laughs(void **state)
     assert_true(out[UPPER] > speech[UPPER] + 300);
 }
 
+/* Corners at full intensity, whose share of the way is 1 - words (256 - share) / 2^16 exactly: rounded to the nearest FAP
+ * unit, half of one towards the laugh. Of each odd share, every remainder of 2^16 comes once. Would catch a half that is
+ * off by the least that can be. */
+static void what_is_free_is_rounded_to_the_nearest(void **state)
+{
+    static const uint8_t corners[] = { 5, 6, 11, 12 };
+    static const uint16_t shares[] = { 1, 101, 203, 255 };
+    int16_t speech[LABIAL_CHANNELS] = { 0 }, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    labial_blend_t blend = labial_blend_default;
+    const unsigned words = 255;
+    int way;
+    unsigned i;
+    (void)state;
+    for (i = 0; i < 4; i++)
+        blend.shares[corners[i]] = shares[i];
+    for (way = 0; way <= 65535; way++) {
+        for (i = 0; i < LABIAL_CHANNELS; i++) { /* up and down */
+            speech[i] = (int16_t)(i % 2 ? INT16_MIN : INT16_MAX);
+            laugh[i] = (int16_t)(i % 2 ? INT16_MIN + way : INT16_MAX - way);
+        }
+        assert_int_equal(labial_blend(&blend, LABIAL_BLEND_FULL, words, speech, laugh, out), LABIAL_OK);
+        for (i = 0; i < 4; i++) {
+            const double gone = way * (1.0 - words * (256.0 - shares[i]) / 65536.0);
+            const unsigned c = corners[i];
+            assert_int_equal(c % 2 ? out[c] - speech[c] : speech[c] - out[c], (int)floor(gone + 0.5));
+        }
+    }
+}
+
 static int toward(int from, int value, int to)
 {
     return to < from ? from - value : value - from;
@@ -332,6 +361,7 @@ int main(void)
         cmocka_unit_test(the_ends_are_exact),
         cmocka_unit_test(closures_are_kept),
         cmocka_unit_test(what_is_free_laughs),
+        cmocka_unit_test(what_is_free_is_rounded_to_the_nearest),
         cmocka_unit_test(monotone_in_intensity_and_words),
         cmocka_unit_test(extremes_stay_between),
         cmocka_unit_test(continuous),

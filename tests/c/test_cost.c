@@ -57,11 +57,54 @@ static void everything_adds_to_the_cost(void **state)
     assert_true(labial_model_cost(&f.model) < more);
 }
 
+/* The comparisons of a binary search for the `wanted`-th of `count` entries, or for what lies before or behind all. */
+static uint32_t steps_of_search(unsigned count, unsigned wanted)
+{
+    unsigned low = 0, high = count;
+    uint32_t steps = 0;
+    while (low < high) {
+        const unsigned middle = (low + high) / 2u;
+        steps++;
+        if (middle < wanted)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return steps;
+}
+
+/* Pairs without knots cost what it takes to find them. Would catch a search that takes a comparison more or less than is
+ * counted, of few pairs or of many. */
+static void pairs_cost_the_comparisons_of_their_search(void **state)
+{
+    uint32_t none, each;
+    unsigned count, wanted;
+    (void)state;
+    fixture_plain(&f);
+    f.model.pair_knots = 0;
+    f.model.pair_count = 0;
+    none = labial_model_cost(&f.model);
+    f.model.pair_count = 1;
+    each = labial_model_cost(&f.model);
+    f.model.pair_count = 2; /* may take two comparisons */
+    each = labial_model_cost(&f.model) - each;
+    assert_true(each > 0);
+    for (count = 0; count <= 300; count++) {
+        uint32_t most = 0;
+        for (wanted = 0; wanted <= count; wanted++)
+            if (steps_of_search(count, wanted) > most)
+                most = steps_of_search(count, wanted);
+        f.model.pair_count = (uint16_t)count;
+        assert_int_equal(labial_model_cost(&f.model), none + most * each);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_model_costs_nothing),
         cmocka_unit_test(everything_adds_to_the_cost),
+        cmocka_unit_test(pairs_cost_the_comparisons_of_their_search),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <math.h>
 #include <string.h>
 
 #include "labial/labial.h"
@@ -293,6 +294,61 @@ static void intensity_reaches_the_mouth(void **state)
 
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
+/* The first train's pulses: the median, two thirds of the corpus's without intensity and four thirds at the highest,
+ * times a factor that the first draw chooses (Marsaglia's xorshift of 13, 17 and 5), rounded to the nearest. Would catch
+ * another median, another draw, and a half that is off by the least that can be. */
+static void trains_are_as_long_as_intensity_and_chance_have_it(void **state)
+{
+    unsigned intensity;
+    uint32_t seed;
+    (void)state;
+    for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++)
+        for (seed = 0; seed < 300; seed++) {
+            labial_laugh_t laugh;
+            uint32_t x = (uint32_t)(((uint64_t)seed + 1u) * 2654435761u) + 8u;
+            double wanted;
+            assert_int_equal(labial_laugh_begin(&laugh, 5000, intensity, seed), LABIAL_OK);
+            x ^= x << 13;
+            x ^= x >> 17;
+            x ^= x << 5;
+            wanted = TRAIN_MEDIAN * (2.0 / 3.0) * (1.0 + intensity / 256.0) * (lengths[x >> 27] / 32.0);
+            if (laugh.pulses != (unsigned)(wanted + 0.5 + 1e-9))
+                fail_msg("intensity %u, seed %u: %u pulses, not %g", intensity, (unsigned)seed, laugh.pulses, wanted);
+        }
+}
+
+/* The grade of what a laugh of that intensity begins with, air let out as loud as its first train: 0 soft, 1 plain, 2 loud. */
+static unsigned grade_of_first(unsigned intensity, unsigned turn)
+{
+    const unsigned breath_first = 10; /* a seed with which no intensity begins otherwise */
+    labial_laugh_t laugh;
+    unsigned phoneme;
+    uint32_t ms;
+    assert_int_equal(labial_laugh_begin(&laugh, 5000, intensity, breath_first), LABIAL_OK);
+    laugh.turn = (uint8_t)turn;
+    assert_int_equal(labial_laugh_next(&laugh, &phoneme, &ms), LABIAL_OK);
+    if (phoneme == LABIAL_LAUGH_FRICATIVE)
+        return 1;
+    assert_true(phoneme == LABIAL_LAUGH_FRICATIVE_SOFT || phoneme == LABIAL_LAUGH_FRICATIVE_LOUD);
+    return phoneme == LABIAL_LAUGH_FRICATIVE_SOFT ? 0 : 2;
+}
+
+/* All turns together come to exactly the grade that the loudness asks for, in 1/256: nothing up to SOFT, then GRADES for
+ * each 1/256, up to two. Would catch a turn of 256 that comes to another grade, and an intensity at which grades begin or
+ * end too early or too late. */
+static void turns_share_out_the_grades(void **state)
+{
+    unsigned intensity, turn;
+    (void)state;
+    for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++) {
+        const double asked = floor((intensity - (double)SOFT) * GRADES / 256.0);
+        unsigned sum = 0;
+        for (turn = 0; turn < 256; turn++)
+            sum += grade_of_first(intensity, turn);
+        assert_int_equal(sum, asked < 0.0 ? 0 : asked > 512.0 ? 512 : (int)asked);
+    }
+}
+
 static unsigned sum_of_shares(const uint8_t *shares, const int16_t *tilts, size_t count)
 {
     unsigned sum = 0;
@@ -345,6 +401,8 @@ int main(void)
         cmocka_unit_test(errors),
         cmocka_unit_test(the_numbers_are_the_bundled_models),
         cmocka_unit_test(intensity_reaches_the_mouth),
+        cmocka_unit_test(trains_are_as_long_as_intensity_and_chance_have_it),
+        cmocka_unit_test(turns_share_out_the_grades),
         cmocka_unit_test(the_tables_keep_the_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

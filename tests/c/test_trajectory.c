@@ -1,6 +1,6 @@
 /*
  * test_trajectory.c - equation 3 in integers, against a dense solution in doubles of the same weights and means, and
- * against oracle_trajectory.c where the way back begins before the end.
+ * against oracle_trajectory.c where the way back begins before the end; and its quotients against exact ones.
  *
  * The dense oracle writes W row by row as in the paper and multiplies W' U^-1 W out; none of it knows of diagonals.
  */
@@ -242,6 +242,62 @@ static void walk(fixture_random_t *random, int restless, int extreme)
     }
 }
 
+/* 2^54 / d, to 24 bits, of a `d` that is even: where a pull of 2^30 moves a frame that nothing else does and whose row sum
+ * is d / 2. */
+static uint32_t reciprocal_of(uint32_t d)
+{
+    labial_solver_t solver;
+    labial_terms_t terms;
+    labial_factors_t before, own;
+    memset(&solver, 0, sizeof solver);
+    memset(&terms, 0, sizeof terms);
+    solver.rho_f = (int32_t)(d / 2u);
+    solver.pull = 1 << 30;
+    labial_trajectory_row(&solver, &terms, 0, 0, 0, &before, &own);
+    return (uint32_t)before.q / 2u;
+}
+
+/* |1 - d r| at the worse end of the interval, at which it is largest. */
+static double guess_error(double from, double to, double r)
+{
+    return fmax(fabs(1.0 - from * r), fabs(to * r - 1.0));
+}
+
+/* The error that Newton's steps have to square, of the best guess that 8 bits can make for all numbers of an interval. */
+static double least_guess_error(double from, double to)
+{
+    double best = 1.0;
+    unsigned r;
+    for (r = 128; r < 256; r++)
+        best = least(best, guess_error(from, to, r / 256.0));
+    return best;
+}
+
+/* Near the ends of each 64th of the range, where a guess for all of it is worst. A step x += x (1 - d x) leaves the square
+ * of the relative error; the first step's result has 16 bits, of which the last is lost. What is lost beyond the square of
+ * that are the last bits of 1 - d x (x / 2^18) and of the result (1). Would catch a guess that is not the best, or nearly
+ * as good, and bits that a step does without. */
+static void reciprocals_have_24_bits(void **state)
+{
+    const unsigned blocks = LABIAL_TEST_SHARE > 10 ? 1 : 16; /* each of which shares the first step */
+    unsigned i, k, block;
+    (void)state;
+    for (i = 64; i < 128; i++) {
+        const double from = i / 64.0, to = (i + 1) / 64.0, guessed = least_guess_error(from, to);
+        const double stepped = guessed * guessed + from / 65536.0;
+        const double most = 1.0 + 65536.0 / from / 262144.0 + 16777216.0 / from * stepped * stepped;
+        for (block = 0; block < 2u * blocks; block++) {
+            const uint32_t first =
+                block < blocks ? (i << 24) + (block << 15) : ((i + 1u) << 24) - ((block + 1u - blocks) << 15);
+            for (k = 0; k < 512; k += 2) {
+                const double lost = 18014398509481984.0 / (first + k) - reciprocal_of(first + k);
+                if (lost > most || lost < -0.1)
+                    fail_msg("2^54 / %u: %.3f is lost, more than %.3f", first + k, lost, most);
+            }
+        }
+    }
+}
+
 /* As trained models are: hardly any error beyond that of rounding. */
 static void ordinary_weights(void **state)
 {
@@ -414,6 +470,7 @@ static int setup(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reciprocals_have_24_bits),
         cmocka_unit_test(ordinary_weights),
         cmocka_unit_test(any_weights_within_the_limits),
         cmocka_unit_test(every_bound),
