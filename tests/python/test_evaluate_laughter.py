@@ -158,6 +158,13 @@ def test_a_recorded_corpus_is_not_called_synthetic(corpus, tmp_path) -> None:
     assert not is_synthetic(recorded)
     (recorded / "README.md").unlink()
     assert not is_synthetic(recorded)
+
+
+@pytest.mark.slow
+def test_the_report_of_a_recorded_corpus_does_not_say_synthetic(corpus, tmp_path) -> None:
+    recorded = tmp_path / "recorded"
+    shutil.copytree(corpus, recorded)
+    (recorded / "README.md").unlink()
     text = evaluate(recorded, tmp_path / "report")
     assert "synthetic data" not in text and "\n| human |" in text
     assert (tmp_path / "report" / "table1.csv").exists()

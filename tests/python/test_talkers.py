@@ -183,8 +183,9 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     assert main(arguments) == 0
     assert load(model).training["episodes"] == 16
     report = tmp_path / "report"
-    arguments = ["evaluate", str(first), str(second), "-o", str(report), "--quiet", "--methods", "mean,labial"]
-    assert main([*arguments, "--jobs", "2", "--leave-out-talkers"]) == 0
+    arguments = ["evaluate", str(first), str(second), "-o", str(report), "--quiet", "--methods", "mean,labial",
+                 "--jobs", "1"]  # fmt: skip
+    assert main([*arguments, "--leave-out-talkers"]) == 0
     text = (report / "report.md").read_text()
     assert "| method | x | y | mean | open_jaw |" in text and "x (2 episodes), y (2 episodes)" in text
     assert main([*arguments, "--splits", "1"]) == 0
