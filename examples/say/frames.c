@@ -1,5 +1,5 @@
 /*
- * frames.c - the text forms of a frame.
+ * frames.c - the text formats of a frame.
  */
 #include "frames.h"
 
@@ -7,17 +7,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "arkit.h"
 #include "livelink.h"
 
 /* FAPs of MPEG-4, each with an entry in the mask of a fap file. */
 #define FAP_COUNT 68
 
 static const char *const arkit_outputs[] = ARKIT_OUTPUT_NAMES;
-static const char *const vrm_outputs[] = VRM_OUTPUT_NAMES;
-static const char *const oculus_outputs[] = OCULUS_OUTPUT_NAMES;
-static const frames_face_t face_arkit = { "arkit", &arkit, arkit_outputs };
-static const frames_face_t face_vrm = { "vrm", &vrm, vrm_outputs };
-static const frames_face_t face_oculus = { "oculus", &oculus, oculus_outputs };
+static const face_t face_arkit = { "arkit", &arkit, arkit_outputs };
+
+/* What a format does; null where that is nothing. */
+struct frames_format {
+    const char *name;
+    const char *help;                                                   /* what --help says of it */
+    const face_t *face;                                                 /* whose weights it writes */
+    void (*begin)(frames_t *frames);                                    /* what precedes the first frame */
+    void (*put)(frames_t *frames, const int16_t faps[LABIAL_CHANNELS]); /* a frame */
+    void (*end)(frames_t *frames);                                      /* what was kept until the last frame */
+};
 
 static void write_time(const frames_t *frames)
 {
@@ -26,7 +33,15 @@ static void write_time(const frames_t *frames)
     fprintf(frames->out, "%" PRIu64 ".%03u", milliseconds / 1000u, (unsigned)(milliseconds % 1000u));
 }
 
-static void write_csv_frame(const frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void begin_csv(frames_t *frames)
+{
+    fputs("time", frames->out);
+    for (int i = 0; i < LABIAL_CHANNELS; i++)
+        fprintf(frames->out, ",fap%d", labial_fap_numbers[i]);
+    putc('\n', frames->out);
+}
+
+static void put_csv(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
     write_time(frames);
     for (int i = 0; i < LABIAL_CHANNELS; i++)
@@ -40,7 +55,15 @@ static void write_weight(FILE *out, int32_t weight)
     fprintf(out, "%" PRId32 ".%03" PRId32, weight / 1000, weight % 1000);
 }
 
-static void write_livelink_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void begin_livelink(frames_t *frames)
+{
+    fputs("Timecode,BlendShapeCount", frames->out);
+    for (int i = 0; i < LIVELINK_COLUMNS; i++)
+        fprintf(frames->out, ",%s", livelink_columns[i].name);
+    putc('\n', frames->out);
+}
+
+static void put_livelink(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
     const uint32_t seconds = frames->count / frames->frames_per_second;
     labial_rig_apply(&arkit, faps, frames->weights);
@@ -54,23 +77,38 @@ static void write_livelink_frame(frames_t *frames, const int16_t faps[LABIAL_CHA
     putc('\n', frames->out);
 }
 
-static void write_json_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void begin_json(const frames_t *frames)
 {
-    const frames_face_t *face = frames->face;
-    labial_rig_apply(face->rig, faps, frames->weights);
     fprintf(frames->out, "{\"frame\":%" PRIu32 ",\"time\":", frames->count);
     write_time(frames);
-    if (frames->format == FRAMES_JSONL) {
-        for (int i = 0; i < LABIAL_CHANNELS; i++)
-            fprintf(frames->out, "%s\"fap%d\":%d", i == 0 ? ",\"faps\":{" : ",", labial_fap_numbers[i], faps[i]);
-        putc('}', frames->out);
-    }
+}
+
+/* Ends the line with the weights of the frame. */
+static void put_weights(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+{
+    const face_t *face = frames->face;
+    labial_rig_apply(face->rig, faps, frames->weights);
     fprintf(frames->out, ",\"%s\":{", face->name);
     for (unsigned i = 0; i < face->rig->count; i++) {
         fprintf(frames->out, "%s\"%s\":", i == 0 ? "" : ",", face->outputs[i]);
         write_weight(frames->out, frames->weights[i]);
     }
     fputs("}}\n", frames->out);
+}
+
+static void put_jsonl(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+{
+    begin_json(frames);
+    for (int i = 0; i < LABIAL_CHANNELS; i++)
+        fprintf(frames->out, "%s\"fap%d\":%d", i == 0 ? ",\"faps\":{" : ",", labial_fap_numbers[i], faps[i]);
+    putc('}', frames->out);
+    put_weights(frames, faps);
+}
+
+static void put_face(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+{
+    begin_json(frames);
+    put_weights(frames, faps);
 }
 
 static void write_fap_frame(FILE *out, uint32_t number, const int16_t faps[LABIAL_CHANNELS])
@@ -88,7 +126,7 @@ static void write_fap_frame(FILE *out, uint32_t number, const int16_t faps[LABIA
     putc('\n', out);
 }
 
-static void keep_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
+static void keep_fap(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
     if (frames->count >= frames->room) {
         const size_t room = frames->room ? frames->room * 2u : 1024u;
@@ -105,59 +143,65 @@ static void keep_frame(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
     memcpy(frames->kept[frames->count], faps, sizeof *frames->kept);
 }
 
-int frames_format_of(const char *name)
+static void end_fap(frames_t *frames)
 {
-    /* In the order of frames_format_t. */
-    static const char *const names[] = { "csv", "fap", "livelink", "jsonl", "arkit", "vrm", "oculus" };
-    for (int i = 0; i < (int)(sizeof names / sizeof names[0]); i++)
-        if (strcmp(names[i], name) == 0)
-            return i;
-    return -1;
+    fprintf(frames->out, "2.1 %s %u %" PRIu32 "\n", frames->name, frames->frames_per_second, frames->count);
+    for (uint32_t i = 0; i < frames->count; i++)
+        write_fap_frame(frames->out, i, frames->kept[i]);
 }
 
-void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char *name, unsigned frames_per_second)
+/* ---- The list of formats --------------------------------------------------------------------------------------- */
+
+/* By number; those of the faces follow. */
+static const frames_format_t formats[] = {
+    { "csv", "time,fap3,fap16,...: seconds and 13 FAPs per frame (default)", NULL, begin_csv, put_csv, NULL },
+    { "fap", "MPEG-4 text, 23 FAPs; its header holds the number of frames, so it is written at the end", NULL, NULL,
+      keep_fap, end_fap },
+    { "livelink", "Live Link Face CSV: ARKit's blendshapes, 0 to 1", &face_arkit, begin_livelink, put_livelink, NULL },
+    { "jsonl", "a JSON object per frame: FAPs and ARKit's blendshapes of the mouth", &face_arkit, NULL, put_jsonl,
+      NULL },
+};
+#define FORMATS ((unsigned)(sizeof formats / sizeof formats[0]))
+
+static const frames_format_t format_of_faces = {
+    NULL, "a JSON object per frame: the weights, 0 to 1, of a face of that kind", NULL, NULL, put_face, NULL
+};
+
+const char *frames_format_name(unsigned format)
+{
+    if (format < FORMATS)
+        return formats[format].name;
+    return format - FORMATS < faces_count ? faces[format - FORMATS].name : NULL;
+}
+
+void frames_help(FILE *out)
+{
+    for (unsigned i = 0; i < FORMATS; i++)
+        fprintf(out, "  %-4s %-10s %s\n", i == 0 ? "--to" : "", formats[i].name, formats[i].help);
+    for (unsigned i = 0; i < faces_count; i++)
+        fprintf(out, "%s%s", i == 0 ? "       " : ", ", faces[i].name);
+    fprintf(out, "\n%18s%s\n", "", format_of_faces.help);
+}
+
+void frames_init(frames_t *frames, FILE *out, unsigned format, const char *name, unsigned frames_per_second)
 {
     memset(frames, 0, sizeof *frames);
     frames->out = out;
-    frames->format = format;
+    frames->format = format < FORMATS ? &formats[format] : &format_of_faces;
+    frames->face = format < FORMATS ? formats[format].face : &faces[format - FORMATS];
     frames->name = name;
     frames->frames_per_second = frames_per_second;
-    frames->face = format == FRAMES_VRM ? &face_vrm : format == FRAMES_OCULUS ? &face_oculus : &face_arkit;
-    labial_rig_rest(frames->face->rig, frames->weights);
-    if (format == FRAMES_CSV) {
-        fputs("time", out);
-        for (int i = 0; i < LABIAL_CHANNELS; i++)
-            fprintf(out, ",fap%d", labial_fap_numbers[i]);
-        putc('\n', out);
-    } else if (format == FRAMES_LIVELINK) {
-        fputs("Timecode,BlendShapeCount", out);
-        for (int i = 0; i < LIVELINK_COLUMNS; i++)
-            fprintf(out, ",%s", livelink_columns[i].name);
-        putc('\n', out);
-    }
+    if (frames->face)
+        labial_rig_rest(frames->face->rig, frames->weights);
+    if (frames->format->begin)
+        frames->format->begin(frames);
 }
 
 void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
     if (frames->failed)
         return;
-    switch (frames->format) {
-    case FRAMES_CSV:
-        write_csv_frame(frames, faps);
-        break;
-    case FRAMES_FAP:
-        keep_frame(frames, faps);
-        break;
-    case FRAMES_LIVELINK:
-        write_livelink_frame(frames, faps);
-        break;
-    case FRAMES_JSONL:
-    case FRAMES_ARKIT:
-    case FRAMES_VRM:
-    case FRAMES_OCULUS:
-        write_json_frame(frames, faps);
-        break;
-    }
+    frames->format->put(frames, faps);
     if (!frames->failed)
         frames->count++;
 }
@@ -171,11 +215,8 @@ int frames_flush(frames_t *frames)
 
 int frames_finish(frames_t *frames, int complete)
 {
-    if (frames->format == FRAMES_FAP && complete && !frames->failed) {
-        fprintf(frames->out, "2.1 %s %u %" PRIu32 "\n", frames->name, frames->frames_per_second, frames->count);
-        for (uint32_t i = 0; i < frames->count; i++)
-            write_fap_frame(frames->out, i, frames->kept[i]);
-    }
+    if (frames->format->end && complete && !frames->failed)
+        frames->format->end(frames);
     free(frames->kept);
     frames->kept = NULL;
     return frames_flush(frames);

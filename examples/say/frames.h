@@ -10,9 +10,11 @@
  *             0 to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
  *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
  *             lips and jaw move, from 0 to 1.
- *   arkit, vrm, oculus
- *             a JSON object per line: `frame`, `time` in seconds, and one with the format's name that holds the weights
- *             of ARKit's blendshapes, VRM's five mouths or the 15 visemes of Oculus LipSync, from 0 to 1.
+ *   A face's name, one of those of ../faces/faces.h
+ *             a JSON object per line: `frame`, `time` in seconds, and one with the face's name that holds its weights from
+ *             0 to 1, such as those of ARKit's blendshapes, VRM's five mouths or the 15 visemes of Oculus LipSync.
+ *
+ * The formats are one list, in frames.c, to which the faces are added.
  */
 #ifndef LABIAL_EXAMPLE_FRAMES_H
 #define LABIAL_EXAMPLE_FRAMES_H
@@ -21,54 +23,35 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "arkit.h"
+#include "faces.h"
 #include "labial/faps.h"
 #include "labial/labial.h"
-#include "oculus.h"
-#include "vrm.h"
 
-typedef enum {
-    FRAMES_CSV,
-    FRAMES_FAP,
-    FRAMES_LIVELINK,
-    FRAMES_JSONL,
-    FRAMES_ARKIT,
-    FRAMES_VRM,
-    FRAMES_OCULUS
-} frames_format_t;
-
-/* The formats' names, for messages. */
-#define FRAMES_FORMATS "csv, fap, livelink, jsonl, arkit, vrm or oculus"
-
-#define FRAMES_WEIGHTS_MAX LABIAL_LARGER(ARKIT_OUTPUTS, LABIAL_LARGER(OCULUS_OUTPUTS, VRM_OUTPUTS))
-
-/* A rig whose outputs are weights in thousandths, with the names that engines know. */
-typedef struct {
-    const char *name;
-    const labial_rig_t *rig;
-    const char *const *outputs;
-} frames_face_t;
+typedef struct frames_format frames_format_t; /* of frames.c */
 
 /* A writer. Private. */
 typedef struct {
     FILE *out;
-    frames_format_t format;
+    const frames_format_t *format;
     const char *name;
     unsigned frames_per_second;
     uint32_t count;
     int failed;
-    const frames_face_t *face;           /* of those formats that have weights: arkit but where another is asked for */
-    int32_t weights[FRAMES_WEIGHTS_MAX]; /* of the latest frame, thousandths */
-    int16_t (*kept)[LABIAL_CHANNELS];    /* fap: `count` frames in room for `room`, owned */
+    const face_t *face;                 /* null where a format has no weights */
+    int32_t weights[FACES_OUTPUTS_MAX]; /* of the latest frame, thousandths */
+    int16_t (*kept)[LABIAL_CHANNELS];   /* fap: `count` frames in room for `room`, owned */
     size_t room;
 } frames_t;
 
-/* The format that `name` names, one of FRAMES_FORMATS; -1 when it names none. */
-int frames_format_of(const char *name);
+/* The name of a format, numbered from 0, which is csv; null beyond the last. */
+const char *frames_format_name(unsigned format);
+
+/* Writes what --help says of every format. */
+void frames_help(FILE *out);
 
 /* Prepares a writer and writes what precedes the first frame. `name` is the animation's in a fap file and must stay
  * valid. frames_finish() releases what the writer owns. */
-void frames_init(frames_t *frames, FILE *out, frames_format_t format, const char *name, unsigned frames_per_second);
+void frames_init(frames_t *frames, FILE *out, unsigned format, const char *name, unsigned frames_per_second);
 
 /* Appends a frame. Failures are remembered and returned by frames_flush() and frames_finish(). */
 void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS]);

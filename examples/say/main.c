@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "choice.h"
 #include "mouth.h"
 #include "timings.h"
 
@@ -13,12 +14,10 @@
 #define EXIT_INPUT 1
 #define EXIT_USAGE 2
 
+/* Numbers are places in the lists of what there is. */
 typedef struct {
-    timings_format_t from;
-    frames_format_t to;
-    const mouth_voice_t *voice;
+    unsigned from, to, labels, model;
     const char *tier;
-    labial_labels_t labels;
 } options_t;
 
 typedef struct {
@@ -27,35 +26,21 @@ typedef struct {
     labial_labels_t labels;
 } say_t;
 
-/* In the order of timings_format_t. */
-static const char *const format_names[] = { "auto", "flite", "lab", "htk", "pho", "mary", "phseg", "textgrid" };
-
-static const char usage_text[] =
+static const char usage_begin[] =
     "usage: labial-say [--from FORMAT] [--to FORMAT] [--model MODEL] < timings > motion\n"
     "\n"
     "Reads phonemes with their timings and writes the motion of lips and jaw, frame by frame, while the input is\n"
     "still arriving.\n"
-    "\n"
-    "  --from flite    `flite -psdur`: label:end ..., seconds; every line starts again from 0\n"
-    "         lab      start end label [apex [word]], a line each, seconds; gaps are silence\n"
-    "         htk      start end label, a line each, units of 100 ns; also HTS's labels with context, a^b-c+d=e\n"
-    "         pho      MBROLA: label milliseconds [position pitch]..., a line each; ; comment, _ silence\n"
-    "         mary     MaryTTS REALISED_DURATIONS: a line of #, then end number label, a line each, seconds\n"
-    "         phseg    CMU Sphinx: SFrm EFrm SegAScr Phone, frames of 10 ms\n"
-    "         textgrid Praat or Montreal Forced Aligner; the tier of phones is found by its name\n"
-    "                  (default: told from the first line)\n"
+    "\n";
+
+static const char usage_middle[] =
     "  --tier NAME     the tier of a TextGrid\n"
     "  --labels SET    arpabet (also flite's), ipa (also espeak's and Montreal Forced Aligner's) or xsampa (also\n"
     "                  MBROLA's and MARY's): what labels mean. auto takes any, and where they differ X-SAMPA in pho\n"
-    "                  and mary, elsewhere ARPABET (default). Unknown ones move as the nearest, with one warning each\n"
-    "  --to csv        time,fap3,fap16,...: seconds and 13 FAPs per frame (default)\n"
-    "       fap        MPEG-4 text, 23 FAPs; its header holds the number of frames, so it is written at the end\n"
-    "       livelink   Live Link Face CSV: ARKit's blendshapes, 0 to 1\n"
-    "       jsonl      a JSON object per frame: FAPs and ARKit's blendshapes of the mouth\n"
-    "       arkit      a JSON object per frame: weights, 0 to 1, of ARKit's blendshapes of the mouth,\n"
-    "       vrm        of VRM's aa, ih, ou, ee, oh,\n"
-    "       oculus     of the 15 visemes of Oculus LipSync\n"
-    "  --model MODEL   speech_en (default) or laughter_synthetic\n"
+    "                  and mary, elsewhere ARPABET (default). Unknown ones move as the nearest, with one warning "
+    "each\n";
+
+static const char usage_end[] =
     "  --help          print this and exit\n"
     "  --version       print the version and exit\n"
     "\n"
@@ -87,31 +72,26 @@ static int wrong_usage(const char *problem, const char *value)
     return EXIT_USAGE;
 }
 
-static int read_from(options_t *options, const char *value)
+static const struct {
+    const char *name;
+    labial_labels_t labels;
+} label_sets[] = { { "auto", LABIAL_LABELS_AUTO },
+                   { "arpabet", LABIAL_LABELS_ARPABET },
+                   { "ipa", LABIAL_LABELS_IPA },
+                   { "xsampa", LABIAL_LABELS_XSAMPA } };
+
+static const char *label_set_name(unsigned number)
 {
-    for (size_t f = 0; f < sizeof format_names / sizeof format_names[0]; f++)
-        if (strcmp(value, format_names[f]) == 0) {
-            options->from = (timings_format_t)f;
-            return 0;
-        }
-    return wrong_usage("--from is flite, lab, htk, pho, mary, phseg or textgrid, not", value);
+    return number < sizeof label_sets / sizeof label_sets[0] ? label_sets[number].name : NULL;
 }
 
-static int read_labels(options_t *options, const char *value)
+static int read_choice(const char *option, const char *value, choice_names_t names, unsigned *chosen)
 {
-    static const struct {
-        const char *name;
-        labial_labels_t labels;
-    } sets[] = { { "auto", LABIAL_LABELS_AUTO },
-                 { "arpabet", LABIAL_LABELS_ARPABET },
-                 { "ipa", LABIAL_LABELS_IPA },
-                 { "xsampa", LABIAL_LABELS_XSAMPA } };
-    for (size_t s = 0; s < sizeof sets / sizeof sets[0]; s++)
-        if (strcmp(value, sets[s].name) == 0) {
-            options->labels = sets[s].labels;
-            return 0;
-        }
-    return wrong_usage("--labels is arpabet, ipa, xsampa or auto, not", value);
+    const int number = choice_of("labial-say", option, value, names);
+    if (number < 0)
+        return EXIT_USAGE;
+    *chosen = (unsigned)number;
+    return 0;
 }
 
 static int read_options(int argc, char **argv, options_t *options)
@@ -120,23 +100,17 @@ static int read_options(int argc, char **argv, options_t *options)
         const char *value;
         int result = 0;
         if ((value = option_value("--from", argc, argv, &i)) != NULL) {
-            result = read_from(options, value);
+            result = read_choice("--from", value, timings_format_name, &options->from);
         } else if ((value = option_value("--to", argc, argv, &i)) != NULL) {
-            const int format = frames_format_of(value);
-            if (format < 0)
-                result = wrong_usage("--to is " FRAMES_FORMATS ", not", value);
-            else
-                options->to = (frames_format_t)format;
+            result = read_choice("--to", value, frames_format_name, &options->to);
         } else if ((value = option_value("--tier", argc, argv, &i)) != NULL) {
             options->tier = value;
             if (*value == '\0')
                 result = wrong_usage("--tier is the name of a tier, not", value);
         } else if ((value = option_value("--labels", argc, argv, &i)) != NULL) {
-            result = read_labels(options, value);
+            result = read_choice("--labels", value, label_set_name, &options->labels);
         } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
-            options->voice = strcmp(value, mouth_speech.name) == 0 ? &mouth_speech : &mouth_laughter;
-            if (options->voice == &mouth_laughter && strcmp(value, mouth_laughter.name) != 0)
-                result = wrong_usage("--model is speech_en or laughter_synthetic, not", value);
+            result = read_choice("--model", value, mouth_voice_name, &options->model);
         } else {
             result = wrong_usage("unknown argument", argv[i]);
         }
@@ -144,6 +118,18 @@ static int read_options(int argc, char **argv, options_t *options)
             return result;
     }
     return 0;
+}
+
+static void print_usage(void)
+{
+    fputs(usage_begin, stdout);
+    timings_help(stdout);
+    fputs(usage_middle, stdout);
+    frames_help(stdout);
+    for (unsigned i = 0; mouth_voice_name(i); i++)
+        printf("%s%s%s", i == 0 ? "  --model MODEL   " : ", ", mouth_voice_name(i), i == 0 ? " (default)" : "");
+    putchar('\n');
+    fputs(usage_end, stdout);
 }
 
 /* ---- The pipe -------------------------------------------------------------------------------------------------- */
@@ -188,10 +174,10 @@ static int read_timings(say_t *say)
 
 static int run(say_t *say, const options_t *options)
 {
-    if (mouth_init(&say->mouth, "labial-say", options->voice, stdout, options->to) != 0)
+    if (mouth_init(&say->mouth, "labial-say", mouth_voices[options->model], stdout, options->to) != 0)
         return EXIT_INPUT;
-    say->labels = options->labels;
-    timings_init(&say->timings, options->from, options->tier, on_phoneme, say);
+    say->labels = label_sets[options->labels].labels;
+    timings_init(&say->timings, (timings_format_t)options->from, options->tier, on_phoneme, say);
     const int complete = read_timings(say) == 0;
     timings_free(&say->timings);
     if (complete)
@@ -203,14 +189,14 @@ static int run(say_t *say, const options_t *options)
 int main(int argc, char **argv)
 {
     if (argc == 2 && strcmp(argv[1], "--help") == 0) {
-        fputs(usage_text, stdout);
+        print_usage();
         return 0;
     }
     if (argc == 2 && strcmp(argv[1], "--version") == 0) {
         printf("labial-say %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
         return 0;
     }
-    options_t options = { TIMINGS_AUTO, FRAMES_CSV, &mouth_speech, NULL, LABIAL_LABELS_AUTO };
+    options_t options = { 0, 0, 0, 0, NULL };
     const int result = read_options(argc, argv, &options);
     if (result != 0)
         return result;

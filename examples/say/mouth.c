@@ -9,6 +9,12 @@
 
 const mouth_voice_t mouth_speech = { "speech_en", &speech_en, &speech_en_names };
 const mouth_voice_t mouth_laughter = { "laughter_synthetic", &laughter_synthetic, &laughter_synthetic_names };
+const mouth_voice_t *const mouth_voices[] = { &mouth_speech, &mouth_laughter };
+
+const char *mouth_voice_name(unsigned number)
+{
+    return number < sizeof mouth_voices / sizeof mouth_voices[0] ? mouth_voices[number]->name : NULL;
+}
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -79,7 +85,7 @@ static void warn(mouth_t *mouth, const char *where, const char *label, unsigned 
             mouth->unknown_count == MOUTH_UNKNOWN_MAX ? "; further unknown labels are not named" : "");
 }
 
-int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, FILE *out, frames_format_t format)
+int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, FILE *out, unsigned format)
 {
     memset(mouth, 0, sizeof *mouth);
     mouth->program = program;

@@ -13,8 +13,6 @@
 #include "laughter_synthetic.h"
 #include "speech_en.h"
 
-#define MOUTH_WORKSPACE_SIZE LABIAL_LARGER(SPEECH_EN_WORKSPACE_SIZE, LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
-
 /* Unknown labels that are remembered as named; further ones pass unnamed. */
 #define MOUTH_UNKNOWN_MAX 64
 #define MOUTH_LABEL_MAX 63
@@ -27,22 +25,26 @@ typedef struct {
 
 extern const mouth_voice_t mouth_speech, mouth_laughter;
 
+/* Every bundled model, and the name of each by its number; null beyond the last. */
+extern const mouth_voice_t *const mouth_voices[];
+const char *mouth_voice_name(unsigned number);
+
 /* The stream is a part of it, as the library never allocates. Private. */
 typedef struct {
     const char *program;        /* for messages */
     const mouth_voice_t *voice; /* whose phonemes labels name */
     const mouth_voice_t *current;
     labial_t stream;
-    uint32_t workspace[(MOUTH_WORKSPACE_SIZE + 3u) / 4u];
+    uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4u]; /* for any model */
     frames_t frames;
     uint32_t laughs; /* so far: each has its own number as seed */
     unsigned unknown_count;
     char unknown[MOUTH_UNKNOWN_MAX][MOUTH_LABEL_MAX + 1];
 } mouth_t;
 
-/* Prepares a mouth whose frames go to `out`. Returns 0, or -1 after the error was printed. mouth_end() or mouth_drop()
+/* Prepares a mouth whose frames go to `out` in one of the formats of frames.h. Returns 0, or -1 after the error was printed. mouth_end() or mouth_drop()
  * release what it owns. */
-int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, FILE *out, frames_format_t format);
+int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, FILE *out, unsigned format);
 
 /*
  * Adds a phoneme, `milliseconds` long, and writes every frame that is thereby known. `label` is null for silence;

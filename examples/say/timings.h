@@ -34,6 +34,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Longest field (label with context, number or word) and longest label, in bytes. */
 #define TIMINGS_FIELD_MAX 511
@@ -58,6 +59,12 @@ typedef enum {
     TIMINGS_PHSEG,
     TIMINGS_TEXTGRID
 } timings_format_t;
+
+/* The name of a format, by its number in timings_format_t; null beyond the last. */
+const char *timings_format_name(unsigned format);
+
+/* Writes what --help says of every format. */
+void timings_help(FILE *out);
 
 /* A phoneme whose end is known. */
 typedef struct {

@@ -152,8 +152,7 @@ static int hand_on(timings_t *t, const char *label, int laugh, uint64_t end)
     if (milliseconds > TIMINGS_DURATION_MAX)
         return timings_malformed(t, "'%s' is longer than an hour", label ? label : laugh < 0 ? "silence" : "laugh");
     t->end = end;
-    const timings_phoneme_t phoneme = { label, (uint32_t)milliseconds, laugh,
-                                        t->format == TIMINGS_PHO || t->format == TIMINGS_MARY };
+    const timings_phoneme_t phoneme = { label, (uint32_t)milliseconds, laugh, timings_is_sampa(t->format) };
     return t->sink(t->user, &phoneme);
 }
 

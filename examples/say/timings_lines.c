@@ -155,11 +155,89 @@ static int phseg_line(timings_t *t)
     return timings_emit_between(t, f[3], first * 10000u, (last + 1u) * 10000u);
 }
 
+/* ---- Fields that mean something before their line ends --------------------------------------------------------- */
+
+static int flite_field(timings_t *t, char *field)
+{
+    t->count = 0;
+    return flite_token(t, field);
+}
+
+static int lab_field(timings_t *t, char *field)
+{
+    (void)field;
+    return t->count <= 5 ? 0 : timings_malformed(t, "a line has five fields at most: start, end, label, apex, word");
+}
+
+static int pho_field(timings_t *t, char *field)
+{
+    if (t->count > 2 && !timings_is_number(field))
+        return timings_malformed(t, "'%.63s' is not part of a pitch point", field);
+    return 0;
+}
+
+static int mary_field(timings_t *t, char *field)
+{
+    if (t->count == 1 && field[0] == '#') {
+        t->comment = 1;
+        t->count = 0;
+    }
+    return 0;
+}
+
+/* ---- The list of formats --------------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *name;
+    const char *help;                        /* what --help says of it */
+    int (*field)(timings_t *t, char *field); /* takes a field that has ended; null where all wait for the line's end */
+    int (*line)(timings_t *t);               /* takes a line that has ended and is not empty; null where none does */
+    int sampa;                               /* labels are X-SAMPA */
+} formats[] = {
+    [TIMINGS_AUTO] = { "auto", "told from the first line (default)", NULL, NULL, 0 },
+    [TIMINGS_FLITE] = { "flite", "`flite -psdur`: label:end ..., seconds; every line starts again from 0", flite_field,
+                        NULL, 0 },
+    [TIMINGS_LAB] = { "lab", "start end label [apex [word]], a line each, seconds; gaps are silence", lab_field,
+                      lab_line, 0 },
+    [TIMINGS_HTK] = { "htk", "start end label, a line each, units of 100 ns; also HTS's labels with context, a^b-c+d=e",
+                      NULL, htk_line, 0 },
+    [TIMINGS_PHO] = { "pho", "MBROLA: label milliseconds [position pitch]..., a line each; ; comment, _ silence",
+                      pho_field, pho_line, 1 },
+    [TIMINGS_MARY] = { "mary", "MaryTTS REALISED_DURATIONS: a line of #, then end number label, a line each, seconds",
+                       mary_field, mary_line, 1 },
+    [TIMINGS_PHSEG] = { "phseg", "CMU Sphinx: SFrm EFrm SegAScr Phone, frames of 10 ms", NULL, phseg_line, 0 },
+    [TIMINGS_TEXTGRID] = { "textgrid", "Praat or Montreal Forced Aligner; the tier of phones is found by its name",
+                           NULL, NULL, 0 }, /* timings_textgrid.c reads it */
+};
+#define FORMATS (sizeof formats / sizeof formats[0])
+
+const char *timings_format_name(unsigned format)
+{
+    return format < FORMATS ? formats[format].name : NULL;
+}
+
+void timings_help(FILE *out)
+{
+    for (size_t f = 0; f < FORMATS; f++)
+        fprintf(out, "  %-6s %-8s %s\n", f == 0 ? "--from" : "", formats[f].name, formats[f].help);
+}
+
+int timings_is_sampa(timings_format_t format)
+{
+    return formats[format].sampa;
+}
+
 /* ---- Which format it is ---------------------------------------------------------------------------------------- */
 
 static int unknown_format(timings_t *t)
 {
-    return timings_malformed(t, "this is not timings of flite, lab, htk, pho, mary, phseg or textgrid");
+    char names[128] = "";
+    size_t length = 0;
+    for (size_t f = TIMINGS_AUTO + 1; f < FORMATS && length < sizeof names; f++) {
+        const char *before = f == TIMINGS_AUTO + 1 ? "" : f + 1 < FORMATS ? ", " : " or ";
+        length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", before, formats[f].name);
+    }
+    return timings_malformed(t, "this is not timings of %s", names);
 }
 
 /* A first line that starts with a number: all its fields are needed to tell. Times of lab have decimal points; where
@@ -207,16 +285,6 @@ static int tell_format(timings_t *t, int line_ends)
 
 /* ---- Fields and lines ------------------------------------------------------------------------------------------ */
 
-/* What can be wrong with a field that is not kept until the end of its line. */
-static int check_field(timings_t *t, const char *field)
-{
-    if (t->format == TIMINGS_LAB && t->count > 5)
-        return timings_malformed(t, "a line has five fields at most: start, end, label, apex, word");
-    if (t->format == TIMINGS_PHO && t->count > 2 && !timings_is_number(field))
-        return timings_malformed(t, "'%.63s' is not part of a pitch point", field);
-    return 0;
-}
-
 int timings_end_field(timings_t *t)
 {
     char *field = t->fields[t->count < 4 ? t->count : 4];
@@ -243,16 +311,7 @@ int timings_end_field(timings_t *t)
         if (result != 0)
             return result;
     }
-    if (t->format == TIMINGS_FLITE) {
-        t->count = 0;
-        return flite_token(t, field);
-    }
-    if (t->format == TIMINGS_MARY && t->count == 1 && field[0] == '#') {
-        t->comment = 1;
-        t->count = 0;
-        return 0;
-    }
-    return check_field(t, field);
+    return formats[t->format].field ? formats[t->format].field(t, field) : 0;
 }
 
 int timings_end_line(timings_t *t)
@@ -262,27 +321,8 @@ int timings_end_line(timings_t *t)
         return timings_malformed(t, "a laugh is not closed by '>'");
     if (t->count > 0 && t->format == TIMINGS_AUTO)
         result = tell_format(t, 1);
-    if (result == 0 && t->count > 0) {
-        switch (t->format) {
-        case TIMINGS_LAB:
-            result = lab_line(t);
-            break;
-        case TIMINGS_HTK:
-            result = htk_line(t);
-            break;
-        case TIMINGS_PHO:
-            result = pho_line(t);
-            break;
-        case TIMINGS_MARY:
-            result = mary_line(t);
-            break;
-        case TIMINGS_PHSEG:
-            result = phseg_line(t);
-            break;
-        default:
-            break;
-        }
-    }
+    if (result == 0 && t->count > 0 && formats[t->format].line)
+        result = formats[t->format].line(t);
     if (t->format == TIMINGS_FLITE)
         t->origin = t->end;
     t->count = 0;

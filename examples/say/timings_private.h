@@ -38,6 +38,9 @@ int timings_emit_between(timings_t *t, const char *label, uint64_t start, uint64
 /* A complete marker `<laugh SECONDS [INTENSITY]>` in the first `count` fields. */
 int timings_marker(timings_t *t);
 
+/* timings_lines.c: whether labels of this format are X-SAMPA. */
+int timings_is_sampa(timings_format_t format);
+
 /* timings_lines.c: a field, and a line, of the format that `t` has or, being TIMINGS_AUTO, is told by them. */
 int timings_end_field(timings_t *t);
 int timings_end_line(timings_t *t);

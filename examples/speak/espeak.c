@@ -17,8 +17,7 @@ static const char usage[] =
     "step with it, while it is being spoken: as long as the sound, a frame every 20 ms.\n"
     "\n"
     "  --voice NAME  a voice or language of espeak-ng (en-us)\n"
-    "  --to FORMAT   " FRAMES_FORMATS ",\n"
-    "                as of labial-say (csv)\n"
+    "  --to FORMAT   any that `labial-say --help` lists (csv)\n"
     "  --help        print this and exit\n"
     "\n"
     "Exit status: 0 success, 1 failure, 2 wrong usage.\n";

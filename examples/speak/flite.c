@@ -18,8 +18,7 @@ static const char usage[] =
     "Speaks TEXT (`-`: standard input) with flite's voice slt into SOUND.wav and writes the motion of lips and jaw in\n"
     "step with it: as long as the sound, a frame every 20 ms. Each line of the text is an utterance.\n"
     "\n"
-    "  --to FORMAT   " FRAMES_FORMATS ",\n"
-    "                as of labial-say (csv)\n"
+    "  --to FORMAT   any that `labial-say --help` lists (csv)\n"
     "  --help        print this and exit\n"
     "\n"
     "Exit status: 0 success, 1 failure, 2 wrong usage.\n";

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "choice.h"
+
 /* Bytes of a WAV header without extensions, and the longest sound that its sizes can tell, in bytes. */
 #define HEADER_BYTES 44u
 #define SOUND_MAX (0xffffffffu - HEADER_BYTES)
@@ -40,7 +42,6 @@ int speak_options(int argc, char **argv, const char *program, const char *usage,
     const char *text = NULL;
     memset(options, 0, sizeof *options);
     options->program = program;
-    options->to = FRAMES_CSV;
     for (int i = 1; i < argc; i++) {
         const char *value = i + 1 < argc ? argv[i + 1] : "";
         if (strcmp(argv[i], "--help") == 0) {
@@ -48,10 +49,10 @@ int speak_options(int argc, char **argv, const char *program, const char *usage,
             return 0 + 1;
         }
         if (strcmp(argv[i], "--to") == 0) {
-            const int format = frames_format_of(value);
+            const int format = choice_of(program, "--to", value, frames_format_name);
             if (format < 0)
-                return wrong(program, "--to is " FRAMES_FORMATS ", not", value);
-            options->to = (frames_format_t)format;
+                return 2 + 1;
+            options->to = (unsigned)format;
             i++;
         } else if (strcmp(argv[i], "--voice") == 0) {
             options->voice = value;

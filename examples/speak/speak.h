@@ -19,7 +19,7 @@ typedef struct {
     const char *sound;   /* path of the WAV file */
     const char *voice;   /* null when none was asked for */
     char *text;          /* owned: release with free() */
-    frames_format_t to;
+    unsigned to;         /* one of the formats of frames.h */
 } speak_options_t;
 
 /* Private. */

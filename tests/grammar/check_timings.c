@@ -106,7 +106,6 @@ static int number_differs(unsigned long line, const char *number, const char *ex
 
 int main(int argc, char **argv)
 {
-    static const char *const names[] = { "auto", "flite", "lab", "htk", "pho", "mary", "phseg", "textgrid" };
     static char row[LINE_MAX_BYTES];
     unsigned long line = 0, cases = 0;
     int differing = 0;
@@ -117,7 +116,7 @@ int main(int argc, char **argv)
     }
     while (fgets(row, sizeof row, file)) {
         char *text = strchr(row, '\t'), *expected = text ? strchr(text + 1, '\t') : NULL;
-        size_t format = 0;
+        unsigned format = 0;
         line++;
         if (row[0] == '#')
             continue;
@@ -135,9 +134,9 @@ int main(int argc, char **argv)
             differing += number_differs(line, text, expected);
             continue;
         }
-        while (format < sizeof names / sizeof names[0] && strcmp(names[format], row) != 0)
+        while (timings_format_name(format) && strcmp(timings_format_name(format), row) != 0)
             format++;
-        if (format == sizeof names / sizeof names[0]) {
+        if (!timings_format_name(format)) {
             printf("cases.tsv:%lu: no format is called %s\n", line, row);
             return 1;
         }
