@@ -21,7 +21,7 @@ def measure(bench: Bench) -> None:
     run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
     compiler = version("clang")
     module = folder / "npm" / "labial.wasm"
-    names = ("index.js", "faces.js", "memory.js", "stream.js", "timings.js", "track.js")
+    names = ("index.js", "memory.js", "stream.js", "timings.js", "track.js")
     scripts = [folder / "npm" / name for name in names]
     (packed,) = folder.glob("labial-*.tgz")
     bench.add("wasm", "module with both models", module.stat().st_size, "bytes", ["ls", "-l", module], compiler)

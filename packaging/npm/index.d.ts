@@ -1,3 +1,5 @@
+import type { Face } from "./faces.js";
+
 /** 13 lip and jaw parameters in FAP units: MPEG-4 FAPs 3, 16, 17, 51 .. 60, in this order. */
 export type Faps = Int16Array;
 
@@ -5,7 +7,7 @@ export type Faps = Int16Array;
 export type Weights = Record<string, number>;
 
 /** How frames are given out. */
-export type Output = "faps" | "arkit" | "vrm" | "oculus";
+export type Output = "faps" | Face;
 
 /** Which labels mean which sounds: "auto" is any of the others, in their order. */
 export type Labels = "auto" | "arpabet" | "ipa" | "xsampa";
@@ -128,7 +130,7 @@ export class Labial {
      * room for words, both 0 .. 1. */
     blend(speech: ArrayLike<number>, laugh: ArrayLike<number>, intensity: number, words: number, out?: Int16Array): Faps;
     /** The weights of a face that 13 FAPs mean. */
-    convert(faps: ArrayLike<number>, output: Exclude<Output, "faps">, out?: Weights): Weights;
+    convert(faps: ArrayLike<number>, output: Face, out?: Weights): Weights;
 }
 
 /** Readers of what voices tell of the sound they make; `source` is their JSON, parsed or as text. */

@@ -1,13 +1,11 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts says what each call takes and gives.
-import { faces } from "./faces.js";
-import { LabialError, Memory, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, Memory, amount, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import * as timings from "./timings.js";
 
 export { LabialError, Stream, Track, timings };
 
-const CHANNELS = 13;
 /** Bytes of the place where labels, frames and weights are passed. */
 const SCRATCH = 16384;
 const LABEL_MAX = 256;
@@ -41,6 +39,7 @@ export class Labial {
             laughter: new Model(this, this.wasm.model_at(1), this.wasm.names_at(1)),
         });
         Object.values(this.models).forEach((model) => this.#owned.add(model));
+        this.faces = facesOf(this);
         this.#scratch = this.memory.take(SCRATCH);
         this.#loaded = new FinalizationRegistry(([at, size]) => this.memory.release(at, size));
         Object.freeze(this);
@@ -118,8 +117,9 @@ export class Labial {
     }
 
     convert(faps, output, out = {}) {
-        const names = faces[this.checkOutput(output)];
-        if (!names) throw new LabialError('FAPs are what "faps" are already; convert them to a face');
+        if (this.checkOutput(output) === "faps") {
+            throw new LabialError('FAPs are what "faps" are already; convert them to a face');
+        }
         this.#put(faps, this.#scratch);
         return this.weigh(this.#scratch, output, out);
     }
@@ -128,9 +128,9 @@ export class Labial {
 
     /** The weights of the FAPs at an address of the module's memory. */
     weigh(at, output, out) {
-        const names = faces[output];
+        const names = this.faces[output];
         const values = this.#scratch + 64;
-        this.wasm.weigh(Object.keys(faces).indexOf(output), at, values);
+        this.wasm.weigh(Object.keys(this.faces).indexOf(output), at, values);
         const thousandths = this.memory.int32(values, names.length);
         for (let i = 0; i < names.length; i++) out[names[i]] = thousandths[i] / 1000;
         return out;
@@ -181,8 +181,8 @@ export class Labial {
     }
 
     checkOutput(output) {
-        if (output !== "faps" && !Object.hasOwn(faces, output)) {
-            throw new LabialError(`${shown(output)} is no output: faps, ${Object.keys(faces).join(", ")}`);
+        if (output !== "faps" && !Object.hasOwn(this.faces, output)) {
+            throw new LabialError(`${shown(output)} is no output: faps, ${Object.keys(this.faces).join(", ")}`);
         }
         return output;
     }
@@ -192,6 +192,17 @@ export class Labial {
         const to = this.memory.int16(at, CHANNELS);
         for (let i = 0; i < CHANNELS; i++) to[i] = Math.max(-32768, Math.min(32767, Math.round(faps[i])));
     }
+}
+
+/** The names of each face's weights, by the face's name, in the order of the module. */
+function facesOf({ wasm, memory }) {
+    const faces = {};
+    for (let face = 0, at; (at = wasm.face_name(face)); face++) {
+        const names = (faces[memory.text(at)] = []);
+        while ((at = wasm.weight_name(face, names.length))) names.push(memory.text(at));
+        Object.freeze(names);
+    }
+    return Object.freeze(faces);
 }
 
 /** A share from 0 to 1, in 1/256. */

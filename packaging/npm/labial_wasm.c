@@ -4,7 +4,7 @@
  */
 #include <string.h>
 
-#include "arkit.h"
+#include "faces.h"
 #include "labial/blend.h"
 #include "labial/blob.h"
 #include "labial/labial.h"
@@ -12,9 +12,7 @@
 #include "labial/names.h"
 #include "labial/rig.h"
 #include "laughter_synthetic.h"
-#include "oculus.h"
 #include "speech_en.h"
-#include "vrm.h"
 
 #define EXPORT(name) __attribute__((export_name(#name)))
 
@@ -24,9 +22,6 @@ typedef struct {
     int16_t faps[LABIAL_CHANNELS]; /* of the frame delivered last */
     uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4u];
 } mouth_t;
-
-/* In the order of faces.js. */
-static const labial_rig_t *const rigs[] = { &arkit, &vrm, &oculus };
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -201,13 +196,22 @@ int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16
     return labial_blend(&labial_blend_default, intensity, words, speech, laugh, out);
 }
 
-/* Thousandths of the face's weights, as many as it returns, at `out`. */
-EXPORT(weigh) unsigned weigh(unsigned face, const int16_t *faps, int32_t *out)
+/* The name of the face of this number, and of one of its weights; null beyond the last. */
+EXPORT(face_name) const char *face_name(unsigned face)
 {
-    const labial_rig_t *const rig = rigs[face];
-    labial_rig_rest(rig, out);
-    labial_rig_apply(rig, faps, out);
-    return rig->count;
+    return face < faces_count ? faces[face].name : NULL;
+}
+
+EXPORT(weight_name) const char *weight_name(unsigned face, unsigned weight)
+{
+    return weight < faces[face].rig->count ? faces[face].outputs[weight] : NULL;
+}
+
+/* Thousandths of the face's weights at `out`. */
+EXPORT(weigh) void weigh(unsigned face, const int16_t *faps, int32_t *out)
+{
+    labial_rig_rest(faces[face].rig, out);
+    labial_rig_apply(faces[face].rig, faps, out);
 }
 
 EXPORT(model_load) int model_load(labial_blob_t *blob, const void *data, uint32_t size)

@@ -1,4 +1,10 @@
-// The memory of the WebAssembly module from its heap's base on: handed out in pieces, and taken back.
+// The memory of the WebAssembly module from its heap's base on: handed out in pieces, and taken back. And what all scripts
+// share.
+
+/** Numbers of a frame. */
+export const CHANNELS = 13;
+/** No timing is later, in seconds; beyond it the unit is not seconds. */
+export const LONGEST = 86400;
 
 /** What the library refuses, in its own words; `code` is its result (labial_result_t), 0 for what it does not know. */
 export class LabialError extends Error {

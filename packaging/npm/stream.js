@@ -1,7 +1,6 @@
 // One mouth that moves while its phonemes are still arriving.
-import { LabialError, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, amount, shown } from "./memory.js";
 
-const CHANNELS = 13;
 const DURATION_MAX = 3600000;
 /** Phonemes that may wait for their turn beside those that the library holds. */
 const WAITING_MAX = 65536;

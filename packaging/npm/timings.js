@@ -1,6 +1,6 @@
 // Phonemes and their times, from what voices tell: lists of { start, end, label, labels }, seconds. Each reader does what
 // that of the same name in export/labial/corpus/services.py and timings.py does; a test holds them to each other.
-import { LabialError, shown } from "./memory.js";
+import { LONGEST, LabialError, shown } from "./memory.js";
 
 /** A blank between words, or what a service leaves out between two phonemes, is a pause from here on, in seconds. */
 const LONGEST_BLANK = 0.15;
@@ -12,8 +12,6 @@ const KOKORO_RATE = 40;
 const TICKS = 1e7;
 /** Overlaps up to this many seconds come from rounding. */
 const TOLERANCE = 0.001;
-/** No timing is later, in seconds; beyond it the unit is not seconds. */
-const LONGEST = 86400;
 /** No phoneme is longer, in seconds: a file whose first one would be is in HTK's units. */
 const LONGEST_PHONEME = 3600;
 

@@ -1,11 +1,8 @@
 // A whole utterance: timings in, frames for every moment of its sound out.
-import { LabialError, amount, shown } from "./memory.js";
+import { CHANNELS, LONGEST, LabialError, amount, shown } from "./memory.js";
 
-const CHANNELS = 13;
 /** Overlaps and gaps up to this many microseconds come from rounding. */
 const TOLERANCE = 1000;
-/** No timing is later, in seconds: beyond it the unit is not seconds. */
-const LONGEST = 86400;
 /** Phonemes after which their frames are taken. */
 const BATCH = 4096;
 

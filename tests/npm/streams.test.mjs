@@ -1,6 +1,7 @@
 // What a program does with streams and tracks beside the conformance streams: feeding, laughs, other models, tracks in
 // step with a sound, misuse.
 import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
 import test from "node:test";
 import { Labial, LabialError, binary, folder, source, timings } from "./setup.mjs";
 
@@ -106,7 +107,7 @@ test("a cancel drops what waits, and what follows a restart fades in", () => {
 });
 
 test("weights are the rig's, by name", () => {
-    for (const output of ["arkit", "vrm", "oculus"]) {
+    for (const output of Object.keys(mouth.faces)) {
         const frames = speak({ output });
         rows(speak()).forEach((faps, i) => assert.deepEqual(frames[i], mouth.convert(faps, output)));
         const all = frames.flatMap((weights) => Object.values(weights));
@@ -120,12 +121,15 @@ test("weights are the rig's, by name", () => {
     }
 });
 
-test("names of weights are those of the rigs' descriptions", async () => {
-    const { faces } = await import(new URL("faces.js", `file://${folder}/`));
-    for (const [face, names] of Object.entries(faces)) {
+test("faces and names of weights are those of the rigs' descriptions, and the types name each", () => {
+    const rigs = readdirSync(new URL("../../export/labial/rig", import.meta.url)).filter((name) => name.endsWith(".toml"));
+    assert.deepEqual(Object.keys(mouth.faces), rigs.map((name) => name.slice(0, -5)).sort());
+    for (const [face, names] of Object.entries(mouth.faces)) {
         const text = source(`export/labial/rig/${face}.toml`);
         assert.deepEqual([...names], [...text.matchAll(/^\[output\.(\w+)\]/gm)].map((match) => match[1]), face);
     }
+    const types = readFileSync(`${folder}/faces.d.ts`, "utf8");
+    assert.deepEqual([...types.matchAll(/"(\w+)"/g)].map((match) => match[1]), Object.keys(mouth.faces));
 });
 
 test("a track is the stream's frames, and between them a line", () => {
