@@ -22,7 +22,7 @@ from typing import List, Optional
 import amalgamation
 import arduino
 import trees
-from source import PackError, Source, set_version, version
+from source import PackError, Source, exit_status, set_version, version
 
 
 def _empty_folder(path: Path) -> Path:
@@ -47,6 +47,14 @@ def _pack(options: argparse.Namespace) -> None:
     print(folder)
 
 
+def _version(options: argparse.Namespace) -> None:
+    if options.number:
+        for path in set_version(options.number):
+            print(path)
+    else:
+        print(version())
+
+
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
     parser = argparse.ArgumentParser(prog="pack.py", description="Lays Labial out for other build systems.")
@@ -66,21 +74,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     command = kinds.add_parser("version", help="print or set the version")
     command.add_argument("number", nargs="?", metavar="X.Y.Z")
     options = parser.parse_args(arguments)
-    try:
-        if options.kind != "version":
-            _pack(options)
-        elif options.number:
-            for path in set_version(options.number):
-                print(path)
-        else:
-            print(version())
-    except PackError as error:
-        print(f"pack.py: {error}", file=sys.stderr)
-        return 1
-    except OSError as error:
-        print(f"pack.py: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
-        return 1
-    return 0
+    work = _version if options.kind == "version" else _pack
+    return exit_status("pack.py", lambda: work(options))
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ import tempfile
 from pathlib import Path
 from typing import Callable, Dict, List, Optional
 
-from source import ROOT, PackError
+from source import ROOT, PackError, exit_status
 
 #: The kinds of ``pack.py`` that become archives.
 FOLDERS = ("amalgamation", "arduino", "platformio", "esp-idf", "zephyr")
@@ -110,16 +110,12 @@ def main(arguments: Optional[List[str]] = None) -> int:
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="new folder")
     parser.add_argument("--without", nargs="+", default=[], choices=("python", "npm"), help="packages to leave out")
     options = parser.parse_args(arguments)
-    try:
+
+    def work() -> None:
         for path in release(options.tag, Path(options.output).resolve(), options.without):
             print(path)
-    except PackError as error:
-        print(f"release.py: {error}", file=sys.stderr)
-        return 1
-    except OSError as error:
-        print(f"release.py: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
-        return 1
-    return 0
+
+    return exit_status("release.py", work)
 
 
 if __name__ == "__main__":

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Callable, Dict, List, Optional
 
 #: The folder of the source tree.
 ROOT = Path(__file__).resolve().parents[1]
@@ -22,6 +23,19 @@ _PARTS = ("MAJOR", "MINOR", "PATCH")
 
 class PackError(Exception):
     """Something given cannot be packed; the text says what and where."""
+
+
+def exit_status(program: str, work: Callable[[], None]) -> int:
+    """Runs `work`; returns 0, or 1 after saying in one line, as `program`, what cannot be used."""
+    try:
+        work()
+    except PackError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+    except OSError as error:
+        print(f"{program}: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
+    else:
+        return 0
+    return 1
 
 
 def write_text(path: Path, text: str) -> None:

@@ -169,53 +169,37 @@ def _mlpg(bench: Bench) -> List[str]:
     ]
 
 
-def _accuracy(bench: Bench) -> List[str]:
-    own = [figure for figure in bench.figures if figure.target == "accuracy"]
-    if not own:
-        return []
-    return [
-        "## What integers cost", "",
-        "MLPG: the library's solution of whole utterances, rounded to 1/16 FAP unit as it is, against float64 for the "
-        "same tables, state paths and targets. Full scale is what a position can be, 1,024 FAP units to either side, "
-        "so that the unit of error is one FAP unit. Window: what the motion differs from such a whole solution, in "
-        "float64, because each frame is delivered when `LABIAL_WINDOW` frames beyond it are known. Paths: the "
-        "likelihood, under the trained float64 model, that the exported tables' path, decided as the frames come, "
-        "loses to the best path through the whole utterance by a search over all transitions, which like the library's "
-        "sees one frame of those that share a state.", "",
-        *_rows(["", "", ""], [[figure.figure, f"{figure.value:.4f}", figure.unit] for figure in own]),
-    ]
+#: Sections that show all figures of a target: the target, a title, a text, and how a value is written.
+SECTIONS = (
+    ("accuracy", "What integers cost",
+     "MLPG: the library's solution of whole utterances, rounded to 1/16 FAP unit as it is, against float64 for the "
+     "same tables, state paths and targets. Full scale is what a position can be, 1,024 FAP units to either side, "
+     "so that the unit of error is one FAP unit. Window: what the motion differs from such a whole solution, in "
+     "float64, because each frame is delivered when `LABIAL_WINDOW` frames beyond it are known. Paths: the "
+     "likelihood, under the trained float64 model, that the exported tables' path, decided as the frames come, "
+     "loses to the best path through the whole utterance by a search over all transitions, which like the library's "
+     "sees one frame of those that share a state.", "{:.4f}".format),
+    ("delay", "The latest frame",
+     "Phonemes are pushed when they begin, pauses too with their whole duration, `labial_end()` is called when the "
+     "last one is over, and one tick follows in each frame period: how long after its own time a frame comes, the "
+     "largest of each utterance.", _number),
+    ("python", "Python",
+     "On the host, by bench/runtime.py: utterances rendered whole by `labial.render()`, and frame by frame from a "
+     "`labial.Stream`, parsing of labels included.", _number),
+    ("wasm", "WebAssembly",
+     "The npm package under node, on the host, by bench/npm.mjs: utterances rendered whole by `labial.render()`, "
+     "ticks of a `labial.stream()`, and `track.at()`, 60 times per second. Compressed by gzip at its highest "
+     "level.", _number),
+)
 
 
-def _delay(bench: Bench) -> List[str]:
-    own = [figure for figure in bench.figures if figure.target == "delay"]
-    return [
-        "## The latest frame", "",
-        "Phonemes are pushed when they begin, pauses too with their whole duration, `labial_end()` is called when the "
-        "last one is over, and one tick follows in each frame period: how long after its own time a frame comes, the "
-        "largest of each utterance.", "",
-        *_rows(["", "", ""], [[figure.figure, _number(figure.value), figure.unit] for figure in own]),
-    ] if own else []
-
-
-def _runtime(bench: Bench) -> List[str]:
-    own = [figure for figure in bench.figures if figure.target == "python"]
-    return [
-        "## Python", "",
-        "On the host, by bench/runtime.py: utterances rendered whole by `labial.render()`, and frame by frame from a "
-        "`labial.Stream`, parsing of labels included.", "",
-        *_rows(["", "", ""], [[figure.figure, _number(figure.value), figure.unit] for figure in own]),
-    ] if own else []
-
-
-def _npm(bench: Bench) -> List[str]:
-    own = [figure for figure in bench.figures if figure.target == "wasm"]
-    return [
-        "## WebAssembly", "",
-        "The npm package under node, on the host, by bench/npm.mjs: utterances rendered whole by `labial.render()`, "
-        "ticks of a `labial.stream()`, and `track.at()`, 60 times per second. Compressed by gzip at its highest "
-        "level.", "",
-        *_rows(["", "", ""], [[figure.figure, _number(figure.value), figure.unit] for figure in own]),
-    ] if own else []
+def _sections(bench: Bench) -> List[str]:
+    lines: List[str] = []
+    for target, title, text, number in SECTIONS:
+        rows = [[figure.figure, number(figure.value), figure.unit] for figure in bench.figures
+                if figure.target == target]
+        lines += [f"## {title}", "", text, "", *_rows(["", "", ""], rows)] if rows else []
+    return lines
 
 
 def _profile(profile: Sequence[Row]) -> List[str]:
@@ -261,8 +245,7 @@ def markdown(bench: Bench, profile: Sequence[Row]) -> str:
     tools = sorted({figure.tool for figure in bench.figures if any(c.isdigit() for c in figure.tool)})
     lines = ["# Figures", "", "Measured by `cmake --workflow --preset bench`; `bench.json` has the command of each.",
              f"Tools: {', '.join(tools)}.", ""]
-    lines += [*_cost(bench), *_memory(bench), *_mlpg(bench), *_accuracy(bench), *_delay(bench),
-              *_runtime(bench), *_npm(bench)]
+    lines += [*_cost(bench), *_memory(bench), *_mlpg(bench), *_sections(bench)]
     speeds = [[figure.figure, _number(figure.value), figure.unit] for figure in bench.figures if figure.timed]
     lines += ["## Speed of the host, one core", "", *_rows(["", "", ""], speeds)] if speeds else []
     lines += _profile(profile) if profile else []

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "labial/labial.h"
+#include "labial/names.h"
 
 /* Rounds of a test that does the same over and over with other numbers: `full` of them, or, where every instruction is
  * interpreted (the memory check), a share that still takes every way through the code. */
@@ -125,6 +126,14 @@ uint64_t fixture_duration(const fixture_phoneme_t *input, size_t count);
 
 /* Whether `frames` is the rounded length of `ms`; an exact half may go either way. */
 int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate);
+
+/* ---- Input that ends exactly where its heap block does, so that a sanitizer sees every byte read beyond it ---- */
+
+/* A copy of `bytes`, to be freed. */
+void *fixture_copy(const void *bytes, size_t size);
+
+/* labial_find() of a copy of the name. */
+int fixture_find(const labial_names_t *names, const char *name, size_t length);
 
 /* ---- A host that plays a stream ---- */
 

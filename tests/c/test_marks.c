@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fixture.h"
 #include "labial/labial.h"
 #include "labial/names.h"
 
@@ -25,16 +26,9 @@ static const uint8_t entries[] = { B,        1 | 0xe0, 'B', AA,  2 | 0x20, 'A', 
 static const labial_names_t names = { sizeof entries, 10, entries, NULL };
 static const labial_names_t without_schwa = { sizeof entries - 4, 10, entries, NULL };
 
-/* Looks `length` bytes up at the very end of a heap block. */
 static int find(const char *name, size_t length)
 {
-    char *copy = (char *)malloc(length ? length : 1);
-    int result;
-    assert_non_null(copy);
-    memcpy(copy, name, length);
-    result = labial_find(&names, copy, length);
-    free(copy);
-    return result;
+    return fixture_find(&names, name, length);
 }
 
 static int nearest(const char *name, size_t length)
