@@ -20,6 +20,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, List
 
+from labial.runtime import BUNDLED
+
 __version__ = "0.3.0"
 
 if TYPE_CHECKING:
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
     speech_en: Model
     laughter_synthetic: Model
 
-__all__ = ["Frame", "Latency", "Model", "Rig", "Stream", "laughter_synthetic", "read_timings", "render", "speech_en"]
+__all__ = ["Frame", "Latency", "Model", "Rig", "Stream", "read_timings", "render", *BUNDLED]
 
 _HOMES = {"Frame": "frame", "Latency": "frame", "Model": "models", "Rig": "rig", "Stream": "stream",
           "read_timings": "render", "render": "render"}  # fmt: skip
@@ -42,7 +44,7 @@ def __getattr__(name: str) -> Any:
     """The run-time's names, loaded with the library when they are first asked for: exporting needs no library."""
     if name in ("errors", "runtime"):
         return import_module(f"labial.{name}")
-    if name in ("speech_en", "laughter_synthetic"):
+    if name in BUNDLED:
         return import_module("labial.runtime.models").bundled(name)
     if name in _HOMES:
         return getattr(import_module(f"labial.runtime.{_HOMES[name]}"), name)

@@ -20,8 +20,9 @@ from __future__ import annotations
 
 from typing import Dict
 
-#: The sets of labels, in the order in which they are asked where none is named.
-LABEL_SETS = ("arpabet", "ipa", "xsampa")
+#: The sets of labels, in the order in which they are asked where none is named, and the bit that means each in tables:
+#: labial_labels_t of include/labial/names.h.
+LABEL_SETS: Dict[str, int] = {"arpabet": 0x20, "ipa": 0x40, "xsampa": 0x80}
 
 _FILLERS = "BREATHING BREATH LAUGHTER GARBAGE LIPSMACK SMACK NOISE COUGH NSN SPN SIL INHALE EXHALE".split()
 

@@ -11,6 +11,7 @@ from typing import Dict, Iterable, List, Sequence, Union
 import numpy as np
 
 from labial import __version__
+from labial.aliases import LABEL_SETS
 from labial.errors import ModelError
 from labial.faps import CHANNELS, FAP_NAMES
 from labial.layout import Table, blob, channel_scalars, channel_tables, scalars, shared_tables, table_bytes
@@ -171,16 +172,15 @@ def _string(text: str) -> str:
 
 #: Format of the names that these files hold: LABIAL_NAMES_FORMAT of include/labial/names.h.
 NAMES_FORMAT = 2
-#: A name's length and its sets of labels share a byte: labial_labels_t of include/labial/names.h.
+#: A name's length and its sets of labels share a byte.
 _LENGTH_MAX = 31
-SET_BITS = {"arpabet": 0x20, "ipa": 0x40, "xsampa": 0x80}
 
 
 def _packed(name: str, phoneme: int, sets: Sequence[str]) -> str:
     """An entry of the names: the phoneme, the name's length and sets of labels, and its bytes."""
     data = name.encode()
     spelled = [f"'{chr(b)}'" if 32 < b < 127 and b not in (39, 92) else str(b) for b in data]
-    return ", ".join([str(phoneme), f"0x{len(data) + sum(SET_BITS[item] for item in sets):02x}", *spelled])
+    return ", ".join([str(phoneme), f"0x{len(data) + sum(LABEL_SETS[item] for item in sets):02x}", *spelled])
 
 
 def names_bytes(model: ExportedModel) -> int:

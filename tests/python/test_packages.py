@@ -27,11 +27,8 @@ SKETCHES = sorted(path.parent.name for path in (SOURCE / "examples" / "arduino")
 
 
 def bundled() -> List[str]:
-    """The models that the CMake build bundles."""
-    text = (SOURCE / "lib" / "models" / "CMakeLists.txt").read_text(encoding="utf-8")
-    match = re.search(r"set\(LABIAL_BUNDLED_MODELS ([^)]*)\)", text)
-    assert match
-    return match[1].split()
+    """The models that every build bundles."""
+    return sorted(path.name[: -len("_names.c")] for path in (SOURCE / "lib" / "models").glob("*_names.c"))
 
 
 def header_version(root: Path) -> str:

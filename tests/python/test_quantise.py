@@ -28,6 +28,7 @@ from labial.fixed import (
 from labial.loss import measure
 from labial.model import Model
 from labial.native import library_root
+from labial.phonesets import LABEL_SETS
 from labial.quantise import FORMAT, LIMITS, ExportedModel, quantise
 from labial.reference import contact
 from labial.reference.stream import DURATION_MAX
@@ -58,7 +59,7 @@ def test_limits_are_the_librarys() -> None:
         "NAMES_FORMAT": emit.NAMES_FORMAT, "RIG_FORMAT": table.FORMAT,
         "RIG_WEIGHT_SUM_MAX": table.WEIGHT_SUM_MAX, "RIG_GAIN_MAX": table.GAIN_MAX,
         "RIG_VALUE_MAX": table.VALUE_MAX,
-        **{f"LABELS_{name.upper()}": bit for name, bit in emit.SET_BITS.items()},
+        **{f"LABELS_{name.upper()}": bit for name, bit in LABEL_SETS.items()},
     }  # fmt: skip
     assert {name: defined.get(name) for name in known} == known
 

@@ -12,7 +12,7 @@ from typing import Any, List, Tuple
 import pytest
 
 from labial.cli import main
-from labial.corpus.formats import READERS, as_lab, read_timings
+from labial.corpus.formats import FORMATS, as_lab, read_timings
 from labial.corpus.services import LAST_VISEME, LONGEST_BLANK, phonemes_of
 from labial.corpus.timings import SourceSegment, read_lab
 from labial.errors import DataError
@@ -162,7 +162,7 @@ def test_malformed_files(tmp_path: Path, source: str, content: Any, line: Any, w
     """One line that names the file, the line where there is one, and what is wrong."""
     path = put(tmp_path, content)
     with pytest.raises(DataError) as caught:
-        READERS[source](path)
+        FORMATS[source].read(path)
     text = str(caught.value)
     assert text.startswith(f"{path}:{line}: " if line else f"{path}: ") and words in text and "\n" not in text
 

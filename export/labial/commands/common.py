@@ -50,15 +50,17 @@ def add_engine(command: argparse.ArgumentParser) -> None:
 
 def add_source(command: argparse.ArgumentParser) -> None:
     """``--from``, the format of timings, as `options.source`."""
-    from labial.corpus.formats import READERS
+    from labial.corpus.formats import FORMATS
 
-    command.add_argument("--from", dest="source", choices=tuple(READERS), metavar="FORMAT",
-                         help=f"format of the timings: {', '.join(READERS)} (told by the file)")
+    command.add_argument("--from", dest="source", choices=tuple(FORMATS), metavar="FORMAT",
+                         help=f"format of the timings: {', '.join(FORMATS)} (told by the file)")
 
 
 def add_labels(command: argparse.ArgumentParser) -> None:
     """``--labels``, the set that the labels of timings are of."""
-    command.add_argument("--labels", choices=("auto", "arpabet", "ipa", "xsampa"), default="auto",
+    from labial.phonesets import AUTO, LABEL_SETS
+
+    command.add_argument("--labels", choices=(AUTO, *LABEL_SETS), default=AUTO,
                          help="what set the phonemes' labels are of; auto takes any, and where they differ X-SAMPA "
                          "in .pho and MaryTTS, the IPA of Piper, HeadTTS and Kokoro, elsewhere ARPABET (auto)")
 

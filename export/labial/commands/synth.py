@@ -13,11 +13,11 @@ from labial.errors import LabialError
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """A model, timings and the form of the frames."""
+    """A model, timings and the format of the frames."""
+    from labial.corpus.formats import TITLES
+
     command.add_argument("model", metavar="MODEL.npz")
-    command.add_argument("phones", metavar="PHONES",
-                         help="phoneme timings: .lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, flite -psdur, JSON of "
-                         "Piper, Azure, Polly, HeadTTS or Kokoro")
+    command.add_argument("phones", metavar="PHONES", help=f"phoneme timings: {TITLES}")
     add_source(command)
     command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     _add_format(command)

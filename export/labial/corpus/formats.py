@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Callable, Dict, List, Optional, Sequence
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from labial.corpus import services
 from labial.corpus.textgrid import read_textgrid
@@ -26,30 +26,48 @@ from labial.phonesets import AUTO
 
 Reader = Callable[[PathLike], List[SourceSegment]]
 
-#: Readers by the names of --from, which are those of labial-say where it has the format.
-READERS: Dict[str, Reader] = {
-    "lab": read_lab, "htk": read_htk, "textgrid": read_textgrid, "phseg": read_phseg, "pho": read_pho,
-    "mary": read_mary, "flite": read_flite, **services.READERS,
+class Format(NamedTuple):
+    """A format of timings."""
+
+    title: str  #: what messages call it
+    read: Reader
+    suffixes: Tuple[str, ...] = ()  #: by which a file's name tells it, in small letters
+
+
+_LINES: Dict[str, Format] = {
+    "lab": Format(".lab", read_lab, (".lab",)),
+    "htk": Format("HTK", read_htk),
+    "textgrid": Format(".TextGrid", read_textgrid, (".textgrid",)),
+    "phseg": Format(".phseg", read_phseg, (".phseg",)),
+    "pho": Format(".pho", read_pho, (".pho",)),
+    "flite": Format("flite -psdur", read_flite, (".psdur",)),
+    "mary": Format("MaryTTS", read_mary, (".realised_durations",)),
+}
+
+#: Every format by its name for --from, which is that of labial-say where it has the format.
+FORMATS: Dict[str, Format] = {
+    **_LINES, **{name: Format(service.title, service.read) for name, service in services.SERVICES.items()},
 }  # fmt: skip
 
-_BY_SUFFIX: Dict[str, Reader] = {
-    ".lab": read_lab, ".textgrid": read_textgrid, ".phseg": read_phseg, ".pho": read_pho, ".psdur": read_flite,
-    ".realised_durations": read_mary,
-}  # fmt: skip
+#: Every format, for messages.
+TITLES = (f"{', '.join(item.title for item in _LINES.values())}; JSON of "
+          f"{', '.join(item.title for item in services.SERVICES.values())}")
+
+_BY_SUFFIX = {suffix: item.read for item in FORMATS.values() for suffix in item.suffixes}
 
 #: Suffixes by which formats are told, in small letters.
 SUFFIXES = tuple(_BY_SUFFIX)
 
 
 def read_timings(path: PathLike, source: Optional[str] = None) -> List[SourceSegment]:
-    """Reads timings in the format `source`, one of `READERS`; without it, in the one that the suffix tells (.lab
-    .TextGrid .phseg .pho .psdur .realised_durations), else the content."""
+    """Reads timings in the format `source`, one of `FORMATS`; without it, in the one that the suffix tells, else
+    the content."""
     suffix = Path(path).suffix.lower()
     if source is not None:
-        return READERS[source](path)
+        return FORMATS[source].read(path)
     if suffix in _BY_SUFFIX:
         return _BY_SUFFIX[suffix](path)
-    return READERS[_told_by_content(path)](path)
+    return FORMATS[_told_by_content(path)].read(path)
 
 
 def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None) -> str:
@@ -69,8 +87,7 @@ def _told_by_content(path: PathLike) -> str:
     else:
         found = _told_by_lines(text)
     if found is None:
-        raise DataError(path, None, "no known format of phoneme timings (.lab, HTK, .TextGrid, .phseg, .pho, MaryTTS, "
-                        "flite -psdur; JSON of Piper, Azure, Polly, HeadTTS, Kokoro or of phoneme, start and end)")
+        raise DataError(path, None, f"no known format of phoneme timings ({TITLES})")
     return found
 
 

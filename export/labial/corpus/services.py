@@ -16,7 +16,7 @@ import json
 import math
 import unicodedata
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from labial.corpus.timings import PathLike, SourceSegment, checked
 from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
@@ -198,32 +198,43 @@ def read_polly(path: PathLike) -> List[SourceSegment]:
     return _from_visemes(path, marks, POLLY, {})
 
 
-#: Readers by the names of --from.
-READERS: Dict[str, Callable[[PathLike], List[SourceSegment]]] = {
-    "piper": read_piper, "azure": read_azure, "polly": read_polly, "headtts": read_headtts, "kokoro": read_kokoro,
-    "json": read_plain,
-}  # fmt: skip
+class Service(NamedTuple):
+    """A shape of JSON."""
+
+    title: str  #: whose it is, for messages
+    read: Callable[[PathLike], List[SourceSegment]]
+    told: Callable[[Entry], bool]  #: whether the first object of a file is one of it
+
+
+def _is_piper(first: Entry) -> bool:
+    known = (("phonemealignments",), ("alignments",), ("last",), ("phoneme", "numsamples"), ("phoneme", "seconds"))
+    return any(first.has(*names) for names in known) and not _is_plain(first)
+
+
+def _is_headtts(first: Entry) -> bool:
+    data = first.fields.get("data")
+    return first.has("vtimes") or (isinstance(data, dict) and "vtimes" in data)
+
+
+def _is_plain(first: Entry) -> bool:
+    return first.has("phoneme", "start", "end")
+
+
+#: Every shape by its name for --from, in the order in which they are told.
+SERVICES: Dict[str, Service] = {
+    "kokoro": Service("Kokoro", read_kokoro, lambda first: first.has("preddur")),
+    "headtts": Service("HeadTTS", read_headtts, _is_headtts),
+    "azure": Service("Azure", read_azure, lambda first: first.has("visemeid") or first.has("privvisemeid")),
+    "polly": Service("Polly", read_polly, lambda first: first.has("type", "time", "value")),
+    "piper": Service("Piper", read_piper, _is_piper),
+    "json": Service("other programs (phoneme, start, end)", read_plain, _is_plain),
+}
 
 
 def service_of(path: PathLike) -> Optional[str]:
-    """Which of `READERS` a JSON file is for, by the fields of its first object; None when it is none of them."""
+    """Which of `SERVICES` a JSON file is of, by the fields of its first object; None when it is none of them."""
     entries = read_entries(path)
-    if not entries:
-        return None
-    first = entries[0]
-    data = first.fields.get("data")
-    if first.has("preddur"):
-        return "kokoro"
-    if first.has("vtimes") or (isinstance(data, dict) and "vtimes" in data):
-        return "headtts"
-    if first.has("visemeid") or first.has("privvisemeid"):
-        return "azure"
-    if first.has("type", "time", "value"):
-        return "polly"
-    if first.has("phoneme", "start", "end"):
-        return "json"
-    piper = (("phonemealignments",), ("alignments",), ("last",), ("phoneme", "numsamples"), ("phoneme", "seconds"))
-    return "piper" if any(first.has(*names) for names in piper) else None
+    return next((name for name, service in SERVICES.items() if entries and service.told(entries[0])), None)
 
 
 def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:

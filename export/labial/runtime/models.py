@@ -7,7 +7,9 @@ import os
 from functools import cache
 from typing import Any, Optional, Tuple, Union
 
+from labial.aliases import LABEL_SETS
 from labial.errors import LabialError, ModelError
+from labial.runtime import BUNDLED
 from labial.runtime.library import (
     ERROR_NAME,
     ERROR_PHONEME,
@@ -23,10 +25,7 @@ from labial.runtime.library import (
 from labial.runtime.numbers import whole
 
 #: Sets of labels, labial_labels_t (labial/names.h).
-LABELS = {"auto": 0xE0, "arpabet": 0x20, "ipa": 0x40, "xsampa": 0x80}
-
-#: The bundled models. The order of a kind's phonemes is part of the interface, so that their names are every model's.
-BUNDLED = ("speech_en", "laughter_synthetic")
+LABELS = {"auto": sum(LABEL_SETS.values()), **LABEL_SETS}
 
 
 class Model:
