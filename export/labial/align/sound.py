@@ -11,6 +11,7 @@ import soxr
 
 from labial.corpus.timings import PathLike
 from labial.errors import DataError, needs
+from labial.spans import spans
 
 #: Suffixes of files that hold pictures beside their sound.
 VIDEOS = (".mp4", ".mov", ".m4v", ".mkv", ".webm", ".avi", ".ts", ".3gp")
@@ -81,9 +82,8 @@ def silences(samples: np.ndarray, rate: float = RATE) -> List[Tuple[float, float
     if not len(frames):
         return []
     level = 10 * np.log10(np.einsum("ij,ij->i", frames, frames) / hop + _FLOOR)
-    quiet = np.concatenate([[False], level < np.percentile(level, 95) - DEPTH, [False]])
-    edges = np.flatnonzero(quiet[1:] != quiet[:-1]) * _HOP
-    return [(float(a), float(b)) for a, b in zip(edges[::2], edges[1::2]) if b - a >= SHORTEST_SILENCE - 1e-9]
+    quiet = [(first * _HOP, end * _HOP) for first, end in spans(level < np.percentile(level, 95) - DEPTH)]
+    return [(a, b) for a, b in quiet if b - a >= SHORTEST_SILENCE - 1e-9]
 
 
 #: Seconds and dB of a silence.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import List, Tuple
+from typing import Tuple
 
 import numpy as np
 
 from labial.record.landmarks import INDEX, Landmarks
+from labial.spans import spans_told
 
 #: Degrees to a side, and up or down from where the talker's head mostly is. Drawn faces that were turned as far as
 #: MediaPipe then said (docs/record.md) kept their closures to a third of a lip's way within; beyond, a side of closed
@@ -40,10 +41,6 @@ def facing(landmarks: Landmarks) -> Tuple[Landmarks, str]:
 
 
 def _said(landmarks: Landmarks, away: np.ndarray, angles: np.ndarray) -> str:
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], away.astype(int), [0]])))
-    times = landmarks.times
-    spans: List[str] = [f"{times[first]:.2f} to {times[end - 1]:.2f}" for first, end in zip(edges[::2], edges[1::2])]
-    more = f" and {len(spans) - 4} times more" if len(spans) > 4 else ""
     yaw, pitch = abs(angles[away]).max(axis=0)
-    return (f"the head is turned too far from {', '.join(spans[:4])} s{more}: by up to {yaw:.0f} degrees to a side "
-            f"and {pitch:.0f} up or down, {MOST_YAW:.0f} and {MOST_PITCH:.0f} at most; these frames count as lost")
+    return (f"the head is turned too far from {spans_told(landmarks.times, away, 4)}: by up to {yaw:.0f} degrees to a "
+            f"side and {pitch:.0f} up or down, {MOST_YAW:.0f} and {MOST_PITCH:.0f} at most; these frames count as lost")

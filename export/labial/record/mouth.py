@@ -24,6 +24,7 @@ from labial.corpus.pose import align_head
 from labial.errors import LabialError
 from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.record.landmarks import HEAD, INDEX, USED, Landmarks
+from labial.spans import spans
 
 #: Seconds that a face may be lost and is interpolated, or held at the ends.
 LONGEST_GAP = 0.2
@@ -97,9 +98,8 @@ def fill(times: np.ndarray, values: np.ndarray) -> np.ndarray:
         return values
     if lost.mean() > MOST_LOST:
         raise ValueError(f"{lost.mean():.0%} of the frames have no face that can be used, at most {MOST_LOST:.0%} may")
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], lost.astype(int), [0]])))
     step = float(np.median(np.diff(times)))
-    for first, end in zip(edges[::2], edges[1::2]):
+    for first, end in spans(lost):
         length = float(times[end - 1] - times[first]) + step
         if length > LONGEST_GAP + 1e-6:
             raise ValueError(f"frames {first} to {end - 1} have no face for {length:.2f} s, "

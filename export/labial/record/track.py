@@ -17,6 +17,7 @@ from tqdm import tqdm
 from labial.errors import DataError, LabialError
 from labial.record.faces import talker
 from labial.record.video import length, pictures
+from labial.spans import spans_told
 
 PathLike = Union[str, os.PathLike]
 #: Landmarks (478, 3) in pixels and mouthPucker score, NaN where it is not known, of each face of a picture.
@@ -129,7 +130,4 @@ def _summary(output: PathLike, times: np.ndarray, there: np.ndarray) -> str:
     text = f"{os.fspath(output)}: {len(times)} frames, {rate:.4g} a second"
     if there.all():
         return text
-    edges = np.flatnonzero(np.diff(np.concatenate([[1], there.astype(int), [1]])))
-    gaps = [f"{times[first]:.2f} to {times[end - 1]:.2f}" for first, end in zip(edges[::2], edges[1::2])]
-    more = f" and {len(gaps) - 6} times more" if len(gaps) > 6 else ""
-    return f"{text}; {int((~there).sum())} without the face, from {', '.join(gaps[:6])} s{more}"
+    return f"{text}; {int((~there).sum())} without the face, from {spans_told(times, ~there, 6)}"
