@@ -88,7 +88,7 @@ def substitute_for(label: str, available: Collection[str]) -> str:
 
 def candidates_for(label: str) -> List[str]:
     """All phonemes of `label`'s set, from `label` itself to the least alike. Raises ValueError for an unknown label."""
-    phone_set = next((item for item in (SPEECH, LAUGHTER) if label in item.phonemes), None)
+    phone_set = next((item for item in PHONE_SETS.values() if label in item.phonemes), None)
     if phone_set is None:
         raise ValueError(f"{label!r} is not a phoneme")
     class_of = dict(zip(phone_set.phonemes, phone_set.viseme_class))

@@ -13,11 +13,12 @@ from typing import Any, List
 import pytest
 
 from labial.phonesets import ARPABET
+from labial.rig import FACES
 from npm import MISSING, package
 
 SAY = os.environ.get("LABIAL_SAY", "")
 NODE = shutil.which("node")
-OUTPUTS = ("faps", "arkit", "vrm", "oculus")
+OUTPUTS = ("faps", *FACES)
 
 #: Reads a list of .lab texts; for each and each output the frames of `labial.render()`.
 SCRIPT = """

@@ -16,7 +16,7 @@ from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
 from labial.corpus.episode import Segment
 from labial.errors import DataError
 from labial.grammar import fields_of, is_number, is_whole, lines_of, number, read_text, shown
-from labial.phonesets import AUTO, LAUGHTER, SPEECH, PhoneSet
+from labial.phonesets import AUTO, PHONE_SETS, PhoneSet
 
 PathLike = Union[str, os.PathLike]
 
@@ -156,9 +156,9 @@ def read_pho(path: PathLike) -> List[SourceSegment]:
 
 
 def phone_set_of(segments: Sequence[SourceSegment], labels: str = AUTO) -> PhoneSet:
-    """Speech or laughter, whichever knows more of the segments' labels; speech where both know as many."""
-    known = [sum(meaning(segment, phones, labels) is not None for segment in segments) for phones in (SPEECH, LAUGHTER)]
-    return LAUGHTER if known[1] > known[0] else SPEECH
+    """The phone set that knows most of the segments' labels; the first one, speech, where several know as many."""
+    return max(PHONE_SETS.values(), key=lambda phones: sum(
+        meaning(segment, phones, labels) is not None for segment in segments))
 
 
 def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> Optional[str]:
