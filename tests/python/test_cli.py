@@ -2,17 +2,57 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import labial.commands
 from labial.cli import main
+from labial.commands import COMMANDS
 from labial.faps import FAP_COLUMNS
 from labial.model import save
 from models import random_model
 
 LAB = "0.00 0.20 SIL\n0.20 0.31 P1\n0.31 0.42 p1\n0.50 0.71 P4\n0.71 1.00 SIL\n"
+
+
+#: What a process runs that has no numpy and nothing else of what the extras bring.
+WITHOUT_PACKAGES = """
+import sys
+sys.modules.update(dict.fromkeys(("numpy", "scipy", "sklearn", "tqdm", "matplotlib", "tomli", "soundfile")))
+from labial.cli import main
+for arguments in {arguments}:
+    try:
+        main(arguments)
+    except SystemExit as end:
+        assert end.code == 0, arguments
+print(*sorted(name[16:] for name in sys.modules if name.startswith("labial.commands.")))
+"""
+
+
+def without_packages(arguments: list) -> str:
+    """Runs commands one after another; their output, and a line of the modules of commands that they loaded."""
+    done = subprocess.run([sys.executable, "-c", WITHOUT_PACKAGES.format(arguments=arguments)], check=False,
+                          capture_output=True, encoding="utf-8")
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+def test_help_needs_python_alone() -> None:
+    """Would catch a module that imports at its top what only the work needs, and one that is not among the commands."""
+    text = without_packages([["--help"], ["--version"], *([name, "--help"] for name in COMMANDS)])
+    assert all(f"usage: labial {name} " in text for name in COMMANDS)
+    modules = {path.stem for path in Path(labial.commands.__file__).parent.glob("*.py")} - {"__init__", "common"}
+    assert modules == {name.replace("-", "_") for name in COMMANDS}
+
+
+def test_one_command_is_loaded() -> None:
+    """Would catch a start that takes longer with each command that there is."""
+    assert without_packages([["--help"]]).splitlines()[-1] == ""
+    assert without_packages([["timings", "--help"]]).splitlines()[-1] == "common timings"
 
 
 @pytest.fixture
