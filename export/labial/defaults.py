@@ -7,7 +7,7 @@ KINDS = ("speech", "laughter")
 METHODS = ("paper", "labial")
 
 #: Which of the faces in a video is the talker's.
-FACES = ("largest", "left", "right")
+WHICH_FACE = ("largest", "left", "right")
 
 #: Frames per second of a model.
 FPS = 50

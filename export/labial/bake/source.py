@@ -18,6 +18,7 @@ from labial.frames import even
 from labial.model import Model, load
 from labial.phones import Stream, phone_set, stream_of
 from labial.phonesets import AUTO
+from labial.runtime.library import DURATION_MAX
 from labial.see.motion import read_motion
 
 PathLike = Union[str, os.PathLike]
@@ -29,8 +30,6 @@ FRAMES = (".csv", ".fap")
 RATE = 50
 #: Frames that a track has at most: five and a half hours.
 _LONGEST = 1_000_000
-#: LABIAL_DURATION_MAX, milliseconds.
-DURATION_MAX = 3_600_000
 #: Milliseconds of silence that what is baked ends with. In a long pause a mouth comes to rest within 16 frames.
 REST = 500
 #: The models that Labial comes with, by kind.

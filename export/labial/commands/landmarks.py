@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from labial.commands.common import add_quiet, shows_progress
-from labial.defaults import FACES
+from labial.defaults import WHICH_FACE
 from labial.errors import needs
 
 
@@ -13,7 +13,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     """A video, and whose face in it."""
     command.add_argument("video", metavar="VIDEO")
     command.add_argument("-o", "--output", required=True, metavar="LANDMARKS.npz")
-    command.add_argument("--face", choices=FACES, help="which is the talker's, where there is "
+    command.add_argument("--face", choices=WHICH_FACE, help="which is the talker's, where there is "
                          "more than one, as seen in the picture")
     command.add_argument("--task", metavar="FILE", help="the model of MediaPipe's Face Landmarker, "
                          "face_landmarker.task, for a MediaPipe that brings none")

@@ -8,7 +8,7 @@ from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.defaults import FACES
+from labial.defaults import WHICH_FACE
 from labial.errors import DataError
 
 PathLike = Union[str, os.PathLike]
@@ -48,8 +48,8 @@ def talker(path: PathLike, times: np.ndarray, seen: Sequence[Sequence[np.ndarray
     """(T, 478, 3) landmarks of the talker's face, NaN where it is not seen.
 
     `seen` has the landmarks (478, 3), pixels, of every face in each of the frames at `times` (T,), seconds. `face` is
-    one of `FACES`; without, there must be one face only, smaller ones in the background aside. Raises DataError where
-    there is none or more than one.
+    one of `WHICH_FACE`; without, there must be one face only, smaller ones in the background aside. Raises DataError
+    where there is none or more than one.
     """
     tracks = _tracks(times, seen)
     if not tracks:
@@ -69,7 +69,7 @@ def talker(path: PathLike, times: np.ndarray, seen: Sequence[Sequence[np.ndarray
         elif face is None and track.height >= _BACKGROUND * main.height and len(track.frames) * step > _GLIMPSE:
             first, last = times[track.frames[0]], times[track.frames[-1]]
             raise DataError(path, None, f"two faces, the second from {first:.2f} to {last:.2f} s: say with --face "
-                            f"{', '.join(FACES[:-1])} or {FACES[-1]} which is the talker's")
+                            f"{', '.join(WHICH_FACE[:-1])} or {WHICH_FACE[-1]} which is the talker's")
     for track in same:
         result[track.frames] = track.points
     return result

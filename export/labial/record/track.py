@@ -33,7 +33,7 @@ def landmarks(
 ) -> str:
     """Writes the landmarks of a video's talker as the .npz that ``labial record`` takes; returns a summary.
 
-    `face` says which face, one of `labial.defaults.FACES`, where there is more than one; `task` is the model file
+    `face` says which face, one of `labial.defaults.WHICH_FACE`, where there is more than one; `task` is the model file
     of MediaPipe's Face Landmarker, without which its Face Mesh is used. Raises DataError and LabialError.
     """
     tracker = FaceLandmarker(task) if task is not None else FaceMesh()

@@ -14,9 +14,7 @@ from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
 from labial.reference.units import rest, segments, unit_ends
 from labial.reference.viterbi import LAG
-
-#: Longest duration of one phoneme, milliseconds.
-DURATION_MAX = 3_600_000
+from labial.runtime.library import DURATION_MAX
 
 
 def check(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> None:
