@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "arkit.h"
+#include "grow.h"
 #include "livelink.h"
 
 /* FAPs of MPEG-4, each with an entry in the mask of a fap file. */
@@ -128,19 +129,13 @@ static void write_fap_frame(FILE *out, uint32_t number, const int16_t faps[LABIA
 
 static void keep_fap(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
 {
-    if (frames->count >= frames->room) {
-        const size_t room = frames->room ? frames->room * 2u : 1024u;
-        int16_t(*kept)[LABIAL_CHANNELS] = NULL;
-        if (room <= SIZE_MAX / sizeof *kept)
-            kept = realloc(frames->kept, room * sizeof *kept);
-        if (!kept) {
-            frames->failed = 1;
-            return;
-        }
-        frames->kept = kept;
-        frames->room = room;
+    int16_t(*kept)[LABIAL_CHANNELS] = grow(frames->kept, frames->count, &frames->room, sizeof *kept);
+    if (!kept) {
+        frames->failed = 1;
+        return;
     }
-    memcpy(frames->kept[frames->count], faps, sizeof *frames->kept);
+    frames->kept = kept;
+    memcpy(kept[frames->count], faps, sizeof *kept);
 }
 
 static void end_fap(frames_t *frames)

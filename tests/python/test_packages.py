@@ -383,7 +383,7 @@ def test_component_builds(tree: object, tmp_path: Path, kind: str, functions: st
 def test_zephyr_module_offers_every_model() -> None:
     """A model without an option could never be linked; module.yml names what exists."""
     options = re.findall(r"^config (\w+)$", (SOURCE / "zephyr" / "Kconfig").read_text(encoding="utf-8"), re.MULTILINE)
-    assert sorted(options) == sorted(f"LABIAL_{model.upper()}" for model in bundled())
+    assert sorted(options) == sorted(f"LABIAL_{model.upper()}" for model in bundled()), "zephyr/Kconfig and lib/models"
     module = (SOURCE / "zephyr" / "module.yml").read_text(encoding="utf-8")
     assert (SOURCE / re.findall(r"^  cmake: (.*)$", module, re.MULTILINE)[0] / "CMakeLists.txt").is_file()
     assert (SOURCE / re.findall(r"^  kconfig: (.*)$", module, re.MULTILINE)[0]).is_file()
