@@ -57,6 +57,25 @@ static void everything_adds_to_the_cost(void **state)
     assert_true(labial_model_cost(&f.model) < more);
 }
 
+static uint32_t cost_of_stride(unsigned stride)
+{
+    f.model.search_stride = (uint8_t)stride;
+    return labial_model_cost(&f.model);
+}
+
+/* Of 13 channels three at most have their turn in one tick with strides of 5 and 6, two with 7 and 8: each frame more in a
+ * turn costs that many times the same. Would catch frames that are not counted, and channels. */
+static void frames_of_a_turn_cost_alike(void **state)
+{
+    uint32_t of_three, of_two;
+    (void)state;
+    fixture_plain(&f);
+    of_three = cost_of_stride(6) - cost_of_stride(5);
+    of_two = cost_of_stride(8) - cost_of_stride(7);
+    assert_true(of_two > 0 && of_two < cost_of_stride(7));
+    assert_int_equal(2u * of_three, 3u * of_two);
+}
+
 /* The comparisons of a binary search for the `wanted`-th of `count` entries, or for what lies before or behind all. */
 static uint32_t steps_of_search(unsigned count, unsigned wanted)
 {
@@ -104,6 +123,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_model_costs_nothing),
         cmocka_unit_test(everything_adds_to_the_cost),
+        cmocka_unit_test(frames_of_a_turn_cost_alike),
         cmocka_unit_test(pairs_cost_the_comparisons_of_their_search),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
