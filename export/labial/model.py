@@ -21,8 +21,11 @@ from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError
 from labial.faps import CHANNELS
 
-#: Version of the .npz layout.
+#: Version of the .npz layout, and those that are read; before 4 some arrays had other names.
 FORMAT = 4
+_FORMATS = (3, FORMAT)
+_FORMER_NAMES = {"viseme_class": "phoneme_class", "emission_mean": "decode_mean",
+                 "emission_variance": "decode_variance"}
 
 _TEXT = (
     "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
@@ -219,9 +222,9 @@ def load(path: Union[str, os.PathLike]) -> Model:
         values = _texts(members["model.json"])
         for item in fields(Model):
             if item.name not in _TEXT:
-                member = f"{item.name}.npy"
-                _expect(member in members, f"not a labial model: it holds no {member}")
-                values[item.name] = array(item.name, members[member])
+                member, former = (f"{name}.npy" for name in (item.name, _FORMER_NAMES.get(item.name, item.name)))
+                _expect(member in members or former in members, f"not a labial model: it holds no {member}")
+                values[item.name] = array(item.name, members[member if member in members else former])
         return Model(**values)
     except OSError as error:
         raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
@@ -240,8 +243,8 @@ def _texts(data: bytes) -> Dict[str, Any]:
         problem = "nested too deeply" if isinstance(error, RecursionError) else str(error)
         raise ModelError(f"model.json: not JSON ({problem[:80]})") from None
     _expect(isinstance(text, dict), "model.json: not an object")
-    _expect(text.get("format") == FORMAT,
-            f"format {text.get('format')!r:.40}, but this version of labial reads format {FORMAT}")
+    _expect(text.get("format") in _FORMATS, f"format {text.get('format')!r:.40}, but this version of labial reads "
+            f"formats {' and '.join(map(str, _FORMATS))}")
     for name in _TEXT:
         _expect(name in text, f"model.json: no {name}")
     for name in ("kind", "method", "silence", "attribution"):

@@ -75,9 +75,25 @@ def test_says_that_a_model_is_of_another_format(tmp_path: Path) -> None:
     """Whoever has a file of another version is told so, and not that an array is missing in it."""
     path = tmp_path / "model.npz"
     save(random_model(1), path)
-    path.write_bytes(_with(_without(path.read_bytes(), "emission_mean.npy"), "model.json", b'{"format": 3}'))
-    with pytest.raises(ModelError, match="format 3, but this version of labial reads format 4"):
+    path.write_bytes(_with(_without(path.read_bytes(), "emission_mean.npy"), "model.json", b'{"format": 5}'))
+    with pytest.raises(ModelError, match="format 5, but this version of labial reads formats 3 and 4"):
         load(path)
+
+
+def test_a_model_of_format_3_is_read(tmp_path: Path) -> None:
+    """Three arrays had other names; a model that somebody trained then is the same model."""
+    path, former = tmp_path / "model.npz", tmp_path / "former.npz"
+    model = random_model(1)
+    save(model, path)
+    names = {"viseme_class": "phoneme_class", "emission_mean": "decode_mean", "emission_variance": "decode_variance"}
+    with zipfile.ZipFile(path) as source, zipfile.ZipFile(former, "w") as target:
+        for name in source.namelist():
+            stem = name[: -len(".npy")]
+            content = source.read(name).replace(b'"format": 4', b'"format": 3')
+            target.writestr(f"{names[stem]}.npy" if stem in names else name, content)
+    assert set(names.values()) < {name[: -len(".npy")] for name in zipfile.ZipFile(former).namelist()}
+    save(load(former), former)
+    assert former.read_bytes() == path.read_bytes()
 
 
 def _rewritten(data: bytes, skip: str) -> tuple[io.BytesIO, zipfile.ZipFile]:

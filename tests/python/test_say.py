@@ -141,16 +141,16 @@ def test_frames_leave_while_input_arrives() -> None:
     try:
         child.stdin.write(half)
         child.stdin.flush()
-        early = [lines.get(timeout=20) for _ in range(21)]
+        early = [lines.get(timeout=120) for _ in range(21)]
         assert child.poll() is None
         child.stdin.write(text[len(half) :].encode())
         child.stdin.close()
-        reader.join(timeout=20)
-        assert child.wait(timeout=20) == 0
+        reader.join(timeout=120)
+        assert child.wait(timeout=120) == 0
     finally:
         child.kill()  # so that a failure above ends here instead of waiting for a program that waits
         child.wait()
-        reader.join(timeout=20)
+        reader.join(timeout=120)
         child.stdout.close()
     while not lines.empty():
         early.append(lines.get())
