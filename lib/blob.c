@@ -3,6 +3,7 @@
  */
 #include "labial/blob.h"
 
+#include "fixed.h"
 #include "labial/labial.h"
 
 #define HEADER_SIZE 32u
@@ -36,9 +37,10 @@ static uint32_t u32(const uint8_t *at)
 static uint32_t checksum(const uint8_t *at, size_t size)
 {
     uint32_t crc = UINT32_MAX;
+    size_t i;
     unsigned bit;
-    for (; size > 0; size--) {
-        crc ^= *at++;
+    for (i = 0; i < size; i++) {
+        crc ^= at[i];
         for (bit = 0; bit < 8; bit++)
             crc = (crc >> 1) ^ ((crc & 1u) ? 0xedb88320u : 0u);
     }
@@ -62,6 +64,10 @@ static const void *table(reader_t *reader, uint32_t count, uint32_t size)
         return NULL;
     }
     reader->at += padded;
+    /* What was left holds the table. */
+    /*@ assert reader->at <= reader->size; */
+    /*@ assert start <= reader->data + (reader->size - padded); */
+    LABIAL_CHECK(reader->at <= reader->size && start + padded == reader->data + reader->at);
     return start;
 }
 
