@@ -1,0 +1,102 @@
+/*
+ * Any stride, phase and places in rings of that stride, any marks and number of frames that entered, with phonemes, frames
+ * and ends in any order. units.c and shape.c are proven on their own; their stand-ins here give any of their results, and
+ * read and write what those do.
+ */
+#include "any_model.h"
+#include "shape.h"
+#include "stream.h"
+
+static labial_model_t model;
+static labial_frame_t frames[LABIAL_SEARCH_STRIDE_MAX + LABIAL_LAG];
+
+int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
+{
+    return units->count > 0 && models[any_int ? 0 : LABIAL_MODELS - 1]->phonemes && any_int;
+}
+
+int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
+                      labial_spoken_t *spoken)
+{
+    if (units->count == 0)
+        return 0;
+    spoken->slot = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
+    spoken->phoneme = (uint8_t)Frama_C_interval(0, models[spoken->slot]->phoneme_count - 1);
+    spoken->previous = (uint8_t)Frama_C_interval(0, models[spoken->slot]->phoneme_count - 1);
+    spoken->next = (uint8_t)Frama_C_interval(0, models[spoken->slot]->phoneme_count - 1);
+    spoken->ms = any_uint16;
+    return ended || any_int;
+}
+
+int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
+                      labial_taken_t *taken)
+{
+    if (units->count == 0)
+        return ended ? LABIAL_DONE : LABIAL_STARVED;
+    if (!ended && any_int)
+        return LABIAL_STARVED;
+    units->count = any_uint8;
+    FILL(units->labels);
+    taken->labels = units->labels + LABIAL_REACH;
+    taken->slot = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
+    taken->share = (uint16_t)Frama_C_interval(0, 16384);
+    taken->is_first = (uint8_t)Frama_C_interval(0, 1);
+    taken->is_open = (uint8_t)Frama_C_interval(0, 1);
+    taken->rest = (uint8_t)Frama_C_interval(0, LABIAL_REST_FRAMES);
+    taken->marks = models[taken->slot]->phonemes ? (uint8_t)Frama_C_interval(0, 7) : (uint8_t)0;
+    return LABIAL_OK;
+}
+
+void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
+                         labial_shape_t *shape)
+{
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        shape->knots[0][k] = any_position();
+        shape->knots[1][k] = any_position();
+    }
+    shape->knots[0][0] = model->phonemes[phoneme].floor + ms + previous + next > 0 ? any_position() : 0;
+}
+
+uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
+                             int16_t target[LABIAL_CHANNELS])
+{
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        target[k] = shape->knots[0][k] + shape->knots[1][k] + taken->labels[0] + taken->share > 0 ? any_position() : 0;
+    return model->floor_count ? any_uint16 : (uint16_t)0;
+}
+
+static void advance(int stride)
+{
+    static labial_t stream; /* zero, as labial_init() makes it */
+    unsigned i;
+    for (i = 0; i < LABIAL_MODELS; i++)
+        stream.models[i] = &model;
+    stream.stride = (uint8_t)stride;
+    stream.phase = (uint8_t)(stride - 1);
+    stream.frames = frames + LABIAL_SEARCH_STRIDE_MAX - stride;
+    while (any_int) {
+        stream.ended = (uint8_t)Frama_C_interval(0, 1);
+        stream.shown = (uint8_t)Frama_C_interval(0, 1);
+        stream.pending = any_uint32;
+        stream.units.count = any_uint8;
+        if (any_int)
+            labial_input_select(&stream);
+        labial_input_advance(&stream);
+        if (any_int) { /* as when it begins anew */
+            stream.phase = (uint8_t)(stride - 1);
+            stream.frame_place = stream.factor_place = 0;
+            stream.entered = stream.beyond = stream.selected = 0;
+        }
+    }
+}
+
+int main(void)
+{
+    int stride;
+    any_model(&model, 1);
+    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++)
+        advance(stride);
+    return 0;
+}
