@@ -18,8 +18,9 @@ from test_record import seen
 from test_see import wav
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
-#: Pages that build packages or programs, simulate boards or train.
-SLOW = ("README.md", "arduino.md", "browser.md", "kiosk.md", "packages.md", "porting.md", "record.md")
+#: Pages that build packages or programs, simulate boards, train or draw.
+SLOW = ("README.md", "arduino.md", "browser.md", "kiosk.md", "packages.md", "porting.md", "record.md", "see.md",
+        "servos.md")
 
 #: Lines of pages that are not run, and why.
 NOT_RUN: Dict[str, Dict[str, str]] = {

@@ -111,7 +111,7 @@ def test_a_library_that_remembers_too_few_phonemes_does_not_compile(
         assert done.returncode != 0 and f"some_model needs LABIAL_REACH of {needed} at least" in done.stderr
 
 
-@pytest.mark.parametrize("method", ["paper", "labial"])
+@pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "labial"])
 def test_binary_model_moves_as_the_compiled_one(tmp_path: Path, method: str) -> None:
     """A table in another order or of another width would be refused or move differently."""
     model = quantise(random_model(3, method), "some_model")

@@ -270,9 +270,10 @@ def test_damaged_inputs(given: Path, told: Told, name: str, count: int, argument
 
 @pytest.mark.parametrize(("frames", "lab", "count"), [
     (lambda t: [0.0] * 13, SYLLABLES, 3),
-    (lambda t: [t % 7.0] + [5.0] * 12, SYLLABLES, 3),
+    pytest.param(lambda t: [t % 7.0] + [5.0] * 12, SYLLABLES, 3, marks=pytest.mark.slow),
     (lambda t: [1e300] * 13, "0 2 SIL\n", 2), (lambda t: [t * 1e4] * 13, SYLLABLES, 3),
-    (lambda t: [1e-300 * t] * 13, SYLLABLES, 3), (lambda t: [float(t)] * 13, "0 2 SIL\n", 2),
+    pytest.param(lambda t: [1e-300 * t] * 13, SYLLABLES, 3, marks=pytest.mark.slow),
+    (lambda t: [float(t)] * 13, "0 2 SIL\n", 2),
     (lambda t: [float(t)] * 13, "0 .001 AA\n", 2), (lambda t: [float(t)] * 13, "0 86000 AA\n", 1),
 ], ids=["zeros", "constants", "1e300", "far", "1e-300", "silence", "short", "long"])  # fmt: skip
 def test_absurd_corpora(tmp_path: Path, told: Told, frames: Callable, lab: str, count: int) -> None:

@@ -314,7 +314,7 @@ def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path) -> None:
 # ---- PlatformIO, ESP-IDF, Zephyr: the tree as they see it ----------------------------------------------------------
 
 
-@pytest.fixture(scope="module", params=["source", "packed"])
+@pytest.fixture(scope="module", params=["source", pytest.param("packed", marks=pytest.mark.slow)])
 def tree(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> object:
     """The source tree itself, and the parts of it that pack.py lays out."""
 

@@ -75,6 +75,7 @@ def test_pkg_config(installed: Path, tmp_path: Path) -> None:
     assert run("pkg-config", "--modversion", "labial", env=env).count(".") == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", sorted(INSIDE))
 def test_inside_another_project(tmp_path: Path, way: str) -> None:
     """The project keeps its own flags, build type, tests and installation; every cache entry bears Labial's name."""

@@ -59,7 +59,8 @@ def saved(model: Model) -> bytes:
     return buffer.getvalue()
 
 
-@pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "labial"])
+@pytest.mark.parametrize("method", ["paper", "labial"])
+@pytest.mark.slow
 def test_the_same_bytes_for_any_number_of_jobs(corpus, models, method, tmp_path):
     # Catches random seeds that are not fixed, results in the order they arrive, times or paths kept in the model.
     once, again = models[method], train(corpus, method=method, jobs=2, **OPTIONS)

@@ -56,7 +56,7 @@ def where(number: int) -> Tuple[int, int, int]:
     return number**2, os.getpid(), max((item["num_threads"] for item in threadpool_info()), default=1)
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_results_are_in_order_and_libraries_keep_to_one_thread(jobs: int) -> None:
     """Catches results in the order in which they were ready, and sums whose order depends on the cores."""
     with Workers(jobs, False) as workers:
