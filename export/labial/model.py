@@ -21,11 +21,11 @@ from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError
 from labial.faps import CHANNELS
 
-#: Version of the .npz layout, and those that are read; before 4 some arrays had other names.
+#: Version of the .npz layout, and those that are read; what arrays that had other names before 4 are called since.
 FORMAT = 4
 _FORMATS = (3, FORMAT)
-_FORMER_NAMES = {"viseme_class": "phoneme_class", "emission_mean": "decode_mean",
-                 "emission_variance": "decode_variance"}
+_NAMES_SINCE = {"phoneme_class.npy": "viseme_class.npy", "decode_mean.npy": "emission_mean.npy",
+                "decode_variance.npy": "emission_variance.npy"}
 
 _TEXT = (
     "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
@@ -219,12 +219,13 @@ def load(path: Union[str, os.PathLike]) -> Model:
     try:
         members = read_zip(path, None, LARGEST)
         _expect("model.json" in members, "not a labial model: it holds no model.json")
+        members = {**{name: members[former] for former, name in _NAMES_SINCE.items() if former in members}, **members}
         values = _texts(members["model.json"])
         for item in fields(Model):
             if item.name not in _TEXT:
-                member, former = (f"{name}.npy" for name in (item.name, _FORMER_NAMES.get(item.name, item.name)))
-                _expect(member in members or former in members, f"not a labial model: it holds no {member}")
-                values[item.name] = array(item.name, members[member if member in members else former])
+                member = f"{item.name}.npy"
+                _expect(member in members, f"not a labial model: it holds no {member}")
+                values[item.name] = array(item.name, members[member])
         return Model(**values)
     except OSError as error:
         raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
