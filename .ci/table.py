@@ -52,21 +52,25 @@ def warnings_of(log: Path) -> List[str]:
     return [block for block in blocks if "left out" in block]
 
 
+def cases(name: str) -> List[ElementTree.Element]:
+    """What ctest reports of a workflow's tests; nothing where there are none."""
+    report = BUILD / name / "junit.xml"
+    return list(ElementTree.parse(report).getroot().iter("testcase")) if report.exists() else []
+
+
 def failures(name: str) -> List[str]:
     """What the failed tests of a workflow printed at last, each below a line with its name."""
-    report = BUILD / name / "junit.xml"
-    cases = ElementTree.parse(report).getroot().iter("testcase") if report.exists() else ()
     return [f"---- {name}: {case.get('name')}\n{(case.findtext('system-out') or '').strip()[-SHOWN:]}"
-            for case in cases if case.get("status") == "fail"]
+            for case in cases(name) if case.get("status") == "fail"]
 
 
 def workflow_rows(name: str, status: str, seconds: str) -> List[Row]:
     """A workflow's row and those of its tests that count their own."""
-    report, left_out = BUILD / name / "junit.xml", warnings_of(BUILD / "ci" / f"{name}.log")
-    if not report.exists():
+    reported, left_out = cases(name), warnings_of(BUILD / "ci" / f"{name}.log")
+    if not reported:
         return [Row(name, "-", "yes" if status == "0" else "failed", left_out, seconds)]
     ran, passed, rows = 0, 0, []
-    for case in ElementTree.parse(report).getroot().iter("testcase"):
+    for case in reported:
         test, output = case.get("name", ""), case.findtext("system-out") or ""
         if case.get("status") != "run" and case.get("status") != "fail":
             left_out.append(f"{test}: {case.get('status')}")
