@@ -173,9 +173,7 @@ def test_lips_are_where_the_sound_is(browser: Browser, address: str) -> None:
 def test_lips_close_in_every_p_b_and_m(browser: Browser, address: str) -> None:
     """At 60 drawings a second the lips are seen closed in each, and open in vowels."""
     page = opened(browser, address, CLOCK)
-    page.evaluate("speak.click()")
-    page.wait_for("turn(0) || sound.playing")
-    page.evaluate("seen.length = 0; for (let i = 0; i < 60 * 6.7; i++) turn(1000 / 60)")
+    speaking(page, 6.7)
     drawn = [(row[1], gap(row[2])) for row in page.evaluate("seen")]
     closed, open_ = {}, {}
     for begin, end, label in phonemes():
