@@ -21,23 +21,13 @@ typedef struct {
 /* `name` is SPEECH or LAUGHTER, or a macro that is; the other model is then not linked. */
 #define BENCH_INPUT(name) BENCH_JOIN(name)
 #define BENCH_JOIN(name) BENCH_##name
-#define BENCH_SPEECH                                                                                                   \
-    {                                                                                                                  \
-        &speech_en, bench_sentence, sizeof bench_sentence / sizeof *bench_sentence                                     \
-    }
-#define BENCH_LAUGHTER                                                                                                 \
-    {                                                                                                                  \
-        &laughter_synthetic, bench_laugh, sizeof bench_laugh / sizeof *bench_laugh                                     \
-    }
+/* clang-format off */
+#define BENCH_SPEECH { &speech_en, bench_sentence, sizeof bench_sentence / sizeof *bench_sentence }
+#define BENCH_LAUGHTER { &laughter_synthetic, bench_laugh, sizeof bench_laugh / sizeof *bench_laugh }
 
-#define S(label, ms)                                                                                                   \
-    {                                                                                                                  \
-        SPEECH_EN_##label, ms                                                                                          \
-    }
-#define L(label, ms)                                                                                                   \
-    {                                                                                                                  \
-        LAUGHTER_SYNTHETIC_##label, ms                                                                                 \
-    }
+#define S(label, ms) { SPEECH_EN_##label, ms }
+#define L(label, ms) { LAUGHTER_SYNTHETIC_##label, ms }
+/* clang-format on */
 
 static const bench_phoneme_t bench_sentence[] = {
     S(SIL, 220), S(M, 71),   S(AY, 152), S(B, 90),   S(EY, 197), S(B, 85),   S(IY, 89),   S(M, 80), S(EY, 139),

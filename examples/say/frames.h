@@ -11,8 +11,8 @@
  *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
  *             lips and jaw move, from 0 to 1.
  *   A face's name, one of those of ../faces/faces.h
- *             a JSON object per line: `frame`, `time` in seconds, and one with the face's name that holds its weights from
- *             0 to 1, such as those of ARKit's blendshapes, VRM's five mouths or the 15 visemes of Oculus LipSync.
+ *             a JSON object per line: `frame`, `time` in seconds, and one with the face's name that holds its weights
+ *             from 0 to 1, such as those of ARKit's blendshapes, VRM's five mouths or the 15 visemes of Oculus LipSync.
  *
  * The formats are one list, in frames.c, to which the faces are added.
  */

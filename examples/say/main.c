@@ -75,10 +75,12 @@ static int wrong_usage(const char *problem, const char *value)
 static const struct {
     const char *name;
     labial_labels_t labels;
-} label_sets[] = { { "auto", LABIAL_LABELS_AUTO },
-                   { "arpabet", LABIAL_LABELS_ARPABET },
-                   { "ipa", LABIAL_LABELS_IPA },
-                   { "xsampa", LABIAL_LABELS_XSAMPA } };
+} label_sets[] = {
+    { "auto", LABIAL_LABELS_AUTO },
+    { "arpabet", LABIAL_LABELS_ARPABET },
+    { "ipa", LABIAL_LABELS_IPA },
+    { "xsampa", LABIAL_LABELS_XSAMPA },
+};
 
 static const char *label_set_name(unsigned number)
 {

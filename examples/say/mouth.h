@@ -42,8 +42,8 @@ typedef struct {
     char unknown[MOUTH_UNKNOWN_MAX][MOUTH_LABEL_MAX + 1];
 } mouth_t;
 
-/* Prepares a mouth whose frames go to `out` in one of the formats of frames.h. Returns 0, or -1 after the error was printed. mouth_end() or mouth_drop()
- * release what it owns. */
+/* Prepares a mouth whose frames go to `out` in one of the formats of frames.h. Returns 0, or -1 after the error was
+ * printed. mouth_end() or mouth_drop() release what it owns. */
 int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, FILE *out, unsigned format);
 
 /*

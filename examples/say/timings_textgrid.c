@@ -171,23 +171,25 @@ static void next_interval(timings_textgrid_t *g)
 
 static int unexpected(timings_t *t)
 {
-    static const char *const names[] = { "the file type \"ooTextFile\"",
-                                         "the object class \"TextGrid\"",
-                                         "the start of the grid",
-                                         "the end of the grid",
-                                         "<exists>",
-                                         "the number of tiers",
-                                         "a tier's class",
-                                         "a tier's name",
-                                         "a tier's start",
-                                         "a tier's end",
-                                         "the number of intervals",
-                                         "an interval's start",
-                                         "an interval's end",
-                                         "an interval's text",
-                                         "a point's time",
-                                         "a point's mark",
-                                         "the end of the file" };
+    static const char *const names[] = {
+        "the file type \"ooTextFile\"",
+        "the object class \"TextGrid\"",
+        "the start of the grid",
+        "the end of the grid",
+        "<exists>",
+        "the number of tiers",
+        "a tier's class",
+        "a tier's name",
+        "a tier's start",
+        "a tier's end",
+        "the number of intervals",
+        "an interval's start",
+        "an interval's end",
+        "an interval's text",
+        "a point's time",
+        "a point's mark",
+        "the end of the file",
+    };
     return timings_malformed(t, "'%.63s' stands where %s should be", TEXT(t), names[t->grid.expected]);
 }
 

@@ -16,8 +16,7 @@ typedef struct {
     int is_first, begins, ends, unit_ends;
     uint64_t number, whole; /* which frame it is of how many of its phoneme; a pause that is cut in two has two */
     unsigned rest; /* how far the mouth has come to rest in such a pause, of 16: not where it leads on to something */
-    size_t
-        needs; /* phonemes that must be pushed before the frame can be taken; more than there are: only the end helps */
+    size_t needs;  /* phonemes pushed before the frame can be taken; more than there are: only the end helps */
 } oracle_frame_t;
 
 /* Expands `count` phonemes; there must be room. Returns the number of frames. */
