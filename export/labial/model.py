@@ -17,6 +17,7 @@ from typing import Any, Dict, Tuple, Union
 import numpy as np
 
 from labial.arrays import ArrayError, array, read_zip
+from labial.bundled import model_file
 from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError
 from labial.faps import CHANNELS
@@ -215,7 +216,9 @@ def save(model: Model, path: Union[str, os.PathLike]) -> None:
 
 
 def load(path: Union[str, os.PathLike]) -> Model:
-    """Reads and checks a model. Raises ModelError, which names the file, for anything that is not one."""
+    """Reads and checks a model, a file or a bundled one by its name. Raises ModelError, which names the file, for
+    anything that is not one."""
+    path = model_file(path)
     try:
         members = read_zip(path, None, LARGEST)
         _expect("model.json" in members, "not a labial model: it holds no model.json")

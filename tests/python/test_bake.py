@@ -11,7 +11,7 @@ from typing import List, Sequence
 import numpy as np
 import pytest
 
-from labial.bake.source import DURATION_MAX, SOUNDS, bundled
+from labial.bake.source import DURATION_MAX, SOUNDS
 from labial.bake.track import AVR_LARGEST, FORMAT
 from labial.cli import main
 from labial.faps import FAP_COLUMNS
@@ -329,4 +329,4 @@ def test_models_are_chosen_by_the_phonemes(tmp_path: Path) -> None:
     assert main(["bake", str(laugh), "--as", "phonemes", "-o", str(tmp_path / "my-laugh.h")]) == 0
     text = (tmp_path / "my-laugh.h").read_text()
     assert '#include "laughter_synthetic.h"' in text and "my_laugh_feed" in text
-    assert main(["bake", str(laugh), "--model", str(bundled("speech")), "-o", str(tmp_path / "s.h")]) == 0
+    assert main(["bake", str(laugh), "--model", "speech_en", "-o", str(tmp_path / "s.h")]) == 0

@@ -121,7 +121,7 @@ def test_errors_are_one_line(
 def test_options_of_one_method_are_not_silently_ignored(
     given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What asks the published method for what it does not have is told so; nobody else is."""
+    """An option that has no effect with the method is told so; others are passed on without a word."""
     asked = []
     monkeypatch.setattr("labial.train.train", lambda corpus, **options: asked.append(options) or random_model(3))
     monkeypatch.setattr("labial.train.backed_off", lambda model: [])
@@ -129,12 +129,14 @@ def test_options_of_one_method_are_not_silently_ignored(
     for method, options, warned in (
         ("paper", [], False), ("labial", ["--look-ahead", "60", "--search-stride", "1"], False),
         ("paper", ["--search-stride", "1"], True), ("paper", ["--look-ahead", "60"], True),
+        ("paper", ["--normalise"], False), ("labial", ["--normalise"], True),
     ):
         assert main(["train", "corpus", "-o", str(given / "m.npz"), "--method", method, *options]) == 0
         err = capsys.readouterr().err
-        assert ("--method paper" in err) == warned and all(name in err for name in options[::2] if warned)
+        assert (f"--method {method}" in err) == warned and all(name in err for name in options[::2] if warned)
     assert asked[1]["look_ahead"] == 0.06 and asked[1]["search_stride"] == 1
     assert not {"look_ahead", "search_stride"} & set(asked[0])
+    assert [options["normalise"] for options in asked[-2:]] == [True, True] and not asked[0]["normalise"]
 
 
 def test_amplitude_widens_what_is_exported(given: Path) -> None:

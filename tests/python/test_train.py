@@ -8,14 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from labial.corpus import Episode, Segment
+from labial.corpus import Episode, Segment, resample
 from labial.errors import LabialError
 from labial.model import Model, load, save
 from labial.phonesets import SPEECH
-from labial.reference import published
 from labial.reference import stream as carried_on
+from labial.reference.synthesis import synthesise
 from labial.reference.tables import FloatTables
 from labial.train import backed_off, pipeline, train
+from labial.train.codebook import features, lbg
 from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
 from labial.train.recordings import Recording, with_pauses_cut
 from labial.train.states import DYNAMIC_RANGE, Scales, limit_range, match_states
@@ -72,8 +73,7 @@ def test_the_same_bytes_for_any_number_of_jobs(corpus, models, method, tmp_path)
 def motion_error(model: Model, item: Episode) -> float:
     """RMS error over the motion's standard deviation, on frames of 20 ms."""
     stream = [(model.phonemes.index(s.label), round(1000 * s.duration)) for s in item.segments]
-    synthesise = published.synthesise if model.method == "paper" else carried_on.synthesise
-    found = synthesise(FloatTables(model), stream)
+    found = synthesise(model, stream)
     centre = (np.arange(len(found)) + 0.5) / model.fps
     human = np.stack([np.interp(centre, item.times, channel) for channel in item.frames.T], axis=1)
     return float(np.sqrt(((found - human) ** 2).mean()) / human.std())
@@ -84,8 +84,7 @@ def test_models_reproduce_unseen_episodes(models):
     unseen = [episode(seed) for seed in (100, 101)]
     errors = {method: np.mean([motion_error(model, item) for item in unseen]) for method, model in models.items()}
     assert errors["labial"] < 0.25
-    assert errors["paper"] < 0.8
-    assert errors["labial"] < errors["paper"]
+    assert errors["paper"] < 0.25
 
 
 def test_the_published_method_has_nothing_added(models):
@@ -93,6 +92,18 @@ def test_the_published_method_has_nothing_added(models):
     model = models["paper"]
     assert not model.soft and not model.slope.any() and not model.state_anchor.any()
     assert model.kernel.shape == (40, 0, 13) and model.log_previous.shape[1] == 0
+
+
+def test_features_are_clustered_as_they_are_unless_asked(corpus, models):
+    """The text does not normalise them. Would catch a scale that leaks in, and an option that is lost on its way."""
+    normalised = train(corpus, method="paper", jobs=1, normalise=True, **OPTIONS)
+    assert models["paper"].training["normalised_features"] is False
+    assert normalised.training["normalised_features"] is True and "normalised_features" not in models["labial"].training
+    rows = np.concatenate([features(resample(item, 50).motion[:, 0]) for item in corpus])
+    for model, scale in ((models["paper"], 1.0), (normalised, rows.std(axis=0))):
+        centres, _, _ = lbg(rows / scale, OPTIONS["codebook"])
+        wanted = (centres * scale)[np.lexsort((centres * scale).T[::-1])]
+        np.testing.assert_allclose(model.state_mean[0], wanted, atol=2.0)
 
 
 def test_every_phoneme_has_shapes_and_back_offs_are_told(models):

@@ -11,6 +11,7 @@ from typing import List, Optional, Tuple, Union
 
 import numpy as np
 
+from labial.bundled import BY_KIND
 from labial.corpus.formats import read_timings
 from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments
 from labial.errors import DataError, LabialError, needs
@@ -32,8 +33,6 @@ RATE = 50
 _LONGEST = 1_000_000
 #: Milliseconds of silence that what is baked ends with. In a long pause a mouth comes to rest within 16 frames.
 REST = 500
-#: The models that Labial comes with, by kind.
-_BUNDLED = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Source:
     """What the command was told about its input."""
 
     path: str
-    model: Optional[str] = None  #: a model's file; that of the bundled ones that knows the labels without it
+    model: Optional[str] = None  #: a model's file or name; without it the bundled one that knows the labels
     text: Optional[str] = None  #: what is said in a sound
     labels: str = AUTO
     format: Optional[str] = None  #: of the timings; told by the file without it
@@ -58,33 +57,20 @@ class Source:
         return self.format is None and Path(self.path).suffix.lower() in FRAMES
 
 
-def bundled(kind: str) -> Path:
-    """The file of the model of this kind ("speech", "laughter") that Labial comes with: in the package, or in the
-    source tree. Raises LabialError where it is not installed."""
-    package = Path(__file__).resolve().parents[1]
-    for folder in (package / "models", package.parent / "models"):
-        if (folder / f"{_BUNDLED[kind]}.npz").is_file():
-            return folder / f"{_BUNDLED[kind]}.npz"
-    raise LabialError(f"the model {_BUNDLED[kind]} is not installed with this package: name a model by --model")
-
-
 def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
     """The model, what the model is called, and the phonemes of timings or of a sound, to rest at the end. Raises
     DataError."""
     if source.has_frames:
         raise DataError(source.path, None, "holds frames, which have no phonemes; --as track takes frames")
     segments = _heard(source) if source.is_sound else _timed(source)
-    if source.model:
-        path = Path(source.model)
-    else:
-        path = bundled(phone_set_of(segments, source.labels).kind)
-    model = load(path)
+    name = source.model or BY_KIND[phone_set_of(segments, source.labels).kind]
+    model = load(name)
     found = phoneme_segments(source.path, segments, phone_set(model), False, source.labels)
     for segment in found:
         if segment.duration * 1000 > DURATION_MAX:
             raise DataError(source.path, None, f"{segment.label} at {segment.start:g} s lasts {segment.duration:g} s, "
                             f"a phoneme at most {DURATION_MAX // 1000}")
-    return model, path.stem, _rested(stream_of(found, model, 0), model)
+    return model, Path(name).stem, _rested(stream_of(found, model, 0), model)
 
 
 def _rested(phonemes: Stream, model: Model) -> Stream:
@@ -117,14 +103,16 @@ def read_track(source: Source) -> np.ndarray:
         motion = read_motion(source.path)
         return _at_rate(source.path, motion.times, motion.frames)
     from labial.quantise import quantise
-    from labial.reference import stream
+    from labial.reference import stream, synthesis
     from labial.reference.tables import ExportedTables
 
     model, _, phonemes = read_phonemes(source)
     seconds = sum(milliseconds for _, milliseconds in phonemes) / 1000.0
     _check_length(source.path, seconds)
-    # The tables that a board would have: a choice at a near tie is then the same as there.
-    frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
+    if synthesis.is_published(model):
+        frames = synthesis.synthesise(model, phonemes)
+    else:  # on the tables that a board would have: a choice at a near tie is then the same as there
+        frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
     return _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from labial.bundled import MODEL_HELP
 from labial.commands.common import add_labels, add_quiet, add_said, add_source, said, shows_progress
 
 
@@ -19,8 +20,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_said(command)
     add_source(command)
     add_labels(command)
-    command.add_argument("--model", metavar="MODEL.npz", help="the one that Labial comes with that knows the phonemes, "
-                         "without it")
+    command.add_argument("--model", metavar="MODEL", help=f"{MODEL_HELP}; without it the one of these that knows the "
+                         "phonemes")
     command.add_argument("--name", help="of the C symbols; the header's file name without it")
     add_quiet(command)
 

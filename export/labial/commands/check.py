@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 
+from labial.bundled import MODEL_HELP
 from labial.commands.common import add_labels, add_source
 from labial.commands.export import add_table_options, exported
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """A model, timings and the library."""
-    command.add_argument("model", metavar="MODEL.npz")
+    command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
     command.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
     add_source(command)

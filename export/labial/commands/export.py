@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Tuple
 
+from labial.bundled import MODEL_HELP
 from labial.commands.common import number, positive
 from labial.defaults import PREDECESSORS
 from labial.errors import LabialError
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """A model, and what it is called in C."""
-    command.add_argument("model", metavar="MODEL.npz")
+    command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("--name", required=True, help="of the C symbol and the files")
     command.add_argument("-o", "--output", required=True, metavar="DIR")
     command.add_argument("--blob", action="store_true", help="write NAME.lbm for labial_model_load() too")
@@ -48,14 +49,17 @@ def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedMod
 def run(options: argparse.Namespace) -> int:
     """Writes the C files, and prints what memory they take and what is lost in them."""
     from labial import emit, report
-    from labial.loss import measure
+    from labial.loss import deviation, measure
     from labial.phones import drawn_streams
+    from labial.reference.synthesis import is_published
 
     emit.check_name(options.name)
     model, tables = exported(options, options.name)
-    loss = measure(model, tables, drawn_streams(model))
+    streams = drawn_streams(model)
+    loss = measure(model, tables, streams)
+    by_design = deviation(model, tables, streams) if is_published(model) else None
     for path in emit.write(tables, options.output, binary=options.blob):
         print(path)
     print(report.memory(tables))
-    print(report.quantisation(loss, model, tables))
+    print(report.quantisation(loss, model, tables, by_design))
     return 0

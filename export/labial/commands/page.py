@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from labial.commands.common import add_phones, put
-from labial.errors import LabialError
+from labial.runtime import BUNDLED
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """A motion, its phonemes and its sound."""
-    command.add_argument("frames", metavar="FRAMES", help="a frames file (.csv), .fap, or a model (.npz), which speaks "
-                         "the timings")
+    command.add_argument("frames", metavar="FRAMES", help="a frames file (.csv), .fap, or a model (.npz, or "
+                         f"{' or '.join(BUNDLED)}), which speaks the timings")
     add_phones(command)
     command.add_argument("--audio", metavar="FILE", help="sound in step: WAV, MP3, Ogg, FLAC, AAC, M4A or WebM")
     command.add_argument("--title", help="the file's name without it")
@@ -21,15 +20,10 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Writes the page."""
-    from labial.see.motion import read_bands, read_motion, spoken
+    from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
     bands = read_bands(options.phones, options.labels, options.source)
-    if Path(options.frames).suffix.lower() == ".npz":
-        if options.phones is None:
-            raise LabialError(f"{options.frames}: a model speaks phoneme timings: give --phones")
-        motion = spoken(options.frames, options.phones, options.labels, options.source)
-    else:
-        motion = read_motion(options.frames)
+    motion = read_motion(options.frames, options.phones, options.labels, options.source)
     put(page(motion, bands, options.audio, options.title), options.output)
     return 0

@@ -6,12 +6,14 @@ import argparse
 
 from labial.commands.common import add_phones
 from labial.errors import needs
+from labial.runtime import BUNDLED
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """Motions, their phonemes, and what is drawn of them."""
     command.add_argument("frames", metavar="FRAMES", nargs="+",
-                         help="frames files (.csv) or .fap; several are overlaid")
+                         help="frames files (.csv), .fap, or models (.npz, or "
+                         f"{' or '.join(BUNDLED)}), which speak the timings; several are overlaid")
     add_phones(command)
     command.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
     command.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one "
@@ -24,6 +26,6 @@ def run(options: argparse.Namespace) -> int:
         from labial.see.plot import DEFAULT, plot
     from labial.see.motion import read_bands, read_motions
 
-    plot(read_motions(options.frames), read_bands(options.phones, options.labels, options.source), options.output,
-         options.channels or DEFAULT)
+    timings = options.phones, options.labels, options.source
+    plot(read_motions(options.frames, *timings), read_bands(*timings), options.output, options.channels or DEFAULT)
     return 0

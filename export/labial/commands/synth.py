@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import Callable, Dict, List
 
+from labial.bundled import MODEL_HELP
 from labial.commands.common import add_labels, add_source
 from labial.errors import LabialError
 
@@ -16,7 +17,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     """A model, timings and the format of the frames."""
     from labial.corpus.formats import TITLES
 
-    command.add_argument("model", metavar="MODEL.npz")
+    command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("phones", metavar="PHONES", help=f"phoneme timings: {TITLES}")
     add_source(command)
     command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
@@ -25,7 +26,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          "as labial rig reads it")
     add_labels(command)
     command.add_argument("--whole", action="store_true",
-                         help="search and solve the whole utterance at once, not as the run-time does")
+                         help="search and solve the whole utterance at once, in place of unit by unit (models of "
+                         "--method paper) or as the run-time does (all others)")
 
 
 def _add_format(command: argparse.ArgumentParser) -> None:
@@ -43,16 +45,12 @@ def run(options: argparse.Namespace) -> int:
     from labial.animation import FORMATS
     from labial.model import load
     from labial.phones import read_stream
-    from labial.reference import published, stream
-    from labial.reference.tables import FloatTables
+    from labial.reference.synthesis import synthesise
 
     model = load(options.model)
-    tables, phonemes = FloatTables(model), read_stream(options.phones, model, options.labels, options.source)
+    phonemes = read_stream(options.phones, model, options.labels, options.source)
     write = _rig_writer(options) if options.rig else FORMATS[options.to].write
-    if options.whole:
-        frames = published.synthesise(tables, phonemes, whole=True)
-    else:
-        frames = stream.synthesise(tables, phonemes)
+    frames = synthesise(model, phonemes, whole=options.whole)
     name = Path(options.model).stem
     if options.output:
         with open(options.output, "w", encoding="ascii", newline="\n") as out:

@@ -31,6 +31,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("--search-stride", type=positive, metavar="FRAMES", help="--method labial: frames that "
                          f"share a state of the decoded path ({SEARCH_STRIDE}); 1 decodes every frame, as --method "
                          "paper always does")
+    command.add_argument("--normalise", action="store_true", help="--method paper: divide features by their standard "
+                         "deviations before they are clustered, as --method labial always does; the text does not")
     command.add_argument("--seed", type=seed, default=0)
     command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1,
                          help="processes; the result is the same")
@@ -51,7 +53,8 @@ def run(options: argparse.Namespace) -> int:
     episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
     model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
-                  engine=options.engine, progress=shows_progress(options), attribution=options.attribution, **own)
+                  engine=options.engine, progress=shows_progress(options), attribution=options.attribution,
+                  normalise=options.normalise, **own)
     save(model, options.output)
     for line in backed_off(model):
         print(line)
@@ -61,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
-    """What only ``--method labial`` has; warns where it is given for another."""
+    """What only ``--method labial`` has; warns where an option has no effect with the method that it is given for."""
     own: Dict[str, Any] = {}
     if options.look_ahead is not None:
         own["look_ahead"] = options.look_ahead / 1000.0
@@ -70,4 +73,6 @@ def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
     if own and options.method == "paper":
         names = " and ".join("--" + name.replace("_", "-") for name in own)
         warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)
+    if options.normalise and options.method != "paper":
+        warnings.warn("--normalise: --method labial always does", stacklevel=1)
     return own

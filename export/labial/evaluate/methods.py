@@ -32,6 +32,7 @@ METHODS: Tuple[Method, ...] = (
     Method("ridge_classes", "ridge, class window + shapes", window.fit_classes),
     Method("hmm_synthesis", "HMM synthesis", hmm.fit),
     Method("paper", "paper", trained.fit_paper),
+    Method("paper_normalised", "paper, normalised features", trained.fit_paper_normalised),
     Method("labial", "Labial, float64", trained.fit_labial),
     Method("device", "Labial, device", trained.fit_device),
 )

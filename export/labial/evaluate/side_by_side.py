@@ -19,9 +19,8 @@ from labial.evaluate.material import timeline
 from labial.evaluate.trajectories import labial_parameters
 from labial.faps import FAP_NUMBERS
 from labial.model import Model, load
-from labial.phones import Stream, read_stream
-from labial.reference import published, stream
-from labial.reference.tables import FloatTables
+from labial.phones import read_stream
+from labial.reference.synthesis import synthesise
 from labial.see import drawing
 from labial.see.drawing import STYLE, pyplot
 from labial.see.motion import Band
@@ -74,12 +73,6 @@ def _kinds(model: Model) -> List[str]:
             for number, boundary in zip(model.viseme_class, model.boundary)]
 
 
-def _motion(model: Model, given: Stream) -> np.ndarray:
-    """(T, 13) FAP: the published method unit by unit, Labial as the run-time does."""
-    synthesise = published.synthesise if model.method == "paper" else stream.synthesise
-    return synthesise(FloatTables(model), given)
-
-
 def synthesise_all(phones: Path, models: Dict[str, Model]) -> Drawn:
     """The motion of all models, which must have the same phonemes and frame rate."""
     first = next(iter(models.values()))
@@ -91,7 +84,7 @@ def synthesise_all(phones: Path, models: Dict[str, Model]) -> Drawn:
     return Drawn(
         first.fps,
         bands(spans, first.phonemes, _kinds(first), first.fps),
-        {name: labial_parameters(_motion(model, given)) for name, model in models.items()},
+        {name: labial_parameters(synthesise(model, given)) for name, model in models.items()},
         _contact(list(models.values())),
     )
 

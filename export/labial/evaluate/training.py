@@ -41,7 +41,7 @@ class Training:
     """A training part: utterances, and models that are trained on them when first asked for.
 
     `unseen_words` says that the fitted methods will be judged on words that the part does not hold, so that settings
-    are to be chosen on such words too. `added` episodes of further corpora go into the trained models, and into nothing
+    are to be chosen on such words too. `added` episodes of further corpora go into Labial's models, and into nothing
     else: other methods have no weights.
     """
 
@@ -55,7 +55,7 @@ class Training:
         self.phone_set = phone_set
         self.fps = fps
         self.seed = seed
-        self._models: Dict[str, Model] = {}
+        self._models: Dict[Tuple[str, bool], Model] = {}
         self._derived: Dict[object, object] = {}
         self._cells: Dict[Tuple[int, bytes], Tuple[np.ndarray, np.ndarray, float]] = {}
 
@@ -105,27 +105,29 @@ class Training:
         rest = [item for item, held in zip(self.utterances, with_word) if held]
         return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest, words)
 
-    def _divide(self, points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
+    def divide(self, points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
         """What :func:`lbg` returns, made once for the same points: the methods' codebooks have the same cells."""
         key = (size, hashlib.sha256(np.ascontiguousarray(points).tobytes()).digest())
         if key not in self._cells:
             self._cells[key] = lbg(points, size)
         return self._cells[key]
 
-    def model(self, method: str) -> Model:
-        """The model of `method` ("paper" or "labial") trained on this part."""
-        if method not in self._models:
-            self._models[method] = train(
-                [*(item.episode for item in self.utterances), *self.added],
+    def model(self, method: str, normalise: bool = False) -> Model:
+        """The model of `method` ("paper" or "labial") trained on this part, as :func:`labial.train.train` does it."""
+        key = method, normalise
+        if key not in self._models:
+            self._models[key] = train(
+                [*(item.episode for item in self.utterances), *(self.added if method == "labial" else ())],
                 kind=self.phone_set.kind,
                 method=method,
                 fps=self.fps,
                 seed=self.seed,
                 jobs=1,
                 progress=False,
-                divide=self._divide,
+                divide=self.divide,
+                normalise=normalise,
             )
-        return self._models[method]
+        return self._models[key]
 
     def derived(self, key: object, make: Callable[[], Setting]) -> Setting:
         """What `make` returns, made once for this part under `key`."""

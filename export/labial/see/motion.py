@@ -9,10 +9,11 @@ from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from labial.bundled import is_model
 from labial.corpus.folder import check_range, read_frames
 from labial.corpus.formats import read_timings
 from labial.corpus.timings import SourceSegment, meaning, phone_set_of
-from labial.errors import DataError
+from labial.errors import DataError, LabialError
 from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.grammar import fields_of, is_blank, is_number, is_whole, read_lines, shown
 from labial.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
@@ -44,29 +45,38 @@ class Band:
     kind: str
 
 
-def read_motion(path: PathLike) -> Motion:
-    """Reads a frames file (CSV) or an MPEG-4 text file, which the suffix .fap tells. Raises DataError."""
+def read_motion(
+    path: PathLike, timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None
+) -> Motion:
+    """Reads a frames file (CSV) or an MPEG-4 text file, which the suffix .fap tells; or, by a model, makes the motion
+    of phoneme timings of the format `source`. Raises DataError; LabialError for a model without timings."""
     name = Path(path).stem
+    if is_model(path):
+        if timings is None:
+            raise LabialError(f"{os.fspath(path)}: a model speaks phoneme timings: give --phones")
+        return _spoken(path, timings, labels, source)
     if Path(path).suffix.lower() == ".fap":
         return Motion(name, *read_fap(path))
     return Motion(name, *read_frames(path))
 
 
-def spoken(model: PathLike, timings: PathLike, labels: str = AUTO, source: Optional[str] = None) -> Motion:
-    """The motion of a model (.npz) that speaks phoneme timings of any format. Raises DataError."""
+def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[str]) -> Motion:
+    """The motion of a model (a file, or a bundled one's name) that speaks phoneme timings of any format. Raises
+    DataError."""
     from labial.model import load
     from labial.phones import read_stream
-    from labial.reference import stream
-    from labial.reference.tables import FloatTables
+    from labial.reference.synthesis import synthesise
 
     read = load(model)
-    frames = stream.synthesise(FloatTables(read), read_stream(timings, read, labels, source))
+    frames = synthesise(read, read_stream(timings, read, labels, source))
     return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames)
 
 
-def read_motions(paths: Sequence[PathLike]) -> List[Motion]:
-    """Reads several files; where two have the same name, all are called by their paths."""
-    motions = [read_motion(path) for path in paths]
+def read_motions(
+    paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None
+) -> List[Motion]:
+    """Reads several as :func:`read_motion` does; where two have the same name, all are called by their paths."""
+    motions = [read_motion(path, timings, labels, source) for path in paths]
     if len({motion.name for motion in motions}) < len(motions):
         motions = [replace(motion, name=os.fspath(path)) for motion, path in zip(motions, paths)]
     return motions

@@ -1,9 +1,10 @@
 """The hidden Markov model of a channel (docs/method.md, States): an LBG codebook of human motion and its counts.
 
-A frame's features are m, delta m = (m[t+1] - m[t-1]) / 2 and delta-delta m = m[t+1] - 2 m[t] + m[t-1], each z-scored
-over the corpus. The codebook is grown by binary splitting (Linde, Buzo and Gray 1980): each cell is split in two along
-its widest feature and all are refined by Lloyd's iteration; where the size asked for is not a power of two, the last
-round splits the cells of largest distortion alone.
+A frame's features are m, delta m = (m[t+1] - m[t-1]) / 2 and delta-delta m = m[t+1] - 2 m[t] + m[t-1]. The published
+method clusters them as they are; Labial's divides each by its standard deviation over the corpus first. The codebook is
+grown by binary splitting (Linde, Buzo and Gray 1980): each cell is split in two along its widest feature and all are
+refined by Lloyd's iteration; where the size asked for is not a power of two, the last round splits the cells of largest
+distortion alone.
 """
 
 from __future__ import annotations
@@ -145,16 +146,18 @@ def train_channel(
     size: int,
     stride: int = 1,
     divide: Division = lbg,
+    normalised: bool = True,
 ) -> Codebook:
     """The codebook of one channel.
 
     `motion` holds the channel's human motion (T,) of every sequence in FAP, `starts` the frames at which boundary
-    phonemes, and so units, begin; `stride` is how many frames a transition spans.
+    phonemes, and so units, begin; `stride` is how many frames a transition spans. Features are `normalised` by their
+    standard deviations before they are clustered, or clustered as they are, in FAP units per frame and frame squared.
     """
     rows = [features(item) for item in motion]
     points = np.concatenate(rows)
     overall = points.var(axis=0)
-    scale = np.where(overall > 1e-12, np.sqrt(overall), 1.0)
+    scale = np.where(normalised & (overall > 1e-12), np.sqrt(overall), 1.0)
     _, cell, _ = divide(points / scale, size)
     count, mean, variance = _moments(points, cell, size)
     largest = int(count.argmax())  # stands in for cells that stay empty, where motion has fewer values than there are

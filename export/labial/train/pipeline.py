@@ -44,6 +44,7 @@ class _Setting:
     look_ahead: float  #: seconds
     stride: int  #: frames that share a state
     divide: Division
+    normalised: bool  #: features are divided by their standard deviations before they are clustered
     penalties: Penalties
     scales: Scales
 
@@ -115,7 +116,7 @@ def _tables(plan: Plan, fitted: List[Mixture], conditional: bool) -> ShapeTables
     return shape_tables([mixtures[other] for other in plan.stand_in], conditional=conditional)
 
 
-def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int, Division]) -> Codebook:
+def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int, Division, bool]) -> Codebook:
     return train_channel(*task)
 
 
@@ -173,7 +174,7 @@ def _targets(
 
 def _setting(
     kind: str, method: str, fps: int, codebook: int, components: int, seed: int, look_ahead: float,
-    search_stride: int, divide: Division,
+    search_stride: int, divide: Division, normalise: bool,
 ) -> _Setting:
     if kind not in KINDS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
@@ -191,7 +192,7 @@ def _setting(
         raise LabialError(f"look-ahead is {look_ahead} s, not within 0 .. {REACH}")
     extended = method == "labial"
     return _Setting(PHONE_SETS[kind], extended, fps, codebook, components, seed, look_ahead,
-                    search_stride if extended else 1, divide, Penalties(), Scales())
+                    search_stride if extended else 1, divide, extended or normalise, Penalties(), Scales())
 
 
 def _own(penalties: Penalties, kind: str) -> Penalties:
@@ -254,7 +255,7 @@ def _fit_states(
 ) -> StateTables:
     """Codebooks, and beyond the published method states matched to what is decoded from the targets."""
     starts = [_unit_starts(item, setting.boundary) for item in material]
-    motion = [(*_stretches(material, starts, c), setting.codebook, setting.stride, setting.divide)
+    motion = [(*_stretches(material, starts, c), setting.codebook, setting.stride, setting.divide, setting.normalised)
               for c in range(CHANNELS)]
     states = codebook_tables(workers.run("codebooks", _channel, motion), setting.stride)
     targets = shaped.targets
@@ -287,6 +288,8 @@ def _training(
     if setting.extended:
         training.update(penalties=asdict(setting.penalties), scales=asdict(setting.scales),
                         look_ahead=setting.look_ahead)
+    else:
+        training.update(normalised_features=setting.normalised)
     return training
 
 
@@ -350,18 +353,20 @@ def train(
     look_ahead: float = LOOK_AHEAD,
     search_stride: int = SEARCH_STRIDE,
     divide: Division = lbg,
+    normalise: bool = False,
 ) -> Model:
     """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
 
     `method` is "paper", the published one, or "labial" with all additions. `codebook` is Q, the states of each channel,
     `components` C of each phoneme's mixture. `look_ahead` is how far the temporal kernels reach into what follows,
     seconds; less makes a stream's frames earlier. `search_stride` is how many frames share a state of the decoded path.
-    The published method has neither. `divide` makes the codebooks' cells; with more than one job it must be a module's
-    own function. `attribution` is kept in the model: redistribution requires it. The same arguments give the same
-    model, whatever `jobs`, the number of processes, and `engine` are (:class:`labial.train.workers.Workers`). The model
-    keeps what each phoneme backed off to (:func:`backed_off`), the corpus's counts and all options.
+    The published method has neither; its features are clustered as they are, unless `normalise` divides each by its
+    standard deviation, as Labial's always are. `divide` makes the codebooks' cells; with more than one job it must be a
+    module's own function. `attribution` is kept in the model: redistribution requires it. The same arguments give the
+    same model, whatever `jobs`, the number of processes, and `engine` are (:class:`labial.train.workers.Workers`). The
+    model keeps what each phoneme backed off to (:func:`backed_off`), the corpus's counts and all options.
     """
-    setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide)
+    setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide, normalise)
     if not 1 <= jobs <= 1024:
         raise LabialError(f"jobs is {jobs}, not within 1 .. 1024")
     if not corpus:

@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, List, Sequence
+from typing import List, Sequence
 
 import numpy as np
 
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
+from labial.model import Model
 from labial.native import NativeModel
-from labial.phones import Stream
 from labial.quantise import ExportedModel, quantise
-from labial.reference import published, stream
-from labial.reference.tables import FloatTables
+from labial.reference.synthesis import synthesise
 
 
 @dataclass(frozen=True)
 class Float:
-    """A model in the float64 reference, by `synthesise`: as the run-time does, or as published."""
+    """A model in the float64 reference of its method."""
 
-    tables: FloatTables
-    synthesise: Callable[[FloatTables, Stream], np.ndarray]
+    model: Model
 
     def predict(self, timeline: Timeline) -> np.ndarray:
         """(T, 13)."""
-        return self.synthesise(self.tables, timeline.stream)
+        return synthesise(self.model, timeline.stream)
 
 
 @dataclass(frozen=True)
@@ -46,12 +44,17 @@ class Device:
 
 def fit_paper(training: Training) -> Float:
     """The published method, unit by unit."""
-    return Float(FloatTables(training.model("paper")), published.synthesise)
+    return Float(training.model("paper"))
+
+
+def fit_paper_normalised(training: Training) -> Float:
+    """The published method with features that are normalised before they are clustered."""
+    return Float(training.model("paper", normalise=True))
 
 
 def fit_labial(training: Training) -> Float:
     """Labial, in floating point."""
-    return Float(FloatTables(training.model("labial")), stream.synthesise)
+    return Float(training.model("labial"))
 
 
 def fit_device(training: Training) -> Device:

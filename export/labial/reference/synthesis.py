@@ -1,0 +1,28 @@
+"""A trained model's motion by the reference of its method."""
+
+from __future__ import annotations
+
+from typing import Sequence, Tuple
+
+import numpy as np
+
+from labial.model import Model
+from labial.reference import published, stream
+from labial.reference.tables import FloatTables
+
+
+def is_published(model: Model) -> bool:
+    """Whether the model was trained by the published method (``--method paper``)."""
+    return model.method == "paper"
+
+
+def synthesise(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False) -> np.ndarray:
+    """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
+
+    A model of the published method is searched and solved unit by unit (:mod:`labial.reference.published`), one of
+    Labial's as the run-time does it (:mod:`labial.reference.stream`); with `whole` either is searched and solved over
+    the whole utterance at once.
+    """
+    if whole or is_published(model):
+        return published.synthesise(FloatTables(model), phonemes, whole=whole)
+    return stream.synthesise(FloatTables(model), phonemes)
