@@ -43,7 +43,7 @@ def _members(file: BinaryIO, wanted: Optional[Set[str]], most: int) -> Dict[str,
         with zipfile.ZipFile(file) as archive:
             members = [item for item in archive.infolist() if wanted is None or item.filename in wanted]
             if sum(item.file_size for item in members) > most:
-                raise ArrayError(f"its arrays have more than {most} bytes")
+                raise ArrayError(f"what it holds has more than {most} bytes")
             for item in members:
                 name = item.filename
                 if item.flag_bits & 1:

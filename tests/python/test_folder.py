@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import os
+import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from labial.corpus.folder import HEADER, read_frames
 from labial.errors import DataError, LabialError
 
 ROW = ",1" * 13
+SOURCE = Path(__file__).resolve().parents[2]
 
 
 def frames(count=10, step=0.1):
@@ -83,9 +85,59 @@ def test_files_that_do_not_go_together(tmp_path):
     fails(lambda: read_corpus(tmp_path), tmp_path / "a.lab", "motion")
 
 
-@pytest.mark.skipif("LABIAL_GRID" not in os.environ, reason="LABIAL_GRID does not name a folder with the GRID corpus")
+def packed(folder, names=None):
+    """Moves files of a folder into a zip file there."""
+    archive = folder / "episodes.zip"
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as out:
+        for path in sorted(folder.iterdir()):
+            if path != archive and (names is None or path.name in names):
+                out.write(path, path.name)
+                path.unlink()
+    return archive
+
+
+def test_packed_episodes_are_read_as_they_are(tmp_path):
+    """Whole corpora and parts of one; would catch another order, names that are not the files' own."""
+    fill(tmp_path, ["c", "a", "b"])
+    loose = read_corpus(tmp_path)
+    packed(tmp_path, ["a.csv", "a.lab", "c.csv"])
+    for rest in (["b.csv", "b.lab", "c.lab"], []):
+        found = read_corpus(tmp_path)
+        assert [item.name for item in found] == ["a", "b", "c"]
+        for one, other in zip(found, loose):
+            assert one.segments == other.segments and np.array_equal(one.frames, other.frames)
+        (tmp_path / "episodes.zip").rename(tmp_path / f"{len(rest)}.ZIP")
+        packed(tmp_path, rest)
+
+
+def test_errors_of_packed_files_name_archive_file_and_line(tmp_path):
+    fill(tmp_path, ["a"])
+    (tmp_path / "a.csv").write_text(HEADER + "\n0" + ROW + "\n1,2\n")
+    archive = packed(tmp_path)
+    fails(lambda: read_corpus(tmp_path), f"{archive}/a.csv:3", "2 columns")
+    fill(tmp_path, ["a"])
+    fails(lambda: read_corpus(tmp_path), f"{archive}/a.csv", "there is also a.csv")
+
+
+def test_archives_that_cannot_be_read(tmp_path, monkeypatch):
+    """Damaged, no archive at all, too large unpacked; what lies in folders of an archive is not looked at."""
+    fill(tmp_path, ["a"])
+    archive = packed(tmp_path)
+    with zipfile.ZipFile(archive, "a") as out:
+        out.writestr("folder/a.csv", "nothing")
+        out.writestr(".hidden.csv", "nothing")
+        out.writestr("README.md", "nothing")
+    assert len(read_corpus(tmp_path)) == 1
+    monkeypatch.setattr("labial.corpus.folder.LARGEST_PACKED", 100)
+    fails(lambda: read_corpus(tmp_path), archive, "more than 100 bytes")
+    monkeypatch.undo()
+    archive.write_bytes(archive.read_bytes()[:200])
+    fails(lambda: read_corpus(tmp_path), archive, "damaged")
+
+
 def test_grid():
     """Catches whatever a corpus of real size and origin holds that the small files above do not."""
-    episodes = read_corpus(os.environ["LABIAL_GRID"])
+    episodes = read_corpus(SOURCE / "export" / "corpora" / "grid_s1")
     assert len(episodes) == 803 and sum(len(e.segments) for e in episodes) > 10000
     assert all(np.isfinite(e.frames).all() for e in episodes)
+    assert all(segment.apex is not None for e in episodes for segment in e.segments if segment.label != "SIL")

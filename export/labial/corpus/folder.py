@@ -1,19 +1,23 @@
-"""The Labial corpus folder: per episode ``NAME.csv`` (motion) and ``NAME.lab`` or ``NAME.TextGrid`` (phonemes)."""
+"""The Labial corpus folder: per episode ``NAME.csv`` (motion) and ``NAME.lab`` or ``NAME.TextGrid`` (phonemes).
+
+Files may lie in the folder, or packed in zip files in the folder, which are read as they are.
+"""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Dict, List, Sequence, Tuple, Union
+from typing import Dict, Iterator, List, Sequence, Tuple, Union
 
 import numpy as np
 
+from labial.arrays import ArrayError, read_zip
 from labial.corpus.episode import Episode
 from labial.corpus.formats import read_timings
 from labial.corpus.timings import LONGEST, phoneme_segments
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_COLUMNS
-from labial.grammar import columns_of, number, read_lines, table_rows
+from labial.grammar import Packed, columns_of, number, read_lines, table_rows
 from labial.phonesets import PhoneSet
 
 PathLike = Union[str, os.PathLike]
@@ -24,6 +28,8 @@ HEADER = ",".join(("time", *FAP_COLUMNS))
 SLACK = 1.0
 #: Seconds between two frames of an episode at most: nothing can be learnt from motion that is made up for longer.
 LONGEST_GAP = 10.0
+#: Bytes that the files of a zip file have at most, unpacked: some hours of motion.
+LARGEST_PACKED = 512_000_000
 #: No FAP is larger, FAP units: a face is some thousands wide.
 LARGEST = 1e6
 
@@ -77,21 +83,39 @@ def check_span(path: PathLike, episode: Episode) -> None:
         raise DataError(path, None, f"no motion from {at:g} to {at + gaps.max():g} s, longer than {LONGEST_GAP:g} s")
 
 
+def _files(folder: Path) -> Iterator[PathLike]:
+    """The files of a folder, and those that its zip files hold; hidden ones and sub-folders, here and there, are not
+    looked at. Raises DataError for what is no zip file, is damaged, or has more than `LARGEST_PACKED` bytes."""
+    for file in sorted(folder.iterdir()):
+        if file.name.startswith(".") or not file.is_file():
+            continue
+        if file.suffix.lower() != ".zip":
+            yield file
+            continue
+        try:
+            members = read_zip(file, None, LARGEST_PACKED)
+        except (ArrayError, OSError) as error:
+            raise DataError(file, None, getattr(error, "strerror", None) or str(error)) from None
+        for name in sorted(members):
+            if "/" not in name and not name.startswith("."):
+                yield Packed(file, name, members[name])
+
+
 def read_folder(path: PathLike, phone_set: PhoneSet) -> List[Episode]:
     """Reads all episodes of a folder, sorted by name. Other files, hidden ones and sub-folders are ignored."""
-    folder = Path(path)
-    if not folder.is_dir():
+    if not Path(path).is_dir():
         raise DataError(path, None, "no such folder")
-    frames: Dict[str, Path] = {}
-    timings: Dict[str, Path] = {}
-    for file in sorted(folder.iterdir()):
-        suffix = file.suffix.lower()
-        if file.name.startswith(".") or not file.is_file() or suffix not in (".csv", ".lab", ".textgrid"):
+    frames: Dict[str, PathLike] = {}
+    timings: Dict[str, PathLike] = {}
+    for file in _files(Path(path)):
+        suffix, stem = Path(file).suffix.lower(), Path(file).stem
+        if suffix not in (".csv", ".lab", ".textgrid"):
             continue
         table = frames if suffix == ".csv" else timings
-        if file.stem in table:
-            raise DataError(file, None, f"there is also {table[file.stem].name}; which of them to use is not clear")
-        table[file.stem] = file
+        if stem in table:
+            other = Path(table[stem]).relative_to(path)
+            raise DataError(file, None, f"there is also {other}; which of them to use is not clear")
+        table[stem] = file
     for name in sorted(set(frames) ^ set(timings)):
         if name in frames:
             raise DataError(frames[name], None, f"no {name}.lab or {name}.TextGrid with its phonemes")
