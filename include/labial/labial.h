@@ -48,10 +48,17 @@ extern "C" {
 
 /* How many frames after a step the search decides on its state, if the unit does not end earlier, 0 .. 40. Each
  * frame makes the path more probable and costs a frame of delay and about 175 bytes of workspace; with the bundled
- * models the difference is not visible. With a lag as long as the longest unit, units are searched as the method was
- * published. */
+ * models the difference is not visible. With a lag as long as the longest unit, the states of each unit are the
+ * likeliest path through it (Viterbi) among those that LABIAL_SEARCHED leaves. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0
+#endif
+
+/* States that a step of the search looks at, of those of a channel: the ones around that whose mean is nearest to the
+ * target, 2 .. 64. With as many as a model has, no path is left out. Each costs a byte of workspace in each channel,
+ * LABIAL_LAG bytes more with a lag, and its share of the search's time. */
+#ifndef LABIAL_SEARCHED
+#define LABIAL_SEARCHED 8
 #endif
 
 /* Phonemes that the queue has room for: how far ahead a program can push, LABIAL_REACH + 2 .. 255. Each costs 8 bytes
@@ -81,6 +88,9 @@ extern "C" {
 #endif
 #if !LABIAL_IS_NUMBER_(LABIAL_LAG, 0, 40)
 #error "LABIAL_LAG must be a number from 0 to 40."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_SEARCHED, 2, 64)
+#error "LABIAL_SEARCHED must be a number from 2 to 64."
 #endif
 #if LABIAL_WINDOW + LABIAL_LAG > 55
 #error "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together."
@@ -167,9 +177,6 @@ typedef struct {
 typedef struct {
     int16_t knots[2][LABIAL_CHANNELS];
 } labial_shape_t;
-
-/* States that a step of the search looks at; the exporter knows the number too. */
-#define LABIAL_SEARCHED 8
 
 /* Where the search of one channel stands (viterbi.c). */
 typedef struct {

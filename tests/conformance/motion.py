@@ -61,7 +61,8 @@ def part_motion(
     tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool, **limits: int
 ) -> np.ndarray:
     """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without easing. `held` (13,) is the pose
-    from which it fades in when it is `resumed`; `limits` are the `window` and `lag` of a library built for others."""
+    from which it fades in when it is `resumed`; `limits` are the `window`, `lag` and
+    `searched` of a library that is built for others."""
     motion = np.zeros((0, CHANNELS))
     faded_until = 0  # the frame behind the last that a fade has touched
     for run in runs(part.pushes, tables["speech"].fps):

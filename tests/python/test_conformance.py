@@ -186,12 +186,14 @@ def test_the_digest_is_the_standard_one() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("limits", [{"window": 48}, {"window": 1, "lag": 1}, {"window": 15, "lag": 40}],
+@pytest.mark.parametrize("limits", [{"window": 48}, {"window": 1, "lag": 1}, {"window": 15, "lag": 40},
+                                    {"window": 15, "lag": 40, "searched": 64}],
                          ids=lambda limits: "_".join(f"{limit}_{value}" for limit, value in limits.items()))
 def test_other_limits_follow_the_reference(
     models: Dict[str, ExportedModel], scripts: List[Script], limits: Dict[str, int]
 ) -> None:
-    """A library that is built for another window or lag plays the streams as the reference with these does."""
+    """A library that is built for another window, lag or width of the search plays the streams as the reference with
+    these does."""
     short = [script for script in scripts if script.name not in ("minutes", "endless")]
     frames = read_frames(library_frames(as_c(scripts, models), **limits))
     assert len(deviations(models, short, frames, **limits).splitlines()) == len(short) + 1

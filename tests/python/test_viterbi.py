@@ -9,12 +9,16 @@ import numpy as np
 import pytest
 from hmmlearn.hmm import GaussianHMM
 
+from labial.evaluate.search import units_path
 from labial.fixed import LEAP, SEARCHED
+from labial.model import load
+from labial.phones import drawn_streams
 from labial.quantise import ExportedModel, quantise
 from labial.reference.published import path_cost
 from labial.reference.stream import aims
-from labial.reference.tables import ExportedTables
+from labial.reference.tables import ExportedTables, FloatTables
 from labial.reference.viterbi import Chains, block_at, block_ends, decode, looked_at, normal_chains, window
+from labial.runtime import BUNDLED
 from models import random_model, streams
 
 ALL = 1000  # a lag and a window that leave nothing out
@@ -110,6 +114,24 @@ def test_a_lag_is_a_look_at_what_the_search_knows_by_then() -> None:
             best = decode(chains, [targets[:known]], [until], 1, lag=ALL, searched=ALL)[0]
             assert (by_lag[lag][b] == best[b]).all()
     assert len({path.tobytes() for path in by_lag.values()}) > 2  # lags matter here
+
+
+@pytest.mark.parametrize("name", BUNDLED)
+@pytest.mark.parametrize("width", [SEARCHED, 64])
+def test_with_a_long_lag_units_are_searched_as_wholes(name: str, width: int) -> None:
+    """On the bundled models' own tables, float and exported: scores that are cut off, leaps from the best state
+    alone and decisions as the frames come leave nothing out but what lies beyond the window. Longer units than the
+    library's longest lag, 40 frames, are decided before they end."""
+    model = load(name)
+    for tables in (FloatTables(model), ExportedTables(quantise(model, name))):
+        for stream in drawn_streams(model, 6):
+            target, _, ends = aims(tables, stream)
+            whole = units_path(tables, target, ends, width)
+            np.testing.assert_array_equal(tables.search(target, ends, len(target), searched=width), whole)
+            late = tables.search(target, ends, 40, searched=width)
+            spans = np.diff([0, *(np.flatnonzero(ends) + 1)])
+            short = np.repeat(spans <= 40 - tables.stride, spans)
+            np.testing.assert_array_equal(late[short], whole[short])
 
 
 # ---- The rules of the exported tables, written out once more.

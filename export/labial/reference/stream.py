@@ -8,6 +8,7 @@ import numpy as np
 
 from labial.errors import LabialError
 from labial.faps import CHANNELS
+from labial.fixed import SEARCHED
 from labial.reference import trajectory
 from labial.reference.shape import targets_and_contact
 from labial.reference.tables import Tables
@@ -33,14 +34,15 @@ def synthesise(
     whole: bool = False,
     window: int = WINDOW,
     lag: int = LAG,
+    searched: int = SEARCHED,
 ) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
 
     `window` is how many frames beyond those delivered the solution knows, or with `whole` all of them; `lag` how many
-    frames later the search decides.
+    frames later the search decides; `searched` how many states its steps look at.
     """
     target, contact, ends = aims(tables, phonemes)
-    return solution(tables, target, contact, ends, whole=whole, window=window, lag=lag)
+    return solution(tables, target, contact, ends, whole=whole, window=window, lag=lag, searched=searched)
 
 
 def aims(
@@ -66,13 +68,14 @@ def solution(
     window: int = WINDOW,
     lag: int = LAG,
     begin: int = 0,
+    searched: int = SEARCHED,
 ) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion for targets (T, 13) in the tables' positions, some of them in `contact`
     (T, 13); `ends` (T,) are the frames that end a unit, the last one among them. The first is frame `begin` of a
     stream, whose channels have their turns counted from its own first."""
     if not len(target):
         return np.zeros((0, CHANNELS))
-    terms = tables.equation(tables.search(target, ends, lag, begin), target, contact)
+    terms = tables.equation(tables.search(target, ends, lag, begin, searched), target, contact)
     if whole:
         return trajectory.solve_whole(terms)
     return trajectory.solve(terms, trajectory.starts(len(target), tables.stride, window, lag, begin))

@@ -17,6 +17,7 @@ from labial.fixed import (
     EMISSION_Z_MAX,
     LEAP,
     POSITION_MAX,
+    SEARCHED,
     rounded_shift,
     share_value,
     weight_value,
@@ -87,10 +88,12 @@ class FloatTables:
         taps = np.arange(neighbours.shape[1])
         return shapes + self.model.kernel[neighbours, taps].sum(axis=1)
 
-    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0) -> np.ndarray:
+    def search(
+        self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0, searched: int = SEARCHED
+    ) -> np.ndarray:
         """(T, 13) int64: the state path for targets (T, 13), given the frames (T,) that end units; the first is
-        frame `begin` of the stream."""
-        return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin)[0]
+        frame `begin` of the stream. A step looks at `searched` states."""
+        return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
         """Equation 3's terms for `path` (T, 13); frames in `contact` (T, 13) are held by their target alone."""
@@ -188,9 +191,11 @@ class ExportedTables:
         z = np.minimum((distance * model.emission_gain[own]) >> 12, EMISSION_Z_MAX)
         return z_cost(z) + model.emission_cost[own]
 
-    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0) -> np.ndarray:
+    def search(
+        self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0, searched: int = SEARCHED
+    ) -> np.ndarray:
         """As :meth:`FloatTables.search`."""
-        return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin)[0]
+        return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
         """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""
