@@ -131,6 +131,23 @@ def test_files_of_labial_synth(tmp_path: Path) -> None:
     check_all(texts, 0.011)
 
 
+def test_fap_files_for_players_of_another_rate(tmp_path: Path) -> None:
+    """Greta plays 25 frames per second: the file lasts as long as the sound, and each frame is the mean of two. Would
+    catch frames that are dropped or repeated, and a header that keeps the model's rate."""
+    (tmp_path / "hello.lab").write_text("0 0.1 SIL\n0.1 0.24 HH\n0.24 0.55 OW\n0.55 0.75 SIL\n")
+    frames = {}
+    for rate in (50, 25, 100):
+        out = tmp_path / f"{rate}.fap"
+        assert main(["synth", "speech_en", str(tmp_path / "hello.lab"), "--to", "fap", "--fps", str(rate), "-o",
+                     str(out)]) == 0
+        name, found, faps = read_fap(out.read_text())
+        frames[rate] = np.array([list(item.values()) for item in faps])
+        assert (name, found) == ("speech_en", rate) and abs(len(faps) / rate - 0.75) <= 0.5 / rate
+    halves = frames[50][:36].reshape(18, 2, -1).mean(axis=1)
+    assert np.abs(frames[25][:18] - halves).max() <= 0.25 * np.abs(np.diff(frames[50], 2, axis=0)).max() + 1
+    assert np.abs(frames[100][1:-1:2] - frames[50][: len(frames[100][1:-1:2])]).max() > 0  # interpolated, not repeated
+
+
 def test_blendshapes_of_a_face() -> None:
     """Catches a blendshape that moves with the wrong part of the face or the wrong way: each gesture, in FAP units, and
     what it must and must not move."""

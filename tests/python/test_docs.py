@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -54,6 +55,42 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
     sources = [*(SOURCE / "lib").glob("*.c"), *(SOURCE / "lib" / "models").glob("*.c")]
     run(CC, "-std=c99", "-O1", f"-I{SOURCE / 'include'}", "-c", *sources, cwd=folder)
     return sorted(folder.glob("*.o"))
+
+
+def table_rows_amiss(text: str) -> List[int]:
+    """Numbers of the lines of a page's tables that have more or fewer cells than the header, or stand apart."""
+    def cells(line: str) -> int:
+        return len(re.split(r"(?<!\\)\|", re.sub(r"`[^`]*`", "", line).strip().strip("|")))
+
+    amiss, width, fenced = [], 0, False
+    lines = text.splitlines()
+    for number, line in enumerate(lines, 1):
+        fenced ^= line.startswith("```")
+        if fenced or not line.startswith("|"):
+            width = 0
+        elif width == 0:
+            width = cells(line)
+            if number == len(lines) or not re.fullmatch(r"\|(\s*:?-+:?\s*\|)+", lines[number]):
+                amiss.append(number)
+        elif cells(line) != width or not line.rstrip().endswith("|"):
+            amiss.append(number)
+    return amiss
+
+
+def test_rows_of_tables_are_found_amiss() -> None:
+    """The check below can fail: on a lost row, a row that is broken over lines, a cell too few."""
+    table = "| a | b |\n|---|---|\n| 1 | `x | y` |\n| 2 | 3 \\| 4 |\n"
+    assert table_rows_amiss(table) == []
+    assert table_rows_amiss(table + "| 5 | 6 | | 7 | 8 |\n") == [5]
+    assert table_rows_amiss(table + "| 5 | 6\n7 |\n") == [5]
+    assert table_rows_amiss(table + "\n| 5 | 6 |\n") == [6]
+
+
+@pytest.mark.parametrize("page", sorted(item for item in SOURCE.rglob("*.md") if "build" not in item.parts
+                                        and "node_modules" not in item.parts), ids=lambda item: item.name)
+def test_every_row_of_a_table_has_the_cells_of_its_header(page: Path) -> None:
+    """Would catch a formatter that joins or breaks rows."""
+    assert table_rows_amiss(page.read_text(encoding="utf-8")) == []
 
 
 def prepare(page: Path, folder: Path) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Callable, Dict, List
 
 from labial.bundled import MODEL_HELP
-from labial.commands.common import add_labels, add_source
+from labial.commands.common import add_labels, add_source, whole
 from labial.errors import LabialError
 
 
@@ -22,6 +22,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_source(command)
     command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     _add_format(command)
+    command.add_argument("--fps", type=functools.partial(whole, 1, 1000), metavar="RATE", help="frames per second of "
+                         "the output, resampled; the model's without it. Greta plays 25, whatever a .fap says")
     command.add_argument("--rig", metavar="FACE.toml", help="with --to jsonl: a face of your own in place of ARKit's, "
                          "as labial rig reads it")
     add_labels(command)
@@ -43,6 +45,7 @@ def _add_format(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the frames."""
     from labial.animation import FORMATS
+    from labial.frames import at_rate
     from labial.model import load
     from labial.phones import read_stream
     from labial.reference.synthesis import synthesise
@@ -50,13 +53,14 @@ def run(options: argparse.Namespace) -> int:
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source)
     write = _rig_writer(options) if options.rig else FORMATS[options.to].write
-    frames = synthesise(model, phonemes, whole=options.whole)
+    frames, fps = synthesise(model, phonemes, whole=options.whole), options.fps or model.fps
+    frames = at_rate(frames, model.fps, fps)
     name = Path(options.model).stem
     if options.output:
         with open(options.output, "w", encoding="ascii", newline="\n") as out:
-            write(out, frames, model.fps, name)
+            write(out, frames, fps, name)
     else:
-        write(sys.stdout, frames, model.fps, name)
+        write(sys.stdout, frames, fps, name)
     return 0
 
 

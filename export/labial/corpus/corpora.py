@@ -15,10 +15,8 @@ from labial.corpus.folder import read_folder
 from labial.corpus.iemocap import read_iemocap
 from labial.corpus.talkers import brought_together, with_something_left, with_sources
 from labial.errors import DataError, LabialError
+from labial.frames import sampled
 from labial.phonesets import PHONE_SETS
-
-#: Samples that are averaged over a frame's duration when the recording's rate is higher.
-_OVERSAMPLING = 16
 
 
 class Resampled(NamedTuple):
@@ -65,10 +63,8 @@ def read_corpora(paths: Sequence[Union[str, os.PathLike]], kind: str = "speech")
 def resample(episode: Episode, fps: int) -> Resampled:
     """`episode` at `fps` frames per second.
 
-    Motion is interpolated linearly at the centre of each frame, and held before and after the recorded times. A
-    recording of a higher rate is averaged over each frame's duration instead, so that what is faster than the new rate
-    does not fold back into it. Segments end at the frame nearest to their end, so rounding never adds up; at .5 the
-    later one.
+    Motion is sampled by :func:`labial.frames.sampled`. Segments end at the frame nearest to their end, so that rounding
+    never adds up; at .5 the later one.
     """
     if fps <= 0:
         raise LabialError(f"{fps} frames per second")
@@ -80,12 +76,7 @@ def resample(episode: Episode, fps: int) -> Resampled:
     total = ends[-1]
     if total == 0:
         raise LabialError(f"episode {episode.name} is shorter than a frame")
-    steps = np.diff(episode.times)
-    dense = len(steps) > 0 and np.median(steps) < 0.99 / fps
-    points = _OVERSAMPLING if dense else 1
-    moments = origin + (np.arange(total * points) + 0.5) / (fps * points)
-    samples = [np.interp(moments, episode.times, channel) for channel in episode.frames.T]
-    frames = np.stack(samples, axis=1).reshape(total, points, -1).mean(axis=1)
+    frames = sampled(episode.times, episode.frames, fps, total, origin)
     apexes = []
     for segment, first, count in zip(episode.segments, np.cumsum(counts) - counts, counts):
         moment = (segment.start + segment.end) / 2 if segment.apex is None else segment.apex

@@ -65,8 +65,8 @@ def units_path(tables: Tables, target: np.ndarray, ends: np.ndarray, width: int)
 
 
 def compare(tables: ExportedTables, streams: List[Stream], extent: np.ndarray) -> Dict[Tuple[int, int], np.ndarray]:
-    """By LABIAL_LAG and LABIAL_SEARCHED, percent: states that differ from those of whole units among all states; and how
-    far the motion is moved, RMS of the range (13,) of a channel, the mean of the channels."""
+    """By LABIAL_LAG and LABIAL_SEARCHED, percent: states that differ from those of whole units among all states; and
+    how far the motion is moved, RMS of the range (13,) of a channel, the mean of the channels."""
     differ = {limits: 0 for limits in LIMITS}
     moved: Dict[Tuple[int, int], List[np.ndarray]] = {limits: [] for limits in LIMITS}
     total = 0
