@@ -9,12 +9,11 @@ import numpy as np
 import soundfile
 import soxr
 
+from labial.corpus.formats import VIDEOS
 from labial.corpus.timings import PathLike
 from labial.errors import DataError, needs
 from labial.spans import spans
 
-#: Suffixes of files that hold pictures beside their sound.
-VIDEOS = (".mp4", ".mov", ".m4v", ".mkv", ".webm", ".avi", ".ts", ".3gp")
 #: Samples per second of the recogniser's models.
 RATE = 16000
 #: The level that speech is brought to, in dB of full scale, and that of the noise under it. Synthetic speech is silent

@@ -12,7 +12,7 @@ from typing import List, Optional, Tuple, Union
 import numpy as np
 
 from labial.bundled import BY_KIND
-from labial.corpus.formats import read_timings
+from labial.corpus.formats import SOUNDS, read_timings
 from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments
 from labial.errors import DataError, LabialError, needs
 from labial.frames import even
@@ -24,8 +24,7 @@ from labial.see.motion import read_motion
 
 PathLike = Union[str, os.PathLike]
 
-#: Suffixes, in small letters, of what is a sound, and of what holds frames; anything else holds timings.
-SOUNDS = (".wav", ".flac", ".ogg", ".oga", ".opus", ".mp3", ".aif", ".aiff", ".au", ".caf")
+#: Suffixes, in small letters, of what holds frames; what is no sound either holds timings.
 FRAMES = (".csv", ".fap")
 #: Frames per second of a track.
 RATE = 50

@@ -43,9 +43,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Trains, writes the model, and says what its phonemes backed off to."""
+    """Trains, writes the model, and says which apexes were not known and what its phonemes backed off to."""
     with needs("training", "train"):
-        from labial.train import backed_off, train
+        from labial.train import backed_off, train, without_apex
     from labial.corpus import read_corpora
     from labial.model import save
 
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
                   engine=options.engine, progress=shows_progress(options), attribution=options.attribution,
                   normalise=options.normalise, **own)
     save(model, options.output)
-    for line in backed_off(model):
+    for line in [*without_apex(episodes), *backed_off(model)]:
         print(line)
     print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
           f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")

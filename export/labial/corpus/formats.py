@@ -55,6 +55,10 @@ TITLES = (f"{', '.join(item.title for item in _LINES.values())}; JSON of "
 
 _BY_SUFFIX = {suffix: item.read for item in FORMATS.values() for suffix in item.suffixes}
 
+#: Suffixes, in small letters, of sounds and of videos, which hold a sound too.
+SOUNDS = (".wav", ".flac", ".ogg", ".oga", ".opus", ".mp3", ".aif", ".aiff", ".au", ".caf")
+VIDEOS = (".mp4", ".mov", ".m4v", ".mkv", ".webm", ".avi", ".ts", ".3gp")
+
 #: Suffixes by which formats are told, in small letters.
 SUFFIXES = tuple(_BY_SUFFIX)
 

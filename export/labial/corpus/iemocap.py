@@ -4,6 +4,9 @@ The corpus is licensed by its makers; this reader is for those who hold it. Expe
 
     SessionN/sentences/MOCAP_rotated/<dialog>/<utterance>.txt
     SessionN/sentences/ForcedAlignment/<dialog>/<utterance>.phseg
+    SessionN/sentences/wav/<dialog>/<utterance>.wav
+
+The sound tells the apex of each phoneme; of an utterance without it the middle of each phoneme is taken.
 
 Axes of the markers: X lateral (the subject's right is negative), Y depth (larger is further back), Z up. From markers
 to FAPs: (1) each frame is aligned rigidly with the dialog's mean head, on markers that skin and lips do not move, since
@@ -25,6 +28,7 @@ from typing import Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
+from labial.apex import read_wave, with_apexes
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import LARGEST, check_span
 from labial.corpus.pose import align_head
@@ -208,6 +212,9 @@ def _read_dialog(files: List[Path], phone_set: PhoneSet, refused: List[DataError
             refused.append(DataError(file, None, "no .phseg in ForcedAlignment"))
             continue
         segments = phoneme_segments(alignment, read_phseg(alignment), phone_set)
+        sound = file.parents[2] / "wav" / file.parent.name / (file.stem + ".wav")
+        if sound.is_file():
+            segments = with_apexes(segments, *read_wave(sound))
         times, markers = read_markers(file)
         check_span(alignment, Episode(file.stem, times, np.empty((len(times), CHANNELS)), segments))
         utterances.append(_Utterance(file, times, markers, segments))

@@ -11,11 +11,12 @@ from typing import Dict, List, Sequence, Tuple, Union
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from labial.apex import told, with_apexes
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span
-from labial.corpus.formats import SUFFIXES, read_timings
+from labial.corpus.formats import SOUNDS, SUFFIXES, VIDEOS, read_timings
 from labial.corpus.timings import phoneme_segments
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, needs
 from labial.frames import even, write_csv
 from labial.phonesets import PhoneSet
 from labial.record.head import facing
@@ -74,6 +75,9 @@ def record(
     left_out = len(recordings) - len(finished)
     lines = [f"{folder}: {len(finished)} recordings, {int(seconds // 60)} min {seconds % 60:.0f} s"
              + (f"; {left_out} left out" if left_out else "")]
+    phonemes = [segment for item, _, _ in finished for segment in item.segments]
+    lines.append(f"apex: the loudest moment of {told(phonemes)} of {len(phonemes)} phonemes"
+                 + ("" if told(phonemes) == len(phonemes) else "; of the others, whose sound is not known, the middle"))
     if phone_set.kind == "speech":
         lines += advice(estimate([_episode(*what) for what in finished]), offset)
     return "\n".join(lines)
@@ -110,7 +114,7 @@ def _read(path: Path, phone_set: PhoneSet, given: Given, offset: float) -> Recor
     if turned:
         warnings.warn(f"{path}: {turned}", stacklevel=1)
     timings = _timings(path)
-    segments = phoneme_segments(timings, read_timings(timings), phone_set)
+    segments = _with_sound(path, phoneme_segments(timings, read_timings(timings), phone_set))
     if not segments:
         raise DataError(timings, None, "no phonemes")
     check_span(timings, Episode(path.stem, landmarks.times, np.empty((len(landmarks.times), 0)), segments))
@@ -143,6 +147,24 @@ def _timings(path: Path) -> Path:
     if len(found) > 1:
         raise DataError(found[1], None, f"there is also {found[0].name}; which of them to use is not clear")
     return found[0]
+
+
+def _with_sound(path: Path, segments: Sequence[Segment]) -> Tuple[Segment, ...]:
+    """The segments of a landmark file with the apexes that its sound tells: a sound file beside it or, where there is
+    none, the video's. Without either, or the packages that read them, as they are."""
+    beside = [file for file in sorted(path.parent.iterdir()) if file.stem == path.stem and file.is_file()]
+    found = [file for suffixes in (SOUNDS, VIDEOS) for file in beside if file.suffix.lower() in suffixes]
+    if not found or told(segments) == len(segments):
+        return tuple(segments)
+    try:
+        with needs(f"the sound of {found[0]}", "record"):
+            from labial.align.sound import RATE, read_sound
+        return with_apexes(segments, read_sound(found[0]), RATE)
+    except DataError:
+        raise
+    except LabialError as error:
+        warnings.warn(f"{error}; the middle of each phoneme is taken for its apex", stacklevel=1)
+        return tuple(segments)
 
 
 def _smooth(frames: np.ndarray, fps: float, cutoff: float) -> np.ndarray:

@@ -1,5 +1,5 @@
 """Training: from a corpus to the float model (:mod:`labial.model`)."""
 
-from labial.train.pipeline import backed_off, train
+from labial.train.pipeline import backed_off, train, without_apex
 
-__all__ = ["backed_off", "train"]
+__all__ = ["backed_off", "train", "without_apex"]

@@ -8,6 +8,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from labial.apex import told
 from labial.corpus.episode import Episode
 from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE
 from labial.errors import LabialError
@@ -380,6 +381,15 @@ def train(
         states = _fit_states(setting, material, shaped, workers)
         model = _model(setting, shaped, states, plan, attribution, _training(setting, material, counts, plan))
         return restored(model, material, workers) if setting.extended else model
+
+
+def without_apex(corpus: Sequence[Episode]) -> List[str]:
+    """A line where the corpus does not tell the apex of every phoneme, which is then taken to be its middle."""
+    segments = [segment for episode in corpus for segment in episode.segments]
+    unknown = len(segments) - told(segments)
+    if not unknown:
+        return []
+    return [f"apex: not known of {unknown} of {len(segments)} phonemes, which are learnt from their middle"]
 
 
 def backed_off(model: Model) -> List[str]:
