@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Reproduces the bundled models byte for byte, and the first split of RESULTS.md.
+
+    python export/reproduce.py [models | split]
+
+Without an argument it does both. What it trains and exports is compared with export/models and lib/models, what it
+evaluates with the table of docs/reproduction.md. The exit status is 1 where anything differs. It needs the packages of
+export/requirements-reproduce.txt and a C compiler.
+"""
+
+from __future__ import annotations
+
+import argparse
+import filecmp
+import os
+import re
+import sys
+import tempfile
+from pathlib import Path
+from typing import Dict, List
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "export"))
+
+from labial.cli import main as labial  # noqa: E402
+from labial.defaults import EPISODES  # noqa: E402
+
+CORPORA = ROOT / "export" / "corpora"
+#: What each bundled model is trained on, and how; LAUGHTER is the synthetic corpus, which is made for it.
+MODELS: Dict[str, List[str]] = {
+    "speech_en": [str(CORPORA / "grid_s1"), str(CORPORA / "addresses")],
+    "laughter_synthetic": ["LAUGHTER", "--kind", "laughter", "--components", "1"],
+}
+PAGE = ROOT / "docs" / "reproduction.md"
+#: Columns of the page's table of the first split: title, measure, digits.
+COLUMNS = (("diff", "diff/mean", 4), ("correlation", "correlation/mean", 3), ("amplitude", "amplitude/mean", 3),
+           ("closure", "closure/rate", 3), ("jitter", "jitter", 3), ("seam", "seam/mean", 3))
+
+
+def run(*arguments: str) -> None:
+    """Runs a command of labial; ends the program where it fails."""
+    print("labial", *arguments, flush=True)
+    if labial(list(arguments)):
+        sys.exit(1)
+
+
+def models(folder: Path) -> bool:
+    """Trains and exports the bundled models in a folder; whether all files are the bytes that are committed."""
+    from labial.model import load
+
+    run("laughter-corpus", str(folder / "LAUGHTER"), "--episodes", str(EPISODES), "--seed", "0")
+    same = True
+    for name, how in MODELS.items():
+        committed = ROOT / "export" / "models" / f"{name}.npz"
+        made = folder / f"{name}.npz"
+        run("train", *(str(folder / item) if item == "LAUGHTER" else item for item in how), "-o", str(made),
+            "--attribution", load(committed).attribution)
+        run("export", str(made), "--name", name, "-o", str(folder / "tables"))
+        tables = [folder / "tables" / f"{name}{end}" for end in (".c", ".h", "_names.c")]
+        for own, other in ((made, committed), *((path, ROOT / "lib" / "models" / path.name) for path in tables)):
+            equal = filecmp.cmp(own, other, shallow=False)
+            same &= equal
+            print(f"{os.path.relpath(other, ROOT)}: {'the same bytes' if equal else 'DIFFERENT'}")
+    return same
+
+
+def first_split() -> str:
+    """The Markdown table of the first of RESULTS.md's random splits."""
+    from labial.corpus import read_corpora
+    from labial.evaluate.protocol import Options, evaluate
+    from labial.evaluate.report import title
+
+    first, second = read_corpora([CORPORA / "grid_s1", CORPORA / "addresses"])
+    (outcome,) = evaluate(first, Options(splits=1), further=second)
+    rows = ["| method | " + " | ".join(name for name, _, _ in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
+    for method, values in outcome.measures.items():
+        cells = (f"{values[measure]:.{digits}f}" if measure in values else "-" for _, measure, digits in COLUMNS)
+        rows.append(f"| {title(method)} | " + " | ".join(cells) + " |")
+    return "\n".join(rows) + "\n"
+
+
+def committed_split() -> str:
+    """That table as docs/reproduction.md has it."""
+    heading = re.escape("| method | " + " | ".join(name for name, _, _ in COLUMNS) + " |")
+    found = re.search(rf"^{heading}\n(?:\|.*\n)+", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    return found[0] if found else ""
+
+
+def split() -> bool:
+    """Evaluates the first split; whether its table is the committed one."""
+    table = first_split()
+    print(table, end="")
+    same = table == committed_split()
+    print(f"{os.path.relpath(PAGE, ROOT)}: {'the same figures' if same else 'DIFFERENT'}")
+    return same
+
+
+def main() -> int:
+    """The command line; see the module."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("what", nargs="?", choices=("models", "split"), help="one of both alone")
+    what = parser.parse_args().what
+    same = True
+    if what != "split":
+        with tempfile.TemporaryDirectory() as folder:
+            same &= models(Path(folder))
+    if what != "models":
+        same &= split()
+    return 0 if same else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
