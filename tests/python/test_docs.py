@@ -37,6 +37,11 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         'tools/bin/pip install "$LABIAL[align]"': "fetches; test_wheel.py installs the package without",
         "avrdude -c arduino -p m328p -P /dev/ttyACM0 -U flash:w:jaw.elf": "needs a board; the page simulates one",
     },
+    "method.md": {
+        'labial train "$LABIAL/export/corpora/grid_s1" --method paper -o paper.npz': "takes a minute",
+        'python -m labial.evaluate.side_by_side "$LABIAL/examples/demo/sentence.flite" published=paper.npz '
+        "Labial=speech_en -o sentence.svg": "needs the model above; test_side_by_side.py draws others",
+    },
     "python.md": {
         "pip install .": "fetches what builds it; test_wheel.py installs the package without",
     },
