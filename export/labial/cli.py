@@ -5,12 +5,15 @@ from __future__ import annotations
 import argparse
 import io
 import os
+import signal
 import sys
 import traceback
 import warnings
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
-from typing import List, NoReturn, Optional, Sequence
+from types import FrameType
+from typing import Iterator, List, NoReturn, Optional, Sequence
 
 from labial import __version__
 from labial.commands import COMMANDS
@@ -46,8 +49,32 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     return top
 
 
+class _Ended(BaseException):
+    """A signal asks the command to end; what it began is cleared away on the exception's way out."""
+
+
+@contextmanager
+def _ending() -> Iterator[None]:
+    """Within the block, SIGTERM and SIGHUP raise `_Ended` where they would end the process at once."""
+    def end(number: int, _: Optional[FrameType]) -> None:
+        raise _Ended(number)
+
+    before = {}
+    for name in ("SIGTERM", "SIGHUP"):
+        with suppress(AttributeError, ValueError):  # Windows has no SIGHUP; another thread may set no handler
+            number = getattr(signal, name)
+            if signal.getsignal(number) is signal.SIG_DFL:
+                before[number] = signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Runs the command; returns its exit status: 0; 1 when something given cannot be used; 3 for a defect of ours."""
+    """Runs the command; returns its exit status: 0; 1 when something given cannot be used; 3 for a defect of ours; 128
+    and the signal's number when a signal ended it."""
     given = sys.argv[1:] if arguments is None else arguments
     options = parser(given).parse_args(given)
     if isinstance(sys.stdout, io.TextIOWrapper):
@@ -55,19 +82,25 @@ def main(arguments: Optional[List[str]] = None) -> int:
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_, **__: _complain(f"warning: {message}")
         try:
-            with needs(f"labial {options.command}", "tools"):
-                return int(options.run(options))
+            with _ending(), needs(f"labial {options.command}", "tools"):
+                status = int(options.run(options))
+                sys.stdout.flush()
+                return status
         except LabialError as error:
             _complain(str(error))
         except BrokenPipeError:  # whoever reads the output has seen enough
-            sys.stderr.close()
+            _drop_output()
         except OSError as error:
             _complain(f"{_name(error)}: {error.strerror or error}")
+            _drop_output()
         except MemoryError:
             _complain("there is not enough memory for this")
         except KeyboardInterrupt:
             _complain("interrupted")
             return 130
+        except _Ended as ended:
+            _complain(f"ended by {signal.Signals(ended.args[0]).name}")
+            return 128 + int(ended.args[0])
         except Exception as error:
             _complain(_defect(error))
             return 3
@@ -76,6 +109,12 @@ def main(arguments: Optional[List[str]] = None) -> int:
 
 def _complain(text: str) -> None:
     print(f"labial: {_one_line(text)}", file=sys.stderr)
+
+
+def _drop_output() -> None:
+    """Drops what standard output cannot take, so that Python does not try to write it once more as it exits."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _name(error: OSError) -> str:

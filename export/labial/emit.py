@@ -15,6 +15,7 @@ from labial.aliases import LABEL_SETS
 from labial.errors import ModelError
 from labial.faps import CHANNELS, FAP_NAMES
 from labial.layout import Table, blob, channel_scalars, channel_tables, scalars, shared_tables, table_bytes
+from labial.outputs import folder
 from labial.quantise import FORMAT, ExportedModel
 from labial.reference.contact import FRAMES
 
@@ -223,8 +224,6 @@ const labial_names_t {model.name}_names = {{ {size}, {len(model.phonemes)}, entr
 def write(model: ExportedModel, directory: Union[str, os.PathLike], *, binary: bool = False) -> List[Path]:
     """Writes the C files, and with `binary` NAME.lbm, into `directory`; returns their paths."""
     check_name(model.name)
-    folder = Path(directory)
-    folder.mkdir(parents=True, exist_ok=True)
     files = {
         f"{model.name}.h": header(model).encode(),
         f"{model.name}.c": source(model).encode(),
@@ -232,6 +231,7 @@ def write(model: ExportedModel, directory: Union[str, os.PathLike], *, binary: b
     }
     if binary:
         files[f"{model.name}.lbm"] = blob(model)
-    for file, data in files.items():
-        (folder / file).write_bytes(data)
-    return [folder / file for file in files]
+    with folder(directory) as made:
+        for file, data in files.items():
+            (made / file).write_bytes(data)
+    return [Path(directory) / file for file in files]

@@ -21,6 +21,7 @@ from typing import Iterator, List, Sequence, Tuple, Union
 
 from labial.corpus import laughter
 from labial.corpus.laughter import PERIOD_LONGEST, PERIOD_SHORTEST, PULSES, SHORTEST, TRAIN_LONGEST, VOWELS
+from labial.outputs import writing
 from labial.phonesets import LAUGHTER, LAUGHTER_GRADES
 
 #: Intensity of the heartiest laugh.
@@ -277,7 +278,7 @@ def table_header() -> str:
 
 def write_table(path: Union[str, os.PathLike]) -> None:
     """Writes lib/laugh_table.h."""
-    with open(path, "w", encoding="ascii", newline="\n") as out:
+    with writing(path, "ascii") as out:
         out.write(table_header())
 
 

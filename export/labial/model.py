@@ -21,6 +21,7 @@ from labial.bundled import model_file
 from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError
 from labial.faps import CHANNELS
+from labial.outputs import writing
 
 #: Version of the .npz layout, and those that are read; what arrays that had other names before 4 are called since.
 FORMAT = 4
@@ -200,7 +201,7 @@ def _check_values(name: str, value: np.ndarray) -> None:
 def save(model: Model, path: Union[str, os.PathLike]) -> None:
     """Writes the model. The same model gives the same bytes: members are in order, uncompressed times are fixed."""
     text = {name: getattr(model, name) for name in _TEXT}
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+    with writing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
 
         def add(name: str, data: bytes) -> None:
             info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))

@@ -10,6 +10,7 @@ from labial.bake import phonemes, track
 from labial.bake.source import Source, read_phonemes, read_track
 from labial.emit import check_name
 from labial.errors import LabialError
+from labial.outputs import check_folder, folder
 from labial.rig.description import read
 from labial.rig.table import convert
 
@@ -29,6 +30,7 @@ def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name
         raise LabialError(f"{output}: this is the name of the player")
     name = name or re.sub(r"[^0-9A-Za-z]+", "_", path.stem)
     check_name(name, "header")
+    check_folder(path.parent)
     if kind == "phonemes":
         if rig is not None:
             raise LabialError("--rig goes with --as track; a board that is given phonemes applies the rig itself")
@@ -40,7 +42,7 @@ def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name
         track.check_names(face)
         text = track.header(name, Path(source.path).name, face, table, read_track(source))
         files = {path: text, path.with_name(PLAYER): Path(__file__).with_name(PLAYER).read_text(encoding="ascii")}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    for file, content in files.items():
-        file.write_bytes(content.encode("ascii", errors="replace"))
+    with folder(path.parent) as made:
+        for file, content in files.items():
+            (made / file.name).write_bytes(content.encode("ascii", errors="replace"))
     return list(files)

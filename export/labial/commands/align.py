@@ -21,6 +21,8 @@ def run(options: argparse.Namespace) -> int:
     with needs("aligning", "align"):
         from labial.align.progress import align_with_bar
     from labial.corpus.timings import lab_of
+    from labial.outputs import check
 
+    check(options.output)
     put(lab_of(align_with_bar(options.sound, said(options), shows_progress(options))), options.output)
     return 0

@@ -10,6 +10,7 @@ from typing import Optional
 
 from labial.defaults import FPS, KINDS
 from labial.grammar import is_number, is_whole, read_text
+from labial.outputs import writing
 
 
 def whole(low: int, high: int, text: str) -> int:
@@ -98,7 +99,7 @@ def shows_progress(options: argparse.Namespace) -> bool:
 def put(text: str, path: Optional[str]) -> None:
     """Writes a text to a file, or to standard output without one."""
     if path:
-        with open(path, "w", encoding="utf-8", newline="\n") as out:
+        with writing(path, "utf-8") as out:
             out.write(text)
     else:
         sys.stdout.write(text)

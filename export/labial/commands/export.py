@@ -50,10 +50,12 @@ def run(options: argparse.Namespace) -> int:
     """Writes the C files, and prints what memory they take and what is lost in them."""
     from labial import emit, report
     from labial.loss import deviation, measure
+    from labial.outputs import check_folder
     from labial.phones import drawn_streams
     from labial.reference.synthesis import is_published
 
     emit.check_name(options.name)
+    check_folder(options.output)
     model, tables = exported(options, options.name)
     streams = drawn_streams(model)
     loss = measure(model, tables, streams)

@@ -22,6 +22,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Writes the landmarks."""
+    from labial.outputs import check
+
+    check(options.output)
     with needs("tracking", "record"):
         from labial.record.track import landmarks
 

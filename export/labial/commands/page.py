@@ -20,9 +20,11 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Writes the page."""
+    from labial.outputs import check
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
+    check(options.output)
     bands = read_bands(options.phones, options.labels, options.source)
     motion = read_motion(options.frames, options.phones, options.labels, options.source)
     put(page(motion, bands, options.audio, options.title), options.output)

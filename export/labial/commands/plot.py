@@ -24,8 +24,10 @@ def run(options: argparse.Namespace) -> int:
     """Writes the drawing."""
     with needs("plotting", "plot"):
         from labial.see.plot import DEFAULT, plot
+    from labial.outputs import check
     from labial.see.motion import read_bands, read_motions
 
+    check(options.output)
     timings = options.phones, options.labels, options.source
     plot(read_motions(options.frames, *timings), read_bands(*timings), options.output, options.channels or DEFAULT)
     return 0

@@ -17,16 +17,18 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes NAME.h, NAME.c and, unless told not to, NAME.svg."""
     from labial.emit import check_name
+    from labial.outputs import folder
     from labial.rig import figure, table
     from labial.rig.description import read
 
     name = options.name or Path(options.description).stem
     check_name(name, "rig")
     rig = read(options.description, name)
-    paths = table.write(rig, options.output)
-    if not options.no_figure:
-        paths.append(Path(options.output) / f"{name}.svg")
-        figure.draw(rig, paths[-1])
+    with folder(options.output) as made:
+        paths = table.write(rig, made)
+        if not options.no_figure:
+            paths.append(made / f"{name}.svg")
+            figure.draw(rig, paths[-1])
     for path in paths:
-        print(path)
+        print(Path(options.output) / path.name)
     return 0

@@ -47,9 +47,11 @@ def run(options: argparse.Namespace) -> int:
     from labial.animation import FORMATS
     from labial.frames import at_rate
     from labial.model import load
+    from labial.outputs import check, writing
     from labial.phones import read_stream
     from labial.reference.synthesis import synthesise
 
+    check(options.output)
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source)
     write = _rig_writer(options) if options.rig else FORMATS[options.to].write
@@ -57,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
     frames = at_rate(frames, model.fps, fps)
     name = Path(options.model).stem
     if options.output:
-        with open(options.output, "w", encoding="ascii", newline="\n") as out:
+        with writing(options.output, "ascii") as out:
             write(out, frames, fps, name)
     else:
         write(sys.stdout, frames, fps, name)

@@ -18,6 +18,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     from labial.corpus.formats import as_lab
+    from labial.outputs import check
 
+    check(options.output)
     put(as_lab(options.phones, options.labels, options.source), options.output)
     return 0

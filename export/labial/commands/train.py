@@ -45,11 +45,15 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Trains, writes the model, and says which apexes were not known and what its phonemes backed off to."""
     with needs("training", "train"):
-        from labial.train import backed_off, train, without_apex
+        from labial.train import backed_off, check_options, train, without_apex
     from labial.corpus import read_corpora
     from labial.model import save
+    from labial.outputs import check
 
+    check(options.output)
     own = _labials_own(options)
+    check_options(kind=options.kind, method=options.method, fps=options.fps, codebook=options.codebook,
+                  components=options.components, jobs=options.jobs, engine=options.engine, **own)
     episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
     model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,

@@ -34,6 +34,7 @@ from labial.corpus.folder import HEADER
 from labial.defaults import EPISODES
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_NUMBERS
+from labial.outputs import folder
 from labial.phonesets import LAUGHTER_GRADES
 
 #: Frames per second of the corpus; a frame is the motion at its centre.
@@ -99,17 +100,17 @@ def generate(out_dir: Union[str, os.PathLike], episodes: int = EPISODES, seed: i
 
     Raises DataError when `out_dir` exists and is not empty: another run's episodes would mix with these.
     """
-    folder = Path(out_dir)
-    folder.mkdir(parents=True, exist_ok=True)
-    if any(folder.iterdir()):
-        raise DataError(folder, None, "the folder is not empty")
+    path = Path(out_dir)
+    if path.is_dir() and any(path.iterdir()):
+        raise DataError(path, None, "the folder is not empty")
     random = np.random.Generator(np.random.PCG64(seed))
-    for number in range(episodes):
-        phonemes, intensity = _bout(random)
-        frames = _motion(random, phonemes, intensity)
-        _write(folder / f"laugh{number:04d}.csv", _csv(frames))
-        _write(folder / f"laugh{number:04d}.lab", _lab(random, phonemes))
-    _write(folder / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
+    with folder(path) as made:
+        for number in range(episodes):
+            phonemes, intensity = _bout(random)
+            frames = _motion(random, phonemes, intensity)
+            _write(made / f"laugh{number:04d}.csv", _csv(frames))
+            _write(made / f"laugh{number:04d}.lab", _lab(random, phonemes))
+        _write(made / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
 
 
 def is_synthetic(path: Union[str, os.PathLike]) -> bool:

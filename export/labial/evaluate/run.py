@@ -11,6 +11,9 @@ from labial.corpus.laughter import is_synthetic
 from labial.evaluate import plots, report
 from labial.evaluate.methods import select
 from labial.evaluate.protocol import Options, Outcome, evaluate
+from labial.outputs import check_folder, folder
+from labial.train.pipeline import check_jobs
+from labial.train.workers import Workers
 
 
 def processor_time(outcomes: Sequence[Outcome]) -> str:
@@ -28,17 +31,19 @@ def run(
 ) -> List[Path]:
     """Evaluates and writes the report into the folder `output`; returns what was written."""
     select(options.methods)  # before the corpora are read
+    check_folder(output)
+    check_jobs(jobs)
+    Workers(jobs, False, engine)
     options = replace(options, synthetic=is_synthetic(corpora[0]))
     first, *others = read_corpora(corpora, options.kind)
     further = [episode for corpus in others for episode in corpus]
     outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress)
-    folder = Path(output)
-    folder.mkdir(parents=True, exist_ok=True)
-    drawn = plots.write(outcomes, options, folder)
-    written = report.write(outcomes, options, folder, drawn)
+    with folder(output) as made:
+        drawn = plots.write(outcomes, options, made)
+        written = [path.name for path in report.write(outcomes, options, made, drawn)]
     if options.leave_out_talkers:
         print(report.talkers_table(outcomes, report.methods_of(outcomes)))
     print(report.caption("Table 1", "diff", options))
     print(report.markdown_table(outcomes, report.methods_of(outcomes), report.TABLE_1))
     print(processor_time(outcomes))
-    return [*written, *(folder / name for name in drawn)]
+    return [Path(output) / name for name in (*written, *drawn)]

@@ -18,6 +18,8 @@ from labial.corpus.formats import SOUNDS, SUFFIXES, VIDEOS, read_timings
 from labial.corpus.timings import phoneme_segments
 from labial.errors import DataError, LabialError, needs
 from labial.frames import even, write_csv
+from labial.outputs import check_folder
+from labial.outputs import folder as whole_folder
 from labial.phonesets import PhoneSet
 from labial.record.head import facing
 from labial.record.landmarks import Given, Landmarks, read_landmarks
@@ -49,6 +51,7 @@ def record(
     folder = Path(output)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise DataError(folder, None, "not a folder that is new or empty")
+    check_folder(folder)
     recordings = [_read(path, phone_set, given, offset) for path in _files(sources)]
     kinds = {item.landmarks.points.shape[2] for item in recordings}
     if len(kinds) > 1:
@@ -64,13 +67,13 @@ def record(
         finished.append((item, _smooth(frames, fps, cutoff), fps))
     if not finished:
         raise LabialError("no recording can be used")
-    folder.mkdir(parents=True, exist_ok=True)
-    for item, frames, fps in finished:
-        name = item.landmarks.path.stem
-        with open(folder / f"{name}.csv", "w", encoding="ascii", newline="\n") as out:
-            write_csv(out, frames, fps, start=float(item.landmarks.times[0]))
-        with open(folder / f"{name}.lab", "w", encoding="utf-8", newline="\n") as out:
-            out.writelines(map(_line, item.segments))
+    with whole_folder(folder) as made:
+        for item, frames, fps in finished:
+            name = item.landmarks.path.stem
+            with open(made / f"{name}.csv", "w", encoding="ascii", newline="\n") as out:
+                write_csv(out, frames, fps, start=float(item.landmarks.times[0]))
+            with open(made / f"{name}.lab", "w", encoding="utf-8", newline="\n") as out:
+                out.writelines(map(_line, item.segments))
     seconds = sum(len(frames) / fps for _, frames, fps in finished)
     left_out = len(recordings) - len(finished)
     lines = [f"{folder}: {len(finished)} recordings, {int(seconds // 60)} min {seconds % 60:.0f} s"

@@ -15,6 +15,7 @@ import numpy as np
 from tqdm import tqdm
 
 from labial.errors import DataError, LabialError
+from labial.outputs import writing
 from labial.record.faces import talker
 from labial.record.video import length, pictures
 from labial.spans import spans_told
@@ -53,7 +54,10 @@ def landmarks(
     arrays = {"landmarks": points, "times": moments}
     if task is not None:
         arrays["pucker"] = _scores(points, seen)
-    np.savez(output, **arrays)
+    output = os.fspath(output)
+    output += "" if output.endswith(".npz") else ".npz"
+    with writing(output) as file:
+        np.savez(file, **arrays)
     return _summary(output, moments, np.isfinite(points[:, 0, 0]))
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 from labial import __version__
 from labial.errors import DataError
 from labial.faps import FAP_NAMES
+from labial.outputs import folder
 from labial.rig.description import Output, Rig
 from labial.rig.gestures import Row
 
@@ -204,9 +205,8 @@ def write(rig: Rig, directory: Union[str, os.PathLike]) -> List[Path]:
 
     check_name(rig.name, "rig")
     table = convert(rig)
-    folder = Path(directory)
-    folder.mkdir(parents=True, exist_ok=True)
     files = {f"{rig.name}.h": header(rig), f"{rig.name}.c": source(rig, table)}
-    for name, text in files.items():
-        (folder / name).write_bytes(text.encode("ascii"))
-    return [folder / name for name in files]
+    with folder(directory) as made:
+        for name, text in files.items():
+            (made / name).write_bytes(text.encode("ascii"))
+    return [Path(directory) / name for name in files]

@@ -8,6 +8,7 @@ from typing import Iterable, List, Sequence, Union
 
 import matplotlib
 
+from labial.outputs import writing
 from labial.see.motion import KINDS, Band
 
 matplotlib.use("Agg")
@@ -98,5 +99,7 @@ def write(figure: pyplot.Figure, path: Union[str, os.PathLike], dpi: int = 110) 
     Figures are drawn and written within `pyplot.rc_context(STYLE)`.
     """
     unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None}}
-    figure.savefig(path, dpi=dpi, metadata=unstamped.get(Path(path).suffix.lower()))
+    suffix = Path(path).suffix.lower()
+    with writing(path) as file:
+        figure.savefig(file, dpi=dpi, format=suffix[1:] or None, metadata=unstamped.get(suffix))
     pyplot.close(figure)

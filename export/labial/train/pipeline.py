@@ -196,6 +196,21 @@ def _setting(
                     search_stride if extended else 1, divide, extended or normalise, Penalties(), Scales())
 
 
+def check_options(*, kind: str, method: str, fps: int, codebook: int, components: int, jobs: int,
+                  engine: Optional[str] = None, look_ahead: float = LOOK_AHEAD, search_stride: int = SEARCH_STRIDE
+                  ) -> None:
+    """Raises LabialError for what :func:`train` would refuse: to be called before a corpus is read."""
+    _setting(kind, method, fps, codebook, components, 0, look_ahead, search_stride, lbg, False)
+    check_jobs(jobs)
+    Workers(jobs, False, engine)
+
+
+def check_jobs(jobs: int) -> None:
+    """Raises LabialError unless there can be so many processes."""
+    if not 1 <= jobs <= 1024:
+        raise LabialError(f"jobs is {jobs}, not within 1 .. 1024")
+
+
 def _own(penalties: Penalties, kind: str) -> Penalties:
     """The penalties of a kind. Where the mouth rests in an utterance is the talker's in speech; in laughter it is how
     hard somebody laughs, which the phonemes' grades tell, and no intercept must take that from them."""
@@ -368,8 +383,7 @@ def train(
     model keeps what each phoneme backed off to (:func:`backed_off`), the corpus's counts and all options.
     """
     setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide, normalise)
-    if not 1 <= jobs <= 1024:
-        raise LabialError(f"jobs is {jobs}, not within 1 .. 1024")
+    check_jobs(jobs)
     if not corpus:
         raise LabialError("the corpus is empty")
     material = _material(corpus, setting)

@@ -1,0 +1,205 @@
+"""What commands write is whole: the old file or the new one, whatever happens meanwhile."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import shutil
+import signal
+import stat
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Dict, List
+
+import pytest
+
+from labial import outputs
+from labial.cli import main
+from labial.commands import COMMANDS
+from labial.errors import LabialError
+from labial.model import save
+from models import random_model
+from packages import CC
+from test_workers import folder as corpus  # noqa: F401, a fixture
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="files that are preloaded are those of Linux")
+
+LAB = "0.00 0.20 SIL\n0.20 0.31 P1\n0.71 1.00 SIL\n"
+HERE = Path(__file__).parent
+
+
+def injected(folder: Path, corpus: Path, rounds: int) -> Dict[str, List[str]]:  # noqa: F811
+    """What is wrong after each command, interrupted `rounds` times."""
+    shutil.copytree(corpus, folder / "corpus")
+    library = folder / "injector.so"
+    subprocess.run([CC, "-shared", "-fPIC", "-O1", "-o", library, HERE / "injector.c", "-ldl"], check=True)
+    done = subprocess.run([sys.executable, HERE / "injected.py", library, folder, str(rounds)], capture_output=True,
+                          text=True, check=False, env={**os.environ, "LD_PRELOAD": str(library)})
+    assert done.returncode == 0, done.stderr
+    found: Dict[str, List[str]] = json.loads(done.stdout)
+    return found
+
+
+@pytest.mark.parametrize("rounds", [6, pytest.param(50, marks=pytest.mark.slow)])
+def test_interrupted_commands(tmp_path: Path, corpus: Path, rounds: int) -> None:  # noqa: F811
+    """Every command that writes, each with a full disk, SIGKILL and SIGTERM at random writes: finds a file that is half
+    written, a temporary one left behind, and an error that names another file."""
+    found = injected(tmp_path, corpus, rounds)
+    assert {name.split(",")[0] for name in found} == set(COMMANDS) - {"check"}
+    assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
+@pytest.fixture
+def given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    save(random_model(1), "model.npz")
+    Path("a.lab").write_text(LAB)
+    return tmp_path
+
+
+def limited(*arguments: str, size: int = 4096) -> subprocess.CompletedProcess[str]:
+    """The command in a process whose files have `size` bytes at most."""
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return subprocess.run([sys.executable, "-m", "labial", *arguments], preexec_fn=limit, capture_output=True,
+                          text=True, check=False)
+
+
+def test_a_file_that_is_too_large(given: Path) -> None:
+    """The model that was there is whole, and the line names it."""
+    before = Path("model.npz").read_bytes()
+    script = "from labial.model import load, save\nsave(load('model.npz'), 'model.npz')\n"
+    done = subprocess.run(
+        [sys.executable, "-c", "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+         "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n" + script],
+        capture_output=True, text=True, check=False)  # fmt: skip
+    assert "LabialError: model.npz: File too large" in done.stderr
+    assert Path("model.npz").read_bytes() == before and len(before) > 4096
+    assert sorted(os.listdir()) == ["a.lab", "model.npz"]
+    Path("f.csv").write_text("old")
+    done = limited("synth", "model.npz", "a.lab", "-o", "f.csv", size=1000)
+    assert (done.returncode, done.stderr) == (1, "labial: f.csv: File too large\n")
+    assert Path("f.csv").read_text() == "old"
+
+
+def test_what_is_replaced_keeps_its_permissions_and_its_links(given: Path) -> None:
+    os.umask(0o022)
+    Path("far").mkdir()
+    Path("far/real.csv").write_text("old")
+    os.chmod("far/real.csv", 0o640)
+    os.symlink("far", "near")
+    os.symlink("near/real.csv", "link.csv")
+    for name in ("link.csv", "fresh.csv"):
+        assert main(["synth", "model.npz", "a.lab", "-o", name]) == 0
+    assert os.path.islink("link.csv") and stat.S_IMODE(os.stat("far/real.csv").st_mode) == 0o640
+    assert Path("far/real.csv").read_bytes() == Path("fresh.csv").read_bytes()
+    assert stat.S_IMODE(os.stat("fresh.csv").st_mode) == 0o644 and os.listdir("far") == ["real.csv"]
+
+
+def test_what_is_no_file_is_written_directly(given: Path) -> None:
+    """Standard output by its name, as far as another program has written it, and a pipe that somebody reads."""
+    with open("all.txt", "ab") as out:
+        out.write(b"first\n")
+        out.flush()
+        for _ in range(2):
+            assert subprocess.run([sys.executable, "-m", "labial", "timings", "a.lab", "-o", "/dev/stdout"],
+                                  stdout=out, check=True).returncode == 0
+    text = Path("all.txt").read_text()
+    assert text.startswith("first\n") and text.count(" P\n") == 2
+    os.mkfifo("pipe")
+    heard: List[str] = []
+    listener = threading.Thread(target=lambda: heard.append(Path("pipe").read_text()))
+    listener.start()
+    assert main(["timings", "a.lab", "-o", "pipe"]) == 0
+    listener.join()
+    assert " P\n" in heard[0] and stat.S_ISFIFO(os.stat("pipe").st_mode)
+    assert main(["timings", "a.lab", "-o", "/dev/null"]) == 0 and os.path.exists("/dev/null")
+
+
+@pytest.mark.parametrize(("target", "complaint"), [
+    ("nowhere/x", "there is no folder nowhere"), ("folder", "a folder, not a file"), ("", "not the name of a file"),
+    ("a.lab/x", "Not a directory"), ("n" * 300, "File name too long"),
+])  # fmt: skip
+def test_outputs_are_checked_before_the_work(given: Path, monkeypatch: pytest.MonkeyPatch,
+                                             capsys: pytest.CaptureFixture, target: str, complaint: str) -> None:
+    """Would catch a training of hours whose model has nowhere to go."""
+    def late(*_: object, **__: object) -> None:
+        raise AssertionError("the work began")
+
+    Path("folder").mkdir()
+    for name in ("labial.train.train", "labial.corpus.read_corpora", "labial.align.progress.align_with_bar",
+                 "labial.model.load", "labial.corpus.formats.as_lab", "labial.see.motion.read_bands"):
+        monkeypatch.setattr(name, late)
+    for command in (["train", "corpus"], ["align", "a.wav"], ["synth", "model.npz", "a.lab"], ["timings", "a.lab"],
+                    ["plot", "f.csv"], ["page", "f.csv"]):
+        if not target and command[0] in ("align", "synth", "timings"):
+            continue  # standard output
+        assert main([*command, "-o", target]) == 1
+        said = capsys.readouterr().err
+        assert said.startswith(f"labial: {target}: ") and complaint in said, said
+
+
+def test_folders_and_options_are_checked_before_the_work(given: Path, monkeypatch: pytest.MonkeyPatch,
+                                                         capsys: pytest.CaptureFixture) -> None:
+    def late(*_: object, **__: object) -> None:
+        raise AssertionError("the work began")
+
+    for name in ("labial.corpus.read_corpora", "labial.evaluate.run.read_corpora", "labial.model.load"):
+        monkeypatch.setattr(name, late)
+    for arguments, complaint in (
+        (["evaluate", "corpus", "-o", "a.lab"], "a.lab: not a folder"),
+        (["evaluate", "corpus", "-o", "a.lab/x"], "a.lab/x: Not a directory"),
+        (["export", "model.npz", "--name", "m", "-o", "a.lab"], "a.lab: not a folder"),
+        (["train", "corpus", "-o", "x.npz", "--codebook", "5000"], "codebook is 5000"),
+        (["train", "corpus", "-o", "x.npz", "--jobs", "5000"], "jobs is 5000"),
+        (["train", "corpus", "-o", "x.npz", "--engine", "ray"], "not dask=ADDRESS"),
+        (["evaluate", "corpus", "-o", "x", "--engine", "ray"], "not dask=ADDRESS"),
+        (["evaluate", "corpus", "-o", "x", "--jobs", "5000"], "jobs is 5000"),
+    ):
+        assert main(arguments) == 1
+        assert complaint in capsys.readouterr().err
+    assert sorted(os.listdir()) == ["a.lab", "model.npz"]
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everything")
+def test_files_that_must_not_be_written(given: Path) -> None:
+    """A file may be replaced where its folder may be written; one that is read-only is meant to stay."""
+    os.chmod("a.lab", 0o444)
+    with pytest.raises(LabialError, match="a.lab: Permission denied"):
+        outputs.check("a.lab")
+
+
+def test_several_files_say_which_are_new(given: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a rename fails after another was done."""
+    for name in ("a.c", "b.c", "c.c"):
+        Path(name).write_text("old")
+    real = os.replace
+
+    def refused(source: object, target: str) -> None:
+        if target.endswith("b.c"):
+            raise OSError(5, "Input/output error", target)
+        real(source, target)
+
+    monkeypatch.setattr(os, "replace", refused)
+    with pytest.raises(LabialError, match="b.c: Input/output error; a.c new, b.c, c.c as before"):
+        with outputs.folder(".") as made:
+            for name in ("a.c", "b.c", "c.c"):
+                (made / name).write_text("new")
+    assert [Path(name).read_text() for name in ("a.c", "b.c", "c.c")] == ["new", "old", "old"]
+    assert sorted(os.listdir()) == ["a.c", "a.lab", "b.c", "c.c", "model.npz"]
+
+
+def test_nothing_is_left_of_what_fails(given: Path) -> None:
+    """Neither a folder that was made for it nor a temporary file, and errors name the file that was meant."""
+    with pytest.raises(LabialError, match="^new/deep/none/x: there is no folder"), outputs.folder("new/deep") as made:
+        (made / "fine").write_text("fine")
+        (made / "none" / "x").write_text("lost")
+    with pytest.raises(KeyboardInterrupt), outputs.writing("a.lab", "utf-8") as out:
+        out.write("half")
+        raise KeyboardInterrupt
+    assert Path("a.lab").read_text() == LAB and sorted(os.listdir()) == ["a.lab", "model.npz"]
