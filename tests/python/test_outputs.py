@@ -16,6 +16,7 @@ from typing import Dict, List
 
 import pytest
 
+import labial.evaluate.run  # noqa: F401, before a test patches what it imports
 from labial import outputs
 from labial.cli import main
 from labial.commands import COMMANDS

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import os
-import threading
 from array import array
 from functools import cache
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Dict, Iterable, Tuple, Union
 from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.rig import FACES, description_of
+from labial.runtime.guard import Guard, alone
 from labial.runtime.library import RigOutput, RigTable, checked, library
 
 
@@ -56,7 +56,7 @@ class Rig:
         checked(library().labial_rig_check(self._table), os.fspath(path))
         self._values = (ctypes.c_int32 * len(rows))()
         self._apply = library().labial_rig_apply
-        self._lock = threading.Lock()  # from moving the values until they are read
+        self._guard = Guard(whole=True)  # from moving the values until they are read
         self.rest()
 
     @classmethod
@@ -73,11 +73,11 @@ class Rig:
         """Value of each output now, by name."""
         return dict(zip(self.outputs, self._values))
 
+    @alone
     def rest(self) -> Dict[str, int]:
         """Puts the face at rest; its values."""
-        with self._lock:
-            checked(library().labial_rig_rest(self._table, self._values))
-            return self.values
+        checked(library().labial_rig_rest(self._table, self._values))
+        return self.values
 
     def apply(self, faps: Iterable[int]) -> Dict[str, int]:
         """Moves the face on by one frame of 13 FAPs, whole numbers of 16 bits; its values."""
@@ -89,9 +89,12 @@ class Rig:
             raise TypeError("FAPs are whole numbers") from None
         if len(numbers) != CHANNELS:
             raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
-        with self._lock:
-            checked(self._apply(self._table, numbers.buffer_info()[0], self._values))
-            return self.values
+        return self._moved(numbers)
+
+    @alone
+    def _moved(self, numbers: array) -> Dict[str, int]:
+        checked(self._apply(self._table, numbers.buffer_info()[0], self._values))
+        return self.values
 
     def __repr__(self) -> str:
         return f"<labial.Rig {self.name}: {', '.join(self.outputs)}>"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import ctypes
 import math
-import threading
 from array import array
 from typing import Any, List, Optional, Union
 
 from labial.errors import LabialError, StreamError
 from labial.runtime.frame import Frame, Latency
+from labial.runtime.guard import Guard, alone
 from labial.runtime.library import (
     DONE,
     DURATION_MAX,
@@ -45,8 +45,12 @@ class Stream:
 
     Any number of phonemes can be pushed ahead: those that the C library's queue has no room for wait here. Iterating
     yields frames as far as the phonemes go, and may be taken up again after more were pushed; :meth:`tick` is for
-    programs that follow a clock. Calls from several threads wait for each other. Closing frees the memory, as leaving
-    the ``with`` block does; every call after it raises StreamError.
+    programs that follow a clock. Closing frees the memory, as leaving the ``with`` block does; every call after it
+    raises StreamError.
+
+    Calls from several threads wait for each other. A call from within a call of the same stream, as from a signal
+    handler that interrupts one, raises StreamError and changes nothing. After a fork the child has a copy of the
+    stream, but for one that another thread was in a call of: all but :meth:`close` then raises StreamError.
 
     Args:
         model: the model of the first pushes; ``labial.speech_en`` without it.
@@ -62,7 +66,7 @@ class Stream:
         if not isinstance(labels, str) or labels not in LABELS:
             raise LabialError(f"{labels!r} is no set of labels, {', '.join(LABELS)}")
         self._labels, self._nearest = labels, bool(nearest)
-        self._lock = threading.Lock()
+        self._guard = Guard()
         self._models: List[Model] = []
         self._items = array("I")
         self._owed = 0.0  # milliseconds that rounding has left over, -.5 to .5
@@ -79,115 +83,115 @@ class Stream:
 
     # ---- What goes in
 
+    @alone
     def push(self, phoneme: Union[str, int], milliseconds: float) -> None:
         """Appends a phoneme, by its label or its number in the current model, that lasts 0 to 3,600,000 ms.
 
         Fractions of a millisecond are carried on to the next phoneme. Raises StreamError for a label that is not known,
         a number or a duration out of range, and after :meth:`end` or :meth:`cancel`; TypeError for other types.
         """
-        with self._lock:
-            self._open(pushing=True)
-            found = self._models[self._current].number(phoneme, self._labels, self._nearest)
-            self._append(found, duration(milliseconds))
+        self._open(pushing=True)
+        found = self._models[self._current].number(phoneme, self._labels, self._nearest)
+        self._append(found, duration(milliseconds))
 
+    @alone
     def laugh(self, seconds: float, intensity: float = 0.5, seed: Optional[int] = None) -> None:
         """Appends a laugh of 0 to 3600 seconds, from a hum (`intensity` 0) to a wide open mouth (1). The current model
         stays. The same `seed`, 0 to 2**32 - 1, makes the same laugh; without one every laugh of a stream is another."""
-        with self._lock:
-            self._open(pushing=True)
-            length = round(duration(number(seconds, "a laugh's length") * 1000.0))
-            loudness = number(intensity, "an intensity")
-            if not 0.0 <= loudness <= 1.0:
-                raise LabialError(f"an intensity of {loudness:g} is not within 0 .. 1")
-            chosen = self._laughs + 1 if seed is None else whole(seed, "a seed")
-            if not 0 <= chosen < 2**32:
-                raise LabialError(f"a seed of {chosen} is not within 0 .. 4294967295")
-            if not self._laughter.is_laughter:
-                raise LabialError(f"{self._laughter.name} is no model of laughter")
-            place = self._place(self._laughter)
-            most = length // 20 + 8
-            items = array("I", bytes(4 * _ITEM * most))
-            count = checked(library().labial_python_laugh(
-                length, math.floor(loudness * LAUGH_FULL + 0.5), chosen, place, items.buffer_info()[0], most))
-            self._items += items[: _ITEM * count]
-            self._laughs += 1
+        self._open(pushing=True)
+        length = round(duration(number(seconds, "a laugh's length") * 1000.0))
+        loudness = number(intensity, "an intensity")
+        if not 0.0 <= loudness <= 1.0:
+            raise LabialError(f"an intensity of {loudness:g} is not within 0 .. 1")
+        chosen = self._laughs + 1 if seed is None else whole(seed, "a seed")
+        if not 0 <= chosen < 2**32:
+            raise LabialError(f"a seed of {chosen} is not within 0 .. 4294967295")
+        if not self._laughter.is_laughter:
+            raise LabialError(f"{self._laughter.name} is no model of laughter")
+        place = self._place(self._laughter)
+        most = length // 20 + 8
+        items = array("I", bytes(4 * _ITEM * most))
+        count = checked(library().labial_python_laugh(
+            length, math.floor(loudness * LAUGH_FULL + 0.5), chosen, place, items.buffer_info()[0], most))
+        self._items += items[: _ITEM * count]
+        self._laughs += 1
 
+    @alone
     def use(self, model: Model) -> None:
         """Makes the next pushes phonemes of `model`, speech or laughter; the motion passes over in 8 frames. Raises
         StreamError where its frame rate or search stride is not the stream's."""
-        with self._lock:
-            self._open()
-            self._current = self._place(_a_model(model))
+        self._open()
+        self._current = self._place(_a_model(model))
 
+    @alone
     def end(self) -> None:
         """No more phonemes will come."""
-        with self._lock:
-            self._open()
-            self._ended = True
+        self._open()
+        self._ended = True
 
+    @alone
     def cancel(self, milliseconds: float = 200) -> None:
         """Drops all that was pushed and not yet delivered, and eases back to the neutral face; then the stream is done.
         Times over 1,000 frames count as that."""
-        with self._lock:
-            self._open()
-            length = math.ceil(duration(milliseconds))
-            checked(library().labial_python_cancel(self._address, length))
-            self._forget_items()
-            self._ended, self._done = True, False
+        self._open()
+        length = math.ceil(duration(milliseconds))
+        checked(library().labial_python_cancel(self._address, length))
+        self._forget_items()
+        self._ended, self._done = True, False
 
+    @alone
     def restart(self) -> None:
         """Takes up a stream that is done or was cancelled: frames are numbered on and fade in from the last one. Raises
         StreamError while frames are still to come."""
-        with self._lock:
-            self._open()
-            if self._waiting():
-                raise failure(ERROR_STATE, "restart")
-            self._feed()
-            checked(library().labial_python_restart(self._address), "restart")
-            self._forget_items()
-            self._ended = self._done = False
+        self._open()
+        if self._waiting():
+            raise failure(ERROR_STATE, "restart")
+        self._feed()
+        checked(library().labial_python_restart(self._address), "restart")
+        self._forget_items()
+        self._ended = self._done = False
 
     # ---- What comes out
 
     def __iter__(self) -> Stream:
         return self
 
+    @alone
     def __next__(self) -> Frame:
-        with self._lock:
-            self._open()
-            if self._advance(0) == OK:
-                return Frame(self._control.number, tuple(self._faps))
+        self._open()
+        if self._advance(0) == OK:
+            return Frame(self._control.number, tuple(self._faps))
         raise StopIteration
 
+    @alone
     def tick(self) -> Optional[Frame]:
         """The next frame or None, once per frame period: None while the first one is on its way (``latency.delay``
         ticks), where the stream waits for phonemes, and when it is done. Frames that came too late are made up for by
         as many further calls."""
-        with self._lock:
-            self._open()
-            if self._advance(1) == OK:
-                return Frame(self._control.number, tuple(self._faps))
-            return None
+        self._open()
+        if self._advance(1) == OK:
+            return Frame(self._control.number, tuple(self._faps))
+        return None
 
+    @alone
     def rest(self) -> array:
         """All frames that can be computed now, in one call of C: T times 13 int16, FAP units. ``labial.render`` makes
         arrays of them."""
-        with self._lock:
-            self._open()
-            control = self._control
-            pieces = array("h")
-            while True:
-                frames = max(min(self._measure().frames, 1 << 20), 1024)
-                piece = array("h", bytes(2 * 13 * frames))
+        self._open()
+        control = self._control
+        pieces = array("h")
+        while True:
+            frames = max(min(self._measure().frames, 1 << 20), 1024)
+            piece = array("h", bytes(2 * 13 * frames))
+            try:
                 control.frames, control.capacity = piece.buffer_info()[0], frames
-                try:
-                    result = self._advance(0)
-                finally:
-                    control.frames, control.capacity = ctypes.addressof(self._faps), 1
-                del piece[13 * control.delivered:]
-                pieces += piece
-                if result != OK:
-                    return pieces
+                result = self._advance(0)
+            finally:
+                control.frames, control.capacity = ctypes.addressof(self._faps), 1
+            del piece[13 * control.delivered:]
+            pieces += piece
+            if result != OK:
+                return pieces
 
     @property
     def done(self) -> bool:
@@ -195,11 +199,11 @@ class Stream:
         return self._done
 
     @property
+    @alone
     def latency(self) -> Latency:
         """What the stream holds at this moment."""
-        with self._lock:
-            self._open()
-            return self._measure()
+        self._open()
+        return self._measure()
 
     @property
     def fps(self) -> int:
@@ -208,16 +212,16 @@ class Stream:
 
     # ---- Life
 
+    @alone
     def close(self) -> None:
         """Frees the stream's memory; may be called again."""
-        with self._lock:
-            self._address = 0
-            self._control = self._memory = None
-            self._forget_items()
+        self._address = 0
+        self._control = self._memory = None
+        self._forget_items()
 
+    @alone
     def __enter__(self) -> Stream:
-        with self._lock:
-            self._open()
+        self._open()
         return self
 
     def __exit__(self, *exception: object) -> None:
