@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Iterator, Tuple
+from typing import Iterator, List, Tuple
 
 import numpy as np
 import pytest
@@ -89,6 +91,124 @@ def test_a_cluster_evaluates_the_same_bytes(folder: Path, cluster: str, tmp_path
     assert "report.md" in names and names == sorted(file.name for file in (tmp_path / "many").iterdir())
     for name in names:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "many" / name).read_bytes(), name
+
+
+#: Runs `labial train` with work that does what the last argument says, in two processes.
+WORKING = """
+import sys
+import labial.corpus, labial.train, working
+from labial.cli import main
+from labial.train.workers import Workers
+def train(*_, jobs, engine, **__):
+    with Workers(jobs, False, engine) as workers:
+        workers.run("the work", getattr(working, sys.argv[1]), range(4))
+labial.train.train, labial.corpus.read_corpora = train, lambda *_: []
+sys.exit(main(["train", "corpus", "-o", "m.npz", "--quiet", *sys.argv[2:]]))
+"""
+WORK = """
+import os, signal, time
+def killed(number):
+    os.kill(os.getpid(), signal.SIGKILL) if number == 2 else time.sleep(.1)
+def waits(number):
+    open(f"{os.getpid()}.pid", "w").close()
+    time.sleep(600)
+"""
+
+
+@pytest.fixture
+def working(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> List[str]:
+    """What runs `WORKING`, in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("working.py").write_text(WORK)
+    Path("main.py").write_text(WORKING)
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}:{SOURCE / 'export'}")
+    return [sys.executable, "main.py"]
+
+
+def test_a_killed_worker_is_said_in_one_line(working: List[str]) -> None:
+    """What the kernel does when memory runs out is no defect of Labial's."""
+    done = subprocess.run([*working, "killed", "--jobs", "2"], capture_output=True, text=True, timeout=120)
+    lines = [line for line in done.stderr.splitlines() if line.startswith("labial: ")]
+    assert done.returncode == 1 and len(lines) == 1, done.stderr
+    assert lines[0] == ("labial: the work: a worker process was ended by SIGKILL, as happens when memory runs short; "
+                        "fewer --jobs take less")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc and /dev/shm")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_the_workers(working: List[str], number: signal.Signals) -> None:
+    """No process goes on working for nobody, and no semaphore stays."""
+    shared = set(os.listdir("/dev/shm"))
+    command = subprocess.Popen([*working, "waits", "--jobs", "2"], stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 60
+    while len(list(Path().glob("*.pid"))) < 2 and time.monotonic() < deadline:
+        time.sleep(0.05)
+    workers = [path.stem for path in Path().glob("*.pid")]
+    own = {name for name in set(os.listdir("/dev/shm")) - shared if name.startswith(("sem.loky-", "joblib"))
+           and str(command.pid) in name}
+    command.send_signal(number)
+    _, said = command.communicate(timeout=60)
+    assert command.returncode == 128 + number and len(workers) == 2
+    assert said == {signal.SIGTERM: "labial: ended by SIGTERM\n", signal.SIGINT: "labial: interrupted\n"}[number]
+    deadline = time.monotonic() + 10
+    while any(os.path.exists(f"/proc/{worker}") for worker in workers) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not [worker for worker in workers if os.path.exists(f"/proc/{worker}")]
+    assert not own & set(os.listdir("/dev/shm"))
+
+
+@pytest.mark.slow
+def test_a_cluster_that_is_lost_is_named(working: List[str]) -> None:
+    """Not the output, and no defect."""
+    distributed = pytest.importorskip("distributed", reason="the Dask cluster needs the package distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
+                                  host="127.0.0.1", silence_logs=50) as local:
+        engine = f"dask={local.scheduler_address}"
+        done = subprocess.run([*working, "killed", "--engine", engine], capture_output=True, text=True, timeout=300)
+    lines = [line for line in done.stderr.splitlines() if line.startswith("labial: ")]
+    assert done.returncode == 1 and len(lines) == 1, done.stderr
+    assert lines[0].startswith(f"labial: the work: the Dask cluster at {engine[5:]} failed: KilledWorker")
+
+
+def test_an_evaluation_goes_on_where_it_was(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                            capsys: pytest.CaptureFixture) -> None:
+    """Splits that were finished are not worked on again, the report has the same bytes, and nothing of another corpus
+    or other options is taken for finished."""
+    from labial.evaluate import protocol
+
+    real, worked = protocol.run_split, []
+
+    def breaking(corpus: object, split: protocol.Split, options: object) -> object:
+        worked.append(split.number)
+        if split.number == broken:
+            raise KeyboardInterrupt
+        return real(corpus, split, options)  # type: ignore[arg-type]
+
+    def run(out: str, *options: str) -> int:
+        worked.clear()
+        return main(["evaluate", str(folder), "--splits", "3", "--methods", "mean", "--jobs", "1", "--quiet", "-o",
+                     str(tmp_path / out), *options])
+
+    monkeypatch.setattr(protocol, "run_split", breaking)
+    broken = 3
+    assert run("whole") == 0 and worked == [0, 1, 2]
+    broken = 2
+    assert run("broken") == 130 and worked == [0, 1, 2]
+    broken = 3
+    assert run("broken", "--seed", "1") == 0 and worked == [0, 1, 2]  # other splits
+    broken = 2
+    assert run("again") == 130
+    kept = tmp_path / "again" / ".splits"
+    assert sorted(path.name for path in kept.iterdir()) == ["0.zip", "1.zip"]
+    (kept / "1.zip").write_bytes((kept / "1.zip").read_bytes()[:-20])  # damaged
+    broken = 3
+    capsys.readouterr()
+    assert run("again") == 0 and worked == [1, 2]
+    assert "again: 1 of 3 splits were finished before" in capsys.readouterr().out
+    names = sorted(path.name for path in (tmp_path / "whole").iterdir())
+    assert names == sorted(path.name for path in (tmp_path / "again").iterdir()) and "trajectories.png" in names
+    for name in names:
+        assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "again" / name).read_bytes(), name
 
 
 def test_engines_that_cannot_be_used(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -46,6 +47,7 @@ class Example:
     """An utterance of the test part and what every method made of it, for the plots; (T, 13) each, FAP."""
 
     kind: str
+    index: int  #: of the utterance in the corpus
     utterance: Utterance
     stretch: Optional[Tuple[int, int]]  #: first and last segment that plots show: see :func:`_stretch`
     steps: np.ndarray
@@ -89,10 +91,10 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Ou
     training = Training(learnt, phone_set, options.fps, options.seed + split.number, unseen_words=bool(split.words),
                         added=[corpus[i].episode for i in split.added])
     masks = judged_frames([corpus[i] for i in split.test], phone_set, split.words or ())
-    judged = [(corpus[i], mask) for i, mask in zip(split.test, masks) if mask.any()]
+    judged = [(i, mask) for i, mask in zip(split.test, masks) if mask.any()]
     if not judged:
         raise LabialError(f"split {split.number}: no frame to judge")
-    test, kept = [item for item, _ in judged], [mask for _, mask in judged]
+    test, kept = [corpus[i] for i, _ in judged], [mask for _, mask in judged]
     judge = Judge(test, kept, training.scale, phone_set, options.fps)
     reader = LipReader(training, test, split.words)
 
@@ -113,7 +115,7 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Ou
     if split.number == 0:
         item = test[shown]
         held = steps.fit(training).predict(item.timeline)
-        example = Example(options.kind, item, _stretch(item, phone_set, split), held, motion)
+        example = Example(options.kind, judged[shown][0], item, _stretch(item, phone_set, split), held, motion)
     return Outcome(split, judge.frames, measures, seconds, example)
 
 
@@ -123,11 +125,12 @@ def _run(task: Tuple[List[Utterance], Split, Options]) -> Outcome:
 
 def evaluate(
     episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
-    engine: Optional[str] = None, progress: bool = True,
+    engine: Optional[str] = None, progress: bool = True, folder: Optional[Path] = None,
 ) -> List[Outcome]:
     """All splits of `episodes` in order; Labial's models are trained on `further` ones too, of whose talkers one after
     the other is left out and judged where the options say so. The outcomes do not depend on `jobs`, the number of
-    processes, nor on `engine` (:class:`labial.train.workers.Workers`)."""
+    processes, nor on `engine` (:class:`labial.train.workers.Workers`). Each split that is finished is kept in `folder`,
+    that of the report, and taken from there if it is there already (:mod:`labial.evaluate.kept`)."""
     phone_set = PHONE_SETS[options.kind]
     corpus = utterances(episodes, phone_set, options.fps)
     first = len(corpus)
@@ -137,5 +140,16 @@ def evaluate(
     else:
         splits = [replace(split, added=tuple(range(first, len(corpus))))
                   for split in make_splits(corpus[:first], options.splits, options.seed, options.held_out)]
+    if folder is None:
+        with Workers(jobs, progress, engine) as workers:
+            return workers.run("splits", _run, [(corpus, split, options) for split in splits])
+    from labial.evaluate.kept import Kept
+
+    kept = Kept(folder, corpus, options)
+    found = {split.number: outcome for split in splits for outcome in [kept.find(split)] if outcome is not None}
+    if found:
+        print(f"{folder}: {len(found)} of {len(splits)} splits were finished before")
+    left = [split for split in splits if split.number not in found]
     with Workers(jobs, progress, engine) as workers:
-        return workers.run("splits", _run, [(corpus, split, options) for split in splits])
+        new = workers.run("splits", _run, [(corpus, split, options) for split in left], kept.keep)
+    return sorted([*found.values(), *new], key=lambda outcome: outcome.split.number)

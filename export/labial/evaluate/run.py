@@ -9,6 +9,7 @@ from typing import Dict, List, Optional, Sequence
 from labial.corpus import read_corpora
 from labial.corpus.laughter import is_synthetic
 from labial.evaluate import plots, report
+from labial.evaluate.kept import forget
 from labial.evaluate.methods import select
 from labial.evaluate.protocol import Options, Outcome, evaluate
 from labial.outputs import check_folder, folder
@@ -29,7 +30,8 @@ def processor_time(outcomes: Sequence[Outcome]) -> str:
 def run(
     corpora: Sequence[str], output: str, options: Options, *, jobs: int, engine: Optional[str], progress: bool
 ) -> List[Path]:
-    """Evaluates and writes the report into the folder `output`; returns what was written."""
+    """Evaluates and writes the report into the folder `output`; returns what was written. Splits that are finished are
+    kept there until the report is written, and not worked on again."""
     select(options.methods)  # before the corpora are read
     check_folder(output)
     check_jobs(jobs)
@@ -37,10 +39,12 @@ def run(
     options = replace(options, synthetic=is_synthetic(corpora[0]))
     first, *others = read_corpora(corpora, options.kind)
     further = [episode for corpus in others for episode in corpus]
-    outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress)
+    outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress,
+                        folder=Path(output))
     with folder(output) as made:
         drawn = plots.write(outcomes, options, made)
         written = [path.name for path in report.write(outcomes, options, made, drawn)]
+    forget(Path(output))
     if options.leave_out_talkers:
         print(report.talkers_table(outcomes, report.methods_of(outcomes)))
     print(report.caption("Table 1", "diff", options))

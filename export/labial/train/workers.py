@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from concurrent.futures import CancelledError
+from contextlib import ExitStack, contextmanager
 from functools import partial
-from typing import Callable, Dict, Iterable, List, Optional, Sequence, TypeVar
+from typing import Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Type, TypeVar
 
 from joblib import Parallel, delayed, parallel_config
+from joblib.externals.loky import get_reusable_executor
+from joblib.externals.loky.process_executor import TerminatedWorkerError
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
@@ -19,11 +22,11 @@ Result = TypeVar("Result")
 _PATIENCE = 20
 
 
-def _alone(function: Callable[[Task], Result], task: Task) -> Result:
-    """Runs the task with numerical libraries held to one thread: sums in parallel depend on the number of cores. They
-    stay so in this process, for a cluster's may run other tasks in other threads meanwhile."""
+def _alone(function: Callable[[Task], Result], place: int, task: Task) -> Tuple[int, Result]:
+    """Runs the task, which is the one at `place`, with numerical libraries held to one thread: sums in parallel depend
+    on the number of cores. They stay so in this process, for a cluster's may run other tasks in other threads."""
     threadpool_limits(1)
-    return function(task)
+    return place, function(task)
 
 
 class Workers:
@@ -51,21 +54,55 @@ class Workers:
             self._open.enter_context(parallel_config("loky", n_jobs=self._jobs, max_nbytes=None))
         return self
 
-    def __exit__(self, *_: object) -> None:
-        """Leaves the cluster or the processes."""
+    def __exit__(self, kind: Optional[Type[BaseException]], *_: Optional[object]) -> None:
+        """Leaves the cluster or the processes, which end at once, whatever they do, where work was broken off."""
+        if kind is not None and not self._address and self._jobs > 1:
+            get_reusable_executor(reuse=True).shutdown(wait=True, kill_workers=True)
         self._open.close()
 
-    def run(self, what: str, function: Callable[[Task], Result], tasks: Sequence[Task]) -> List[Result]:
-        """Results of `function`, which must be a module's own, for all tasks, in their order."""
+    def run(self, what: str, function: Callable[[Task], Result], tasks: Sequence[Task],
+            done: Optional[Callable[[Result], None]] = None) -> List[Result]:
+        """Results of `function`, which must be a module's own, for all tasks, in their order. `done` is told each as
+        soon as it is there. Raises LabialError when a process is killed or the cluster fails."""
         if self._address or self._jobs > 1:
-            call = delayed(partial(_alone, function))
-            results: Iterable[Result] = Parallel(return_as="generator", batch_size=1)(map(call, tasks))
-            return self._listed(what, results, len(tasks))
+            calls = (delayed(partial(_alone, function, place))(task) for place, task in enumerate(tasks))
+            with self._failing(what):
+                results = Parallel(return_as="generator_unordered", batch_size=1)(calls)
+                return self._listed(what, results, len(tasks), done)
         with threadpool_limits(1):
-            return self._listed(what, map(function, tasks), len(tasks))
+            return self._listed(what, ((place, function(task)) for place, task in enumerate(tasks)), len(tasks), done)
 
-    def _listed(self, what: str, results: Iterable[Result], count: int) -> List[Result]:
-        return list(tqdm(results, desc=what, total=count, disable=not self._progress, leave=False))
+    def _listed(self, what: str, results: Iterable[Tuple[int, Result]], count: int,
+                done: Optional[Callable[[Result], None]]) -> List[Result]:
+        found: Dict[int, Result] = {}
+        for place, result in tqdm(results, desc=what, total=count, disable=not self._progress, leave=False):
+            found[place] = result
+            if done is not None:
+                done(result)
+        return [found[place] for place in range(count)]
+
+    @contextmanager
+    def _failing(self, what: str) -> Iterator[None]:
+        """Says in a sentence what happens to the workers, not to their work."""
+        try:
+            yield
+        except TerminatedWorkerError as error:
+            how = next((name for name in ("SIGKILL", "SIGSEGV", "SIGTERM") if name in str(error)), "a signal")
+            short = ", as happens when memory runs short; fewer --jobs take less" if how == "SIGKILL" else ""
+            raise LabialError(f"{what}: a worker process was ended by {how}{short}") from None
+        except (OSError, CancelledError) as error:
+            if not self._address or getattr(error, "filename", None) is not None:
+                raise
+            raise self._lost(what, error) from None
+        except Exception as error:
+            if not self._address or type(error).__module__.partition(".")[0] != "distributed":
+                raise
+            raise self._lost(what, error) from None
+
+    def _lost(self, what: str, error: BaseException) -> LabialError:
+        text = " ".join(str(error).split())[:200]
+        return LabialError(f"{what}: the Dask cluster at {self._address} failed: {type(error).__name__}"
+                           + (f", {text}" if text else ""))
 
 
 def _client(address: str):  # type: ignore[no-untyped-def]
@@ -78,7 +115,7 @@ def _client(address: str):  # type: ignore[no-untyped-def]
         raise LabialError(f"no Dask scheduler answers at {address}: {' '.join(str(error).split())}") from None
     try:
         client.wait_for_workers(1, timeout=_PATIENCE)
-        different = {name for worker in client.run(_versions).values() for name, version in _versions().items()
+        different = {name for worker in client.run(versions).values() for name, version in versions().items()
                      if worker[name] != version}
     except Exception as error:
         client.close()
@@ -90,7 +127,7 @@ def _client(address: str):  # type: ignore[no-untyped-def]
     return client
 
 
-def _versions() -> Dict[str, str]:
+def versions() -> Dict[str, str]:
     """Versions of what results depend on."""
     import numpy
     import scipy
