@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import tempfile
-from pathlib import Path
-
 import labial
 from utterance import Utterance
 
@@ -25,10 +21,5 @@ class Piper:
         sound, rate, chunks = b"", 22050, []
         for chunk in self._voice.synthesize(text, include_alignments=True):
             sound, rate = sound + chunk.audio_int16_bytes, chunk.sample_rate
-            phonemes = [{"phoneme": one.phoneme, "num_samples": int(one.num_samples)}
-                        for one in chunk.phoneme_alignments]
-            chunks.append({"sample_rate": rate, "phoneme_alignments": phonemes})
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "utterance.json"
-            path.write_text(json.dumps(chunks), encoding="utf-8")
-            return Utterance(sound, rate, labial.read_timings(path, source="piper"), "auto")
+            chunks.append(chunk)
+        return Utterance(sound, rate, labial.read_timings(chunks, source="piper"), "auto")

@@ -28,7 +28,7 @@ from utterance import Utterance
 def moves(utterance: Utterance, face: labial.Rig) -> List[Dict[str, int]]:
     """Servos for each frame. All frames move the face, in order, so that none is missing from its limits of speed."""
     motion = labial.render(utterance.timings, labels=utterance.labels, nearest=True)
-    return [labial.Frame(number, tuple(map(int, faps))).rig(face) for number, faps in enumerate(motion)]
+    return [labial.Frame(number, faps).rig(face) for number, faps in enumerate(motion)]
 
 
 def follow(frames: Sequence[Any], rate: int, show: Callable[[int, Any], None], begin: float,

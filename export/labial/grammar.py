@@ -21,18 +21,6 @@ from labial.errors import DataError
 
 PathLike = Union[str, os.PathLike]
 
-
-class Packed(os.PathLike):
-    """A file in an archive that was read already: its path is the archive's, followed by its name there."""
-
-    def __init__(self, archive: PathLike, name: str, content: bytes) -> None:
-        self._path = os.path.join(os.fspath(archive), name)
-        self.content = content
-
-    def __fspath__(self) -> str:
-        return self._path
-
-
 #: Bytes that a text file has at most.
 LARGEST_TEXT = 256_000_000
 #: Digits that a whole number has at most: times of a file are far from that.
@@ -45,16 +33,25 @@ _WHOLE = re.compile(rf"0*[0-9]{{1,{_MOST_DIGITS}}}")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
+class Content(os.PathLike):
+    """Bytes that stand in for those of a file wherever one is read. Errors call the file `name`."""
+
+    def __init__(self, data: bytes, name: str) -> None:
+        self.data, self._name = data, name
+
+    def __fspath__(self) -> str:
+        return self._name
+
+
 def read_bytes(path: PathLike, most: int = LARGEST_TEXT) -> bytes:
     """A file's bytes. Raises DataError where it cannot be read or has more than `most`."""
-    if isinstance(path, Packed):
-        data = path.content
-    else:
-        try:
-            with open(path, "rb") as file:
-                data = file.read(most + 1)
-        except OSError as error:
-            raise DataError(path, None, error.strerror or str(error)) from None
+    if isinstance(path, Content):
+        return path.data
+    try:
+        with open(path, "rb") as file:
+            data = file.read(most + 1)
+    except OSError as error:
+        raise DataError(path, None, error.strerror or str(error)) from None
     if len(data) > most:
         raise DataError(path, None, f"longer than {most} bytes")
     return data

@@ -18,6 +18,8 @@ else:  # pragma: no cover - the same parser under the name it had before it beca
     import tomli as tomllib
 #: Bytes that a file has at most.
 LARGEST = 1_000_000
+#: No number of a file is larger: products of some of them stay far from what a float holds.
+LARGEST_NUMBER = 1e12
 
 
 class Table:
@@ -52,6 +54,8 @@ class Table:
             number = math.inf
         if not math.isfinite(number):
             raise self.error(key, f"{number} is not a finite number")
+        if abs(number) > LARGEST_NUMBER:
+            raise self.error(key, f"{number:g} is not within -{LARGEST_NUMBER:g} .. {LARGEST_NUMBER:g}")
         return number
 
     def flag(self, key: str, default: bool) -> bool:

@@ -286,7 +286,7 @@ LAB = "0.0 0.2 SIL\n0.2 0.5 AA\n"
     (["good.lab", "-o", "x.c"], "x.c: what is written is a C header"),
     (["good.lab", "-o", "labial_player.h"], "labial_player.h: this is the name of the player"),
     (["good.lab", "-o", "1st.h"], "'1st' is no name for a header"),
-    (["pause.lab", "--as", "phonemes"], "pause.lab: SIL at 1 s lasts 3601 s, a phoneme at most 3600"),
+    (["pause.lab", "--as", "phonemes"], "pause.lab:2: 'AA' lasts 3601 s, more than the 3600 s"),
     (["good.lab", "--text-file", "good.lab"], "good.lab: a text goes with a sound"),
 ])  # fmt: skip
 def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
@@ -298,7 +298,7 @@ def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, c
     head = ",".join(("time", *FAP_COLUMNS))
     for name, text in {
         "good.lab": LAB, "bad.lab": "0.0 0.2 SIL\n0.2 AA\n", "bad.wav": "no sound",
-        "pause.lab": "0 1 AA\n1 3602 SIL\n3602 3603 AA\n",
+        "pause.lab": "0 1 SIL\n1 3602 AA\n3602 3603 SIL\n",
         "bad.csv": f"{head}\n0,1,2\n", "face.toml": FACE,
         "wide.toml": '[output.x]\nfrom = "jaw"\ngain = 1\nneutral = 0\nminimum = -8000000\nmaximum = 1\n',
         "taken.toml": FACE.replace("brow", "next"), "broken.toml": '[output.x]\nfrom = "jaw"\nneutral = 1\n',

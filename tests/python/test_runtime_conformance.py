@@ -27,7 +27,7 @@ def test_stream_has_the_same_frames(script: Dict[str, Any], feed: str) -> None:
 
 
 def test_render_has_the_same_frames() -> None:
-    """Whole utterances of one part: numbers or labels, an array of int16."""
+    """Whole utterances of one part: numbers or labels, a list of tuples."""
     played = 0
     for script in conformance_scripts():
         pushes = script["parts"][0]["pushes"]
@@ -35,7 +35,7 @@ def test_render_has_the_same_frames() -> None:
             continue
         for name in (lambda phoneme: phoneme, lambda phoneme: labial.speech_en.phonemes[phoneme]):
             motion = labial.render([(name(phoneme), milliseconds) for _, phoneme, milliseconds in pushes])
-            assert isinstance(motion, np.ndarray) and motion.dtype == np.int16 and motion.shape[1:] == (13,)
-            assert (motion == conformance_frames()[script["name"]]).all()
+            assert isinstance(motion, list) and all(type(row) is tuple and len(row) == 13 for row in motion)
+            assert (np.array(motion).reshape(-1, 13) == conformance_frames()[script["name"]]).all()
         played += 1
     assert played > 10

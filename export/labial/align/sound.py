@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from pathlib import Path
 from typing import List, Tuple
 
@@ -42,8 +43,13 @@ def read_sound(path: PathLike) -> np.ndarray:
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
     except (RuntimeError, ValueError) as error:  # of either library
-        if Path(path).suffix.lower() in VIDEOS:
-            return _of_video(path)
+        named = Path(path).suffix.lower() in VIDEOS
+        if named or importlib.util.find_spec("av") is not None:
+            try:
+                return _of_video(path)
+            except DataError:
+                if named:
+                    raise
         problem = getattr(error, "error_string", str(error))
         raise DataError(path, None, f"not a sound that can be read: {' '.join(problem.split())}") from None
     return _checked(path, np.concatenate(blocks))

@@ -19,7 +19,6 @@ from labial.frames import even
 from labial.model import Model, load
 from labial.phones import Stream, phone_set, stream_of
 from labial.phonesets import AUTO
-from labial.runtime.library import DURATION_MAX
 from labial.see.motion import read_motion
 
 PathLike = Union[str, os.PathLike]
@@ -65,10 +64,6 @@ def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
     name = source.model or BY_KIND[phone_set_of(segments, source.labels).kind]
     model = load(name)
     found = phoneme_segments(source.path, segments, phone_set(model), False, source.labels)
-    for segment in found:
-        if segment.duration * 1000 > DURATION_MAX:
-            raise DataError(source.path, None, f"{segment.label} at {segment.start:g} s lasts {segment.duration:g} s, "
-                            f"a phoneme at most {DURATION_MAX // 1000}")
     return model, Path(name).stem, _rested(stream_of(found, model, 0), model)
 
 

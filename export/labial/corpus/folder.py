@@ -17,7 +17,7 @@ from labial.corpus.formats import read_timings
 from labial.corpus.timings import LONGEST, phoneme_segments
 from labial.errors import DataError
 from labial.faps import CHANNELS, FAP_COLUMNS
-from labial.grammar import Packed, columns_of, number, read_lines, table_rows
+from labial.grammar import Content, columns_of, number, read_lines, table_rows
 from labial.phonesets import PhoneSet
 
 PathLike = Union[str, os.PathLike]
@@ -98,7 +98,7 @@ def _files(folder: Path) -> Iterator[PathLike]:
             raise DataError(file, None, getattr(error, "strerror", None) or str(error)) from None
         for name in sorted(members):
             if "/" not in name and not name.startswith("."):
-                yield Packed(file, name, members[name])
+                yield Content(members[name], os.path.join(file, name))
 
 
 def read_folder(path: PathLike, phone_set: PhoneSet) -> List[Episode]:

@@ -57,7 +57,8 @@ _BY_SUFFIX = {suffix: item.read for item in FORMATS.values() for suffix in item.
 
 #: Suffixes, in small letters, of sounds and of videos, which hold a sound too.
 SOUNDS = (".wav", ".flac", ".ogg", ".oga", ".opus", ".mp3", ".aif", ".aiff", ".au", ".caf")
-VIDEOS = (".mp4", ".mov", ".m4v", ".mkv", ".webm", ".avi", ".ts", ".3gp")
+VIDEOS = (".mp4", ".mov", ".m4v", ".mkv", ".webm", ".avi", ".ts", ".3gp", ".mpg", ".mpeg", ".flv", ".wmv", ".ogv",
+          ".mts", ".m2ts", ".vob")
 
 #: Suffixes by which formats are told, in small letters.
 SUFFIXES = tuple(_BY_SUFFIX)

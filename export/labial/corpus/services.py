@@ -291,7 +291,8 @@ def _piper_phonemes(entries: Sequence[Entry]) -> List[Entry]:
             item = _entry(item.path, item.line, item.number, last)
         if item.has("phonemealignments"):
             if item.get("phonemealignments") is None:
-                raise item.error("the voice told no alignments: load it with include_alignments=True")
+                raise item.error("Piper told no alignments: ask for them by include_alignments=True, of a voice that "
+                                 "has them; python3 -m piper.patch_voice_with_alignment VOICE.onnx adds them to one")
             rate = item.number_of("samplerate")
             if rate < 1:
                 raise item.error(f"'sample_rate' is {rate:g}")

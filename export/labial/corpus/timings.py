@@ -28,7 +28,7 @@ LONGEST = 86400.0
 PHSEG_RATE = 100.0
 #: HTK's units per second.
 _HTK_RATE = 1e7
-#: No phoneme is longer, in seconds: a file whose first one would be is in HTK's units.
+#: No phoneme is longer, in seconds (LABIAL_DURATION_MAX): a file whose first one would be is in HTK's units.
 _LONGEST_PHONEME = 3600
 
 
@@ -178,7 +178,8 @@ def phoneme_segments(
     """Maps labels of the set `labels` to `phone_set` and joins the segments without gaps from time 0; `path` is for the
     error message.
 
-    An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment.
+    An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment. A
+    silence of more than an hour becomes several; another phoneme of such a length is a DataError.
     Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
     phoneme, with one warning each.
     """
@@ -197,13 +198,28 @@ def phoneme_segments(
                 warnings.warn(f"{problem}; it moves as {label}", stacklevel=2)
                 unknown.add(item.label)
         if item.start - previous > TOLERANCE:
-            result.append(Segment(previous, item.start, phone_set.silence))
-            previous = item.start
+            previous = _silence(result, previous, item.start, phone_set)
         end = max(item.end, previous)
+        if end - previous > _LONGEST_PHONEME:
+            if label != phone_set.silence:
+                where = f"interval {place}: " if item.line is None else ""
+                raise DataError(path, item.line, f"{where}{item.label!r} lasts {end - previous:g} s, more than the "
+                                f"{_LONGEST_PHONEME} s that a phoneme may")
+            previous = _silence(result, previous, end - _LONGEST_PHONEME, phone_set)
         apex = None if item.apex is None else min(max(item.apex, previous), end)
         result.append(Segment(previous, end, label, apex, item.word))
         previous = end
     return tuple(result)
+
+
+def _silence(result: List[Segment], start: float, end: float, phone_set: PhoneSet) -> float:
+    """Appends silence, as several phonemes where it is too long for one; returns `end`."""
+    while end - start > _LONGEST_PHONEME:
+        result.append(Segment(start, start + _LONGEST_PHONEME, phone_set.silence))
+        start += _LONGEST_PHONEME
+    if end > start:
+        result.append(Segment(start, end, phone_set.silence))
+    return end
 
 
 def lab_of(segments: Iterable[Segment]) -> str:

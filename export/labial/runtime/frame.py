@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Dict, NamedTuple, Tuple, Union
+from typing import NamedTuple, Tuple, Union
 
-from labial.runtime.rig import Rig
+from labial.runtime.rig import Rig, Values
 
 
 class Frame(NamedTuple):
@@ -13,8 +13,8 @@ class Frame(NamedTuple):
     number: int  #: counted from 0 since the stream was made; it is due number / fps seconds after the first
     faps: Tuple[int, ...]  #: 13 values, FAP units, in the order of ``labial.faps.FAP_NUMBERS``
 
-    def rig(self, face: Union[Rig, str]) -> Dict[str, int]:
-        """What moves `face`: a value for each output, by name, in the rig's own unit.
+    def rig(self, face: Union[Rig, str]) -> Values:
+        """What moves `face`: a value for each output, by name, in the rig's own unit: weights are 0 .. 1.
 
         `face` is a :class:`labial.Rig`. Outputs with a limit of speed go on from where the frame before left them, so
         this is called once per frame, in order. A built-in rig may also be given by its name, such as "arkit".

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ctypes
 import os
+import unicodedata
 from functools import cache
 from typing import Any, Optional, Tuple, Union
 
 from labial.aliases import LABEL_SETS
-from labial.errors import LabialError, ModelError
+from labial.errors import LabialError, ModelError, StreamError
 from labial.runtime import BUNDLED
 from labial.runtime.library import (
     ERROR_NAME,
@@ -99,9 +100,17 @@ class Model:
         return checked(library().labial_find_nearest(self._names, _set(labels), text, len(text), self.silence))
 
     def number(self, phoneme: Union[str, int], labels: str = "auto", nearest: bool = False) -> int:
-        """The number of a phoneme that is given by its label or its number, which is checked."""
+        """The number of a phoneme that is given by its label or its number, which is checked. Punctuation that is no
+        label, such as Piper's ``^``, is silence."""
         if isinstance(phoneme, str):
-            return self.nearest(phoneme, labels) if nearest else self.find(phoneme, labels)
+            if nearest:
+                return self.nearest(phoneme, labels)
+            try:
+                return self.find(phoneme, labels)
+            except StreamError:
+                if phoneme and all(unicodedata.category(c)[0] in "PSZ" for c in phoneme):
+                    return self.silence  # punctuation, as synthesisers have it among their phonemes
+                raise
         found = whole(phoneme, "a phoneme that is no label")
         if not 0 <= found < self._count:
             raise failure(ERROR_PHONEME, f"{found} in {self.name}")

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import operator
 import os
 import re
-from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Tuple, Union
+from typing import Any, Iterable, List, Optional, TextIO, Tuple, Union
 
 from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.runtime.models import Model
 from labial.runtime.numbers import duration
 from labial.runtime.stream import Stream
-
-if TYPE_CHECKING:
-    import numpy as np
 
 #: A phoneme, by label or number, or a laugh (``<laugh:0.7>``), and how many milliseconds it lasts.
 Timing = Tuple[Union[str, int], float]
@@ -22,24 +21,20 @@ _LAUGH = re.compile(r"<laugh(?:[: ]\s*([^\s>]+))?>")
 
 
 def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter: Optional[Model] = None,
-           labels: str = "auto", nearest: bool = False) -> Union[np.ndarray, List[Tuple[int, ...]]]:
-    """All frames of an utterance at once: (T, 13) int16, FAP units, ``model.fps`` frames per second.
+           labels: str = "auto", nearest: bool = False) -> List[Tuple[int, ...]]:
+    """All frames of an utterance at once: T tuples of 13 ints, FAP units, ``model.fps`` frames per second.
 
     `timings` are pairs of a phoneme, by label or number, and its milliseconds; ``<laugh>`` or ``<laugh:0.7>`` in a
     label's place is a laugh of that intensity. The other arguments are those of :class:`labial.Stream`, whose frames
-    these are. Where numpy is not installed the result is a list of T tuples of 13 ints. Raises LabialError, with the
-    number of the timing from 1, and TypeError for what is no timing.
+    these are. ``numpy.array(frames, "int16")`` makes an array (T, 13) of them. Raises LabialError, with the number of
+    the timing from 1, and TypeError for what is no timing.
     """
     with Stream(model, laughter=laughter, labels=labels, nearest=nearest) as stream:
         for place, timing in enumerate(timings, 1):
             _push(stream, place, timing)
         stream.end()
         frames = stream.rest()
-    try:
-        import numpy as np
-    except ModuleNotFoundError:
-        return list(zip(*[iter(frames)] * CHANNELS))
-    return np.frombuffer(frames, dtype=np.int16).reshape(-1, CHANNELS)
+    return list(zip(*[iter(frames)] * CHANNELS))
 
 
 def _push(stream: Stream, place: int, timing: Any) -> None:
@@ -64,18 +59,46 @@ def _intensity(text: Optional[str]) -> float:
         raise LabialError(f"a laugh's intensity is a number, not {text!r}") from None
 
 
-def read_timings(path: Union[str, os.PathLike], *, labels: str = "auto",
+def read_timings(given: Union[str, os.PathLike, TextIO, list, dict], *, labels: str = "auto",
                  source: Optional[str] = None) -> List[Tuple[str, float]]:
-    """What :func:`render` takes, from a file of any format that ``labial timings`` reads (docs/timings.md): phonemes
+    """What :func:`render` takes, from timings of any format that ``labial timings`` reads (docs/timings.md): phonemes
     with their milliseconds, from time 0 on and without gaps.
 
-    `labels` is the set that the file's labels are of, `source` the format where it is not to be told by the file.
+    `given` is the path of a file, a file that is open, such as :class:`io.StringIO`, or what a service answers in JSON
+    when it has been parsed, a list or a dict; Piper's chunks may be in the list as they are. `labels` is the set that
+    the labels are of, `source` the format where it is not to be told by the file.
     Raises DataError with the file and, where there is one, the line.
     """
     from labial.corpus.formats import phone_set_of, phoneme_segments
     from labial.corpus.formats import read_timings as read
 
+    path = given if isinstance(given, (str, os.PathLike)) else _content(given)
     segments = read(path, source)
     found = phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels)
     ends = [round(segment.end * 1000.0) for segment in found]
     return [(segment.label, end - begin) for segment, begin, end in zip(found, [0, *ends], ends)]
+
+
+def _content(given: Any) -> os.PathLike:
+    """What stands in for the file of timings that are given in another way."""
+    from labial.grammar import Content
+
+    if isinstance(given, (list, dict)):
+        return Content(json.dumps(given, default=_plain).encode("utf-8"), "timings")
+    if not hasattr(given, "read"):
+        raise TypeError(f"timings are a path, a file, a list or a dict, not {type(given).__name__}")
+    data = given.read()
+    name = getattr(given, "name", "timings")
+    return Content(data.encode("utf-8") if isinstance(data, str) else bytes(data),
+                   name if isinstance(name, str) else "timings")
+
+
+def _plain(item: Any) -> Any:
+    """What JSON has in place of a number of another package, or of one of Piper's chunks or phonemes."""
+    for names in (("sample_rate", "phoneme_alignments"), ("phoneme", "num_samples")):
+        if all(hasattr(item, name) for name in names):
+            return {name: getattr(item, name) for name in names}
+    try:
+        return operator.index(item)
+    except TypeError:
+        return float(item)

@@ -15,19 +15,23 @@ from labial.rig import FACES, description_of
 from labial.runtime.guard import Guard, alone
 from labial.runtime.library import RigOutput, RigTable, checked, library
 
+#: Value of each output by name: an int, or a float where the unit is weight.
+Values = Dict[str, Union[int, float]]
+
 
 class Rig:
     """What moves one face: servos, blendshapes, features of a drawn mouth.
 
     ``Rig("face.toml")`` reads a description, ``Rig("arkit")`` takes a built-in one; ``Rig.BUILTIN`` names those. The
-    values are those of ``labial_rig_apply()``, bit for bit. A rig remembers the last frame's values, from which outputs
-    with a limit of speed go on: each face has a rig of its own. Raises DataError, which names the
-    file and the key, for what is wrong in a description.
+    values are those of ``labial_rig_apply()``, bit for bit, weights divided by 1,000. A rig remembers the last frame's
+    values, from which outputs with a limit of speed go on: each face has a rig of its own. Raises DataError, which
+    names the file and the key, for what is wrong in a description.
 
     Attributes:
         name: the description's name without its suffix.
         outputs: names of the outputs.
-        unit: what the values count: us, quarter_us, pca9685, counts, weight (thousandths) or plain.
+        unit: what the values count: us, quarter_us, pca9685, counts or plain, all of them whole numbers, or weight,
+            whose values are floats from 0 to 1 in steps of a thousandth.
         prescale: what the PCA9685's prescale register must hold, where the unit is its ticks; else None.
         values: value of each output now, by name; the face at rest before the first frame.
     """
@@ -69,17 +73,19 @@ class Rig:
         return cls(name)
 
     @property
-    def values(self) -> Dict[str, int]:
+    def values(self) -> Values:
         """Value of each output now, by name."""
+        if self.unit == "weight":
+            return {name: value / 1000 for name, value in zip(self.outputs, self._values)}
         return dict(zip(self.outputs, self._values))
 
     @alone
-    def rest(self) -> Dict[str, int]:
+    def rest(self) -> Values:
         """Puts the face at rest; its values."""
         checked(library().labial_rig_rest(self._table, self._values))
         return self.values
 
-    def apply(self, faps: Iterable[int]) -> Dict[str, int]:
+    def apply(self, faps: Iterable[int]) -> Values:
         """Moves the face on by one frame of 13 FAPs, whole numbers of 16 bits; its values."""
         try:
             numbers = array("h", faps)
@@ -92,7 +98,7 @@ class Rig:
         return self._moved(numbers)
 
     @alone
-    def _moved(self, numbers: array) -> Dict[str, int]:
+    def _moved(self, numbers: array) -> Values:
         checked(self._apply(self._table, numbers.buffer_info()[0], self._values))
         return self.values
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from functools import partial
-from typing import Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Type, TypeVar
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Type, TypeVar
 
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky import get_reusable_executor
@@ -40,6 +41,7 @@ class Workers:
         kind, _, self._address = (engine or "").partition("=")
         if engine is not None and (kind != "dask" or not self._address):
             raise LabialError(f"the engine {engine!r} is not dask=ADDRESS, such as dask=tcp://10.0.0.1:8786")
+        self._client: Any = None
         self._jobs = jobs
         self._progress = progress
         self._open = ExitStack()
@@ -47,8 +49,7 @@ class Workers:
     def __enter__(self) -> Workers:
         """The workers themselves. Raises LabialError when there is no cluster or its packages are others."""
         if self._address:
-            self._open.enter_context(_client(self._address))
-            self._open.enter_context(parallel_config("dask", n_jobs=-1))
+            self._client = self._open.enter_context(_client(self._address))
         elif self._jobs > 1:
             # Arrays are copied: as files, joblib's way for large ones, they could not be written to.
             self._open.enter_context(parallel_config("loky", n_jobs=self._jobs, max_nbytes=None))
@@ -64,7 +65,10 @@ class Workers:
             done: Optional[Callable[[Result], None]] = None) -> List[Result]:
         """Results of `function`, which must be a module's own, for all tasks, in their order. `done` is told each as
         soon as it is there. Raises LabialError when a process is killed or the cluster fails."""
-        if self._address or self._jobs > 1:
+        if self._address:
+            with self._failing(what):
+                return self._listed(what, self._of_cluster(function, tasks), len(tasks), done)
+        if self._jobs > 1:
             calls = (delayed(partial(_alone, function, place))(task) for place, task in enumerate(tasks))
             with self._failing(what):
                 results = Parallel(return_as="generator_unordered", batch_size=1)(calls)
@@ -80,6 +84,17 @@ class Workers:
             if done is not None:
                 done(result)
         return [found[place] for place in range(count)]
+
+    def _of_cluster(self, function: Callable[[Task], Result], tasks: Sequence[Task]) -> Iterator[Tuple[int, Result]]:
+        """Without joblib, whose Dask backend waits for ever when the worker of a task dies."""
+        from distributed import as_completed
+
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Sending large graph", UserWarning)
+            futures = [self._client.submit(_alone, function, place, task, pure=False)
+                       for place, task in enumerate(tasks)]
+        for future in as_completed(futures):
+            yield future.result()
 
     @contextmanager
     def _failing(self, what: str) -> Iterator[None]:
