@@ -12,6 +12,7 @@ opens or rounds most.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Collection, Dict, List, Optional, Sequence, Tuple
 
 from labial.aliases import LABEL_SETS, LAUGHTER_LABELS, SPEECH_LABELS
@@ -38,8 +39,18 @@ class PhoneSet:
         """Every label that has a meaning, and that meaning, in one of `LABEL_SETS` or in any of them.
 
         The phonemes' own labels are known in every set, unless the IPA or X-SAMPA means other sounds by them. A lone
-        digit is a phoneme of X-SAMPA's alone: where no set is named, it is more likely a slip.
+        digit is a phoneme of X-SAMPA's alone: where no set is named, it is more likely a slip. The result is kept and
+        must not be changed.
         """
+        if labels not in self._names:
+            self._names[labels] = self._names_of(labels)
+        return self._names[labels]
+
+    @cached_property
+    def _names(self) -> Dict[str, Dict[str, str]]:
+        return {}
+
+    def _names_of(self, labels: str) -> Dict[str, str]:
         own = {label: label for label in self.phonemes}
         if labels == "arpabet":
             return {**self.aliases[labels], **own}

@@ -11,13 +11,13 @@ from typing import List, Sequence
 import numpy as np
 import pytest
 
-from labial.bake.source import DURATION_MAX
 from labial.bake.track import AVR_LARGEST, FORMAT
 from labial.cli import main
 from labial.corpus.formats import SOUNDS
 from labial.faps import FAP_COLUMNS
 from labial.rig.description import read
 from labial.rig.table import convert, moved, write
+from labial.runtime.library import DURATION_MAX
 from packages import CC, CXX, SOURCE, run, warnings
 
 TALK = SOURCE / "examples" / "talk"

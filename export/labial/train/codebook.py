@@ -24,6 +24,9 @@ TOLERANCE = 1e-4
 ROUGH_TOLERANCE = 1e-2
 MAXIMUM_ITERATIONS = 60
 
+#: Far more, as a share, than rounding does to a distance.
+_ROUNDING = 1e-9
+
 #: Least variance of a state, as a share of the feature's variance over the corpus.
 VARIANCE_FLOOR = 1e-3
 
@@ -47,15 +50,61 @@ def assign(points: np.ndarray, centres: np.ndarray) -> Tuple[np.ndarray, np.ndar
     return nearest.astype(np.int64), distance**2
 
 
+class _Nearest:
+    """:func:`assign` for centres that move a little from call to call: Lloyd's iteration. The results are the same to
+    the last bit; what is saved is the search for points whose nearest centre no move can have changed.
+
+    A point whose own centre is nearer than every other one could have come keeps it (Hamerly 2010): each knows how far
+    its second nearest centre was at least, from which what the centres moved since is taken off.
+    """
+
+    def __init__(self, points: np.ndarray) -> None:
+        self._points = points
+        self._columns = np.ascontiguousarray(points.T)
+        self._before = np.zeros((0, points.shape[1]))
+        self._cell = np.zeros(len(points), dtype=np.int64)
+        self._others = np.zeros(len(points))  # least distance of any other centre
+
+    def __call__(self, centres: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """As :func:`assign`."""
+        if len(centres) == 1 or len(centres) != len(self._before):
+            return self._search(centres, np.arange(len(self._points)))
+        self._others -= np.sqrt(((centres - self._before) ** 2).sum(axis=1)).max() * (1 + _ROUNDING)
+        distance = self._own(centres)
+        return self._search(centres, np.flatnonzero(distance >= self._others * (1 - _ROUNDING)))
+
+    def _search(self, centres: np.ndarray, rows: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        tree, points = cKDTree(centres), self._points[rows]
+        if len(centres) > 1 and len(rows):
+            distance, nearest = tree.query(points, k=2)
+            self._cell[rows], self._others[rows] = nearest[:, 0], distance[:, 1]
+            level = np.flatnonzero(distance[:, 1] <= distance[:, 0] * (1 + _ROUNDING))  # as one that looks for one
+            if len(level):
+                self._cell[rows[level]] = tree.query(points[level])[1]
+        self._before = centres.copy()
+        return self._cell.copy(), self._own(centres) ** 2
+
+    def _own(self, centres: np.ndarray) -> np.ndarray:
+        """(n,) distances to each point's centre, summed in the order in which the tree sums."""
+        total = np.zeros(len(self._cell))
+        for column, place in zip(self._columns, centres.T):
+            total += (column - place[self._cell]) ** 2
+        return np.sqrt(total)
+
+
 def _moments(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Counts (size,), means and variances (size, D) of the points in each cell; zeros where a cell is empty."""
-    count = np.bincount(cell, minlength=size).astype(np.float64)
-    divisor = np.maximum(count, 1)[:, None]
-    total = np.stack([np.bincount(cell, weights=column, minlength=size) for column in points.T], axis=1)
-    mean = total / divisor
+    count, mean = _means(points, cell, size)
     offset = (points - mean[cell]) ** 2
     spread = np.stack([np.bincount(cell, weights=column, minlength=size) for column in offset.T], axis=1)
-    return count, mean, spread / divisor
+    return count, mean, spread / np.maximum(count, 1)[:, None]
+
+
+def _means(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray]:
+    """Counts (size,) and means (size, D) of the points in each cell; zeros where a cell is empty."""
+    count = np.bincount(cell, minlength=size).astype(np.float64)
+    total = np.stack([np.bincount(cell, weights=column, minlength=size) for column in points.T], axis=1)
+    return count, total / np.maximum(count, 1)[:, None]
 
 
 def lloyd(
@@ -65,17 +114,19 @@ def lloyd(
 
     A centre that loses all its points is put beside the centre of the cell with the largest distortion, splitting it.
     """
-    before = np.inf
+    before, nearest = np.inf, _Nearest(points)
     for _ in range(MAXIMUM_ITERATIONS):
-        cell, distance = assign(points, centres)
-        count, mean, variance = _moments(points, cell, len(centres))
+        cell, distance = nearest(centres)
+        count, mean = _means(points, cell, len(centres))
         distortion = float(distance.mean())
         empty = np.flatnonzero(count == 0)
         if not len(empty) and before - distortion <= tolerance * distortion:
             break
         before = np.inf if len(empty) else distortion
-        load = count * variance.sum(axis=1)
         centres = mean
+        if len(empty):
+            variance = _moments(points, cell, len(centres))[2]
+            load = count * variance.sum(axis=1)
         for lost in empty:
             widest = int(load.argmax())
             axis = int(variance[widest].argmax())
@@ -84,7 +135,7 @@ def lloyd(
             centres[lost] = centres[widest]
             centres[lost, axis] += SPLIT * np.sqrt(variance[widest, axis])
             load[widest] = 0
-    cell, distance = assign(points, centres)
+    cell, distance = nearest(centres)
     return centres, cell, float(distance.mean())
 
 
