@@ -163,9 +163,19 @@ static int flite_field(timings_t *t, char *field)
     return flite_token(t, field);
 }
 
+/* A line that starts with # is a comment. */
+static int hash_field(timings_t *t, char *field)
+{
+    if (t->count == 1 && field[0] == '#') {
+        t->comment = 1;
+        t->count = 0;
+    }
+    return 0;
+}
+
 static int lab_field(timings_t *t, char *field)
 {
-    (void)field;
+    hash_field(t, field);
     return t->count <= 5 ? 0 : timings_malformed(t, "a line has five fields at most: start, end, label, apex, word");
 }
 
@@ -173,15 +183,6 @@ static int pho_field(timings_t *t, char *field)
 {
     if (t->count > 2 && !timings_is_number(field))
         return timings_malformed(t, "'%.63s' is not part of a pitch point", field);
-    return 0;
-}
-
-static int mary_field(timings_t *t, char *field)
-{
-    if (t->count == 1 && field[0] == '#') {
-        t->comment = 1;
-        t->count = 0;
-    }
     return 0;
 }
 
@@ -197,14 +198,14 @@ static const struct {
     [TIMINGS_AUTO] = { "auto", "told from the first line (default)", NULL, NULL, 0 },
     [TIMINGS_FLITE] = { "flite", "`flite -psdur`: label:end ..., seconds; every line starts again from 0", flite_field,
                         NULL, 0 },
-    [TIMINGS_LAB] = { "lab", "start end label [apex [word]], a line each, seconds; gaps are silence", lab_field,
+    [TIMINGS_LAB] = { "lab", "start end label [apex [word]], a line each, seconds; gaps are silence; # comment", lab_field,
                       lab_line, 0 },
     [TIMINGS_HTK] = { "htk", "start end label, a line each, units of 100 ns; also HTS's labels with context, a^b-c+d=e",
                       NULL, htk_line, 0 },
     [TIMINGS_PHO] = { "pho", "MBROLA: label milliseconds [position pitch]..., a line each; ; comment, _ silence",
                       pho_field, pho_line, 1 },
     [TIMINGS_MARY] = { "mary", "MaryTTS REALISED_DURATIONS: a line of #, then end number label, a line each, seconds",
-                       mary_field, mary_line, 1 },
+                       hash_field, mary_line, 1 },
     [TIMINGS_PHSEG] = { "phseg", "CMU Sphinx: SFrm EFrm SegAScr Phone, frames of 10 ms", NULL, phseg_line, 0 },
     [TIMINGS_TEXTGRID] = { "textgrid", "Praat or Montreal Forced Aligner; the tier of phones is found by its name",
                            NULL, NULL, 0 }, /* timings_textgrid.c reads it */

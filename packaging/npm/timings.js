@@ -112,7 +112,8 @@ export function fromPolly(source) {
 /** Lines of `start end label [apex [word]]`, seconds; or HTK's labels, in units of 100 ns. */
 export function fromLab(text) {
     if (typeof text !== "string") throw new TypeError(`the labels are ${shown(text)}, not text`);
-    const rows = linesOf(text).map((line, i) => [i + 1, line.match(/[^ \t\r]+/g)]).filter(([, fields]) => fields);
+    const rows = linesOf(text).map((line, i) => [i + 1, line.match(/[^ \t\r]+/g)])
+        .filter(([, fields]) => fields && !fields[0].startsWith("#"));
     const whole = (field) => /^0*[0-9]{1,18}$/.test(field);
     const first = rows.length ? rows[0][1] : [];
     const htk = first.length >= 3 && whole(first[0]) && whole(first[1]) && Number(first[1]) > LONGEST_PHONEME;

@@ -260,3 +260,49 @@ def test_unknown_words_are_taken_apart(recogniser: Recogniser) -> None:
     few = {"tack": "T AE K", "bus": "B AH S", "dog": "D AO G"}
     found, guessed = pronunciations(["tack's", "dogs", "bus's"], few.get)
     assert list(found.values()) == ["T AE K S", "D AO G Z", "B AH S AH Z"] and not guessed
+
+
+def spoken(folder: Path) -> Path:
+    """The three sentences in one file."""
+    parts = [soundfile.read(speech("flite", folder, text, str(n))[0])[0] for n, text in enumerate(TEXTS)]
+    soundfile.write(folder / "all.wav", np.concatenate(parts), RATE)
+    return folder / "all.wav"
+
+
+def test_confidence_is_low_where_the_text_is_wrong(tmp_path: Path) -> None:
+    """High all through where the text fits; low, and said, where it lacks sentences or has another one."""
+    path = spoken(tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        whole = module.aligned(path, " ".join(TEXTS))
+    assert len(whole.stretches) >= 3 and min(item.confidence for item in whole.stretches) > 0.7
+    other = "Nobody could ever guess which of those green windows had been shut."
+    for text in (TEXTS[0], f"{TEXTS[0]} {other} {TEXTS[2]}"):
+        with pytest.warns(UserWarning, match="low confidence from"):
+            found = module.aligned(path, text)
+        assert 0 <= min(item.confidence for item in found.stretches) < 0.6
+
+
+def test_confidence_is_told(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """In the file, as comments that every reader passes over, and on the terminal."""
+    path, lab = spoken(tmp_path), tmp_path / "a.lab"
+    assert main(["align", str(path), "--text", " ".join(TEXTS), "-o", str(lab)]) == 0
+    assert "all.wav: confidence 0." in capsys.readouterr().err
+    rows = [line.split() for line in lab.read_text().splitlines() if line.startswith("# ")][1:]
+    assert len(rows) >= 3 and all(0.6 < float(row[3]) <= 1 and float(row[1]) < float(row[2]) for row in rows)
+    assert main(["timings", str(lab), "-o", str(tmp_path / "b.lab")]) == 0
+    assert (tmp_path / "b.lab").read_text() == "".join(
+        f"{line}\n" for line in lab.read_text().splitlines() if not line.startswith("#"))
+    assert len(say(lab)) > 100
+
+
+def test_a_sentence_too_many_is_left_out(tmp_path: Path) -> None:
+    """It failed the whole. What is there is aligned as without it."""
+    path = spoken(tmp_path)
+    expected = module.align(path, " ".join(TEXTS))
+    with pytest.warns(UserWarning, match="goes on behind the sound"):
+        found = module.align(path, " ".join(TEXTS) + " And after that nobody ever came back to this house again.")
+    moments = np.arange(0, expected[-1].end, 0.01)
+    at = [np.array([item.label for item in each])[np.searchsorted([item.end for item in each], moments)]
+          for each in (expected, found)]
+    assert np.mean(at[0] == at[1]) > 0.95

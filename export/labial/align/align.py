@@ -9,11 +9,13 @@ from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.align.recogniser import Recogniser
+from labial.align.confidence import Stretch, comments, stretches, unspoken, unsure
+from labial.align.recogniser import Found, Recogniser
 from labial.align.silence import LONGEST_PAUSE_UNHEARD, with_silences
 from labial.align.sound import RATE, prepared, read_sound, silences
 from labial.align.words import pronunciations, words_of
 from labial.corpus.episode import Segment
+from labial.corpus.timings import lab_of
 from labial.errors import DataError, LabialError
 
 PathLike = Union[str, os.PathLike]
@@ -38,17 +40,35 @@ class Piece:
     start: float
     end: float
     score: float  #: of the mean frame, see :class:`Recogniser`; 0 for a silent one
+    stretches: List[Stretch]
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """The phonemes of a sound, and how sure they are."""
+
+    segments: Tuple[Segment, ...]  #: ARPABET and SIL, without gaps from time 0 to the sound's end
+    stretches: Tuple[Stretch, ...]  #: what is spoken, part by part, each with its confidence
+
+    def lab(self) -> str:
+        """The segments as a .lab, with the confidence of each stretch as comments behind them."""
+        return lab_of(self.segments) + comments(self.stretches)
 
 
 def align(
     path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None
 ) -> Tuple[Segment, ...]:
-    """English phonemes (ARPABET and SIL) of a sound file, without gaps from time 0 to the sound's end.
+    """The segments of :func:`aligned`."""
+    return aligned(path, text, progress).segments
+
+
+def aligned(path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None) -> Alignment:
+    """English phonemes of a sound file.
 
     `text` is what is said in it; without, the likeliest words are looked for. `progress` is told the seconds that are
-    done. Warns of words that are pronounced by guess and of a text that does not seem to be that of the sound. Raises
-    DataError for a sound that cannot be read or a text that cannot be found in it, LabialError for a text that has no
-    words or is not English.
+    done. Warns of words that are pronounced by guess, of a text that does not seem to be that of the sound or goes on
+    behind its end, and of stretches of low confidence. Raises DataError for a sound that cannot be read or a text that
+    cannot be found in it, LabialError for a text that has no words or is not English.
     """
     samples = read_sound(path)
     recogniser = Recogniser()
@@ -63,7 +83,7 @@ def align(
         pieces = _followed(path, sound, words, recogniser, progress)
     _judge(path, sound, pieces, text is not None)
     segments = [segment for piece in pieces for segment in piece.segments]
-    return tuple(_joined(segments))
+    return Alignment(tuple(_joined(segments)), tuple(stretch for piece in pieces for stretch in piece.stretches))
 
 
 @dataclass(frozen=True)
@@ -96,14 +116,16 @@ class Sound:
         frames = self.samples[begin : begin + round(longest / 2 * RATE) // hop * hop].reshape(-1, hop)
         return (begin + (int(np.argmin(np.square(frames).sum(axis=1))) + 0.5) * hop) / RATE
 
-    def piece(self, start: float, end: float, found: Optional[Tuple[List[Segment], float]]) -> Piece:
+    def piece(self, start: float, end: float, found: Optional[Found]) -> Piece:
         """Phonemes from `start` brought to the silences and to the time of the whole sound; silence without any."""
         if found is None:
-            return Piece([Segment(start, end, "SIL")], start, end, 0.0)
+            return Piece([Segment(start, end, "SIL")], start, end, 0.0, [])
         within = [(max(a, start) - start, min(b, end) - start) for a, b in self.silences if a < end and b > start]
-        unheard = [(s.start, s.end) for s in found[0] if s.label == "SIL" and s.duration > LONGEST_PAUSE_UNHEARD]
-        segments = with_silences(found[0], _united([*within, *unheard]), end - start)
-        return Piece([Segment(start + s.start, start + s.end, s.label) for s in segments], start, end, found[1])
+        unheard = [(s.start, s.end) for s in found.segments if s.label == "SIL" and s.duration > LONGEST_PAUSE_UNHEARD]
+        segments = with_silences(found.segments, _united([*within, *unheard]), end - start)
+        spoken = [*stretches(found.heard, start), *unspoken(segments, within, start)]
+        return Piece([Segment(start + s.start, start + s.end, s.label) for s in segments], start, end, found.score,
+                     sorted(spoken, key=lambda item: item.start))
 
 
 def _learn(recogniser: Recogniser, words: List[str]) -> None:
@@ -142,6 +164,8 @@ def _followed(
         if sound.length - start > LONGEST_PIECE + OVERLAP and count:
             end, count = _next_piece(sound, start, words[at:], recogniser)
         found = recogniser.phonemes(sound.part(start, end), words[at : at + count]) if count else None
+        if count and found is None and end == sound.length:
+            count, found = _heard_of(sound.part(start, end), words[at:], recogniser)
         if count and found is None:
             raise DataError(path, None, f"the text does not fit the sound from {start:.1f} s on: "
                             f"'{' '.join(words[at : at + 6])} ...' is not found there")
@@ -151,8 +175,18 @@ def _followed(
             progress(start, sound.length)
     if at < len(words):
         rest = " ".join(words[at : at + 6])
-        raise DataError(path, None, f"the text does not fit: the sound ends before '{rest} ...'")
+        if at < len(words) / 2:
+            raise DataError(path, None, f"the text does not fit: the sound ends before '{rest} ...'")
+        warnings.warn(f"{os.fspath(path)}: the text goes on behind the sound: '{rest} ...' is left out", stacklevel=3)
     return pieces
+
+
+def _heard_of(samples: np.ndarray, words: Sequence[str], recogniser: Recogniser) -> Tuple[int, Optional[Found]]:
+    """How many of the first `words` are in the last piece of a sound, where not all of them fit, and their phonemes;
+    all and None where none do."""
+    count = sum(not word.startswith(("<", "[")) for word, _, _ in recogniser.follow_part(samples, words))
+    found = recogniser.phonemes(samples, words[:count]) if count else None
+    return (count, found) if found is not None else (len(words), None)
 
 
 def _next_piece(sound: Sound, start: float, words: Sequence[str], recogniser: Recogniser) -> Tuple[float, int]:
@@ -187,6 +221,9 @@ def _judge(path: PathLike, sound: Sound, pieces: Sequence[Piece], has_text: bool
         warnings.warn(f"{name}: {what}{where}; the mouth will not match what is heard", stacklevel=3)
     elif spoken < LEAST_SPOKEN * heard:
         warnings.warn(f"{name}: {what}: words are in {spoken:.1f} of {heard:.1f} s that are not silent", stacklevel=3)
+    where = unsure([stretch for piece in pieces for stretch in piece.stretches])
+    if where:
+        warnings.warn(f"{name}: low confidence from {where}: the text or the sound there may be another", stacklevel=3)
 
 
 def _united(spans: Sequence[Tuple[float, float]]) -> List[Tuple[float, float]]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from pocketsphinx import Decoder
 
+from labial.align.confidence import Heard
 from labial.align.sound import RATE
 from labial.corpus.episode import Segment
 
@@ -18,6 +19,14 @@ _BEAM = 1e-200
 _WIDE = {"beam": _BEAM, "wbeam": _BEAM, "pbeam": _BEAM, "bestpath": False}
 #: A second pass on 30 ms of sound at least: a phoneme has three states.
 _SHORTEST = int(0.1 * RATE)
+
+
+class Found(NamedTuple):
+    """Phonemes in seconds of a piece of sound."""
+
+    segments: List[Segment]
+    score: float  #: of the mean frame
+    heard: List[Heard]  #: the same, each with its score
 
 
 class Recogniser:
@@ -63,12 +72,12 @@ class Recogniser:
         self.follower.activate_search("part")
         return _words(self.follower, samples)
 
-    def phonemes(self, samples: np.ndarray, words: Sequence[str]) -> Optional[Tuple[List[Segment], float]]:
-        """Phonemes of `words` in seconds of `samples`, and their score as of :func:`_phonemes`; None as above."""
+    def phonemes(self, samples: np.ndarray, words: Sequence[str]) -> Optional[Found]:
+        """Phonemes of `words` in seconds of `samples`, as of :func:`_phonemes`; None as above."""
         return _phonemes(self.follower, samples) if self.follow(samples, words) else None
 
-    def find(self, samples: np.ndarray) -> Optional[Tuple[List[Segment], float]]:
-        """Phonemes of the words that are most likely in `samples`, and their score; None where there are none."""
+    def find(self, samples: np.ndarray) -> Optional[Found]:
+        """Phonemes of the words that are most likely in `samples`; None where there are none."""
         if len(samples) < _SHORTEST:
             return None
         if self._finder is None:
@@ -91,21 +100,22 @@ def _words(decoder: Decoder, samples: np.ndarray) -> List[Tuple[str, float, floa
             for segment in decoder.seg()]
 
 
-def _phonemes(decoder: Decoder, samples: np.ndarray) -> Optional[Tuple[List[Segment], float]]:
-    """The second pass, behind :func:`_words`: phonemes, and the mean score of a frame of them, which is 0 where each
-    frame is what the models expect and falls where they do not know the sound."""
+def _phonemes(decoder: Decoder, samples: np.ndarray) -> Optional[Found]:
+    """The second pass, behind :func:`_words`: phonemes, each with the mean score of its frames, and that of all of
+    them, which is 0 where each frame is what the models expect and falls where they do not know the sound."""
     try:
         decoder.set_alignment()
         _decode(decoder, samples)  # no hyp() from here on: it crashes in this search
         found = [phone for word in decoder.get_alignment() for phone in word]
     except RuntimeError:
         return None
-    segments = []
+    segments, heard = [], []
     for phone in found:
         start = phone.start / FRAME_RATE + (_OFFSET if phone.start else 0.0)
         label = phone.name if phone.name.isalpha() else "SIL"
         segments.append(Segment(start, (phone.start + phone.duration) / FRAME_RATE + _OFFSET, label))
+        heard.append(Heard(start, segments[-1].end, label, phone.score / max(phone.duration, 1)))
     sounding = [phone for phone in found if phone.name.isalpha() and phone.name != "SIL"]
     if not sounding:
         return None
-    return segments, sum(phone.score for phone in sounding) / sum(phone.duration for phone in sounding)
+    return Found(segments, sum(phone.score for phone in sounding) / sum(phone.duration for phone in sounding), heard)

@@ -86,7 +86,7 @@ def _heard(source: Source) -> List[SourceSegment]:
     found = align_with_bar(source.path, source.text, source.progress)
     if source.text is None:
         warnings.warn(f"{source.path}: without its text (--text, --text-file) phonemes are less sure", stacklevel=2)
-    return [SourceSegment(item.start, item.end, item.label, None, "arpabet") for item in found]
+    return [SourceSegment(item.start, item.end, item.label, None, "arpabet") for item in found.segments]
 
 
 def read_track(source: Source) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 from labial.commands.common import add_quiet, add_said, put, said, shows_progress
 from labial.errors import needs
@@ -19,10 +20,13 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     with needs("aligning", "align"):
+        from labial.align.confidence import summary
         from labial.align.progress import align_with_bar
-    from labial.corpus.timings import lab_of
     from labial.outputs import check
 
     check(options.output)
-    put(lab_of(align_with_bar(options.sound, said(options), shows_progress(options))), options.output)
+    found = align_with_bar(options.sound, said(options), shows_progress(options))
+    put(found.lab(), options.output)
+    if found.stretches and not options.quiet:
+        print(f"{options.sound}: {summary(found.stretches)}", file=sys.stderr)
     return 0

@@ -41,9 +41,10 @@ class SourceSegment(Segment):
 
 
 def read_lab(path: PathLike) -> List[SourceSegment]:
-    """Reads lines of ``start end label [apex [word]]``, seconds; or HTK's labels, which are called .lab, too."""
+    """Reads lines of ``start end label [apex [word]]``, seconds; or HTK's labels, which are called .lab, too. A line
+    that starts with # is a comment."""
     segments = []
-    rows = _rows(path)
+    rows = [row for row in _rows(path) if not row[1][0].startswith("#")]
     if rows and _is_htk(rows[0][1]):
         return read_htk(path)
     for line, fields in rows:
