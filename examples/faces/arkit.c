@@ -4,73 +4,40 @@
 #include "arkit.h"
 
 /* weights, invert, reserved, gain, neutral, minimum, maximum, slew */
-static const labial_rig_output_t outputs[20] = {
-    /* jawOpen: 1.25 per FAP unit of (+1 open_jaw) */
-    { { 4096, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 81920, 0, 0, 1000, 0 },
-    /* mouthClose: 1.25 per FAP unit of (+1 open_jaw +1.4 lower_t_midlip_o +1 raise_b_midlip_o) */
-    { { 8192, 0, 0, 11469, 8192, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 40960, 0, 0, 1000, 0 },
-    /* mouthFunnel: 4.24242 per FAP unit of (+1 push_t_lip -0.2 lower_t_midlip_o -0.2 raise_b_midlip_o -0.5
-     * stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
-    { { 0, 0, 16384, -3277, -3277, -8192, -8192, 0, 0, 0, 0, 0, 0 },
-      0, 0, 69508, -400, 0, 1000, 0 },
-    /* mouthPucker: 3.92857 per FAP unit of (+1 push_t_lip +0.1 lower_t_midlip_o +0.1 raise_b_midlip_o -0.5
-     * stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
-    { { 0, 0, 8192, 819, 819, -4096, -4096, 0, 0, 0, 0, 0, 0 },
-      0, 0, 128731, -100, 0, 1000, 0 },
-    /* mouthStretchLeft: 4 per FAP unit of (+1 stretch_l_cornerlip_o -0.5 raise_l_cornerlip_o) */
-    { { 0, 0, 0, 0, 0, 4096, 0, 0, 0, 0, 0, -2048, 0 },
-      0, 0, 262144, 0, 0, 1000, 0 },
-    /* mouthStretchRight: 4 per FAP unit of (+1 stretch_r_cornerlip_o -0.5 raise_r_cornerlip_o) */
-    { { 0, 0, 0, 0, 0, 0, 4096, 0, 0, 0, 0, 0, -2048 },
-      0, 0, 262144, 0, 0, 1000, 0 },
-    /* mouthSmileLeft: 6.38889 per FAP unit of (+0.2 open_jaw +0.5 stretch_l_cornerlip_o +0.5
+static const labial_rig_output_t outputs[10] = {
+    /* jawOpen: 0.394581 per FAP unit of (+0.643 open_jaw -1 raise_b_midlip_o) */
+    { { 2634, 0, 0, 0, -4096, 0, 0, 0, 0, 0, 0, 0, 0 },
+      0, 0, 25859, -21, 0, 1000, 0 },
+    /* mouthClose: 0.839842 per FAP unit of (+0.331 open_jaw +1 lower_t_midlip_o +0.238 raise_b_midlip_o) */
+    { { 5423, 0, 0, 16384, 3899, 0, 0, 0, 0, 0, 0, 0, 0 },
+      0, 0, 13760, 0, 0, 1000, 0 },
+    /* mouthPucker: 3.98565 per FAP unit of (+0.084 push_b_lip -0.5 stretch_l_cornerlip_o -0.5
+     * stretch_r_cornerlip_o) */
+    { { 0, 43, 0, 0, 0, -256, -256, 0, 0, 0, 0, 0, 0 },
+      0, 0, 2089629, 0, 0, 1000, 0 },
+    /* mouthSmileLeft: 3.02904 per FAP unit of (+0.033 open_jaw +1 stretch_l_cornerlip_o -0.026
      * raise_l_cornerlip_o) */
-    { { 3277, 0, 0, 0, 0, 8192, 0, 0, 0, 0, 0, 8192, 0 },
-      0, 0, 104676, -150, 0, 1000, 0 },
-    /* mouthSmileRight: 6.38889 per FAP unit of (+0.2 open_jaw +0.5 stretch_r_cornerlip_o +0.5
+    { { 541, 0, 0, 0, 0, 16384, 0, 0, 0, 0, 0, -426, 0 },
+      0, 0, 49628, -1, 0, 1000, 0 },
+    /* mouthSmileRight: 3.02904 per FAP unit of (+0.033 open_jaw +1 stretch_r_cornerlip_o -0.026
      * raise_r_cornerlip_o) */
-    { { 3277, 0, 0, 0, 0, 0, 8192, 0, 0, 0, 0, 0, 8192 },
-      0, 0, 104676, -150, 0, 1000, 0 },
-    /* mouthFrownLeft: 4.4 per FAP unit of (-0.4 open_jaw -1 raise_l_cornerlip_o) */
-    { { -3277, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -8192, 0 },
-      0, 0, 144179, -100, 0, 1000, 0 },
-    /* mouthFrownRight: 4.4 per FAP unit of (-0.4 open_jaw -1 raise_r_cornerlip_o) */
-    { { -3277, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -8192 },
-      0, 0, 144179, -100, 0, 1000, 0 },
-    /* mouthUpperUpLeft: 5.5 per FAP unit of (-1 lower_t_lip_lm_o) */
-    { { 0, 0, 0, 0, 0, 0, 0, -4096, 0, 0, 0, 0, 0 },
-      0, 0, 360448, -100, 0, 1000, 0 },
-    /* mouthUpperUpRight: 5.5 per FAP unit of (-1 lower_t_lip_rm_o) */
-    { { 0, 0, 0, 0, 0, 0, 0, 0, -4096, 0, 0, 0, 0 },
-      0, 0, 360448, -100, 0, 1000, 0 },
-    /* mouthLowerDownLeft: 3.66667 per FAP unit of (-0.9 open_jaw -1 raise_b_lip_lm_o) */
-    { { -7373, 0, 0, 0, 0, 0, 0, 0, 0, -8192, 0, 0, 0 },
-      0, 0, 120149, -100, 0, 1000, 0 },
-    /* mouthLowerDownRight: 3.66667 per FAP unit of (-0.9 open_jaw -1 raise_b_lip_rm_o) */
-    { { -7373, 0, 0, 0, 0, 0, 0, 0, 0, 0, -8192, 0, 0 },
-      0, 0, 120149, -100, 0, 1000, 0 },
-    /* mouthPressLeft: 6.94444 per FAP unit of (+0.25 open_jaw +1.25 lower_t_midlip_o +0.25
-     * raise_b_midlip_o) */
-    { { 1024, 0, 0, 5120, 1024, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 455111, -250, 0, 700, 0 },
-    /* mouthPressRight: 6.94444 per FAP unit of (+0.25 open_jaw +1.25 lower_t_midlip_o +0.25
-     * raise_b_midlip_o) */
-    { { 1024, 0, 0, 5120, 1024, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 455111, -250, 0, 700, 0 },
-    /* mouthRollUpper: 5 per FAP unit of (+0.25 open_jaw +1.25 lower_t_midlip_o +0.25 raise_b_midlip_o) */
-    { { 1024, 0, 0, 5120, 1024, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 327680, -250, 0, 500, 0 },
-    /* mouthRollLower: 6.11111 per FAP unit of (+1 open_jaw +1 raise_b_midlip_o) */
-    { { 4096, 0, 0, 0, 4096, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 400498, -100, 0, 1000, 0 },
-    /* mouthShrugLower: 3.14286 per FAP unit of (+1 open_jaw +1 raise_b_midlip_o) */
-    { { 4096, 0, 0, 0, 4096, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 205970, -100, 0, 500, 0 },
-    /* mouthShrugUpper: 3.57143 per FAP unit of (+1 open_jaw -1 lower_t_midlip_o +1 raise_b_midlip_o) */
+    { { 541, 0, 0, 0, 0, 0, 16384, 0, 0, 0, 0, 0, -426 },
+      0, 0, 49628, -1, 0, 1000, 0 },
+    /* mouthStretchLeft: 4.31744 per FAP unit of (+1 stretch_l_cornerlip_o -0.076 raise_l_cornerlip_o) */
+    { { 0, 0, 0, 0, 0, 16384, 0, 0, 0, 0, 0, -1245, 0 },
+      0, 0, 70737, -5, 0, 1000, 0 },
+    /* mouthStretchRight: 4.31744 per FAP unit of (+1 stretch_r_cornerlip_o -0.076 raise_r_cornerlip_o) */
+    { { 0, 0, 0, 0, 0, 0, 16384, 0, 0, 0, 0, 0, -1245 },
+      0, 0, 70737, -5, 0, 1000, 0 },
+    /* mouthUpperUpLeft: 3.00184 per FAP unit of (-1 lower_t_midlip_o -0.112 raise_b_midlip_o) */
+    { { 0, 0, 0, -16384, -1835, 0, 0, 0, 0, 0, 0, 0, 0 },
+      0, 0, 49182, -140, 0, 1000, 0 },
+    /* mouthUpperUpRight: 3.00184 per FAP unit of (-1 lower_t_midlip_o -0.112 raise_b_midlip_o) */
+    { { 0, 0, 0, -16384, -1835, 0, 0, 0, 0, 0, 0, 0, 0 },
+      0, 0, 49182, -140, 0, 1000, 0 },
+    /* mouthRollLower: 4.19886 per FAP unit of (+1 open_jaw -1 lower_t_midlip_o +1 raise_b_midlip_o) */
     { { 4096, 0, 0, -4096, 4096, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 234057, -250, 0, 500, 0 }
+      0, 0, 275176, -250, 0, 400, 0 }
 };
 
-const labial_rig_t arkit = { outputs, 20 };
+const labial_rig_t arkit = { outputs, 10 };

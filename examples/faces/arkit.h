@@ -14,38 +14,26 @@
 extern "C" {
 #endif
 
-#define ARKIT_OUTPUTS 20
+#define ARKIT_OUTPUTS 10
 
 /* What initialises an array of the outputs' names. */
 #define ARKIT_OUTPUT_NAMES { \
-    "jawOpen", "mouthClose", "mouthFunnel", "mouthPucker", "mouthStretchLeft", "mouthStretchRight", \
-    "mouthSmileLeft", "mouthSmileRight", "mouthFrownLeft", "mouthFrownRight", "mouthUpperUpLeft", \
-    "mouthUpperUpRight", "mouthLowerDownLeft", "mouthLowerDownRight", "mouthPressLeft", "mouthPressRight", \
-    "mouthRollUpper", "mouthRollLower", "mouthShrugLower", "mouthShrugUpper" \
+    "jawOpen", "mouthClose", "mouthPucker", "mouthSmileLeft", "mouthSmileRight", "mouthStretchLeft", \
+    "mouthStretchRight", "mouthUpperUpLeft", "mouthUpperUpRight", "mouthRollLower" \
 }
 
 /* Places of the outputs among the values. */
 enum {
     ARKIT_JAWOPEN = 0,
     ARKIT_MOUTHCLOSE = 1,
-    ARKIT_MOUTHFUNNEL = 2,
-    ARKIT_MOUTHPUCKER = 3,
-    ARKIT_MOUTHSTRETCHLEFT = 4,
-    ARKIT_MOUTHSTRETCHRIGHT = 5,
-    ARKIT_MOUTHSMILELEFT = 6,
-    ARKIT_MOUTHSMILERIGHT = 7,
-    ARKIT_MOUTHFROWNLEFT = 8,
-    ARKIT_MOUTHFROWNRIGHT = 9,
-    ARKIT_MOUTHUPPERUPLEFT = 10,
-    ARKIT_MOUTHUPPERUPRIGHT = 11,
-    ARKIT_MOUTHLOWERDOWNLEFT = 12,
-    ARKIT_MOUTHLOWERDOWNRIGHT = 13,
-    ARKIT_MOUTHPRESSLEFT = 14,
-    ARKIT_MOUTHPRESSRIGHT = 15,
-    ARKIT_MOUTHROLLUPPER = 16,
-    ARKIT_MOUTHROLLLOWER = 17,
-    ARKIT_MOUTHSHRUGLOWER = 18,
-    ARKIT_MOUTHSHRUGUPPER = 19
+    ARKIT_MOUTHPUCKER = 2,
+    ARKIT_MOUTHSMILELEFT = 3,
+    ARKIT_MOUTHSMILERIGHT = 4,
+    ARKIT_MOUTHSTRETCHLEFT = 5,
+    ARKIT_MOUTHSTRETCHRIGHT = 6,
+    ARKIT_MOUTHUPPERUPLEFT = 7,
+    ARKIT_MOUTHUPPERUPRIGHT = 8,
+    ARKIT_MOUTHROLLLOWER = 9
 };
 
 extern const labial_rig_t arkit;

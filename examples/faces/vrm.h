@@ -14,20 +14,18 @@
 extern "C" {
 #endif
 
-#define VRM_OUTPUTS 5
+#define VRM_OUTPUTS 3
 
 /* What initialises an array of the outputs' names. */
 #define VRM_OUTPUT_NAMES { \
-    "aa", "ih", "ou", "ee", "oh" \
+    "aa", "ih", "ou" \
 }
 
 /* Places of the outputs among the values. */
 enum {
     VRM_AA = 0,
     VRM_IH = 1,
-    VRM_OU = 2,
-    VRM_EE = 3,
-    VRM_OH = 4
+    VRM_OU = 2
 };
 
 extern const labial_rig_t vrm;

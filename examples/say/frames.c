@@ -60,7 +60,7 @@ static void begin_livelink(frames_t *frames)
 {
     fputs("Timecode,BlendShapeCount", frames->out);
     for (int i = 0; i < LIVELINK_COLUMNS; i++)
-        fprintf(frames->out, ",%s", livelink_columns[i].name);
+        fprintf(frames->out, ",%s", livelink_columns[i]);
     putc('\n', frames->out);
 }
 
@@ -71,7 +71,7 @@ static void put_livelink(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
     fprintf(frames->out, "%02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 ".000,%d", seconds / 3600u,
             seconds / 60u % 60u, seconds % 60u, frames->count % frames->frames_per_second, LIVELINK_COLUMNS);
     for (int i = 0; i < LIVELINK_COLUMNS; i++) {
-        const int output = livelink_columns[i].output;
+        const int output = livelink_output(livelink_columns[i]);
         putc(',', frames->out);
         write_weight(frames->out, output >= 0 ? frames->weights[output] : 0);
     }

@@ -7,11 +7,10 @@
 /* Columns behind Timecode and BlendShapeCount: ARKit's 52 blendshapes and 9 rotations. */
 #define LIVELINK_COLUMNS 61
 
-typedef struct {
-    const char *name; /* JawOpen; ARKit's own name is the same with a small letter in front */
-    int output;       /* the blendshape's place among the values of the rig arkit, or -1 */
-} livelink_column_t;
+/* Their names: JawOpen; ARKit's own name is the same with a small letter in front. */
+extern const char *const livelink_columns[LIVELINK_COLUMNS];
 
-extern const livelink_column_t livelink_columns[LIVELINK_COLUMNS];
+/* The place of a column's blendshape among the values of the rig arkit, or -1 where neither lips nor jaw move it. */
+int livelink_output(const char *column);
 
 #endif

@@ -153,30 +153,26 @@ def test_blendshapes_of_a_face() -> None:
     what it must and must not move."""
     rest = dict.fromkeys(FAP_NUMBERS, 0.0)
     gestures = {
-        "jaw": ({3: 400, 52: -400, 57: -400, 58: -400}, {"jawOpen"}, {"mouthClose", "mouthPucker"}),
-        "closed": ({3: 400}, {"jawOpen", "mouthClose"}, {"mouthLowerDownLeft"}),
-        "pressed": ({3: 260, 51: 90, 52: -140}, {"mouthClose", "mouthPressLeft", "mouthPressRight", "mouthRollUpper"},
-                    {"mouthUpperUpLeft", "mouthLowerDownLeft", "mouthFunnel", "mouthShrugUpper"}),
-        "lip to teeth": ({3: 260, 51: -35, 52: -100, 55: -35, 56: -35}, {"mouthRollLower", "mouthShrugLower",
-                         "mouthShrugUpper"}, {"mouthPressLeft", "mouthRollUpper", "mouthFunnel"}),
+        "jaw": ({3: 400, 52: -400, 57: -400, 58: -400}, {"jawOpen"}, {"mouthPucker", "mouthRollLower"}),
+        "closed": ({3: 200, 51: 90}, {"mouthClose"}, {"mouthUpperUpLeft", "mouthPucker"}),
+        "lip to teeth": ({3: 260, 51: -35, 52: -100, 55: -35, 56: -35}, {"mouthRollLower"}, {"mouthPucker"}),
         "round": ({17: 150, 16: 150, 53: -150, 54: -150}, {"mouthPucker"}, {"jawOpen", "mouthSmileLeft", "mouthClose"}),
         "smile": ({53: 150, 54: 150, 59: 150, 60: 150}, {"mouthSmileLeft", "mouthSmileRight"},
-                  {"mouthFrownLeft", "mouthPucker", "jawOpen"}),
+                  {"mouthPucker", "jawOpen"}),
         "left": ({53: 150, 59: 150}, {"mouthSmileLeft"}, {"mouthSmileRight", "mouthStretchRight"}),
-        "sad": ({59: -150, 60: -150}, {"mouthFrownLeft", "mouthFrownRight"}, {"mouthSmileLeft"}),
         "teeth": ({51: -100, 55: -100, 56: -100}, {"mouthUpperUpLeft", "mouthUpperUpRight"}, {"jawOpen"}),
     }  # fmt: skip
     assert not np.any(list(arkit(np.array([list(rest.values())])).values()))
     for name, (faps, moved, still) in gestures.items():
         weights = {name: column[0] for name, column in arkit(np.array([list({**rest, **faps}.values())])).items()}
-        assert all(weights[shape] > 0.25 for shape in moved), (name, weights)
+        assert all(weights[shape] > 0.1 for shape in moved), (name, weights)
         assert all(weights[shape] == 0.0 for shape in still), (name, weights)
 
 
 def test_columns_are_apples() -> None:
     """Catches a blendshape that is described and that ARKit or Live Link do not know, so that it would go nowhere."""
     described = {output.name for output in read(description_of("arkit"), "arkit").outputs}
-    assert len(described) == 20 and described <= set(APPLE) and len(LIVE_LINK) == 61
+    assert len(described) == 10 and described <= set(APPLE) and len(LIVE_LINK) == 61
     assert set(arkit(np.zeros((1, len(FAP_NUMBERS))))) == described
 
 

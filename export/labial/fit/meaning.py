@@ -1,0 +1,73 @@
+"""What FAPs mean on a head: by how many millimetres each of its points is to move.
+
+The units of FAPs are 1/1024 of the head's own mouth-nose separation and mouth width. They follow the outer lips, whose
+middles are about a millimetre further apart than the inner ones when these meet: in p, b, m of recorded talkers the
+outer lips do not come back to where they rest, though the lips are shut. `bend` takes this millimetre off.
+"""
+
+from __future__ import annotations
+
+from typing import List, NamedTuple
+
+import numpy as np
+
+from labial.faps import FAP_NUMBERS
+from labial.fit.head import Head
+
+_COLUMN = {number: place for place, number in enumerate(FAP_NUMBERS)}
+
+#: Millimetres by which outer lips are apart when inner ones meet, and from which opening on both open alike.
+_LIFT, _ALIKE = 1.0, 8.0
+
+
+def fap(frames: np.ndarray, number: int) -> np.ndarray:
+    """(T,) of one FAP from (T, 13) frames."""
+    return frames[:, _COLUMN[number]]
+
+
+def bend(opening: np.ndarray) -> np.ndarray:
+    """The opening of the inner lips, mm, from that of the outer ones, mm."""
+    return np.maximum(opening - _LIFT * np.clip((_ALIKE - opening) / (_ALIKE - 1.0), 0.0, 1.0), 0.0)
+
+
+class Row(NamedTuple):
+    """One thing that is seen of a head."""
+
+    name: str
+    weight: float  #: how much a millimetre counts
+    moves: np.ndarray  #: (K,) mm that weight 1 of each shape adds
+    target: np.ndarray  #: (T,) mm that is meant
+    rest: float  #: mm where the head rests; targets of gaps are whole, those of other rows are changes
+
+
+def rows(head: Head, frames: np.ndarray) -> List[Row]:
+    """Everything that FAPs mean and the head's points show, for (T, 13) frames. Gaps come first."""
+    unit, wide = head.mns / 1024.0, head.mw / 1024.0
+    found: List[Row] = []
+
+    def gap(name: str, weight: float, upper: str, lower: str, high: int, low: int) -> None:
+        if upper in head.rest and lower in head.rest:
+            found.append(Row(name, weight, head.moves[upper][:, 1] - head.moves[lower][:, 1],
+                             bend(-(fap(frames, high) + fap(frames, low)) * unit),
+                             float(head.rest[upper][1] - head.rest[lower][1])))
+
+    def point(name: str, weight: float, where: str, axis: int, number: int, sign: float) -> None:
+        if where in head.rest:
+            found.append(Row(name, weight, head.moves[where][:, axis], sign * fap(frames, number) * unit, 0.0))
+
+    gap("opening", 3.0, "inner_upper", "inner_lower", 51, 52)
+    gap("opening left", 1.5, "inner_upper_left", "inner_lower_left", 55, 57)
+    gap("opening right", 1.5, "inner_upper_right", "inner_lower_right", 56, 58)
+    found.append(Row("width", 1.0, head.moves["corner_left"][:, 0] - head.moves["corner_right"][:, 0],
+                     (fap(frames, 53) + fap(frames, 54)) * wide, 0.0))
+    outer = "outer" if "outer_upper" in head.rest and "outer_lower" in head.rest else "inner"
+    point("upper lip", 1.5, f"{outer}_upper", 1, 51, -1.0)
+    point("lower lip", 1.5, f"{outer}_lower", 1, 52, 1.0)
+    for side, numbers in (("left", (55, 57, 59)), ("right", (56, 58, 60))):
+        point(f"upper lip {side}", 0.5, f"outer_upper_{side}", 1, numbers[0], -1.0)
+        point(f"lower lip {side}", 0.5, f"outer_lower_{side}", 1, numbers[1], 1.0)
+        point(f"corner {side}", 0.7, f"corner_{side}", 1, numbers[2], 1.0)
+    point("upper lip forward", 0.7, f"{outer}_upper", 2, 17, 1.0)
+    point("lower lip forward", 0.5, f"{outer}_lower", 2, 16, 1.0)
+    point("jaw", 0.35, "chin", 1, 3, -1.0)
+    return found
