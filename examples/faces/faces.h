@@ -10,7 +10,7 @@
 /* Outputs that a rig has at most. */
 #define FACES_OUTPUTS_MAX 64
 
-/* A rig whose outputs are weights in thousandths, with the names that engines know. */
+/* A rig whose outputs are weights, with the names that engines know. */
 typedef struct {
     const char *name;
     const labial_rig_t *rig;

@@ -50,10 +50,10 @@ static void put_csv(frames_t *frames, const int16_t faps[LABIAL_CHANNELS])
     putc('\n', frames->out);
 }
 
-/* A weight in thousandths, as a number from 0 to 1. */
+/* A weight of a rig, as a number from 0 to 1. */
 static void write_weight(FILE *out, int32_t weight)
 {
-    fprintf(out, "%" PRId32 ".%03" PRId32, weight / 1000, weight % 1000);
+    fprintf(out, "%" PRId32 ".%03" PRId32, weight / LABIAL_RIG_WEIGHT_ONE, weight % LABIAL_RIG_WEIGHT_ONE);
 }
 
 static void begin_livelink(frames_t *frames)

@@ -38,7 +38,7 @@ typedef struct {
     uint32_t count;
     int failed;
     const face_t *face;                 /* null where a format has no weights */
-    int32_t weights[FACES_OUTPUTS_MAX]; /* of the latest frame, thousandths */
+    int32_t weights[FACES_OUTPUTS_MAX]; /* of the latest frame */
     int16_t (*kept)[LABIAL_CHANNELS];   /* fap: `count` frames in room for `room`, owned */
     size_t room;
 } frames_t;

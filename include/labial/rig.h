@@ -16,7 +16,8 @@
  *     value  = target, or as near to it as `slew` lets the last value come
  *
  * Values have whatever unit the table's author chose: microseconds of a servo's pulse, quarter microseconds (Maestro),
- * ticks of a PWM chip (PCA9685), counts of a timer, thousandths of a blendshape.
+ * ticks of a PWM chip (PCA9685), counts of a timer, or weights of blendshapes from 0 to LABIAL_RIG_WEIGHT_ONE, which
+ * stands for 1.
  *
  * Integers only, no allocation, no state but the caller's `values`, the same bits on every target. A rig is constant,
  * may be used for any number of faces at once, and is linked only when used.
@@ -49,6 +50,9 @@ extern "C" {
 
 /* A weight of one, Q12. */
 #define LABIAL_RIG_ONE 4096
+
+/* What a blendshape's weight of 1 is among the values: `values[i] / (float)LABIAL_RIG_WEIGHT_ONE` is from 0 to 1. */
+#define LABIAL_RIG_WEIGHT_ONE 1000
 
 /* The gain by which an output moves `units` when its weighted FAPs add up to `faps`: integers, `faps` not 0. */
 #define LABIAL_RIG_GAIN(units, faps) ((int32_t)((int64_t)(units)*65536 / (faps)))

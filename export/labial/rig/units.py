@@ -47,5 +47,5 @@ def make_unit(name: str, parameter: float = 50.0) -> Unit:
             raise LabialError(f"{parameter:g} is not within 1e4 .. 1e9 Hz")
         return Unit(name, parameter / 1e6, True, f"counts of a timer at {parameter:.15g} Hz")
     if name == "weight":
-        return Unit(name, 1000.0, False, "thousandths of a weight", 1000)
+        return Unit(name, 1000.0, False, "weights, 1000 for 1", 1000)
     return Unit(name, 1.0, False, "plain units")
