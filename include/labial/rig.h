@@ -13,7 +13,12 @@
  *
  *     move   = gain * (weights[0] * f[0] + ... + weights[12] * f[12])    rounded to the nearest, halves up
  *     target = neutral + move, or neutral - move when inverted           within minimum .. maximum
- *     value  = target, or as near to it as `slew` lets the last value come
+ *     wanted = target + contact * (closed - target), where the output says where it is closed; else the target
+ *     value  = wanted, or as near to it as `slew` lets the last value come; the last one where `deadband` keeps it
+ *
+ * Contact is 1 where the lips touch, which in p, b, m FAPs say by an opening, -(FAP 51 + FAP 52), of up to
+ * LABIAL_RIG_TOUCHING: they follow the outer lips, which are not quite where they rest when the inner ones meet. From
+ * there it falls to 0 at LABIAL_RIG_APART. So a mouth of servos that say where they are closed is closed in p, b, m.
  *
  * Values have whatever unit the table's author chose: microseconds of a servo's pulse, quarter microseconds (Maestro),
  * ticks of a PWM chip (PCA9685), counts of a timer, or weights of blendshapes from 0 to LABIAL_RIG_WEIGHT_ONE, which
@@ -38,13 +43,13 @@ extern "C" {
 #endif
 
 /* Version of the tables' meaning. Tables that `labial rig` wrote for another version do not compile. */
-#define LABIAL_RIG_FORMAT 1
+#define LABIAL_RIG_FORMAT 2
 
 /* ---- Limits, beyond which labial_rig_check() refuses a table. With them no sum or product overflows. ------------- */
 
 #define LABIAL_RIG_WEIGHT_SUM_MAX 65535 /* of the weights' absolute values in one output, Q12 */
 #define LABIAL_RIG_GAIN_MAX 268435455   /* largest absolute gain, Q16: just below 4,096 units per FAP unit */
-#define LABIAL_RIG_VALUE_MAX 16777215   /* largest absolute neutral, minimum, maximum and slew */
+#define LABIAL_RIG_VALUE_MAX 16777215   /* largest absolute neutral, minimum, maximum, closed, slew, deadband */
 
 /* ---- Tables ------------------------------------------------------------------------------------------------------ */
 
@@ -57,16 +62,23 @@ extern "C" {
 /* The gain by which an output moves `units` when its weighted FAPs add up to `faps`: integers, `faps` not 0. */
 #define LABIAL_RIG_GAIN(units, faps) ((int32_t)((int64_t)(units)*65536 / (faps)))
 
-/* One output. 48 bytes. */
+/* FAP units between the outer lips at which the inner ones touch, and from which on they are apart. */
+#define LABIAL_RIG_TOUCHING 72
+#define LABIAL_RIG_APART 136
+
+/* One output. 56 bytes. */
 typedef struct {
     int16_t weights[LABIAL_CHANNELS]; /* Q12, in the order of labial_fap_numbers (labial/faps.h) */
     uint8_t invert;                   /* 1 when the output moves the other way, else 0 */
-    uint8_t reserved;                 /* 0 */
+    uint8_t contact;                  /* 1 when `closed` says where the output is where lips touch, else 0 */
     int32_t gain;                     /* Q16: units per FAP unit; may be negative */
     int32_t neutral;                  /* units: the value of the face at rest; may lie beyond the limits, which then
                                        * apply: so an output stays at one end until the FAPs have gone some way */
     int32_t minimum, maximum;         /* units: no value is ever beyond them, minimum <= maximum */
     int32_t slew;                     /* units per frame that the value changes at most; 0 for no limit */
+    int32_t closed;                   /* units: the value where lips touch, minimum <= closed <= maximum; 0 without
+                                       * `contact` */
+    int32_t deadband;                 /* units: the value stays where it would change by less than this; 0 for none */
 } labial_rig_output_t;
 
 /* A rig: `count` outputs, 1 or more. */
@@ -85,23 +97,25 @@ typedef struct {
  */
 #define LABIAL_RIG_JAW(closed, open)                                                                                   \
     {                                                                                                                  \
-        { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 0,                                   \
+        { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 1,                                   \
             LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open),   \
-            (closed) < (open) ? (open) : (closed), 0                                                                   \
+            (closed) < (open) ? (open) : (closed), 0, (closed), 0                                                      \
     }
 
 /* ---- Calls ------------------------------------------------------------------------------------------------------- */
 
 /*
- * Checks that a table is within the limits above: at least one output, weights, gain, neutral, minimum, maximum and
- * slew within their ranges, minimum <= maximum, slew >= 0, `invert` 0 or 1, `reserved` 0.
+ * Checks that a table is within the limits above: at least one output, weights, gain, neutral, minimum, maximum,
+ * closed, slew and deadband within their ranges, minimum <= maximum, slew >= 0, deadband >= 0, `invert` and `contact`
+ * 0 or 1; closed within minimum .. maximum with contact, 0 without.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_RIG.
  */
 int labial_rig_check(const labial_rig_t *rig);
 
 /*
- * Sets each of the rig's `count` values to its output's neutral, within its limits.
+ * Sets each of the rig's `count` values to its output's neutral, or to where it is closed if it says that, within its
+ * limits: what labial_rig_apply() makes of FAPs that are all 0.
  *
  * Returns LABIAL_OK or LABIAL_ERROR_NULL.
  */
@@ -118,6 +132,19 @@ int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
  * Returns LABIAL_OK or LABIAL_ERROR_NULL.
  */
 int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values);
+
+/*
+ * The same for a program that knows the frames that follow: `frames` are `count` frames of LABIAL_CHANNELS values, this
+ * one first. An output that says where it is closed and has a limit of speed sets out early enough to be closed where
+ * the lips touch, which a limit alone does not: of the frames in sight the first in which they touch decides how far
+ * off the value may still be. With one frame it is labial_rig_apply().
+ *
+ * A program that plays a stream keeps the last few frames that were delivered and shows the oldest: so it is late by as
+ * many frames as it looks ahead, and delays the sound by as much. `labial bake` looks ahead without an end.
+ *
+ * Returns LABIAL_OK or LABIAL_ERROR_NULL, also for a count of 0.
+ */
+int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values);
 
 #ifdef __cplusplus
 }

@@ -184,6 +184,7 @@ static void jaw_macro_closes_and_opens(void **state)
     } poses[] = {
         { 0, 0, 1400 },    { 90, -90, 1400 },  { 0, -600, 1900 }, { -100, -500, 1900 },
         { 0, -300, 1650 }, { 90, -390, 1650 }, { 200, 0, 1400 },  { -32768, -32768, 1900 },
+        { 0, -72, 1400 },  { 20, -92, 1400 },  { 0, -136, 1513 }, { 0, -104, 1443 },
     };
     unsigned i;
     (void)state;
@@ -199,6 +200,124 @@ static void jaw_macro_closes_and_opens(void **state)
         assert_in_range(values[0] - poses[i].up + 1, 0, 2);
         assert_in_range(values[1] + values[0] - 3300 + 1, 0, 2);
     }
+}
+
+/* Lips that touch, as FAPs say it in p, b, m, bring an output to where it is closed; lips that part let it go. */
+static void contact_closes(void **state)
+{
+    static const struct {
+        int16_t top, bottom;
+        int32_t value;
+    } poses[] = {
+        { 0, 0, 1450 },
+        { 0, -71, 1450 },
+        { 0, -72, 1450 },
+        { 40, -112, 1450 },
+        { 0, -73, 1453 },
+        { 0, -104, 1543 },
+        { 0, -135, 1603 },
+        { 0, -136, 1604 },
+        { 0, -137, 1603 },
+        { 0, -400, 1340 },
+        { -400, 0, 1740 },
+        { 300, 300, 1450 },
+        { INT16_MAX, INT16_MAX, 1450 },
+        { INT16_MIN, INT16_MIN, 2000 },
+    };
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    unsigned i;
+    (void)state;
+    output.weights[FAP3] = 0;
+    output.weights[FAP52] = LABIAL_RIG_ONE;
+    output.neutral = 1740; /* minus the lower lip's opening */
+    output.contact = 1;
+    output.closed = 1450;
+    output.maximum = 2000;
+    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+    for (i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+        int16_t faps[LABIAL_CHANNELS] = { 0 };
+        int32_t value = 1500, wanted = poses[i].value;
+        faps[FAP51] = poses[i].top;
+        faps[FAP52] = poses[i].bottom;
+        if (poses[i].bottom == INT16_MIN)
+            wanted = 1000;
+        labial_rig_apply(&rig, faps, &value);
+        if (value < wanted - 1 || value > wanted + 1)
+            fail_msg("pose %u: %d instead of %d", i, (int)value, (int)wanted);
+    }
+    {
+        int32_t value;
+        assert_int_equal(labial_rig_rest(&rig, &value), LABIAL_OK);
+        assert_int_equal(value, 1450);
+    }
+}
+
+/* A slow servo that sees where lips touch sets out early and is closed there; one that does not is late. What it does
+ * may change no frame by more than its limit, and with one frame in sight it is labial_rig_apply(). */
+static void looking_ahead_closes_in_time(void **state)
+{
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int16_t frames[12][LABIAL_CHANNELS] = { { 0 } };
+    int32_t blind = 1400, seeing = 1400, value;
+    unsigned i;
+    (void)state;
+    output.weights[FAP3] = 0;
+    output.weights[FAP52] = -LABIAL_RIG_ONE;
+    output.neutral = output.closed = output.minimum = 1400;
+    output.contact = 1;
+    output.slew = 40;
+    for (i = 0; i < 12; i++)
+        frames[i][FAP52] = i == 8 ? -60 : -200; /* open, but for the ninth frame: 1600, and 1400 in p, b, m */
+    for (i = 0; i < 12; i++) {
+        static const int32_t wanted[12] = { 1440, 1480, 1520, 1560, 1560, 1520, 1480, 1440, 1400, 1440, 1480, 1520 };
+        const int32_t last = seeing;
+        labial_rig_apply(&rig, frames[i], &blind);
+        assert_int_equal(labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(12 - i), &seeing), LABIAL_OK);
+        assert_int_equal(seeing, wanted[i]);
+        assert_true(seeing - last <= 40 && last - seeing <= 40);
+        if (i == 8)
+            assert_int_equal(blind, 1560);
+    }
+    value = 1600; /* out of reach: as fast as it goes */
+    labial_rig_apply_ahead(&rig, frames[6], 3, &value);
+    assert_int_equal(value, 1560);
+    value = 1600; /* not in sight */
+    labial_rig_apply_ahead(&rig, frames[6], 2, &value);
+    assert_int_equal(value, 1600);
+    output.slew = 0; /* no limit: nothing to be early for */
+    value = 1500;
+    labial_rig_apply_ahead(&rig, frames[7], 2, &value);
+    assert_int_equal(value, 1600);
+    output.slew = 40, output.contact = 0, output.closed = 0;
+    value = 1600;
+    labial_rig_apply_ahead(&rig, frames[7], 2, &value);
+    assert_int_equal(value, 1600);
+    /* From below as from above; and far ahead, where the room is as large as can be. */
+    output.contact = 1, output.closed = 2000, output.slew = LABIAL_RIG_VALUE_MAX;
+    value = 1600;
+    labial_rig_apply_ahead(&rig, frames[0], 12, &value);
+    assert_int_equal(value, 1600);
+    output.slew = 150;
+    labial_rig_apply_ahead(&rig, frames[7], 2, &value);
+    assert_int_equal(value, 1750); /* wanted 1850, 150 short of 2000 */
+    assert_int_equal(labial_rig_apply_ahead(&rig, frames[0], 0, &value), LABIAL_ERROR_NULL);
+}
+
+/* A servo is not asked to move by less than its deadband, and reaches the limit of its speed all the same. */
+static void deadband_keeps_small_changes(void **state)
+{
+    labial_rig_output_t output = plain();
+    (void)state;
+    output.deadband = 5;
+    assert_int_equal(moved(&output, 1500, 4), 1500);
+    assert_int_equal(moved(&output, 1500, -4), 1500);
+    assert_int_equal(moved(&output, 1500, 5), 1505);
+    assert_int_equal(moved(&output, 1500, -5), 1495);
+    output.slew = 3;
+    assert_int_equal(moved(&output, 1500, 5), 1503);
+    assert_int_equal(moved(&output, 1500, 4), 1500);
 }
 
 /* A sound output with every number anywhere in its range, small moves as likely as ones that saturate. */
@@ -227,6 +346,9 @@ static labial_rig_output_t any_sound_output(void)
     }
     output.slew = chance() % 2u ? 0 : between(0, LABIAL_RIG_VALUE_MAX) >> (chance() % 24u);
     output.invert = (uint8_t)(chance() % 2u);
+    output.contact = (uint8_t)(chance() % 2u);
+    output.closed = output.contact ? between(output.minimum, output.maximum) : 0;
+    output.deadband = chance() % 3u ? 0 : between(0, LABIAL_RIG_VALUE_MAX) >> (chance() % 24u);
     return output;
 }
 
@@ -258,7 +380,12 @@ static double expected(const labial_rig_output_t *output, const int16_t faps[LAB
         move += (double)output->weights[i] / 4096.0 * faps[i];
     move = floor(move * output->gain / 65536.0 + 0.5);
     value = limited(output->neutral + (output->invert ? -move : move), output->minimum, output->maximum);
+    if (output->contact)
+        value =
+            floor(value + (output->closed - value) * limited((136.0 + faps[FAP51] + faps[FAP52]) / 64.0, 0, 1) + .5);
     last = limited(last, output->minimum, output->maximum);
+    if (fabs(value - last) < output->deadband)
+        return last;
     return output->slew > 0 ? limited(value, last - output->slew, last + output->slew) : value;
 }
 
@@ -323,10 +450,10 @@ static void unchecked_tables_stay_defined(void **state)
 
 static void check_names_every_fault(void **state)
 {
-    labial_rig_output_t good = plain(), bad[16];
+    labial_rig_output_t good = plain(), bad[21];
     unsigned i, count = 0;
     (void)state;
-    for (i = 0; i < 16; i++)
+    for (i = 0; i < 21; i++)
         bad[i] = good;
     bad[count++].gain = LABIAL_RIG_GAIN_MAX + 1;
     bad[count++].gain = INT32_MIN;
@@ -338,7 +465,12 @@ static void check_names_every_fault(void **state)
     bad[count++].slew = -1;
     bad[count++].slew = LABIAL_RIG_VALUE_MAX + 1;
     bad[count++].invert = 2;
-    bad[count++].reserved = 1;
+    bad[count++].contact = 2;
+    bad[count++].closed = 1500; /* without contact */
+    bad[count].contact = 1, bad[count++].closed = 999;
+    bad[count].contact = 1, bad[count++].closed = 2001;
+    bad[count++].deadband = -1;
+    bad[count++].deadband = LABIAL_RIG_VALUE_MAX + 1;
     bad[count].weights[1] = 32767, bad[count].weights[2] = -32767; /* with 4096: above 65535 */
     count++;
     bad[count].weights[1] = INT16_MIN, bad[count].weights[2] = INT16_MIN;
@@ -363,8 +495,8 @@ static void check_accepts_the_very_limits(void **state)
     output.gain = -LABIAL_RIG_GAIN_MAX;
     output.neutral = -LABIAL_RIG_VALUE_MAX;
     output.minimum = -LABIAL_RIG_VALUE_MAX;
-    output.maximum = output.slew = LABIAL_RIG_VALUE_MAX;
-    output.invert = 1;
+    output.maximum = output.slew = output.closed = output.deadband = LABIAL_RIG_VALUE_MAX;
+    output.invert = output.contact = 1;
     assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
     output.minimum = output.maximum;
     assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
@@ -389,7 +521,7 @@ static void null_and_empty_are_refused(void **state)
     assert_int_equal(labial_rig_apply(&rig, faps, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&empty, faps, &value), LABIAL_OK);
     assert_int_equal(value, 5);
-    assert_int_equal(sizeof output, 48);
+    assert_int_equal(sizeof output, 56);
 }
 
 int main(void)
@@ -402,6 +534,8 @@ int main(void)
         cmocka_unit_test(jaw_macro_closes_and_opens),       cmocka_unit_test(random_rigs_equal_double),
         cmocka_unit_test(unchecked_tables_stay_defined),    cmocka_unit_test(check_names_every_fault),
         cmocka_unit_test(check_accepts_the_very_limits),    cmocka_unit_test(null_and_empty_are_refused),
+        cmocka_unit_test(looking_ahead_closes_in_time),     cmocka_unit_test(contact_closes),
+        cmocka_unit_test(deadband_keeps_small_changes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -44,7 +44,13 @@ static void mend(labial_rig_output_t *output)
     output->slew = into(output->slew, LABIAL_RIG_VALUE_MAX);
     output->slew = output->slew < 0 ? -output->slew : output->slew;
     output->invert &= 1u;
-    output->reserved = 0;
+    output->contact &= 1u;
+    output->closed = into(output->closed, LABIAL_RIG_VALUE_MAX);
+    output->closed = output->closed < output->minimum ? output->minimum : output->closed;
+    output->closed = output->closed > output->maximum ? output->maximum : output->closed;
+    output->closed = output->contact ? output->closed : 0;
+    output->deadband = into(output->deadband, LABIAL_RIG_VALUE_MAX);
+    output->deadband = output->deadband < 0 ? -output->deadband : output->deadband;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

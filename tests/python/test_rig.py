@@ -15,11 +15,14 @@ import pytest
 
 from labial.cli import main
 from labial.errors import LabialError
+from labial.fit.sentences import read_sentences
 from labial.native import compiler, library_root
 from labial.rig import table
 from labial.rig.description import read
 from labial.rig.gestures import SOURCES
 from labial.rig.table import FAP_MAX, convert, expected
+from labial.runtime.rig import Rig
+from runtime import needs_runtime
 
 FACES = library_root() / "examples" / "faces"
 #: Descriptions whose tables are kept, with the tables' folder; that of examples/pi is read by Python and has none.
@@ -153,7 +156,7 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     (tmp_path / "jaw.toml").write_text(JAW)
     table.write(read(tmp_path / "jaw.toml", "jaw"), tmp_path)
     header = tmp_path / "jaw.h"
-    header.write_text(header.read_text().replace("LABIAL_RIG_FORMAT != 1", "LABIAL_RIG_FORMAT != 2"))
+    header.write_text(header.read_text().replace("LABIAL_RIG_FORMAT != 2", "LABIAL_RIG_FORMAT != 1"))
     done = subprocess.run([compiler(), f"-I{library_root() / 'include'}", "-fsyntax-only", str(tmp_path / "jaw.c")],
                           capture_output=True, text=True)
     assert done.returncode != 0 and "run labial rig again" in done.stderr
@@ -167,7 +170,54 @@ def test_limits_are_the_librarys() -> None:
     assert int(defined["LABIAL_RIG_WEIGHT_SUM_MAX"]) == table.WEIGHT_SUM_MAX
     assert int(defined["LABIAL_RIG_GAIN_MAX"]) == table.GAIN_MAX
     assert int(defined["LABIAL_RIG_VALUE_MAX"]) == table.VALUE_MAX
+    assert (int(defined["LABIAL_RIG_TOUCHING"]), int(defined["LABIAL_RIG_APART"])) == (table.TOUCHING, table.APART)
     assert float(defined["LABIAL_RIG_OPENING"]) == SOURCES["opening"].reach
+
+
+CLOSING = '[output.jaw]\nfrom = "opening"\nclosed = 1400\nfull = 1900\n'
+
+
+@needs_runtime
+def test_a_jaw_closes_in_p_b_m(tmp_path: Path) -> None:
+    """In 32 sentences: within 10 us of `closed` where lips touch, whatever the limit of its speed when it looks ahead;
+    with a limit and no sight of what comes most closures would be lost, which is why it looks."""
+    motion = read_sentences(Path(__file__).with_name("sentences.flite"))
+    frames = motion.frames.astype(np.int64)
+
+    def nearest(extra: str, ahead: int) -> np.ndarray:
+        (tmp_path / "face.toml").write_text(CLOSING + extra)
+        values = table.moved(convert(read(tmp_path / "face.toml", "face")), frames, ahead)[:, 0]
+        assert "slew" not in extra or np.abs(np.diff(values)).max() <= 40
+        assert np.percentile(values, 95) >= 1750  # and opens
+        return np.array([values[begin:end].min() - 1400 for begin, end in motion.closures])
+
+    assert len(motion.closures) > 100 and np.mean(nearest("", 1) <= 10) >= 0.98
+    assert np.mean(nearest("slew = 40\n", len(frames)) <= 10) >= 0.98
+    assert np.mean(nearest("slew = 40\n", 10) <= 10) >= 0.9
+    assert np.mean(nearest("slew = 40\n", 1) <= 10) < 0.5
+    others = [span for name, *span in motion.phonemes if name in ("aa", "ae", "ow", "ey")]
+    (tmp_path / "face.toml").write_text(CLOSING)
+    values = table.moved(convert(read(tmp_path / "face.toml", "face")), frames)[:, 0]
+    assert np.mean([values[begin:end].max() >= 1550 for begin, end in others]) >= 0.98  # vowels are left as they are
+
+
+@needs_runtime
+def test_c_looks_ahead_as_python_does(tmp_path: Path) -> None:
+    """To the bit, over random frames, outputs and lengths of sight."""
+    rng = np.random.default_rng(11)
+    frames = np.cumsum(rng.integers(-60, 61, (300, 13)), axis=0)
+    frames[:, 3:5] = -np.abs(frames[:, 3:5]) % 300  # lips that touch now and then
+    for number in range(20):
+        closed, full = rng.integers(800, 2200, 2)
+        text = (f'[output.jaw]\nfrom = "opening"\nclosed = {closed}\nfull = {full + 1}\n'
+                f"slew = {rng.integers(5, 200)}\ndeadband = {rng.integers(0, 4)}\n"
+                f'[output.lip]\nfrom = "upper_lip"\nneutral = 1500\nfull = 1700\nclosed = 1450\n')
+        (tmp_path / "face.toml").write_text(text)
+        expected = table.moved(convert(read(tmp_path / "face.toml", "face")), frames, 1 + number)
+        face = Rig(tmp_path / "face.toml")
+        for place, row in enumerate(expected):
+            after = frames[place + 1 : place + 1 + number]
+            assert list(face.apply(frames[place].tolist(), after.ravel().tolist()).values()) == row.tolist()
 
 
 def test_pca9685_counts_in_ticks_of_its_prescaler(tmp_path: Path) -> None:
@@ -251,6 +301,10 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW.replace('"opening"', "{ jaw = 0 }"), "output.jaw.from: all weights are zero"),
         (JAW.replace('"opening"', "{ jaw = 1 }"), "output.jaw.reach: is missing"),
         (JAW.replace('"opening"', '"fap16"'), "output.jaw.reach: is missing"),
+        (JAW + "closed = 1399\n", None),
+        (GAIN + "closed = 900\n", "output.jaw.closed: 900 is not within 1000 .. 2000"),
+        (JAW + "closed = 90\n", "output.jaw.minimum: 90 is not a servo's pulse"),
+        (JAW + "deadband = -1\n", "output.jaw.deadband: -1 is negative"),
         (JAW + "reach = 0\n", "output.jaw.reach: 0 is not positive"),
         (JAW + "reach = nan\n", "output.jaw.reach: nan is not a finite number"),
         (JAW.replace("neutral = 1400\n", ""), "output.jaw.neutral: is missing"),

@@ -24,20 +24,20 @@ AVR_LARGEST = 32767
 _OPENING = GESTURES["opening"]
 #: A jaw and nothing else, as examples/faces/jaw.toml describes it: microseconds with the lips closed and wide open.
 JAW = Rig("jaw", make_unit("us"), (Output("jaw", _OPENING.weights, 500.0 / (_OPENING.reach or 1.0), 1400.0, 1400.0,
-                                          1900.0, False, 0.0, False),), "jaw")
+                                          1900.0, False, 0.0, False, 1400.0),), "jaw")
 
 
 def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray) -> np.ndarray:
     """(T, N) uint8: the rig's outputs for (T, 13) FAPs, 0 for an output's minimum and 255 for its maximum.
 
-    FAPs are rounded to whole units and go through the rig as ``labial_rig_apply`` has it, from rest, slew limits
-    included. Raises DataError for limits further apart than `SPAN_MAX`.
+    FAPs are rounded to whole units and go through the rig as ``labial_rig_apply_ahead`` has it with all frames in
+    sight, from rest. Raises DataError for limits further apart than `SPAN_MAX`.
     """
     for output in table:
         if output.maximum - output.minimum > SPAN_MAX:
             raise DataError(rig.path, None, f"output.{output.name}.maximum: more than {SPAN_MAX} {rig.unit.text} above "
                             "the minimum, too far apart for bytes")
-    values = moved(table, np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int64))
+    values = moved(table, np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int64), len(frames))
     low = np.array([output.minimum for output in table])
     span = np.array([max(output.maximum - output.minimum, 1) for output in table])
     return ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 from labial.errors import LabialError
 from labial.faps import CHANNELS
@@ -18,7 +18,8 @@ from labial.toml import Table, meant, read_toml
 PULSE_MIN, PULSE_MAX = 400.0, 2600.0
 
 _TOP_KEYS = ("unit", "frequency", "clock", "output")
-_OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum", "invert", "slew")
+_OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum", "invert", "slew", "closed",
+                "deadband")
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,8 @@ class Output:
     invert: bool
     slew: float  #: units per frame; 0 for no limit
     given_gain: bool  #: whether the description has a gain, not a value at full extent
+    closed: Optional[float] = None  #: the value where lips touch; None where the description does not say
+    deadband: float = 0.0  #: units; the value stays where it would change by less
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,8 @@ def _source(table: Table) -> Tuple[Row, Union[float, None]]:
 def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Output:
     table = Table(path, f"output.{name}.", content, _OUTPUT_KEYS)
     weights, reach = _source(table)
-    neutral = table.number("neutral")
+    closed = table.number("closed") if "closed" in content else None
+    neutral = closed if closed is not None and "neutral" not in content else table.number("neutral")
     if ("full" in content) == ("gain" in content):
         raise table.error("full", "either full (the value at full extent) or gain (units per FAP unit) is needed"
                                   + (", not both" if "full" in content else ""))
@@ -134,7 +138,8 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
             raise table.error("reach", "is missing: how many FAP units is full? Only gestures know it by themselves")
         if not reach > 0:
             raise table.error("reach", f"{reach:g} is not positive")
-        gain, low, high = (full - neutral) / reach, min(neutral, full), max(neutral, full)
+        ends = (neutral, full) if closed is None else (neutral, full, closed)
+        gain, low, high = (full - neutral) / reach, min(ends), max(ends)
         minimum = table.number("minimum") if "minimum" in content else low
         maximum = table.number("maximum") if "maximum" in content else high
     else:
@@ -146,9 +151,15 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
     slew = table.number("slew") if "slew" in content else 0.0
     if slew < 0 or ("slew" in content and slew == 0):
         raise table.error("slew", f"{slew:g} is not positive; leave it out for no limit")
+    deadband = table.number("deadband") if "deadband" in content else 0.0
+    if deadband < 0:
+        raise table.error("deadband", f"{deadband:g} is negative")
     _check_values(table, unit, neutral=neutral, minimum=minimum, maximum=maximum,
-                  **({"full": table.number("full")} if "full" in content else {}))
-    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content)
+                  **({"full": table.number("full")} if "full" in content else {}),
+                  **({"closed": closed} if closed is not None else {}))
+    if closed is not None and not minimum <= closed <= maximum:
+        raise table.error("closed", f"{closed:g} is not within {minimum:g} .. {maximum:g}")
+    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content, closed, deadband)
 
 
 def _check_values(table: Table, unit: Unit, **values: float) -> None:

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     import numpy as np
 
 #: Version and limits of include/labial/rig.h.
-FORMAT = 1
+FORMAT = 2
+TOUCHING, APART = 72, 136
 WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 65535, 268435455, 16777215
 
 #: FAPs up to which a table is kept within one unit of the description; faces stay well within.
@@ -40,6 +41,8 @@ class TableOutput:
     maximum: int
     slew: int
     invert: bool
+    closed: Optional[int] = None
+    deadband: int = 0
 
 
 def convert(rig: Rig) -> List[TableOutput]:
@@ -55,14 +58,19 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
     # Limits are rounded inwards: no servo goes beyond what its owner wrote.
     values = {"neutral": math.floor(output.neutral * scale + 0.5), "minimum": math.ceil(output.minimum * scale - 1e-9),
               "maximum": math.floor(output.maximum * scale + 1e-9),
-              "slew": max(math.floor(output.slew * scale + 0.5), 1) if output.slew else 0}
+              "slew": max(math.floor(output.slew * scale + 0.5), 1) if output.slew else 0,
+              "deadband": math.floor(output.deadband * scale + 0.5)}
+    if output.closed is not None:
+        values["closed"] = math.floor(output.closed * scale + 0.5)
     for key, value in values.items():
         if abs(value) > VALUE_MAX:
             raise fail(key, f"{value} {rig.unit.text} is beyond {VALUE_MAX}")
-        if rig.unit.limit is not None and key != "slew" and value > rig.unit.limit:
+        if rig.unit.limit is not None and key not in ("slew", "deadband") and value > rig.unit.limit:
             raise fail(key, f"{value} {rig.unit.text} is beyond {rig.unit.limit}")
     if values["minimum"] > values["maximum"]:
         raise fail("minimum", "no whole unit lies between minimum and maximum")
+    if "closed" in values:
+        values["closed"] = min(max(values["closed"], values["minimum"]), values["maximum"])
     if rig.unit.servo:
         values["neutral"] = min(max(values["neutral"], values["minimum"]), values["maximum"])
     found = _quantise(output.weights, output.gain * scale)
@@ -71,7 +79,7 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
                    "gain and weights are too large, or too far apart, to keep the motion within one unit")
     weights, gain = found
     return TableOutput(output.name, weights, gain, values["neutral"], values["minimum"],
-                       values["maximum"], values["slew"], output.invert)
+                       values["maximum"], values["slew"], output.invert, values.get("closed"), values["deadband"])
 
 
 def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]]:
@@ -106,22 +114,56 @@ def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray) -> np.ndarr
     columns = []
     for output, whole in zip(rig.outputs, table):
         move = (frames @ output.weights) * (output.gain * rig.unit.scale)
-        columns.append(np.clip(whole.neutral + (-move if output.invert else move), whole.minimum, whole.maximum))
+        values = np.clip(whole.neutral + (-move if output.invert else move), whole.minimum, whole.maximum)
+        if whole.closed is not None:
+            values = values + touching(frames) / 4096.0 * (whole.closed - values)
+        columns.append(values)
     return np.stack(columns, axis=1)
 
 
-def moved(table: Sequence[TableOutput], frames: np.ndarray) -> np.ndarray:
-    """(T, N) int64 values for (T, 13) whole FAPs of 16 bits, from rest on, to the bit as labial_rig_apply has them."""
+def touching(frames: np.ndarray) -> np.ndarray:
+    """(T,) how much the lips touch in (T, 13) frames, Q12: 0 apart, 4096 where they do (include/labial/rig.h)."""
     import numpy as np
 
+    return np.clip((APART + frames[:, 3] + frames[:, 4]) * (4096 // (APART - TOUCHING)), 0, 4096)
+
+
+def wanted(output: TableOutput, frames: np.ndarray) -> np.ndarray:
+    """(T,) int64 values for (T, 13) whole FAPs, neither limited in speed nor kept by a deadband."""
+    import numpy as np
+
+    product = (frames @ np.array(output.weights, dtype=np.int64)) * output.gain
+    move = np.clip((product + (1 << 27)) >> 28, -(1 << 30), 1 << 30)
+    values = np.clip(output.neutral + (-move if output.invert else move), output.minimum, output.maximum)
+    if output.closed is not None:
+        values = values + (((output.closed - values) * touching(frames) + (1 << 11)) >> 12)
+    return values
+
+
+def moved(table: Sequence[TableOutput], frames: np.ndarray, ahead: int = 1) -> np.ndarray:
+    """(T, N) int64 values for (T, 13) whole FAPs of 16 bits, from rest on, to the bit as labial_rig_apply_ahead has
+    them with `ahead` frames in sight, this one included; with 1 as labial_rig_apply has them."""
+    import numpy as np
+
+    until = np.full(len(frames), len(frames))  # frames to the next one in which the lips touch
+    closed = np.flatnonzero(touching(frames) >= 4096)
+    place = np.searchsorted(closed, np.arange(len(frames)))
+    seen = place < len(closed)
+    until[seen] = closed[place[seen]] - np.flatnonzero(seen)
     columns = []
     for output in table:
-        product = (frames @ np.array(output.weights, dtype=np.int64)) * output.gain
-        move = np.clip((product + (1 << 27)) >> 28, -(1 << 30), 1 << 30)
-        values = np.clip(output.neutral + (-move if output.invert else move), output.minimum, output.maximum)
-        last = min(max(output.neutral, output.minimum), output.maximum)
-        for frame in range(len(values) if output.slew else 0):
-            last = values[frame] = min(max(values[frame], last - output.slew), last + output.slew)
+        values = wanted(output, frames)
+        rest = output.neutral if output.closed is None else output.closed
+        last = min(max(rest, output.minimum), output.maximum)
+        for frame in range(len(values) if output.slew or output.deadband else 0):
+            if output.closed is not None and output.slew and seen[frame] and until[frame] < ahead:
+                room = until[frame] * output.slew
+                values[frame] = min(max(values[frame], output.closed - room), output.closed + room)
+            if abs(values[frame] - last) < output.deadband:
+                values[frame] = last
+            elif output.slew:
+                values[frame] = min(max(values[frame], last - output.slew), last + output.slew)
+            last = values[frame]
         columns.append(values)
     return np.stack(columns, axis=1)
 
@@ -178,11 +220,12 @@ extern const labial_rig_t {rig.name};
 def _row(rig: Rig, output: Output, whole: TableOutput) -> str:
     mixed = " ".join(f"{weight:+g} {FAP_NAMES[k]}" for k, weight in enumerate(output.weights) if weight)
     rate = f", at most {whole.slew} per frame" if whole.slew else ""
+    rate += f", {whole.closed} where lips touch" if whole.closed is not None else ""
     note = f"{output.name}: {output.gain * rig.unit.scale:.6g} per FAP unit of ({mixed}){rate}"
     lines = textwrap.fill(note, width=108, initial_indent="    /* ", subsequent_indent="     * ") + " */\n"
     return (lines + f"    {{ {{ {', '.join(map(str, whole.weights))} }},\n"
-            f"      {int(whole.invert)}, 0, {whole.gain}, {whole.neutral}, {whole.minimum}, {whole.maximum}, "
-            f"{whole.slew} }}")
+            f"      {int(whole.invert)}, {int(whole.closed is not None)}, {whole.gain}, {whole.neutral}, "
+            f"{whole.minimum}, {whole.maximum}, {whole.slew}, {whole.closed or 0}, {whole.deadband} }}")
 
 
 def source(rig: Rig, table: List[TableOutput]) -> str:
@@ -190,7 +233,7 @@ def source(rig: Rig, table: List[TableOutput]) -> str:
     rows = ",\n".join(_row(rig, output, whole) for output, whole in zip(rig.outputs, table))
     return f"""{_comment(rig, f"{rig.name}.c - what moves a face")}#include "{rig.name}.h"
 
-/* weights, invert, reserved, gain, neutral, minimum, maximum, slew */
+/* weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband */
 static const labial_rig_output_t outputs[{len(table)}] = {{
 {rows}
 }};

@@ -54,8 +54,9 @@ class LatencyStruct(Structure):
 class RigOutput(Structure):
     """``labial_rig_output_t``."""
 
-    _fields_ = [("weights", c_int16 * 13), ("invert", ctypes.c_uint8), ("reserved", ctypes.c_uint8), ("gain", c_int32),
-                ("neutral", c_int32), ("minimum", c_int32), ("maximum", c_int32), ("slew", c_int32)]  # fmt: skip
+    _fields_ = [("weights", c_int16 * 13), ("invert", ctypes.c_uint8), ("contact", ctypes.c_uint8), ("gain", c_int32),
+                ("neutral", c_int32), ("minimum", c_int32), ("maximum", c_int32), ("slew", c_int32),
+                ("closed", c_int32), ("deadband", c_int32)]  # fmt: skip
 
 
 class RigTable(Structure):
@@ -85,7 +86,7 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "labial_model_load": (c_int, (c_void_p, c_void_p, c_size_t)),
     "labial_rig_check": (c_int, (POINTER(RigTable),)),
     "labial_rig_rest": (c_int, (POINTER(RigTable), c_void_p)),
-    "labial_rig_apply": (c_int, (POINTER(RigTable), c_void_p, c_void_p)),
+    "labial_rig_apply_ahead": (c_int, (POINTER(RigTable), c_void_p, ctypes.c_uint16, c_void_p)),
 }
 
 

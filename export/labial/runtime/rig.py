@@ -56,10 +56,11 @@ class Rig:
             place.weights[:] = row.weights
             place.invert, place.gain, place.neutral = row.invert, row.gain, row.neutral
             place.minimum, place.maximum, place.slew = row.minimum, row.maximum, row.slew
+            place.contact, place.closed, place.deadband = row.closed is not None, row.closed or 0, row.deadband
         self._table = RigTable(self._rows, len(rows))
         checked(library().labial_rig_check(self._table), os.fspath(path))
         self._values = (ctypes.c_int32 * len(rows))()
-        self._apply = library().labial_rig_apply
+        self._apply = library().labial_rig_apply_ahead
         self._guard = Guard(whole=True)  # from moving the values until they are read
         self.rest()
 
@@ -85,21 +86,27 @@ class Rig:
         checked(library().labial_rig_rest(self._table, self._values))
         return self.values
 
-    def apply(self, faps: Iterable[int]) -> Values:
-        """Moves the face on by one frame of 13 FAPs, whole numbers of 16 bits; its values."""
+    def apply(self, faps: Iterable[int], following: Iterable[int] = ()) -> Values:
+        """Moves the face on by one frame of 13 FAPs, whole numbers of 16 bits; its values. `following` are the FAPs of
+        frames that come after it, one frame after the other: with them a servo that says where it is closed sets out
+        early enough to be closed in p, b, m (``labial_rig_apply_ahead``)."""
         try:
             numbers = array("h", faps)
+            ahead = array("h", following)
         except OverflowError:
             raise LabialError("a FAP is beyond 16 bits") from None
         except TypeError:
             raise TypeError("FAPs are whole numbers") from None
         if len(numbers) != CHANNELS:
             raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
-        return self._moved(numbers)
+        if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
+            raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
+                              "numbers in all")
+        return self._moved(numbers + ahead)
 
     @alone
     def _moved(self, numbers: array) -> Values:
-        checked(self._apply(self._table, numbers.buffer_info()[0], self._values))
+        checked(self._apply(self._table, numbers.buffer_info()[0], len(numbers) // CHANNELS, self._values))
         return self.values
 
     def __repr__(self) -> str:
