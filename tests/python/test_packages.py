@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import labial
+from labial.cli import main
 from labial.model import load
 from labial.phones import read_stream
 from labial.quantise import quantise
@@ -199,6 +200,27 @@ def test_arduino_sketches_run(lines_of: Lines) -> None:
     vowel, closed, again = angles[24:33], angles[33:39], angles[39:]  # m from 0.2 to 0.28 s of the second line
     assert max(vowel) > 100 and max(again) > 100 and min(closed) < 85
     assert [line for line in out if not line.startswith("servo ")] == ["no phoneme of this name is known"]
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_calibration_sketch(arduino: Path, objects: List[Path], tmp_path: Path) -> None:
+    """The sketch that ``labial rig --calibrate`` writes: moves one servo at a time, within what servos take, and prints
+    the lines of a description."""
+    (tmp_path / "face.toml").write_text('[output.jaw]\nfrom = "opening"\nclosed = 1400\nfull = 1900\n'
+                                        '[output.lip]\nfrom = "upper_lip"\nneutral = 1500\nfull = 1700\n')
+    assert main(["rig", str(tmp_path / "face.toml"), "--calibrate", "-o", str(tmp_path)]) == 0
+    source = tmp_path / "face_calibrate" / "face_calibrate.ino"
+    run(CXX, *arduino_options(arduino), "-x", "c++", source, "-x", "none", *objects, "-o", tmp_path / "sketch")
+    text = "+>+c\n1---<f0" + "+" * 200 + "hg\np"
+    lines = run(tmp_path / "sketch", len(text) + 5, text=text).splitlines()
+    pulses = [int(line.split()[-1]) for line in lines if line.startswith("pulse")]
+    assert pulses[:9] == [1400, 1500, 1410, 1411, 1421, 1490, 1480, 1470, 1469]
+    assert max(pulses) == 2600 and pulses[-1] == 1400
+    assert "jaw closed = 1421" in lines and "lip full = 1469" in lines
+    assert lines[-7:] == ["[output.jaw]", "neutral = 1400", "closed = 1421", "maximum = 2600", "[output.lip]",
+                          "neutral = 1500", "full = 1469"]
+    (tmp_path / "face.toml").write_text('unit = "weight"\n[output.a]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
+    assert main(["rig", str(tmp_path / "face.toml"), "--calibrate", "-o", str(tmp_path)]) == 1
 
 
 #: The command that starts file 1 of folder 1, checksum included.

@@ -220,6 +220,21 @@ def test_c_looks_ahead_as_python_does(tmp_path: Path) -> None:
             assert list(face.apply(frames[place].tolist(), after.ravel().tolist()).values()) == row.tolist()
 
 
+def test_degrees_are_pulses(tmp_path: Path) -> None:
+    """90 degrees between 1000 and 2000 us are 1500; slew, deadband and gain are differences."""
+    (tmp_path / "a.toml").write_text('unit = "degrees"\npulses = [1000, 2000]\n[output.jaw]\nfrom = "opening"\n'
+                                     "closed = 90\nfull = 126\nslew = 9\ndeadband = 1.8\n"
+                                     '[output.lip]\nfrom = "fap51"\nneutral = 90\ngain = 0.18\nminimum = 72\n'
+                                     "maximum = 108\n")
+    jaw, lip = convert(read(tmp_path / "a.toml", "a"))
+    assert (jaw.neutral, jaw.closed, jaw.minimum, jaw.maximum) == (1500, 1500, 1500, 1700)
+    assert (jaw.slew, jaw.deadband, lip.neutral, lip.minimum, lip.maximum) == (50, 10, 1500, 1400, 1600)
+    assert lip.weights[3] * lip.gain / 4096 / 65536 == pytest.approx(1.0)
+    (tmp_path / "b.toml").write_text('unit = "degrees"\n[output.jaw]\nfrom = "opening"\nclosed = 0\nfull = 180\n')
+    [jaw] = convert(read(tmp_path / "b.toml", "b"))
+    assert (jaw.closed, jaw.maximum) == (544, 2400)
+
+
 def test_pca9685_counts_in_ticks_of_its_prescaler(tmp_path: Path) -> None:
     """At 50 Hz the register holds 121, a tick is 122 periods of 25 MHz: 4.88 us, and 1500 us are 307 of them."""
     (tmp_path / "face.toml").write_text('unit = "pca9685"\n' + JAW.replace("1400", "1500").replace("1900", "2000"))
@@ -279,7 +294,11 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         ("outputs = 3\n" + JAW, "outputs: unknown key; did you mean output?"),
         ("colour = 3\n" + JAW, "colour: unknown key; known are unit,"),
         (JAW + "neutrall = 2\n", "output.jaw.neutrall: unknown key; did you mean neutral?"),
-        ('unit = "degrees"\n' + JAW, "unit: 'degrees' is none of us, quarter_us, pca9685, counts, weight, plain"),
+        ('unit = "radians"\n' + JAW, "unit: 'radians' is none of us, quarter_us, pca9685, counts, weight, plain, degr"),
+        ('unit = "degrees"\n' + JAW, "output.jaw.neutral: 14979.6 is not a servo's pulse"),
+        ('unit = "degrees"\npulses = [1000]\n' + JAW, "pulses: is two pulses in microseconds"),
+        ('unit = "degrees"\npulses = [2000, 1000]\n' + JAW, "pulses: 2000, 1000 are not two pulses"),
+        ("pulses = [1000, 2000]\n" + JAW, "pulses: goes with the unit degrees"),
         ("unit = 50\n" + JAW, "unit: 50 is none of"),
         ("unit = []\n" + JAW, "unit: [] is none of"),
         ("frequency = 50\n" + JAW, "frequency: has no meaning for the unit us"),

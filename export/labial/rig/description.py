@@ -17,7 +17,11 @@ from labial.toml import Table, meant, read_toml
 #: slip of the finger to be noticed.
 PULSE_MIN, PULSE_MAX = 400.0, 2600.0
 
-_TOP_KEYS = ("unit", "frequency", "clock", "output")
+#: Pulses at 0 and 180 degrees where a description in degrees does not say: those of Arduino's library Servo.
+DEGREES = (544.0, 2400.0)
+_PLACES, _STEPS = ("neutral", "full", "minimum", "maximum", "closed"), ("gain", "slew", "deadband")
+
+_TOP_KEYS = ("unit", "frequency", "clock", "pulses", "output")
 _OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum", "invert", "slew", "closed",
                 "deadband")
 
@@ -55,16 +59,50 @@ def read(path: Union[str, os.PathLike], name: str) -> Rig:
     content = read_toml(path)
     top = Table(where, "", content, _TOP_KEYS)
     unit = _unit(top)
+    ends = _degrees(top)
     outputs = content.get("output")
     if not isinstance(outputs, dict) or not outputs:
         raise top.error("output", "at least one table [output.NAME] is needed")
-    return Rig(name, unit, tuple(_output(where, key, table, unit) for key, table in _named(top, outputs)), where)
+    return Rig(name, unit, tuple(_output(where, key, in_microseconds(table, ends), unit)
+                                 for key, table in _named(top, outputs)), where)
+
+
+def _degrees(top: Table) -> Optional[Tuple[float, float]]:
+    """The pulses at 0 and 180 degrees of a description in degrees; None of one in another unit."""
+    if top.content.get("unit") != "degrees":
+        if "pulses" in top.content:
+            raise top.error("pulses", "goes with the unit degrees")
+        return None
+    given = top.content.get("pulses", list(DEGREES))
+    if not isinstance(given, list) or len(given) != 2:
+        raise top.error("pulses", "is two pulses in microseconds, those at 0 and 180 degrees")
+    low, high = (top.as_number("pulses", value) for value in given)
+    if not PULSE_MIN <= low < high <= PULSE_MAX:
+        raise top.error("pulses", f"{low:g}, {high:g} are not two pulses from {PULSE_MIN:g} to {PULSE_MAX:g}, "
+                                  "the shorter one first")
+    return low, high
+
+
+def in_microseconds(output: Mapping[str, Any], ends: Optional[Tuple[float, float]]) -> Mapping[str, Any]:
+    """An output's table with its degrees as microseconds; what is no number stays as it is, for its own message."""
+    if ends is None:
+        return output
+    each = (ends[1] - ends[0]) / 180.0
+
+    def convert(key: str, value: Any) -> Any:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or key not in (*_PLACES, *_STEPS):
+            return value
+        return value * each + (ends[0] if key in _PLACES else 0.0)
+
+    return {key: convert(key, value) for key, value in output.items()}
 
 
 def _unit(top: Table) -> Unit:
     name = top.content.get("unit", "us")
-    if name not in UNITS:
-        raise top.error("unit", f"{name!r} is none of {', '.join(UNITS)}")
+    if name not in (*UNITS, "degrees"):
+        raise top.error("unit", f"{name!r} is none of {', '.join(UNITS)}, degrees")
+    if name == "degrees":  # for people: the tables hold microseconds, which are finer
+        name = "us"
     wanted = {"pca9685": "frequency", "counts": "clock"}.get(str(name))
     for key in ("frequency", "clock"):
         if key in top.content and key != wanted:

@@ -1,0 +1,162 @@
+"""A sketch for Arduino that finds the pulses of a face: ``labial rig --calibrate``."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Union
+
+from labial import __version__
+from labial.errors import DataError
+from labial.outputs import writing
+from labial.rig.description import PULSE_MAX, PULSE_MIN, Rig
+
+#: Outputs that the sketch can tell apart by a digit.
+OUTPUTS_MAX = 10
+
+
+def sketch(rig: Rig) -> str:
+    """The sketch's text. Raises DataError for a rig that moves no servos, or more than `OUTPUTS_MAX`."""
+    if not rig.unit.servo:
+        raise DataError(rig.path, None, f"--calibrate is for servos, and the unit is {rig.unit.name}")
+    if len(rig.outputs) > OUTPUTS_MAX:
+        raise DataError(rig.path, None, f"--calibrate is for at most {OUTPUTS_MAX} servos, not {len(rig.outputs)}")
+    names = ", ".join(f'"{output.name}"' for output in rig.outputs)
+    begins = ", ".join(str(round(output.neutral)) for output in rig.outputs)
+    pins = ", ".join(str(9 + number) for number in range(len(rig.outputs)))
+    return f"""/*
+ * Finds the pulses of {rig.name}'s servos by commands over the serial line, 9600 baud. Take the horns off first.
+ * Written by labial rig {__version__}.
+ *
+ *     0 .. 9   the servo that is moved          + -   by ten microseconds
+ *     n        here the face rests              > <   by one
+ *     c        here the lips just touch         g     to where the face rests
+ *     f        here the mouth is full open      p     prints the description's lines
+ *     l h      the least and the greatest pulse that the mechanics allow
+ *
+ * Servos at pins: change `pins`. Boards of the ESP32 family use ESP32Servo.h. Where a chip makes the pulses, change
+ * show().
+ */
+#include <Servo.h>
+
+#define OUTPUTS {len(rig.outputs)}
+
+static const char *const names[OUTPUTS] = {{ {names} }};
+static const int pins[OUTPUTS] = {{ {pins} }};
+static int pulses[OUTPUTS] = {{ {begins} }}; // microseconds
+static int found[OUTPUTS][5]; // neutral, closed, full, minimum, maximum; 0 where it was not set
+static const char *const keys[5] = {{ "neutral", "closed", "full", "minimum", "maximum" }};
+static Servo servos[OUTPUTS];
+static int chosen = 0;
+
+static void show(int output)
+{{
+    servos[output].writeMicroseconds(pulses[output]);
+}}
+
+static void move(int output, int pulse)
+{{
+    pulses[output] = constrain(pulse, {PULSE_MIN:.0f}, {PULSE_MAX:.0f});
+    show(output);
+    Serial.print(names[output]);
+    Serial.print(" ");
+    Serial.println(pulses[output]);
+}}
+
+static void keep(int key)
+{{
+    found[chosen][key] = pulses[chosen];
+    Serial.print(names[chosen]);
+    Serial.print(" ");
+    Serial.print(keys[key]);
+    Serial.print(" = ");
+    Serial.println(pulses[chosen]);
+}}
+
+static void printAll()
+{{
+    for (int output = 0; output < OUTPUTS; output++) {{
+        Serial.print("[output.");
+        Serial.print(names[output]);
+        Serial.println("]");
+        for (int key = 0; key < 5; key++) {{
+            if (found[output][key] != 0) {{
+                Serial.print(keys[key]);
+                Serial.print(" = ");
+                Serial.println(found[output][key]);
+            }}
+        }}
+    }}
+}}
+
+void setup()
+{{
+    Serial.begin(9600);
+    for (int output = 0; output < OUTPUTS; output++) {{
+        servos[output].attach(pins[output]);
+        found[output][0] = pulses[output];
+        show(output);
+    }}
+    Serial.println("0 .. 9, + - > <, n c f l h, g, p");
+}}
+
+void loop()
+{{
+    if (!Serial.available())
+        return;
+    const int command = Serial.read();
+    if (command >= '0' && command < '0' + OUTPUTS) {{
+        chosen = command - '0';
+        Serial.println(names[chosen]);
+        return;
+    }}
+    switch (command) {{
+    case '+':
+        move(chosen, pulses[chosen] + 10);
+        break;
+    case '-':
+        move(chosen, pulses[chosen] - 10);
+        break;
+    case '>':
+        move(chosen, pulses[chosen] + 1);
+        break;
+    case '<':
+        move(chosen, pulses[chosen] - 1);
+        break;
+    case 'g':
+        move(chosen, found[chosen][0]);
+        break;
+    case 'n':
+        keep(0);
+        break;
+    case 'c':
+        keep(1);
+        break;
+    case 'f':
+        keep(2);
+        break;
+    case 'l':
+        keep(3);
+        break;
+    case 'h':
+        keep(4);
+        break;
+    case 'p':
+        printAll();
+        break;
+    default: // line ends, and what is no command
+        break;
+    }}
+}}
+"""
+
+
+def write(rig: Rig, directory: Union[str, os.PathLike]) -> Path:
+    """Writes NAME_calibrate/NAME_calibrate.ino, as the IDE wants it, into `directory`; returns its path."""
+    text = sketch(rig)
+    folder = Path(directory) / f"{rig.name}_calibrate"
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{rig.name}_calibrate.ino"
+    with writing(path, "ascii") as out:
+        out.write(text)
+    return path
