@@ -16,6 +16,7 @@ VERSIONS: Dict[str, str] = {
     "idf_component.yml": r'^version: "([^"]*)"$',
     "library.json": r'^  "version": "([^"]*)",$',
     "packaging/npm/package.json": r'^  "version": "([^"]*)",$',
+    "packaging/npm/laughter/package.json": r'^  "version": "([^"]*)",$',
 }
 _HEADER = "include/labial/labial.h"
 _PARTS = ("MAJOR", "MINOR", "PATCH")

@@ -5,8 +5,10 @@ import "labial/labial-mouth.js";
 // What is said: a sound, the times of its phonemes, and who reads these. For a server's voice, change this line.
 const WORDS = { sound: "welcome.flac", timings: "welcome.lab", read: timings.fromLab };
 
-const [face, voice, status] = ["face", "voice", "status"].map((id) => document.getElementById(id));
-const labial = await Labial.load();
+const [face] = document.getElementsByTagName("labial-mouth");
+const [voice] = document.getElementsByTagName("audio");
+const [status] = document.getElementsByTagName("p");
+const labial = await Labial.load({ laughter: () => import("labial-laughter") });
 const laughter = labial.stream();
 let turn = 0; // whoever asked last has the mouth
 
@@ -34,7 +36,7 @@ async function speak(words) {
 }
 
 async function laugh() {
-    if (!(await interrupt())) return;
+    if (!(await interrupt(() => labial.laughter()))) return;
     if (laughter.done) laughter.restart();
     laughter.laugh(1.5, 0.7);
     laughter.end();
@@ -44,7 +46,7 @@ async function laugh() {
 
 /** On a tap does something, and says what went wrong; that a sound was interrupted is nothing wrong. */
 function onTap(id, action) {
-    document.getElementById(id).addEventListener("click", () => action().catch((error) => {
+    document.getElementById(id)?.addEventListener("click", () => action().catch((error) => {
         if (error.name !== "AbortError") status.textContent = error.message;
     }));
 }

@@ -1,10 +1,12 @@
-import type { Face } from "./faces.js";
+import type { Face, Faces } from "./faces.js";
+
+export type { Face, Faces };
 
 /** 13 lip and jaw parameters in FAP units: MPEG-4 FAPs 3, 16, 17, 51 .. 60, in this order. */
 export type Faps = Int16Array;
 
-/** Weights by name, 0 .. 1. */
-export type Weights = Record<string, number>;
+/** A face's weights by name, 0 .. 1. */
+export type Weights<F extends Face = Face> = F extends Face ? Record<Faces[F], number> : never;
 
 /** How frames are given out. */
 export type Output = "faps" | Face;
@@ -47,7 +49,11 @@ export interface StreamOptions<O extends Output = Output> {
     unknown?: "error" | "nearest";
 }
 
-type FrameOf<O> = O extends "faps" ? Faps : Weights;
+/** A frame of an output. */
+export type FrameOf<O extends Output> = O extends Face ? Weights<O> : Faps;
+
+/** The laughter model as the package labial-laughter has it, or the bytes of its .lbm file. */
+export type Laughter = string | ArrayBuffer | ArrayBufferView | { readonly default: unknown };
 
 /** A mouth that moves while its phonemes are still arriving. */
 export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
@@ -55,7 +61,7 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
      * milliseconds are carried on, so that nothing drifts. Any number of phonemes up to 65,536 may wait. */
     push(label: string | number, milliseconds: number, options?: { labels?: Labels; hint?: Labels }): void;
     /** Adds a laugh: seconds, 0 to 3,600; intensity from 0, a hum, to 1, an open mouth. The same seed gives the same
-     * laugh; without one, every laugh of a stream is another. */
+     * laugh; without one, every laugh of a stream is another. The laughter model must be loaded. */
     laugh(seconds: number, intensity?: number, seed?: number): void;
     /** Makes the next pushes phonemes of another model of the same frame rate. */
     use(model: "speech" | "laughter" | Model): void;
@@ -101,7 +107,7 @@ export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly faps: Int16Array;
     /** The mouth at a time of the sound, seconds, between two frames: what is shown while the sound is there. Before
      * the beginning and after the end it is the first and the last frame. The same object each time. */
-    at(seconds: number): O extends "faps" ? Float32Array : Weights;
+    at(seconds: number): O extends Face ? Weights<O> : Float32Array;
     /** One frame. */
     frame(number: number): FrameOf<O>;
     [Symbol.iterator](): IterableIterator<FrameOf<O>>;
@@ -109,19 +115,25 @@ export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
 
 /** The library. One serves any number of streams. */
 export class Labial {
-    /** Loads labial.wasm from beside this file, or from `wasm`: its address, an answer of fetch(), its bytes, or the
+    /** The library, with the speech model. `laughter` is the laughter model, or a function that loads it when laughter()
+     * is called for the first time: `() => import("labial-laughter")`. `wasm` is a build of your own: its bytes, or the
      * compiled module. */
     static load(options?: {
-        wasm?: string | URL | Response | ArrayBuffer | Uint8Array | WebAssembly.Module | Promise<Response>;
+        laughter?: Laughter | Promise<Laughter> | (() => Laughter | Promise<Laughter>);
+        wasm?: BufferSource | WebAssembly.Module | Promise<BufferSource | WebAssembly.Module>;
     }): Promise<Labial>;
-    /** The bundled models. */
-    readonly models: { readonly speech: Model; readonly laughter: Model };
+    /** The laughter model, loaded once; after that streams laugh. Rejects where load() was given none. */
+    laughter(): Promise<Model>;
+    /** The bundled models; laughter is null until it is loaded. */
+    readonly models: { readonly speech: Model; readonly laughter: Model | null };
+    /** What the licence of the speech model's data asks to be said wherever the model goes. */
+    readonly attribution: string;
     /** A new stream. */
     stream<O extends Output = "faps">(options?: StreamOptions<O>): Stream<O>;
     /** The motion of a whole utterance; gaps between segments are silence. */
     render<O extends Output = "faps">(timings: Iterable<Segment>, options?: StreamOptions<O>): Track<O>;
     /** A model from a binary file (`labial export --blob`), which is checked. */
-    model(bytes: ArrayBuffer | Uint8Array): Model;
+    model(bytes: ArrayBuffer | ArrayBufferView): Model;
     /** The number of the phoneme that a label means. */
     phoneme(label: string | number, options?: { model?: Model; labels?: Labels; hint?: Labels; nearest?: boolean }): number;
     /** The label of a phoneme. */
@@ -130,7 +142,7 @@ export class Labial {
      * room for words, both 0 .. 1. */
     blend(speech: ArrayLike<number>, laugh: ArrayLike<number>, intensity: number, words: number, out?: Int16Array): Faps;
     /** The weights of a face that 13 FAPs mean. */
-    convert(faps: ArrayLike<number>, output: Face, out?: Weights): Weights;
+    convert<F extends Face>(faps: ArrayLike<number>, output: F, out?: Partial<Weights<F>>): Weights<F>;
 }
 
 /** Readers of what voices tell of the sound they make; `source` is their JSON, parsed or as text. */

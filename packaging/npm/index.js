@@ -1,14 +1,18 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts says what each call takes and gives.
-import { CHANNELS, LabialError, Memory, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_LAUGHTER, amount, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
+import { unpack } from "./unpack.js";
 import * as timings from "./timings.js";
+import speech from "./speech.js";
 
 export { LabialError, Stream, Track, timings };
 
 /** Bytes of the place where labels, frames and weights are passed. */
 const SCRATCH = 16384;
 const LABEL_MAX = 256;
+/** Bytes of the largest model that is taken. */
+const MODEL_MAX = 2 ** 26;
 const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
 
 /** A model that streams can use: a bundled one, or one that was loaded. */
@@ -30,23 +34,33 @@ export class Labial {
     #scratch;
     #owned = new WeakSet();
     #loaded;
+    #laughter; // where the laughter model comes from
+    #coming = null; // its model, while it is on its way
 
-    constructor(instance) {
+    constructor(instance, laughter) {
         this.wasm = instance.exports;
         this.memory = new Memory(this.wasm.memory, this.wasm.__heap_base.value);
-        this.models = Object.freeze({
-            speech: new Model(this, this.wasm.model_at(0), this.wasm.names_at(0)),
-            laughter: new Model(this, this.wasm.model_at(1), this.wasm.names_at(1)),
-        });
-        Object.values(this.models).forEach((model) => this.#owned.add(model));
+        this.models = { speech: new Model(this, this.wasm.speech_model(), this.wasm.names_at(0)), laughter: null };
+        this.#owned.add(this.models.speech);
         this.faces = facesOf(this);
+        this.attribution = this.memory.text(this.wasm.attribution());
         this.#scratch = this.memory.take(SCRATCH);
         this.#loaded = new FinalizationRegistry(([at, size]) => this.memory.release(at, size));
+        this.#laughter = laughter;
         Object.freeze(this);
     }
 
-    static async load({ wasm = new URL("./labial.wasm", import.meta.url) } = {}) {
-        return new Labial(await instantiate(await wasm));
+    static async load({ wasm, laughter } = {}) {
+        const code = (await wasm) ?? unpack(speech);
+        const made = await WebAssembly.instantiate(code, {});
+        const labial = new Labial(made.instance ?? made, laughter);
+        if (laughter && typeof laughter !== "function") await labial.laughter();
+        return labial;
+    }
+
+    async laughter() {
+        this.models.laughter ??= await (this.#coming ??= this.#fetch());
+        return this.models.laughter;
     }
 
     stream(options) {
@@ -64,21 +78,20 @@ export class Labial {
     }
 
     model(data) {
-        const bytes = ArrayBuffer.isView(data) ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength) : data;
-        if (!(bytes instanceof Uint8Array || bytes instanceof ArrayBuffer)) {
-            throw new TypeError(`the model is ${shown(data)}, not the bytes of a .lbm file`);
-        }
+        const bytes = bytesOf(data);
+        if (bytes.length > MODEL_MAX) throw new LabialError(`the model has ${bytes.length} bytes, more than ${MODEL_MAX}`);
         const header = this.wasm.blob_size();
-        const size = header + bytes.byteLength;
+        const size = header + bytes.length;
         const at = this.memory.take(size);
-        this.memory.bytes.set(new Uint8Array(bytes), at + header);
-        const result = this.wasm.model_load(at, at + header, bytes.byteLength);
+        this.memory.bytes.set(bytes, at + header);
+        const result = this.wasm.model_load(at, at + header, bytes.length);
         if (result < 0) {
             this.memory.release(at, size);
             throw this.failure(result);
         }
-        const like = Object.values(this.models).find((one) => one.phonemes === this.wasm.model_phonemes(at));
-        const model = new Model(this, at, like ? like.names : 0);
+        const names = [0, 1].map((number) => this.wasm.names_at(number));
+        const own = names.find((one) => this.wasm.names_phonemes(one) === this.wasm.model_phonemes(at)) ?? 0;
+        const model = new Model(this, at, own);
         this.#owned.add(model);
         this.#loaded.register(model, [at, size]);
         return model;
@@ -91,9 +104,8 @@ export class Labial {
         }
         if (typeof label !== "string") throw new TypeError(`the label is ${shown(label)}, not text`);
         const sets = labels === "auto" && hint ? [hint, labels] : [labels];
-        const { read, written } = new TextEncoder().encodeInto(
-            label, this.memory.bytes.subarray(this.#scratch, this.#scratch + LABEL_MAX));
-        if (!model.names || (read < label.length && !nearest)) throw this.failure(-11, shown(label));
+        const { written, whole } = this.memory.write(label, this.#scratch, LABEL_MAX);
+        if (!model.names || (!whole && !nearest)) throw this.failure(-11, shown(label));
         for (const set of sets) {
             const found = this.wasm.find(model.names, this.labels(set), this.#scratch, written);
             if (found >= 0) return found;
@@ -122,6 +134,19 @@ export class Labial {
         }
         this.#put(faps, this.#scratch);
         return this.weigh(this.#scratch, output, out);
+    }
+
+    async #fetch() {
+        try {
+            let data = await (typeof this.#laughter === "function" ? this.#laughter() : this.#laughter);
+            while (data && data.default) data = data.default; // a module, or one inside another as CommonJS has it
+            if (!data) throw new LabialError(NO_LAUGHTER);
+            const model = this.model(typeof data === "string" ? unpack(data) : data);
+            if (model.names !== this.wasm.names_at(1)) throw new LabialError("the laughter is the model of something else");
+            return model;
+        } finally {
+            this.#coming = null; // so that it can be tried again
+        }
     }
 
     // ---- What streams and tracks use --------------------------------------------------------------------------------
@@ -211,22 +236,13 @@ function share(value, what) {
     return Math.round(256 * value);
 }
 
-/** An instance from a file's address, an answer of fetch(), bytes or a compiled module. */
-async function instantiate(from) {
-    if (from instanceof WebAssembly.Module) return WebAssembly.instantiate(from, {});
-    let bytes = from;
-    if (typeof from === "string" || from instanceof URL) {
-        const url = new URL(from, import.meta.url);
-        if (url.protocol === "file:") {
-            const files = await import(/* webpackIgnore: true */ /* @vite-ignore */ "node:fs/promises");
-            bytes = await files.readFile(url);
-        } else {
-            bytes = await fetch(url);
-        }
+/** The bytes of a buffer, or of a view of one, of any realm. */
+function bytesOf(data) {
+    try {
+        if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+        if (Object.prototype.toString.call(data) === "[object ArrayBuffer]") return new Uint8Array(data);
+    } catch {
+        // of a buffer that was handed to somebody else
     }
-    if (typeof Response === "function" && bytes instanceof Response) {
-        if (!bytes.ok) throw new LabialError(`${bytes.url}: ${bytes.status} ${bytes.statusText}`);
-        bytes = await bytes.arrayBuffer();
-    }
-    return (await WebAssembly.instantiate(bytes, {})).instance;
+    throw new TypeError(`the model is ${shown(data)}, not the bytes of a .lbm file`);
 }

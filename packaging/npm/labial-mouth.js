@@ -105,8 +105,7 @@ export class LabialMouth extends Base {
     }
 
     disconnectedCallback() {
-        cancelAnimationFrame(this.#asked);
-        this.#asked = 0;
+        this.#halt();
         this.#before = null;
         if (this.#rest) this.#take(null, null);
     }
@@ -168,7 +167,13 @@ export class LabialMouth extends Base {
         this.#player = player || null;
         this.#position = 0;
         this.#before = null;
+        if (!player) this.#halt();
         this.#ask();
+    }
+
+    #halt() {
+        cancelAnimationFrame(this.#asked);
+        this.#asked = 0;
     }
 
     #rested() {

@@ -4,6 +4,7 @@
  */
 #include <string.h>
 
+#include "attribution.h"
 #include "faces.h"
 #include "labial/blend.h"
 #include "labial/blob.h"
@@ -11,7 +12,7 @@
 #include "labial/laugh.h"
 #include "labial/names.h"
 #include "labial/rig.h"
-#include "laughter_synthetic.h"
+#include "laughter_synthetic.h" /* whose names are here; the model comes as a binary one */
 #include "speech_en.h"
 
 #define EXPORT(name) __attribute__((export_name(#name)))
@@ -51,15 +52,26 @@ EXPORT(laugh_size) uint32_t laugh_size(void)
     return sizeof(labial_laugh_t);
 }
 
-/* The bundled models and their names: 0 speech, 1 laughter. */
-EXPORT(model_at) const labial_model_t *model_at(unsigned number)
+/* What the licence of the speech model's data asks to be said wherever the model goes. */
+EXPORT(attribution) const char *attribution(void)
 {
-    return number ? &laughter_synthetic : &speech_en;
+    return LABIAL_ATTRIBUTION;
 }
 
+EXPORT(speech_model) const labial_model_t *speech_model(void)
+{
+    return &speech_en;
+}
+
+/* The names of phonemes: 0 speech, 1 laughter. */
 EXPORT(names_at) const labial_names_t *names_at(unsigned number)
 {
     return number ? &laughter_synthetic_names : &speech_en_names;
+}
+
+EXPORT(names_phonemes) unsigned names_phonemes(const labial_names_t *names)
+{
+    return names->phoneme_count;
 }
 
 EXPORT(model_phonemes) unsigned model_phonemes(const labial_model_t *model)

@@ -1,5 +1,5 @@
 // Where the tables of a model lie in the module's memory (labial_model_t of include/labial/model.h, for 32-bit targets):
-// what the tests know of it.
+// what builds and tests know of it.
 
 const CHANNELS = 13;
 
@@ -32,4 +32,39 @@ export function tables(buffer, model) {
             add(name, view.getUint32(at + 12 + 4 * i, true), states, width));
     }
     return found;
+}
+
+/** A model of the module's memory as a binary one, which blob.h describes. */
+export function binary(buffer, model) {
+    const view = new DataView(buffer);
+    const parts = tables(buffer, model);
+    const padded = parts.map(({ size }) => (size + 3) & ~3);
+    const bytes = new Uint8Array(32 + padded.reduce((sum, size) => sum + size, 0));
+    const header = new DataView(bytes.buffer);
+    bytes.set(new TextEncoder().encode("LBM1"));
+    header.setUint32(4, bytes.length, true);
+    bytes.set(new Uint8Array(buffer, model, 6), 12);
+    bytes.set(new Uint8Array(buffer, model + 6, 10), 18);
+    const has = (name) => parts.some((part) => part.name === name);
+    const knots = view.getUint8(model + 17);
+    header.setUint8(28, (has("contexts") ? 1 : 0) | (has("slopes") ? 2 : 0) | (knots === 2 ? 4 : 0));
+    header.setUint8(29, view.getUint8(model + 16));
+    header.setUint16(30, view.getUint16(model + 18, true), true);
+    let at = 32;
+    parts.forEach((part, i) => {
+        bytes.set(new Uint8Array(buffer, part.at, part.size), at);
+        at += padded[i];
+    });
+    header.setUint32(8, crc32(bytes.subarray(12)), true);
+    return bytes;
+}
+
+/** CRC-32 of bytes, as zlib has it. */
+export function crc32(bytes) {
+    let sum = ~0;
+    for (const byte of bytes) {
+        sum ^= byte;
+        for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (0xedb88320 & -(sum & 1));
+    }
+    return ~sum >>> 0;
 }

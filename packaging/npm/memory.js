@@ -5,6 +5,9 @@
 export const CHANNELS = 13;
 /** No timing is later, in seconds; beyond it the unit is not seconds. */
 export const LONGEST = 86400;
+/** What a program is told that laughs without the model. */
+export const NO_LAUGHTER =
+    'the laughter model is not loaded: Labial.load({ laughter: () => import("labial-laughter") }), await laughter()';
 
 /** What the library refuses, in its own words; `code` is its result (labial_result_t), 0 for what it does not know. */
 export class LabialError extends Error {
@@ -22,7 +25,7 @@ export class Memory {
     #i8;
 
     constructor(memory, base) {
-        const start = (base + 7) & ~7;
+        const start = eights(base);
         this.#memory = memory;
         this.#gaps = [[start, memory.buffer.byteLength - start]];
     }
@@ -34,7 +37,7 @@ export class Memory {
     }
 
     take(size) {
-        const whole = (size + 7) & ~7;
+        const whole = eights(size);
         let index = this.#gaps.findIndex((gap) => gap[1] >= whole);
         if (index < 0) {
             const before = this.#memory.buffer.byteLength;
@@ -58,7 +61,7 @@ export class Memory {
         const gaps = this.#gaps;
         let index = gaps.findIndex((gap) => gap[0] > at);
         if (index < 0) index = gaps.length;
-        gaps.splice(index, 0, [at, (size + 7) & ~7]);
+        gaps.splice(index, 0, [at, eights(size)]);
         for (const first of [index, index - 1]) {
             if (first >= 0 && first + 1 < gaps.length && gaps[first][0] + gaps[first][1] === gaps[first + 1][0]) {
                 gaps[first][1] += gaps[first + 1][1];
@@ -75,11 +78,32 @@ export class Memory {
         return new Int32Array(this.#memory.buffer, at, count);
     }
 
-    /** The text at an address, up to its zero. */
+    /** The ASCII text at an address, up to its zero. */
     text(at) {
         const bytes = this.bytes;
-        return new TextDecoder().decode(bytes.subarray(at, bytes.indexOf(0, at)));
+        return String.fromCharCode(...bytes.subarray(at, bytes.indexOf(0, at)));
     }
+
+    /** Writes text as UTF-8, as many whole characters as fit into `size` bytes; how many bytes they are, and whether they
+     * are all. An AudioWorklet has neither TextEncoder nor TextDecoder. */
+    write(text, at, size) {
+        const { bytes } = this;
+        let written = 0;
+        for (const character of text) {
+            const code = character.codePointAt(0);
+            const point = code >= 0xd800 && code < 0xe000 ? 0xfffd : code;
+            const more = point < 0x80 ? 0 : point < 0x800 ? 1 : point < 0x10000 ? 2 : 3;
+            if (written + more >= size) return { written, whole: false };
+            bytes[at + written++] = more ? ((0xff00 >> (more + 1)) & 0xff) | (point >> (6 * more)) : point;
+            for (let i = more - 1; i >= 0; i--) bytes[at + written++] = 0x80 | ((point >> (6 * i)) & 0x3f);
+        }
+        return { written, whole: true };
+    }
+}
+
+/** A size as the next multiple of eight; of any size, which `& ~7` has not. */
+function eights(size) {
+    return 8 * Math.ceil(size / 8);
 }
 
 /** A finite number from 0 on, or a TypeError that says what it is instead. */

@@ -1,5 +1,5 @@
 // One mouth that moves while its phonemes are still arriving.
-import { CHANNELS, LabialError, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, NO_LAUGHTER, amount, shown } from "./memory.js";
 
 const DURATION_MAX = 3600000;
 /** Phonemes that may wait for their turn beside those that the library holds. */
@@ -219,6 +219,7 @@ export class Stream {
     #modelOf(model) {
         const bundled = this.#labial.models;
         const found = typeof model === "string" && Object.hasOwn(bundled, model) ? bundled[model] : model;
+        if (found === null && model === "laughter") throw new LabialError(NO_LAUGHTER);
         if (!this.#labial.owns(found)) {
             throw new TypeError(`the model is ${shown(model)}, not one of this library's`);
         }

@@ -2,12 +2,16 @@
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { tables } from "../../packaging/npm/layout.mjs";
+import { binary as blob } from "../../packaging/npm/layout.mjs";
 
 /** The folder of the package, which the build names. */
 export const folder = resolve(process.env.LABIAL_NPM_PACKAGE ?? "build/wasm/npm");
 
 export const { Labial, LabialError, timings } = await import(pathToFileURL(`${folder}/index.js`));
+/** The laughter model, from the package beside it. */
+export const { default: laughter } = await import(pathToFileURL(`${folder}-laughter/index.js`));
+export const { unpack } = await import(pathToFileURL(`${folder}/unpack.js`));
+export { crc32 } from "../../packaging/npm/layout.mjs";
 
 /** The repository's file of this path. */
 export function source(path) {
@@ -33,38 +37,8 @@ export function vectors() {
     }));
 }
 
-/** A bundled model as a binary one, which blob.h describes. */
+/** A model of the library as a binary one. */
 export function binary(mouth, model) {
-    const { buffer } = mouth.memory.bytes;
-    const view = new DataView(buffer);
-    const parts = tables(buffer, model.at);
-    const padded = parts.map(({ size }) => (size + 3) & ~3);
-    const bytes = new Uint8Array(32 + padded.reduce((sum, size) => sum + size, 0));
-    const header = new DataView(bytes.buffer);
-    bytes.set(new TextEncoder().encode("LBM1"));
-    header.setUint32(4, bytes.length, true);
-    bytes.set(new Uint8Array(buffer, model.at, 6), 12);
-    bytes.set(new Uint8Array(buffer, model.at + 6, 10), 18);
-    const has = (name) => parts.some((part) => part.name === name);
-    const knots = view.getUint8(model.at + 17);
-    header.setUint8(28, (has("contexts") ? 1 : 0) | (has("slopes") ? 2 : 0) | (knots === 2 ? 4 : 0));
-    header.setUint8(29, view.getUint8(model.at + 16));
-    header.setUint16(30, view.getUint16(model.at + 18, true), true);
-    let at = 32;
-    parts.forEach((part, i) => {
-        bytes.set(new Uint8Array(buffer, part.at, part.size), at);
-        at += padded[i];
-    });
-    header.setUint32(8, crc32(bytes.subarray(12)), true);
-    return bytes;
-}
-
-/** CRC-32 of bytes, as zlib has it. */
-export function crc32(bytes) {
-    let sum = ~0;
-    for (const byte of bytes) {
-        sum ^= byte;
-        for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (0xedb88320 & -(sum & 1));
-    }
-    return ~sum >>> 0;
+    if (model === mouth.models.laughter) return unpack(laughter);
+    return blob(mouth.memory.bytes.buffer, model.at);
 }

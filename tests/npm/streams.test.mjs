@@ -3,9 +3,10 @@
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import test from "node:test";
-import { Labial, LabialError, binary, folder, source, timings } from "./setup.mjs";
+import { constants, deflateRawSync } from "node:zlib";
+import { Labial, LabialError, binary, folder, laughter, source, timings, unpack } from "./setup.mjs";
 
-const mouth = await Labial.load();
+const mouth = await Labial.load({ laughter });
 const WORDS = [["sil", 100], ["HH", 70], ["ə", 60], ["l", 80], ["ˈoʊ", 220], ["m", 80], ["sil", 150]];
 
 function speak(options, feed = (stream) => WORDS.forEach(([label, ms]) => stream.push(label, ms))) {
@@ -129,7 +130,8 @@ test("faces and names of weights are those of the rigs' descriptions, and the ty
         assert.deepEqual([...names], [...text.matchAll(/^\[output\.(\w+)\]/gm)].map((match) => match[1]), face);
     }
     const types = readFileSync(`${folder}/faces.d.ts`, "utf8");
-    assert.deepEqual([...types.matchAll(/"(\w+)"/g)].map((match) => match[1]), Object.keys(mouth.faces));
+    const typed = [...types.matchAll(/^    (\w+):\n([^;]*);/gm)].map(([, face, names]) => [face, names.match(/\w+/g)]);
+    assert.deepEqual(typed, Object.entries(mouth.faces).map(([face, names]) => [face, [...names]]));
 });
 
 test("a track is the stream's frames, and between them a line", () => {
@@ -277,6 +279,88 @@ test("a model from a file is the model, and a damaged one is refused", () => {
         }
         assert.equal(mouth.memory.bytes.length, before);
     }
+});
+
+test("a model of a buffer that was handed over, or of a huge one, takes no memory", () => {
+    const lost = new Uint8Array(4096);
+    structuredClone(lost.buffer, { transfer: [lost.buffer] });
+    const before = mouth.memory.bytes.length;
+    for (let i = 0; i < 100; i++) {
+        for (const data of [lost, lost.buffer]) assert.throws(() => mouth.model(data), TypeError);
+    }
+    for (const size of [2 ** 26 + 1, 2 ** 31, 2 ** 31 + 8]) {
+        const huge = new ArrayBuffer(size); // of which no page is touched
+        assert.throws(() => mouth.model(huge), { name: "LabialError", message: /^the model has \d+ bytes, more than/ });
+    }
+    assert.equal(mouth.memory.bytes.length, before);
+    const model = mouth.model(binary(mouth, mouth.models.speech));
+    assert.deepEqual(rows(speak({ model })), rows(speak()), "the pieces that are handed out do not overlap");
+});
+
+test("laughter is loaded when it is first needed, once, and until then asked for in a sentence", async () => {
+    let asked = 0;
+    const quiet = await Labial.load({ laughter: async () => (asked++, { default: { default: laughter } }) });
+    const missing = { name: "LabialError", message: /^the laughter model is not loaded: Labial\.load\(/ };
+    const stream = quiet.stream();
+    for (const call of [() => stream.laugh(1), () => stream.use("laughter"), () => quiet.stream({ model: "laughter" }),
+        () => quiet.render([{ start: 0, end: 1, label: "<laugh>" }])]) {
+        assert.throws(call, (error) => missing.message.test(error.message.replace("entry 1: ", "")) && error.code === 0);
+    }
+    assert.equal(quiet.models.laughter, null);
+    assert.equal(asked, 0);
+    const [first, second] = await Promise.all([quiet.laughter(), quiet.laughter()]);
+    assert.equal(first, second);
+    assert.equal(await quiet.laughter(), quiet.models.laughter);
+    assert.equal(asked, 1);
+    stream.laugh(2, 0.7);
+    stream.end();
+    assert.deepEqual(rows(stream), rows(speak({}, (s) => s.laugh(2, 0.7))));
+    for (const given of [undefined, () => null]) {
+        await assert.rejects((await Labial.load({ laughter: given })).laughter(), missing);
+    }
+    for (const given of ["abc", new Uint8Array(9), binary(mouth, mouth.models.speech), 5]) {
+        await assert.rejects(Labial.load({ laughter: given }), /damaged|model/);
+    }
+});
+
+test("a failed load of the laughter model can be tried again", async () => {
+    let online = false;
+    const quiet = await Labial.load({ laughter: () => (online ? laughter : Promise.reject(new Error("offline"))) });
+    await assert.rejects(quiet.laughter(), /offline/);
+    online = true;
+    assert.equal((await quiet.laughter()).rate, 50);
+});
+
+test("what unpacks the models undoes every kind of deflate's blocks, and names damage", () => {
+    const texts = ["", "a", "abc".repeat(9000), source("DESIGN.md"), Buffer.from(Array.from({ length: 70000 }, (_, i) => (i * i) >> 5))];
+    for (const bytes of texts.map((text) => Buffer.from(text))) {
+        for (const options of [{ level: 9 }, { level: 0 }, { strategy: constants.Z_FIXED }, { strategy: constants.Z_HUFFMAN_ONLY }]) {
+            const text = deflateRawSync(bytes, options).toString("base64");
+            assert.ok(Buffer.from(unpack(text)).equals(bytes));
+            if (text.length > 8) assert.throws(() => unpack(text.slice(0, text.length / 2)), LabialError);
+        }
+    }
+    for (let seed = 1, i = 0; i < 300; i++) {
+        const noise = Array.from({ length: 40 }, () => (seed = (seed * 48271) % 2147483647) & 255);
+        try {
+            unpack(Buffer.from(noise).toString("base64"));
+        } catch (error) {
+            assert.ok(error instanceof LabialError, error.stack);
+        }
+    }
+});
+
+test("text is written as UTF-8, whole characters only", () => {
+    const at = mouth.memory.take(64);
+    for (const text of ["", "ab", "ˈɑː", "tʃ", "\u{1d11e}x", "\ud800", "\u07ff\u0800\uffff\u{10ffff}", "ə".repeat(40)]) {
+        for (const size of [64, 7, 6, 5]) {
+            const wanted = new Uint8Array(size);
+            const { read, written } = new TextEncoder().encodeInto(text, wanted);
+            assert.deepEqual(mouth.memory.write(text, at, size), { written, whole: read === text.length });
+            assert.deepEqual([...mouth.memory.bytes.subarray(at, at + written)], [...wanted.subarray(0, written)]);
+        }
+    }
+    mouth.memory.release(at, 64);
 });
 
 test("more than may wait is refused", () => {

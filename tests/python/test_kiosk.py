@@ -103,7 +103,9 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Where the kiosk is served, with the package beside it as `npm install` lays it down."""
     folder = tmp_path_factory.mktemp("kiosk") / "kiosk"
     shutil.copytree(KIOSK, folder)
-    shutil.copytree(package(tmp_path_factory.mktemp("npm")), folder / "node_modules" / "labial")
+    built = package(tmp_path_factory.mktemp("npm"))
+    for name in ("labial", "labial-laughter"):
+        shutil.copytree(built.with_name(built.name + name[6:]), folder / "node_modules" / name)
     server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}/index.html"
@@ -370,6 +372,31 @@ def test_the_element_by_itself(browser: Browser, address: str) -> None:
     assert page.errors() == []
     with pytest.raises(PageFailed, match='a frame has 13 FAPs; what is drawn has the output "faps"'):
         page.evaluate("face.stream = said({output: 'arkit'}); turn(0)")
+
+
+def test_a_source_that_is_taken_away(browser: Browser, address: str) -> None:
+    """Catches a mouth that draws on without a source, and one that then never draws again; and 120 taps in a row."""
+    page = opened(browser, address, CLOCK)
+    drawn = page.evaluate("""(async () => {
+      const {Labial, timings} = await import("labial"), labial = await Labial.load();
+      const track = labial.render(timings.fromLab(await (await fetch("welcome.lab")).text()));
+      const face = document.getElementById("face"), drawings = () => (turn(0), turn(20), turn(20), seen.splice(0).length);
+      const found = [];
+      for (const source of ["track", "stream"]) {
+        for (const at of [track, null, track]) {
+          face.track = at;
+          if (!at) face[source] = null;
+          found.push(drawings());
+        }
+      }
+      face.track = null;
+      for (let i = 0; i < 120; i++) document.getElementById(["face", "speak", "stop"][i % 3]).click();
+      return found;
+    })()""")
+    assert drawn == [3, 0, 3, 3, 0, 3]
+    tap(page, "face")
+    turn_until(page, "document.getElementById('face').stream")
+    assert page.errors() == []
 
 
 @pytest.mark.parametrize("lost", ["welcome.lab", "welcome.flac"])

@@ -21,12 +21,14 @@ NODE = shutil.which("node")
 OUTPUTS = ("faps", *FACES)
 
 #: Reads a list of .lab texts; for each and each output the frames of `labial.render()`.
-SCRIPT = """
+SCRIPT = r"""
 const [, url, outputs] = process.argv;
 const { Labial, timings } = await import(url);
+const laughter = () => import(url.replace(/\/index\.js$/, "-laughter/index.js"));
 let input = "";
 for await (const piece of process.stdin) input += piece;
-const labial = await Labial.load();
+const labial = await Labial.load({ laughter });
+await labial.laughter();
 process.stdout.write(JSON.stringify(JSON.parse(input).map((text) => outputs.split(" ").map((output) => {
     const track = labial.render(timings.fromLab(text), { output, unknown: "nearest" });
     return Array.from(track, (frame) => (output === "faps" ? Array.from(frame) : frame));

@@ -90,7 +90,7 @@ foreach(synthesiser IN ITEMS flite espeak)
   endif()
 endforeach()
 if(LABIAL_NPM_PACKAGE)
-  list(APPEND variables "LABIAL_NPM_PACKAGE=${LABIAL_NPM_PACKAGE}")
+  list(APPEND variables "LABIAL_NPM_PACKAGE=${LABIAL_NPM_PACKAGE}" "LABIAL_BUNDLERS=${PROJECT_BINARY_DIR}/bundlers")
 endif()
 add_test(NAME pytest WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
   COMMAND "${python}" -m pytest -p no:cacheprovider -n 2 -ra --durations=10

@@ -1,0 +1,3 @@
+/** The laughter model, as Labial.load() takes it. */
+declare const laughter: string;
+export = laughter;

@@ -1,0 +1,7 @@
+const { Labial, timings } = require("labial");
+
+(async () => {
+    const labial = await Labial.load({ laughter: require("labial-laughter") });
+    const { faps } = labial.render(timings.fromLab(process.env.WORD));
+    console.log(JSON.stringify(Array.from(faps)));
+})();

@@ -1,0 +1,13 @@
+// The types as CommonJS has them.
+import labial = require("labial");
+import laughter = require("labial-laughter");
+
+async function word(): Promise<number> {
+    const mouth = await labial.Labial.load({ laughter });
+    const track = mouth.render(labial.timings.fromLab("0 1 AA"), { output: "arkit" });
+    // @ts-expect-error no weight has this name
+    track.at(0).jawOppen;
+    return track.at(0).jawOpen;
+}
+
+export = word;

@@ -1,0 +1,53 @@
+// What the types must allow and refuse: each line below an @ts-expect-error has to be an error.
+import { Labial, type Faps, type Stream, type Track, type Weights } from "labial";
+import laughter from "labial-laughter";
+import type { LabialMouth } from "labial/labial-mouth.js";
+
+const labial = await Labial.load({ laughter: () => import("labial-laughter") });
+await Labial.load({ laughter });
+await Labial.load({ laughter: fetch("laughter.lbm").then((answer) => answer.arrayBuffer()) });
+
+const arkit = labial.stream({ output: "arkit", labels: "ipa" });
+const open: number | undefined = arkit.tick()?.jawOpen;
+// @ts-expect-error no weight has this name
+arkit.tick()?.jawOppen;
+// @ts-expect-error this one is VRM's
+arkit.tick()?.aa;
+// @ts-expect-error null until the first frame
+arkit.tick().jawOpen;
+
+const faps: Faps | null = labial.stream({ labels: "ipa" }).tick();
+// @ts-expect-error FAPs have no names
+labial.stream().tick()?.jawOpen;
+const vrm: Track<"vrm"> = labial.render([{ start: 0, end: 1, label: "AA" }], { output: "vrm" });
+const { aa, ih, ou, ee, oh } = vrm.at(0.5);
+// @ts-expect-error no weight has this name
+vrm.at(0.5).jawOpen;
+for (const weights of vrm) weights.oh.toFixed();
+const between: Float32Array = labial.render([]).at(0);
+const sil: number = labial.convert(between, "oculus").sil;
+// @ts-expect-error no face has this name
+labial.convert(between, "arkitt");
+// @ts-expect-error no output has this name
+labial.stream({ output: "vrmm" });
+// @ts-expect-error null until it is loaded
+labial.models.laughter.rate;
+
+/** Code that does not know the face. */
+function total(weights: Weights): number {
+    return Object.values<number>(weights).reduce((sum, one) => sum + one, 0);
+}
+
+function any(stream: Stream<"arkit" | "vrm">): void {
+    const frame = stream.tick();
+    if (frame) total(frame);
+}
+
+function follow(mouth: LabialMouth, track: Track, stream: Stream): void {
+    mouth.track = track;
+    mouth.stream = stream;
+    // @ts-expect-error what is drawn has the output "faps"
+    mouth.track = vrm;
+}
+
+export { aa, any, ee, faps, follow, ih, oh, open, ou, sil };
