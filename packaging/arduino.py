@@ -1,7 +1,8 @@
-"""The library in the layout of the Arduino IDE: src/, examples/, library.properties, keywords.txt.
+"""The library in the layout of the Arduino IDE: src/, examples/, extras/, library.properties, keywords.txt.
 
 A sketch includes <speech_en.h>, or <Labial.h> for all public headers. Private sources lie in src/lib, which is not on
-the include path of sketches.
+the include path of sketches. The IDE offers examples for the architectures of the library, so that a sketch for others,
+which does not use the library, lies in extras/.
 """
 
 from __future__ import annotations
@@ -20,6 +21,9 @@ ARCHITECTURES = (
     "nrf52", "renesas_portenta", "renesas_uno", "rp2040", "sam", "samd", "stm32", "zephyr",
 )  # fmt: skip
 
+#: Sketches for an Uno: they play what was computed elsewhere, without the library.
+WITHOUT_LIBRARY = ("UnoJaw",)
+
 #: Where the headers lie that sketches share with other examples. A sketch's folder holds copies of them.
 SHARED = (ROOT / "examples" / "talk", ROOT / "examples" / "faces", ROOT / "export" / "labial" / "bake")
 
@@ -35,6 +39,7 @@ def properties(source: Source) -> str:
         "paragraph": "13 MPEG-4 facial animation parameters per frame for robots, dolls and avatars, for speech and "
         "for laughter, in integers and fixed memory.",
         "category": "Device Control",
+        "url": source.url,
         "architectures": ",".join(ARCHITECTURES),
         "includes": "Labial.h," + ",".join(f"{model.name}.h" for model in source.models),
         "license": "MIT",
@@ -98,7 +103,8 @@ def write(source: Source, folder: Path) -> None:
     ):
         write_text(folder / name, text)
     for sketch in sorted((ROOT / "examples" / "arduino").glob("*/*.ino")):
-        target = folder / "examples" / sketch.parent.name
+        name = sketch.parent.name
+        target = folder / ("extras" if name in WITHOUT_LIBRARY else "examples") / name
         target.mkdir(parents=True)
         for path in [sketch, *_included(sketch)]:
             shutil.copyfile(path, target / path.name)

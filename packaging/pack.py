@@ -22,7 +22,7 @@ from typing import List, Optional
 import amalgamation
 import arduino
 import trees
-from source import PackError, Source, exit_status, set_version, version
+from source import URL, PackError, Source, exit_status, set_version, version
 
 
 def _empty_folder(path: Path) -> Path:
@@ -34,7 +34,7 @@ def _empty_folder(path: Path) -> Path:
 
 
 def _pack(options: argparse.Namespace) -> None:
-    source = Source(Path(options.models) if options.models else None)
+    source = Source(Path(options.models) if options.models else None, getattr(options, "url", URL))
     folder = _empty_folder(Path(options.output))
     if options.kind == "amalgamation":
         amalgamation.write(source, folder)
@@ -71,6 +71,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         command.add_argument("--models", metavar="FOLDER", help="exported models instead of the bundled ones")
         if kind == "arduino":
             command.add_argument("--zip", action="store_true", help="also write DIR.zip")
+            command.add_argument("--url", default=URL, help=f"where the project is to be found ({URL})")
     command = kinds.add_parser("version", help="print or set the version")
     command.add_argument("number", nargs="?", metavar="X.Y.Z")
     options = parser.parse_args(arguments)

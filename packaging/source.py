@@ -18,6 +18,8 @@ VERSIONS: Dict[str, str] = {
     "packaging/npm/package.json": r'^  "version": "([^"]*)",$',
     "packaging/npm/laughter/package.json": r'^  "version": "([^"]*)",$',
 }
+#: Where a person finds the project, unless a release names another place.
+URL = "https://example.org/labial"
 _HEADER = "include/labial/labial.h"
 _PARTS = ("MAJOR", "MINOR", "PATCH")
 
@@ -92,11 +94,13 @@ class Source:
 
     Args:
         models: folder of exported models; the bundled ones without it.
+        url: where a person finds the project.
     """
 
-    def __init__(self, models: Optional[Path] = None) -> None:
+    def __init__(self, models: Optional[Path] = None, url: str = URL) -> None:
         folder = models if models else ROOT / "lib" / "models"
         self.version = version()
+        self.url = url
         self.license = ROOT / "LICENSE"
         self.public = sorted((ROOT / "include" / "labial").glob("*.h"))
         self.private = sorted((ROOT / "lib").glob("*.h"))

@@ -1,5 +1,5 @@
-"""The tools of npm that tests use, as tests/npm/bundlers/package-lock.json names them: bundlers, two versions of node, a
-compiler of types."""
+"""The tools of npm that tests use, as tests/npm/bundlers/package-lock.json names them: bundlers, two versions of node,
+a compiler of types."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from packages import SOURCE, run
 FOLDER = SOURCE / "tests" / "npm" / "bundlers"
 NPM = shutil.which("npm") or ""
 #: What cannot be had, "" where all is there.
-MISSING = NO_PACKAGE or ("" if NPM and shutil.which("node") else "needs npm: install the Debian packages nodejs and npm")
+MISSING = NO_PACKAGE or ("" if NPM else "needs npm: install the Debian packages nodejs and npm")
 
 
 def tools() -> Path:

@@ -1,5 +1,5 @@
 """The npm packages as projects use them: bundled by vite, esbuild, webpack and rollup as these come, or not at all; in
-pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are those of labial-say."""
+pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are labial-say's."""
 
 from __future__ import annotations
 

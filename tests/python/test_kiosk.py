@@ -380,8 +380,8 @@ def test_a_source_that_is_taken_away(browser: Browser, address: str) -> None:
     drawn = page.evaluate("""(async () => {
       const {Labial, timings} = await import("labial"), labial = await Labial.load();
       const track = labial.render(timings.fromLab(await (await fetch("welcome.lab")).text()));
-      const face = document.getElementById("face"), drawings = () => (turn(0), turn(20), turn(20), seen.splice(0).length);
-      const found = [];
+      const face = document.getElementById("face"), found = [];
+      const drawings = () => { turn(0); turn(20); turn(20); return seen.splice(0).length; };
       for (const source of ["track", "stream"]) {
         for (const at of [track, null, track]) {
           face.track = at;

@@ -224,7 +224,7 @@ def test_the_package_of_npm_takes_a_rig(copy: Path, tmp_path: Path) -> None:
     run(CMAKE, "-S", copy, "-B", build, f"-DCMAKE_TOOLCHAIN_FILE={copy / 'boards' / 'toolchains' / 'wasm.cmake'}",
         "-DCMAKE_BUILD_TYPE=Release", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF")  # fmt: skip
     run(CMAKE, "--build", build, "--target", "npm", "--parallel", "2")
-    assert '"puppet"' in (build / "npm" / "faces.d.ts").read_text(encoding="ascii")
+    assert '    puppet:\n        | "beak"' in (build / "npm" / "faces.d.ts").read_text(encoding="ascii")
     url = (build / "npm" / "index.js").as_uri()
     done = subprocess.run([str(NODE), "--input-type=module", "-e", SCRIPT, url, WORD], capture_output=True, check=True,
                           encoding="utf-8", timeout=60)

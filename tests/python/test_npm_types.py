@@ -1,5 +1,5 @@
-"""The npm packages' types, under TypeScript's `strict`: what they allow and refuse, and the code of the pages and of the
-kiosk against them."""
+"""The npm packages' types, under TypeScript's `strict`: what they allow and refuse, and the code of the pages and of
+the kiosk against them."""
 
 from __future__ import annotations
 

@@ -146,7 +146,7 @@ def objects(arduino: Path, tmp_path_factory: pytest.TempPathFactory) -> List[Pat
 
 
 def sketch_files(arduino: Path, sketch: str) -> List[Path]:
-    folder = arduino / "examples" / sketch
+    folder = next(arduino.glob(f"*/{sketch}"))
     return [folder / f"{sketch}.ino", *sorted(folder.glob("*.c"))]
 
 
@@ -159,11 +159,14 @@ def test_arduino_layout(arduino: Path) -> None:
     lines = (arduino / "library.properties").read_text(encoding="utf-8").splitlines()
     properties = dict(line.split("=", 1) for line in lines)
     assert properties["version"] == header_version(SOURCE) and properties["name"] == "Labial"
-    for key in ("author", "maintainer", "sentence", "paragraph", "category", "architectures", "includes"):
+    for key in ("author", "maintainer", "sentence", "paragraph", "category", "url", "architectures", "includes"):
         assert properties[key]
     for header in properties["includes"].split(","):
         assert (arduino / "src" / header).is_file()
-    assert len(SKETCHES) >= 2 and sorted(path.name for path in (arduino / "examples").iterdir()) == SKETCHES
+    uno = ["UnoJaw"]  # does not use the library, whose architectures are others: no example of it
+    assert len(SKETCHES) >= 2 and sorted(path.name for path in (arduino / "examples").iterdir()) == [
+        name for name in SKETCHES if name not in uno]  # fmt: skip
+    assert [path.name for path in (arduino / "extras").iterdir()] == uno and "avr" not in properties["architectures"]
     rows = [line.split("\t") for line in (arduino / "keywords.txt").read_text(encoding="utf-8").splitlines()]
     assert {"labial_tick": "KEYWORD2", "labial_t": "KEYWORD1", "LABIAL_DONE": "LITERAL1"}.items() <= dict(rows).items()
     with zipfile.ZipFile(arduino.with_name("Labial.zip")) as archive:
@@ -297,7 +300,7 @@ def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
 @pytest.mark.skipif(not shutil.which("avr-g++"), reason="no avr-g++: install gcc-avr and avr-libc")
 def test_uno_sketch_compiles_for_an_uno(arduino: Path, tmp_path: Path) -> None:
     """The sketch for the processor that it is for: the track stays in flash, and is all that is large."""
-    files = [STUB / "Arduino.h", STUB / "Servo.h", *(arduino / "examples" / "UnoJaw").iterdir()]
+    files = [STUB / "Arduino.h", STUB / "Servo.h", *(arduino / "extras" / "UnoJaw").iterdir()]
     for path in files:
         shutil.copyfile(path, tmp_path / path.name)
     options = [item for item in arduino_options(arduino) if not item.startswith("-I")]
@@ -315,7 +318,7 @@ CORE = Path("/usr/share/arduino/hardware/arduino/avr")
 def test_uno_sketch_compiles_with_arduinos_core(arduino: Path, tmp_path: Path) -> None:
     """What the stub of the core allows and the core itself does not; Servo is not part of the core and stays a stub."""
     shutil.copyfile(STUB / "Servo.h", tmp_path / "Servo.h")
-    sketch = arduino / "examples" / "UnoJaw"
+    sketch = arduino / "extras" / "UnoJaw"
     run("avr-g++", "-mmcu=atmega328p", "-DF_CPU=16000000L", "-DARDUINO=10819", "-DARDUINO_AVR_UNO",
         "-DARDUINO_ARCH_AVR", "-std=gnu++11", "-Os", "-Wall", "-Wextra", "-Werror", f"-I{CORE / 'cores' / 'arduino'}",
         f"-I{CORE / 'variants' / 'standard'}", f"-I{tmp_path}", "-include", "Arduino.h", "-x", "c++", "-c",
@@ -401,6 +404,20 @@ def test_component_builds(tree: object, tmp_path: Path, kind: str, functions: st
     run(CMAKE, "--build", tmp_path / "build")
     assert run(tmp_path / "build" / "program") == expected_frames()
     assert ("laughter" in (tmp_path / "build" / "sources").read_text()) == (kind == "esp-idf")
+
+
+def test_component_of_esp_idf_has_what_it_builds_from(tmp_path: Path) -> None:
+    """The component manager takes all of the tree that idf_component.yml does not exclude: what pack.py lays out, and
+    README.md. Catches a new file that would come along."""
+    text = (SOURCE / "idf_component.yml").read_text(encoding="utf-8")
+    excluded = {path for name in re.findall(r"^    - (\S+)$", text, re.MULTILINE) for path in SOURCE.glob(name)}
+    own = ("build", ".git", ".pytest_cache", ".ruff_cache", ".venv", "CMakeUserPresets.json")  # in no clone
+    left = {path.relative_to(SOURCE).as_posix() for entry in SOURCE.iterdir() if entry.name not in own
+            for path in ([entry] if entry.is_file() else entry.rglob("*")) if path.is_file() and path not in excluded}
+    pack("esp-idf", "-o", tmp_path / "labial")
+    packed = {path.relative_to(tmp_path / "labial").as_posix() for path in (tmp_path / "labial").rglob("*")
+              if path.is_file()}
+    assert left == packed | {"README.md"}
 
 
 def test_zephyr_module_offers_every_model() -> None:
