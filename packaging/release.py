@@ -5,17 +5,21 @@
     packaging/release.py v0.3.0 -o DIR
 
 DIR gets the sources, the two files, the folders for Arduino, PlatformIO, ESP-IDF and Zephyr as archives, the Python
-package as source and wheel, the npm package, and SHA256SUMS. Everything is built from a fresh copy of the tag, so
-that nothing of the working folder gets in. The tag's version must be that of the sources, and CHANGELOG.md must have a
-section for it that no longer says "unreleased". ``--without python npm`` leaves out what needs more than Python.
+package as source and as wheels for Linux, the npm packages, a bill of materials, and SHA256SUMS. Everything is built
+from a fresh copy of the tag, so that nothing of the working folder gets in. The tag's version must be that of the
+sources, and CHANGELOG.md must have a section for it that no longer says "unreleased". ``--without python npm`` leaves
+out what needs more than Python.
 
-Needs git; the Python package pip, cmake and a C compiler; the npm package clang, lld, node and npm.
+Needs git; the Python package cmake and what packaging/wheels.txt names, which is fetched; the npm packages clang, lld,
+node and npm.
 """
 
 from __future__ import annotations
 
 import argparse
 import hashlib
+import json
+import os
 import re
 import shutil
 import subprocess
@@ -25,7 +29,8 @@ import tempfile
 from pathlib import Path
 from typing import Callable, Dict, List, Optional
 
-from source import ROOT, PackError, exit_status
+from bill import bill
+from source import ROOT, PackError, exit_status, write_text
 
 #: The kinds of ``pack.py`` that become archives.
 FOLDERS = ("amalgamation", "arduino", "platformio", "esp-idf", "zephyr")
@@ -63,18 +68,18 @@ def folders(tree: Path, name: str, output: Path) -> None:
 
 
 def python(tree: Path, output: Path) -> None:
-    """Source and wheel of the Python package."""
-    run([sys.executable, "-m", "pip", "wheel", "--no-deps", "--wheel-dir", output, tree], tree)
+    """Source and wheels of the Python package; the files in them have the time of the release."""
+    run([sys.executable, tree / "packaging" / "wheels.py", "-o", output], tree)
     sources = "from scikit_build_core.build import build_sdist; import sys; build_sdist(sys.argv[1])"
     with tempfile.TemporaryDirectory() as temporary:  # an environment with the build's own package
         run([sys.executable, "-m", "venv", temporary], tree)
         own = Path(temporary) / "bin" / "python"
-        run([own, "-m", "pip", "install", "-q", "scikit-build-core>=0.10"], tree)
+        run([own, "-m", "pip", "install", "-q", "-r", tree / "packaging" / "wheels.txt"], tree)
         run([own, "-c", sources, output], tree)
 
 
 def npm(tree: Path, output: Path) -> None:
-    """The npm package, whose tests run first."""
+    """The npm packages, whose tests run first."""
     run(["cmake", "--workflow", "--preset", "wasm"], tree)
     for path in (tree / "build" / "wasm").glob("labial-*.tgz"):
         shutil.copyfile(path, output / f"{path.stem}-npm.tgz")
@@ -93,10 +98,14 @@ def release(tag: str, output: Path, without: List[str]) -> List[Path]:
         archived = output / f"{name}-source.tar.gz"
         run(["git", "archive", f"--prefix={name}/", f"--output={archived}", f"refs/tags/{tag}"], ROOT)
         folders(tree, name, output)
+        moment = run(["git", "log", "-1", "--format=%ct", f"refs/tags/{tag}"], ROOT).strip()
+        os.environ["SOURCE_DATE_EPOCH"] = moment
         more: Dict[str, Callable[[Path, Path], None]] = {"python": python, "npm": npm}
         for kind in more:
             if kind not in without:
                 more[kind](tree, output)
+        document = bill(tree, sorted(output.iterdir()), int(moment))
+        write_text(output / f"{name}.cdx.json", json.dumps(document, indent=1) + "\n")
     packages = sorted(output.iterdir())
     sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in packages]
     (output / "SHA256SUMS").write_text("".join(sums), encoding="ascii")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import re
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ import sys
 import tarfile
 import zipfile
 from pathlib import Path
+from typing import Any, Dict
 
 import pytest
 
@@ -56,14 +58,49 @@ def test_a_tag_becomes_its_packages(repository: Path, tmp_path: Path) -> None:
     name = f"labial-{version}"
     kinds = ("amalgamation", "arduino", "esp-idf", "platformio", "zephyr")
     assert {path.name for path in out.iterdir()} == {
-        "SHA256SUMS", f"{name}-source.tar.gz", *(f"{name}-{kind}.zip" for kind in kinds)}  # fmt: skip
+        "SHA256SUMS", f"{name}.cdx.json", f"{name}-source.tar.gz",
+        *(f"{name}-{kind}.zip" for kind in kinds)}  # fmt: skip
     for line in (out / "SHA256SUMS").read_text().splitlines():
         digest, package = line.split("  ")
         assert hashlib.sha256((out / package).read_bytes()).hexdigest() == digest
+    check_bill(json.loads((out / f"{name}.cdx.json").read_text(encoding="utf-8")), out)
     with tarfile.open(out / f"{name}-source.tar.gz") as sources:
         assert b"no C at all" != sources.extractfile(f"{name}/lib/stream.c").read()
     with zipfile.ZipFile(out / f"{name}-amalgamation.zip") as files:
         assert b"labial_tick" in files.read(f"{name}-amalgamation/labial.c")
+
+
+def check_bill(bill: Dict[str, Any], folder: Path) -> None:
+    """It names every package with its sum, the data with its licence, and everything only once."""
+    assert (bill["bomFormat"], bill["specVersion"], bill["metadata"]["component"]["version"]) == (
+        "CycloneDX", "1.5", labial.__version__)  # fmt: skip
+    components = {item["bom-ref"]: item for item in bill["components"]}
+    assert len(components) == len(bill["components"])
+    files = {name: item["hashes"] for name, item in components.items() if item["type"] == "file"}
+    others = ("SHA256SUMS", f"labial-{labial.__version__}.cdx.json")
+    assert files == {path.name: [{"alg": "SHA-256", "content": hashlib.sha256(path.read_bytes()).hexdigest()}]
+                     for path in folder.iterdir() if path.name not in others}
+    speech = components["model:speech_en"]
+    assert "GRID audio-visual speech corpus" in speech["description"]
+    assert speech["licenses"] == [{"license": {"id": "CC-BY-4.0"}}]
+    assert "synthetic" in components["model:laughter_synthetic"]["description"]
+    assert {"pypi:numpy", "pypi:scipy", "pypi:mediapipe", "pypi:distributed", "build:ziglang"} <= set(components)
+    assert [item["dependsOn"] for item in bill["dependencies"]] == [["model:laughter_synthetic", "model:speech_en"]]
+
+
+def test_what_ci_takes_from_elsewhere_is_pinned() -> None:
+    """A tag can be moved to another commit or image; a digest cannot."""
+    texts = [path.read_text(encoding="utf-8") for path in (SOURCE / ".github" / "workflows").glob("*.yml")]
+    uses = [use for text in texts for use in re.findall(r"^ +(?:- )?(?:uses|container|image): (\S+)", text, re.M)]
+    assert len(uses) >= 3
+    assert [use for use in uses if not re.search(r"@([0-9a-f]{40}|sha256:[0-9a-f]{64})$", use)] == []
+
+
+def test_manifests_name_the_licence_of_the_data() -> None:
+    """The speech model is in every package but that of laughter."""
+    for name in ("pyproject.toml", "library.json", "idf_component.yml", "packaging/npm/package.json",
+                 "packaging/arduino.py"):  # fmt: skip
+        assert "MIT AND CC-BY-4.0" in (SOURCE / name).read_text(encoding="utf-8"), name
 
 
 @pytest.mark.slow
