@@ -27,6 +27,7 @@ from labial.evaluate.splits import Split, make_splits
 from labial.evaluate.training import Training
 from labial.faps import CHANNELS
 from labial.model import Model
+from labial.outputs import check, writing
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.reference import published, synthesis
 from labial.reference.shape import targets
@@ -209,13 +210,15 @@ def main(arguments: Optional[List[str]] = None) -> int:
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="TABLE.md")
     options = parser.parse_args(arguments)
     try:
+        check(options.output)
         corpus = utterances(read_corpus(options.corpus, options.kind), PHONE_SETS[options.kind], FPS)
         splits = make_splits(corpus, options.splits, options.seed)
         with Workers(options.jobs, sys.stderr.isatty(), None) as workers:
             outcomes = workers.run("splits", run_split, [(corpus, split, options.kind, options.seed)
                                                          for split in splits])
         text = table(options.kind, outcomes)
-        options.output.write_text(text, encoding="utf-8")
+        with writing(options.output, "utf-8") as out:
+            out.write(text)
     except (LabialError, OSError) as error:
         print(f"choices: {error}", file=sys.stderr)
         return 1
