@@ -23,29 +23,32 @@ void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k
     }
 }
 
-static unsigned marks_of(unsigned t, unsigned length)
+static uint8_t marks_of(unsigned t, unsigned length)
 {
-    return (t == 0 ? (unsigned)LABIAL_BEGINS : 0u) | (t + 1u == length ? (unsigned)LABIAL_ENDS : 0u);
+    return (uint8_t)((t == 0 ? (unsigned)LABIAL_BEGINS : 0u) | (t + 1u == length ? (unsigned)LABIAL_ENDS : 0u));
 }
 
 void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, unsigned k,
                       int16_t motion[HOLD][LABIAL_CHANNELS])
 {
-    static labial_factors_t factors[LABIAL_FACTORS_(HOLD)];
+    static labial_kept_t kept;
     static labial_solver_t solver;
-    const unsigned size = LABIAL_FACTORS_(HOLD);
-    unsigned t, place = 0, before = 0, turn = 0;
+    static labial_frame_t frames[HOLD];
+    labial_factors_t work[LABIAL_WINDOW + HOLD + 1];
+    unsigned t, i;
     labial_terms_t terms;
-    for (t = 0; t < BENCH_UNIT; t++) {
-        if (turn == 0)
-            labial_trajectory_terms(&model->channels[k], unit->path[t], &terms);
-        labial_trajectory_row(&solver, &terms, unit->targets[t][k], 0, marks_of(t, BENCH_UNIT), &factors[before],
-                              &factors[place]);
-        turn = turn + 1u < HOLD ? turn + 1u : 0u;
-        if (turn == 0 && t >= LABIAL_WINDOW + HOLD)
-            labial_trajectory_back(factors, size, before, LABIAL_WINDOW + HOLD, HOLD, HOLD - 1u, HOLD, &motion[0][k]);
-        before = place;
-        place = place + 1u < size ? place + 1u : 0u;
+    for (t = 0; t < BENCH_UNIT; t += HOLD) {
+        *(labial_kept_t *)(void *)work = kept;
+        for (i = 0; i < HOLD; i++) {
+            frames[i].target[k] = unit->targets[t + i][k];
+            frames[i].marks = marks_of(t + i, BENCH_UNIT);
+        }
+        labial_trajectory_terms(&model->channels[k], unit->path[t], &terms);
+        labial_trajectory_rows(&solver, &terms, frames, k, HOLD, work + LABIAL_WINDOW + 1);
+        if (t >= LABIAL_WINDOW + HOLD)
+            labial_trajectory_back(work + LABIAL_WINDOW + HOLD - 1, LABIAL_WINDOW, HOLD, HOLD - 1u, HOLD,
+                                   &motion[0][k]);
+        kept = *(const labial_kept_t *)(const void *)(work + HOLD);
     }
 }
 
@@ -53,14 +56,16 @@ void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, u
 {
     static labial_factors_t factors[BENCH_SOLVE];
     static labial_solver_t solver;
+    static labial_frame_t frame;
     unsigned t;
     labial_terms_t terms;
     for (t = 0; t < length; t++) {
         labial_trajectory_terms(&model->channels[k], path[t], &terms);
-        labial_trajectory_row(&solver, &terms, positions[t * LABIAL_CHANNELS], 0, marks_of(t, length),
-                              &factors[t > 0 ? t - 1u : 0u], &factors[t]);
+        frame.target[k] = positions[t * LABIAL_CHANNELS];
+        frame.marks = marks_of(t, length);
+        labial_trajectory_rows(&solver, &terms, &frame, k, 1, &factors[t]);
     }
-    labial_trajectory_back(factors, BENCH_SOLVE, length - 1u, length, length, length - 1u, length, positions);
+    labial_trajectory_back(&factors[length - 1u], 0, length, length - 1u, length, positions);
     for (t = 0; t < length; t++)
         positions[t * LABIAL_CHANNELS] = (int16_t)(positions[t * LABIAL_CHANNELS] - model->channels[k].centre);
 }

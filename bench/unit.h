@@ -11,7 +11,7 @@
 #define BENCH_SOLVE 400 /* frames that bench_solve() takes at most */
 
 /* Bytes that the solver needs of a channel, as the workspace holds them. */
-#define BENCH_MEMORY (sizeof(labial_solver_t) + LABIAL_FACTORS_(BENCH_HOLD) * sizeof(labial_factors_t))
+#define BENCH_MEMORY (sizeof(labial_solver_t) + sizeof(labial_kept_t))
 
 /* A unit of one channel: where its states are and where its frames are drawn to. */
 typedef struct {

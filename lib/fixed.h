@@ -94,11 +94,14 @@ static inline uint32_t labial_z_cost(uint32_t z)
     return (z * z) >> 7;
 }
 
+/* a / b, of b > 0. Behind a call, for compilers that know the operands' ranges link signed division beside it. */
+uint32_t labial_quotient(uint32_t a, uint32_t b);
+
 /* How far a transition has gone at `step` of `steps`, 65535 at most, Q14: 3 s^2 - 2 s^3, which starts and ends without
  * a jolt. */
 static inline int32_t labial_ease(unsigned step, unsigned steps)
 {
-    const uint32_t s = ((uint32_t)step << 14) / steps;
+    const uint32_t s = labial_quotient((uint32_t)step << 14, steps);
     return (int32_t)(((s * s >> 14) * ((3u << 14) - 2u * s)) >> 14);
 }
 

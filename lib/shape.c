@@ -10,6 +10,8 @@
 
 #define ONE 4096u /* the whole of a mixture, Q12 */
 
+#define FIRST_HALF 8u /* channels whose shape the first half of a selection mixes */
+
 /* Largest z of a duration: over a thousand standard deviations, so that the widest component takes an endless pause. */
 #define DURATION_Z_MAX 65535u
 
@@ -70,23 +72,22 @@ static void weigh(const uint32_t *costs, unsigned count, unsigned best, uint16_t
     /*@ assert sum >= 32768; */
     LABIAL_CHECK(sum >= 32768u);
     for (c = 0; c < count; c++) {
-        shares[c] = (uint16_t)(likelihoods[c] * (uint32_t)ONE / sum);
+        shares[c] = (uint16_t)labial_quotient(likelihoods[c] * (uint32_t)ONE, sum);
         rest -= shares[c];
     }
     shares[best] = (uint16_t)(shares[best] + rest);
 }
 
-/* The shape of a phoneme between neighbours of the given viseme classes. */
-static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms, unsigned previous_class,
-                unsigned next_class, int16_t shape[LABIAL_CHANNELS])
+/* Finds what the shape of a phoneme between neighbours of the given viseme classes is mixed of. */
+static void compose(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms, unsigned previous_class,
+                    unsigned next_class, labial_selection_t *selection)
 {
     const unsigned count = phoneme->component_count;
     uint32_t costs[LABIAL_PHONEME_COMPONENTS_MAX];
     int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
     uint16_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* of the mixture, Q12 */
-    int16_t tilts[LABIAL_PHONEME_COMPONENTS_MAX];      /* share * deviation, Q12: how much of its slope counts */
     const unsigned best = score(model, phoneme, ms, previous_class, next_class, costs, deviations);
-    unsigned c, k;
+    unsigned c, counting = 0;
 
     memset(shares, 0, sizeof shares);
     if (model->soft)
@@ -94,16 +95,28 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, ui
     else
         shares[best] = ONE;
     for (c = 0; c < count; c++)
-        tilts[c] = (int16_t)((shares[c] * (int32_t)deviations[c]) >> 6);
+        if (shares[c] > 0) {
+            selection->components[counting] = (uint8_t)c;
+            selection->shares[counting] = shares[c];
+            selection->tilts[counting++] = (int16_t)((shares[c] * (int32_t)deviations[c]) >> 6);
+        }
+    selection->count = (uint8_t)counting;
+}
 
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+/* Mixes channels `k` up to `end` of a phoneme's shape. */
+static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, const labial_selection_t *selection,
+                unsigned k, unsigned end, int16_t shape[LABIAL_CHANNELS])
+{
+    const unsigned count = selection->count;
+    unsigned c;
+    for (; k < end; k++) {
         const labial_channel_t *channel = &model->channels[k];
-        const size_t first = (size_t)phoneme->first_component * LABIAL_CHANNELS + k;
         int32_t mean = 0, change = 0; /* in table steps, Q12 */
         for (c = 0; c < count; c++) {
-            mean += (int32_t)shares[c] * model->shapes[first + c * LABIAL_CHANNELS];
+            const size_t at = ((size_t)phoneme->first_component + selection->components[c]) * LABIAL_CHANNELS + k;
+            mean += (int32_t)selection->shares[c] * model->shapes[at];
             if (model->slopes)
-                change += tilts[c] * model->slopes[first + c * LABIAL_CHANNELS];
+                change += selection->tilts[c] * model->slopes[at];
         }
         /* The shares add up to one, and so the tilts to 136 / 64 at most. */
         /*@ assert -524288 <= mean <= 524288; */
@@ -146,10 +159,16 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
 }
 
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
-                         labial_shape_t *shape)
+                         labial_selection_t *selection)
 {
     const labial_phoneme_t *phonemes = model->phonemes;
-    mix(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, shape->knots[0]);
+    labial_shape_t *shape = &selection->shape;
+    if (selection->halves++ == 0) {
+        compose(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, selection);
+        mix(model, &phonemes[phoneme], selection, 0, FIRST_HALF, shape->knots[0]);
+        return;
+    }
+    mix(model, &phonemes[phoneme], selection, FIRST_HALF, LABIAL_CHANNELS, shape->knots[0]);
     if (model->pair_knots > 1u)
         memcpy(shape->knots[1], shape->knots[0], sizeof shape->knots[1]);
     add_pair(model, phoneme << 8 | previous, shape);

@@ -9,10 +9,11 @@
 
 /*
  * Shape selection (equation 2 of docs/method.md, with its context, conditional mean and pairs): the shape of `phoneme`,
- * which lasts `ms` milliseconds, between the given neighbours.
+ * which lasts `ms` milliseconds, between the given neighbours. Each of two calls with the same arguments does half of
+ * it, so that two ticks may share it; `selection->halves` counts them from 0.
  */
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
-                         labial_shape_t *shape);
+                         labial_selection_t *selection);
 
 /*
  * The target of a frame that was taken: its phoneme's shape and what the temporal kernels of its neighbours add, but

@@ -4,19 +4,24 @@
  *     queue --units--> phoneme --shape--> target --viterbi--> state --trajectory--> motion --output--> callback
  *     pushed           one frame, all channels    a third of the channels, three frames    one frame
  *
- * Each tick takes one frame from the queue and finds its target (input.c), searches and solves the channels whose turn
- * it is (turns.c), and delivers the frame that is due (output.c).
+ * Each tick takes one frame from the queue and finds its target, searches and solves the channels that are next
+ * (channels.c), and delivers the frame that is due.
  *
- * Where the model changes, and at the end, the solution ends with the last frame and the next one begins anew; the way
- * back crosses the two without a trace, for rho is one there and kappa zero. Frames that are delivered then fade from
+ * Where the model changes, and at the end, the solution ends with the last frame and the next one begins anew; the
+ * backward pass does not couple the two, for rho is one there and kappa zero. Frames that are delivered then fade from
  * the pose that was delivered last, which moves on a little as it did before.
  */
 #include <string.h>
 
-#include "stream.h"
+#include "channels.h"
+#include "fixed.h"
+#include "shape.h"
 #include "units.h"
 
 #define MAGIC 0x4c41424cu /* "LABL" */
+
+/* Frames over which a solution that begins anew fades in. */
+#define FADE 8u
 
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
@@ -29,17 +34,150 @@ static int status(const labial_t *stream)
     return !stream ? LABIAL_ERROR_NULL : stream->magic != MAGIC ? LABIAL_ERROR_STATE : LABIAL_OK;
 }
 
-/* ---- Input ------------------------------------------------------------------------------------------------------- */
+/* ---- One frame in ------------------------------------------------------------------------------------------------ */
+
+/* Does half of selecting the shape of the phoneme that begins next, if all that it depends on is known and it is not yet
+ * selected. */
+static void select_half(labial_t *stream)
+{
+    labial_spoken_t spoken;
+    if (stream->next.halves < 2u && labial_units_next(&stream->units, stream->models, stream->ended, &spoken))
+        labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
+                            &stream->next);
+}
+
+/* Stores a frame that was taken, and its target. */
+static void store(labial_t *stream, const labial_taken_t *taken)
+{
+    labial_frame_t *frame = labial_channels_enter(&stream->channels);
+    if (taken->is_first) {
+        stream->shape = stream->next.shape;
+        stream->next.halves = 0;
+    }
+    frame->contacts = labial_shape_target(stream->models[taken->slot], &stream->shape, taken, frame->target);
+    frame->slot = taken->slot;
+    frame->marks = taken->marks;
+    if ((taken->marks & LABIAL_BEGINS) && (stream->channels.entered > 1u || stream->shown))
+        stream->begins[0] |= 1u;
+}
+
+/*
+ * Advances by a tick: takes the next frame and finds its target or, after the last one, lets the frames that were taken
+ * run out. `*selected` becomes whether a shape had to be selected for it.
+ *
+ * Returns LABIAL_OK, LABIAL_STARVED when more phonemes must be known, or LABIAL_DONE when nothing is left.
+ */
+static int take_frame(labial_t *stream, int *selected)
+{
+    labial_taken_t taken;
+    unsigned i;
+    int result;
+    *selected = stream->next.halves < 2u && labial_units_at_first(&stream->units, stream->models);
+    if (*selected) {
+        select_half(stream);
+        if (stream->next.halves == 1u)
+            select_half(stream);
+    }
+    result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
+    if (result == LABIAL_STARVED || (result == LABIAL_DONE && stream->pending == 0))
+        return result;
+    for (i = LABIAL_BEGINS_WORDS_; --i > 0;)
+        stream->begins[i] = stream->begins[i] << 1 | stream->begins[i - 1u] >> 31;
+    stream->begins[0] <<= 1;
+    if (result == LABIAL_OK)
+        store(stream, &taken);
+    else
+        labial_channels_run_out(&stream->channels);
+    return LABIAL_OK;
+}
+
+/* ---- One frame out ----------------------------------------------------------------------------------------------- */
+
+/* Q4 to whole FAP units. */
+static void call_back(labial_t *stream, const int16_t motion[LABIAL_CHANNELS])
+{
+    int16_t faps[LABIAL_CHANNELS];
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        faps[k] = (int16_t)((motion[k] + 8) >> 4);
+    stream->callback(stream->user, stream->frame, faps);
+    stream->frame++;
+    stream->shown = 1;
+}
+
+/* Begins to fade from the pose that was delivered last, which moves on as far as the last frame moved it, half as far
+ * with each frame. */
+static void begin_fade(labial_t *stream)
+{
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        stream->earlier[k] = (int16_t)(stream->fade_step == 0 ? stream->pose[k] - stream->earlier[k] : 0);
+        stream->faded[k] = stream->pose[k];
+    }
+    stream->fade_step = 1;
+}
+
+/* Delivers the frame that is due; returns whether one is. */
+static int deliver(labial_t *stream)
+{
+    const unsigned delay = LABIAL_DELAY(stream->channels.stride);
+    const int16_t *motion = labial_channels_due(&stream->channels);
+    unsigned k;
+    if (!motion)
+        return 0;
+    if (stream->begins[delay / 32u] >> (delay % 32u) & 1u)
+        begin_fade(stream);
+    if (stream->fade_step == 0) {
+        memcpy(stream->earlier, stream->begun ? stream->pose : motion, sizeof stream->earlier); /* a first one rested */
+        memcpy(stream->pose, motion, sizeof stream->pose);
+    } else {
+        const int32_t share = labial_ease(stream->fade_step, FADE + 1u);
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const int32_t from = stream->faded[k] + stream->earlier[k] - (stream->earlier[k] >> stream->fade_step);
+            const int32_t value = from + (((motion[k] - from) * share + 8192) >> 14);
+            stream->pose[k] = (int16_t)labial_clamp(value, INT16_MAX);
+        }
+        if (++stream->fade_step > FADE) {
+            stream->fade_step = 0;
+            memcpy(stream->earlier, stream->pose, sizeof stream->earlier);
+        }
+    }
+    stream->pending--;
+    stream->begun = 1;
+    call_back(stream, stream->pose);
+    return 1;
+}
+
+/* The face at the present step of the way from `pose` to the neutral one. */
+static void eased(const labial_t *stream, int16_t motion[LABIAL_CHANNELS])
+{
+    const int32_t left = 16384 - labial_ease(stream->ease_step, stream->ease_length);
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        motion[k] = (int16_t)((stream->pose[k] * left + 8192) >> 14);
+}
+
+/* Delivers the next frame of the way from `pose` to the neutral face. */
+static void ease(labial_t *stream)
+{
+    int16_t motion[LABIAL_CHANNELS];
+    stream->ease_step++;
+    eased(stream, motion);
+    if (stream->ease_step == stream->ease_length) {
+        stream->ease_length = 0;
+        memset(stream->pose, 0, sizeof stream->pose);
+    }
+    call_back(stream, motion);
+}
+
+/* ---- The calls --------------------------------------------------------------------------------------------------- */
 
 static void forget_input(labial_t *stream)
 {
     labial_units_forget(&stream->units);
+    labial_channels_reset(&stream->channels);
     stream->pending = 0;
-    stream->begins[0] = stream->begins[1] = 0;
-    stream->ended = stream->begun = stream->selected = 0;
-    stream->entered = stream->beyond = 0;
-    stream->phase = (uint8_t)(stream->stride - 1u);
-    stream->frame_place = stream->factor_place = 0;
+    stream->ended = stream->begun = stream->next.halves = 0;
     stream->fade_step = 0;
     stream->ease_length = stream->ease_step = 0;
 }
@@ -47,7 +185,6 @@ static void forget_input(labial_t *stream)
 int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, size_t size, labial_frame_fn callback,
                 void *user)
 {
-    labial_factors_t *factors;
     if (!stream)
         return LABIAL_ERROR_NULL;
     stream->magic = 0;
@@ -59,13 +196,9 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
         return LABIAL_ERROR_WORKSPACE;
     memset(stream, 0, sizeof *stream);
     stream->models[0] = model;
-    stream->stride = model->search_stride;
     stream->callback = callback;
     stream->user = user;
-    stream->tracks = (labial_track_t *)workspace;
-    factors = (labial_factors_t *)(void *)(stream->tracks + LABIAL_CHANNELS);
-    stream->frames = (labial_frame_t *)(void *)(factors + LABIAL_CHANNELS * LABIAL_FACTORS_((unsigned)stream->stride));
-    stream->motion = (int16_t *)(void *)(stream->frames + stream->stride + LABIAL_LAG);
+    labial_channels_init(&stream->channels, model->search_stride, workspace);
     stream->magic = MAGIC;
     forget_input(stream);
     return LABIAL_OK;
@@ -74,12 +207,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 /* Whether the model in `slot` is still needed: for phonemes in the queue or frames that are not yet solved. */
 static int is_in_use(const labial_t *stream, unsigned slot)
 {
-    const unsigned size = stream->stride + LABIAL_LAG;
-    unsigned age;
-    for (age = 0; age < size && age < stream->entered; age++)
-        if (stream->frames[labial_ring_back(stream->frame_place, age, size)].slot == slot)
-            return 1;
-    return labial_units_hold(&stream->units, slot);
+    return labial_channels_hold(&stream->channels, slot) || labial_units_hold(&stream->units, slot);
 }
 
 int labial_use(labial_t *stream, const labial_model_t *model)
@@ -95,7 +223,7 @@ int labial_use(labial_t *stream, const labial_model_t *model)
     if (model->format != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
     if (model->frames_per_second != stream->models[stream->slot]->frames_per_second ||
-        model->search_stride != stream->stride)
+        model->search_stride != stream->channels.stride)
         return LABIAL_ERROR_RATE;
     for (slot = LABIAL_MODELS; slot-- > 0;) {
         if (stream->models[slot] == model) {
@@ -146,19 +274,19 @@ int labial_end(labial_t *stream)
 
 int labial_tick(labial_t *stream)
 {
-    int result = status(stream);
+    int selected, result = status(stream);
     if (result != LABIAL_OK)
         return result;
     if (stream->ease_length) {
-        labial_output_ease(stream);
+        ease(stream);
         return LABIAL_OK;
     }
-    result = labial_input_advance(stream);
+    result = take_frame(stream, &selected);
     if (result == LABIAL_OK) {
-        labial_turns_take(stream);
-        if (stream->phase > 0) /* the first turn has most channels; what is selected is the same at any time */
-            labial_input_select(stream);
-        if (labial_output_deliver(stream))
+        labial_channels_step(&stream->channels, stream->models);
+        if (!selected && stream->channels.phase > 0) /* the first of a stride's ticks has most channels */
+            select_half(stream);
+        if (deliver(stream))
             return LABIAL_OK;
     }
     return result == LABIAL_DONE ? LABIAL_DONE : stream->begun ? LABIAL_STARVED : LABIAL_WAITING;
@@ -172,8 +300,9 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds)
         return result;
     if (milliseconds > LABIAL_DURATION_MAX)
         milliseconds = LABIAL_DURATION_MAX;
-    frames = (milliseconds * stream->models[stream->slot]->frames_per_second + 999u) / 1000u;
-    labial_output_stop_easing(stream); /* cancelled again on the way */
+    frames = labial_quotient(milliseconds * stream->models[stream->slot]->frames_per_second + 999u, 1000u);
+    if (stream->ease_length) /* cancelled again on the way */
+        eased(stream, stream->pose);
     forget_input(stream);
     stream->ended = 1;
     stream->ease_length = (uint16_t)(frames < 1u ? 1u : frames < 1000u ? frames : 1000u);
@@ -197,10 +326,11 @@ labial_latency_t labial_latency(const labial_t *stream)
     labial_latency_t latency = { 0, 0, 0, 0 };
     if (status(stream) == LABIAL_OK) {
         const uint32_t rate = stream->models[stream->slot]->frames_per_second;
+        const uint32_t seconds = labial_quotient(stream->pending, rate), rest = stream->pending - seconds * rate;
+        latency.milliseconds = seconds * 1000u + labial_quotient(rest * 1000u + rate / 2u, rate);
         latency.frames = stream->pending;
-        latency.milliseconds = stream->pending / rate * 1000u + (stream->pending % rate * 1000u + rate / 2u) / rate;
         latency.phonemes = stream->units.count;
-        latency.delay = LABIAL_DELAY((unsigned)stream->stride);
+        latency.delay = LABIAL_DELAY((unsigned)stream->channels.stride);
     }
     return latency;
 }

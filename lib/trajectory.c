@@ -129,63 +129,66 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned number, labial_terms_t *terms)
 {
     const labial_state_t *state = &channel->states[number];
+    const int32_t firm = (int32_t)labial_weight(channel->firm), delta2 = (int32_t)labial_weight(state->weight[1]);
     terms->origin = state->mean[0];
     terms->position = ((int32_t)channel->centre + state->mean[0]) * 256;
     terms->share = (int32_t)state->share + (state->share >> 7);
     terms->hold = (int32_t)labial_weight(state->hold);
-    terms->firm = (int32_t)labial_weight(channel->firm);
+    terms->firm = firm > terms->hold ? firm : terms->hold;
     terms->delta = (int32_t)labial_weight(state->weight[0]);
-    terms->delta2 = (int32_t)labial_weight(state->weight[1]);
+    terms->stiff = delta2 - terms->delta;
     terms->delta_pull = 2 * terms->delta * state->mean[1];
-    terms->delta2_pull = terms->delta2 * state->mean[2];
+    terms->delta2_pull = delta2 * state->mean[2];
 }
 
-void labial_trajectory_row(labial_solver_t *solver, const labial_terms_t *terms, int32_t position, int contact,
-                           unsigned marks, labial_factors_t *before, labial_factors_t *own)
+void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms, const labial_frame_t *frame,
+                            unsigned channel, unsigned count, labial_factors_t *own)
 {
-    int32_t delta = 0, delta2 = 0, delta_pull = 0, delta2_pull = 0;
-    if (!(marks & (LABIAL_BEGINS | LABIAL_ENDS))) {
-        delta = terms->delta;
-        delta2 = terms->delta2;
-        delta_pull = terms->delta_pull;
-        delta2_pull = terms->delta2_pull;
+    for (; count > 0; count--, frame++, own++) {
+        const int is_first = frame->marks & LABIAL_BEGINS, is_last = frame->marks & LABIAL_ENDS;
+        const int contact = (int)(frame->contacts >> channel & 1u);
+        if (is_first || is_last) { /* without deltas */
+            if (is_first)
+                memset(solver, 0, sizeof *solver);
+            else
+                factor(solver, 0, 0, own - 1);
+            solver->delta = 0;
+            solver->pull = solver->next_pull;
+            solver->next_pull = 0;
+        } else {
+            solver->pull += terms->delta2_pull - terms->delta_pull;
+            factor(solver, terms->stiff, terms->delta, own - 1);
+            solver->delta = (uint16_t)terms->delta;
+            solver->pull = solver->next_pull - 2 * terms->delta2_pull;
+            solver->next_pull = terms->delta2_pull + terms->delta_pull;
+        }
+        solver->hold = (uint16_t)(contact ? terms->firm : terms->hold);
+        solver->position = terms->position + (frame->target[channel] - terms->origin) * (contact ? 256 : terms->share);
+        if (is_last)
+            factor(solver, 0, 0, own);
     }
-    if (marks & LABIAL_BEGINS) {
-        memset(solver, 0, sizeof *solver);
-    } else {
-        solver->pull += delta2_pull - delta_pull;
-        factor(solver, delta2 - delta, delta, before);
-    }
-    solver->hold = (uint16_t)(contact && terms->firm > terms->hold ? terms->firm : terms->hold);
-    solver->delta = (uint16_t)delta;
-    solver->position = terms->position + (position - terms->origin) * (contact ? 256 : terms->share);
-    solver->pull = solver->next_pull - 2 * delta2_pull;
-    solver->next_pull = delta2_pull + delta_pull;
-    if (marks & LABIAL_ENDS)
-        factor(solver, 0, 0, own);
 }
 
-/* One frame of the way back: `moved` is how far the one after it lies from the next. */
+/* How far the frame of `at` lies from the next, whose position is `m` and which lies `moved` from the one after it. */
 static inline int32_t step_back(const labial_factors_t *at, int32_t m, int32_t moved)
 {
     return labial_part16(at->q - m, at->rho) + labial_part16(moved, at->kappa);
 }
 
-void labial_trajectory_back(const labial_factors_t *factors, unsigned size, unsigned newest, unsigned count,
-                            unsigned wanted, unsigned place, unsigned places, int16_t *motion)
+void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsigned wanted, unsigned place,
+                            unsigned places, int16_t *motion)
 {
-    const labial_factors_t *at = factors + newest, *const last = factors + size - 1;
-    int32_t m = at->q, moved = 0;
-    for (count -= wanted; count > 0; count--) {
-        moved = step_back(at, m, moved);
+    int32_t m = newest->q, moved = 0;
+    for (; ahead > 0; ahead--) {
+        moved = step_back(--newest, m, moved);
         m += moved;
-        at = at > factors ? at - 1 : last;
     }
-    for (; wanted > 0; wanted--) {
-        moved = step_back(at, m, moved);
-        m += moved;
-        at = at > factors ? at - 1 : last;
+    for (;;) {
         motion[place * LABIAL_CHANNELS] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
+        if (--wanted == 0)
+            return;
+        moved = step_back(--newest, m, moved);
+        m += moved;
         place = place > 0 ? place - 1u : places - 1u;
     }
 }

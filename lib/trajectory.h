@@ -20,30 +20,30 @@ typedef struct {
     int32_t origin;      /* the target, a position, at which the anchor agrees with it */
     int32_t share;       /* of the anchor in `hold`, in 1/256 */
     int32_t hold;        /* weight */
-    int32_t firm;        /* the least weight of a frame in contact */
+    int32_t firm;        /* weight of a frame in contact */
     int32_t delta;       /* a quarter of its weight */
-    int32_t delta2;      /* weight of delta-delta */
+    int32_t stiff;       /* weight of delta-delta, less `delta` */
     int32_t delta_pull;  /* twice `delta` times delta's mean, Q4 */
-    int32_t delta2_pull; /* `delta2` times its mean, Q4 */
+    int32_t delta2_pull; /* delta-delta's weight times its mean, Q4 */
 } labial_terms_t;
 
 /* The terms of a state of a channel. */
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms);
 
 /*
- * Adds the row of a frame, whose target is `position`; in `contact` its hold is at least `firm` and ties it to this
- * target. `marks` say whether it is the solution's first or last. Every row but the first factors the frame before it,
- * for which it needs `before`, its place in the ring; the last one factors its own frame too, `own`.
+ * Adds the rows of `count` successive frames of `channel` that have the same terms. A frame in contact is tied to its
+ * target alone, by `firm`. Every row but a solution's first factors the frame before it, into own[-1]; a solution's
+ * last row factors its own frame too, into own[0]; then `own` moves on with the frames.
  */
-void labial_trajectory_row(labial_solver_t *solver, const labial_terms_t *terms, int32_t position, int contact,
-                           unsigned marks, labial_factors_t *before, labial_factors_t *own);
+void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms, const labial_frame_t *frame,
+                            unsigned channel, unsigned count, labial_factors_t *own);
 
 /*
- * The way back through the newest `count` frames of a ring of `size` factors, the newest being at `newest`. Of these
- * the last `wanted` are put into `motion`, a ring of as many `places`, from `place` backwards: Q4 FAP, one frame every
- * LABIAL_CHANNELS.
+ * The backward pass from the frame of `newest`, with the factors of those before it in front of its own. The `wanted`
+ * frames that end `ahead` frames before it are put into `motion`, a ring of `places` frames, from `place` backwards:
+ * Q4 FAP, one frame every LABIAL_CHANNELS.
  */
-void labial_trajectory_back(const labial_factors_t *factors, unsigned size, unsigned newest, unsigned count,
-                            unsigned wanted, unsigned place, unsigned places, int16_t *motion);
+void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsigned wanted, unsigned place,
+                            unsigned places, int16_t *motion);
 
 #endif

@@ -32,7 +32,7 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
                            uint32_t frames_per_second)
 {
     const uint32_t thousandths = milliseconds * frames_per_second + units->remainder;
-    const uint32_t frames = thousandths / 1000u;
+    const uint32_t frames = labial_quotient(thousandths, 1000u);
     units->remainder = (uint16_t)(thousandths - frames * 1000u);
     if (frames > 0) {
         const unsigned i = (unsigned)units->head + units->count;
@@ -73,7 +73,7 @@ static uint16_t share_of(uint32_t frame, uint32_t frames)
     LABIAL_CHECK(frames > 0);
     for (; frames >= 65536u; frames >>= 1)
         frame >>= 1;
-    return (uint16_t)(((2u * frame + 1u) << 13) / frames);
+    return (uint16_t)labial_quotient((2u * frame + 1u) << 13, frames);
 }
 
 /* Frames of the first of the two phonemes that a long silence is taken as; 0 for all others. */
@@ -112,7 +112,7 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     spoken->previous = spoken->next = model->silence;
     spoken->ms = segment->ms;
     if (head > 0) {
-        const uint16_t tail = (uint16_t)(look_ahead(model) * 1000u / model->frames_per_second);
+        const uint16_t tail = (uint16_t)labial_quotient(look_ahead(model) * 1000u, model->frames_per_second);
         spoken->ms = (uint16_t)(from < head ? segment->ms - tail : tail);
     }
     if (from == 0 && i > 0)

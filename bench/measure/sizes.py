@@ -12,7 +12,7 @@ from measure.core import Bench, run, version
 
 #: Files of lib/ that play compiled-in models. A program links the others only when it calls them, or for models from
 #: outside (model.c, the check, and blob.c).
-CORE = ("stream", "input", "turns", "output", "units", "shape", "viterbi", "trajectory")
+CORE = ("stream", "channels", "units", "shape", "viterbi", "trajectory", "fixed")
 
 LEVELS = ("-Os", "-O2")
 
@@ -24,11 +24,11 @@ MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 #: bundled models, but for rounding to four.
 PARTS = {
     "labial_t: queue and labels": "sizeof(labial_units_t)",
-    "labial_t: shapes": "2 * sizeof(labial_shape_t)",
+    "labial_t: shapes": "sizeof(labial_shape_t) + sizeof(labial_selection_t)",
     "labial_t: poses": "3 * LABIAL_CHANNELS * sizeof(int16_t)",
-    "workspace: searches": "LABIAL_CHANNELS * (sizeof(labial_track_t) - sizeof(labial_solver_t))",
+    "workspace: searches": "LABIAL_CHANNELS * sizeof(labial_search_t)",
     "workspace: solvers": "LABIAL_CHANNELS * sizeof(labial_solver_t)",
-    "workspace: factors": "LABIAL_CHANNELS * LABIAL_FACTORS_(STRIDE) * sizeof(labial_factors_t)",
+    "workspace: factors": "LABIAL_CHANNELS * sizeof(labial_kept_t)",
     "workspace: frames": "(STRIDE + LABIAL_LAG) * sizeof(labial_frame_t)",
     "workspace: motion": "STRIDE * LABIAL_CHANNELS * sizeof(int16_t)",
 }

@@ -178,6 +178,16 @@ typedef struct {
     int16_t knots[2][LABIAL_CHANNELS];
 } labial_shape_t;
 
+/* The selection of a shape (shape.c). */
+typedef struct {
+    uint8_t halves;                                    /* that are done */
+    uint8_t count;                                     /* components that have a share */
+    uint8_t components[LABIAL_PHONEME_COMPONENTS_MAX]; /* of the phoneme's */
+    uint16_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* of the mixture, Q12 */
+    int16_t tilts[LABIAL_PHONEME_COMPONENTS_MAX];      /* how much of the slope counts: share times deviation, Q12 */
+    labial_shape_t shape;
+} labial_selection_t;
+
 /* Where the search of one channel stands (viterbi.c). */
 typedef struct {
     uint8_t first; /* state of the window */
@@ -202,7 +212,7 @@ typedef struct {
     uint16_t hold, delta;
 } labial_solver_t;
 
-/* What the way back needs of a frame (trajectory.c). */
+/* What the backward pass needs of a frame (trajectory.c). */
 typedef struct {
     int32_t q; /* Q12 FAP */
     uint16_t rho, kappa;
@@ -210,46 +220,61 @@ typedef struct {
 
 /* A frame that was taken (stream.c). */
 typedef struct {
+    uint32_t contacts;               /* bit k: channel k is in contact */
     int16_t target[LABIAL_CHANNELS]; /* positions */
-    uint16_t contacts;               /* bit k: channel k is in contact */
     uint8_t slot;                    /* its model */
     uint8_t marks;
 } labial_frame_t;
 
-/* One channel (stream.c). */
+/* The factors that a channel's next step goes back through, the latest last; a structure, so that it is copied whole. */
+typedef struct {
+    labial_factors_t of[LABIAL_WINDOW + 1];
+} labial_kept_t;
+
+/* Where one channel stands (channels.c). */
 typedef struct {
     labial_solver_t solver;
+    labial_kept_t kept;
     labial_search_t search;
-} labial_track_t;
+} labial_progress_t;
+
+/* All channels (channels.c). The pointers are to parts of the workspace. */
+typedef struct {
+    uint8_t stride;              /* frames that share a state */
+    uint8_t phase;               /* channels phase, phase + stride, ... are next */
+    uint8_t entered;             /* frames that were taken, 255 for more */
+    uint8_t beyond;              /* ticks since the last frame was taken */
+    labial_progress_t *progress; /* LABIAL_CHANNELS */
+    labial_frame_t *frames;      /* the latest stride + LABIAL_LAG, the last one taken at the end */
+    int16_t *motion;             /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
+} labial_channels_t;
+
+/* Ticks from taking a frame in to delivering it. */
+#define LABIAL_DELAY(stride) (LABIAL_WINDOW + LABIAL_LAG + (stride))
+
+#define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
 /* The stream's state (stream.c). Small members come first, where small instructions reach them. */
 typedef struct {
     uint32_t magic;       /* set while the stream is initialised */
     uint8_t slot;         /* model of the next push */
-    uint8_t stride;       /* frames that share a state */
     uint8_t ended;        /* no more phonemes will come */
     uint8_t begun;        /* a frame was delivered since the stream was initialised or restarted */
     uint8_t shown;        /* a frame was delivered since the stream was initialised: what begins fades in from `pose` */
-    uint8_t selected;     /* `next_shape` is that of the phoneme that begins next */
-    uint8_t entered;      /* frames that were taken, 255 for more */
-    uint8_t beyond;       /* ticks since the last frame was taken */
-    uint8_t phase;        /* channels whose turn it is */
-    uint8_t frame_place;  /* of the latest frame in the ring of frames */
-    uint8_t factor_place; /* likewise */
     uint8_t fade_step;    /* 0 when nothing fades */
     uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
     uint16_t ease_step;
-    uint32_t frame;         /* number of the next frame */
-    uint32_t pending;       /* frames pushed and not yet delivered */
-    uint32_t begins[2];     /* bit i: a solution begins with the frame that was taken i ticks ago */
-    labial_track_t *tracks; /* the workspace: LABIAL_CHANNELS, and behind them their rings of factors */
-    labial_frame_t *frames; /* a ring of stride + LABIAL_LAG */
-    int16_t *motion;        /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
+    uint32_t frame;   /* number of the next frame */
+    uint32_t pending; /* frames pushed and not yet delivered */
+    uint32_t
+        begins[LABIAL_BEGINS_WORDS_]; /* bit i: a solution begins with the frame that was taken i ticks ago; what was
+                                            * taken before a cancel moves beyond the delay before a frame is due */
+    labial_channels_t channels;
     const labial_model_t *models[LABIAL_MODELS];
     labial_frame_fn callback;
     void *user;
-    labial_shape_t shape; /* of the phoneme that the latest frame belongs to */
-    labial_shape_t next_shape;
+    labial_shape_t shape;             /* of the phoneme that the latest frame belongs to */
+    labial_selection_t next;          /* that of the phoneme that begins next */
     int16_t pose[LABIAL_CHANNELS];    /* the frame delivered last, Q4 FAP */
     int16_t earlier[LABIAL_CHANNELS]; /* the one before it; while something fades, how far it moved on */
     int16_t faded[LABIAL_CHANNELS];   /* the pose that fades */
@@ -258,16 +283,12 @@ typedef struct {
 
 /*
  * Bytes of workspace for models that search a state every `stride` frames, a multiple of four; a constant expression
- * when `stride` is. Its parts are, in this order: the channels' tracks; their factors, in rings; the
- * frames whose targets are still needed, in a ring; the motion that is not yet delivered, likewise.
+ * when `stride` is. Its parts are, in this order: how far each channel is; the frames whose targets are still needed;
+ * the motion that is not yet delivered.
  */
 #define LABIAL_WORKSPACE_SIZE(stride)                                                                                  \
-    ((uint32_t)(LABIAL_CHANNELS * (LABIAL_FACTORS_(stride) * sizeof(labial_factors_t) + sizeof(labial_track_t)) +      \
+    ((uint32_t)(LABIAL_CHANNELS * sizeof(labial_progress_t) +                                                          \
                 (((stride) + LABIAL_LAG) * sizeof(labial_frame_t) + (stride)*2u * LABIAL_CHANNELS + 3u) / 4u * 4u))
-#define LABIAL_FACTORS_(stride) (LABIAL_WINDOW + (stride) + 1u)
-
-/* Ticks from taking a frame in to delivering it. */
-#define LABIAL_DELAY(stride) (LABIAL_WINDOW + LABIAL_LAG + (stride))
 
 /* The same for a given model; 0 for a null pointer. */
 uint32_t labial_workspace_size(const labial_model_t *model);

@@ -30,6 +30,10 @@ unsigned oracle_label(const labial_model_t *const *models, const oracle_frame_t 
 
 /* ---- Shapes: phonemes to targets (lib/shape.h) ---- */
 
+/* The shape of a phoneme between two others: both halves of lib/shape.c's selection, which may come in different ticks. */
+void oracle_shape(const labial_model_t *model, unsigned phoneme, unsigned ms, unsigned previous, unsigned next,
+                  labial_shape_t *shape);
+
 /* The targets of a whole stream, and bit by bit the channels in contact. Shapes and what is added to them are
  * lib/shape.c's own, of models without floors; floors, contact and rest are put upon them here, phoneme by phoneme. */
 void oracle_targets(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count,

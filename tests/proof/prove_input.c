@@ -1,14 +1,13 @@
 /*
- * Any stride, phase and places in rings of that stride, any marks and number of frames that entered, with phonemes, frames
- * and ends in any order. units.c and shape.c are proven on their own; their stand-ins here give any of their results, and
- * read and write what those do.
+ * stream.c, one frame in: any stride, phase, marks and number of frames that entered, with phonemes, frames and ends in any order. units.c,
+ * shape.c and channels.c are proven on their own; their stand-ins here give any of their results, and read and write what
+ * those do.
  */
 #include "any_model.h"
-#include "shape.h"
-#include "stream.h"
+#include "stream.c"
+#include "stream_channels.h"
 
 static labial_model_t model;
-static labial_frame_t frames[LABIAL_SEARCH_STRIDE_MAX + LABIAL_LAG];
 
 int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
 {
@@ -48,9 +47,12 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
 }
 
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
-                         labial_shape_t *shape)
+                         labial_selection_t *selection)
 {
+    labial_shape_t *shape = &selection->shape;
     unsigned k;
+    selection->halves++;
+    /*@ assert selection->halves <= 2; */
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         shape->knots[0][k] = any_position();
         shape->knots[1][k] = any_position();
@@ -70,24 +72,22 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
 static void advance(int stride)
 {
     static labial_t stream; /* zero, as labial_init() makes it */
+    int selected;
     unsigned i;
     for (i = 0; i < LABIAL_MODELS; i++)
         stream.models[i] = &model;
-    stream.stride = (uint8_t)stride;
-    stream.phase = (uint8_t)(stride - 1);
-    stream.frames = frames + LABIAL_SEARCH_STRIDE_MAX - stride;
+    stream.channels.stride = (uint8_t)stride;
     while (any_int) {
         stream.ended = (uint8_t)Frama_C_interval(0, 1);
         stream.shown = (uint8_t)Frama_C_interval(0, 1);
         stream.pending = any_uint32;
         stream.units.count = any_uint8;
         if (any_int)
-            labial_input_select(&stream);
-        labial_input_advance(&stream);
+            select_half(&stream);
+        take_frame(&stream, &selected);
         if (any_int) { /* as when it begins anew */
-            stream.phase = (uint8_t)(stride - 1);
-            stream.frame_place = stream.factor_place = 0;
-            stream.entered = stream.beyond = stream.selected = 0;
+            stream.channels.entered = 0;
+            stream.next.halves = 0;
         }
     }
 }

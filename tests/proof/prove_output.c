@@ -1,11 +1,10 @@
 /*
- * Any motion and any pose, at every step of a fade, with every stride and phase; and every step of easing over every
+ * stream.c, one frame out: any motion and any pose, at every step of a fade, with every stride; and every step of easing over every
  * number of frames.
  */
 #include "prove.h"
-#include "stream.h"
-
-static int16_t motion[LABIAL_SEARCH_STRIDE_MAX * LABIAL_CHANNELS];
+#include "stream.c"
+#include "stream_channels.h"
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -20,41 +19,37 @@ static void any_stream(labial_t *stream, int16_t *user)
     FILL(stream->pose);
     FILL(stream->earlier);
     FILL(stream->faded);
-    FILL(motion);
     stream->begun = (uint8_t)Frama_C_interval(0, 1);
     stream->shown = (uint8_t)Frama_C_interval(0, 1);
-    stream->begins[0] = any_uint32;
-    stream->begins[1] = any_uint32;
-    stream->entered = any_uint8;
+    FILL(stream->begins);
     stream->frame = any_uint32;
     stream->pending = any_uint32;
     stream->callback = on_frame;
     stream->user = user;
 }
 
-static void deliver(int stride, int step)
+static void deliver_one(int stride, int step)
 {
     labial_t stream;
     int16_t user = 0;
     any_stream(&stream, &user);
-    stream.stride = (uint8_t)stride;
-    stream.phase = (uint8_t)Frama_C_interval(0, stride - 1);
-    stream.motion = motion + (LABIAL_SEARCH_STRIDE_MAX - stride) * LABIAL_CHANNELS;
+    stream.channels.stride = (uint8_t)stride;
+    stream.channels.entered = any_uint8;
     stream.fade_step = (uint8_t)step;
-    labial_output_deliver(&stream);
+    deliver(&stream);
 }
 
 /* Over `least` to `most` frames. */
-static void ease(int least, int most)
+static void ease_one(int least, int most)
 {
     labial_t stream;
     int16_t user = 0;
     any_stream(&stream, &user);
     stream.ease_length = (uint16_t)Frama_C_interval(least, most);
     stream.ease_step = (uint16_t)Frama_C_interval(0, most);
-    labial_output_stop_easing(&stream);
+    eased(&stream, stream.pose);
     stream.ease_step = (uint16_t)Frama_C_interval(0, most - 1);
-    labial_output_ease(&stream);
+    ease(&stream);
 }
 
 int main(void)
@@ -62,10 +57,10 @@ int main(void)
     int stride, i;
     for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++)
         for (i = 0; i <= 8; i++)
-            deliver(stride, i);
+            deliver_one(stride, i);
     /* In groups so small that EVA, which sees a step and a number of frames apart, sees how far their quotient goes. */
     /*@ loop unroll 40; */
     for (i = 1; i <= 1000; i = i + i / 4 + 1)
-        ease(i, i + i / 4);
+        ease_one(i, i + i / 4);
     return 0;
 }

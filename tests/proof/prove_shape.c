@@ -10,12 +10,15 @@ static labial_model_t model;
 
 static void select_among(int count, int knots)
 {
-    labial_shape_t shape;
+    const unsigned phoneme = (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    const unsigned previous = (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    const unsigned next = (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    const uint16_t ms = any_uint16;
+    labial_selection_t selection = { 0 }; /* as labial_init() makes it */
     any_phonemes(count);
     model.pair_knots = (uint8_t)knots;
-    labial_shape_select(&model, (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1), any_uint16,
-                        (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1),
-                        (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1), &shape);
+    labial_shape_select(&model, phoneme, ms, previous, next, &selection);
+    labial_shape_select(&model, phoneme, ms, previous, next, &selection);
 }
 
 /* Any frame. */

@@ -1,0 +1,35 @@
+/*
+ * channels.h - the channel step: targets in, motion out.
+ *
+ * A state lasts `stride` frames, and so channels take turns: in each tick those that are next are searched and solved
+ * for the frames since their last step, up to the latest one, and go back from there to the frames that are due.
+ * Channel c has its step every `stride` ticks, c ticks apart from channel 0. So every tick does about the same work,
+ * and a frame is complete LABIAL_DELAY(stride) ticks after it was taken.
+ */
+#ifndef LABIAL_CHANNELS_H
+#define LABIAL_CHANNELS_H
+
+#include "labial/labial.h"
+
+/* Divides up a workspace of LABIAL_WORKSPACE_SIZE(stride) bytes and forgets all frames. */
+void labial_channels_init(labial_channels_t *channels, unsigned stride, void *workspace);
+
+/* Forgets all frames. */
+void labial_channels_reset(labial_channels_t *channels);
+
+/* Advances by a tick; returns the frame that was taken, for the caller to fill in. */
+labial_frame_t *labial_channels_enter(labial_channels_t *channels);
+
+/* Advances by a tick beyond the last frame that was taken, whose marks say so. */
+void labial_channels_run_out(labial_channels_t *channels);
+
+/* Searches and solves the channels that are next. */
+void labial_channels_step(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS]);
+
+/* The motion of the frame that is due, Q4 FAP, of LABIAL_CHANNELS; NULL when none is. Valid until the next step. */
+const int16_t *labial_channels_due(const labial_channels_t *channels);
+
+/* Whether frames of the model in `slot` are still to be searched or solved. */
+int labial_channels_hold(const labial_channels_t *channels, unsigned slot);
+
+#endif
