@@ -16,8 +16,8 @@ void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k
     const labial_state_t *states = model->channels[k].states;
     unsigned t;
     for (t = 0; t < BENCH_UNIT; t++) {
-        const int32_t here = states[state_of(model, k, t)].mean[0];
-        const int32_t next = states[state_of(model, k, t + HOLD)].mean[0];
+        const int32_t here = states[state_of(model, k, t)].mean;
+        const int32_t next = states[state_of(model, k, t + HOLD)].mean;
         unit->path[t] = (uint8_t)state_of(model, k, t);
         unit->targets[t][k] = (int16_t)(here + (next - here) * (int32_t)(t % HOLD) / (int32_t)HOLD);
     }

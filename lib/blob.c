@@ -12,7 +12,7 @@
 enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_TWO_KNOTS = 4 };
 
 typedef char labial_tables_are_packed[sizeof(labial_phoneme_t) == 6 && sizeof(labial_component_t) == 6 &&
-                                              sizeof(labial_emission_t) == 6 && sizeof(labial_state_t) == 10
+                                              sizeof(labial_emission_t) == 4 && sizeof(labial_state_t) == 8
                                           ? 1
                                           : -1];
 
@@ -73,7 +73,7 @@ static const void *table(reader_t *reader, uint32_t count, uint32_t size)
 
 static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessors, labial_channel_t *channel)
 {
-    const uint8_t *scales = (const uint8_t *)table(reader, 6u, 2u);
+    const uint8_t *scales = (const uint8_t *)table(reader, 8u, 2u);
     if (!scales)
         return;
     channel->centre = (int16_t)u16(scales);
@@ -81,33 +81,39 @@ static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessor
     channel->slope_scale = u16(scales + 4);
     channel->kernel_scale = u16(scales + 6);
     channel->pair_scale = u16(scales + 8);
-    channel->firm = scales[10];
+    channel->motion_scale[0] = u16(scales + 10);
+    channel->motion_scale[1] = u16(scales + 12);
+    channel->firm = scales[14];
     channel->emissions = (const labial_emission_t *)table(reader, states, sizeof(labial_emission_t));
     channel->states = (const labial_state_t *)table(reader, states, sizeof(labial_state_t));
     channel->transitions = (const uint16_t *)table(reader, states * predecessors, 2u);
+    channel->initials = (const uint8_t *)table(reader, states, 1u);
 }
 
 static void read_tables(reader_t *reader, unsigned optional, labial_model_t *model, labial_channel_t *channels)
 {
     const uint32_t components = model->component_count, shape = components * LABIAL_CHANNELS;
+    const uint32_t rows = (uint32_t)model->phoneme_count * model->kernel_taps;
     unsigned k;
     model->phonemes = (const labial_phoneme_t *)table(reader, model->phoneme_count, sizeof(labial_phoneme_t));
     model->components = (const labial_component_t *)table(reader, components, sizeof(labial_component_t));
     model->contexts = NULL;
     model->slopes = NULL;
     model->kernels = NULL;
+    model->last_kernels = NULL;
     model->pair_keys = NULL;
     model->pairs = NULL;
     model->floors = NULL;
     model->contacts = NULL;
     if (optional & HAS_CONTEXTS)
-        model->contexts = (const uint8_t *)table(reader, components, 2u * model->class_count);
+        model->contexts = (const uint8_t *)table(reader, components, model->class_count);
     model->shapes = (const int8_t *)table(reader, shape, 1u);
     if (optional & HAS_SLOPES)
         model->slopes = (const int8_t *)table(reader, shape, 1u);
-    if (model->kernel_taps)
-        model->kernels =
-            (const int8_t *)table(reader, (uint32_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS, 1u);
+    if (model->kernel_taps) {
+        model->kernels = (const uint32_t *)table(reader, rows, 12u);
+        model->last_kernels = (const int8_t *)table(reader, rows, 1u);
+    }
     if (model->pair_count) {
         model->pair_keys = (const uint16_t *)table(reader, model->pair_count, 2u);
         model->pairs =

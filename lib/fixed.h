@@ -81,6 +81,12 @@ static inline uint32_t labial_weight(uint8_t code)
     return exponent ? (16u + mantissa) << (exponent - 1u) : mantissa;
 }
 
+/* Steps of a scale (labial/model.h) as positions. */
+static inline int32_t labial_scaled(int32_t steps, uint16_t scale)
+{
+    return (steps * (int32_t)scale + 128) >> 8;
+}
+
 /* |distance| * gain as z in Q6 (labial/model.h), at most `limit`; distance up to 65535, limit likewise. */
 static inline uint32_t labial_z(uint32_t distance, uint16_t gain, uint32_t limit)
 {

@@ -27,14 +27,15 @@ static int tables_are_there(const labial_model_t *model)
     unsigned k;
     if (!model->phonemes || !model->components || !model->shapes || !model->channels)
         return 0;
-    if (model->kernel_taps && !model->kernels)
+    if (model->kernel_taps && (!model->kernels || !model->last_kernels))
         return 0;
     if (model->pair_count && (!model->pair_keys || !model->pairs))
         return 0;
     if (model->floor_count && (!model->floors || !model->contacts))
         return 0;
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        if (!model->channels[k].emissions || !model->channels[k].states || !model->channels[k].transitions)
+        if (!model->channels[k].emissions || !model->channels[k].states || !model->channels[k].transitions ||
+            !model->channels[k].initials)
             return 0;
     return 1;
 }
@@ -127,11 +128,13 @@ typedef struct {
 } extremes_t;
 
 /* Whether one state is in range; `extremes` takes it up. */
-static int state_is_sound(const labial_state_t *state, extremes_t *extremes)
+static int state_is_sound(const labial_channel_t *channel, const labial_state_t *state, extremes_t *extremes)
 {
+    const int32_t motion = labial_scaled(state->motion[0], channel->motion_scale[0]),
+                  motion2 = labial_scaled(state->motion[1], channel->motion_scale[1]);
     const uint32_t hold = labial_weight(state->hold), delta = labial_weight(state->weight[0]),
                    delta2 = labial_weight(state->weight[1]);
-    if (!is_position(state->mean[0]) || !is_position(state->mean[1]) || !is_position(state->mean[2]))
+    if (!is_position(state->mean) || !is_position(motion) || !is_position(motion2))
         return 0;
     if (!is_within(hold, LABIAL_WEIGHT_MIN, LABIAL_WEIGHT_SUM_MAX) || delta > delta2 ||
         delta2 > LABIAL_STIFFNESS_MAX * hold || delta2 > LABIAL_WEIGHT_SUM_MAX / 6)
@@ -140,8 +143,8 @@ static int state_is_sound(const labial_state_t *state, extremes_t *extremes)
     extremes->most_hold = larger(extremes->most_hold, hold);
     extremes->delta = larger(extremes->delta, delta);
     extremes->delta2 = larger(extremes->delta2, delta2);
-    extremes->delta_pull = larger(extremes->delta_pull, pull(delta, state->mean[1]));
-    extremes->delta2_pull = larger(extremes->delta2_pull, pull(delta2, state->mean[2]));
+    extremes->delta_pull = larger(extremes->delta_pull, pull(delta, motion));
+    extremes->delta2_pull = larger(extremes->delta2_pull, pull(delta2, motion2));
     return 1;
 }
 
@@ -152,7 +155,7 @@ static int states_are_sound(const labial_model_t *model, const labial_channel_t 
     unsigned q;
     extremes.most_hold = labial_weight(channel->firm);
     for (q = 0; q < model->state_count; q++)
-        if (!state_is_sound(&channel->states[q], &extremes))
+        if (!state_is_sound(channel, &channel->states[q], &extremes))
             return 0;
     return extremes.most_hold + 2u * extremes.delta + 6u * extremes.delta2 <= LABIAL_WEIGHT_SUM_MAX &&
            4u * extremes.delta_pull + 4u * extremes.delta2_pull <= LABIAL_PULL_MAX * extremes.least_hold;

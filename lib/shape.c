@@ -47,8 +47,8 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
         const int32_t reach = z < SLOPE_Z_MAX ? (int32_t)z : SLOPE_Z_MAX;
         uint32_t cost = component->cost + labial_z_cost(z);
         if (model->contexts) {
-            const uint8_t *context = model->contexts + (size_t)index * 2u * classes;
-            cost += (uint32_t)context[previous_class] + context[classes + next_class];
+            const uint8_t *context = model->contexts + (size_t)index * classes;
+            cost += (context[previous_class] & 15u) * 16u + (context[next_class] & 0xf0u);
         }
         costs[c] = cost;
         deviations[c] = (int16_t)(distance < 0 ? -reach : reach);
@@ -128,12 +128,6 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, co
     }
 }
 
-/* Steps of a scale as positions. */
-static int32_t scaled(int32_t steps, uint16_t scale)
-{
-    return (steps * (int32_t)scale + 128) >> 8;
-}
-
 /* Adds what a neighbour adds to the shape of a phoneme; nothing for pairs that the model does not know. `key` is theirs
  * in `pair_keys`. */
 static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *shape)
@@ -153,7 +147,7 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
     row = model->pairs + (size_t)low * knots * LABIAL_CHANNELS;
     for (j = 0; j < knots; j++)
         for (k = 0; k < LABIAL_CHANNELS; k++) {
-            const int32_t added = scaled(*row++, model->channels[k].pair_scale);
+            const int32_t added = labial_scaled(*row++, model->channels[k].pair_scale);
             shape->knots[j][k] = (int16_t)labial_clamp(shape->knots[j][k] + added, LABIAL_POSITION_MAX);
         }
 }
@@ -204,7 +198,7 @@ static void raise(const labial_model_t *model, unsigned phoneme, unsigned channe
 {
     const unsigned floor = model->phonemes[phoneme].floor;
     unsigned k;
-    if (floor == 0)
+    if (floor == 0 || channels == 0)
         return;
     for (k = 0; k < LABIAL_CHANNELS; k++, channels >>= 1) {
         const int16_t least = model->floors[(floor - 1u) * LABIAL_CHANNELS + k];
@@ -232,25 +226,46 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
     return (is_open ? 0u : own) | before | after;
 }
 
+/* What the kernels' taps add up to on every channel, in steps. Two channels of a word are summed at once. */
+static void add_taps(const labial_model_t *model, const uint8_t *labels, int16_t *sums)
+{
+    const uint32_t *words[LABIAL_KERNEL_TAPS_MAX], *const *row; /* of each tap's phoneme */
+    const uint32_t halves = 0x00ff00ffu;
+    const unsigned taps = model->kernel_taps;
+    int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, for no pointer may pass the end */
+    const int32_t bias = (int32_t)(taps * 128u);
+    unsigned tap, group;
+    int32_t last = 0;
+    for (tap = 0; tap < taps; tap++, lag += model->kernel_stride) {
+        const size_t at = (size_t)labels[lag] * taps + tap;
+        words[tap] = model->kernels + at * 3u;
+        last += model->last_kernels[at];
+    }
+    for (group = 0; group < LABIAL_CHANNELS / 4u; group++) {
+        uint32_t even = 0, odd = 0;
+        for (row = words; row < words + taps; row++) {
+            const uint32_t word = (*row)[group];
+            even += word & halves;
+            odd += word >> 8 & halves;
+        }
+        *sums++ = (int16_t)((int32_t)(even & 0xffffu) - bias);
+        *sums++ = (int16_t)((int32_t)(odd & 0xffffu) - bias);
+        *sums++ = (int16_t)((int32_t)(even >> 16) - bias);
+        *sums++ = (int16_t)((int32_t)(odd >> 16) - bias);
+    }
+    *sums = (int16_t)last;
+}
+
 uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
                              int16_t target[LABIAL_CHANNELS])
 {
-    const int8_t *rows[LABIAL_KERNEL_TAPS_MAX]; /* what each tap's phoneme adds */
-    const uint8_t *labels = taken->labels;
-    const unsigned taps = model->kernel_taps;
-    int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, for no pointer may pass the end */
-    unsigned k, tap;
-    for (tap = 0; tap < taps; tap++, lag += model->kernel_stride)
-        rows[tap] = model->kernels + ((size_t)labels[lag] * taps + tap) * LABIAL_CHANNELS;
+    unsigned k;
+    add_taps(model, taken->labels, target);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const int32_t start = shape->knots[0][k];
-        const int8_t *const *row = rows;
-        int32_t sum = 0;
-        for (tap = taps; tap > 0; tap--)
-            sum += (*row++)[k];
-        sum = start + (((shape->knots[1][k] - start) * (int32_t)taken->share + 8192) >> 14) +
-              scaled(sum, model->channels[k].kernel_scale);
-        target[k] = (int16_t)labial_clamp(sum, LABIAL_POSITION_MAX);
+        const int32_t position = start + (((shape->knots[1][k] - start) * (int32_t)taken->share + 8192) >> 14) +
+                                 labial_scaled(target[k], model->channels[k].kernel_scale);
+        target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
     }
     return (uint16_t)(model->floor_count ? touch(model, taken, target) : 0u);
 }

@@ -128,8 +128,10 @@ static int deliver(labial_t *stream)
     if (stream->begins[delay / 32u] >> (delay % 32u) & 1u)
         begin_fade(stream);
     if (stream->fade_step == 0) {
-        memcpy(stream->earlier, stream->begun ? stream->pose : motion, sizeof stream->earlier); /* a first one rested */
-        memcpy(stream->pose, motion, sizeof stream->pose);
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            stream->earlier[k] = stream->begun ? stream->pose[k] : motion[k]; /* nothing moved to a first frame */
+            stream->pose[k] = motion[k];
+        }
     } else {
         const int32_t share = labial_ease(stream->fade_step, FADE + 1u);
         for (k = 0; k < LABIAL_CHANNELS; k++) {

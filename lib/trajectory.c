@@ -7,19 +7,21 @@
  * its weights:
  *
  *     c_t     = dd_(t+1) - d_(t+1)                                   second off-diagonal
- *     k_t     = rho_t c_t
- *     g_t     = h_t + rho_(t-1) f_(t-1) + 2 k_(t-1) - k_(t-2)        row sums, eliminated like a right-hand side
- *     f_t     = 2 (d_t + d_(t+1)) + 2 k_(t-1) + kappa_(t-1) f_(t-1)  eliminated first off-diagonal: -(f + 2 c)
+ *     g_t     = h_t + row_(t-1) - k_(t-2)                            row sums, eliminated like a right-hand side
+ *     f_t     = 2 (d_t + d_(t+1)) + bent_(t-1)                       eliminated first off-diagonal: -(f + 2 c)
  *     rho_t   = g_t / D_t,  kappa_t = c_t / D_t,  D_t = g_t + f_t + c_t
+ *     k_t     = rho_t c_t
+ *     row_t   = rho_t f_t + 2 k_t,  bent_t = kappa_t f_t + 2 k_t     what the next frame takes over
  *     q_t     = q_(t-1) + (h_t (x_t - q_(t-1)) + k_(t-2) (q_(t-1) - q_(t-2)) + p_t) / g_t
  *     m_t     = m_(t+1) + rho_t (q_t - m_(t+1)) + kappa_t (m_(t+1) - m_(t+2))              (backwards)
  *
  * q_t is the position of frame t given all before it, x_t where its hold draws it, p_t the pull of delta and
  * delta-delta means. Rounding rho or kappa moves m by that share of a difference, and nothing where the motion rests.
+ * c has 14 bits, so that its products are short.
  *
- * Formats: weights are integers; g, f, c, D, k in Q16; rho and kappa in Q24, 16 bits where they are kept for the way
- * back; q and m in Q12 FAP. All of g, f, c and D stay below 2^30 because LABIAL_WEIGHT_SUM_MAX bounds the diagonal; g
- * is never below the hold, and rho and kappa lie within 0 .. 1 as long as d is not above dd.
+ * Formats: weights are integers; g, f, c, D, k, row, bent in Q16; rho and kappa in Q24, 16 bits where they are kept for
+ * the backward pass; q and m in Q12 FAP. All of g, f, c and D stay below 2^30 because LABIAL_WEIGHT_SUM_MAX bounds the
+ * diagonal; g is never below the hold, and rho and kappa lie within 0 .. 1 as long as d is not above dd.
  */
 #include "trajectory.h"
 
@@ -93,12 +95,18 @@ static int32_t filtered(const labial_solver_t *solver, int32_t g)
            2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
 }
 
+/* c * part in Q16, for c below 2^14 and part up to 2^24. */
+static inline int32_t times(int32_t c, uint32_t part)
+{
+    return c * (int32_t)(part >> 8) + ((c * (int32_t)(part & 255u)) >> 8);
+}
+
 /* Factors the pending frame; c is its second off-diagonal, `delta` the weight of the row after it. */
 static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_factors_t *factors)
 {
-    const int32_t hold = (int32_t)solver->hold << 16, k1 = solver->k1;
-    const int32_t f = 2 * (((int32_t)solver->delta + delta) * 65536 + k1) + solver->kappa_f;
-    int32_t g = hold + solver->rho_f + 2 * k1 - solver->k2, q;
+    const int32_t hold = (int32_t)solver->hold << 16;
+    const int32_t f = ((int32_t)solver->delta + delta) * 131072 + solver->bent;
+    int32_t g = hold + solver->row - solver->k2, q;
     uint32_t d, inverse, rho, kappa;
     unsigned shift;
     /* GCOVR_EXCL_BR_START: a guard that nothing known meets. Exactly the sum is never below `hold`; where frames are tied
@@ -113,32 +121,32 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     d <<= shift;
     inverse = reciprocal(d);
     rho = unscaled(labial_part24(g, inverse), shift);
-    kappa = unscaled(labial_part24(c * 65536, inverse), shift);
+    kappa = unscaled(times(c, inverse), shift);
 
     factors->q = q;
     factors->rho = short_part(rho);
     factors->kappa = short_part(kappa);
     solver->q2 = solver->q1;
     solver->q1 = q;
-    solver->k2 = k1;
-    solver->k1 = labial_part24(c * 65536, rho);
-    solver->rho_f = labial_part24(f, rho);
-    solver->kappa_f = labial_part24(f, kappa);
+    solver->k2 = solver->k1;
+    solver->k1 = times(c, rho);
+    solver->row = labial_part24(f, rho) + 2 * solver->k1;
+    solver->bent = labial_part24(f, kappa) + 2 * solver->k1;
 }
 
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned number, labial_terms_t *terms)
 {
     const labial_state_t *state = &channel->states[number];
     const int32_t firm = (int32_t)labial_weight(channel->firm), delta2 = (int32_t)labial_weight(state->weight[1]);
-    terms->origin = state->mean[0];
-    terms->position = ((int32_t)channel->centre + state->mean[0]) * 256;
+    terms->origin = state->mean;
+    terms->position = ((int32_t)channel->centre + state->mean) * 256;
     terms->share = (int32_t)state->share + (state->share >> 7);
     terms->hold = (int32_t)labial_weight(state->hold);
     terms->firm = firm > terms->hold ? firm : terms->hold;
     terms->delta = (int32_t)labial_weight(state->weight[0]);
     terms->stiff = delta2 - terms->delta;
-    terms->delta_pull = 2 * terms->delta * state->mean[1];
-    terms->delta2_pull = delta2 * state->mean[2];
+    terms->delta_pull = 2 * terms->delta * labial_scaled(state->motion[0], channel->motion_scale[0]);
+    terms->delta2_pull = delta2 * labial_scaled(state->motion[1], channel->motion_scale[1]);
 }
 
 void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms, const labial_frame_t *frame,

@@ -39,8 +39,9 @@ static unsigned first_of_window(const labial_model_t *model, const labial_channe
 static inline uint16_t emission(const labial_emission_t *state, int32_t position)
 {
     const int32_t distance = position - state->mean;
-    const uint32_t z = labial_z((uint32_t)(distance < 0 ? -distance : distance), state->gain, EMISSION_Z_MAX);
-    return (uint16_t)(labial_z_cost(z) + state->cost);
+    const uint32_t z =
+        ((uint32_t)(distance < 0 ? -distance : distance) * (16u + (state->gain & 15u))) >> (state->gain >> 4);
+    return (uint16_t)(labial_z_cost(z < EMISSION_Z_MAX ? z : EMISSION_Z_MAX) + state->cost);
 }
 
 /* The paths so far move back by a step. */
@@ -124,7 +125,7 @@ static void step(const labial_model_t *model, const labial_channel_t *channel, i
 #endif
     if (is_first)
         for (i = 0; i < size; i++)
-            costs[i] = states[i].initial;
+            costs[i] = channel->initials[first + i];
     else
         for (i = 0; i < size; i++, transition += predecessors)
             costs[i] = (uint16_t)enter(search, size, transition, predecessors, i);

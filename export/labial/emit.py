@@ -154,7 +154,8 @@ def source(model: ExportedModel) -> str:
     for k in range(CHANNELS):
         own = channel_tables(model, k)
         parts.append(f"\n/* {FAP_NAMES[k]} */\n" + "".join(_table(table) for table in own))
-        members = [*map(str, channel_scalars(model, k)), *(table.name for table in own)]
+        *scales, motion, motion2, firm = map(str, channel_scalars(model, k))
+        members = [*scales, f"{{ {motion}, {motion2} }}", firm, *(table.name for table in own)]
         channels.append(f"    {{ {', '.join(members)} }}")
     parts.append("\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {\n" + ",\n".join(channels) + "\n};\n")
     counts = [*scalars(model), ("floor_count", len(model.floors) - 1, ""), ("pair_knots", model.pairs.shape[1], ""),

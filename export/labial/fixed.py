@@ -68,6 +68,24 @@ def gain(deviation: np.ndarray) -> np.ndarray:
     return np.clip(np.rint(2.0**18 / (np.asarray(deviation) * np.sqrt(2.0))), 1, 65535).astype(np.int64)
 
 
+#: What the 256 codes of a short gain stand for.
+SHORT_GAINS = np.array([(16 + code % 16) * 2.0 ** (12 - code // 16) for code in range(256)])
+
+
+def short_gain_code(deviation: np.ndarray) -> np.ndarray:
+    """int64: the codes of the short gains nearest to those of standard deviations."""
+    wanted = 2.0**18 / (np.asarray(deviation, dtype=np.float64) * np.sqrt(2.0))
+    order = np.argsort(SHORT_GAINS)
+    above = np.clip(np.searchsorted(SHORT_GAINS[order], wanted), 1, 255)
+    below, up = SHORT_GAINS[order][above - 1], SHORT_GAINS[order][above]
+    return order[np.where(wanted - below <= up - wanted, above - 1, above)].astype(np.int64)
+
+
+def short_gain_z(distance: np.ndarray, code: np.ndarray) -> np.ndarray:
+    """z in Q6 of distances, int64, by the codes of their short gains."""
+    return (distance * (16 + (code & 15))) >> (code >> 4)
+
+
 def z_cost(z: np.ndarray) -> np.ndarray:
     """A Gaussian's exponent z^2 as a cost."""
     return (z * z) >> 7

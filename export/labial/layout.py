@@ -9,7 +9,7 @@ from __future__ import annotations
 import struct
 import zlib
 from dataclasses import dataclass
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -71,10 +71,11 @@ def shared_tables(model: ExportedModel) -> List[Table]:
     return [
         Table("phonemes", "labial_phoneme_t", "HBBBB", phonemes, "{ %d, %d, %d, %d, %d }"),
         Table("components", "labial_component_t", "HHH", components, "{ %d, %d, %d }", "phonemes"),
-        _flat("contexts", "uint8_t", "B", model.contexts),
+        _flat("contexts", "uint8_t", "B", _contexts(model)),
         _flat("shapes", "int8_t", "b", model.shapes),
         _flat("slopes", "int8_t", "b", model.slopes),
-        _flat("kernels", "int8_t", "b", model.kernels),
+        Table("kernels", "uint32_t", "I", _kernel_words(model.kernels), "0x%08xu"),
+        _flat("last_kernels", "int8_t", "b", model.kernels[..., -1], "kernels"),
         _flat("pair_keys", "uint16_t", "H", model.pair_keys, "pairs"),
         _flat("pairs", "int8_t", "b", model.pairs),
         _flat("floors", "int16_t", "h", model.floors[1:]),  # the first is none at all
@@ -82,28 +83,48 @@ def shared_tables(model: ExportedModel) -> List[Table]:
     ]
 
 
+def _contexts(model: ExportedModel) -> Optional[np.ndarray]:
+    """(N, V) the previous class's cost in the low four bits, the next one's in the high four."""
+    if model.contexts is None:
+        return None
+    if not ((model.contexts >= 0) & (model.contexts <= 15)).all():
+        raise ModelError("the table contexts cannot be written: a value is not a whole number within 0 .. 15")
+    return model.contexts[:, 0] | model.contexts[:, 1] << 4
+
+
+def _kernel_words(kernels: np.ndarray) -> np.ndarray:
+    """(P L 3, 1) words of the first twelve channels of kernels (P, L, 13), four to a word, each 128 more."""
+    check_fits("kernels", "b", kernels.reshape(-1))
+    biased = kernels[..., :-1].reshape(-1, 4) + 128
+    return (biased << np.array([0, 8, 16, 24])).sum(axis=1)[:, None]
+
+
 def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
     """The tables of one channel."""
     k = channel
     emissions = np.stack(
-        [model.emission_mean[k], model.emission_gain[k], model.emission_cost[k], model.initial[k]], axis=1
+        [model.emission_mean[k], model.emission_gain[k], model.emission_cost[k]], axis=1
     )
-    states = np.column_stack([model.state_mean[k], model.state_hold[k], model.state_share[k], model.state_weight[k]])
+    states = np.column_stack([model.state_mean[k], model.state_motion[k], model.state_hold[k], model.state_share[k],
+                              model.state_weight[k]])
     return [
-        Table(f"emissions_{k}", "labial_emission_t", "hHBB", emissions, "{ %d, %d, %d, %d }", "states"),
-        Table(f"states_{k}", "labial_state_t", "hhhBBBB", states, "{ { %d, %d, %d }, %d, %d, { %d, %d } }", "states"),
+        Table(f"emissions_{k}", "labial_emission_t", "hBB", emissions, "{ %d, %d, %d }", "states"),
+        Table(f"states_{k}", "labial_state_t", "hbbBBBB", states, "{ %d, { %d, %d }, %d, %d, { %d, %d } }", "states"),
         _flat(f"transitions_{k}", "uint16_t", "H", model.transitions[k], "transitions"),
+        _flat(f"initials_{k}", "uint8_t", "B", model.initial[k], "states"),
     ]
 
 
 #: The layout of what :func:`channel_scalars` gives.
-CHANNEL_SCALARS = "hHHHHB"
+CHANNEL_SCALARS = "hHHHHHHB"
 
 
 def channel_scalars(model: ExportedModel, channel: int) -> List[int]:
-    """What ``labial_channel_t`` has before its pointers: centre, scales of shapes, slopes, kernels, pairs; firmness."""
+    """What ``labial_channel_t`` has before its pointers: centre, scales of shapes, slopes, kernels, pairs and motion,
+    firmness."""
     values = [int(values[channel]) for values in (
-        model.centre, model.shape_scale, model.slope_scale, model.kernel_scale, model.pair_scale, model.firm)]
+        model.centre, model.shape_scale, model.slope_scale, model.kernel_scale, model.pair_scale,
+        *model.motion_scale.T, model.firm)]
     for code, value in zip(CHANNEL_SCALARS, values):
         check_fits(f"channels[{channel}]", code, np.array([value]))
     return values
@@ -137,7 +158,7 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
     for table in _all_tables(model):
         group = table.group or table.name
         sizes[group] = sizes.get(group, 0) + table.size
-    return {**sizes, "descriptors": 24 * CHANNELS + 64}
+    return {**sizes, "descriptors": 32 * CHANNELS + 68}
 
 
 def _all_tables(model: ExportedModel) -> List[Table]:

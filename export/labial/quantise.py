@@ -20,7 +20,9 @@ from labial.fixed import (
     WEIGHT_MIN,
     WEIGHT_SUM_MAX,
     gain,
+    rounded_shift,
     share_code,
+    short_gain_code,
     weight_code,
     weight_code_below,
     weight_value,
@@ -31,7 +33,7 @@ from labial.phones import phone_set
 from labial.phonesets import LABEL_SETS
 
 #: Version of the tables' meaning.
-FORMAT = 3
+FORMAT = 4
 
 #: The library's limits.
 LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
@@ -65,7 +67,7 @@ class ExportedModel:
     cost: np.ndarray  #: (N,)
     duration_mean: np.ndarray  #: (N,) ms
     duration_gain: np.ndarray  #: (N,)
-    contexts: Optional[np.ndarray]  #: (N, 2, V)
+    contexts: Optional[np.ndarray]  #: (N, 2, V) 1/2 nat, 0 .. 15
     shapes: np.ndarray  #: (N, 13)
     slopes: Optional[np.ndarray]  #: (N, 13)
     kernels: np.ndarray  #: (P, L, 13)
@@ -83,15 +85,21 @@ class ExportedModel:
     kernel_scale: np.ndarray  #: (13,)
     pair_scale: np.ndarray  #: (13,)
     emission_mean: np.ndarray  #: (13, Q)
-    emission_gain: np.ndarray  #: (13, Q)
+    emission_gain: np.ndarray  #: (13, Q) codes
     emission_cost: np.ndarray  #: (13, Q)
     initial: np.ndarray  #: (13, Q)
-    state_mean: np.ndarray  #: (13, Q, 3)
+    state_mean: np.ndarray  #: (13, Q)
+    state_motion: np.ndarray  #: (13, Q, 2) steps
+    motion_scale: np.ndarray  #: (13, 2)
     state_hold: np.ndarray  #: (13, Q) codes of static's and the anchor's weight together
     state_share: np.ndarray  #: (13, Q) codes of the anchor's share of it
     state_weight: np.ndarray  #: (13, Q, 2) codes of a quarter of delta's and of delta-delta's weight
     search_stride: int
     transitions: np.ndarray  #: (13, Q, K), predecessor | cost << 8
+
+    def means(self) -> np.ndarray:
+        """(13, Q, 3) the states' means of m, delta and delta-delta, in positions."""
+        return np.concatenate([self.state_mean[..., None], scaled(self.state_motion, self.motion_scale)], axis=-1)
 
     def dense_transitions(self) -> np.ndarray:
         """(13, Q, Q) costs [from, to], inf where there is none."""
@@ -119,10 +127,11 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
     floor, floors, contacts = _floors(model, centre)
-    state_mean = _positions(
+    positions = _positions(
         model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
     )
-    hold, weights, firm = state_weights(model, state_mean)
+    motion, motion_scale = _motion(model.state_mean[..., 1:] * POSITION_SCALE)
+    hold, weights, firm = state_weights(model, scaled(motion, motion_scale))
     names = phone_set(model)
     return ExportedModel(
         name=name,
@@ -161,10 +170,12 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
         kernel_scale=kernel_scale,
         pair_scale=pair_scale,
         emission_mean=_positions(model.emission_mean - centre[:, None] / POSITION_SCALE, "emission_mean"),
-        emission_gain=gain(np.sqrt(model.emission_variance) * POSITION_SCALE),
+        emission_gain=short_gain_code(np.sqrt(model.emission_variance) * POSITION_SCALE),
         emission_cost=_costs(-0.5 * np.log(model.emission_variance), 255),
         initial=_costs(model.log_initial, 255),
-        state_mean=state_mean,
+        state_mean=positions[..., 0],
+        state_motion=motion,
+        motion_scale=motion_scale,
         state_hold=hold,
         state_share=share_code(model.state_anchor / (model.state_precision[..., 0] + model.state_anchor)),
         state_weight=weights,
@@ -263,8 +274,10 @@ def _component_costs(model: Model, deviation: np.ndarray) -> np.ndarray:
 def _contexts(model: Model, kept: np.ndarray) -> Optional[np.ndarray]:
     if not model.log_previous.shape[1]:
         return None
-    log_probability = np.stack([model.log_previous, model.log_next], axis=1)[kept]
-    return np.minimum(np.rint(-COST_SCALE * log_probability), 255).astype(np.int64)
+    cost = -np.stack([model.log_previous, model.log_next], axis=1)
+    for begin, end in zip(model.first_component()[:-1], model.first_component()[1:]):
+        cost[begin:end] -= cost[begin:end].min(axis=0)  # which changes no choice among them
+    return np.minimum(np.rint(2.0 * cost[kept]), 15).astype(np.int64)
 
 
 def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
@@ -312,9 +325,22 @@ def _stationary(log_transition: np.ndarray) -> np.ndarray:
     return share
 
 
-def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _motion(means: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Steps (13, Q, 2) of the means of delta and delta-delta, positions, and the sizes of a step, (13, 2)."""
+    scale = np.ceil(np.abs(means).max(axis=1) * 256.0 / 127.0)
+    scale = np.minimum(scale, POSITION_MAX * 256 // 127).astype(np.int64)
+    steps = np.rint(means * 256.0 / np.maximum(scale, 1)[:, None]).astype(np.int64)
+    return np.clip(steps, -127, 127), scale
+
+
+def scaled(motion: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """(13, Q, 2) the positions that steps of these sizes (13, 2) stand for."""
+    return rounded_shift(motion * scale[:, None], 8)
+
+
+def state_weights(model: Model, motion: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Codes of what holds the states (13, Q), of their moving weights (13, Q, 2), a quarter of delta's and
-    delta-delta's, and of what holds frames in contact (13,); `state_mean` (13, Q, 3) in positions.
+    delta-delta's, and of what holds frames in contact (13,); `motion` (13, Q, 2) are the means of both, in positions.
 
     Each channel's precisions are scaled as high as the largest diagonal element allows, when states that exceed another
     of equation 3's bounds have been brought within it one by one.
@@ -328,7 +354,7 @@ def state_weights(model: Model, state_mean: np.ndarray) -> Tuple[np.ndarray, np.
         scale = WEIGHT_SUM_MAX / float(held.max())
         while True:
             hold[k] = np.maximum(weight_code(held * scale), weight_code(np.array(WEIGHT_MIN)))
-            moving[k] = _within(weight_value(hold[k]), weight_code(tied * scale), np.abs(state_mean[k, :, 1:]))
+            moving[k] = _within(weight_value(hold[k]), weight_code(tied * scale), np.abs(motion[k]))
             most = _diagonal(weight_value(hold[k]), weight_value(moving[k]))
             if most <= WEIGHT_SUM_MAX:
                 break

@@ -17,8 +17,8 @@ from labial.reference.trajectory import WINDOW
 
 def workspace_bytes(stride: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
-    track = (40 + 3 + SEARCHED + 3) // 4 * 4
-    return CHANNELS * (8 * (WINDOW + stride + 1) + track) + (stride * (30 + 2 * CHANNELS) + 3) // 4 * 4
+    progress = 40 + 8 * (WINDOW + 1) + (3 + SEARCHED + 3) // 4 * 4
+    return CHANNELS * progress + (stride * (32 + 2 * CHANNELS) + 3) // 4 * 4
 
 
 def memory(exported: ExportedModel) -> str:

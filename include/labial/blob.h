@@ -16,9 +16,9 @@
  *   byte 29      floor_count (uint8)
  *   bytes 30-31  pair_count (uint16)
  *   then the tables of labial_model_t in their order, each padded with zeros to a multiple of four bytes: phonemes,
- *   components, contexts, shapes, slopes, kernels, pair_keys, pairs, floors, contacts; and for each channel centre
- *   (int16), shape_scale, slope_scale, kernel_scale, pair_scale (uint16), firm (uint8), 0 (uint8), then emissions,
- *   states, transitions
+ *   components, contexts, shapes, slopes, kernels, last_kernels, pair_keys, pairs, floors, contacts; and for each channel
+ *   centre (int16), shape_scale, slope_scale, kernel_scale, pair_scale, both motion_scale (uint16), firm (uint8), 0
+ *   (uint8), then emissions, states, transitions, initials
  */
 #ifndef LABIAL_BLOB_H
 #define LABIAL_BLOB_H

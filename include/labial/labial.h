@@ -39,11 +39,11 @@ extern "C" {
 
 /* ---- Limits. Each may be set for the whole build; library and program must agree on them. ---------------------- */
 
-/* How many frames ahead of the delivered ones the trajectory's way back starts, 1 .. 48. Each frame makes the motion
- * smoother and costs a frame of delay and 104 bytes of workspace. With the bundled models 4 frames leave an error of
- * .1 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. */
+/* How many frames ahead of the delivered ones the trajectory's backward pass starts, 1 .. 48. Each frame makes the motion
+ * smoother and costs a frame of delay and 104 bytes of workspace. With the bundled models 3 frames leave an error of
+ * .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. */
 #ifndef LABIAL_WINDOW
-#define LABIAL_WINDOW 4
+#define LABIAL_WINDOW 3
 #endif
 
 /* How many frames after a step the search decides on its state, if the unit does not end earlier, 0 .. 40. Each
@@ -119,7 +119,7 @@ extern "C" {
     X(LABIAL_STARVED, 2, "the next frame waits for more phonemes")                                                     \
     X(LABIAL_DONE, 3, "the stream has ended and every frame was delivered")                                            \
     X(LABIAL_ERROR_NULL, -1, "a pointer that is needed is null")                                                       \
-    X(LABIAL_ERROR_VERSION, -2, "the model was exported for another version of the library")                           \
+    X(LABIAL_ERROR_VERSION, -2, "the model is of another version: export its .npz again by labial export")             \
     X(LABIAL_ERROR_MODEL, -3, "the model's tables are out of range")                                                   \
     X(LABIAL_ERROR_WORKSPACE, -4, "the workspace is too small or not aligned to four bytes")                           \
     X(LABIAL_ERROR_STATE, -5, "the call is not allowed now: not initialised, or a push after the end")                 \
@@ -204,10 +204,10 @@ typedef struct {
 
 /* Where the solution of one channel stands (trajectory.c): the recursion, and the row that the next one completes. */
 typedef struct {
-    int32_t rho_f, kappa_f; /* Q16 */
-    int32_t k1, k2;         /* Q16 */
-    int32_t q1, q2;         /* Q12 FAP */
-    int32_t position;       /* Q12 FAP */
+    int32_t row, bent; /* Q16 */
+    int32_t k1, k2;    /* Q16 */
+    int32_t q1, q2;    /* Q12 FAP */
+    int32_t position;  /* Q12 FAP */
     int32_t pull, next_pull;
     uint16_t hold, delta;
 } labial_solver_t;

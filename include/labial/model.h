@@ -11,6 +11,8 @@
  *   cost       1/32 nat: a negative log-probability times 32, so that smaller is better
  *   gain       of a Gaussian with standard deviation s: 2^18 / (s * sqrt 2). For a distance x in the unit of s,
  *              z = x * gain / 2^12 is in Q6 and z^2 / 2^7 is the Gaussian's exponent as a cost
+ *   short gain the same in 8 bits, exponent e in the high and mantissa m in the low four: (16 + m) * 2^(12 - e), so that
+ *              z = x * (16 + m) / 2^e
  *   weight     an 8-bit minifloat, exponent e in the high and mantissa m in the low four bits: m when e is zero,
  *              (16 + m) << (e - 1) otherwise. Precisions (inverse variances) of one channel share one free scale.
  */
@@ -30,7 +32,7 @@ extern "C" {
 
 /* Version of the tables' meaning. A generated model of another version does not compile, and a blob of another version
  * is refused. */
-#define LABIAL_MODEL_FORMAT 3
+#define LABIAL_MODEL_FORMAT 4
 
 /* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
 #define LABIAL_CHANNELS 13
@@ -56,7 +58,7 @@ extern "C" {
  * stream that begins with a pause begins at rest. */
 #define LABIAL_REST_FRAMES 16
 
-/* Limits of equation 3 within a channel. With them its solution is right to a tenth of a FAP unit (lib/trajectory.c). */
+/* Limits of equation 3 within a channel. With them its solution is right to .11 FAP unit (lib/trajectory.c). */
 #define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `firm` + twice the largest weight[0] + six times weight[1] */
 #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
 #define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
@@ -80,16 +82,16 @@ typedef struct {
 
 /* A codebook entry in the Viterbi search: a Gaussian on the static feature alone. */
 typedef struct {
-    int16_t mean;    /* position */
-    uint16_t gain;   /* gain of the standard deviation in positions */
-    uint8_t cost;    /* log sigma, cost, less the least of its channel */
-    uint8_t initial; /* cost of starting here */
+    int16_t mean; /* position */
+    uint8_t gain; /* short gain of the standard deviation in positions */
+    uint8_t cost; /* log sigma, cost, less the least of its channel */
 } labial_emission_t;
 
 /* What a codebook entry contributes to the trajectory (equation 3): means of m, its delta and its delta-delta, per
  * frame, and an anchor that ties the frame to its target, which the published method does not have. */
 typedef struct {
-    int16_t mean[3];   /* Q4: position; positions per frame; positions per frame squared */
+    int16_t mean;      /* position */
+    int8_t motion[2];  /* means of delta and delta-delta, in steps of motion_scale */
     uint8_t hold;      /* weight of static feature and anchor together */
     uint8_t share;     /* the anchor's share of it, in 1/256; from 128 on one more, so that 255 is all of it */
     uint8_t weight[2]; /* a quarter of delta's; delta-delta's */
@@ -104,10 +106,12 @@ typedef struct {
     uint16_t slope_scale;               /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
     uint16_t kernel_scale;              /* positions per step of `kernels`, Q8 */
     uint16_t pair_scale;                /* positions per step of `pairs`, Q8 */
+    uint16_t motion_scale[2];           /* positions per frame, and per frame squared, per step of `motion`, Q8 */
     uint8_t firm;                       /* least `hold` of a frame in contact; 0 where there is none */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
     const uint16_t *transitions;        /* state_count x predecessors */
+    const uint8_t *initials;            /* state_count, cost of starting there */
 } labial_channel_t;
 
 /* A model. Arrays are row-major in the order given; those marked optional may be null. */
@@ -133,17 +137,20 @@ typedef struct {
     uint16_t pair_count;        /* R: rows of `pairs` */
     const labial_phoneme_t *phonemes;     /* P */
     const labial_component_t *components; /* N */
-    const uint8_t *contexts;   /* N x 2 x V, cost of the previous and of the next phoneme's class; optional */
-    const int8_t *shapes;      /* N x 13, mean shape in steps of shape_scale */
-    const int8_t *slopes;      /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
-    const int8_t *kernels;     /* P x L x 13, in steps of kernel_scale; null when L is 0 */
-    const uint16_t *pair_keys; /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one;
+    const uint8_t *contexts;    /* N x V, in 1/2 nat: cost of the previous phoneme's class in the low four bits, of the
+                                * next one's in the high four; less the least of a phoneme's components; optional */
+    const int8_t *shapes;       /* N x 13, mean shape in steps of shape_scale */
+    const int8_t *slopes;       /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
+    const uint32_t *kernels;    /* P x L x 3, in steps of kernel_scale: channels 0 to 11, four to a word, the first in
+                                * the low byte, each 128 more than its steps; null when L is 0 */
+    const int8_t *last_kernels; /* P x L, channel 12, in steps of its kernel_scale; null when L is 0 */
+    const uint16_t *pair_keys;  /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one;
                                 * null when R is 0 */
-    const int8_t *pairs;       /* R x K' x 13, what such a neighbour adds to the phoneme's shape, in steps of
+    const int8_t *pairs;        /* R x K' x 13, what such a neighbour adds to the phoneme's shape, in steps of
                                 * pair_scale */
-    const int16_t *floors;     /* F x 13, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
+    const int16_t *floors;    /* F x 13, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
                                 * none; null when F is 0 */
-    const uint16_t *contacts;  /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
+    const uint16_t *contacts; /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
                                 * neighbours do: its `hold` is `firm` at least, for LABIAL_CONTACT_FRAMES frames or
                                 * more. In silence: it is where the channel comes to rest in a pause. Null when F
                                 * is 0 */

@@ -19,17 +19,18 @@ export function tables(buffer, model) {
         if (at && rows) found.push({ name, at, size: rows * width, width });
     };
     [
-        ["phonemes", phonemes, 6], ["components", components, 6], ["contexts", components, 2 * classes],
-        ["shapes", components, CHANNELS], ["slopes", components, CHANNELS], ["kernels", phonemes * taps, CHANNELS],
-        ["pair_keys", pairs, 2], ["pairs", pairs * knots, CHANNELS], ["floors", floors, 2 * CHANNELS],
+        ["phonemes", phonemes, 6], ["components", components, 6], ["contexts", components, classes],
+        ["shapes", components, CHANNELS], ["slopes", components, CHANNELS], ["kernels", phonemes * taps, 12],
+        ["last_kernels", phonemes * taps, 1],        ["pair_keys", pairs, 2], ["pairs", pairs * knots, CHANNELS], ["floors", floors, 2 * CHANNELS],
         ["contacts", floors, 2],
     ].forEach(([name, rows, width], i) => add(name, view.getUint32(model + 20 + 4 * i, true), rows, width));
-    const channels = view.getUint32(model + 60, true);
+    const channels = view.getUint32(model + 64, true);
     for (let k = 0; k < CHANNELS; k++) {
-        const at = channels + 24 * k;
-        add("scales", at, 1, 12);
-        [["emissions", 6], ["states", 10], ["transitions", 2 * predecessors]].forEach(([name, width], i) =>
-            add(name, view.getUint32(at + 12 + 4 * i, true), states, width));
+        const at = channels + 32 * k;
+        add("scales", at, 1, 16);
+        [["emissions", 4], ["states", 8], ["transitions", 2 * predecessors], ["initials", 1]].forEach(
+            ([name, width], i) => add(name, view.getUint32(at + 16 + 4 * i, true), states, width),
+        );
     }
     return found;
 }

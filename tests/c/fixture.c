@@ -97,6 +97,47 @@ static void sort(int *numbers, unsigned count)
         }
 }
 
+double fixture_gain_value(uint8_t code)
+{
+    double value = 16 + code % 16;
+    int e;
+    for (e = 12; e < code / 16; e++)
+        value /= 2.0;
+    for (; e > code / 16; e--)
+        value *= 2.0;
+    return value;
+}
+
+uint8_t fixture_gain_code(double sigma)
+{
+    const double wanted = 262144.0 / (sigma * 1.41421356237);
+    unsigned code, nearest = 0;
+    for (code = 1; code < 256; code++) {
+        const double away = fixture_gain_value((uint8_t)code) - wanted;
+        const double nearer = fixture_gain_value((uint8_t)nearest) - wanted;
+        if (away * away < nearer * nearer)
+            nearest = code;
+    }
+    return (uint8_t)nearest;
+}
+
+double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which)
+{
+    const int32_t scaled = state->motion[which] * (int32_t)channel->motion_scale[which] + 128;
+    return scaled >= 0 ? scaled / 256 : -((255 - scaled) / 256); /* rounded down */
+}
+
+void fixture_pack_kernels(const int8_t *steps, size_t rows, uint32_t *kernels, int8_t *last_kernels)
+{
+    size_t row, k;
+    for (row = 0; row < rows; row++, steps += LABIAL_CHANNELS, kernels += 3) {
+        kernels[0] = kernels[1] = kernels[2] = 0;
+        for (k = 0; k < 12; k++)
+            kernels[k / 4] |= (uint32_t)(steps[k] + 128) << k % 4 * 8;
+        last_kernels[row] = steps[12];
+    }
+}
+
 /* gain = 2^18 / (sigma * sqrt 2) */
 static uint16_t gain_of(double sigma)
 {
@@ -145,6 +186,8 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
         channel->emissions = f->emissions[c];
         channel->states = f->states[c];
         channel->transitions = f->transitions[c];
+        channel->initials = f->initials[c];
+        channel->motion_scale[0] = channel->motion_scale[1] = 256;
         /* The shapes of the phonemes, and the rest spread over +-300 FAP units. */
         for (q = 0; q < states; q++)
             means[q] = q < count ? position_of_steps(shape_steps(q, 0, c))
@@ -154,9 +197,9 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
             labial_emission_t *emission = &f->emissions[c][q];
             labial_state_t *state = &f->states[c][q];
             emission->mean = (int16_t)means[q];
-            emission->gain = gain_of(240.0); /* 15 FAP units; the nearest state is the likeliest */
-            emission->initial = (uint8_t)(60 + q % 5);
-            state->mean[0] = (int16_t)means[q];
+            emission->gain = fixture_gain_code(240.0); /* 15 FAP units; the nearest state is the likeliest */
+            f->initials[c][q] = (uint8_t)(60 + q % 5);
+            state->mean = (int16_t)means[q];
             state->hold = fixture_weight_code(64);
             state->weight[0] = fixture_weight_code(90);
             state->weight[1] = fixture_weight_code(200);
@@ -204,12 +247,14 @@ static void enrich(fixture_model_t *f)
 {
     unsigned i, c, q;
     fixture_random_t random = { 7 };
+    int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
     f->model.soft = 1;
     f->model.search_stride = FIXTURE_STRIDE;
     reach(f, FIXTURE_TAPS, 4, LABIAL_REACH / 4 < 3 ? LABIAL_REACH / 4 : 3);
     f->model.contexts = f->contexts;
     f->model.slopes = f->slopes;
     f->model.kernels = f->kernels;
+    f->model.last_kernels = f->last_kernels;
     f->model.pair_count = FIXTURE_PAIRS;
     f->model.pair_keys = f->pair_keys;
     f->model.pairs = f->pairs;
@@ -223,11 +268,12 @@ static void enrich(fixture_model_t *f)
         f->floors[i] = (int16_t)(i % 3 ? LABIAL_NO_FLOOR : (int)fixture_below(&random, 4000) - 2000);
     add_floors(f);
     for (i = 0; i < sizeof f->contexts; i++)
-        f->contexts[i] = (uint8_t)fixture_below(&random, 90);
+        f->contexts[i] = (uint8_t)(fixture_below(&random, 6) | fixture_below(&random, 6) << 4); /* below 3 nats */
     for (i = 0; i < sizeof f->slopes; i++)
         f->slopes[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
-    for (i = 0; i < sizeof f->kernels; i++)
-        f->kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
+    for (i = 0; i < sizeof kernels; i++)
+        kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
+    fixture_pack_kernels(kernels, FIXTURE_PHONEMES * FIXTURE_TAPS, f->kernels, f->last_kernels);
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         f->channels[c].firm = fixture_weight_code(1500);
         f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
@@ -235,10 +281,10 @@ static void enrich(fixture_model_t *f)
         f->channels[c].pair_scale = 1280;  /* 40 steps: 12.5 FAP units */
         for (q = 0; q < f->model.state_count; q++) {
             labial_state_t *state = &f->states[c][q];
-            f->emissions[c][q].gain = gain_of(400.0 + 40.0 * (double)(q % 3));
+            f->emissions[c][q].gain = fixture_gain_code(400.0 + 40.0 * (double)(q % 3));
             f->emissions[c][q].cost = (uint8_t)(q % 3 * 3);
-            state->mean[1] = (int16_t)((int)fixture_below(&random, 161) - 80);
-            state->mean[2] = (int16_t)((int)fixture_below(&random, 41) - 20);
+            state->motion[0] = (int8_t)((int)fixture_below(&random, 161) - 80);
+            state->motion[1] = (int8_t)((int)fixture_below(&random, 41) - 20);
             state->hold = fixture_weight_code(120.0 + (double)fixture_below(&random, 400));
             state->share = (uint8_t)(160 + fixture_below(&random, 90));
         }

@@ -46,10 +46,11 @@ typedef struct {
     labial_channel_t channels[LABIAL_CHANNELS];
     labial_phoneme_t phonemes[FIXTURE_PHONEMES];
     labial_component_t components[FIXTURE_COMPONENTS];
-    uint8_t contexts[FIXTURE_COMPONENTS * 2 * FIXTURE_CLASSES];
+    uint8_t contexts[FIXTURE_COMPONENTS * FIXTURE_CLASSES];
     int8_t shapes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
     int8_t slopes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
-    int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
+    uint32_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * 3];
+    int8_t last_kernels[FIXTURE_PHONEMES * FIXTURE_TAPS];
     uint16_t pair_keys[FIXTURE_PAIRS];
     int8_t pairs[FIXTURE_PAIRS * 2 * LABIAL_CHANNELS];
     int16_t floors[FIXTURE_FLOORS * LABIAL_CHANNELS];
@@ -57,6 +58,7 @@ typedef struct {
     labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     uint16_t transitions[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];
+    uint8_t initials[LABIAL_CHANNELS][LABIAL_STATES_MAX];
 } fixture_model_t;
 
 /* Phonemes of the two speech fixtures. */
@@ -95,6 +97,16 @@ int32_t fixture_target(unsigned phoneme, unsigned channel);
 /* Nearest minifloat weight (labial/model.h) and the value of one. */
 uint8_t fixture_weight_code(double value);
 double fixture_weight_value(uint8_t code);
+
+/* The short gain (labial/model.h) nearest to that of a standard deviation, and the gain that one stands for. */
+uint8_t fixture_gain_code(double sigma);
+double fixture_gain_value(uint8_t code);
+
+/* The mean of a state's delta, or with 1 of its delta-delta, in positions. */
+double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which);
+
+/* Kernels as a model has them, of steps of 13 channels in each row. */
+void fixture_pack_kernels(const int8_t *steps, size_t rows, uint32_t *kernels, int8_t *last_kernels);
 
 /* ---- Streams of phonemes ---- */
 

@@ -51,18 +51,19 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
     put(w, channel->slope_scale, 2);
     put(w, channel->kernel_scale, 2);
     put(w, channel->pair_scale, 2);
+    put(w, channel->motion_scale[0], 2);
+    put(w, channel->motion_scale[1], 2);
     put(w, channel->firm, 1);
     put(w, 0, 1);
     for (q = 0; q < states; q++) {
         put(w, (uint16_t)channel->emissions[q].mean, 2);
-        put(w, channel->emissions[q].gain, 2);
+        put(w, channel->emissions[q].gain, 1);
         put(w, channel->emissions[q].cost, 1);
-        put(w, channel->emissions[q].initial, 1);
     }
     pad(w);
     for (q = 0; q < states; q++) {
-        for (i = 0; i < 3; i++)
-            put(w, (uint16_t)channel->states[q].mean[i], 2);
+        put(w, (uint16_t)channel->states[q].mean, 2);
+        put_bytes(w, channel->states[q].motion, 2);
         put(w, channel->states[q].hold, 1);
         put(w, channel->states[q].share, 1);
         put_bytes(w, channel->states[q].weight, 2);
@@ -70,6 +71,8 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
     pad(w);
     for (i = 0; i < states * predecessors; i++)
         put(w, channel->transitions[i], 2);
+    pad(w);
+    put_bytes(w, channel->initials, states);
     pad(w);
 }
 
@@ -114,13 +117,15 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
         put(&w, model->components[i].duration_gain, 2);
     }
     pad(&w);
-    put_bytes(&w, model->contexts, n * 2u * model->class_count);
+    put_bytes(&w, model->contexts, n * model->class_count);
     pad(&w);
     put_bytes(&w, model->shapes, n * LABIAL_CHANNELS);
     pad(&w);
     put_bytes(&w, model->slopes, n * LABIAL_CHANNELS);
     pad(&w);
-    put_bytes(&w, model->kernels, (size_t)model->phoneme_count * model->kernel_taps * LABIAL_CHANNELS);
+    for (i = 0; i < 3u * model->phoneme_count * model->kernel_taps; i++)
+        put(&w, model->kernels[i], 4);
+    put_bytes(&w, model->last_kernels, (size_t)model->phoneme_count * model->kernel_taps);
     pad(&w);
     for (i = 0; i < model->pair_count; i++)
         put(&w, model->pair_keys[i], 2);

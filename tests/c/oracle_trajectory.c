@@ -42,12 +42,13 @@ static void fill(equation_t *equations, const labial_channel_t *channel, const u
         double anchor = hold * (state->share < 128 ? state->share : state->share + 1) / 256.0;
         if (contacts[t] >> bit & 1u)
             anchor = hold = firm > hold ? firm : hold;
-        add_row(equations, t, 0, 1, 0, hold - anchor, state->mean[0]);
+        add_row(equations, t, 0, 1, 0, hold - anchor, state->mean);
         add_row(equations, t, 0, 1, 0, anchor, targets[t]);
         if (t == 0 || t + 1 == count)
             continue;
-        add_row(equations, t, -0.5, 0, 0.5, 4.0 * fixture_weight_value(state->weight[0]), state->mean[1]);
-        add_row(equations, t, 1, -2, 1, fixture_weight_value(state->weight[1]), state->mean[2]);
+        add_row(equations, t, -0.5, 0, 0.5, 4.0 * fixture_weight_value(state->weight[0]),
+                fixture_motion(channel, state, 0));
+        add_row(equations, t, 1, -2, 1, fixture_weight_value(state->weight[1]), fixture_motion(channel, state, 1));
     }
 }
 

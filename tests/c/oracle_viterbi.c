@@ -12,7 +12,7 @@
 double oracle_emission(const labial_emission_t *state, int32_t position)
 {
     /* A Gaussian's exponent and log sigma. Costs are whole numbers, rounded down, and end where z does, at 1023 / 64. */
-    double z = floor(fabs((double)position - state->mean) * state->gain / 4096.0);
+    double z = floor(fabs((double)position - state->mean) * fixture_gain_value(state->gain) / 4096.0);
     z = z < 1023.0 ? z : 1023.0;
     return floor(z * z / 128.0) + state->cost;
 }
@@ -70,7 +70,7 @@ void oracle_step(const labial_model_t *model, const labial_channel_t *channel, i
         if (q < step->first || q >= step->first + LABIAL_SEARCHED)
             continue;
         if (!before) {
-            step->cost[q] = channel->emissions[q].initial;
+            step->cost[q] = channel->initials[q];
         } else { /* of ways that cost the same a leap from the best is taken, or that from the lower state */
             step->cost[q] = before->cost[before->best] + LEAP;
             step->from[q] = before->best;

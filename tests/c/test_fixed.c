@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <math.h>
+
 #include "fixture.h"
 
 /* The header twice: once for cores with 64-bit products, once for those without. */
@@ -26,6 +28,7 @@
 #define labial_z_cost narrow_z_cost
 #define labial_ease narrow_ease
 #define labial_clamp narrow_clamp
+#define labial_scaled narrow_scaled
 #include "fixed.h"
 #undef labial_add
 #undef labial_sub
@@ -37,6 +40,7 @@
 #undef labial_z_cost
 #undef labial_ease
 #undef labial_clamp
+#undef labial_scaled
 
 static const int32_t corners[] = {
     0,     1,       -1,         2,          -2,          3,         255,           -256,
@@ -125,6 +129,18 @@ static void weights_are_minifloats(void **state)
     assert_int_equal(labial_weight(0xff), 507904);
 }
 
+/* steps * scale / 2^8, halves up: with every step, at the ends of the scale and between. */
+static void steps_are_scaled_and_rounded(void **state)
+{
+    static const uint16_t scales[] = { 0, 1, 127, 128, 255, 256, 257, 16383, 32767, 65535 };
+    unsigned i;
+    int steps;
+    (void)state;
+    for (i = 0; i < sizeof scales / sizeof scales[0]; i++)
+        for (steps = -4096; steps <= 4096; steps++)
+            assert_int_equal(labial_scaled(steps, scales[i]), (int)floor(steps * (double)scales[i] / 256.0 + 0.5));
+}
+
 /* z = x * gain / 2^12 in Q6 and z^2 / 2^7 the exponent, both rounded down; z ends at the limit. */
 static void gaussian_costs_follow_their_formula(void **state)
 {
@@ -186,6 +202,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(products_are_rounded_alike_and_exactly),
         cmocka_unit_test(sums_wrap),
+        cmocka_unit_test(steps_are_scaled_and_rounded),
         cmocka_unit_test(parts_are_rounded_alike),
         cmocka_unit_test(weights_are_minifloats),
         cmocka_unit_test(gaussian_costs_follow_their_formula),

@@ -45,7 +45,8 @@ static void refuses_null(void **state)
     TRY(const labial_phoneme_t *, f.model.phonemes, NULL, LABIAL_ERROR_NULL);
     TRY(const labial_component_t *, f.model.components, NULL, LABIAL_ERROR_NULL);
     TRY(const int8_t *, f.model.shapes, NULL, LABIAL_ERROR_NULL);
-    TRY(const int8_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL);    /* there are taps */
+    TRY(const uint32_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL); /* there are taps */
+    TRY(const int8_t *, f.model.last_kernels, NULL, LABIAL_ERROR_NULL);
     TRY(const int16_t *, f.model.floors, NULL, LABIAL_ERROR_NULL);    /* there are floors */
     TRY(const uint16_t *, f.model.contacts, NULL, LABIAL_ERROR_NULL); /* there are floors, contact or not */
     TRY(const labial_channel_t *, f.model.channels, NULL, LABIAL_ERROR_NULL);
@@ -53,6 +54,7 @@ static void refuses_null(void **state)
         TRY(const labial_emission_t *, f.channels[c].emissions, NULL, LABIAL_ERROR_NULL);
         TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
         TRY(const uint16_t *, f.channels[c].transitions, NULL, LABIAL_ERROR_NULL);
+        TRY(const uint8_t *, f.channels[c].initials, NULL, LABIAL_ERROR_NULL);
     }
 }
 
@@ -63,7 +65,8 @@ static void optional_tables_may_be_null(void **state)
     ACCEPTED(const uint8_t *, f.model.contexts, NULL);
     ACCEPTED(const int8_t *, f.model.slopes, NULL);
     f.model.kernel_taps = f.model.kernel_behind = 0;
-    ACCEPTED(const int8_t *, f.model.kernels, NULL);
+    ACCEPTED(const uint32_t *, f.model.kernels, NULL);
+    ACCEPTED(const int8_t *, f.model.last_kernels, NULL);
     f.model.floor_count = 0;
     f.phonemes[FIXTURE_P].floor = f.phonemes[FIXTURE_O].floor = 0;
     f.phonemes[FIXTURE_S].floor = f.phonemes[FIXTURE_SIL].floor = 0;
@@ -196,17 +199,15 @@ static void refuses_positions_out_of_range(void **state)
         REFUSED(int16_t, f.emissions[c][last].mean, INT16_MIN);
         ACCEPTED(int16_t, f.emissions[c][0].mean, -LABIAL_POSITION_MAX);
         ACCEPTED(int16_t, f.emissions[c][last].mean, LABIAL_POSITION_MAX);
-        REFUSED(int16_t, f.states[c][0].mean[0], LABIAL_POSITION_MAX + 1);
-        REFUSED(int16_t, f.states[c][last].mean[0], -LABIAL_POSITION_MAX - 1);
-        REFUSED(int16_t, f.states[c][last].mean[0], INT16_MIN);
-        REFUSED(int16_t, f.states[c][last].mean[1], LABIAL_POSITION_MAX + 1);
-        REFUSED(int16_t, f.states[c][0].mean[2], -LABIAL_POSITION_MAX - 1);
+        REFUSED(int16_t, f.states[c][0].mean, LABIAL_POSITION_MAX + 1);
+        REFUSED(int16_t, f.states[c][last].mean, -LABIAL_POSITION_MAX - 1);
+        REFUSED(int16_t, f.states[c][last].mean, INT16_MIN);
         REFUSED(int16_t, f.channels[c].centre, LABIAL_POSITION_MAX + 1);
         REFUSED(int16_t, f.channels[c].centre, -LABIAL_POSITION_MAX - 1);
         ACCEPTED(int16_t, f.channels[c].centre, LABIAL_POSITION_MAX);
         ACCEPTED(int16_t, f.channels[c].centre, -LABIAL_POSITION_MAX);
-        ACCEPTED(int16_t, f.states[c][0].mean[0], -LABIAL_POSITION_MAX);
-        ACCEPTED(int16_t, f.states[c][last].mean[0], LABIAL_POSITION_MAX);
+        ACCEPTED(int16_t, f.states[c][0].mean, -LABIAL_POSITION_MAX);
+        ACCEPTED(int16_t, f.states[c][last].mean, LABIAL_POSITION_MAX);
     }
 }
 
@@ -282,9 +283,11 @@ static void refuses_scales_out_of_range(void **state)
 
 static void refuses_kernels_beyond_their_reach(void **state)
 {
-    static int8_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * LABIAL_CHANNELS];
+    static uint32_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * 3];
+    static int8_t last_kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1)];
     (void)state;
     f.model.kernels = kernels;
+    f.model.last_kernels = last_kernels;
     f.model.kernel_taps = 3;
     f.model.kernel_stride = LABIAL_REACH;
     f.model.kernel_behind = 1;

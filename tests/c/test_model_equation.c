@@ -37,8 +37,9 @@ static void hold_all(unsigned c, uint8_t hold, uint8_t delta, uint8_t delta2)
         s->hold = hold;
         s->weight[0] = delta;
         s->weight[1] = delta2;
-        s->mean[1] = s->mean[2] = 0;
+        s->motion[0] = s->motion[1] = 0;
     }
+    f.channels[c].motion_scale[0] = f.channels[c].motion_scale[1] = 256;
 }
 
 /* The largest hold, twice the largest weight of delta and six times that of delta-delta, each of any state: would catch
@@ -119,31 +120,64 @@ static void refuses_motion_that_is_too_stiff(void **state)
     }
 }
 
+/* A scale by which 127 steps of motion are `mean`, and as many steps back less that. */
+static uint16_t scale_of(int mean)
+{
+    const unsigned scale = ((unsigned)mean * 256u + 63u) / 127u;
+    assert_int_equal((127 * scale + 128) / 256, mean);
+    return (uint16_t)scale;
+}
+
 /* Four times the largest weight times mean of delta, and of delta-delta, whatever their signs and states, over the least
  * hold: exactly, for weights of 8 and 16. */
 static void refuses_pulls_beyond_the_largest(void **state)
 {
     const int all = LABIAL_PULL_MAX * LABIAL_WEIGHT_MIN / 4 / 16; /* of a weight of 16; rounded down */
     unsigned c;
+    int sign;
     (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = f.states[c];
-        hold_all(c, 16, 16, 16);
-        s[6].hold = LABIAL_WEIGHT_MIN;
-        ACCEPTED(int16_t, s[2].mean[1], all);
-        ACCEPTED(int16_t, s[2].mean[2], -all);
-        REFUSED(int16_t, s[2].mean[1], -all - 1);
-        REFUSED(int16_t, s[2].mean[2], all + 1);
-        s[1].mean[1] = -5000;
-        ACCEPTED(int16_t, s[2].mean[2], all - 5000);
-        ACCEPTED(int16_t, s[2].mean[2], 5000 - all);
-        REFUSED(int16_t, s[2].mean[2], all - 4999);
-        REFUSED(int16_t, s[1].mean[2], 4999 - all);
-        s[6].hold = 16; /* twice as much */
-        ACCEPTED(int16_t, s[2].mean[2], all - 4999);
-        ACCEPTED(int16_t, s[2].mean[2], 2 * all + 1 - 5000);
-        REFUSED(int16_t, s[2].mean[2], 2 * all + 2 - 5000);
+        uint16_t *const scale = f.channels[c].motion_scale;
+        for (sign = -1; sign <= 1; sign += 2) {
+            hold_all(c, 16, 16, 16);
+            s[6].hold = LABIAL_WEIGHT_MIN;
+            s[2].motion[0] = (int8_t)(127 * sign);
+            ACCEPTED(uint16_t, scale[0], scale_of(all));
+            REFUSED(uint16_t, scale[0], scale_of(all + 1));
+            s[2].motion[0] = 0;
+            s[2].motion[1] = (int8_t)(-127 * sign);
+            ACCEPTED(uint16_t, scale[1], scale_of(all));
+            REFUSED(uint16_t, scale[1], scale_of(all + 1));
+            s[1].motion[0] = (int8_t)(-127 * sign);
+            scale[0] = scale_of(5000);
+            ACCEPTED(uint16_t, scale[1], scale_of(all - 5000));
+            REFUSED(uint16_t, scale[1], scale_of(all - 4999));
+            s[6].hold = 16; /* twice as much */
+            ACCEPTED(uint16_t, scale[1], scale_of(all - 4999));
+            ACCEPTED(uint16_t, scale[1], scale_of(2 * all + 1 - 5000));
+            REFUSED(uint16_t, scale[1], scale_of(2 * all + 2 - 5000));
+        }
     }
+}
+
+/* Means are positions, whatever they weigh, to either side. */
+static void refuses_motion_out_of_range(void **state)
+{
+    unsigned c, i;
+    int sign;
+    (void)state;
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        for (i = 0; i < 2; i++)
+            for (sign = -1; sign <= 1; sign += 2) {
+                hold_all(c, 16, 0, 0);
+                f.states[c][c % FIXTURE_SPEECH_STATES].motion[i] = (int8_t)(127 * sign);
+                ACCEPTED(uint16_t, f.channels[c].motion_scale[i], scale_of(LABIAL_POSITION_MAX));
+                REFUSED(uint16_t, f.channels[c].motion_scale[i], scale_of(LABIAL_POSITION_MAX + 1));
+                REFUSED(uint16_t, f.channels[c].motion_scale[i], 65535);
+                f.states[c][c % FIXTURE_SPEECH_STATES].motion[i] = 0;
+                ACCEPTED(uint16_t, f.channels[c].motion_scale[i], 65535);
+            }
 }
 
 static void refuses_states_that_nothing_holds(void **state)
@@ -170,13 +204,14 @@ static void refuses_products_that_overflow(void **state)
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         hold_all(c, not_above(500), 0, 0);
-        s->mean[1] = s->mean[2] = 16383;
+        s->motion[0] = s->motion[1] = 127;
+        f.channels[c].motion_scale[0] = f.channels[c].motion_scale[1] = scale_of(LABIAL_POSITION_MAX);
         s->weight[0] = s->weight[1] = 0xb0;
         REFUSED(uint8_t, s->hold, 0x30);
         REFUSED(uint8_t, s->hold, 0xa0);
         s->weight[0] = s->weight[1] = 0xff;
         REFUSED(uint8_t, s->hold, 0xff);
-        s->mean[1] = s->mean[2] = 0;
+        s->motion[0] = s->motion[1] = 0;
         s->weight[0] = 0;
         s->weight[1] = above(LABIAL_WEIGHT_SUM_MAX / 6);
         REFUSED(uint8_t, s->hold, not_above(500));
@@ -197,6 +232,7 @@ int main(void)
         cmocka_unit_test_setup(refuses_contact_that_is_too_firm, setup),
         cmocka_unit_test_setup(refuses_motion_that_is_too_stiff, setup),
         cmocka_unit_test_setup(refuses_pulls_beyond_the_largest, setup),
+        cmocka_unit_test_setup(refuses_motion_out_of_range, setup),
         cmocka_unit_test_setup(refuses_states_that_nothing_holds, setup),
         cmocka_unit_test_setup(refuses_products_that_overflow, setup),
     };

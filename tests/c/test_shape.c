@@ -23,7 +23,7 @@
 static fixture_model_t f;
 static labial_phoneme_t phonemes[FIXTURE_CLASSES]; /* one of each class, the first of which is selected */
 static labial_component_t components[COMPONENTS];
-static uint8_t contexts[COMPONENTS * 2 * FIXTURE_CLASSES];
+static uint8_t contexts[COMPONENTS * FIXTURE_CLASSES];
 static int8_t shapes[COMPONENTS * LABIAL_CHANNELS], slopes[COMPONENTS * LABIAL_CHANNELS];
 
 /* One phoneme of `count` random components, with all optional tables. */
@@ -42,7 +42,7 @@ static void make(fixture_random_t *random, unsigned count)
         components[c].duration_gain = (uint16_t)(262144.0 / ((15.0 + fixture_below(random, 100)) * sqrt(2.0)));
     }
     for (i = 0; i < sizeof contexts; i++)
-        contexts[i] = (uint8_t)fixture_below(random, 100);
+        contexts[i] = (uint8_t)fixture_random(random);
     for (i = 0; i < sizeof shapes; i++) {
         shapes[i] = (int8_t)((int)fixture_below(random, 255) - 127);
         slopes[i] = (int8_t)((int)fixture_below(random, 255) - 127);
@@ -75,7 +75,7 @@ static double cost_of(unsigned c, unsigned ms, unsigned previous, unsigned next)
     const double exact = floor(fabs(deviation(c, ms)) * 64.0), z = exact < 65535.0 ? exact : 65535.0;
     double cost = components[c].cost + floor(z * z / 128.0);
     if (f.model.contexts)
-        cost += contexts[c * 2 * FIXTURE_CLASSES + previous] + contexts[(c * 2 + 1) * FIXTURE_CLASSES + next];
+        cost += 16.0 * (contexts[c * FIXTURE_CLASSES + previous] % 16 + contexts[c * FIXTURE_CLASSES + next] / 16);
     return cost;
 }
 
@@ -160,8 +160,8 @@ static void context_has_a_direction(void **state)
     f.model.soft = 0;
     components[0] = components[1];
     memset(contexts, 0, sizeof contexts);
-    contexts[(0 * 2 + 0) * FIXTURE_CLASSES + 3] = 100; /* component 0 hardly ever follows class 3 */
-    contexts[(1 * 2 + 1) * FIXTURE_CLASSES + 3] = 100; /* component 1 hardly ever precedes it */
+    contexts[0 * FIXTURE_CLASSES + 3] = 7;      /* component 0 hardly ever follows class 3 */
+    contexts[1 * FIXTURE_CLASSES + 3] = 7 << 4; /* component 1 hardly ever precedes it */
     memset(slopes, 0, sizeof slopes);
     memset(shapes, 10, LABIAL_CHANNELS);
     memset(shapes + LABIAL_CHANNELS, 90, LABIAL_CHANNELS);
@@ -217,7 +217,9 @@ static double limited(double value)
  * Nothing is contact here; test_contact.c is about that. */
 static void targets_are_shapes_kernels_and_floors(void **state)
 {
-    static int8_t kernels[FIXTURE_SPEECH_COUNT * LABIAL_KERNEL_TAPS_MAX * LABIAL_CHANNELS];
+    enum { ROWS = FIXTURE_SPEECH_COUNT * LABIAL_KERNEL_TAPS_MAX };
+    static int8_t kernels[ROWS * LABIAL_CHANNELS], last[ROWS];
+    static uint32_t words[ROWS * 3];
     fixture_random_t random = { 34 };
     unsigned round, i, k, raised = 0;
     (void)state;
@@ -233,14 +235,16 @@ static void targets_are_shapes_kernels_and_floors(void **state)
         taken.labels = labels + LABIAL_REACH;
         taken.share = (uint16_t)fixture_below(&random, 16385);
         taken.is_open = (uint8_t)fixture_below(&random, 2); /* of a phoneme without contact: nothing */
-        f.model.kernels = kernels;
+        f.model.kernels = words;
+        f.model.last_kernels = last;
         f.model.kernel_taps = (uint8_t)taps;
         f.model.kernel_behind = (uint8_t)(taps ? fixture_below(&random, taps) : 0);
         f.model.kernel_stride = (uint8_t)(1 + fixture_below(&random, 20));
         if (labial_model_check(&f.model) != LABIAL_OK)
             f.model.kernel_taps = f.model.kernel_behind = 0;
         for (i = 0; i < sizeof kernels; i++)
-            kernels[i] = (int8_t)fixture_random(&random);
+            kernels[i] = (int8_t)(round % 3 ? (int)fixture_random(&random) : round % 2 ? -128 : 127);
+        fixture_pack_kernels(kernels, ROWS, words, last);
         for (i = 0; i < sizeof labels; i++)
             labels[i] = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
         for (k = 0; k < LABIAL_CHANNELS; k++) {

@@ -201,7 +201,7 @@ static void motion_stays_within_the_states_range(void **state)
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         int low = INT16_MAX, high = INT16_MIN, least = INT16_MAX, most = INT16_MIN, lowest = 0, highest = 0, span;
         for (q = 0; q < FIXTURE_SPEECH_STATES; q++) {
-            const int mean = (plain.states[c][q].mean[0] + plain.channels[c].centre) / 16;
+            const int mean = (plain.states[c][q].mean + plain.channels[c].centre) / 16;
             low = mean < low ? mean : low;
             high = mean > high ? mean : high;
         }

@@ -77,11 +77,11 @@ static void solve_densely(unsigned length)
             hold = fmax(hold, fixture_weight_value(channel.firm));
             share = 1.0;
         }
-        add_row(t, still, hold * (1.0 - share), s->mean[0]);
+        add_row(t, still, hold * (1.0 - share), s->mean);
         add_row(t, still, hold * share, target[t]);
         if (t > 0 && t + 1 < length) {
-            add_row(t, delta, 4.0 * fixture_weight_value(s->weight[0]), s->mean[1]);
-            add_row(t, delta2, fixture_weight_value(s->weight[1]), s->mean[2]);
+            add_row(t, delta, 4.0 * fixture_weight_value(s->weight[0]), fixture_motion(&channel, s, 0));
+            add_row(t, delta2, fixture_weight_value(s->weight[1]), fixture_motion(&channel, s, 1));
         }
     }
     eliminate(length);
@@ -125,12 +125,12 @@ static void go_forward(unsigned length, unsigned most, labial_factors_t *factors
     }
 }
 
-/* An error in FAP units must be a tenth at most; motion beyond 16 bits must be at their end. */
+/* An error in FAP units must be .11 at most; motion beyond 16 bits must be at their end. */
 static void judge(const char *what, unsigned round, unsigned length, unsigned t, int got, double wanted)
 {
     const double limited = wanted > INT16_MAX ? INT16_MAX : wanted < -INT16_MAX ? -INT16_MAX : wanted;
     const double error = fabs(got - limited) / 16.0;
-    if (error > 0.1)
+    if (error > 0.11)
         fail_msg("%s, round %u, %u frames: frame %u is %g FAP, not %g", what, round, length, t, got / 16.0,
                  limited / 16.0);
     worst = error > worst ? error : worst;
@@ -190,8 +190,8 @@ static const uint8_t shares[] = { 0, 127, 128, 255, 1, 254, 64, 200 };
 static void make(fixture_random_t *random, double hold, double stiff, double pull, int only_bounds)
 {
     const double room = (LABIAL_WEIGHT_SUM_MAX - hold) / 8.0;
-    double weakest = hold;
-    unsigned q;
+    double weakest = hold, mean[STATES][2];
+    unsigned q, i;
     for (q = 0; q < STATES; q++) {
         labial_state_t *s = &states[q];
         const double r = only_bounds ? fixture_below(random, 2) : fixture_below(random, 1001) / 1000.0;
@@ -204,21 +204,28 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
         s->weight[0] =
             only_bounds && fixture_below(random, 2) ? s->weight[1] : (uint8_t)fixture_below(random, s->weight[1] + 1u);
         s->share = fixture_below(random, 2) ? shares[fixture_below(random, 8)] : (uint8_t)fixture_below(random, 256);
-        s->mean[0] = (int16_t)((int)fixture_below(random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
+        s->mean = (int16_t)((int)fixture_below(random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
     }
     for (q = 0; q < STATES; q++) {
-        labial_state_t *s = &states[q];
+        const labial_state_t *s = &states[q];
         const double all = pull * LABIAL_PULL_MAX * weakest / 4.0, part = fixture_below(random, 3) / 2.0;
         const double d = fixture_weight_value(s->weight[0]), dd = fixture_weight_value(s->weight[1]);
         /* all states have the same part of it, of the same sign or not */
-        s->mean[1] = (int16_t)least(LABIAL_POSITION_MAX, floor(all * (q ? 0.5 : part) / (d > 0 ? d : 1)));
-        s->mean[2] = (int16_t)least(LABIAL_POSITION_MAX, floor(all * (q ? 0.5 : least(part, 0.5)) / (dd > 0 ? dd : 1)));
+        mean[q][0] = least(LABIAL_POSITION_MAX, all * (q ? 0.5 : part) / (d > 0 ? d : 1));
+        mean[q][1] = least(LABIAL_POSITION_MAX, all * (q ? 0.5 : least(part, 0.5)) / (dd > 0 ? dd : 1));
         if (q == 0 && part > 0.5)
-            s->mean[1] = (int16_t)(s->mean[1] / 2);
-        if (fixture_below(random, 2))
-            s->mean[1] = (int16_t)-s->mean[1];
-        if (fixture_below(random, 2))
-            s->mean[2] = (int16_t)-s->mean[2];
+            mean[q][0] /= 2;
+    }
+    for (i = 0; i < 2; i++) {
+        uint16_t *const scale = &model.channels[0].motion_scale[i];
+        double most = 0;
+        for (q = 0; q < STATES; q++)
+            most = fmax(most, mean[q][i]);
+        *scale = (uint16_t)floor(fmax(most - 0.5, 0) * 256.0 / 127.0);
+        for (q = 0; q < STATES; q++) {
+            const int steps = (int)(*scale ? least(127, floor(fmax(mean[q][i] - 0.5, 0) * 256.0 / *scale)) : 0);
+            states[q].motion[i] = (int8_t)(fixture_below(random, 2) ? -steps : steps);
+        }
     }
 }
 
@@ -254,20 +261,36 @@ static void walk(fixture_random_t *random, int restless, int extreme)
     }
 }
 
-/* 2^54 / d, to 24 bits, of a `d` that is even: where a pull of 2^30 moves a frame that nothing else does and whose row sum
- * is d / 2. */
-static uint32_t reciprocal_of(uint32_t d)
+/* A row after which the frame before it, which nothing holds, has the row sum g, and D is d: with c = 2^24 in Q16. */
+static void divide(uint32_t g, uint32_t d, int32_t pull, labial_solver_t *solver, labial_factors_t *factors)
 {
-    labial_solver_t solver;
     labial_terms_t terms;
-    labial_factors_t factors[2];
     labial_frame_t frame;
-    memset(&solver, 0, sizeof solver);
+    memset(solver, 0, sizeof *solver);
     memset(&terms, 0, sizeof terms);
     memset(&frame, 0, sizeof frame);
-    solver.rho_f = (int32_t)(d / 2u);
-    solver.pull = 1 << 30;
-    labial_trajectory_rows(&solver, &terms, &frame, 0, 1, factors + 1);
+    solver->row = (int32_t)g;
+    solver->bent = (int32_t)(d - g - ((uint32_t)1 << 24));
+    solver->pull = pull;
+    terms.stiff = 256;
+    labial_trajectory_rows(solver, &terms, &frame, 0, 1, factors + 1);
+}
+
+/* 2^54 / d, to 24 bits, of a `d` of 65 / 64 times 2^30 at least: 2^30 / d times 2^8, which the solver has in 24 bits. */
+static uint32_t reciprocal_of(uint32_t d)
+{
+    labial_factors_t factors[2];
+    labial_solver_t solver;
+    divide((uint32_t)1 << 30, d, 0, &solver, factors);
+    return (uint32_t)solver.k1;
+}
+
+/* The same of a `d` that is even: where a pull of 2^30 moves a frame whose row sum is half of d. */
+static uint32_t reciprocal_of_sum(uint32_t d)
+{
+    labial_factors_t factors[2];
+    labial_solver_t solver;
+    divide(d / 2u, ((uint32_t)1 << 31) - 2u, (int32_t)1 << 30, &solver, factors);
     return (uint32_t)factors[0].q / 2u;
 }
 
@@ -304,7 +327,9 @@ static void reciprocals_have_24_bits(void **state)
             const uint32_t first =
                 block < blocks ? (i << 24) + (block << 15) : ((i + 1u) << 24) - ((block + 1u - blocks) << 15);
             for (k = 0; k < 512; k += 2) {
-                const double lost = 18014398509481984.0 / (first + k) - reciprocal_of(first + k);
+                double lost = 18014398509481984.0 / (first + k) - reciprocal_of_sum(first + k);
+                if (i > 64) /* what the other one sees; both are one function */
+                    lost = fmax(lost, 18014398509481984.0 / (first + k) - reciprocal_of(first + k));
                 if (lost > most || lost < -0.1)
                     fail_msg("2^54 / %u: %.3f is lost, more than %.3f", first + k, lost, most);
             }
@@ -372,7 +397,7 @@ static void what_rests_stays_at_rest(void **state)
         make(&random, round % 2 ? 126 : 8000, LABIAL_STIFFNESS_MAX, 0, round / 2 % 2);
         walk(&random, 1, 0);
         for (q = 0; q < STATES; q++)
-            states[q].mean[0] = place;
+            states[q].mean = place;
         for (t = 0; t < FRAMES; t++)
             target[t] = place;
         require_accepted("rest", round);
@@ -405,7 +430,7 @@ static void contact_holds_a_frame_at_its_target(void **state)
             contact[0] = (uint16_t)both;
             go_forward(1, 1, factors);
             labial_trajectory_back(factors, 0, 1, 0, 1, motion);
-            if (fabs(motion[0] - channel.centre - (s->mean[0] + share * (target[0] - s->mean[0]))) > 1.0)
+            if (fabs(motion[0] - channel.centre - (s->mean + share * (target[0] - s->mean))) > 1.0)
                 fail_msg("round %u, contact %d: %d", round, both, motion[0]);
         }
     }

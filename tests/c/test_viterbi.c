@@ -20,6 +20,7 @@
 static labial_model_t model;
 static labial_emission_t emissions[LABIAL_STATES_MAX];
 static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+static uint8_t initials[LABIAL_STATES_MAX];
 static labial_channel_t channel;
 static int32_t position[STEPS];
 static oracle_step_t steps[STEPS];
@@ -36,9 +37,9 @@ static void make(fixture_random_t *random, unsigned states, uint32_t density, ui
         for (p = q; p > 0 && emissions[p - 1].mean > mean; p--)
             emissions[p].mean = emissions[p - 1].mean;
         emissions[p].mean = mean;
-        emissions[q].gain = (uint16_t)(gains / 20 + fixture_below(random, gains));
+        emissions[q].gain = fixture_gain_code(262144.0 / ((gains / 20 + fixture_below(random, gains)) * 1.41421356237));
         emissions[q].cost = (uint8_t)(fixture_below(random, 256) >> fixture_below(random, 3));
-        emissions[q].initial = (uint8_t)fixture_below(random, 256);
+        initials[q] = (uint8_t)fixture_below(random, 256);
         for (p = 0; p < states; p++)
             if (p == (q + 1) % states || fixture_below(random, 256) < density)
                 lists[q][n++] = (uint16_t)((fixture_below(random, 256) >> fixture_below(random, 6)) << 8 | p);
@@ -52,6 +53,7 @@ static void make(fixture_random_t *random, unsigned states, uint32_t density, ui
     model.predecessors = (uint8_t)most;
     channel.emissions = emissions;
     channel.transitions = transitions;
+    channel.initials = initials;
     for (q = 0; q < STEPS; q++) {
         position[q] = (int32_t)fixture_below(random, 2 * spread + 1) - (int32_t)spread;
         if (q > 0 && fixture_below(random, 3)) /* mostly near the one before, as speech is */
@@ -75,7 +77,7 @@ static void exhaust(unsigned count, double *least)
     for (i = 0; i < LABIAL_STATES_MAX; i++)
         least[i] = ORACLE_NONE;
     for (;;) {
-        double cost = emissions[first[0] + place[0]].initial;
+        double cost = initials[first[0] + place[0]];
         for (t = 0; t < count; t++) {
             const unsigned to = first[t] + place[t];
             unsigned way = 255; /* every state can be leapt into */
@@ -248,11 +250,16 @@ static void a_unit_within_the_lag_has_the_best_path(void **state)
 
 static void set_up_flat(unsigned states, unsigned predecessors)
 {
+    unsigned q;
     memset(emissions, 0, sizeof emissions);
+    memset(initials, 0, sizeof initials);
+    for (q = 0; q < LABIAL_STATES_MAX; q++)
+        emissions[q].gain = 0xf0; /* the least */
     model.state_count = (uint8_t)states;
     model.predecessors = (uint8_t)predecessors;
     channel.emissions = emissions;
     channel.transitions = transitions;
+    channel.initials = initials;
 }
 
 #if LABIAL_SEARCHED == 8 /* what the cases are worked for */
@@ -297,7 +304,7 @@ static void a_leap_is_taken_where_no_edge_is_cheaper(void **state)
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         labial_search_t search;
         set_up_flat(2, 2);
-        emissions[1].initial = 10;
+        initials[1] = 10;
         transitions[0] = transitions[1] = 7u << 8;
         transitions[2] = transitions[3] = (uint16_t)((unsigned)cases[i].transition << 8 | 1u);
         labial_viterbi_begin(&model, &channel, 0, &search);
@@ -321,8 +328,8 @@ static void eight_bits_are_enough(void **state)
     set_up_flat(LABIAL_STATES_MAX, 1);
     for (q = 0; q < LABIAL_STATES_MAX; q++) {
         emissions[q].mean = (int16_t)(q * 500 - 16000);
-        emissions[q].gain = 65535;
-        emissions[q].cost = emissions[q].initial = 255;
+        emissions[q].gain = 0x0f; /* the largest */
+        emissions[q].cost = initials[q] = 255;
         transitions[q] = (uint16_t)(0xff00 | (LABIAL_STATES_MAX - 1 - q));
     }
     for (t = 0; t < STEPS; t++)
@@ -342,8 +349,8 @@ static void ties_go_to_the_lower_state(void **state)
     (void)state;
     set_up_flat(5, 5);
     for (q = 0; q < 5; q++) {
-        emissions[q].gain = 100;
-        emissions[q].cost = emissions[q].initial = 7;
+        emissions[q].gain = fixture_gain_code(1850);
+        emissions[q].cost = initials[q] = 7;
         for (t = 0; t < 5; t++)
             transitions[q * 5 + t] = (uint16_t)(9u << 8 | t);
     }

@@ -22,17 +22,19 @@
 #define SIXTEEN(...) FOUR(__VA_ARGS__) FOUR(__VA_ARGS__) FOUR(__VA_ARGS__) FOUR(__VA_ARGS__)
 #define SIXTY_FOUR(...) SIXTEEN(__VA_ARGS__) SIXTEEN(__VA_ARGS__) SIXTEEN(__VA_ARGS__) SIXTEEN(__VA_ARGS__)
 
-#define EMISSION { 0, 4096, 0, 0 },
-#define STATE { { 0, 0, 0 }, 0x20, 128, { 0x11, 0x12 } },
+#define EMISSION { 0, 0x80, 0 },
+#define STATE { 0, { 0, 0 }, 0x20, 128, { 0x11, 0x12 } },
 #define COMPONENT { 0, 20, 4096 },
 
 static const labial_emission_t emissions[LABIAL_STATES_MAX] = { SIXTY_FOUR(EMISSION) };
 static const labial_state_t states[LABIAL_STATES_MAX] = { SIXTY_FOUR(STATE) };
 static const uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX] = { 0 };
 static const labial_component_t components[2 * COMPONENTS] = { SIXTEEN(COMPONENT) };
-static const uint8_t contexts[2 * COMPONENTS * 2 * PHONEMES] = { 0 };
+static const uint8_t initials[LABIAL_STATES_MAX] = { 0 };
+static const uint8_t contexts[2 * COMPONENTS * PHONEMES] = { 0 };
 static const int8_t shapes[2 * COMPONENTS * LABIAL_CHANNELS] = { 0 }; /* and slopes */
-static const int8_t kernels[PHONEMES * LABIAL_KERNEL_TAPS_MAX * LABIAL_CHANNELS] = { 0 };
+static const uint32_t kernels[PHONEMES * LABIAL_KERNEL_TAPS_MAX * 3] = { 0 };
+static const int8_t last_kernels[PHONEMES * LABIAL_KERNEL_TAPS_MAX] = { 0 };
 static const uint16_t pair_keys[PAIRS] = { 0x100, 0x102, 0x180, 0x182, 0x200, 0x201, 0x280, 0x281 };
 static const int8_t pairs[PAIRS * 2 * LABIAL_CHANNELS] = { 0 };
 static const int16_t floors[LABIAL_CHANNELS] = { 0 };
@@ -71,6 +73,7 @@ static void make(const recipe_t *recipe)
         channels[k].emissions = emissions;
         channels[k].states = states;
         channels[k].transitions = transitions;
+        channels[k].initials = initials;
     }
     for (k = 0; k < PHONEMES; k++) {
         phonemes[k].first_component = (uint16_t)(k == 2 ? COMPONENTS : 0);
@@ -98,6 +101,7 @@ static void make(const recipe_t *recipe)
     model.contexts = contexts;
     model.shapes = model.slopes = shapes;
     model.kernels = kernels;
+    model.last_kernels = last_kernels;
     model.pair_keys = pair_keys;
     model.pairs = pairs;
     model.floors = floors;

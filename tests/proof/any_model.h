@@ -14,9 +14,10 @@
 
 static labial_phoneme_t phonemes[LABIAL_PHONEMES_MAX];
 static labial_component_t components[COMPONENTS];
-static uint8_t contexts[COMPONENTS * 2 * LABIAL_CLASSES_MAX];
+static uint8_t contexts[COMPONENTS * LABIAL_CLASSES_MAX];
 static int8_t shapes[COMPONENTS * LABIAL_CHANNELS], slopes[COMPONENTS * LABIAL_CHANNELS];
-static int8_t kernels[LABIAL_PHONEMES_MAX * LABIAL_KERNEL_TAPS_MAX * LABIAL_CHANNELS];
+static uint32_t kernels[LABIAL_PHONEMES_MAX * LABIAL_KERNEL_TAPS_MAX * 3];
+static int8_t last_kernels[LABIAL_PHONEMES_MAX * LABIAL_KERNEL_TAPS_MAX];
 static uint16_t pair_keys[PAIRS];
 static int8_t pairs[PAIRS * 2 * LABIAL_CHANNELS];
 static int16_t floors[FLOORS * LABIAL_CHANNELS];
@@ -24,6 +25,7 @@ static uint16_t contacts[FLOORS];
 static labial_emission_t emissions[LABIAL_STATES_MAX];
 static labial_state_t states[LABIAL_STATES_MAX];
 static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+static uint8_t initials[LABIAL_STATES_MAX];
 static labial_channel_t channels[LABIAL_CHANNELS];
 
 static int16_t any_position(void)
@@ -38,12 +40,11 @@ static void any_states(void)
     FILL(emissions);
     FILL(states);
     FILL(transitions);
+    FILL(initials);
     /*@ loop unroll 64; */
     for (i = 0; i < LABIAL_STATES_MAX; i++) {
         emissions[i].mean = any_position();
-        states[i].mean[0] = any_position();
-        states[i].mean[1] = any_position();
-        states[i].mean[2] = any_position();
+        states[i].mean = any_position();
         states[i].hold = (uint8_t)Frama_C_interval(8, 0xaf);
         states[i].weight[0] = (uint8_t)Frama_C_interval(0, 0x85);
         states[i].weight[1] = (uint8_t)Frama_C_interval(0, 0x85);
@@ -57,10 +58,13 @@ static void any_channel(labial_channel_t *channel)
     channel->slope_scale = (uint16_t)Frama_C_interval(0, 16383);
     channel->kernel_scale = any_uint16;
     channel->pair_scale = any_uint16;
+    channel->motion_scale[0] = any_uint16;
+    channel->motion_scale[1] = any_uint16;
     channel->firm = (uint8_t)Frama_C_interval(0, 0xaf);
     channel->emissions = emissions;
     channel->states = states;
     channel->transitions = transitions;
+    channel->initials = initials;
 }
 
 /* `count` is that of each phoneme's components: of one step, which looks at one phoneme. */
@@ -87,6 +91,7 @@ static void any_model(labial_model_t *model, int count)
     FILL(shapes);
     FILL(slopes);
     FILL(kernels);
+    FILL(last_kernels);
     FILL(pair_keys);
     FILL(pairs);
     FILL(floors);
@@ -116,6 +121,7 @@ static void any_model(labial_model_t *model, int count)
     model->shapes = shapes;
     model->slopes = OR_NULL(const int8_t *, slopes);
     model->kernels = kernels;
+    model->last_kernels = last_kernels;
     model->pair_keys = pair_keys;
     model->pairs = pairs;
     model->floors = floors;

@@ -26,13 +26,15 @@ int labial_model_check(const labial_model_t *model)
               model->soft + model->kernel_taps + model->kernel_stride + model->kernel_behind + model->floor_count +
               model->pair_knots + model->pair_count;
     sum += is_there(model->phonemes) + is_there(model->components) + is_there(model->contexts) +
-           is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) + is_there(model->pair_keys) +
-           is_there(model->pairs) + is_there(model->floors) + is_there(model->contacts);
+           is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) +
+           is_there(model->last_kernels) + is_there(model->pair_keys) + is_there(model->pairs) +
+           is_there(model->floors) + is_there(model->contacts);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];
         sum += channel->centre + channel->shape_scale + channel->slope_scale + channel->kernel_scale +
-               channel->pair_scale + channel->firm;
-        sum += is_there(channel->emissions) + is_there(channel->states) + is_there(channel->transitions);
+               channel->pair_scale + channel->motion_scale[0] + channel->motion_scale[1] + channel->firm;
+        sum += is_there(channel->emissions) + is_there(channel->states) + is_there(channel->transitions) +
+               is_there(channel->initials);
     }
     return any_int ? sum : any_int;
 }

@@ -35,7 +35,7 @@ void labial_viterbi_end_unit(labial_search_t *search)
 
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms)
 {
-    terms->position = channel->states[state].mean[0];
+    terms->position = channel->states[state].mean;
 }
 
 /* Writes own[0] of every frame as if it were its solution's last: that frames are marked so that what is read was written

@@ -15,6 +15,7 @@ static uint16_t contacts[FLOORS];
 static labial_emission_t emissions[LABIAL_STATES_MAX];
 static labial_state_t states[LABIAL_STATES_MAX];
 static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+static uint32_t words[1];
 static labial_channel_t channels[LABIAL_CHANNELS];
 
 int main(void)
@@ -34,12 +35,14 @@ int main(void)
         channels[i].emissions = OR_NULL(const labial_emission_t *, emissions);
         channels[i].states = OR_NULL(const labial_state_t *, states);
         channels[i].transitions = OR_NULL(const uint16_t *, transitions);
+        channels[i].initials = OR_NULL(const uint8_t *, bytes);
     }
     FILL(model);
     model.phonemes = OR_NULL(const labial_phoneme_t *, phonemes);
     model.components = OR_NULL(const labial_component_t *, components);
     model.shapes = OR_NULL(const int8_t *, bytes);
-    model.kernels = OR_NULL(const int8_t *, bytes);
+    model.kernels = OR_NULL(const uint32_t *, words);
+    model.last_kernels = OR_NULL(const int8_t *, bytes);
     model.pairs = OR_NULL(const int8_t *, bytes);
     model.channels = OR_NULL(const labial_channel_t *, channels);
     labial_model_check(0);

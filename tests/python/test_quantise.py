@@ -102,7 +102,7 @@ def test_gaussian_cost_is_the_exponent(deviation: float) -> None:
 def used(exported: ExportedModel) -> dict:
     """How much of each of equation 3's bounds every channel uses, (13,) by name; above 1 the library refuses it."""
     hold, moving = weight_value(exported.state_hold), weight_value(exported.state_weight)
-    pull = 4 * (moving * np.abs(exported.state_mean[..., 1:])).max(axis=1).sum(axis=1)
+    pull = 4 * (moving * np.abs(exported.means()[..., 1:])).max(axis=1).sum(axis=1)
     return {
         "least": WEIGHT_MIN / hold.min(axis=1),
         "sum": (hold.max(axis=1) + 2 * moving[..., 0].max(axis=1) + 6 * moving[..., 1].max(axis=1)) / WEIGHT_SUM_MAX,
@@ -241,11 +241,12 @@ def test_every_table_fits_its_c_type() -> None:
     """A value that wraps in C would be silently another one."""
     exported = quantise(random_model(4), "model")
     ranges = {
-        "cost": (0, 65535), "duration_mean": (0, 65535), "duration_gain": (1, 65535), "contexts": (0, 255),
+        "cost": (0, 65535), "duration_mean": (0, 65535), "duration_gain": (1, 65535), "contexts": (0, 15),
         "slopes": (-127, 127), "pairs": (-127, 127), "pair_scale": (0, 65535),
         "kernels": (-127, 127), "slope_scale": (0, 16383),
         "kernel_scale": (0, 65535), "centre": (-16383, 16383), "emission_mean": (-16383, 16383),
-        "emission_gain": (1, 65535), "emission_cost": (0, 255), "initial": (0, 255), "state_mean": (-16383, 16383),
+        "emission_gain": (0, 255), "state_motion": (-127, 127), "motion_scale": (0, 33024), "emission_cost": (0, 255),
+        "initial": (0, 255), "state_mean": (-16383, 16383),
         "state_weight": (0, 255), "state_hold": (0, 255), "state_share": (0, 255), "shapes": (-127, 127),
         "shape_scale": (0, 32767),
     }  # fmt: skip

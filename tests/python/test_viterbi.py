@@ -160,7 +160,8 @@ def scalar_search(model: ExportedModel, channel: int, target: np.ndarray, ends: 
         total, origin = {}, {}
         best = min(scores, key=lambda q: (scores[q], q)) if scores else None
         for q in range(first, first + width):
-            z = min((abs(x - mean[q]) * int(model.emission_gain[channel, q])) >> 12, 1023)
+            short = int(model.emission_gain[channel, q])
+            z = min(abs(x - mean[q]) * (16 + short % 16) // 2 ** (short // 16), 1023)
             if scores is None:
                 enter, origin[q] = int(model.initial[channel, q]), None
             else:

@@ -20,6 +20,7 @@ from labial.fixed import (
     SEARCHED,
     rounded_shift,
     share_value,
+    short_gain_z,
     weight_value,
     z_cost,
 )
@@ -152,7 +153,7 @@ class ExportedTables:
         cost = model.cost[own] + z_cost(z)
         if model.contexts is not None:
             before, after = self.viseme_class[previous], self.viseme_class[following]
-            cost = cost + model.contexts[own, 0, before] + model.contexts[own, 1, after]
+            cost = cost + 16 * (model.contexts[own, 0, before] + model.contexts[own, 1, after])
         best = int(np.argmin(cost))
         share = np.zeros(len(cost), dtype=np.int64)
         if model.soft:
@@ -188,7 +189,7 @@ class ExportedTables:
         """(..., 13, W) costs of states (..., 13, W) for targets (..., 13), in 1/32 nat."""
         model, own = self.exported, (_CHANNEL[:, None], states)
         distance = np.abs(targets[..., None] - model.emission_mean[own])
-        z = np.minimum((distance * model.emission_gain[own]) >> 12, EMISSION_Z_MAX)
+        z = np.minimum(short_gain_z(distance, model.emission_gain[own]), EMISSION_Z_MAX)
         return z_cost(z) + model.emission_cost[own]
 
     def search(
@@ -204,7 +205,7 @@ class ExportedTables:
         moving = weight_value(model.state_weight[own]) * np.array([4, 1])  # the tables hold a quarter of delta's
         return _in_contact(Equation(
             weight=np.concatenate([(hold * (1.0 - share))[..., None], moving], axis=-1),
-            mean=model.state_mean[own] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
+            mean=model.means()[own] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
             anchor=hold * share,
             target=self.to_fap(targets),
         ), contact, weight_value(model.firm))

@@ -16,7 +16,7 @@ from labial.faps import CHANNELS
 from labial.reference.tables import Equation
 
 #: The library's default of LABIAL_WINDOW: frames that are known beyond those that are delivered.
-WINDOW = 4
+WINDOW = 3
 
 
 def _next(values: np.ndarray) -> np.ndarray:
