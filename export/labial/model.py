@@ -11,8 +11,9 @@ import io
 import json
 import os
 import zipfile
+from contextlib import nullcontext
 from dataclasses import dataclass, field, fields
-from typing import Any, Dict, Tuple, Union
+from typing import Any, BinaryIO, Dict, Tuple, Union
 
 import numpy as np
 
@@ -198,10 +199,12 @@ def _check_values(name: str, value: np.ndarray) -> None:
         raise ModelError(f"{name}[{', '.join(map(str, at))}] is {float(value[at]):g}, not within {low:g} .. {high:g}")
 
 
-def save(model: Model, path: Union[str, os.PathLike]) -> None:
-    """Writes the model. The same model gives the same bytes: members are in order, uncompressed times are fixed."""
+def save(model: Model, path: Union[str, os.PathLike, BinaryIO]) -> None:
+    """Writes the model, to a path or to a file that is open. The same model gives the same bytes: members are in order,
+    uncompressed times are fixed."""
     text = {name: getattr(model, name) for name in _TEXT}
-    with writing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+    opened = nullcontext(path) if isinstance(path, io.IOBase) else writing(path)
+    with opened as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
 
         def add(name: str, data: bytes) -> None:
             info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))

@@ -9,6 +9,7 @@ import numpy as np
 from labial.train.codebook import (
     INITIAL_COUNT,
     NEIGHBOUR_COUNT,
+    _Nearest,
     assign,
     features,
     initials,
@@ -115,3 +116,18 @@ def test_states_are_sorted_and_repeatable():
     assert (np.diff(first.mean[:, 0]) >= 0).all() and first.count.sum() == 3000
     np.testing.assert_array_equal(first.mean, second.mean)
     np.testing.assert_allclose(first.count @ first.mean[:, 0] / 3000, motion(6).mean())
+
+
+def test_nearest_centres_are_the_trees_to_the_last_bit():
+    """Catches a point that is not looked at although another centre has come nearer, and a distance that is rounded
+    otherwise; with points that are the same, centres that are, and ones that are as far."""
+    rng = np.random.default_rng(4)
+    for points in (scaled(2), np.round(scaled(3)), rng.normal(size=(500, 3))):
+        nearest = _Nearest(points)
+        centres = np.round(points[rng.choice(len(points), 24, replace=False)], 1)
+        centres[5] = centres[6]
+        for step in range(12):
+            cell, squared = nearest(centres)
+            expected = assign(points, centres)
+            assert np.array_equal(cell, expected[0]) and np.array_equal(squared, expected[1])
+            centres = centres + rng.normal(size=centres.shape) * 0.3 * 0.3**step

@@ -96,3 +96,8 @@ def test_declared_substitutes_come_first():
     found = {label: substitute_for(label, grid) for label in ("ER", "OY", "SH", "ZH", "NG", "UH")}
     assert found == {"ER": "AH", "OY": "AO", "SH": "CH", "ZH": "JH", "NG": "K", "UH": "UW"}
     assert substitute_for("P", {"B", "SIL"}) == "B" and substitute_for("AA", {"AA", "AO"}) == "AA"
+
+
+def test_names_are_made_once() -> None:
+    """A corpus asks for them with each of its labels."""
+    assert SPEECH.names() is SPEECH.names() and SPEECH.names("ipa") is not SPEECH.names()

@@ -15,7 +15,7 @@ from labial.phonesets import SPEECH
 from labial.reference import stream as carried_on
 from labial.reference.synthesis import synthesise
 from labial.reference.tables import FloatTables
-from labial.train import backed_off, pipeline, train
+from labial.train import backed_off, kernels, pipeline, train
 from labial.train.codebook import features, lbg
 from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
 from labial.train.recordings import Recording, with_pauses_cut
@@ -241,3 +241,18 @@ def test_labels_and_corpora_that_cannot_be_used(corpus):
     strange = replace(corpus[0], segments=(replace(corpus[0].segments[0], label="QQ"), *corpus[0].segments[1:]))
     with pytest.raises(LabialError, match="QQ"):
         train([strange], method="paper", **OPTIONS)
+
+
+def test_blocks_do_not_change_the_model(corpus, models, monkeypatch):
+    """Catches sums whose last bit depends on how many frames are taken in at a time."""
+    taken = []
+    real = kernels._Sums.add
+
+    def counted(self, design, *rest):
+        taken.append(design.shape[0])
+        real(self, design, *rest)
+
+    monkeypatch.setattr(kernels, "BLOCK", 500)
+    monkeypatch.setattr(kernels._Sums, "add", counted)
+    assert saved(train(corpus, method="labial", jobs=1, **OPTIONS)) == saved(models["labial"])
+    assert len(taken) > 3 and max(taken) < 1500

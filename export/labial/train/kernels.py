@@ -25,13 +25,14 @@ its class's kernel. Along the taps the prior is a first-order process of correla
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import List, Sequence
+from typing import Iterator, List, Sequence, Tuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.sparse import csr_matrix, diags, hstack
+from scipy.sparse import csc_matrix, csr_matrix, diags, hstack, identity, vstack
 
 from labial.defaults import LOOK_AHEAD
+from labial.faps import CHANNELS
 from labial.quantise import LIMITS
 from labial.reference.shape import Choice, knot_shares, neighbours, pairs_beside, tapped
 from labial.train.recordings import Recording
@@ -43,6 +44,9 @@ SPACING = 0.04
 
 #: But never farther than the device's memory of phonemes, in frames.
 REACH_FRAMES = LIMITS["reach"]
+
+#: Frames that the regression takes in at a time, some 2.5 KB each.
+BLOCK = 65536
 
 #: Occurrences from which on a phoneme beside a certain neighbour has a shape of its own, whatever they weigh.
 PAIR_COUNT = 20
@@ -134,33 +138,84 @@ def _design(
     return hstack([onehot, share, slope, *between]).tocsr()
 
 
-def _columns_alike(weight: np.ndarray) -> List[np.ndarray]:
-    """The channels of (T, 13) weights in groups of equal columns."""
-    _, group = np.unique(weight, axis=1, return_inverse=True)
-    return [np.flatnonzero(group.ravel() == number) for number in range(int(group.max()) + 1)]
+@dataclass(frozen=True)
+class _Block:
+    """Some of the utterances, one after the other."""
+
+    material: Sequence[Recording]
+    choice: Choice  #: of their occurrences
+    weight: np.ndarray  #: (T, 13) how much their values count
+
+    @property
+    def motion(self) -> np.ndarray:
+        """(T, 13) FAP."""
+        return np.concatenate([item.frames for item in self.material])
 
 
-def _regression(
-    design: csr_matrix, motion: np.ndarray, weight: np.ndarray, utterance: np.ndarray, prior: np.ndarray,
-    intercept: float,
-) -> np.ndarray:
-    """(D, C) the coefficients of the ridge regression of `motion` (T, C) on `design` (T, D), frames counting by
-    `weight` (T,), with inverse prior covariance `prior` (D, D) and an intercept for each utterance, (T,) numbers, of
-    penalty `intercept`.
+def _blocks(
+    material: Sequence[Recording], choice: Choice, silence: int, penalties: Penalties, fps: int
+) -> Iterator[_Block]:
+    """The material in blocks of `BLOCK` frames, so that what is computed for each frame is never there for all."""
+    first = occurrence = frames = 0
+    for last, item in enumerate(material, 1):
+        frames += len(item.frames)
+        if frames < BLOCK and last < len(material):
+            continue
+        part = material[first:last]
+        end = occurrence + sum(len(each.phoneme) for each in part)
+        weights = [each.weights * np.where(each.phoneme_at() == silence, penalties.silence, 1.0)[:, None] * 50.0 / fps
+                   for each in part]
+        rows = slice(occurrence, end)
+        yield _Block(part, Choice(choice.component[rows], choice.share[rows], choice.offset[rows]),
+                     np.concatenate(weights))
+        first, occurrence, frames = last, end, 0
 
-    The intercepts u are solved for first: with S the utterances' weighted sums of the design, s their weights,
-    (X' W X + prior - S' (s + intercept)^-1 S) b = X' W y - S' (s + intercept)^-1 (weighted sums of y).
-    """
-    weighted = (diags(weight) @ design).tocsr()
-    normal = (weighted.T @ design).toarray() + prior
-    right = weighted.T @ motion
-    if np.isfinite(intercept):
+
+def _columns_alike(material: Sequence[Recording]) -> List[np.ndarray]:
+    """The channels whose values count alike in every frame, in groups."""
+    alike = np.ones((CHANNELS, CHANNELS), dtype=bool)
+    for item in material:
+        if item.weight is not None:
+            alike &= np.all(item.weight[:, :, None] == item.weight[:, None, :], axis=0)
+    return [np.flatnonzero(row) for channel, row in enumerate(alike) if not row[:channel].any()]
+
+
+class _Sums:
+    """What a ridge regression needs of its frames, of weights that are the same for all channels it is for. Blocks are
+    added so that each sum goes over the frames in their order: its last bit does not depend on the blocks."""
+
+    def __init__(self, columns: int, channels: np.ndarray) -> None:
+        self.channels = channels
+        self._normal = csc_matrix((columns, columns))
+        self._right = np.zeros((columns, len(channels)))
+        self._of_utterances: List[Tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+
+    def add(self, design: csr_matrix, motion: np.ndarray, weight: np.ndarray, utterance: np.ndarray) -> None:
+        """Adds frames: `design` (T, D), `motion` (T, C) of the channels, their weights (T,) and the numbers (T,) of
+        their utterances, from 0 on."""
+        weighted = (diags(weight) @ design).tocsr()
+        # What there is goes before the frames, as rows whose product is itself.
+        one = identity(design.shape[1], format="csr")
+        before = vstack([one, weighted]).tocsr()
+        self._normal = before.T @ vstack([self._normal.tocsr(), design]).tocsr()
+        self._right = before.T @ np.concatenate([self._right, motion])
         sums = csr_matrix((np.ones(len(weight)), (utterance, np.arange(len(weight)))))
-        design_sums, motion_sums = (sums @ weighted).toarray(), sums @ (weight[:, None] * motion)
-        shrunk = design_sums / ((sums @ weight) + intercept)[:, None]
-        normal -= design_sums.T @ shrunk
-        right -= shrunk.T @ motion_sums
-    return cho_solve(cho_factor(normal), right)
+        self._of_utterances.append(((sums @ weighted).toarray(), sums @ (weight[:, None] * motion), sums @ weight))
+
+    def solved(self, prior: np.ndarray, intercept: float) -> np.ndarray:
+        """(D, C) the coefficients, with inverse prior covariance `prior` (D, D) and an intercept for each utterance of
+        penalty `intercept`.
+
+        The intercepts u are solved for first: with S the utterances' weighted sums of the design, s their weights,
+        (X' W X + prior - S' (s + intercept)^-1 S) b = X' W y - S' (s + intercept)^-1 (weighted sums of y).
+        """
+        normal, right = self._normal.toarray() + prior, self._right
+        if np.isfinite(intercept):
+            design_sums, motion_sums, weights = (np.concatenate(items) for items in zip(*self._of_utterances))
+            shrunk = design_sums / (weights + intercept)[:, None]
+            normal -= design_sums.T @ shrunk
+            right = right - shrunk.T @ motion_sums
+        return cho_solve(cho_factor(normal), right)
 
 
 @dataclass(frozen=True)
@@ -204,36 +259,40 @@ def fit_kernels(
     learnt = np.concatenate([item.learnt() for item in material])
     code, count = np.unique(pair_codes(material, phonemes, silence)[learnt], return_counts=True)
     pairs = code[count >= PAIR_COUNT]
-    design = _design(material, choice, deviation, phonemes, lag, silence, pairs, knots)
-    phoneme_at = np.concatenate([item.phoneme_at() for item in material])
-    utterance = np.repeat(np.arange(len(material)), [len(item.frames) for item in material])
-    each = np.concatenate([item.weights for item in material])
-    weight = each * np.where(phoneme_at == silence, penalties.silence, 1.0)[:, None] * 50.0 / fps
-    motion = np.concatenate([item.frames for item in material])
-    base = np.average(motion, axis=0, weights=weight)
+    width = phonemes * taps + 2 * components + knots * len(pairs)
+    groups = [_Sums(width, channels) for channels in _columns_alike(material)]
+    total = weight = np.zeros((0, CHANNELS))
+    for block in _blocks(material, choice, silence, penalties, fps):  # row by row, as a sum of all would go
+        total = np.concatenate([total, block.motion * block.weight]).sum(axis=0, keepdims=True)
+        weight = np.concatenate([weight, block.weight]).sum(axis=0, keepdims=True)
+    base = total[0] / weight[0]
+    for block in _blocks(material, choice, silence, penalties, fps):
+        design = _design(block.material, block.choice, deviation, phonemes, lag, silence, pairs, knots)
+        motion, number = block.motion, np.arange(len(block.material))
+        utterance = np.repeat(number, [len(item.frames) for item in block.material])
+        for sums in groups:
+            of = sums.channels
+            sums.add(design, motion[:, of] - base[of], block.weight[:, of[0]], utterance)
 
-    prior = np.zeros((design.shape[1], design.shape[1]))
+    prior = np.zeros((width, width))
     kernels = slice(0, phonemes * taps)
     prior[kernels, kernels] = penalties.kernel * kernel_prior(viseme_class, taps, penalties)
     index = np.arange(phonemes * taps, len(prior))
     prior[index, index] = np.repeat(
         [penalties.shape, penalties.slope, penalties.pair], [components, components, knots * len(pairs)]
     )
-    solution = np.empty((len(prior), motion.shape[1]))
-    for channels in _columns_alike(weight):
-        strength = float(each[:, channels[0]].max())
-        solution[:, channels] = _regression(
-            design, motion[:, channels] - base[channels], weight[:, channels[0]], utterance, strength * prior,
-            strength * penalties.intercept,
-        )
+    solution = np.empty((width, CHANNELS))
+    for sums in groups:
+        strength = max(float(item.weights[:, sums.channels[0]].max()) for item in material)
+        solution[:, sums.channels] = sums.solved(strength * prior, strength * penalties.intercept)
 
     shape, slope, pair = np.split(solution[phonemes * taps :], [components, 2 * components])
     fitted = Kernels(
-        kernel=solution[kernels].reshape(phonemes, taps, motion.shape[1]),
+        kernel=solution[kernels].reshape(phonemes, taps, CHANNELS),
         lag=lag,
         tables=replace(tables, shape=base + shape, slope=slope / deviation[:, None]),
         pair_key=np.stack([pairs // (2 * phonemes), pairs // phonemes % 2, pairs % phonemes], axis=1),
-        pair_shape=pair.reshape(knots, len(pairs), motion.shape[1]).transpose(1, 0, 2),
+        pair_shape=pair.reshape(knots, len(pairs), CHANNELS).transpose(1, 0, 2),
     )
     return substitute(fitted, stand_in)
 
