@@ -1,6 +1,11 @@
 # Each c/test_*.c is a C suite; with them the builds of other limits and the parser of timings. Included by
 # tests/CMakeLists.txt.
 
+# A day in the life of a face reaches no line that the other suites do not, and takes minutes where every instruction is
+# interpreted or counted.
+if(LABIAL_INSTRUMENT MATCHES "^(memcheck|coverage)$")
+  list(FILTER suites EXCLUDE REGEX "/test_soak\\.c$")
+endif()
 foreach(source IN LISTS suites)
   get_filename_component(name "${source}" NAME_WE)
   add_executable(${name} ${source})
