@@ -59,7 +59,7 @@ def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None
         "frames": np.rint(frames).astype(int).tolist(),
     }
     if audio is not None:
-        data["audio"] = _sound(audio)
+        data["audio"] = sound(audio)
     # Within a script element `</` and `<!--` have a meaning, so that no such character may stand there as it is.
     text = json.dumps(data, separators=(",", ":"))
     for character in "<>&":
@@ -84,7 +84,7 @@ def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> Li
     return phonemes
 
 
-def _sound(path: PathLike) -> str:
+def sound(path: PathLike) -> str:
     """A sound file as the address that stands for it in the page."""
     try:
         size = os.path.getsize(path)

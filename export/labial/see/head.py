@@ -1,0 +1,126 @@
+"""``labial page --head``: one HTML file on which an avatar speaks, with three.js and the avatar inside it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+from pathlib import Path
+from typing import Any, Dict, List, Optional, Tuple, Union
+
+import numpy as np
+
+from labial.animation import face, outputs
+from labial.errors import DataError, LabialError
+from labial.fit.avatar import read as read_avatar
+from labial.fit.kinds import KINDS, kind_of, known
+from labial.fit.landmarks import Found, read_head
+from labial.fit.write import output_name
+from labial.frames import even
+from labial.rig.description import Rig, read
+from labial.see.motion import Motion
+from labial.see.page import LARGEST_SOUND, sound
+
+PathLike = Union[str, os.PathLike]
+
+PLAYER = Path(__file__).with_name("head.html")
+#: Modules of the npm package three, what a page imports them as, and what stands in them for each other.
+_THREE: Dict[str, str] = {
+    "labial-core": "build/three.core.js",
+    "three": "build/three.module.js",
+    "labial-gltf": "examples/jsm/loaders/GLTFLoader.js",
+    "labial-buffers": "examples/jsm/utils/BufferGeometryUtils.js",
+    "labial-skeletons": "examples/jsm/utils/SkeletonUtils.js",
+}
+_IMPORTS = {"./three.core.js": "labial-core", "../utils/BufferGeometryUtils.js": "labial-buffers",
+            "../utils/SkeletonUtils.js": "labial-skeletons"}
+
+
+def find_three(given: Optional[PathLike]) -> Path:
+    """The folder of the npm package three: the one that is given, or node_modules/three here or further up. Raises
+    LabialError that says how to get it."""
+    places = [Path(given)] if given is not None else [folder / "node_modules" / "three"
+                                                      for folder in (Path.cwd(), *Path.cwd().parents)]
+    for place in places:
+        if all((place / file).is_file() for file in _THREE.values()):
+            return place
+    where = f"{given} is not" if given is not None else "there is no node_modules/three with"
+    raise LabialError(f"{where} the npm package three (0.170 or later): `npm install three` brings it, and --three "
+                      "names its folder")
+
+
+def _imports(three: Path) -> str:
+    """An import map whose modules are data: no network."""
+    modules = {}
+    for name, file in _THREE.items():
+        text = (three / file).read_text(encoding="utf-8")
+        for path, other in _IMPORTS.items():
+            for quote in "\"'":
+                text = text.replace(f"{quote}{path}{quote}", f"{quote}{other}{quote}")
+        modules[name] = "data:text/javascript;base64," + base64.b64encode(text.encode()).decode("ascii")
+    return json.dumps({"imports": modules})
+
+
+def _shapes(found: Found, rig: Optional[PathLike]) -> Tuple[Rig, Dict[str, str]]:
+    """The rig, and the avatar's shape for each of its outputs that it has."""
+    head = found.head
+    if rig is not None:
+        chosen = read(rig, Path(rig).stem)
+        named = {output_name(shape): shape for shape in head.shapes}
+    else:
+        kind = kind_of(head)
+        if kind not in KINDS:
+            raise LabialError(f"{head.name}: its shapes are neither ARKit's nor visemes: `labial fit` makes a rig for "
+                              "it, and --rig takes that")
+        chosen = face(kind)
+        named = {name: shape for shape, name in known(head, kind).items()}
+        named.update({other: named[name] for other, name in (("ih", "I"), ("oh", "O"), ("ou", "U")) if name in named})
+    used = {output.name: named[output.name] for output in chosen.outputs if output.name in named}
+    if not used:
+        raise LabialError(f"{head.name}: it has none of the rig's shapes, {', '.join(o.name for o in chosen.outputs)}")
+    return chosen, used
+
+
+def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, audio: Optional[PathLike] = None,
+              title: Optional[str] = None, three: Optional[PathLike] = None) -> str:
+    """The page as text. `avatar` is a .glb or .vrm; `rig` a description, without which the built-in one of the avatar's
+    kind of shapes is taken; `audio` as `labial.see.page.page` has it; `three` the folder of the npm package three.
+
+    Raises DataError for a file that cannot be used and LabialError for an avatar that no rig moves.
+    """
+    where = os.fspath(avatar)
+    found = read_head(read_avatar(avatar), where, {})
+    chosen, used = _shapes(found, rig)
+    size = os.path.getsize(avatar)
+    content = Path(avatar).read_bytes()
+    if content[:4] != b"glTF":
+        raise DataError(where, None, "a page takes a .glb or .vrm, in which everything is in one file")
+    if size > LARGEST_SOUND:
+        raise DataError(where, None, f"a page takes an avatar of {LARGEST_SOUND // 1_000_000} MB at most, and this one "
+                                     f"has {size / 1e6:.1f} MB")
+    try:
+        fps, frames = even(motion.times, motion.frames)
+    except ValueError as error:
+        raise LabialError(f"{motion.name}: {error}") from None
+    weights = outputs(chosen, frames)
+    columns: List[np.ndarray] = [np.round(weights[name], 3) for name in used]
+    away = b'"VRM"' in content[:65536] and b"VRMC_vrm" not in content  # VRM 0 faces the other way
+    turn = -1.0 if away else 1.0
+    data: Dict[str, Any] = {
+        "title": title or motion.name,
+        "fps": fps,
+        "start": round(float(motion.times[0]), 6),
+        "shapes": list(used.values()),
+        "weights": np.stack(columns, axis=1).tolist(),
+        "corners": [(found.head.rest[corner] / found.scale * (turn, 1.0, turn)).tolist()
+                    for corner in ("corner_left", "corner_right")],
+        "facing": turn,
+        "head": base64.b64encode(content).decode("ascii"),
+    }
+    if audio is not None:
+        data["audio"] = sound(audio)
+    text = json.dumps(data, separators=(",", ":"))
+    for character in "<>&":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    page = PLAYER.read_text(encoding="utf-8")
+    return page.replace("@LABIAL_DATA@", text).replace("@LABIAL_IMPORTS@", _imports(find_three(three)))

@@ -1,0 +1,145 @@
+"""``labial page --head``: an avatar speaks on a page that has everything within it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Iterator
+
+import numpy as np
+import pytest
+
+from avatars import document_of, glb, made_head
+from browser import CHROMIUM, REASON, Browser
+from labial.animation import face, outputs
+from labial.cli import main
+from labial.faps import FAP_COLUMNS
+
+NPM = shutil.which("npm")
+#: Frames of which the third is wide open.
+OPENING = (0, 200, 600, 200, 0)
+
+
+@pytest.fixture
+def frames(tmp_path: Path) -> Path:
+    """A mouth that opens and closes."""
+    lines = ["time," + ",".join(FAP_COLUMNS)]
+    for number, opening in enumerate(OPENING):
+        faps = dict.fromkeys(FAP_COLUMNS, 0) | {"fap3": opening // 2, "fap52": -opening}
+        lines.append(f"{number / 50:.2f}," + ",".join(map(str, faps.values())))
+    path = tmp_path / "opens.csv"
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+@pytest.fixture
+def avatar(tmp_path: Path) -> Path:
+    """The made head, below a node that moves it."""
+    document, binary = document_of(*made_head(), node={"translation": [0.3, 1.5, -0.2]})
+    path = tmp_path / "head.glb"
+    path.write_bytes(glb(document, binary))
+    return path
+
+
+@pytest.fixture
+def stand_in(tmp_path: Path) -> Path:
+    """What looks like the npm package three."""
+    files = {"build/three.core.js": "export const core = 1;",
+             "build/three.module.js": "import { core } from './three.core.js';\nexport { core };",
+             "examples/jsm/loaders/GLTFLoader.js": "import { a } from '../utils/BufferGeometryUtils.js';\n"
+                                                   "import { b } from '../utils/SkeletonUtils.js';",
+             "examples/jsm/utils/BufferGeometryUtils.js": "import { core } from 'three';",
+             "examples/jsm/utils/SkeletonUtils.js": ""}
+    for name, text in files.items():
+        (tmp_path / "three" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "three" / name).write_text(text)
+    return tmp_path / "three"
+
+
+def test_everything_is_in_the_page(tmp_path: Path, frames: Path, avatar: Path, stand_in: Path) -> None:
+    """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside."""
+    out = tmp_path / "page.html"
+    assert main(["page", str(frames), "--head", str(avatar), "--three", str(stand_in), "-o", str(out)]) == 0
+    text = out.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert base64.b64decode(data["head"]) == avatar.read_bytes()
+    faps = np.zeros((5, 13))
+    faps[:, 0], faps[:, 4] = [x // 2 for x in OPENING], [-x for x in OPENING]
+    expected = outputs(face("arkit"), faps)
+    weights = np.array(data["weights"])
+    assert "jawOpen" in data["shapes"] and set(data["shapes"]) <= set(made_head()[2])
+    for name, column in zip(data["shapes"], weights.T):
+        assert column == pytest.approx(expected[name], abs=0.0006)
+    assert np.mean(data["corners"], axis=0)[1] == pytest.approx(1.5, abs=0.01)
+    imports = json.loads(re.search(r'<script type="importmap">(.*?)</script>', text, re.DOTALL)[1])["imports"]
+    for address in imports.values():
+        kind, _, content = address.partition(",")
+        assert kind == "data:text/javascript;base64"
+        for module in re.findall(r"from '(.*?)'", base64.b64decode(content).decode()):
+            assert module in imports
+
+
+def test_errors_say_what_to_do(tmp_path: Path, frames: Path, avatar: Path, stand_in: Path,
+                               monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """One line each, and no page."""
+    monkeypatch.chdir(tmp_path)
+    out = str(tmp_path / "page.html")
+    (tmp_path / "rig.toml").write_text('unit = "weight"\n[output.beak]\nfrom = "jaw"\nneutral = 0\nfull = 1\n')
+    three = ["--three", str(stand_in)]
+    for options, message in (
+        (["--head", str(avatar)], "`npm install three` brings it"),
+        (["--head", str(avatar), "--three", str(tmp_path)], "is not the npm package three"),
+        (["--head", str(frames), *three], "is not a whole .glb"),
+        (["--head", str(avatar), "--rig", str(tmp_path / "rig.toml"), *three], "none of the rig's shapes, beak"),
+        (three, "--rig and --three go with --head"),
+    ):
+        assert main(["page", str(frames), "-o", out, *options]) == 1
+        error = capsys.readouterr().err
+        assert message in error and error.count("\n") == 1, error
+    assert not Path(out).exists()
+
+
+@pytest.fixture(scope="module")
+def three(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The real package."""
+    folder = tmp_path_factory.mktemp("npm")
+    subprocess.run([str(NPM), "install", "--no-audit", "--no-fund", "three@0.187"], cwd=folder, check=True, timeout=300,
+                   capture_output=True)
+    return folder / "node_modules" / "three"
+
+
+@pytest.fixture
+def browser(tmp_path: Path) -> Iterator[Browser]:
+    """A browser that draws in three dimensions without a graphics card."""
+    options = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    with Browser(tmp_path / "profile", options) as opened:
+        yield opened
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not NPM, reason="needs npm: install the Debian package npm")
+@pytest.mark.skipif(not CHROMIUM, reason=REASON)
+def test_the_head_moves_in_a_browser(tmp_path: Path, frames: Path, avatar: Path, three: Path, browser: Browser) -> None:
+    """With the real three.js: no error, the camera looks at the mouth, weights reach the mesh, and what is drawn
+    changes where the mouth opens and is the same again where it closes."""
+    out = tmp_path / "page.html"
+    assert main(["page", str(frames), "--head", str(avatar), "--three", str(three), "-o", str(out)]) == 0
+    page = browser.page(out.as_uri())
+    page.wait_for("!!window.labialHead", 60)
+    assert not page.errors()
+    middle = page.evaluate("labialHead.middle.toArray()")
+    assert middle[0] == pytest.approx(0.3, abs=0.003) and middle[1] == pytest.approx(1.5, abs=0.003)
+    drawn = []
+    for frame in range(len(OPENING)):
+        page.evaluate(f"labialHead.show({frame})")
+        drawn.append(page.evaluate("document.querySelector('canvas').toDataURL()"))
+        jaw = page.evaluate("(([mesh]) => mesh.morphTargetInfluences[mesh.morphTargetDictionary.jawOpen])"
+                            "(labialHead.meshes[0])")
+        assert (jaw > 0.05) == (OPENING[frame] > 100)
+    assert drawn[0] == drawn[4] and drawn[1] == drawn[3] and len(set(drawn)) == 3
+    page.evaluate("document.querySelector('button').click()")
+    page.wait_for("document.querySelector('input').value === '4'", 20)
