@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from labial.commands.common import add_phones, put
+from labial.errors import LabialError
 from labial.runtime import BUNDLED
 
 
