@@ -184,8 +184,8 @@ def test_tables_hold_what_is_written() -> None:
     """Would catch a table that the exporter packs without its C type's range."""
     exported = quantise(random_model(2), "m")
     for name in ("cost", "shapes", "slopes", "kernels", "pairs", "emission_gain", "initial", "state_mean",
-                 "state_motion", "motion_scale", "transitions", "state_weight", "centre", "firm", "duration_mean", "floors", "contexts",
-                 "shape_scale"):  # fmt: skip
+                 "state_motion", "motion_scale", "transitions", "state_weight", "centre", "firm", "duration_mean",
+                 "floors", "contexts", "shape_scale"):  # fmt: skip
         table = getattr(exported, name).astype(np.int64)
         for value in (-(2**63), 70000, -40000):
             wrong = table.copy()
