@@ -83,6 +83,25 @@ def test_everything_is_in_the_page(tmp_path: Path, frames: Path, avatar: Path, s
             assert module in imports
 
 
+def test_expressions_of_vrm_move_their_shapes(tmp_path: Path, frames: Path, stand_in: Path) -> None:
+    """three.js knows the mesh's shapes alone, not the expressions that are made of them."""
+    vertices, triangles, shapes = made_head(mouth="vrm")
+    document, binary = document_of(vertices, triangles, {f"M_{name}": 2.0 * move for name, move in shapes.items()})
+    document["extensions"] = {"VRMC_vrm": {"expressions": {"preset": {
+        name: {"morphTargetBinds": [{"node": 0, "index": place, "weight": 0.5}]}
+        for place, name in enumerate(("aa", "ou", "ih"))}}}}
+    (tmp_path / "a.vrm").write_bytes(glb(document, binary))
+    out = tmp_path / "page.html"
+    assert main(["page", str(frames), "--head", str(tmp_path / "a.vrm"), "--three", str(stand_in), "-o", str(out)]) == 0
+    text = out.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    faps = np.zeros((5, 13))
+    faps[:, 0], faps[:, 4] = [x // 2 for x in OPENING], [-x for x in OPENING]
+    assert set(data["shapes"]) == {"M_A", "M_U", "M_I"} and data["facing"] == 1.0
+    opened = np.array(data["weights"])[:, data["shapes"].index("M_A")]
+    assert opened == pytest.approx(0.5 * outputs(face("vrm"), faps)["aa"], abs=0.001) and opened.max() > 0.2
+
+
 def test_errors_say_what_to_do(tmp_path: Path, frames: Path, avatar: Path, stand_in: Path,
                                monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """One line each, and no page."""

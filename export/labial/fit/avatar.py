@@ -10,9 +10,9 @@ import base64
 import binascii
 import os
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Tuple, Union
+from typing import Any, Dict, List, Mapping, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class Mesh:
     vertices: np.ndarray  #: (V, 3)
     triangles: np.ndarray  #: (F, 3) of vertex numbers
     shapes: Mapping[str, np.ndarray]  #: (V, 3) that weight 1 adds
+    #: Of the shapes that are VRM's expressions: the mesh's own shapes that each is made of, with their shares.
+    parts: Mapping[str, Sequence[Tuple[str, float]]] = field(default_factory=dict)
 
 
 def read(path: Union[str, os.PathLike]) -> List[Mesh]:
@@ -166,8 +168,11 @@ class _Reader:
             world = np.eye(4) if node.skin is not None else self.transform(number)
             mesh = self.mesh(node.mesh, node.name, turn @ world[:3, :3], turn @ world[:3, 3])
             if mesh is not None:
-                mouths = self.mouths(number, node.mesh, mesh[1])
-                found.append(Mesh(mesh[0].name, mesh[0].vertices, mesh[0].triangles, {**mesh[0].shapes, **mouths}))
+                whole, moves = mesh
+                names, binds = list(whole.shapes), self.mouths(number, node.mesh)
+                mouths = {name: sum(weight * moves[index] for index, weight in parts) for name, parts in binds.items()}
+                own = {name: [(names[index], weight) for index, weight in parts] for name, parts in binds.items()}
+                found.append(Mesh(whole.name, whole.vertices, whole.triangles, {**whole.shapes, **mouths}, own))
         return found
 
     def mesh(self, number: int, node_name: Any, turn: np.ndarray, move: np.ndarray) -> Any:
@@ -202,8 +207,9 @@ class _Reader:
         return (Mesh(name, np.concatenate(vertices) @ turn.T + move, np.concatenate(triangles),
                      dict(zip(names, whole))), whole)
 
-    def mouths(self, node: int, mesh: int, moves: List[np.ndarray]) -> Dict[str, np.ndarray]:
-        """VRM's five mouths, of either version, as far as this mesh has a part in them."""
+    def mouths(self, node: int, mesh: int) -> Dict[str, List[Tuple[int, float]]]:
+        """VRM's five mouths, of either version, as far as this mesh has a part in them: its shapes by number, and their
+        shares."""
         extensions = self.file.extensions or {}
         binds: Dict[str, List[Tuple[int, float]]] = {}
         for group in ((extensions.get("VRM") or {}).get("blendShapeMaster") or {}).get("blendShapeGroups") or []:
@@ -216,7 +222,7 @@ class _Reader:
             if name in preset:
                 binds[name] = [(int(bind["index"]), float(bind.get("weight", 1.0)))
                                for bind in preset[name].get("morphTargetBinds") or [] if bind.get("node") == node]
-        return {name: sum(weight * moves[index] for index, weight in parts) for name, parts in binds.items() if parts}
+        return {name: parts for name, parts in binds.items() if parts}
 
 
 def _local(node: Any) -> np.ndarray:

@@ -6,7 +6,7 @@ import base64
 import json
 import os
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Tuple, Union
+from typing import Any, Dict, Optional, Tuple, Union
 
 import numpy as np
 
@@ -103,15 +103,18 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
     except ValueError as error:
         raise LabialError(f"{motion.name}: {error}") from None
     weights = outputs(chosen, frames)
-    columns: List[np.ndarray] = [np.round(weights[name], 3) for name in used]
+    columns: Dict[str, np.ndarray] = {}  # by the mesh's own shapes, of which VRM's expressions are made
+    for name, shape in used.items():
+        for own, share in found.mesh.parts.get(shape, [(shape, 1.0)]):
+            columns[own] = np.round(columns.get(own, 0.0) + share * weights[name], 3)
     away = b'"VRM"' in content[:65536] and b"VRMC_vrm" not in content  # VRM 0 faces the other way
     turn = -1.0 if away else 1.0
     data: Dict[str, Any] = {
         "title": title or motion.name,
         "fps": fps,
         "start": round(float(motion.times[0]), 6),
-        "shapes": list(used.values()),
-        "weights": np.stack(columns, axis=1).tolist(),
+        "shapes": list(columns),
+        "weights": np.stack(list(columns.values()), axis=1).tolist(),
         "corners": [(found.head.rest[corner] / found.scale * (turn, 1.0, turn)).tolist()
                     for corner in ("corner_left", "corner_right")],
         "facing": turn,
