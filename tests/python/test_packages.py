@@ -286,14 +286,16 @@ def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
 
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
-    """The ratio is the lips' opening over 600 FAP units, between 0 and 1, from the first period on."""
+    """The ratio is the lips' opening over 600 FAP units, between 0 and 1, from the first period on; 0 where lips touch,
+    at 72 units, and between there and 136 in proportion."""
     lines = [line.split() for line in lines_of("AvatarMouth", 9000, 5000)]
     assert {words[0] for words in lines} == {"mouth"}
     frames = talk_frames()
     count = len(frames)
     ratios = np.array([float(words[2]) for words in lines])
     assert len(ratios) == 2 * count and [int(words[1]) for words in lines[:3]] == [1, 20, 40]
-    wanted = np.clip(-(frames[:, 3] + frames[:, 4]) / 600, 0, 1)
+    opening = -(frames[:, 3] + frames[:, 4])
+    wanted = np.clip(opening / 600, 0, 1) * np.clip((opening - 72) / 64, 0, 1)
     assert np.abs(ratios[:count] - wanted).max() < 0.005 and np.ptp(wanted) > 0.8
 
 
