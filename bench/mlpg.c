@@ -30,11 +30,11 @@ static void rows(const bench_unit_t *unit, unsigned k, unsigned t, double mean[W
     const double share = (state->share + (state->share >> 7)) / 256.0;
     const int inside = t > 0 && t + 1 < BENCH_UNIT;
     precision[0] = labial_weight(state->hold);
-    mean[0] = state->mean[0] + share * (unit->targets[t][k] - state->mean[0]);
+    mean[0] = state->mean + share * (unit->targets[t][k] - state->mean);
     precision[1] = inside ? 4.0 * labial_weight(state->weight[0]) : 0.0;
-    mean[1] = state->mean[1];
+    mean[1] = labial_scaled(state->motion[0], model->channels[k].motion_scale[0]);
     precision[2] = inside ? labial_weight(state->weight[1]) : 0.0;
-    mean[2] = state->mean[2];
+    mean[2] = labial_scaled(state->motion[1], model->channels[k].motion_scale[1]);
 }
 
 static void fill(bench_unit_t *unit)

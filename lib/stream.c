@@ -100,9 +100,8 @@ static void call_back(labial_t *stream, const int16_t motion[LABIAL_CHANNELS])
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
         faps[k] = (int16_t)((motion[k] + 8) >> 4);
-    stream->callback(stream->user, stream->frame, faps);
-    stream->frame++;
     stream->shown = 1;
+    stream->callback(stream->user, stream->frame++, faps); /* last: it may call anything */
 }
 
 /* Begins to fade from the pose that was delivered last, which moves on as far as the last frame moved it, half as far

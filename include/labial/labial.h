@@ -12,7 +12,7 @@
  *         wait_for_next_frame();
  *
  * The library never allocates, keeps no state outside `stream` and `workspace`, computes in integers only and gives the
- * same bits on every target. A stream is not reentrant: calls on one stream must not overlap, calls on different
+ * same bits on every target. Calls on one stream must not overlap, but for those of its callback; calls on different
  * streams may. The structure may be moved or copied between calls as long as the workspace stays where it is and only
  * one copy continues to be used. Nothing needs to be released.
  *
@@ -145,7 +145,8 @@ const char *labial_result_text(int result);
 
 /*
  * Receives a frame: `frame` counts frames since labial_init(), `faps` are the 13 channels in FAP units, valid during
- * the call. Called from labial_tick() alone; it must not call back into the same stream.
+ * the call. Called from labial_tick() alone, whose work is then done: it may call any function, of the same stream too.
+ * A labial_tick() from here delivers the next frame before the first one returns, on top of its stack.
  */
 typedef void (*labial_frame_fn)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
 

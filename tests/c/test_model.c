@@ -308,6 +308,58 @@ static void refuses_kernels_beyond_their_reach(void **state)
     ACCEPTED(uint8_t, f.model.kernel_stride, 255);
 }
 
+/* Every number of taps, stride and place: accepted exactly where no tap reads a label that the library does not keep, which
+ * is what lib/shape.c and the proofs take for granted. */
+static void kernels_stay_within_the_labels(void **state)
+{
+    static uint32_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * 3];
+    static int8_t last_kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1)];
+    int taps, stride, behind, accepted = 0;
+    (void)state;
+    f.model.kernels = kernels;
+    f.model.last_kernels = last_kernels;
+    for (taps = 1; taps <= LABIAL_KERNEL_TAPS_MAX + 1; taps++)
+        for (stride = 0; stride < 256; stride += stride <= LABIAL_REACH + 1 ? 1 : 31)
+            for (behind = 0; behind <= taps; behind++) {
+                const int first = -behind * stride, last = (taps - 1 - behind) * stride;
+                const int sound =
+                    taps <= LABIAL_KERNEL_TAPS_MAX && behind < taps && first >= -LABIAL_REACH && last <= LABIAL_REACH;
+                f.model.kernel_taps = (uint8_t)taps;
+                f.model.kernel_stride = (uint8_t)stride;
+                f.model.kernel_behind = (uint8_t)behind;
+                if ((labial_model_check(&f.model) == LABIAL_OK) != sound)
+                    fail_msg("%d taps every %d frames, %d of them before", taps, stride, behind);
+                accepted += sound;
+            }
+    assert_true(accepted > 500);
+}
+
+/* Counts at their bounds, from both sides: what is refused above is accepted here. */
+static void accepts_the_bounds_of_counts(void **state)
+{
+    unsigned i;
+    (void)state;
+    fixture_plain(&f);
+    ACCEPTED(uint8_t, f.model.class_count, LABIAL_CLASSES_MAX);
+    ACCEPTED(uint8_t, f.model.class_count, FIXTURE_CLASSES);
+    REFUSED(uint8_t, f.model.class_count, FIXTURE_CLASSES - 1);
+    ACCEPTED(uint8_t, f.model.soft, 1);
+    ACCEPTED(uint8_t, f.phonemes[0].boundary, 1);
+    ACCEPTED(uint8_t, f.phonemes[0].boundary, 0);
+    ACCEPTED(uint8_t, f.phonemes[0].viseme_class, FIXTURE_CLASSES - 1);
+    ACCEPTED(uint8_t, f.phonemes[0].component_count, 1);
+    ACCEPTED(uint8_t, f.model.phoneme_count, 1); /* which is silence */
+    for (i = 0; i < LABIAL_CHANNELS; i++) {
+        unsigned k;
+        for (k = 0; k < FIXTURE_PREDECESSORS; k++)
+            f.transitions[i][k] = 0;
+    }
+    ACCEPTED(uint8_t, f.model.state_count, 1);
+    f.model.frames_per_second = 250;
+    f.model.search_stride = LABIAL_SEARCH_STRIDE_MAX;
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+}
+
 /* Would catch an index or a product that is too narrow for the largest model the limits allow. */
 static void accepts_the_largest_counts(void **state)
 {
@@ -359,6 +411,8 @@ int main(void)
         cmocka_unit_test_setup(refuses_pairs_out_of_order, setup),
         cmocka_unit_test_setup(refuses_scales_out_of_range, setup),
         cmocka_unit_test_setup(refuses_kernels_beyond_their_reach, setup),
+        cmocka_unit_test_setup(kernels_stay_within_the_labels, setup),
+        cmocka_unit_test_setup(accepts_the_bounds_of_counts, setup),
         cmocka_unit_test_setup(accepts_the_largest_counts, setup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -429,6 +429,30 @@ static void the_queue_knows_its_models(void **state)
     assert_int_equal(labial_units_hold(&units, 0), 0);
 }
 
+/* Of the longest phoneme there may be, at 250 frames a second: every frame's share, as for few frames. Would catch numbers
+ * that leave 16 or 32 bits, and frames that are halved without their sum. */
+static void shares_of_the_longest_phoneme_ascend(void **state)
+{
+    static const uint32_t lengths[] = { 65535, 65536, 65537, 131071, 131072, 262143, 262144, 900000 };
+    labial_model_t fast = plain.model;
+    labial_taken_t taken;
+    unsigned i;
+    (void)state;
+    fast.frames_per_second = 250;
+    for (i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+        uint32_t n;
+        begin(&fast);
+        assert_int_equal(labial_units_push(&units, FIXTURE_S, 0, lengths[i] * 4u, 250), lengths[i]);
+        for (n = 0; n < lengths[i]; n++) {
+            const double exact = 16384.0 * (n + 0.5) / lengths[i];
+            assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
+            if (taken.share > exact + 1.6 || taken.share < exact - 1.6) /* to halving, 1 in 32,768 */
+                fail_msg("frame %u of %u: share %u, not %g", n, lengths[i], taken.share, exact);
+        }
+        assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_DONE);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -441,6 +465,7 @@ int main(void)
         cmocka_unit_test(pauses_come_to_rest),
         cmocka_unit_test(random_streams_are_taken_frame_by_frame),
         cmocka_unit_test(the_queue_knows_its_models),
+        cmocka_unit_test(shares_of_the_longest_phoneme_ascend),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }
