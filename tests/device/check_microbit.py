@@ -44,6 +44,8 @@ def limits(path: str) -> Dict[str, Dict[str, int]]:
         elif value:
             outputs[list(outputs)[-1]][value[1]] = int(value[2])
     for output in outputs.values():
+        if "closed" in output:
+            output.setdefault("neutral", output["closed"])
         output.setdefault("minimum", min(output["neutral"], output["full"]))
         output.setdefault("maximum", max(output["neutral"], output["full"]))
     return outputs
