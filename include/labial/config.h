@@ -1,0 +1,81 @@
+/*
+ * labial/config.h - the library's limits. Each may be set for the whole build; library and program must agree on them.
+ */
+#ifndef LABIAL_CONFIG_H
+#define LABIAL_CONFIG_H
+
+#include <stdint.h>
+
+/* How many frames ahead of the delivered ones the trajectory's backward pass starts, 1 .. 48. Each frame makes the motion
+ * smoother and costs a frame of delay and 104 bytes of workspace. With the bundled models 3 frames leave an error of
+ * .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. */
+#ifndef LABIAL_WINDOW
+#define LABIAL_WINDOW 3
+#endif
+
+/* How many frames after a step the search decides on its state, if the unit does not end earlier, 0 .. 40. Each
+ * frame makes the path more probable and costs a frame of delay and about 175 bytes of workspace; with the bundled
+ * models the difference is not visible. With a lag as long as the longest unit, the states of each unit are the
+ * likeliest path through it (Viterbi) among those that LABIAL_SEARCHED leaves. */
+#ifndef LABIAL_LAG
+#define LABIAL_LAG 0
+#endif
+
+/* States that a step of the search looks at, of those of a channel: the ones around that whose mean is nearest to the
+ * target, 2 .. 64. With as many as a model has, no path is left out. Each costs a byte of workspace in each channel,
+ * LABIAL_LAG bytes more with a lag, and its share of the search's time. */
+#ifndef LABIAL_SEARCHED
+#define LABIAL_SEARCHED 8
+#endif
+
+/* Phonemes that the queue has room for: how far ahead a program can push, LABIAL_REACH + 2 .. 255. Each costs 8 bytes
+ * of the stream. Within these limits no sequence of pushes can stall the stream. */
+#ifndef LABIAL_QUEUE
+#define LABIAL_QUEUE 32
+#endif
+
+/* Distance of the farthest tap of a model's kernels from the frame, in frames to either side, 0 .. 60. Each frame
+ * costs 2 bytes of the stream. A generated model that needs more does not compile, and a blob that needs more is
+ * refused. */
+#ifndef LABIAL_REACH
+#define LABIAL_REACH 20
+#endif
+
+/* Models whose phonemes can be in a stream at the same time, 1 .. 255. Another model can replace a model when all
+ * its phonemes have been taken in, and after them as many frames as share a state. */
+#ifndef LABIAL_MODELS
+#define LABIAL_MODELS 2
+#endif
+
+/* What does not compile: values out of range, sums without parentheses (which the code would take apart), unsigned
+ * ones. */
+#define LABIAL_IS_NUMBER_(x, least, most) (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
+#if !LABIAL_IS_NUMBER_(LABIAL_WINDOW, 1, 48)
+#error "LABIAL_WINDOW must be a number from 1 to 48."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_LAG, 0, 40)
+#error "LABIAL_LAG must be a number from 0 to 40."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_SEARCHED, 2, 64)
+#error "LABIAL_SEARCHED must be a number from 2 to 64."
+#endif
+#if LABIAL_WINDOW + LABIAL_LAG > 55
+#error "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_REACH, 0, 60)
+#error "LABIAL_REACH must be a number from 0 to 60."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_QUEUE, 2, 255)
+#error "LABIAL_QUEUE must be a number from 2 to 255."
+#endif
+#if LABIAL_QUEUE < LABIAL_REACH + 2
+#error "LABIAL_QUEUE must be LABIAL_REACH + 2 or more, or a stream could wait for a phoneme that has no room."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_MODELS, 1, 255)
+#error "LABIAL_MODELS must be a number from 1 to 255."
+#endif
+
+/* Ticks from taking a frame in to delivering it. */
+#define LABIAL_DELAY(stride) (LABIAL_WINDOW + LABIAL_LAG + (stride))
+
+#endif

@@ -1,0 +1,139 @@
+/*
+ * labial/private.h - what a stream is made of, for labial/labial.h alone: declared so that programs can allocate a stream
+ * statically. All members are private, and may change with any version. Each structure belongs to one file of lib/.
+ */
+#ifndef LABIAL_PRIVATE_H
+#define LABIAL_PRIVATE_H
+
+#include <stdint.h>
+
+#include "labial/config.h"
+#include "labial/model.h"
+
+/* A phoneme that was pushed (units.c). */
+typedef struct {
+    uint32_t frames; /* duration in frames, never 0 */
+    uint16_t ms;     /* duration in milliseconds, 65535 for longer ones */
+    uint8_t phoneme; /* of the model in the slot */
+    uint8_t slot;    /* model it belongs to */
+} labial_segment_t;
+
+/* The queue of what was pushed and not yet taken frame by frame (units.c). */
+typedef struct {
+    uint8_t head, count;
+    uint8_t before;     /* phoneme in front of the oldest segment */
+    uint8_t begins;     /* the next frame is the first of a solution */
+    uint8_t rested;     /* the oldest segment is a pause that a solution began with */
+    uint16_t remainder; /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
+    uint32_t taken;     /* frames of the oldest segment that were taken */
+    uint32_t frames;    /* of all segments that are not yet taken */
+    uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last that was taken */
+    labial_segment_t segments[LABIAL_QUEUE];
+} labial_units_t;
+
+/* The shape of a phoneme (shape.c): at its start and at its end, positions. */
+typedef struct {
+    int16_t knots[2][LABIAL_CHANNELS];
+} labial_shape_t;
+
+/* The selection of a shape (shape.c). */
+typedef struct {
+    uint8_t halves;                                    /* that are done */
+    uint8_t count;                                     /* components that have a share */
+    uint8_t components[LABIAL_PHONEME_COMPONENTS_MAX]; /* of the phoneme's */
+    uint16_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* of the mixture, Q12 */
+    int16_t tilts[LABIAL_PHONEME_COMPONENTS_MAX];      /* how much of the slope counts: share times deviation, Q12 */
+    labial_shape_t shape;
+} labial_selection_t;
+
+/* Where the search of one channel stands (viterbi.c). */
+typedef struct {
+    uint8_t first; /* state of the window */
+    uint8_t best;  /* state, counted from the first */
+    uint8_t scores[LABIAL_SEARCHED];
+    uint8_t path[LABIAL_LAG + 1]; /* states of the last steps, the latest first */
+#if LABIAL_LAG > 0
+    uint8_t spans[LABIAL_LAG + 1];             /* frames of these steps */
+    uint8_t undecided;                         /* steps before the last whose states may still change */
+    uint8_t firsts[LABIAL_LAG];                /* windows of the steps before the last */
+    uint8_t back[LABIAL_LAG][LABIAL_SEARCHED]; /* and where in them the states of the next step come from */
+#endif
+} labial_search_t;
+
+/* Where the solution of one channel stands (trajectory.c): the recursion, and the row that the next one completes. */
+typedef struct {
+    int32_t row, bent; /* Q16 */
+    int32_t k1, k2;    /* Q16 */
+    int32_t q1, q2;    /* Q12 FAP */
+    int32_t position;  /* Q12 FAP */
+    int32_t pull, next_pull;
+    uint16_t hold, delta;
+} labial_solver_t;
+
+/* What the backward pass needs of a frame (trajectory.c). */
+typedef struct {
+    int32_t q; /* Q12 FAP */
+    uint16_t rho, kappa;
+} labial_factors_t;
+
+/* A frame that was taken (stream.c). */
+typedef struct {
+    uint32_t contacts;               /* bit k: channel k is in contact */
+    int16_t target[LABIAL_CHANNELS]; /* positions */
+    uint8_t slot;                    /* its model */
+    uint8_t marks;
+} labial_frame_t;
+
+/* The factors that a channel's next step goes back through, the latest last; a structure, so that it is copied whole. */
+typedef struct {
+    labial_factors_t of[LABIAL_WINDOW + 1];
+} labial_kept_t;
+
+/* Where one channel stands (channels.c). */
+typedef struct {
+    labial_solver_t solver;
+    labial_kept_t kept;
+    labial_search_t search;
+} labial_progress_t;
+
+/* All channels (channels.c). The pointers are to parts of the workspace. */
+typedef struct {
+    uint8_t stride;              /* frames that share a state */
+    uint8_t phase;               /* channels phase, phase + stride, ... are next */
+    uint8_t entered;             /* frames that were taken, 255 for more */
+    uint8_t beyond;              /* ticks since the last frame was taken */
+    labial_progress_t *progress; /* LABIAL_CHANNELS */
+    labial_frame_t *frames;      /* the latest stride + LABIAL_LAG, the last one taken at the end */
+    int16_t *motion;             /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
+} labial_channels_t;
+
+#define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
+
+/* The stream's state (stream.c). Small members come first, where small instructions reach them. */
+typedef struct {
+    uint32_t magic;       /* set while the stream is initialised */
+    uint8_t slot;         /* model of the next push */
+    uint8_t ended;        /* no more phonemes will come */
+    uint8_t begun;        /* a frame was delivered since the stream was initialised or restarted */
+    uint8_t shown;        /* a frame was delivered since the stream was initialised: what begins fades in from `pose` */
+    uint8_t fade_step;    /* 0 when nothing fades */
+    uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
+    uint16_t ease_step;
+    uint32_t frame;   /* number of the next frame */
+    uint32_t pending; /* frames pushed and not yet delivered */
+    uint32_t
+        begins[LABIAL_BEGINS_WORDS_]; /* bit i: a solution begins with the frame that was taken i ticks ago; what was
+                                            * taken before a cancel moves beyond the delay before a frame is due */
+    labial_channels_t channels;
+    const labial_model_t *models[LABIAL_MODELS];
+    void (*callback)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
+    void *user;
+    labial_shape_t shape;             /* of the phoneme that the latest frame belongs to */
+    labial_selection_t next;          /* that of the phoneme that begins next */
+    int16_t pose[LABIAL_CHANNELS];    /* the frame delivered last, Q4 FAP */
+    int16_t earlier[LABIAL_CHANNELS]; /* the one before it; while something fades, how far it moved on */
+    int16_t faded[LABIAL_CHANNELS];   /* the pose that fades */
+    labial_units_t units;
+} labial_t;
+
+#endif
