@@ -105,7 +105,6 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
         add("mean", round(mean), "instructions/frame")
         add("worst tick", found["tick_worst"], "instructions")
         add("worst tick / mean", round(found["tick_worst"] / mean, 3), "ratio")
-        add("share of the core", round(100.0 * mean * RATE / (board.clock * 1e6), 2), "%")
         add("pushing", round(found["push_instructions"] / found["frames"]), "instructions/frame")
         add("labial_init()", found["init_instructions"], "instructions")
         add("stack, painted", found["stack"], "bytes")

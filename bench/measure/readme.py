@@ -24,6 +24,8 @@ def updated(text: str, figures: Sequence[Figure]) -> str:
 
     helpers = number("code -Os: compiler's helpers")
     worst = " | ".join(f"{value[target, 'speech: worst tick / mean']:.2f}" for target in TARGETS[:-1])
+    shares = " | ".join(f"{value[target, 'speech: share of the core']:.1f} %" if (target, "speech: share of the core")
+                        in value else "" for target in TARGETS[:-1])
     taken = f"{round(value['m0', 'speech: cycles'], -2):,.0f} cycles for the {number('speech: mean')}"
     stream = f"stream {number('labial_t')}, workspace {number('speech: workspace')};"
     binary = value["m0", "code -Os: blob.c"] + value["m0", "code -Os: model.c"]
@@ -46,6 +48,7 @@ def updated(text: str, figures: Sequence[Figure]) -> str:
         (r"(\| speech, mean \| ).*", rf"\g<1>{cells('speech: mean')}"),
         (r"(\| laughter, mean \| ).*", rf"\g<1>{cells('laughter: mean')}"),
         (r"(\| worst tick, times the mean \| ).*", rf"\g<1>{worst} | |"),
+        (r"(\| share of the core at 50 frames/s, speech \| )([^|]*\|){5}", rf"\g<1>{shares} |"),
         (r"(Cortex-M0 takes )[\d,]+ cycles for the [\d,]+", rf"\g<1>{taken}"),
     ):
         text, count = re.subn("^" + pattern, replacement, text, flags=re.MULTILINE)

@@ -131,6 +131,19 @@ def test_cycles_are_those_of_the_manual(mnemonic: str, operands: str, expected: 
     assert cycles(mnemonic, operands) == expected
 
 
+@pytest.mark.parametrize("mnemonic, operands, m3, m4", [
+    ("add.w", "r0, r1, r2", 1, 1), ("umull", "r0, r1, r2, r3", 5, 1), ("smlal", "r0, r1, r2, r3", 7, 1),
+    ("mla", "r0, r1, r2, r3", 2, 1), ("mul.w", "r0, r1, r2", 1, 1), ("udiv", "r0, r1, r2", 12, 12),
+    ("ldrd", "r0, r1, [sp, #8]", 3, 3), ("strd", "r0, r1, [r2]", 3, 3), ("ldrsh.w", "r0, [r1, #2]", 2, 2),
+    ("stmdb", "sp!, {r4, r5, r6, lr}", 5, 5), ("ldmia.w", "sp!, {r4, pc}", 5, 5), ("push", "{r4-r7, lr}", 6, 6),
+    ("cbz", "r0, 0 <x>", 1, 1), ("beq.w", "0 <x>", 1, 1), ("bl", "0 <x>", 3, 3), ("tbb", "[pc, r0]", 4, 4),
+    ("it", "eq", 1, 1), ("blt.n", "0 <x>", 1, 1),
+])
+def test_cycles_of_larger_cores(mnemonic: str, operands: str, m3: int, m4: int) -> None:
+    # Catches a long product counted as a short one, and a pair of words as one.
+    assert (cycles(mnemonic, operands, "m3"), cycles(mnemonic, operands, "m4")) == (m3, m4)
+
+
 def test_commands_name_the_preset_whatever_was_built_where(tmp_path: Path) -> None:
     # Catches folders of one machine in the committed baseline.
     for build in (tmp_path / "src" / "build" / "bench", tmp_path / "elsewhere"):
