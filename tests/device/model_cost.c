@@ -48,12 +48,12 @@ typedef struct {
 } recipe_t;
 
 static const recipe_t recipes[] = {
-    { "many transitions", 3, LABIAL_STATES_MAX, LABIAL_STATES_MAX, 13, 5, 58403 },
-    { "a state for each frame", 1, LABIAL_STATES_MAX, 4, 13, 5, 42355 },
-    { "a state for eight frames", 8, LABIAL_STATES_MAX, 4, 13, 5, 25383 },
-    { "many taps", 3, 8, 4, LABIAL_KERNEL_TAPS_MAX, 1, 24773 },
-    { "many components", 3, 8, 4, 1, COMPONENTS, 29010 },
-    { "all of it", 1, LABIAL_STATES_MAX, LABIAL_STATES_MAX, LABIAL_KERNEL_TAPS_MAX, COMPONENTS, 145212 },
+    { "many transitions", 3, LABIAL_STATES_MAX, LABIAL_STATES_MAX, 13, 5, 59176 },
+    { "a state for each frame", 1, LABIAL_STATES_MAX, 4, 13, 5, 38247 },
+    { "a state for eight frames", 8, LABIAL_STATES_MAX, 4, 13, 5, 18824 },
+    { "many taps", 3, 8, 4, LABIAL_KERNEL_TAPS_MAX, 1, 22218 },
+    { "many components", 3, 8, 4, 1, COMPONENTS, 23877 },
+    { "all of it", 1, LABIAL_STATES_MAX, LABIAL_STATES_MAX, LABIAL_KERNEL_TAPS_MAX, COMPONENTS, 134241 },
 };
 
 static labial_phoneme_t phonemes[PHONEMES];

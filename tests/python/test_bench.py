@@ -156,7 +156,8 @@ def test_functions_of_every_header_are_found() -> None:
     # Catches a stack bound that leaves functions out because their declarations are not recognised.
     bench = Bench(SOURCE, SOURCE)
     assert {"labial_init", "labial_tick", "labial_latency", "labial_workspace_size"} <= set(public_functions(bench))
-    assert all(public_functions(bench, path.name) for path in (SOURCE / "include" / "labial").glob("*.h"))
+    headers = {path.name for path in (SOURCE / "include" / "labial").glob("*.h")} - {"config.h", "private.h"}
+    assert all(public_functions(bench, name) for name in headers)
 
 
 def test_parts_are_the_members_of_the_headers(tmp_path: Path) -> None:
@@ -171,7 +172,7 @@ def test_parts_are_the_members_of_the_headers(tmp_path: Path) -> None:
 
 def test_the_latest_frame_is_that_of_the_rules(tmp_path: Path) -> None:
     # Catches a clock that is off by a tick, a frame that counts though it is not the latest, and malformed input. A
-    # phoneme's first frame waits until the next one begins, or the end, and then for the stream's delay of 7 frames.
+    # phoneme's first frame waits until the next one begins, or the end, and then for the stream's delay of 6 frames.
     includes = [f"-I{SOURCE / folder}" for folder in ("include", "lib/models", "lib")]
     program = tmp_path / "delay"
     sources = [SOURCE / "bench" / "delay.c", *sorted((SOURCE / "lib").glob("*.c")), SOURCE / "lib/models/speech_en.c"]
@@ -182,8 +183,8 @@ def test_the_latest_frame_is_that_of_the_rules(tmp_path: Path) -> None:
 
     silence = load(str(SOURCE / "export" / "models" / "speech_en.npz")).phonemes.index("SIL")
     vowel = silence + 1
-    assert latest(f"{vowel} 400 {vowel} 60").stdout.split() == ["540"]
-    assert latest(f"{vowel} 60 {silence} 5000 {vowel} 60\n{vowel} 200\n").stdout.split() == ["260", "340"]
+    assert latest(f"{vowel} 400 {vowel} 60").stdout.split() == ["520"]
+    assert latest(f"{vowel} 60 {silence} 5000 {vowel} 60\n{vowel} 200\n").stdout.split() == ["240", "320"]
     for text in (f"{vowel}", f"{vowel} 60 x", "999 60", f"{vowel} 99999999"):
         assert latest(text).returncode == 1
 
