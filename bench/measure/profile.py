@@ -1,7 +1,7 @@
 """Where instructions and cycles go, by a plugin that counts what QEMU executes at every address.
 
-QEMU counts no cycles. Those of a core are summed up from Arm's table of them, without wait states; where the table has a
-range, as for loads that may overlap and for divisions, the most is taken. For other cores no such table is published.
+QEMU counts no cycles. Those of a core are summed up from Arm's table of them, without wait states; where the table has
+a range, as for loads that may overlap and for divisions, the most is taken. For other cores no such table is published.
 """
 
 from __future__ import annotations
@@ -64,8 +64,8 @@ def cycles(mnemonic: str, operands: str, core: str = "m0") -> int:
 
 
 def measure(bench: Bench, rows: List[Row]) -> None:
-    """Cycles per frame of both models on every core whose cycles are known; `rows` receives the profile of speech on the
-    first of them, most instructions first.
+    """Cycles per frame of both models on every core whose cycles are known; `rows` receives the profile of speech on
+    the first of them, most instructions first.
 
     LeftOut where the plugin (bench/plugin.c) cannot be compiled or QEMU takes none.
     """
