@@ -26,7 +26,8 @@ PARTS = {
     "labial_t: queue and labels": "sizeof(labial_units_t)",
     "labial_t: shapes": "sizeof(labial_shape_t) + sizeof(labial_selection_t)",
     "labial_t: poses": "3 * LABIAL_CHANNELS * sizeof(int16_t)",
-    "workspace: searches": "LABIAL_CHANNELS * (sizeof(labial_progress_t) - sizeof(labial_solver_t) - sizeof(labial_kept_t))",
+    "workspace: searches": "LABIAL_CHANNELS * (sizeof(labial_progress_t) - sizeof(labial_solver_t)"
+                           " - sizeof(labial_kept_t))",
     "workspace: solvers": "LABIAL_CHANNELS * sizeof(labial_solver_t)",
     "workspace: factors": "LABIAL_CHANNELS * sizeof(labial_kept_t)",
     "workspace: frames": "(STRIDE + LABIAL_LAG) * sizeof(labial_frame_t)",
