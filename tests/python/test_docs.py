@@ -45,6 +45,15 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     "python.md": {
         "pip install .": "fetches what builds it; test_wheel.py installs the package without",
     },
+    "reproduction.md": {
+        "python3 -m venv build/reproduce && build/reproduce/bin/pip install -r export/requirements-reproduce.txt":
+            "fetches; what it installs is in the tests' environment",
+        "build/reproduce/bin/python export/reproduce.py": "takes minutes; test_reproduce.py runs its parts",
+        "labial synth paper.npz phones.lab -o frames.csv": "training takes a minute; test_paper_model.py has a model",
+        "python -m labial.evaluate.choices export/corpora/grid_s1 --splits 4 -o speech.md":
+            "takes minutes; test_choices.py runs it on less",
+        "python -m labial.evaluate.choices LAUGHTER --kind laughter --splits 2 -o laughter.md": "likewise",
+    },
     "record.md": {
         "labial landmarks recordings/s01.mp4 -o recordings/s01.npz": "needs MediaPipe; tests/tracking runs it",
         "labial align recordings/s01.mp4 --text-file recordings/s01.txt -o recordings/s01.lab": "likewise",

@@ -166,11 +166,13 @@ def test_methods_share_the_cells_of_their_codebooks(monkeypatch) -> None:
     calls = []
     monkeypatch.setattr("labial.evaluate.training.lbg", lambda points, size: calls.append(size) or lbg(points, size))
     part = training(ramp, 4)
-    shared = [part.model(method) for method in ("paper", "labial")]
+    shared = [part.model(method, normalise=True) for method in ("paper", "labial")]
     assert len(calls) == 13
+    assert part.model("paper", normalise=True) is shared[0] and part.model("paper") is not shared[0]
+    assert len(calls) == 26  # as they are, features have other cells
     for model in shared:
         alone = train([item.episode for item in part.utterances], kind="speech", method=model.method, jobs=1,
-                      progress=False)  # fmt: skip
+                      progress=False, normalise=True)  # fmt: skip
         for field in fields(model):
             own, other = getattr(model, field.name), getattr(alone, field.name)
             assert np.array_equal(own, other) if isinstance(own, np.ndarray) else own == other, field.name

@@ -42,7 +42,8 @@ from models import random_model, streams
 def test_limits_are_the_librarys() -> None:
     """The exporter and the reference write numbers down that the headers define; one that is changed there alone makes
     models that the library refuses, or another motion."""
-    sources = [library_root() / "include" / "labial" / name for name in ("model.h", "labial.h", "names.h", "rig.h")]
+    headers = ("model.h", "config.h", "labial.h", "names.h", "rig.h")
+    sources = [library_root() / "include" / "labial" / name for name in headers]
     sources += [library_root() / "lib" / name for name in ("shape.c", "viterbi.c")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
     pattern = r"^(?:#define )? *(?:LABIAL_)?(\w+)(?: =)? \(?(-?(?:0x[0-9a-f]+|\d+))u?\)?[,\s]"
