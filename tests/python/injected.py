@@ -112,6 +112,14 @@ def _track() -> None:
     track.length = lambda _: 1.0  # type: ignore[assignment]
 
 
+def _fit() -> None:
+    import labial.fit.fit as fit
+    import labial.fit.picture as picture
+
+    fit.fit = lambda *_: fit.Fitted("made up\n", None, object(), ["made up"])  # type: ignore
+    picture.draw = lambda *given: given[-1].write_bytes(bytes(20000))  # type: ignore[assignment]
+
+
 def cases() -> Dict[str, Case]:
     """Every command that writes, and some in both ways that a folder can be."""
     reports = ["report.md", "table1.csv", "table2.csv", "table3.csv", "table4.csv", "splits.csv", "amplitude.png",
@@ -133,6 +141,7 @@ def cases() -> Dict[str, Case]:
                                 [f"c/laugh000{n}.{kind}" for n in range(2) for kind in ("csv", "lab")]
                                 + ["c/README.md"], there=False),
         "rig": Case(["rig", "face.toml", "-o", "out"], ["face.h", "face.c", "face.svg"]),
+        "fit": Case(["fit", "a.glb", "-o", "out/n.toml"], ["n.toml", "n.png"], patch=_fit),
         "plot": Case(["plot", "f.csv", "-o", "out/p.png"], ["p.png"]),
         "page": Case(["page", "f.csv", "-o", "out/p.html"], ["p.html"]),
         "landmarks": Case(["landmarks", "v.mp4", "-o", "out/l.npz", "--quiet"], ["l.npz"], patch=_track),

@@ -122,7 +122,7 @@ def test_an_exception_of_a_handler_frees_the_stream() -> None:
                     pass
                 finally:
                     signal.setitimer(signal.ITIMER_REAL, 0)
-                assert stream.latency.delay == 7
+                assert stream.latency.delay == 6
                 stream.cancel(0)
                 list(stream)
                 stream.restart()

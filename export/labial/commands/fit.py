@@ -36,6 +36,7 @@ def _points(options: argparse.Namespace) -> Dict[str, int]:
 def run(options: argparse.Namespace) -> int:
     """Writes the rig and its picture, prints what it reaches."""
     from labial.errors import LabialError, needs
+    from labial.outputs import check_folder, folder
 
     output = Path(options.output)
     if output.suffix != ".toml":
@@ -44,16 +45,16 @@ def run(options: argparse.Namespace) -> int:
         import scipy.optimize  # noqa: F401
 
         from labial.fit.fit import fit
+    check_folder(output.parent)
     points = _points(options)
     done = fit(options.avatar, points, options.shapes, output.stem)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text(done.text, encoding="utf-8")
-    print("\n".join(done.report))
-    print(output)
-    if not options.no_figure and done.found is not None:
-        from labial.fit.picture import draw
+    names = [output.name]
+    with folder(output.parent) as made:  # the rig and its picture appear together
+        (made / output.name).write_text(done.text, encoding="utf-8")
+        if not options.no_figure and done.found is not None:
+            from labial.fit.picture import draw
 
-        picture = output.with_suffix(".png")
-        draw(done.rig, done.found, picture)
-        print(picture)
+            names.append(output.with_suffix(".png").name)
+            draw(done.rig, done.found, made / names[-1])
+    print("\n".join([*done.report, *(str(output.with_name(name)) for name in names)]))
     return 0
