@@ -46,7 +46,7 @@ foreach(source IN LISTS SOURCES)
   file(READ "${source}" text)
   string(REGEX MATCHALL "\n[a-z][a-z0-9_ ]* \\*?labial_[a-z0-9_]+\\(" heads "${text}")
   foreach(head IN LISTS heads)
-    string(REGEX MATCH "labial_[a-z0-9_]+" function "${head}")
+    string(REGEX REPLACE ".*(labial_[a-z0-9_]+)\\($" "\\1" function "${head}") # not the type that it returns
     if(NOT said MATCHES "\n  ${function}: [1-9]")
       string(APPEND wrong "${function} is not reached.\n")
     endif()
