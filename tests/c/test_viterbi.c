@@ -229,7 +229,7 @@ static void a_unit_within_the_lag_has_the_best_path(void **state)
             best = least[i] < best ? least[i] : best;
         for (t = 0; t < count; t++)
             path[t] = labial_viterbi_state(&search, count - 1 - t);
-        cost = emissions[path[0]].initial + oracle_emission(&emissions[path[0]], position[0]);
+        cost = initials[path[0]] + oracle_emission(&emissions[path[0]], position[0]);
         for (t = 1; t < count; t++) {
             unsigned way = 255;
             for (i = 0; i < model.predecessors; i++) {
