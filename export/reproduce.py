@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import filecmp
+import math
 import os
 import re
 import sys
@@ -74,7 +75,8 @@ def first_split() -> str:
     (outcome,) = evaluate(first, Options(splits=1), further=second)
     rows = ["| method | " + " | ".join(name for name, _, _ in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
     for method, values in outcome.measures.items():
-        cells = (f"{values[measure]:.{digits}f}" if measure in values else "-" for _, measure, digits in COLUMNS)
+        shown = ((values.get(measure, math.nan), digits) for _, measure, digits in COLUMNS)
+        cells = ("-" if math.isnan(value) else f"{value:.{digits}f}" for value, digits in shown)
         rows.append(f"| {title(method)} | " + " | ".join(cells) + " |")
     return "\n".join(rows) + "\n"
 
