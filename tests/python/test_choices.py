@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.ndimage import gaussian_filter1d
 
 from labial.evaluate import choices
 from labial.evaluate.baselines import trained
@@ -18,12 +17,8 @@ from labial.reference import published
 from labial.reference.published import Piece, join
 from labial.reference.tables import FloatTables
 from labial.train import codebook, pipeline, shapes
-from test_evaluate import write_episode
-from test_evaluate_material import planted, shape_of_phoneme
-
-
-def law(given) -> np.ndarray:
-    return gaussian_filter1d(shape_of_phoneme()[given.phoneme_at], 1.5, axis=0, mode="nearest")
+from test_evaluate import law, write_episode
+from test_evaluate_material import planted
 
 
 @pytest.fixture(scope="module")
