@@ -448,7 +448,7 @@ static void the_callback_may_cancel_and_restart(void **state)
     assert_int_equal(caller.frames, 21 + 200 * FIXTURE_RATE / 1000 + 400 * FIXTURE_RATE / 1000);
 }
 
-#if LABIAL_MODELS == 2
+#if LABIAL_MODELS == 2 && LABIAL_QUEUE >= 4
 /* A model that was chosen and not used makes room at once, and so does one whose phonemes never came. Would catch a place
  * that is kept for no phoneme, and a frame that was never taken counted as the first model's. */
 static void models_that_nothing_was_pushed_of_make_room(void **state)
@@ -498,7 +498,7 @@ int main(void)
         cmocka_unit_test(too_many_models_are_refused_until_ticks_make_room),
         cmocka_unit_test(the_callback_may_push_end_and_tick),
         cmocka_unit_test(the_callback_may_cancel_and_restart),
-#if LABIAL_MODELS == 2
+#if LABIAL_MODELS == 2 && LABIAL_QUEUE >= 4
         cmocka_unit_test(models_that_nothing_was_pushed_of_make_room),
 #endif
     };
