@@ -20,10 +20,10 @@ const faps: Faps | null = labial.stream({ labels: "ipa" }).tick();
 // @ts-expect-error FAPs have no names
 labial.stream().tick()?.jawOpen;
 const vrm: Track<"vrm"> = labial.render([{ start: 0, end: 1, label: "AA" }], { output: "vrm" });
-const { aa, ih, ou, ee, oh } = vrm.at(0.5);
+const { aa, ih, ou } = vrm.at(0.5);
 // @ts-expect-error no weight has this name
 vrm.at(0.5).jawOpen;
-for (const weights of vrm) weights.oh.toFixed();
+for (const weights of vrm) weights.ou.toFixed();
 const between: Float32Array = labial.render([]).at(0);
 const sil: number = labial.convert(between, "oculus").sil;
 // @ts-expect-error no face has this name
@@ -50,4 +50,4 @@ function follow(mouth: LabialMouth, track: Track, stream: Stream): void {
     mouth.track = vrm;
 }
 
-export { aa, any, ee, faps, follow, ih, oh, open, ou, sil };
+export { aa, any, faps, follow, ih, open, ou, sil };
