@@ -142,6 +142,8 @@ static void step_channel(const labial_channels_t *channels, const labial_model_t
     step.end = work + LABIAL_WINDOW + stride;
     step.channel = channel;
     keep(work, step.progress->kept.of);
+    step.end->q = 0; /* stays so where the latest row waits for the next one */
+    step.end->rho = step.end->kappa = 0;
     if (entered < stride + LABIAL_LAG) /* rows are still missing, and the backward pass goes over their places */
         memset(work + LABIAL_WINDOW + 1, 0, (size_t)stride * sizeof *work);
     while (age >= beyond) {
