@@ -145,7 +145,7 @@ static void step_channel(const labial_channels_t *channels, const labial_model_t
     step.end->q = 0; /* stays so where the latest row waits for the next one */
     step.end->rho = step.end->kappa = 0;
     if (entered < stride + LABIAL_LAG) /* rows are still missing, and the backward pass goes over their places */
-        memset(work + LABIAL_WINDOW + 1, 0, (size_t)stride * sizeof *work);
+        memset(work + LABIAL_WINDOW + 1, 0, (unsigned)stride * sizeof *work);
     while (age >= beyond) {
         const int searched = search(&step, age, beyond, stride - 1 - stride / 2);
         row = solve(&step, row, searched + LABIAL_LAG, searched);
