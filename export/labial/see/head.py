@@ -19,7 +19,7 @@ from labial.fit.write import output_name
 from labial.frames import even
 from labial.rig.description import Rig, read
 from labial.see.motion import Motion
-from labial.see.page import LARGEST_SOUND, sound
+from labial.see.page import LARGEST_SOUND, script_data
 
 PathLike = Union[str, os.PathLike]
 
@@ -120,10 +120,5 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
         "facing": turn,
         "head": base64.b64encode(content).decode("ascii"),
     }
-    if audio is not None:
-        data["audio"] = sound(audio)
-    text = json.dumps(data, separators=(",", ":"))
-    for character in "<>&":
-        text = text.replace(character, f"\\u{ord(character):04x}")
-    page = PLAYER.read_text(encoding="utf-8")
-    return page.replace("@LABIAL_DATA@", text).replace("@LABIAL_IMPORTS@", _imports(find_three(three)))
+    page = PLAYER.read_text(encoding="utf-8").replace("@LABIAL_DATA@", script_data(data, audio))
+    return page.replace("@LABIAL_IMPORTS@", _imports(find_three(three)))

@@ -58,15 +58,19 @@ def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None
         "phonemes": _phonemes(bands, start, fps, len(frames)),
         "frames": np.rint(frames).astype(int).tolist(),
     }
-    if audio is not None:
-        data["audio"] = sound(audio)
-    # Within a script element `</` and `<!--` have a meaning, so that no such character may stand there as it is.
-    text = json.dumps(data, separators=(",", ":"))
-    for character in "<>&":
-        text = text.replace(character, f"\\u{ord(character):04x}")
     player = PLAYER.read_text(encoding="utf-8")
     before, between, after = re.split(f"{DATA_PLACE}|{MOUTH_PLACE}", player)
-    return before + text + between + MOUTH.read_text(encoding="utf-8") + after
+    return before + script_data(data, audio) + between + MOUTH.read_text(encoding="utf-8") + after
+
+
+def script_data(data: Dict[str, Any], audio: Optional[PathLike]) -> str:
+    """The data and the sound, if one is given, as JSON that may stand in a script element. Raises as `sound` does."""
+    whole = data if audio is None else {**data, "audio": sound(audio)}
+    text = json.dumps(whole, separators=(",", ":"))
+    # Within a script element `</` and `<!--` have a meaning, so that no such character may stand there as it is.
+    for character in "<>&":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return text
 
 
 def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> List[Dict[str, Any]]:
