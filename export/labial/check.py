@@ -99,5 +99,5 @@ def compare(
         tables_rms=np.sqrt(np.mean(difference**2, axis=0)),
         model_rms=np.sqrt(np.mean((frames - wanted) ** 2, axis=0)),
         extent=channel_extent(model, wanted),
-        by_design=deviation(model, exported, streams) if is_published(model) else None,
+        by_design=deviation(model, streams, wanted, same),
     )

@@ -4,7 +4,7 @@ published method."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Sequence
+from typing import List, Optional, Sequence
 
 import numpy as np
 
@@ -16,9 +16,23 @@ from labial.quantise import ExportedModel
 from labial.reference.published import path_cost, viterbi
 from labial.reference.stream import aims
 from labial.reference.stream import synthesise as as_device
-from labial.reference.synthesis import synthesise
-from labial.reference.tables import ExportedTables, FloatTables, Tables
+from labial.reference.synthesis import is_published, synthesise
+from labial.reference.tables import ExportedTables, FloatTables
 from labial.reference.viterbi import block_ends, looked_at
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """How far the run-time is from the published method by design: RMS over all channels, FAP units."""
+
+    total: float  #: on the exported tables
+    trained: float  #: on the float tables
+
+    def __str__(self) -> str:
+        return (f"The device differs from the published method by {self.total:.1f} FAP units RMS, by design: it "
+                f"decides on states as the frames arrive and solves a window of them, without beginning anew at each "
+                f"unit ({self.trained:.1f} on the trained tables), and its own tables soften the stiffness of states "
+                f"to what the solver can carry.")
 
 
 @dataclass(frozen=True)
@@ -26,12 +40,13 @@ class Loss:
     """Per channel, (13,): `rms` and `largest` difference between the motions of the float model, by the reference of
     its method, and of the exported tables, FAP; `extent`, the 1 to 99 percentile range that `rms` is held against, FAP;
     `path`, nats of likelihood that the exported tables' state paths lose per state, against the likeliest of the whole
-    stream."""
+    stream. `by_design`, of a model of the published method, is how the device differs from that over all channels."""
 
     rms: np.ndarray
     largest: np.ndarray
     extent: np.ndarray
     path: np.ndarray
+    by_design: Optional[Deviation]
 
     @property
     def share(self) -> np.ndarray:
@@ -60,32 +75,21 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
         largest=np.abs(difference).max(axis=0),
         extent=channel_extent(model, expected),
         path=paths.mean(axis=0),
+        by_design=deviation(model, streams, expected, found),
     )
 
 
-@dataclass(frozen=True)
-class Deviation:
-    """How far the run-time is from the published method by design: RMS over all channels, FAP units."""
-
-    total: float  #: on the exported tables
-    trained: float  #: on the float tables
-
-    def __str__(self) -> str:
-        return (f"The device differs from the published method by {self.total:.1f} FAP units RMS, by design: it "
-                f"decides on states as the frames arrive and solves a window of them, without beginning anew at each "
-                f"unit ({self.trained:.1f} on the trained tables), and its own tables soften the stiffness of states "
-                f"to what the solver can carry.")
-
-
-def deviation(model: Model, exported: ExportedModel, streams: Sequence[Stream]) -> Deviation:
-    """The deviation over `streams` of a model of the published method."""
-    published = np.concatenate([synthesise(model, stream) for stream in streams])
-
-    def rms(tables: Tables) -> float:
-        motion = np.concatenate([as_device(tables, stream) for stream in streams])
-        return float(np.sqrt(np.mean((motion - published) ** 2)))
-
-    return Deviation(rms(ExportedTables(exported)), rms(FloatTables(model)))
+def deviation(model: Model, streams: Sequence[Stream], published: np.ndarray, found: np.ndarray
+              ) -> Optional[Deviation]:
+    """The deviation over `streams`, of which `published` (T, 13) is the float model's motion, by the reference of its
+    method, and `found` (T, 13) that of the exported tables, FAP. None for a model that is not of the published method.
+    """
+    if not is_published(model):
+        return None
+    tables = FloatTables(model)
+    trained = np.concatenate([as_device(tables, stream) for stream in streams])
+    total, on_trained = (float(np.sqrt(np.mean((motion - published) ** 2))) for motion in (found, trained))
+    return Deviation(total, on_trained)
 
 
 def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from labial import emit
 from labial.faps import CHANNELS, FAP_NAMES
 from labial.fixed import SEARCHED, WEIGHT_MIN, weight_value
-from labial.loss import Deviation, Loss
+from labial.loss import Loss
 from labial.model import Model
 from labial.quantise import ExportedModel
 from labial.reference.trajectory import WINDOW
@@ -38,10 +36,9 @@ def loosened(model: Model, exported: ExportedModel) -> int:
     return int((kept < 0.85 * trained).sum())
 
 
-def quantisation(loss: Loss, model: Model, exported: ExportedModel, by_design: Optional[Deviation] = None) -> str:
-    """The loss per channel, and what was dropped or held to a limit; `by_design` is how the device differs from the
-    published method, of a model of that."""
-    title = "from the published method, FAP" if by_design else "quantisation loss, FAP units"
+def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
+    """The loss per channel, and what was dropped or held to a limit."""
+    title = "from the published method, FAP" if loss.by_design else "quantisation loss, FAP units"
     lines = [f"{title:<32}{'rms':>8}{'max':>8}{'% of range':>12}{'nats per state':>15}"]
     for k, name in enumerate(FAP_NAMES):
         lines.append(f"{name:<32}{loss.rms[k]:>8.3f}{loss.largest[k]:>8.2f}{loss.share[k]:>12.2f}{loss.path[k]:>15.3f}")
@@ -53,6 +50,6 @@ def quantisation(loss: Loss, model: Model, exported: ExportedModel, by_design: O
     lines.append(f"states held by no more than the least weight: {floor} of {exported.state_hold.size}")
     lines.append(f"states that are less stiff than trained, within the solver's bounds: {loosened(model, exported)} "
                  f"of {exported.state_hold.size}")
-    if by_design:
-        lines.append(str(by_design))
+    if loss.by_design:
+        lines.append(str(loss.by_design))
     return "\n".join(lines)

@@ -49,19 +49,17 @@ def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedMod
 def run(options: argparse.Namespace) -> int:
     """Writes the C files, and prints what memory they take and what is lost in them."""
     from labial import emit, report
-    from labial.loss import deviation, measure
+    from labial.loss import measure
     from labial.outputs import check_folder
     from labial.phones import drawn_streams
-    from labial.reference.synthesis import is_published
 
     emit.check_name(options.name)
     check_folder(options.output)
     model, tables = exported(options, options.name)
     streams = drawn_streams(model)
     loss = measure(model, tables, streams)
-    by_design = deviation(model, tables, streams) if is_published(model) else None
     for path in emit.write(tables, options.output, binary=options.blob):
         print(path)
     print(report.memory(tables))
-    print(report.quantisation(loss, model, tables, by_design))
+    print(report.quantisation(loss, model, tables))
     return 0
