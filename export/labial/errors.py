@@ -19,6 +19,10 @@ class DataError(LabialError):
         super().__init__(f"{where}: {message}")
 
 
+class SilentError(DataError):
+    """A video has no sound."""
+
+
 class ModelError(LabialError):
     """A model is inconsistent, not finite, of another version or beyond the library's limits."""
 

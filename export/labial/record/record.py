@@ -16,7 +16,7 @@ from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span
 from labial.corpus.formats import SOUNDS, SUFFIXES, VIDEOS, read_timings
 from labial.corpus.timings import phoneme_segments
-from labial.errors import DataError, LabialError, needs
+from labial.errors import DataError, LabialError, SilentError, needs
 from labial.frames import even, write_csv
 from labial.outputs import check_folder
 from labial.outputs import folder as whole_folder
@@ -154,7 +154,7 @@ def _timings(path: Path) -> Path:
 
 def _with_sound(path: Path, segments: Sequence[Segment]) -> Tuple[Segment, ...]:
     """The segments of a landmark file with the apexes that its sound tells: a sound file beside it or, where there is
-    none, the video's. Without either, or the packages that read them, as they are."""
+    none, the video's. Without sound, or the packages that read it, as they are."""
     beside = [file for file in sorted(path.parent.iterdir()) if file.stem == path.stem and file.is_file()]
     found = [file for suffixes in (SOUNDS, VIDEOS) for file in beside if file.suffix.lower() in suffixes]
     if not found or told(segments) == len(segments):
@@ -163,6 +163,8 @@ def _with_sound(path: Path, segments: Sequence[Segment]) -> Tuple[Segment, ...]:
         with needs(f"the sound of {found[0]}", "record"):
             from labial.align.sound import RATE, read_sound
         return with_apexes(segments, read_sound(found[0]), RATE)
+    except SilentError:
+        return tuple(segments)
     except DataError:
         raise
     except LabialError as error:

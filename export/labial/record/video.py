@@ -8,7 +8,7 @@ from typing import Iterator, List, Tuple, Union
 import av
 import numpy as np
 
-from labial.errors import DataError
+from labial.errors import DataError, SilentError
 
 PathLike = Union[str, os.PathLike]
 
@@ -36,13 +36,13 @@ def pictures(path: PathLike) -> Iterator[Tuple[float, np.ndarray]]:
 
 def sound(path: PathLike, rate: int) -> np.ndarray:
     """(N,) float32 samples at `rate` of the first sound stream, the mean of its channels, from the file's start on;
-    full scale is 1. Raises DataError for a file without sound."""
+    full scale is 1. Raises SilentError for a file without sound, DataError for what cannot be read."""
     blocks: List[np.ndarray] = []
     first = 0.0
     try:
         with av.open(os.fspath(path)) as container:
             if not container.streams.audio:
-                raise DataError(path, None, "no sound in it")
+                raise SilentError(path, None, "no sound in it")
             start = container.start_time / av.time_base if container.start_time else 0.0
             resampler = av.AudioResampler(format="fltp", rate=rate)
             for frame in container.decode(container.streams.audio[0]):
