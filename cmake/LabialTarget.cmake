@@ -12,9 +12,11 @@ if(LABIAL_INSTRUMENT STREQUAL "sanitize")
   set(LABIAL_INSTRUMENT_OPTIONS ${LABIAL_SANITIZERS} -DLABIAL_CHECKED) # lib/fixed.h
 elseif(LABIAL_INSTRUMENT STREQUAL "fuzz")
   set(LABIAL_INSTRUMENT_OPTIONS -fsanitize=fuzzer-no-link ${LABIAL_SANITIZERS} -DLABIAL_CHECKED)
+elseif(LABIAL_INSTRUMENT STREQUAL "memcheck")
+  set(LABIAL_INSTRUMENT_OPTIONS -fsanitize=memory -fno-omit-frame-pointer)
 elseif(LABIAL_INSTRUMENT STREQUAL "coverage")
   set(LABIAL_INSTRUMENT_OPTIONS --coverage)
-elseif(LABIAL_INSTRUMENT MATCHES "^(none|memcheck|prove|mutate)$")
+elseif(LABIAL_INSTRUMENT MATCHES "^(none|prove|mutate)$")
   set(LABIAL_INSTRUMENT_OPTIONS "")
 else()
   message(FATAL_ERROR "LABIAL_INSTRUMENT is none, sanitize, memcheck, fuzz, prove, coverage or mutate, "

@@ -2,7 +2,7 @@
 # tests/CMakeLists.txt.
 
 # A day in the life of a face reaches no line that the other suites do not, and takes minutes where every instruction is
-# interpreted or counted.
+# checked or counted.
 if(LABIAL_INSTRUMENT MATCHES "^(memcheck|coverage)$")
   list(FILTER suites EXCLUDE REGEX "/test_soak\\.c$")
 endif()
