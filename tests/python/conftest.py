@@ -1,4 +1,5 @@
-"""What the Python tests share with pytest: which of them are left to .ci/run, since they take long."""
+"""What the Python tests share with pytest: which of them are left to .ci/run, since they take long, and which run one
+after the other."""
 
 from __future__ import annotations
 
@@ -7,6 +8,10 @@ from typing import List
 
 import pytest
 
+#: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
+TOGETHER = ("test_bundlers", "test_kiosk", "test_laughter_corpus", "test_npm_types", "test_packages",
+            "test_packages_cmake", "test_train", "test_wheel", "test_wheels")  # fmt: skip
+
 
 def pytest_configure(config: pytest.Config) -> None:
     """Declares the marker."""
@@ -14,7 +19,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
-    """Leaves the slow tests out, but where LABIAL_REQUIRE_ALL is set in the environment."""
+    """Groups the tests of some modules (``--dist loadgroup``), and leaves the slow tests out, but where
+    LABIAL_REQUIRE_ALL is set in the environment."""
+    for item in items:
+        if item.path.stem in TOGETHER:
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))
     if os.environ.get("LABIAL_REQUIRE_ALL", "").upper() in ("ON", "1", "TRUE", "YES"):
         return
     slow = [item for item in items if item.get_closest_marker("slow")]

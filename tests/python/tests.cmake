@@ -93,7 +93,7 @@ if(LABIAL_NPM_PACKAGE)
   list(APPEND variables "LABIAL_NPM_PACKAGE=${LABIAL_NPM_PACKAGE}" "LABIAL_BUNDLERS=${PROJECT_BINARY_DIR}/bundlers")
 endif()
 add_test(NAME pytest WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
-  COMMAND "${python}" -m pytest -p no:cacheprovider -n 2 -ra --durations=10
+  COMMAND "${python}" -m pytest -p no:cacheprovider -n 2 --dist loadgroup -ra --durations=10
     --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/python")
 set_tests_properties(pytest PROPERTIES FIXTURES_REQUIRED "python;npm" PROCESSORS 2 TIMEOUT 1800 ENVIRONMENT "${variables}")
 if(LABIAL_REQUIRE_ALL)
