@@ -10,8 +10,8 @@
 #define JAW 0u
 #define UPPER_MIDLIP 3u
 #define LOWER_MIDLIP 4u
-#define UPPER_LIP ((1u << 3) | (1u << 7) | (1u << 8))
-#define LOWER_LIP ((1u << 4) | (1u << 9) | (1u << 10))
+#define UPPER_LIP_CHANNELS ((1u << 3) | (1u << 7) | (1u << 8))
+#define LOWER_LIP_CHANNELS ((1u << 4) | (1u << 9) | (1u << 10))
 
 #define ONE_Q14 16384u
 
@@ -51,9 +51,9 @@ int labial_blend(const labial_blend_t *blend, unsigned intensity, unsigned words
         const int32_t from = speech[c], to = laugh[c];
         const uint32_t way = to < from ? (uint32_t)(from - to) : (uint32_t)(to - from);
         uint32_t share = at_most_full(blend->shares[c]) * ONE_Q14; /* Q22 */
-        if (UPPER_LIP >> c & 1u)
+        if (UPPER_LIP_CHANNELS >> c & 1u)
             share = (share >> 14) * lips;
-        else if ((LOWER_LIP >> c & 1u) || (c == JAW && to > from))
+        else if ((LOWER_LIP_CHANNELS >> c & 1u) || (c == JAW && to > from))
             share = (share >> 14) * lower;
         /* Q30 without words, then Q22 times Q8 = Q30, then Q16: at most one, so that the product of 16 and 17 bits with
          * its half for rounding stays below 2^32. */

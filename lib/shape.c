@@ -79,7 +79,7 @@ static void weigh(const uint32_t *costs, unsigned count, unsigned best, uint16_t
 }
 
 /* Finds what the shape of a phoneme between neighbours of the given viseme classes is mixed of. */
-static void compose(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms, unsigned previous_class,
+static void select_components(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms, unsigned previous_class,
                     unsigned next_class, labial_selection_t *selection)
 {
     const unsigned count = phoneme->component_count;
@@ -158,7 +158,7 @@ void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t
     const labial_phoneme_t *phonemes = model->phonemes;
     labial_shape_t *shape = &selection->shape;
     if (selection->halves++ == 0) {
-        compose(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, selection);
+        select_components(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, selection);
         mix(model, &phonemes[phoneme], selection, 0, FIRST_HALF, shape->knots[0]);
         return;
     }
