@@ -83,7 +83,7 @@ static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessor
     channel->pair_scale = u16(scales + 8);
     channel->motion_scale[0] = u16(scales + 10);
     channel->motion_scale[1] = u16(scales + 12);
-    channel->firm = scales[14];
+    channel->contact_weight = scales[14];
     channel->emissions = (const labial_emission_t *)table(reader, states, sizeof(labial_emission_t));
     channel->states = (const labial_state_t *)table(reader, states, sizeof(labial_state_t));
     channel->transitions = (const uint16_t *)table(reader, states * predecessors, 2u);
@@ -158,7 +158,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     model->predecessors = header[21];
     model->search_stride = header[22];
     model->silence = header[23];
-    model->soft = header[24];
+    model->mixture_mean = header[24];
     model->kernel_taps = header[25];
     model->kernel_stride = header[26];
     model->kernel_behind = header[27];

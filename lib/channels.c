@@ -51,7 +51,7 @@ void labial_channels_run_out(labial_channels_t *channels)
     channels->beyond++;
 }
 
-int labial_channels_hold(const labial_channels_t *channels, unsigned slot)
+int labial_channels_uses(const labial_channels_t *channels, unsigned slot)
 {
     const unsigned size = channels->stride + LABIAL_LAG;
     unsigned age;

@@ -11,10 +11,10 @@
 
 #include "labial/labial.h"
 
-/* Divides up a workspace of LABIAL_WORKSPACE_SIZE(stride) bytes and forgets all frames. */
+/* Divides up a workspace of LABIAL_WORKSPACE_SIZE(stride) bytes and resets them. */
 void labial_channels_init(labial_channels_t *channels, unsigned stride, void *workspace);
 
-/* Forgets all frames. */
+/* Drops all frames. */
 void labial_channels_reset(labial_channels_t *channels);
 
 /* Advances by a tick; returns the frame that was taken, for the caller to fill in. */
@@ -30,6 +30,6 @@ void labial_channels_step(labial_channels_t *channels, const labial_model_t *con
 const int16_t *labial_channels_due(const labial_channels_t *channels);
 
 /* Whether frames of the model in `slot` are still to be searched or solved. */
-int labial_channels_hold(const labial_channels_t *channels, unsigned slot);
+int labial_channels_uses(const labial_channels_t *channels, unsigned slot);
 
 #endif

@@ -17,7 +17,7 @@ enum {
     PER_TRANSITION = 20, /* into such a state */
     PER_LAG = 60,        /* frame of the lag, in one channel */
     PER_ROW = 650,       /* of equation 3 */
-    PER_STEP_BACK = 32   /* of the way back */
+    PER_STEP_BACK = 32   /* of the backward pass */
 };
 
 /* Shapes that one tick can select: that of the phoneme which begins, and that of the next. */
@@ -44,9 +44,9 @@ static uint32_t selection(const labial_model_t *model)
     return most * PER_COMPONENT + pairs;
 }
 
-/* What one channel takes in its turn: a step of the search, the rows of its frames and one more at the end, the way
- * back. */
-static uint32_t turn(const labial_model_t *model, uint32_t stride)
+/* What one channel step takes: a step of the search, the rows of its frames and one more at the end, the backward
+ * pass. */
+static uint32_t channel_step(const labial_model_t *model, uint32_t stride)
 {
     const uint32_t states = model->state_count < LABIAL_SEARCHED ? model->state_count : LABIAL_SEARCHED;
     return PER_SEARCH + comparisons(model->state_count) * PER_COMPARISON + LABIAL_LAG * PER_LAG +
@@ -62,5 +62,5 @@ uint32_t labial_model_cost(const labial_model_t *model)
     stride = model->search_stride;
     channels = (LABIAL_CHANNELS + stride - 1u) / stride;
     return PER_TICK + (uint32_t)model->kernel_taps * PER_TAP + SELECTED * selection(model) +
-           channels * turn(model, stride);
+           channels * channel_step(model, stride);
 }

@@ -84,16 +84,16 @@ static void add(labial_laugh_t *laugh, unsigned phoneme, uint32_t milliseconds)
     laugh->count++;
 }
 
-/* The same in the grade that `loudness`, 0 to 255 of the intensity, asks for; between two grades by turns. */
+/* The same in the grade that `loudness`, 0 to 255 of the intensity, asks for; between two grades by dither. */
 static void add_graded(labial_laugh_t *laugh, unsigned phoneme, uint32_t milliseconds, uint32_t loudness)
 {
     const unsigned soft = soft_grades[phoneme];
     uint32_t louder, grade;
     if (soft != 0u) {
-        laugh->turn = (uint8_t)(laugh->turn + TURN);
+        laugh->dither = (uint8_t)(laugh->dither + DITHER_STEP);
         louder = (laugh->intensity * (loudness + 1u)) >> 8;
         grade = louder < SOFT ? 0u : ((louder - SOFT) * GRADES) >> 8;
-        grade = ((grade < 512u ? grade : 512u) + laugh->turn) >> 8;
+        grade = ((grade < 512u ? grade : 512u) + laugh->dither) >> 8;
         if (grade != 1u)
             phoneme = grade == 0u ? soft : soft + 1u;
     }
@@ -211,7 +211,7 @@ static void onset(labial_laugh_t *laugh, uint32_t room)
         add(laugh, onsets[i], milliseconds);
 }
 
-/* Decides on what comes next; a pause may come to nothing. */
+/* Decides on what comes next; a pause may emit nothing. */
 static void compose(labial_laugh_t *laugh)
 {
     const uint32_t room = laugh->left > laugh->tail ? laugh->left - laugh->tail : 0u;
@@ -242,7 +242,7 @@ int labial_laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned in
     laugh->random = seed * 2654435761u + 2654435769u;
     if (laugh->random == 0u)
         laugh->random = 1;
-    laugh->turn = (uint8_t)(laugh->random >> 24);
+    laugh->dither = (uint8_t)(laugh->random >> 24);
     laugh->train_loudness = 255;
     onset(laugh, milliseconds - laugh->tail);
     return LABIAL_OK;

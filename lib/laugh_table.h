@@ -21,10 +21,10 @@
 #define INHALED_LOUDNESS 179u
 #define SOFTEST 154u
 
-/* Up to which loudness of 256 all is soft; 1/256 grades for each 1/256 more; how the turn moves on. */
+/* Up to which loudness of 256 all is soft; 1/256 grades for each 1/256 more; how the dither moves on. */
 #define SOFT 20u
 #define GRADES 582u
-#define TURN 158u
+#define DITHER_STEP 158u
 
 /* Of 256: what a pause between trains has. */
 #define INHALED 192

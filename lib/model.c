@@ -48,7 +48,7 @@ static int counts_are_sound(const labial_model_t *model)
            is_within(model->state_count, 1, LABIAL_STATES_MAX) &&
            is_within(model->predecessors, 1, LABIAL_STATES_MAX) &&
            is_within(model->search_stride, 1, LABIAL_SEARCH_STRIDE_MAX) && model->silence < model->phoneme_count &&
-           model->soft <= 1;
+           model->mixture_mean <= 1;
 }
 
 static int kernels_are_sound(const labial_model_t *model)
@@ -153,7 +153,7 @@ static int states_are_sound(const labial_model_t *model, const labial_channel_t 
 {
     extremes_t extremes = { UINT32_MAX, 0, 0, 0, 0, 0 };
     unsigned q;
-    extremes.most_hold = labial_weight(channel->firm);
+    extremes.most_hold = labial_weight(channel->contact_weight);
     for (q = 0; q < model->state_count; q++)
         if (!state_is_sound(channel, &channel->states[q], &extremes))
             return 0;

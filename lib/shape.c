@@ -59,7 +59,7 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
 }
 
 /* Shares of the mixture, Q12, by what each component costs; the best one has what rounding leaves. */
-static void weigh(const uint32_t *costs, unsigned count, unsigned best, uint16_t *shares)
+static void softmax(const uint32_t *costs, unsigned count, unsigned best, uint16_t *shares)
 {
     uint16_t likelihoods[LABIAL_PHONEME_COMPONENTS_MAX];
     uint32_t sum = 0, rest = ONE;
@@ -90,8 +90,8 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     unsigned c, counting = 0;
 
     memset(shares, 0, sizeof shares);
-    if (model->soft)
-        weigh(costs, count, best, shares);
+    if (model->mixture_mean)
+        softmax(costs, count, best, shares);
     else
         shares[best] = ONE;
     for (c = 0; c < count; c++)
@@ -194,7 +194,8 @@ static void settle(const labial_model_t *model, unsigned channels, int32_t rest,
 }
 
 /* Raises those of the channels to a phoneme's floor that lie below it. */
-static void raise(const labial_model_t *model, unsigned phoneme, unsigned channels, int16_t target[LABIAL_CHANNELS])
+static void apply_floor(const labial_model_t *model, unsigned phoneme, unsigned channels,
+                        int16_t target[LABIAL_CHANNELS])
 {
     const unsigned floor = model->phonemes[phoneme].floor;
     unsigned k;
@@ -218,11 +219,11 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
         before = contacts_of(model, labels[1]);
     if (labels[-1] != labels[0] && labels[-1] != model->silence && labels[-1] != labels[-2])
         after = contacts_of(model, labels[-1]);
-    raise(model, labels[0], is_open ? ~own : ~0u, target);
+    apply_floor(model, labels[0], is_open ? ~own : ~0u, target);
     if (taken->rest && own)
         settle(model, own, taken->rest, target);
-    raise(model, labels[1], before, target);
-    raise(model, labels[-1], after, target);
+    apply_floor(model, labels[1], before, target);
+    apply_floor(model, labels[-1], after, target);
     return (is_open ? 0u : own) | before | after;
 }
 

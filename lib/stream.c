@@ -173,9 +173,9 @@ static void ease(labial_t *stream)
 
 /* ---- The calls --------------------------------------------------------------------------------------------------- */
 
-static void forget_input(labial_t *stream)
+static void reset_input(labial_t *stream)
 {
-    labial_units_forget(&stream->units);
+    labial_units_reset(&stream->units);
     labial_channels_reset(&stream->channels);
     stream->pending = 0;
     stream->ended = stream->begun = stream->next.halves = 0;
@@ -201,14 +201,14 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     stream->user = user;
     labial_channels_init(&stream->channels, model->search_stride, workspace);
     stream->magic = MAGIC;
-    forget_input(stream);
+    reset_input(stream);
     return LABIAL_OK;
 }
 
 /* Whether the model in `slot` is still needed: for phonemes in the queue or frames that are not yet solved. */
 static int is_in_use(const labial_t *stream, unsigned slot)
 {
-    return labial_channels_hold(&stream->channels, slot) || labial_units_hold(&stream->units, slot);
+    return labial_channels_uses(&stream->channels, slot) || labial_units_uses(&stream->units, slot);
 }
 
 int labial_use(labial_t *stream, const labial_model_t *model)
@@ -304,7 +304,7 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds)
     frames = labial_quotient(milliseconds * stream->models[stream->slot]->frames_per_second + 999u, 1000u);
     if (stream->ease_length) /* cancelled again on the way */
         eased(stream, stream->pose);
-    forget_input(stream);
+    reset_input(stream);
     stream->ended = 1;
     stream->ease_length = (uint16_t)(frames < 1u ? 1u : frames < 1000u ? frames : 1000u);
     return LABIAL_OK;
@@ -317,7 +317,7 @@ int labial_restart(labial_t *stream)
         return result;
     if (!stream->ended || stream->pending || stream->ease_length)
         return LABIAL_ERROR_STATE;
-    forget_input(stream);
+    reset_input(stream);
     memcpy(stream->earlier, stream->pose, sizeof stream->earlier); /* which is at rest */
     return LABIAL_OK;
 }

@@ -137,12 +137,13 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned number, labial_terms_t *terms)
 {
     const labial_state_t *state = &channel->states[number];
-    const int32_t firm = (int32_t)labial_weight(channel->firm), delta2 = (int32_t)labial_weight(state->weight[1]);
+    const int32_t contact = (int32_t)labial_weight(channel->contact_weight);
+    const int32_t delta2 = (int32_t)labial_weight(state->weight[1]);
     terms->origin = state->mean;
     terms->position = ((int32_t)channel->centre + state->mean) * 256;
     terms->share = (int32_t)state->share + (state->share >> 7);
     terms->hold = (int32_t)labial_weight(state->hold);
-    terms->firm = firm > terms->hold ? firm : terms->hold;
+    terms->contact_weight = contact > terms->hold ? contact : terms->hold;
     terms->delta = (int32_t)labial_weight(state->weight[0]);
     terms->stiff = delta2 - terms->delta;
     terms->delta_pull = 2 * terms->delta * labial_scaled(state->motion[0], channel->motion_scale[0]);
@@ -170,7 +171,7 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
             solver->pull = solver->next_pull - 2 * terms->delta2_pull;
             solver->next_pull = terms->delta2_pull + terms->delta_pull;
         }
-        solver->hold = (uint16_t)(contact ? terms->firm : terms->hold);
+        solver->hold = (uint16_t)(contact ? terms->contact_weight : terms->hold);
         solver->position = terms->position + (frame->target[channel] - terms->origin) * (contact ? 256 : terms->share);
         if (is_last)
             factor(solver, 0, 0, own);

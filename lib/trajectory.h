@@ -5,8 +5,8 @@
  *
  * q is the state path, U the diagonal of the states' variances, A that of the anchors' precisions and x the targets.
  * Rows of W whose delta window would leave the solution are dropped. The factorisation continues from frame to frame;
- * the way back starts LABIAL_WINDOW frames ahead of those that are wanted, as if all frames beyond were equal to the
- * first of them. With weights that labial_model_check() accepts, the error is below .11 FAP unit (as the tests show).
+ * the backward pass starts LABIAL_WINDOW frames ahead of those that are wanted, as if all frames beyond were equal to
+ * the first of them. With weights that labial_model_check() accepts, the error is below .11 FAP unit.
  */
 #ifndef LABIAL_TRAJECTORY_H
 #define LABIAL_TRAJECTORY_H
@@ -15,15 +15,15 @@
 
 /* What a state adds to equation 3 in each of its frames. */
 typedef struct {
-    int32_t position;    /* Q12 FAP: the mean of the static feature */
-    int32_t origin;      /* the target, a position, at which the anchor agrees with it */
-    int32_t share;       /* of the anchor in `hold`, in 1/256 */
-    int32_t hold;        /* weight */
-    int32_t firm;        /* weight of a frame in contact */
-    int32_t delta;       /* a quarter of its weight */
-    int32_t stiff;       /* weight of delta-delta, less `delta` */
-    int32_t delta_pull;  /* twice `delta` times delta's mean, Q4 */
-    int32_t delta2_pull; /* delta-delta's weight times its mean, Q4 */
+    int32_t position;       /* Q12 FAP: the mean of the static feature */
+    int32_t origin;         /* the target, a position, at which the anchor agrees with it */
+    int32_t share;          /* of the anchor in `hold`, in 1/256 */
+    int32_t hold;           /* weight */
+    int32_t contact_weight; /* weight of a frame in contact */
+    int32_t delta;          /* a quarter of its weight */
+    int32_t stiff;          /* weight of delta-delta, less `delta` */
+    int32_t delta_pull;     /* twice `delta` times delta's mean, Q4 */
+    int32_t delta2_pull;    /* delta-delta's weight times its mean, Q4 */
 } labial_terms_t;
 
 /* The terms of a state of a channel. */
@@ -31,8 +31,8 @@ void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, la
 
 /*
  * Adds the rows of `count` successive frames of `channel` that have the same terms. A frame in contact is tied to its
- * target alone, by `firm`. Every row but a solution's first factors the frame before it, into own[-1]; a solution's
- * last row factors its own frame too, into own[0]; then `own` moves on with the frames.
+ * target alone, by `contact_weight`. Every row but a solution's first factors the frame before it, into own[-1]; a
+ * solution's last row factors its own frame too, into own[0]; then `own` moves on with the frames.
  */
 void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms, const labial_frame_t *frame,
                             unsigned channel, unsigned count, labial_factors_t *own);

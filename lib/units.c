@@ -20,7 +20,7 @@ static uint8_t phoneme_in(const labial_segment_t *segment, unsigned slot, uint8_
     return segment->slot == slot ? segment->phoneme : silence;
 }
 
-void labial_units_forget(labial_units_t *units)
+void labial_units_reset(labial_units_t *units)
 {
     units->head = units->count = 0;
     units->taken = units->frames = 0;
@@ -47,7 +47,7 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
     return frames;
 }
 
-int labial_units_hold(const labial_units_t *units, unsigned slot)
+int labial_units_uses(const labial_units_t *units, unsigned slot)
 {
     unsigned i;
     for (i = 0; i < units->count; i++)

@@ -44,7 +44,7 @@ enum {
 };
 
 /* Empties the queue. */
-void labial_units_forget(labial_units_t *units);
+void labial_units_reset(labial_units_t *units);
 
 /* Appends a phoneme; the queue must have room. Returns its frames, which may be none. */
 uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slot, uint32_t milliseconds,
@@ -67,6 +67,6 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
 int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS]);
 
 /* Whether phonemes of the model in `slot` are in the queue. */
-int labial_units_hold(const labial_units_t *units, unsigned slot);
+int labial_units_uses(const labial_units_t *units, unsigned slot);
 
 #endif

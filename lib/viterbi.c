@@ -69,7 +69,7 @@ static void take(labial_search_t *search, unsigned first, unsigned size, const u
     search->best = (uint8_t)best;
     search->path[0] = (uint8_t)(first + best);
 #if LABIAL_LAG > 0
-    /* Trace the way back through the steps that are not decided. */
+    /* Trace back through the steps that are not decided. */
     for (i = 0; i < search->undecided; i++) {
         best = search->back[i][best];
         search->path[i + 1u] = (uint8_t)(search->firsts[i] + best);

@@ -62,9 +62,9 @@ PULSE_DECAY, TRAIN_DECAY = _of_256(laughter.PULSE_DECAY), _of_256(laughter.TRAIN
 _INHALED_LOUDNESS, _SOFTEST = _of_256(laughter.INHALED_LOUDNESS), _of_256(0.6)
 #: Up to which loudness of 256 all is soft, and how many 1/256 grades (from soft, 0, to loud, 512) 1/256 more make.
 SOFT, GRADES = _of_256(laughter.SOFT), round(512 / (laughter.LOUD - laughter.SOFT))
-#: What the turn between two grades grows by from phoneme to phoneme, of 256: the golden ratio, whose multiples, modulo
-#: 1, are spread as evenly as can be, so that each stretch of a laugh has the share of both grades that it should.
-_TURN = 158
+#: What the dither between two grades grows by from phoneme to phoneme, of 256: the golden ratio, whose multiples,
+#: modulo 1, are spread as evenly as can be, so that each stretch of a laugh has its share of both grades.
+_DITHER_STEP = 158
 PULSE_SHARES, VOWEL_SHARES = _shares(laughter.PULSE_SHARES), _shares(laughter.VOWEL_SHARES)
 
 
@@ -79,7 +79,7 @@ class _Laugh:
         self.pulses = 0
         self.kind = self.vowel = 0
         self.train_loudness = self.loudness = 255  # of the train and of its next pulse, at full intensity
-        self.turn = self.random >> 24
+        self.dither = self.random >> 24
         self.queue: List[Tuple[str, int]] = []
 
     def draw(self, count: int) -> int:
@@ -114,13 +114,13 @@ class _Laugh:
         self.queue.append((label, milliseconds))
 
     def add_graded(self, label: str, milliseconds: int, loudness: int) -> None:
-        """Adds `label` in the grade that `loudness` of 256 and the intensity ask for, by turns between two grades."""
+        """Adds `label` in the grade that `loudness` of 256 and the intensity ask for, dithered between two grades."""
         if label in LAUGHTER_GRADES:
             soft, loud = LAUGHTER_GRADES[label]
-            self.turn = (self.turn + _TURN) % 256
+            self.dither = (self.dither + _DITHER_STEP) % 256
             louder = max((self.intensity * (loudness + 1) >> 8) - SOFT, 0)
             wanted = min(louder * GRADES >> 8, 512)
-            label = (soft, label, loud)[wanted + self.turn >> 8]
+            label = (soft, label, loud)[wanted + self.dither >> 8]
         self.add(label, milliseconds)
 
     def choose_kind(self) -> None:
@@ -249,8 +249,8 @@ def table_header() -> str:
         "".join(f"#define {name} {value}u\n" for name, value in (
             ("PULSE_DECAY", PULSE_DECAY), ("TRAIN_DECAY", TRAIN_DECAY), ("INHALED_LOUDNESS", _INHALED_LOUDNESS),
             ("SOFTEST", _SOFTEST))),
-        "\n/* Up to which loudness of 256 all is soft; 1/256 grades for each 1/256 more; how the turn moves on. */\n",
-        f"#define SOFT {SOFT}u\n#define GRADES {GRADES}u\n#define TURN {_TURN}u\n",
+        "\n/* Up to which loudness of 256 all is soft; 1/256 grades for each 1/256 more; how the dither moves on. */\n",
+        f"#define SOFT {SOFT}u\n#define GRADES {GRADES}u\n#define DITHER_STEP {_DITHER_STEP}u\n",
         "\n/* Of 256: what a pause between trains has. */\n",
         "".join(f"#define {name} {value}\n" for name, value in (
             ("INHALED", _INHALED), ("CLICKED", _CLICKED), ("BY_NOSE", _BY_NOSE), ("GRUNTED", _GRUNTED),

@@ -121,7 +121,7 @@ CHANNEL_SCALARS = "hHHHHHHB"
 
 def channel_scalars(model: ExportedModel, channel: int) -> List[int]:
     """What ``labial_channel_t`` has before its pointers: centre, scales of shapes, slopes, kernels, pairs and motion,
-    firmness."""
+    weight in contact."""
     values = [int(values[channel]) for values in (
         model.centre, model.shape_scale, model.slope_scale, model.kernel_scale, model.pair_scale,
         *model.motion_scale.T, model.firm)]
@@ -142,7 +142,7 @@ def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
         ("predecessors", model.transitions.shape[2], "B"),
         ("search_stride", model.search_stride, "B"),
         ("silence", model.silence, "B"),
-        ("soft", int(model.soft), "B"),
+        ("mixture_mean", int(model.soft), "B"),
         ("kernel_taps", model.kernels.shape[1], "B"),
         ("kernel_stride", model.kernel_stride, "B"),
         ("kernel_behind", model.kernel_behind, "B"),

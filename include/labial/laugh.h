@@ -75,7 +75,7 @@ typedef struct {
     uint8_t pulses;                   /* to come in the current train */
     uint8_t kind, vowel;              /* of these pulses */
     uint8_t train_loudness, loudness; /* of the current train's first and of its next pulse, 255 the intensity's own */
-    uint8_t turn;                     /* between two grades, 1/256 */
+    uint8_t dither;                   /* between two grades, 1/256 */
 } labial_laugh_t;
 
 /*

@@ -59,7 +59,7 @@ extern "C" {
 #define LABIAL_REST_FRAMES 16
 
 /* Limits of equation 3 within a channel. With them its solution is right to .11 FAP unit (lib/trajectory.c). */
-#define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `firm` + twice the largest weight[0] + six times weight[1] */
+#define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `contact_weight` + 2 x largest weight[0] + 6 x weight[1] */
 #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
 #define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
 #define LABIAL_PULL_MAX 65535 /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over least `hold` */
@@ -107,7 +107,7 @@ typedef struct {
     uint16_t kernel_scale;              /* positions per step of `kernels`, Q8 */
     uint16_t pair_scale;                /* positions per step of `pairs`, Q8 */
     uint16_t motion_scale[2];           /* positions per frame, and per frame squared, per step of `motion`, Q8 */
-    uint8_t firm;                       /* least `hold` of a frame in contact; 0 where there is none */
+    uint8_t contact_weight;             /* least `hold` of a frame in contact; 0 where there is none */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
     const uint16_t *transitions;        /* state_count x predecessors */
@@ -127,7 +127,7 @@ typedef struct {
                                  * one, or of the later of two, is what the search sees */
     uint8_t silence;            /* the phoneme that stands before, after and for what is another model's; long ones are
                                  * taken as two (lib/units.h) */
-    uint8_t soft;               /* 1: shapes are the mixture's mean; 0: those of its best component (equation 2) */
+    uint8_t mixture_mean;       /* 1: shapes are the mixture's mean; 0: those of its best component (equation 2) */
     uint8_t kernel_taps;        /* L: 0 .. LABIAL_KERNEL_TAPS_MAX; 0 without temporal kernels */
     uint8_t kernel_stride;      /* frames from tap to tap */
     uint8_t kernel_behind;      /* taps that lie before the frame: tap i is at (i - kernel_behind) * kernel_stride,
@@ -151,9 +151,9 @@ typedef struct {
     const int16_t *floors;    /* F x 13, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
                                 * none; null when F is 0 */
     const uint16_t *contacts; /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
-                                * neighbours do: its `hold` is `firm` at least, for LABIAL_CONTACT_FRAMES frames or
-                                * more. In silence: it is where the channel comes to rest in a pause. Null when F
-                                * is 0 */
+                                * neighbours do: its `hold` is `contact_weight` at least, for LABIAL_CONTACT_FRAMES
+                                * frames or more. In silence: it is where the channel comes to rest in a pause.
+                                * Null when F is 0 */
     const labial_channel_t *channels; /* 13 */
 } labial_model_t;
 

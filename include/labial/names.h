@@ -59,8 +59,8 @@ int labial_find(const labial_names_t *names, const char *name, size_t length);
 /*
  * A phoneme for any label: the one that labial_find_in() finds; `silence` (the model's) for what is in brackets or
  * between + * #, as noises are written, and where nothing is left without marks, digits and ASCII's punctuation; else
- * the longest known beginning of the label, its first letters being passed over while there is none; else the neutral
- * vowel, else `silence`. A program that wants to know of unknown labels asks labial_find_in() first.
+ * the first known substring, scanning from the left, and the longest there; else the neutral vowel, else `silence`. A
+ * program that wants to know of unknown labels asks labial_find_in() first.
  *
  * Returns the phoneme's number or LABIAL_ERROR_NULL.
  */

@@ -1648,7 +1648,7 @@ const labial_model_t speech_en = {
     4, /* predecessors */
     3, /* search_stride */
     0, /* silence */
-    1, /* soft */
+    1, /* mixture_mean */
     13, /* kernel_taps */
     2, /* kernel_stride */
     9, /* kernel_behind */

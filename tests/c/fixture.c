@@ -248,7 +248,7 @@ static void enrich(fixture_model_t *f)
     unsigned i, c, q;
     fixture_random_t random = { 7 };
     int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
-    f->model.soft = 1;
+    f->model.mixture_mean = 1;
     f->model.search_stride = FIXTURE_STRIDE;
     reach(f, FIXTURE_TAPS, 4, LABIAL_REACH / 4 < 3 ? LABIAL_REACH / 4 : 3);
     f->model.contexts = f->contexts;
@@ -275,7 +275,7 @@ static void enrich(fixture_model_t *f)
         kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
     fixture_pack_kernels(kernels, FIXTURE_PHONEMES * FIXTURE_TAPS, f->kernels, f->last_kernels);
     for (c = 0; c < LABIAL_CHANNELS; c++) {
-        f->channels[c].firm = fixture_weight_code(1500);
+        f->channels[c].contact_weight = fixture_weight_code(1500);
         f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
         f->channels[c].kernel_scale = 512; /* 100 steps: 12.5 FAP units */
         f->channels[c].pair_scale = 1280;  /* 40 steps: 12.5 FAP units */

@@ -53,7 +53,7 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
     put(w, channel->pair_scale, 2);
     put(w, channel->motion_scale[0], 2);
     put(w, channel->motion_scale[1], 2);
-    put(w, channel->firm, 1);
+    put(w, channel->contact_weight, 1);
     put(w, 0, 1);
     for (q = 0; q < states; q++) {
         put(w, (uint16_t)channel->emissions[q].mean, 2);
@@ -96,7 +96,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     put(&w, model->predecessors, 1);
     put(&w, model->search_stride, 1);
     put(&w, model->silence, 1);
-    put(&w, model->soft, 1);
+    put(&w, model->mixture_mean, 1);
     put(&w, model->kernel_taps, 1);
     put(&w, model->kernel_stride, 1);
     put(&w, model->kernel_behind, 1);

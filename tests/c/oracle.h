@@ -73,7 +73,7 @@ void oracle_search(const labial_model_t *model, unsigned channel, const oracle_f
 
 /*
  * Equation 3 for one channel: the matrix is W' U^-1 W + A, multiplied out row of W by row of W. A frame in contact (bit
- * `bit` of `contacts`) is held at its target alone, by the channel's `firm` at least. Frame t is taken from a
+ * `bit` of `contacts`) is held at its target alone, by the channel's `contact_weight` at least. Frame t is taken from a
  * way back that begins at frame start[t], as if all frames beyond were equal to that one; null: at the last frame.
  * Q4 FAP, not rounded.
  */

@@ -37,7 +37,7 @@ static void fill(equation_t *equations, const labial_channel_t *channel, const u
     size_t t;
     for (t = 0; t < count; t++) {
         const labial_state_t *state = &channel->states[path[t]];
-        const double firm = fixture_weight_value(channel->firm);
+        const double firm = fixture_weight_value(channel->contact_weight);
         double hold = fixture_weight_value(state->hold);
         double anchor = hold * (state->share < 128 ? state->share : state->share + 1) / 256.0;
         if (contacts[t] >> bit & 1u)

@@ -79,7 +79,7 @@ static void contacts_and_knots_are_read(void **state)
     unsigned c;
     (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++)
-        rich.channels[c].firm = (uint8_t)(0x21 + c);
+        rich.channels[c].contact_weight = (uint8_t)(0x21 + c);
     assert_int_equal(labial_model_load(&blob, bytes, serialise(&rich.model)), LABIAL_OK);
     assert_int_equal(blob.model.pair_knots, 2);
     assert_memory_equal(blob.model.pairs, rich.pairs, sizeof rich.pairs);
@@ -87,7 +87,7 @@ static void contacts_and_knots_are_read(void **state)
     assert_memory_equal(blob.model.floors, rich.floors, sizeof rich.floors);
     assert_memory_equal(blob.model.contacts, rich.contacts, sizeof rich.contacts);
     for (c = 0; c < LABIAL_CHANNELS; c++)
-        assert_int_equal(blob.model.channels[c].firm, 0x21 + c);
+        assert_int_equal(blob.model.channels[c].contact_weight, 0x21 + c);
     rich.model.pair_knots = 1;
     assert_int_equal(labial_model_load(&blob, bytes, serialise(&rich.model)), LABIAL_OK);
     assert_int_equal(blob.model.pair_knots, 1);

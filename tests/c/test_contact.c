@@ -65,7 +65,7 @@ static void begin(const labial_model_t *model)
     fixture_laughter(&other);
     models[0] = model;
     models[1] = &other.model;
-    labial_units_forget(&units);
+    labial_units_reset(&units);
 }
 
 /* Takes and aims at all frames of what was pushed, and returns their number. */

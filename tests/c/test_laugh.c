@@ -325,7 +325,7 @@ static unsigned grade_of_first(unsigned intensity, unsigned turn)
     unsigned phoneme;
     uint32_t ms;
     assert_int_equal(labial_laugh_begin(&laugh, 5000, intensity, breath_first), LABIAL_OK);
-    laugh.turn = (uint8_t)turn;
+    laugh.dither = (uint8_t)turn;
     assert_int_equal(labial_laugh_next(&laugh, &phoneme, &ms), LABIAL_OK);
     if (phoneme == LABIAL_LAUGH_FRICATIVE)
         return 1;

@@ -111,8 +111,8 @@ static void refuses_counts_out_of_range(void **state)
     REFUSED(uint8_t, f.model.silence, FIXTURE_SPEECH_COUNT);
     REFUSED(uint8_t, f.model.silence, 255);
     ACCEPTED(uint8_t, f.model.silence, FIXTURE_SPEECH_COUNT - 1);
-    REFUSED(uint8_t, f.model.soft, 2);
-    ACCEPTED(uint8_t, f.model.soft, 0);
+    REFUSED(uint8_t, f.model.mixture_mean, 2);
+    ACCEPTED(uint8_t, f.model.mixture_mean, 0);
 }
 
 static void refuses_bad_phonemes(void **state)
@@ -343,7 +343,7 @@ static void accepts_the_bounds_of_counts(void **state)
     ACCEPTED(uint8_t, f.model.class_count, LABIAL_CLASSES_MAX);
     ACCEPTED(uint8_t, f.model.class_count, FIXTURE_CLASSES);
     REFUSED(uint8_t, f.model.class_count, FIXTURE_CLASSES - 1);
-    ACCEPTED(uint8_t, f.model.soft, 1);
+    ACCEPTED(uint8_t, f.model.mixture_mean, 1);
     ACCEPTED(uint8_t, f.phonemes[0].boundary, 1);
     ACCEPTED(uint8_t, f.phonemes[0].boundary, 0);
     ACCEPTED(uint8_t, f.phonemes[0].viseme_class, FIXTURE_CLASSES - 1);

@@ -71,8 +71,8 @@ static void refuses_weights_beyond_the_largest_sum(void **state)
     }
 }
 
-/* `firm` takes the place of the largest hold where it is larger, in every channel for itself: would catch a sum without
- * it, one with both, and a limit that a model without contact would have. */
+/* `contact_weight` takes the place of the largest hold where it is larger, in every channel for itself: would catch a
+ * sum without it, one with both, and a limit that a model without contact would have. */
 static void refuses_contact_that_is_too_firm(void **state)
 {
     const double sum = LABIAL_WEIGHT_SUM_MAX;
@@ -82,17 +82,17 @@ static void refuses_contact_that_is_too_firm(void **state)
         const uint8_t dd = not_above(1400), d = not_above(1000);
         const double room = sum - 6 * fixture_weight_value(dd) - 2 * fixture_weight_value(d);
         hold_all(c, not_above(500), 0, 0);
-        ACCEPTED(uint8_t, f.channels[c].firm, 0);
-        ACCEPTED(uint8_t, f.channels[c].firm, 1); /* weaker than what holds all others: nothing changes */
-        ACCEPTED(uint8_t, f.channels[c].firm, not_above(sum));
-        REFUSED(uint8_t, f.channels[c].firm, above(sum));
-        REFUSED(uint8_t, f.channels[c].firm, 0xff);
+        ACCEPTED(uint8_t, f.channels[c].contact_weight, 0);
+        ACCEPTED(uint8_t, f.channels[c].contact_weight, 1); /* weaker than what holds all others: nothing changes */
+        ACCEPTED(uint8_t, f.channels[c].contact_weight, not_above(sum));
+        REFUSED(uint8_t, f.channels[c].contact_weight, above(sum));
+        REFUSED(uint8_t, f.channels[c].contact_weight, 0xff);
         f.states[c][3].weight[1] = dd;
         f.states[c][5].weight[1] = dd;
         f.states[c][5].weight[0] = d;
-        ACCEPTED(uint8_t, f.channels[c].firm, not_above(room));
-        REFUSED(uint8_t, f.channels[c].firm, above(room));
-        f.channels[c].firm = not_above(room);
+        ACCEPTED(uint8_t, f.channels[c].contact_weight, not_above(room));
+        REFUSED(uint8_t, f.channels[c].contact_weight, above(room));
+        f.channels[c].contact_weight = not_above(room);
         ACCEPTED(uint8_t, f.states[c][0].hold, not_above(room));
         REFUSED(uint8_t, f.states[c][0].hold, above(room));
     }

@@ -101,7 +101,7 @@ static double tolerance(unsigned channel, unsigned count)
 {
     const labial_channel_t *k = &f.channels[channel];
     return 2.0 + (f.model.slopes ? 127.0 * k->slope_scale / 256.0 * (1.5 / 64.0 + count * 3.0 / 4096.0) : 0.0) +
-           (f.model.soft ? count * 254.0 * k->shape_scale / 256.0 / 4096.0 * 1.5 : 0.0);
+           (f.model.mixture_mean ? count * 254.0 * k->shape_scale / 256.0 / 4096.0 * 1.5 : 0.0);
 }
 
 /* Compares one selection; `soft` as the model says. */
@@ -117,7 +117,7 @@ static void compare(unsigned count, unsigned ms, unsigned previous, unsigned nex
     }
     least = costs[best];
     for (c = 0; c < count; c++) {
-        shares[c] = f.model.soft ? exp((least - costs[c]) / 32.0) : c == best;
+        shares[c] = f.model.mixture_mean ? exp((least - costs[c]) / 32.0) : c == best;
         sum += shares[c];
     }
     for (c = 0; c < count; c++)
@@ -140,7 +140,7 @@ static void selection_follows_the_formula(void **state)
     for (round = 0; round < FIXTURE_ROUNDS(4000); round++) {
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
-        f.model.soft = (uint8_t)(round / 8 % 2);
+        f.model.mixture_mean = (uint8_t)(round / 8 % 2);
         if (round / 16 % 2)
             f.model.contexts = NULL;
         if (round / 32 % 2)
@@ -157,7 +157,7 @@ static void context_has_a_direction(void **state)
     labial_shape_t shape;
     (void)state;
     make(&random, 2);
-    f.model.soft = 0;
+    f.model.mixture_mean = 0;
     components[0] = components[1];
     memset(contexts, 0, sizeof contexts);
     contexts[0 * FIXTURE_CLASSES + 3] = 7;      /* component 0 hardly ever follows class 3 */
@@ -184,7 +184,7 @@ static void extremes_stay_within_the_range(void **state)
         labial_shape_t shape;
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
-        f.model.soft = (uint8_t)(round & 1);
+        f.model.mixture_mean = (uint8_t)(round & 1);
         for (i = 0; i < LABIAL_CHANNELS; i++) {
             f.channels[i].shape_scale = 32767;
             f.channels[i].slope_scale = 16383;

@@ -73,8 +73,8 @@ static void solve_densely(unsigned length)
     for (t = 0; t < length; t++) {
         const labial_state_t *s = &states[path[t]];
         double hold = fixture_weight_value(s->hold), share = (s->share + (s->share >= 128)) / 256.0;
-        if (contact[t]) { /* at the target alone, and by no less than `firm` */
-            hold = fmax(hold, fixture_weight_value(channel.firm));
+        if (contact[t]) { /* at the target alone, and by no less than `contact_weight` */
+            hold = fmax(hold, fixture_weight_value(channel.contact_weight));
             share = 1.0;
         }
         add_row(t, still, hold * (1.0 - share), s->mean);
@@ -240,7 +240,8 @@ static void make_firm(fixture_random_t *random)
     }
     room -= 2 * delta + 6 * delta2;
     q = fixture_below(random, 3);
-    model.channels[0].firm = q == 0 ? 0 : not_above(q == 1 ? room : room * fixture_below(random, 1001) / 1000.0);
+    model.channels[0].contact_weight =
+        q == 0 ? 0 : not_above(q == 1 ? room : room * fixture_below(random, 1001) / 1000.0);
 }
 
 /* A path that stays for three frames on average, or for none; targets that switch from end to end or lie anywhere; frames
@@ -436,8 +437,8 @@ static void contact_holds_a_frame_at_its_target(void **state)
     }
 }
 
-/* What `firm` is for: of a single frame in contact between others that stay far from it, the more is left the firmer it
- * is held, and with the firmest weight nearly all. Would catch a weight that is read and not used. */
+/* What `contact_weight` is for: of a single frame in contact between others that stay far from it, the more is left the
+ * firmer it is held, and with the firmest weight nearly all. Would catch a weight that is read and not used. */
 static void firm_contact_is_met(void **state)
 {
     static const double firm[] = { 0, 500, 2000, 14000 };
@@ -457,7 +458,7 @@ static void firm_contact_is_met(void **state)
     }
     for (i = 0; i < 4; i++) {
         double wanted[FRAMES];
-        model.channels[0].firm = not_above(firm[i]);
+        model.channels[0].contact_weight = not_above(firm[i]);
         compare(FRAMES, "firm", i);
         oracle_trajectory(&channel, path, target, contact, 0, FRAMES, NULL, wanted);
         reached[i] = (wanted[20] - channel.centre) / 3200.0;

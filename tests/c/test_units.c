@@ -38,7 +38,7 @@ static int setup(void **state)
 static void begin(const labial_model_t *model)
 {
     memset(&units, 0xa5, sizeof units);
-    labial_units_forget(&units);
+    labial_units_reset(&units);
     models[0] = model;
     models[1] = &laugh.model;
 }
@@ -112,7 +112,7 @@ static void frames_wait_for_the_next_phoneme(void **state)
     push(FIXTURE_SIL, 0, 500); /* no kernels: a pause is a phoneme like others */
     assert_string_equal(take_all(0, LABIAL_STARVED), "5");
     push(FIXTURE_S, 0, 1);
-    (void)labial_units_hold(&units, 0);
+    (void)labial_units_uses(&units, 0);
     assert_int_equal(units.frames, 501);
 }
 
@@ -419,14 +419,14 @@ static void the_queue_knows_its_models(void **state)
     (void)state;
     begin(&plain.model);
     for (slot = 0; slot < LABIAL_MODELS; slot++)
-        assert_int_equal(labial_units_hold(&units, slot), 0);
+        assert_int_equal(labial_units_uses(&units, slot), 0);
     push(FIXTURE_A, 0, 1), push(FIXTURE_O, 0, 1);
-    assert_int_equal(labial_units_hold(&units, 0), 1);
-    assert_int_equal(labial_units_hold(&units, 1), 0);
+    assert_int_equal(labial_units_uses(&units, 0), 1);
+    assert_int_equal(labial_units_uses(&units, 1), 0);
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
-    assert_int_equal(labial_units_hold(&units, 0), 1);
+    assert_int_equal(labial_units_uses(&units, 0), 1);
     assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
-    assert_int_equal(labial_units_hold(&units, 0), 0);
+    assert_int_equal(labial_units_uses(&units, 0), 0);
 }
 
 /* Of the longest phoneme there may be, at 250 frames a second: every frame's share, as for few frames. Would catch numbers

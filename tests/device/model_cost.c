@@ -69,7 +69,7 @@ static void make(const recipe_t *recipe)
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         channels[k].shape_scale = channels[k].slope_scale = channels[k].kernel_scale = channels[k].pair_scale = 256;
-        channels[k].firm = 0x20;
+        channels[k].contact_weight = 0x20;
         channels[k].emissions = emissions;
         channels[k].states = states;
         channels[k].transitions = transitions;
@@ -89,7 +89,7 @@ static void make(const recipe_t *recipe)
     model.state_count = recipe->states;
     model.predecessors = recipe->predecessors;
     model.search_stride = recipe->stride;
-    model.soft = 1;
+    model.mixture_mean = 1;
     model.kernel_taps = recipe->taps;
     model.kernel_stride = 1;
     model.kernel_behind = recipe->taps / 2u;

@@ -60,7 +60,7 @@ static void any_channel(labial_channel_t *channel)
     channel->pair_scale = any_uint16;
     channel->motion_scale[0] = any_uint16;
     channel->motion_scale[1] = any_uint16;
-    channel->firm = (uint8_t)Frama_C_interval(0, 0xaf);
+    channel->contact_weight = (uint8_t)Frama_C_interval(0, 0xaf);
     channel->emissions = emissions;
     channel->states = states;
     channel->transitions = transitions;
@@ -108,7 +108,7 @@ static void any_model(labial_model_t *model, int count)
     model->predecessors = (uint8_t)Frama_C_interval(1, LABIAL_STATES_MAX);
     model->search_stride = (uint8_t)Frama_C_interval(1, LABIAL_SEARCH_STRIDE_MAX);
     model->silence = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
-    model->soft = (uint8_t)Frama_C_interval(0, 1);
+    model->mixture_mean = (uint8_t)Frama_C_interval(0, 1);
     model->kernel_taps = (uint8_t)Frama_C_interval(0, LABIAL_KERNEL_TAPS_MAX);
     model->kernel_stride = any_uint8;
     model->kernel_behind = (uint8_t)Frama_C_interval(0, LABIAL_KERNEL_TAPS_MAX - 1);

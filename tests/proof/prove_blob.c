@@ -23,8 +23,8 @@ int labial_model_check(const labial_model_t *model)
     unsigned k;
     int sum = model->format + model->frames_per_second + model->component_count + model->phoneme_count +
               model->class_count + model->state_count + model->predecessors + model->search_stride + model->silence +
-              model->soft + model->kernel_taps + model->kernel_stride + model->kernel_behind + model->floor_count +
-              model->pair_knots + model->pair_count;
+              model->mixture_mean + model->kernel_taps + model->kernel_stride + model->kernel_behind +
+              model->floor_count + model->pair_knots + model->pair_count;
     sum += is_there(model->phonemes) + is_there(model->components) + is_there(model->contexts) +
            is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) +
            is_there(model->last_kernels) + is_there(model->pair_keys) + is_there(model->pairs) +
@@ -32,7 +32,7 @@ int labial_model_check(const labial_model_t *model)
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];
         sum += channel->centre + channel->shape_scale + channel->slope_scale + channel->kernel_scale +
-               channel->pair_scale + channel->motion_scale[0] + channel->motion_scale[1] + channel->firm;
+               channel->pair_scale + channel->motion_scale[0] + channel->motion_scale[1] + channel->contact_weight;
         sum += is_there(channel->emissions) + is_there(channel->states) + is_there(channel->transitions) +
                is_there(channel->initials);
     }

@@ -92,7 +92,7 @@ static void pass(int stride)
     channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
     channels.entered = any_uint8;
     channels.beyond = (uint8_t)Frama_C_interval(0, LABIAL_DELAY(stride) - 1);
-    labial_channels_hold(&channels, any_unsigned);
+    labial_channels_uses(&channels, any_unsigned);
     motion = labial_channels_due(&channels);
     if (motion)
         channels.phase = (uint8_t)(motion[0] + motion[LABIAL_CHANNELS - 1] > 0 ? 0 : channels.phase);

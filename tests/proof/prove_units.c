@@ -16,7 +16,7 @@ int main(void)
     model.kernel_taps = (uint8_t)Frama_C_interval(0, LABIAL_REACH + 1);
     for (i = 0; i < LABIAL_MODELS; i++)
         models[i] = &model;
-    labial_units_forget(&units);
+    labial_units_reset(&units);
     while (any_int) {
         if (any_int && units.count < LABIAL_QUEUE)
             labial_units_push(&units, (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1),
@@ -24,10 +24,10 @@ int main(void)
                               (uint32_t)Frama_C_interval(0, LABIAL_DURATION_MAX), (uint32_t)Frama_C_interval(1, 250));
         labial_units_take(&units, models, any_int, &taken);
         labial_units_at_first(&units, models);
-        labial_units_hold(&units, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1));
+        labial_units_uses(&units, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1));
         labial_units_next(&units, models, any_int, &spoken);
         if (any_int)
-            labial_units_forget(&units);
+            labial_units_reset(&units);
     }
     return 0;
 }

@@ -170,7 +170,7 @@ int main(void)
            (unsigned)(sizeof(labial_emission_t) + sizeof(labial_state_t)), (unsigned)sizeof(labial_phoneme_t),
            (unsigned)sizeof(labial_component_t));
     printf("%u %u %u %u", (unsigned)offsetof(labial_model_t, pair_count) + 2, POINTERS(labial_model_t, phonemes),
-           (unsigned)offsetof(labial_channel_t, firm) + 1, POINTERS(labial_channel_t, emissions));
+           (unsigned)offsetof(labial_channel_t, contact_weight) + 1, POINTERS(labial_channel_t, emissions));
     return 0;
 }
 """)
