@@ -84,20 +84,15 @@ static int search(const step_t *step, int age, int least, int middle)
     const labial_model_t *model = step->models[frame->slot];
     const labial_channel_t *channel = &model->channels[step->channel];
     labial_search_t *own = &step->progress->search;
-    const int is_first = frame->marks & LABIAL_BEGINS, first = age;
+    const int first = age;
     unsigned marks = frame->marks;
     int32_t position;
     while (!(marks & LABIAL_ENDS) && age > least)
         marks |= step->latest[-(--age)].marks;
     middle = middle > first ? first : middle < age ? age : middle;
     position = step->latest[-middle].target[step->channel];
-    if (is_first)
-        labial_viterbi_begin(model, channel, position, own);
-    else
-        labial_viterbi_step(model, channel, position, own);
+    labial_viterbi_step(model, channel, position, marks, own);
     labial_viterbi_span(own, (unsigned)(first - age + 1));
-    if (marks & LABIAL_UNIT_ENDS)
-        labial_viterbi_end_unit(own);
     return age;
 }
 

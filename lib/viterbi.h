@@ -15,19 +15,16 @@
 #define LABIAL_VITERBI_H
 
 #include "labial/labial.h"
+#include "units.h"
 
 #define LABIAL_DEAD 255u
 
-/* Begins a path: the first step's target is `position`. */
-void labial_viterbi_begin(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
-                          labial_search_t *search);
-
-/* The next step of a path. */
-void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
+/*
+ * The next step of a path, for a target `position`. `marks` are those of its frames (units.h): with LABIAL_BEGINS it is
+ * a path's first step; with LABIAL_UNIT_ENDS it ends a unit, and whatever follows comes from its best state.
+ */
+void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position, unsigned marks,
                          labial_search_t *search);
-
-/* Ends a unit with the last step: whatever follows comes from its best state. */
-void labial_viterbi_end_unit(labial_search_t *search);
 
 /* How many frames the last step stands for. */
 static inline void labial_viterbi_span(labial_search_t *search, unsigned frames)

@@ -15,22 +15,11 @@ static uint32_t workspace[LABIAL_WORKSPACE_SIZE(MOST) / 4];
 static labial_model_t model;
 static const labial_model_t *models[LABIAL_MODELS];
 
-void labial_viterbi_begin(const labial_model_t *any, const labial_channel_t *channel, int32_t position,
-                          labial_search_t *search)
-{
-    search->best = (uint8_t)(any->state_count + channel->emissions[0].mean + position);
-    search->path[0] = (uint8_t)Frama_C_interval(0, LABIAL_STATES_MAX - 1);
-}
-
-void labial_viterbi_step(const labial_model_t *any, const labial_channel_t *channel, int32_t position,
+void labial_viterbi_step(const labial_model_t *any, const labial_channel_t *channel, int32_t position, unsigned marks,
                          labial_search_t *search)
 {
-    labial_viterbi_begin(any, channel, position, search);
-}
-
-void labial_viterbi_end_unit(labial_search_t *search)
-{
-    search->best = 0;
+    search->best = (uint8_t)(any->state_count + channel->emissions[0].mean + position + (int)(marks & 255u));
+    search->path[0] = (uint8_t)Frama_C_interval(0, LABIAL_STATES_MAX - 1);
 }
 
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms)

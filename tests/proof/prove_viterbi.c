@@ -13,15 +13,10 @@ static void search_among(int least, int most)
     model.state_count = (uint8_t)Frama_C_interval(least, most);
     channels[0].emissions = emissions + LABIAL_STATES_MAX - most;
     FILL(search);
-    labial_viterbi_begin(&model, &channels[0], any_position(), &search);
+    labial_viterbi_step(&model, &channels[0], any_position(), LABIAL_BEGINS, &search);
     while (any_int) {
-        if (any_int)
-            labial_viterbi_step(&model, &channels[0], any_position(), &search);
-        else
-            labial_viterbi_begin(&model, &channels[0], any_position(), &search);
+        labial_viterbi_step(&model, &channels[0], any_position(), any_unsigned, &search);
         labial_viterbi_span(&search, any_unsigned);
-        if (any_int)
-            labial_viterbi_end_unit(&search);
         labial_viterbi_state(&search, 0);
     }
 }
