@@ -7,5 +7,23 @@
 
 uint32_t labial_quotient(uint32_t a, uint32_t b)
 {
+#if LABIAL_NARROW_MULTIPLY && !defined(__ARM_FEATURE_IDIV)
+    /* Bit by bit, in less code than compilers link for it. */
+    uint32_t quotient = 0, bit = 1;
+    for (; b <= a >> 5; b <<= 4)
+        bit <<= 4;
+    for (; b <= a >> 1; b <<= 1)
+        bit <<= 1;
+    do {
+        if (a >= b) {
+            a -= b;
+            quotient += bit;
+        }
+        b >>= 1;
+        bit >>= 1;
+    } while (bit > 0);
+    return quotient;
+#else
     return a / b;
+#endif
 }

@@ -11,7 +11,7 @@
 
 #include "fixture.h"
 
-/* The header twice: once for cores with 64-bit products, once for those without. */
+/* Header and division twice: once for cores with 64-bit products, once for those without. */
 #define LABIAL_NARROW_MULTIPLY 0
 #include "fixed.h"
 #undef LABIAL_FIXED_H
@@ -29,7 +29,9 @@
 #define labial_ease narrow_ease
 #define labial_clamp narrow_clamp
 #define labial_scaled narrow_scaled
+#define labial_quotient narrow_quotient
 #include "fixed.h"
+#include "fixed.c"
 #undef labial_add
 #undef labial_sub
 #undef labial_mulshift
@@ -41,6 +43,7 @@
 #undef labial_ease
 #undef labial_clamp
 #undef labial_scaled
+#undef labial_quotient
 
 static const int32_t corners[] = {
     0,     1,       -1,         2,          -2,          3,         255,           -256,
@@ -197,6 +200,28 @@ static void clamping(void **state)
     assert_int_equal(labial_clamp(INT32_MIN, 16383), -16383);
 }
 
+/* Would catch a bit of the quotient that is skipped or taken twice, and a divisor that is shifted out. */
+static void quotients_are_exact(void **state)
+{
+    fixture_random_t random = { 7 };
+    unsigned i, j;
+    (void)state;
+    for (i = 0; i < CORNERS; i++)
+        for (j = 0; j < CORNERS; j++) {
+            const uint32_t a = (uint32_t)corners[i], b = (uint32_t)corners[j];
+            if (b > 0) {
+                assert_int_equal(labial_quotient(a, b), a / b);
+                assert_int_equal(narrow_quotient(a, b), a / b);
+            }
+        }
+    for (i = 0; i < FIXTURE_ROUNDS(1000000); i++) {
+        const uint32_t a = fixture_below(&random, UINT32_MAX) >> fixture_below(&random, 32);
+        const uint32_t b = (fixture_below(&random, UINT32_MAX) >> fixture_below(&random, 32)) + 1u;
+        if (narrow_quotient(a, b) != a / b)
+            fail_msg("%u / %u is %u", a, b, narrow_quotient(a, b));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +233,7 @@ int main(void)
         cmocka_unit_test(gaussian_costs_follow_their_formula),
         cmocka_unit_test(easing_follows_its_curve),
         cmocka_unit_test(clamping),
+        cmocka_unit_test(quotients_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
