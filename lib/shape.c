@@ -58,58 +58,44 @@ static unsigned score(const labial_model_t *model, const labial_phoneme_t *phone
     return best;
 }
 
-/* Shares of the mixture, Q12, by what each component costs; the best one has what rounding leaves. */
-static void softmax(const uint32_t *costs, unsigned count, unsigned best, uint16_t *shares)
+/* Finds what the shape of a phoneme between neighbours of the given viseme classes is mixed of: the best component alone,
+ * or each by its likelihood, the best one having what rounding leaves. */
+static void select_components(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms,
+                              unsigned previous_class, unsigned next_class, labial_selection_t *selection)
 {
-    uint16_t likelihoods[LABIAL_PHONEME_COMPONENTS_MAX];
+    const unsigned count = phoneme->component_count;
+    uint32_t costs[LABIAL_PHONEME_COMPONENTS_MAX], likelihoods[LABIAL_PHONEME_COMPONENTS_MAX];
+    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
+    const unsigned best = score(model, phoneme, ms, previous_class, next_class, costs, deviations);
     uint32_t sum = 0, rest = ONE;
-    unsigned c;
-    for (c = 0; c < count; c++) {
-        likelihoods[c] = likelihood(costs[c] - costs[best]);
-        sum += likelihoods[c];
+    unsigned i, c = best, counting = 0;
+    for (i = 0; i < count; i++) {
+        likelihoods[i] = model->mixture_mean || i == best ? likelihood(costs[i] - costs[best]) : 0u;
+        sum += likelihoods[i];
     }
     /* The best one's likelihood alone is that. */
     /*@ assert sum >= 32768; */
     LABIAL_CHECK(sum >= 32768u);
-    for (c = 0; c < count; c++) {
-        shares[c] = (uint16_t)labial_quotient(likelihoods[c] * (uint32_t)ONE, sum);
-        rest -= shares[c];
-    }
-    shares[best] = (uint16_t)(shares[best] + rest);
-}
-
-/* Finds what the shape of a phoneme between neighbours of the given viseme classes is mixed of. */
-static void select_components(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms, unsigned previous_class,
-                    unsigned next_class, labial_selection_t *selection)
-{
-    const unsigned count = phoneme->component_count;
-    uint32_t costs[LABIAL_PHONEME_COMPONENTS_MAX];
-    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
-    uint16_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* of the mixture, Q12 */
-    const unsigned best = score(model, phoneme, ms, previous_class, next_class, costs, deviations);
-    unsigned c, counting = 0;
-
-    memset(shares, 0, sizeof shares);
-    if (model->mixture_mean)
-        softmax(costs, count, best, shares);
-    else
-        shares[best] = ONE;
-    for (c = 0; c < count; c++)
-        if (shares[c] > 0) {
+    for (i = 1; i <= count; i++) {
+        uint32_t share; /* of the mixture, Q12 */
+        c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
+        share = i < count ? labial_quotient(likelihoods[c] * ONE, sum) : rest;
+        rest -= share;
+        if (share > 0) {
             selection->components[counting] = (uint8_t)c;
-            selection->shares[counting] = shares[c];
-            selection->tilts[counting++] = (int16_t)((shares[c] * (int32_t)deviations[c]) >> 6);
+            selection->shares[counting] = (uint16_t)share;
+            selection->tilts[counting++] = (int16_t)(((int32_t)share * deviations[c]) >> 6);
         }
+    }
     selection->count = (uint8_t)counting;
 }
 
-/* Mixes channels `k` up to `end` of a phoneme's shape. */
-static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, const labial_selection_t *selection,
-                unsigned k, unsigned end, int16_t shape[LABIAL_CHANNELS])
+/* Mixes the channels of the first or second half of a phoneme's shape, the same at both knots. */
+static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, labial_selection_t *selection)
 {
-    const unsigned count = selection->count;
-    unsigned c;
-    for (; k < end; k++) {
+    const unsigned count = selection->count, end = selection->halves == 0 ? FIRST_HALF : LABIAL_CHANNELS;
+    unsigned c, k;
+    for (k = selection->halves == 0 ? 0u : FIRST_HALF; k < end; k++) {
         const labial_channel_t *channel = &model->channels[k];
         int32_t mean = 0, change = 0; /* in table steps, Q12 */
         for (c = 0; c < count; c++) {
@@ -124,7 +110,8 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, co
         LABIAL_CHECK(labial_clamp(mean, 524288) == mean && labial_clamp(change, 1118208) == change);
         mean = ((mean >> 4) * channel->shape_scale + 32768) >> 16;
         change = ((change >> 4) * channel->slope_scale + 32768) >> 16;
-        shape[k] = (int16_t)labial_clamp(mean + change, LABIAL_POSITION_MAX);
+        mean = labial_clamp(mean + change, LABIAL_POSITION_MAX);
+        selection->shape.knots[0][k] = selection->shape.knots[1][k] = (int16_t)mean;
     }
 }
 
@@ -134,7 +121,6 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
 {
     const unsigned knots = model->pair_knots;
     unsigned low = 0, high = model->pair_count, j, k;
-    const int8_t *row;
     while (low < high) {
         const unsigned middle = (low + high) / 2u;
         if (model->pair_keys[middle] < key)
@@ -144,31 +130,27 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
     }
     if (low >= model->pair_count || model->pair_keys[low] != key)
         return;
-    row = model->pairs + (size_t)low * knots * LABIAL_CHANNELS;
-    for (j = 0; j < knots; j++)
+    for (j = 0; j < 2u; j++) {
+        const int8_t *row = model->pairs + ((size_t)low * knots + (knots > 1u ? j : 0u)) * LABIAL_CHANNELS;
         for (k = 0; k < LABIAL_CHANNELS; k++) {
-            const int32_t added = labial_scaled(*row++, model->channels[k].pair_scale);
+            const int32_t added = labial_scaled(row[k], model->channels[k].pair_scale);
             shape->knots[j][k] = (int16_t)labial_clamp(shape->knots[j][k] + added, LABIAL_POSITION_MAX);
         }
+    }
 }
 
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
                          labial_selection_t *selection)
 {
     const labial_phoneme_t *phonemes = model->phonemes;
-    labial_shape_t *shape = &selection->shape;
-    if (selection->halves++ == 0) {
-        select_components(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class, selection);
-        mix(model, &phonemes[phoneme], selection, 0, FIRST_HALF, shape->knots[0]);
-        return;
+    if (selection->halves == 0)
+        select_components(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class,
+                          selection);
+    mix(model, &phonemes[phoneme], selection);
+    if (selection->halves++ > 0) {
+        add_pair(model, phoneme << 8 | previous, &selection->shape);
+        add_pair(model, phoneme << 8 | 128u | next, &selection->shape);
     }
-    mix(model, &phonemes[phoneme], selection, FIRST_HALF, LABIAL_CHANNELS, shape->knots[0]);
-    if (model->pair_knots > 1u)
-        memcpy(shape->knots[1], shape->knots[0], sizeof shape->knots[1]);
-    add_pair(model, phoneme << 8 | previous, shape);
-    add_pair(model, phoneme << 8 | 128u | next, shape);
-    if (model->pair_knots <= 1u)
-        memcpy(shape->knots[1], shape->knots[0], sizeof shape->knots[1]);
 }
 
 /* The channels in which a phoneme makes contact, or silence comes to rest. */

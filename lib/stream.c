@@ -36,14 +36,14 @@ static int status(const labial_t *stream)
 
 /* ---- One frame in ------------------------------------------------------------------------------------------------ */
 
-/* Does half of selecting the shape of the phoneme that begins next, if all that it depends on is known and it is not yet
- * selected. */
-static void select_half(labial_t *stream)
+/* Does up to `halves` of selecting the shape of the phoneme that begins next, if all that it depends on is known. */
+static void select_halves(labial_t *stream, unsigned halves)
 {
     labial_spoken_t spoken;
-    if (stream->next.halves < 2u && labial_units_next(&stream->units, stream->models, stream->ended, &spoken))
-        labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
-                            &stream->next);
+    for (; halves > 0 && stream->next.halves < 2u; halves--)
+        if (labial_units_next(&stream->units, stream->models, stream->ended, &spoken))
+            labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
+                                &stream->next);
 }
 
 /* Stores a frame that was taken, and its target. */
@@ -62,22 +62,18 @@ static void store(labial_t *stream, const labial_taken_t *taken)
 }
 
 /*
- * Advances by a tick: takes the next frame and finds its target or, after the last one, lets the frames that were taken
- * run out. `*selected` becomes whether a shape had to be selected for it.
+ * Advances by a tick: takes the next frame and finds its target or, after the last one, lets those that were taken run
+ * out.
  *
  * Returns LABIAL_OK, LABIAL_STARVED when more phonemes must be known, or LABIAL_DONE when nothing is left.
  */
-static int take_frame(labial_t *stream, int *selected)
+static int take_frame(labial_t *stream)
 {
     labial_taken_t taken;
     unsigned i;
     int result;
-    *selected = stream->next.halves < 2u && labial_units_at_first(&stream->units, stream->models);
-    if (*selected) {
-        select_half(stream);
-        if (stream->next.halves == 1u)
-            select_half(stream);
-    }
+    if (stream->next.halves < 2u && labial_units_at_first(&stream->units, stream->models))
+        select_halves(stream, 2);
     result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
     if (result == LABIAL_STARVED || (result == LABIAL_DONE && stream->pending == 0))
         return result;
@@ -275,18 +271,20 @@ int labial_end(labial_t *stream)
 
 int labial_tick(labial_t *stream)
 {
-    int selected, result = status(stream);
+    int result = status(stream);
     if (result != LABIAL_OK)
         return result;
     if (stream->ease_length) {
         ease(stream);
         return LABIAL_OK;
     }
-    result = take_frame(stream, &selected);
+    result = take_frame(stream);
     if (result == LABIAL_OK) {
         labial_channels_step(&stream->channels, stream->models);
-        if (!selected && stream->channels.phase > 0) /* the first of a stride's ticks has most channels */
-            select_half(stream);
+        if (stream->channels.phase > 0) { /* the first of a stride's ticks, with most channels, should not have to */
+            const int is_last = stream->channels.phase + 1u == stream->channels.stride;
+            select_halves(stream, is_last && labial_units_at_first(&stream->units, stream->models) ? 2u : 1u);
+        }
         if (deliver(stream))
             return LABIAL_OK;
     }

@@ -25,8 +25,6 @@
  */
 #include "trajectory.h"
 
-#include <string.h>
-
 #include "fixed.h"
 #include "units.h"
 
@@ -158,7 +156,7 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
         const int contact = (int)(frame->contacts >> channel & 1u);
         if (is_first || is_last) { /* without deltas */
             if (is_first)
-                memset(solver, 0, sizeof *solver);
+                solver->row = solver->bent = solver->k1 = solver->k2 = solver->q1 = solver->q2 = solver->next_pull = 0;
             else
                 factor(solver, 0, 0, own - 1);
             solver->delta = 0;

@@ -38,12 +38,12 @@ typedef struct {
 
 /* The selection of a shape (shape.c). */
 typedef struct {
+    labial_shape_t shape;                              /* first, so that it is copied by words */
     uint8_t halves;                                    /* that are done */
     uint8_t count;                                     /* components that have a share */
     uint8_t components[LABIAL_PHONEME_COMPONENTS_MAX]; /* of the phoneme's */
     uint16_t shares[LABIAL_PHONEME_COMPONENTS_MAX];    /* of the mixture, Q12 */
     int16_t tilts[LABIAL_PHONEME_COMPONENTS_MAX];      /* how much of the slope counts: share times deviation, Q12 */
-    labial_shape_t shape;
 } labial_selection_t;
 
 /* Where the search of one channel stands (viterbi.c). */

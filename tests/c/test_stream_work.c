@@ -115,11 +115,34 @@ static void shapes_are_selected_ahead(void **state)
     assert_in_range(halves, 200, 260);
 }
 
+/* A phoneme of one frame leaves no tick between its own and the next one's. Would catch a shape that is selected in a
+ * tick with most channels, though the tick before could have done it. */
+static void the_fullest_ticks_select_no_shape(void **state)
+{
+    unsigned left = 120, tick, begun = 0;
+    (void)state;
+    begin(&speech_en);
+    for (tick = 0; left > 0; tick++) {
+        const uint8_t was = place.stream.next.halves;
+        const labial_shape_t spoken = place.stream.shape;
+        for (; left > 0 && labial_room(&place.stream) > 0; left--)
+            assert_int_equal(labial_push(&place.stream, left * 7u % SPEECH_EN_PHONEMES, left % 2u ? 20 : 60), LABIAL_OK);
+        assert_true(labial_tick(&place.stream) >= 0);
+        if (tick > 0 && tick % speech_en.search_stride == 0) {
+            const int has_begun = memcmp(&spoken, &place.stream.shape, sizeof spoken) != 0;
+            begun += (unsigned)has_begun;
+            assert_true((was == 2 && place.stream.next.halves == 0) || (!has_begun && place.stream.next.halves == was));
+        }
+    }
+    assert_in_range(begun, 20, 80);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(channels_take_turns_in_every_stride),
         cmocka_unit_test(shapes_are_selected_ahead),
+        cmocka_unit_test(the_fullest_ticks_select_no_shape),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

@@ -72,7 +72,6 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
 static void advance(int stride)
 {
     static labial_t stream; /* zero, as labial_init() makes it */
-    int selected;
     unsigned i;
     for (i = 0; i < LABIAL_MODELS; i++)
         stream.models[i] = &model;
@@ -83,8 +82,8 @@ static void advance(int stride)
         stream.pending = any_uint32;
         stream.units.count = any_uint8;
         if (any_int)
-            select_half(&stream);
-        take_frame(&stream, &selected);
+            select_halves(&stream, (unsigned)Frama_C_interval(1, 2));
+        take_frame(&stream);
         if (any_int) { /* as when it begins anew */
             stream.channels.entered = 0;
             stream.next.halves = 0;
