@@ -3,6 +3,8 @@
  */
 #include "labial/blob.h"
 
+#include <string.h>
+
 #include "fixed.h"
 #include "labial/labial.h"
 
@@ -97,14 +99,6 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     unsigned k;
     model->phonemes = (const labial_phoneme_t *)table(reader, model->phoneme_count, sizeof(labial_phoneme_t));
     model->components = (const labial_component_t *)table(reader, components, sizeof(labial_component_t));
-    model->contexts = NULL;
-    model->slopes = NULL;
-    model->kernels = NULL;
-    model->last_kernels = NULL;
-    model->pair_keys = NULL;
-    model->pairs = NULL;
-    model->floors = NULL;
-    model->contacts = NULL;
     if (optional & HAS_CONTEXTS)
         model->contexts = (const uint8_t *)table(reader, components, model->class_count);
     model->shapes = (const int8_t *)table(reader, shape, 1u);
@@ -148,6 +142,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     if (u32(header + 8) != checksum(header + CHECKED_FROM, size - CHECKED_FROM))
         return LABIAL_ERROR_MODEL;
 
+    memset(blob, 0, sizeof *blob);
     model = &blob->model;
     model->format = LABIAL_MODEL_FORMAT;
     model->frames_per_second = u16(header + 14);

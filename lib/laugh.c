@@ -16,6 +16,11 @@ enum { BREATH_FIRST, VOWEL_ALONE, CACKLE, NASAL, STOP_FIRST, KINDS };
 #define ONSETS (sizeof onsets / sizeof onsets[0])
 #define CHANGE 38u /* of 256: how often a pulse is of another kind, or has another vowel, than the one before it */
 
+/* Phonemes that get longer with intensity, by bits. */
+#define VOICED                                                                                                         \
+    (1u << LABIAL_LAUGH_A | 1u << LABIAL_LAUGH_E | 1u << LABIAL_LAUGH_O | 1u << LABIAL_LAUGH_IC |                      \
+     1u << LABIAL_LAUGH_CACKLE | 1u << LABIAL_LAUGH_NASAL)
+
 /* ---- Chance ---------------------------------------------------------------------------------------------------- */
 
 /* A number from 0 to count - 1, `count` at most 65536 (Marsaglia's xorshift). */
@@ -54,24 +59,10 @@ static uint8_t choose(labial_laugh_t *laugh, const uint8_t *shares, const int16_
 static uint32_t duration(labial_laugh_t *laugh, unsigned phoneme)
 {
     uint32_t value;
-    if (phoneme == LABIAL_LAUGH_SILENCE) {
-        value = ((160u + draw(laugh, 261u)) * (384u - laugh->intensity)) >> 8;
-    } else {
-        value = ((uint32_t)medians[phoneme] * stretches[draw(laugh, 32u)]) >> 7;
-        switch (phoneme) {
-        case LABIAL_LAUGH_A:
-        case LABIAL_LAUGH_E:
-        case LABIAL_LAUGH_O:
-        case LABIAL_LAUGH_IC:
-        case LABIAL_LAUGH_CACKLE:
-        case LABIAL_LAUGH_NASAL:
-            value = (value * (218u + ((77u * laugh->intensity) >> 8))) >> 8;
-            break;
-        default:
-            break;
-        }
-    }
-    return value;
+    if (phoneme == LABIAL_LAUGH_SILENCE)
+        return ((160u + draw(laugh, 261u)) * (384u - laugh->intensity)) >> 8;
+    value = ((uint32_t)medians[phoneme] * stretches[draw(laugh, 32u)]) >> 7;
+    return (VOICED >> phoneme & 1u) ? (value * (218u + ((77u * laugh->intensity) >> 8))) >> 8 : value;
 }
 
 /* ---- The grammar ----------------------------------------------------------------------------------------------- */
@@ -100,24 +91,14 @@ static void add_graded(labial_laugh_t *laugh, unsigned phoneme, uint32_t millise
     add(laugh, phoneme, milliseconds);
 }
 
-static void choose_kind(labial_laugh_t *laugh)
-{
-    laugh->kind = choose(laugh, pulse_shares, pulse_tilts, KINDS);
-}
-
-static void choose_vowel(labial_laugh_t *laugh)
-{
-    laugh->vowel = choose(laugh, vowel_shares, vowel_tilts, VOWELS);
-}
-
 static void begin_train(labial_laugh_t *laugh)
 {
     /* The median is 2/3 to 4/3 of the corpus's, in 1/384; lengths are in 1/32. */
     const uint32_t median = TRAIN_MEDIAN * (256u + laugh->intensity);
     laugh->pulses = (uint8_t)((median * lengths[draw(laugh, 32u)] + 6144u) / 12288u);
     laugh->loudness = laugh->train_loudness;
-    choose_kind(laugh);
-    choose_vowel(laugh);
+    laugh->kind = choose(laugh, pulse_shares, pulse_tilts, KINDS);
+    laugh->vowel = choose(laugh, vowel_shares, vowel_tilts, VOWELS);
 }
 
 static void pulse(labial_laugh_t *laugh, uint32_t room)
@@ -126,9 +107,9 @@ static void pulse(labial_laugh_t *laugh, uint32_t room)
     int32_t deviation;
     unsigned note;
     if (chance(laugh, CHANGE))
-        choose_kind(laugh);
+        laugh->kind = choose(laugh, pulse_shares, pulse_tilts, KINDS);
     if (chance(laugh, CHANGE))
-        choose_vowel(laugh);
+        laugh->vowel = choose(laugh, vowel_shares, vowel_tilts, VOWELS);
     deviation = PERIOD_SPREAD * (int32_t)deviates[draw(laugh, 32u)];
     /* Rounded down: what is added is a whole number of 1/32 and keeps the shift from a negative number. */
     period = (uint32_t)(PERIOD - 512 + ((deviation + 512 * 32) >> 5));
