@@ -19,6 +19,11 @@ BINARY: Dict[str, Tuple[str, ...]] = {
 #: What a unary operator becomes, wherever it stands.
 UNARY: Dict[str, Tuple[str, ...]] = {"!": ("",), "-": ("",), "~": ("",), "++": ("--",), "--": ("++",)}
 
+#: Kinds of changes: one sign or number, a condition turned round, a statement left out; two neighbours among the
+#: arguments of a call swapped, a named constant or its definition off by one, one of several members that are set
+#: together left out.
+KINDS = ("sign", "number", "condition", "statement", "argument", "constant", "reset")
+
 _TOKEN = re.compile(
     r"(?P<space>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:[^\n\\]|\\\n)*)"
     r"|(?P<text>\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
@@ -27,6 +32,9 @@ _TOKEN = re.compile(
     r"|(?P<sign><<=|>>=|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||[-+*/%&|^]=|.)",
     re.DOTALL | re.MULTILINE,
 )
+#: Constants by name, of lib/ or of its headers; macros that take arguments are no constants.
+_CONSTANT = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*_?(?:MAX)?$")
+_DEFINITION = re.compile(r"^#define [A-Z][A-Z0-9_]* (0[xX][0-9a-fA-F]+[uUlL]*|\d+[uUlL]*)(?=\s)", re.MULTILINE)
 #: Words behind which - or * stands alone, and those that begin no statement that could go.
 _KEYWORDS = set("return case else do sizeof goto break continue default switch for while if".split())
 _DECLARATION = re.compile(r"(?:const|static|extern|unsigned|signed|int|char|typedef|enum|struct|\w+_t|return|case)\b")
@@ -42,6 +50,7 @@ class Mutant:
     new: str
     line: int
     key: str  #: names the change as long as its line stays as it is, wherever that moves
+    kind: str  #: one of KINDS
 
     def apply(self, source: str) -> str:
         """The changed source."""
@@ -98,25 +107,76 @@ def _statement(source: str, tokens: Sequence[_Token], i: int) -> str:
     return ""
 
 
-def _changes(source: str, tokens: Sequence[_Token], i: int) -> Iterator[Tuple[str, str]]:
-    """What stands at token `i` and may become something else: old text, new text."""
+def _changes(source: str, tokens: Sequence[_Token], i: int) -> Iterator[Tuple[str, str, str]]:
+    """What stands at token `i`, or in the bracket behind it, and may become something else: kind, old text, new text."""
     token, before = tokens[i], tokens[i - 1]
     is_binary = (before.kind in ("word", "number") and before.text not in _KEYWORDS) or before.text in (")", "]")
     if token.kind == "number":
         for new in _number_changes(token.text):
-            yield token.text, new
+            yield "number", token.text, new
+    elif _is_constant(tokens, i):
+        yield "constant", token.text, f"({token.text} + 1)"
+        yield "constant", token.text, f"({token.text} - 1)"
     elif token.text in BINARY and is_binary and not _is_cast(tokens, i):
         for new in BINARY[token.text]:
-            yield token.text, new
+            yield "sign", token.text, new
     elif token.text in UNARY and (token.text in ("++", "--") or not is_binary):
         for new in UNARY[token.text]:
-            yield token.text, new
+            yield "sign", token.text, new
     elif token.text in ("if", "while") and tokens[i + 1].text == "(":
         condition = _bracket(source, tokens, i + 1)
-        yield condition, f"(!{condition})"
+        yield "condition", condition, f"(!{condition})"
+    elif token.kind == "word" and token.text not in _KEYWORDS and tokens[i + 1].text == "(":
+        for swapped in _swaps(source, tokens, i + 1):
+            yield "argument", _bracket(source, tokens, i + 1), swapped
     statement = _statement(source, tokens, i)
     if statement:
-        yield statement, ""
+        yield "statement", statement, ""
+        for new in _fewer_targets(statement):
+            yield "reset", statement, new
+
+
+def _is_constant(tokens: Sequence[_Token], i: int) -> bool:
+    """Whether token `i` is a named constant that is used, not the length of an array that is declared."""
+    token, before, behind = tokens[i], tokens[i - 1], tokens[i + 1]
+    if token.kind != "word" or not _CONSTANT.match(token.text) or token.text == "NULL" or behind.text == "(":
+        return False
+    declares = before.text == "[" and behind.text == "]" and tokens[i - 2].kind == "word" and (
+        tokens[i - 3].kind == "word" and tokens[i - 3].text not in _KEYWORDS)
+    return not declares
+
+
+def _arguments(source: str, tokens: Sequence[_Token], i: int) -> List[Tuple[int, int]]:
+    """Where each argument of the bracket that token `i` opens begins and ends."""
+    depth, begin, found = 0, i + 1, []  # type: int, int, List[Tuple[int, int]]
+    for j in range(i, len(tokens)):
+        text = tokens[j].text
+        depth += (text in "([{") - (text in ")]}")
+        if depth == 0 or (depth == 1 and text == ","):
+            if j > begin:
+                found.append((tokens[begin].start, tokens[j - 1].start + len(tokens[j - 1].text)))
+            begin = j + 1
+        if depth == 0:
+            break
+    return found
+
+
+def _swaps(source: str, tokens: Sequence[_Token], i: int) -> Iterator[str]:
+    """The bracket that token `i` opens with two neighbours among its arguments swapped."""
+    bracket, start = _bracket(source, tokens, i), tokens[i].start
+    arguments = _arguments(source, tokens, i)
+    for (a, b), (c, d) in zip(arguments, arguments[1:]):
+        if source[a:b] != source[c:d]:
+            yield (bracket[: a - start] + source[c:d] + bracket[b - start : c - start] + source[a:b]
+                   + bracket[d - start :])
+
+
+def _fewer_targets(statement: str) -> Iterator[str]:
+    """A statement that assigns one value to several, without one of these."""
+    parts = re.split(r"(?<![=!<>+\-*/%&|^])=(?!=)", statement)
+    if len(parts) > 2 and "(" not in "".join(parts[:-1]):
+        for k in range(len(parts) - 1):
+            yield "=".join(parts[:k] + parts[k + 1 :]).strip()
 
 
 def _is_cast(tokens: Sequence[_Token], i: int) -> bool:
@@ -142,20 +202,23 @@ def _bracket(source: str, tokens: Sequence[_Token], i: int) -> str:
 
 
 def mutants(path: Path) -> List[Mutant]:
-    """All changes of the functions of a file."""
+    """All changes of the functions of a file, and of the numbers that it gives names."""
     source = path.read_text(encoding="utf-8")
     tokens, found, seen = _tokens(source), [], {}  # type: List[_Token], List[Mutant], Dict[str, int]
+    places = [(match.start(1), "constant", match.group(1), new) for match in _DEFINITION.finditer(source)
+              for new in _number_changes(match.group(1))]
     for begin, end in _bodies(tokens):
         for i in range(begin + 1, end):
-            for old, new in _changes(source, tokens, i):
-                start = tokens[i + 1].start if old.startswith("(") else tokens[i].start
-                line = source.count("\n", 0, start) + 1
-                text = " ".join(source.splitlines()[line - 1].split())
-                key = f"{path.name} | {text} | {_brief(old)} -> {_brief(new)}"
-                seen[key] = seen.get(key, 0) + 1
-                if seen[key] > 1:
-                    key += f" ({seen[key]})"
-                found.append(Mutant(path.name, start, old, new, line, key))
+            for kind, old, new in _changes(source, tokens, i):
+                places.append((tokens[i + 1].start if old.startswith("(") else tokens[i].start, kind, old, new))
+    for start, kind, old, new in places:
+        line = source.count("\n", 0, start) + 1
+        text = " ".join(source.splitlines()[line - 1].split())
+        key = f"{path.name} | {text} | {_brief(old)} -> {_brief(new)}"
+        seen[key] = seen.get(key, 0) + 1
+        if seen[key] > 1:
+            key += f" ({seen[key]})"
+        found.append(Mutant(path.name, start, old, new, line, key, kind))
     return found
 
 

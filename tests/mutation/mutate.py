@@ -1,8 +1,9 @@
 """Changes the library in small ways and says which changes no test notices.
 
     python3 tests/mutation/mutate.py --build build/mutate [--count 300] [--seed 1] [--jobs 2] [--survivors] [--list]
+                                     [--kinds argument constant reset] [--files units.c]
 
-Each mutant is one change of one operator, number, condition or statement in lib/ (mutants.py), chosen by a seed. It is
+Each mutant is one change in lib/, of one of the kinds that mutants.py names, chosen by a seed. It is
 compiled with sanitizers, and the C suites, the conformance streams and the device tests run on it, the file's own suite
 first and then the fastest first, until one fails or hangs: then it is killed. A mutant whose optimised
 code is that of the library is no mutant, and another takes its place. Those that survive everything, and no others of
@@ -27,7 +28,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence
 
-from mutants import Mutant, chosen, mutants
+from mutants import KINDS, Mutant, chosen, mutants
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -43,8 +44,9 @@ BUILDS = {"default": [], "lag": ["-DLABIAL_LAG=40", "-DLABIAL_WINDOW=15"],
 #: Suites whose verdict depends on the limits, for all builds but the first.
 LIMITED = ("test_units", "test_contact", "test_viterbi", "test_trajectory", "test_stream", "test_stream_delay",
            "test_stream_errors", "test_stream_steps")
-#: With fewer rounds of what repeats with other numbers (tests/c/fixture.h).
-FLAGS = ["-std=c99", "-O1", "-g0", "-fPIC", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
+#: With fewer rounds of what repeats with other numbers (tests/c/fixture.h); a mutant of other types is none.
+FLAGS = ["-Werror=int-conversion", "-Werror=incompatible-pointer-types",
+         "-std=c99", "-O1", "-g0", "-fPIC", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
          "-DLABIAL_TEST_SHARE=10"]
 INCLUDES = [f"-I{ROOT / folder}" for folder in ("include", "lib/models", "lib", "tests/c", "tests/conformance",
                                                 "tests/device", "tests/device/stand_in/src", "boards")]
@@ -216,12 +218,14 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="mutants at a time")
     parser.add_argument("--compiler", default=os.environ.get("CC", "cc"))
     parser.add_argument("--cmocka", nargs=2, metavar=("INCLUDE", "LIBRARY"), help="where cmocka is, if not installed")
+    parser.add_argument("--kinds", nargs="*", choices=KINDS, help="of changes, instead of all")
     parser.add_argument("--files", nargs="*", help="of lib/, instead of all")
     parser.add_argument("--survivors", action="store_true", help="only the mutants in survivors.txt")
     parser.add_argument("--list", action="store_true", help="print the mutants and do nothing")
     options = parser.parse_args()
     files = [path for path in sorted(LIB.glob("*.c")) if not options.files or path.name in options.files]
-    candidates = chosen([mutant for path in files for mutant in mutants(path)], options.seed)
+    candidates = chosen([mutant for path in files for mutant in mutants(path)
+                         if not options.kinds or mutant.kind in options.kinds], options.seed)
     known = known_survivors()
     if options.survivors:
         candidates = [mutant for mutant in candidates if mutant.key in known]
