@@ -106,7 +106,7 @@ static void members_of_the_model(void **state)
     model.kernel_taps = 0;
 #define TRY_OTHER(member, least, most)                                                                                 \
     if (strcmp(#member, "silence") != 0 && strcmp(#member, "kernel_behind") != 0)                                      \
-        TRY_ALL(member, least, most)
+    TRY_ALL(member, least, most)
     ASSUMED_OF_MODEL(TRY_OTHER)
 }
 

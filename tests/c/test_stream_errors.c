@@ -336,118 +336,6 @@ static void too_many_models_are_refused_until_ticks_make_room(void **state)
     fixture_close(&host);
 }
 
-/* ---- Calls from the callback ---- */
-
-#define REENTRY_FRAMES 400
-
-typedef struct {
-    labial_t *stream;
-    const fixture_phoneme_t *input;
-    size_t count, next;
-    int nested; /* tick from the callback */
-    uint32_t frames;
-    int16_t faps[REENTRY_FRAMES][LABIAL_CHANNELS];
-} caller_t;
-
-static void feed(caller_t *caller)
-{
-    while (caller->next < caller->count && labial_room(caller->stream) > 0) {
-        const fixture_phoneme_t *p = &caller->input[caller->next++];
-        assert_int_equal(labial_push(caller->stream, p->phoneme, p->ms), LABIAL_OK);
-    }
-    if (caller->next == caller->count)
-        assert_int_equal(labial_end(caller->stream), LABIAL_OK);
-}
-
-static void record_and_call(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
-{
-    caller_t *caller = (caller_t *)user;
-    assert_int_equal(frame, caller->frames);
-    assert_true(frame < REENTRY_FRAMES);
-    memcpy(caller->faps[caller->frames++], faps, sizeof caller->faps[0]);
-    assert_int_equal(labial_latency(caller->stream).delay, LABIAL_DELAY(FIXTURE_STRIDE));
-    if (caller->nested == 0)
-        return;
-    feed(caller);
-    assert_int_equal(labial_use(caller->stream, &rich.model),
-                     caller->next == caller->count ? LABIAL_ERROR_STATE : LABIAL_OK);
-    if (frame % 3 == 0)
-        (void)labial_tick(caller->stream);
-}
-
-static uint32_t play_with_calls(caller_t *caller, int nested)
-{
-    static labial_t stream;
-    static uint32_t workspace[LABIAL_WORKSPACE_SIZE(FIXTURE_STRIDE) / 4];
-    int result;
-    memset(caller, 0, sizeof *caller);
-    caller->stream = &stream;
-    caller->input = input;
-    caller->count = 30;
-    caller->nested = nested;
-    assert_int_equal(labial_init(&stream, &rich.model, workspace, sizeof workspace, record_and_call, caller),
-                     LABIAL_OK);
-    do {
-        if (!nested || caller->frames == 0)
-            feed(caller);
-        result = labial_tick(&stream);
-        assert_true(result >= 0);
-    } while (result != LABIAL_DONE);
-    return caller->frames;
-}
-
-/* Pushing, ending and ticking from the callback: the same frames, numbered in order. Would catch a tick that works on after
- * its callback with what the callback changed. */
-static void the_callback_may_push_end_and_tick(void **state)
-{
-    static caller_t straight, nested;
-    (void)state;
-    fixture_stream(input, 30, FIXTURE_RANDOM, 77);
-    assert_int_equal(play_with_calls(&straight, 0), play_with_calls(&nested, 1));
-    assert_true(straight.frames > 100);
-    assert_memory_equal(straight.faps, nested.faps, sizeof straight.faps);
-}
-
-static void cancel_and_restart(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
-{
-    caller_t *caller = (caller_t *)user;
-    (void)faps;
-    assert_int_equal(frame, caller->frames);
-    caller->frames++;
-    if (frame == 20)
-        assert_int_equal(labial_cancel(caller->stream, 200), LABIAL_OK);
-    else if (frame > 20 && caller->next == 0) {
-        assert_int_equal(labial_push(caller->stream, 1, 100), LABIAL_ERROR_STATE);
-        if (labial_restart(caller->stream) ==
-            LABIAL_OK) { /* after the last frame of the way to neutral, in its callback */
-            assert_int_equal(frame, 20 + 200 * FIXTURE_RATE / 1000);
-            caller->next = 1;
-            assert_int_equal(labial_push(caller->stream, 1, 400), LABIAL_OK);
-            assert_int_equal(labial_end(caller->stream), LABIAL_OK);
-        }
-    }
-}
-
-static void the_callback_may_cancel_and_restart(void **state)
-{
-    static labial_t stream;
-    static uint32_t workspace[LABIAL_WORKSPACE_SIZE(FIXTURE_STRIDE) / 4];
-    static caller_t caller;
-    int result;
-    (void)state;
-    memset(&caller, 0, sizeof caller);
-    caller.stream = &stream;
-    assert_int_equal(labial_init(&stream, &rich.model, workspace, sizeof workspace, cancel_and_restart, &caller),
-                     LABIAL_OK);
-    assert_int_equal(labial_push(&stream, 1, 2000), LABIAL_OK);
-    assert_int_equal(labial_end(&stream), LABIAL_OK);
-    do
-        result = labial_tick(&stream);
-    while (result >= 0 && result != LABIAL_DONE);
-    assert_int_equal(result, LABIAL_DONE);
-    assert_int_equal(caller.frames, 21 + 200 * FIXTURE_RATE / 1000 + 400 * FIXTURE_RATE / 1000);
-}
-
 #if LABIAL_MODELS == 2 && LABIAL_QUEUE >= 4
 /* A model that was chosen and not used makes room at once, and so does one whose phonemes never came. Would catch a place
  * that is kept for no phoneme, and a frame that was never taken counted as the first model's. */
@@ -496,8 +384,6 @@ int main(void)
         cmocka_unit_test(workspace_sizes_agree),
         cmocka_unit_test(memory_beside_the_workspace_is_untouched),
         cmocka_unit_test(too_many_models_are_refused_until_ticks_make_room),
-        cmocka_unit_test(the_callback_may_push_end_and_tick),
-        cmocka_unit_test(the_callback_may_cancel_and_restart),
 #if LABIAL_MODELS == 2 && LABIAL_QUEUE >= 4
         cmocka_unit_test(models_that_nothing_was_pushed_of_make_room),
 #endif
