@@ -17,7 +17,7 @@
     X(predecessors, 1, LABIAL_STATES_MAX)                                                                              \
     X(search_stride, 1, LABIAL_SEARCH_STRIDE_MAX)                                                                      \
     X(silence, 0, LABIAL_PHONEMES_MAX - 1)                                                                             \
-    X(mixture_mean, 0, 1)                                                                                                      \
+    X(mixture_mean, 0, 1)                                                                                              \
     X(kernel_taps, 0, LABIAL_KERNEL_TAPS_MAX)                                                                          \
     X(kernel_stride, 0, 255)                                                                                           \
     X(kernel_behind, 0, LABIAL_KERNEL_TAPS_MAX - 1)                                                                    \
