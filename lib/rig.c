@@ -31,6 +31,22 @@ static int closing_is_sound(const labial_rig_output_t *output)
     return output->closed == 0;
 }
 
+static int curve_is_sound(const labial_rig_curve_t *curve)
+{
+    unsigned i;
+    if (!curve)
+        return 1;
+    if (curve->count < 1 || curve->count > LABIAL_RIG_SEGMENTS)
+        return 0;
+    for (i = 0; i < curve->count; i++) {
+        const labial_rig_segment_t *segment = &curve->segments[i];
+        if (!within(segment->from, LABIAL_RIG_VALUE_MAX) || !within(segment->to, LABIAL_RIG_VALUE_MAX) ||
+            !within(segment->slope, LABIAL_RIG_SLOPE_MAX) || (i > 0 && segment->from <= segment[-1].from))
+            return 0;
+    }
+    return 1;
+}
+
 static int output_is_sound(const labial_rig_output_t *output)
 {
     int32_t sum = 0;
@@ -41,7 +57,8 @@ static int output_is_sound(const labial_rig_output_t *output)
            within(output->neutral, LABIAL_RIG_VALUE_MAX) && within(output->minimum, LABIAL_RIG_VALUE_MAX) &&
            within(output->maximum, LABIAL_RIG_VALUE_MAX) && output->minimum <= output->maximum && output->slew >= 0 &&
            output->slew <= LABIAL_RIG_VALUE_MAX && output->deadband >= 0 && output->deadband <= LABIAL_RIG_VALUE_MAX &&
-           output->invert <= 1 && closing_is_sound(output);
+           output->acceleration >= 0 && output->acceleration <= LABIAL_RIG_VALUE_MAX && output->invert <= 1 &&
+           closing_is_sound(output) && curve_is_sound(output->curve);
 }
 
 /* value within the output's limits; the maximum where a table that was not checked has them crossed. */
@@ -69,6 +86,18 @@ static int32_t contact(const int16_t faps[LABIAL_CHANNELS])
     return apart * (CONTACT_ONE / (LABIAL_RIG_APART - LABIAL_RIG_TOUCHING));
 }
 
+/* A curve's value; `linear` beyond what any table means counts as that. */
+static int32_t bent(const labial_rig_curve_t *curve, int32_t linear)
+{
+    const labial_rig_segment_t *segment = curve->segments;
+    unsigned i;
+    linear = labial_clamp(linear, LABIAL_RIG_VALUE_MAX);
+    for (i = 1; i < LABIAL_RIG_SEGMENTS && i < curve->count && linear >= curve->segments[i].from; i++)
+        segment = &curve->segments[i];
+    /* Below 2^25 units times 2^25, Q20: the sum stays below 2^31. */
+    return labial_add(segment->to, scaled(labial_sub(linear, segment->from), segment->slope, 20));
+}
+
 static int32_t target(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS])
 {
     /* Q12 FAP. The weights' limit keeps it within 65,535 * 2^15, below 2^31; the gain's limit then keeps the product of
@@ -78,7 +107,8 @@ static int32_t target(const labial_rig_output_t *output, const int16_t faps[LABI
     for (i = 0; i < LABIAL_CHANNELS; i++)
         mix = labial_add(mix, (int32_t)output->weights[i] * faps[i]);
     move = labial_clamp(scaled(mix, output->gain, 28), MOVE_MAX);
-    value = limited(output, labial_add(output->neutral, output->invert ? -move : move));
+    value = labial_add(output->neutral, output->invert ? -move : move);
+    value = limited(output, output->curve ? bent(output->curve, value) : value);
     if (output->contact) /* both values are within the limits, and so is what lies between them */
         value = limited(output, labial_add(value, scaled(labial_sub(output->closed, value), contact(faps), 24)));
     return value;
@@ -95,14 +125,18 @@ int labial_rig_check(const labial_rig_t *rig)
     return rig->count > 0 ? LABIAL_OK : LABIAL_ERROR_RIG;
 }
 
+static int32_t at_rest(const labial_rig_output_t *output)
+{
+    return limited(output, output->contact ? output->closed : output->neutral);
+}
+
 int labial_rig_rest(const labial_rig_t *rig, int32_t *values)
 {
     unsigned i;
     if (!rig || !rig->outputs || !values)
         return LABIAL_ERROR_NULL;
     for (i = 0; i < rig->count; i++)
-        values[i] =
-            limited(&rig->outputs[i], rig->outputs[i].contact ? rig->outputs[i].closed : rig->outputs[i].neutral);
+        values[i] = at_rest(&rig->outputs[i]);
     return LABIAL_OK;
 }
 
@@ -127,27 +161,173 @@ static int32_t moved(const labial_rig_output_t *output, int32_t last, int32_t wa
     return wanted;
 }
 
-int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values)
+int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values)
+{
+    unsigned i;
+    if (!rig || !rig->outputs || !faps || !values)
+        return LABIAL_ERROR_NULL;
+    for (i = 0; i < rig->count; i++) {
+        const labial_rig_output_t *output = &rig->outputs[i];
+        values[i] = moved(output, limited(output, values[i]), target(output, faps));
+    }
+    return LABIAL_OK;
+}
+
+/* ---- Limits of acceleration -------------------------------------------------------------------------------------- */
+
+/* What lies ahead of an output. Upwards: what is below is asked of the mirrored values. */
+typedef struct {
+    int32_t wanted[LABIAL_RIG_SIGHT];  /* units, of this frame and those that follow */
+    int32_t highest[LABIAL_RIG_SIGHT]; /* units: from where it can still come to rest at what is wanted in each of them */
+    unsigned count;                    /* of frames, 1 or more; as in the last one it goes on */
+    int32_t rest;                      /* units: the place that the value may always go to */
+    int32_t speed, acceleration;       /* units per frame, and per frame and frame; both positive */
+} sight_t;
+
+/* From a place that is `room` above a target, speeding up for k frames is slowing down for k frames seen backwards. */
+static void look_up(sight_t *sight)
+{
+    unsigned i, k;
+    for (i = 0; i < sight->count; i++) {
+        int32_t room = 0, step = 0, lowest = INT32_MAX;
+        for (k = i; k < sight->count; k++) {
+            const int32_t above = sight->wanted[k] > sight->rest ? sight->wanted[k] : sight->rest;
+            const int32_t most = labial_add(above, room);
+            lowest = most < lowest ? most : lowest;
+            step = labial_add(step, sight->acceleration);
+            step = step > sight->speed ? sight->speed : step;
+            room = labial_add(room, step);
+            room = room > ROOM_MAX ? ROOM_MAX : room;
+        }
+        sight->highest[i] = lowest;
+    }
+}
+
+/* Whether a value that goes on from `value` by `change`, and by less from then on, goes nowhere above what is ahead. */
+static int stays_below(const sight_t *sight, int32_t value, int32_t change)
+{
+    unsigned i;
+    for (i = 0;; i++) {
+        value = labial_add(value, change);
+        if (value > sight->highest[i < sight->count ? i : sight->count - 1u])
+            return 0;
+        if (i + 1u >= sight->count && change <= 0)
+            return 1;
+        change = labial_sub(change, sight->acceleration);
+        change = change < -sight->speed ? -sight->speed : change;
+    }
+}
+
+/* The change that is nearest to `change` and stays below what is ahead; `least` where none does. */
+static int32_t not_above(const sight_t *sight, int32_t value, int32_t change, int32_t least)
+{
+    int32_t low = least, high = change;
+    if (stays_below(sight, value, change) || !stays_below(sight, value, least))
+        return stays_below(sight, value, change) ? change : least;
+    while (labial_sub(high, low) > 1) {
+        const int32_t middle = low + labial_sub(high, low) / 2;
+        if (stays_below(sight, value, middle))
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void mirror(sight_t *sight)
+{
+    unsigned i;
+    for (i = 0; i < sight->count; i++)
+        sight->wanted[i] = labial_sub(0, sight->wanted[i]);
+    sight->rest = labial_sub(0, sight->rest);
+}
+
+/* The next change of a value that stands at `last` and changed by `change`. What keeps it from crossing the place of
+ * rest has the last word: where it cannot be both in time and slow enough it is late. */
+static int32_t steered(sight_t *sight, int32_t last, int32_t change, int32_t deadband)
+{
+    const int flip = last < sight->rest;
+    int32_t least, most, next;
+    if (flip) {
+        mirror(sight);
+        last = labial_sub(0, last);
+        change = labial_sub(0, change);
+    }
+    change = labial_clamp(change, sight->speed);
+    least = labial_clamp(labial_sub(change, sight->acceleration), sight->speed);
+    most = labial_clamp(labial_add(change, sight->acceleration), sight->speed);
+    next = labial_sub(sight->wanted[0], last);
+    if (next < deadband && next > -deadband)
+        next = 0;
+    next = next < least ? least : next > most ? most : next;
+    look_up(sight);
+    next = not_above(sight, last, next, least);
+    mirror(sight);
+    look_up(sight);
+    next = -not_above(sight, labial_sub(0, last), -next, -most);
+    return flip ? -next : next;
+}
+
+static int32_t clipped(int32_t value, int32_t low, int32_t high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values,
+                           int32_t *changes)
 {
     unsigned i, until = 0, k;
+    sight_t sight;
     if (!rig || !rig->outputs || !frames || !values || count == 0)
         return LABIAL_ERROR_NULL;
     while (until < count && contact(frames + (size_t)LABIAL_CHANNELS * until) < CONTACT_ONE)
         until++;
     for (i = 0; i < rig->count; i++) {
         const labial_rig_output_t *output = &rig->outputs[i];
-        int32_t wanted = target(output, frames), room = 0;
-        if (output->contact && output->slew > 0 && until < count) {
-            for (k = 0; k < until && room < ROOM_MAX; k++)
-                room = labial_add(room, output->slew);
-            wanted = towards_closed(output, wanted, room);
+        const int32_t last = limited(output, values[i]);
+        if (changes && output->acceleration > 0) {
+            sight.count = count < LABIAL_RIG_SIGHT ? count : LABIAL_RIG_SIGHT;
+            for (k = 0; k < sight.count; k++)
+                sight.wanted[k] = target(output, frames + (size_t)LABIAL_CHANNELS * k);
+            sight.rest = at_rest(output);
+            sight.acceleration = clipped(output->acceleration, 1, LABIAL_RIG_VALUE_MAX);
+            sight.speed = clipped(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX, 1,
+                                  LABIAL_RIG_SIGHT * sight.acceleration);
+            values[i] = limited(output, labial_add(last, steered(&sight, last, changes[i], output->deadband)));
+        } else {
+            int32_t wanted = target(output, frames), room = 0;
+            if (output->contact && output->slew > 0 && until < count) {
+                for (k = 0; k < until && room < ROOM_MAX; k++)
+                    room = labial_add(room, output->slew);
+                wanted = towards_closed(output, wanted, room);
+            }
+            values[i] = moved(output, last, wanted);
         }
-        values[i] = moved(output, limited(output, values[i]), wanted);
+        if (changes)
+            changes[i] = labial_sub(values[i], last);
     }
     return LABIAL_OK;
 }
 
-int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values)
+int labial_rig_delayed(const labial_rig_t *rig, labial_rig_delay_t *delay, const int16_t *faps, int32_t *values,
+                       int32_t *changes)
 {
-    return labial_rig_apply_ahead(rig, faps, 1, values);
+    size_t i, kept;
+    int result;
+    if (!rig || !rig->outputs || !delay || !delay->frames || !values)
+        return LABIAL_ERROR_NULL;
+    if (delay->held > delay->ahead) /* set by a fault: not beyond the frames' end */
+        delay->held = delay->ahead;
+    if (faps) {
+        for (i = 0; i < LABIAL_CHANNELS; i++)
+            delay->frames[(size_t)LABIAL_CHANNELS * delay->held + i] = faps[i];
+        if (delay->held++ < delay->ahead)
+            return LABIAL_WAITING;
+    } else if (delay->held == 0)
+        return LABIAL_DONE;
+    result = labial_rig_apply_ahead(rig, delay->frames, delay->held, values, changes);
+    kept = (size_t)LABIAL_CHANNELS * --delay->held;
+    for (i = 0; i < kept; i++)
+        delay->frames[i] = delay->frames[i + LABIAL_CHANNELS];
+    return result;
 }

@@ -3,19 +3,19 @@
  */
 #include "vrm.h"
 
-/* weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband */
+/* weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband, acceleration, curve */
 static const labial_rig_output_t outputs[3] = {
     /* aa: 1.11301 per FAP unit of (-0.066 open_jaw -0.489 lower_t_midlip_o -1 raise_b_midlip_o) */
     { { -541, 0, 0, -4006, -8192, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 36471, -107, 0, 1000, 0, 0, 0 },
+      0, 0, 36471, -107, 0, 1000, 0, 0, 0, 0, 0 },
     /* ih: 3.31895 per FAP unit of (-1 lower_t_midlip_o -0.064 stretch_l_cornerlip_o -0.064
      * stretch_r_cornerlip_o) */
     { { 0, 0, 0, -16384, 0, -1049, -1049, 0, 0, 0, 0, 0, 0 },
-      0, 0, 54378, 0, 0, 1000, 0, 0, 0 },
+      0, 0, 54378, 0, 0, 1000, 0, 0, 0, 0, 0 },
     /* ou: 2.44115 per FAP unit of (+1 push_t_lip +0.2 raise_b_midlip_o -0.4 stretch_l_cornerlip_o -0.4
      * stretch_r_cornerlip_o) */
     { { 0, 0, 16384, 0, 3277, -6554, -6554, 0, 0, 0, 0, 0, 0 },
-      0, 0, 39996, -120, 0, 1000, 0, 0, 0 }
+      0, 0, 39996, -120, 0, 1000, 0, 0, 0, 0, 0 }
 };
 
 const labial_rig_t vrm = { outputs, 3 };

@@ -12,9 +12,10 @@
  * moving servos. For each output, with f the 13 FAPs:
  *
  *     move   = gain * (weights[0] * f[0] + ... + weights[12] * f[12])    rounded to the nearest, halves up
- *     target = neutral + move, or neutral - move when inverted           within minimum .. maximum
+ *     linear = neutral + move, or neutral - move when inverted
+ *     target = curve(linear), or linear without a curve                  within minimum .. maximum
  *     wanted = target + contact * (closed - target), where the output says where it is closed; else the target
- *     value  = wanted, or as near to it as `slew` lets the last value come; the last one where `deadband` keeps it
+ *     value  = wanted, or as near to it as `slew` and `acceleration` let it come; the last one where `deadband` keeps it
  *
  * Contact is 1 where the lips touch, which in p, b, m FAPs say by an opening, -(FAP 51 + FAP 52), of up to
  * LABIAL_RIG_TOUCHING: they follow the outer lips, which are not quite where they rest when the inner ones meet. From
@@ -49,7 +50,8 @@ extern "C" {
 
 #define LABIAL_RIG_WEIGHT_SUM_MAX 65535 /* of the weights' absolute values in one output, Q12 */
 #define LABIAL_RIG_GAIN_MAX 268435455   /* largest absolute gain, Q16: just below 4,096 units per FAP unit */
-#define LABIAL_RIG_VALUE_MAX 16777215   /* largest absolute neutral, minimum, maximum, closed, slew, deadband */
+#define LABIAL_RIG_VALUE_MAX 16777215   /* largest absolute neutral, limit, closed, slew, acceleration, deadband */
+#define LABIAL_RIG_SLOPE_MAX 33554432   /* largest absolute slope of a curve, Q20: 32 units per unit */
 
 /* ---- Tables ------------------------------------------------------------------------------------------------------ */
 
@@ -66,7 +68,23 @@ extern "C" {
 #define LABIAL_RIG_TOUCHING 72
 #define LABIAL_RIG_APART 136
 
-/* One output. 56 bytes. */
+/* Segments of a curve at most. */
+#define LABIAL_RIG_SEGMENTS 8
+
+/* A straight part of a curve: to + slope * (linear - from). */
+typedef struct {
+    int32_t from;  /* units: where it begins, above the previous one's; the first one holds below it as well */
+    int32_t to;    /* units: its value there */
+    int32_t slope; /* Q20: units per unit */
+} labial_rig_segment_t;
+
+/* What a linkage needs to move evenly: equal steps of a servo do not open a mouth by equal steps. 100 bytes. */
+typedef struct {
+    uint16_t count; /* of its segments, 1 .. LABIAL_RIG_SEGMENTS */
+    labial_rig_segment_t segments[LABIAL_RIG_SEGMENTS];
+} labial_rig_curve_t;
+
+/* One output. 64 bytes where a pointer has 4. */
 typedef struct {
     int16_t weights[LABIAL_CHANNELS]; /* Q12, in the order of labial_fap_numbers (labial/faps.h) */
     uint8_t invert;                   /* 1 when the output moves the other way, else 0 */
@@ -79,6 +97,10 @@ typedef struct {
     int32_t closed;                   /* units: the value where lips touch, minimum <= closed <= maximum; 0 without
                                        * `contact` */
     int32_t deadband;                 /* units: the value stays where it would change by less than this; 0 for none */
+    int32_t acceleration;             /* units per frame, per frame: by how much more or less a value changes than in
+                                       * the frame before, at most; 0 for no limit. What takes more than LABIAL_RIG_SIGHT
+                                       * frames to get up to `slew` stays slower */
+    const labial_rig_curve_t *curve;  /* NULL for none */
 } labial_rig_output_t;
 
 /* A rig: `count` outputs, 1 or more. */
@@ -99,15 +121,16 @@ typedef struct {
     {                                                                                                                  \
         { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 1,                                   \
             LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open),   \
-            (closed) < (open) ? (open) : (closed), 0, (closed), 0                                                      \
+            (closed) < (open) ? (open) : (closed), 0, (closed), 0, 0, 0                                                      \
     }
 
 /* ---- Calls ------------------------------------------------------------------------------------------------------- */
 
 /*
  * Checks that a table is within the limits above: at least one output, weights, gain, neutral, minimum, maximum,
- * closed, slew and deadband within their ranges, minimum <= maximum, slew >= 0, deadband >= 0, `invert` and `contact`
- * 0 or 1; closed within minimum .. maximum with contact, 0 without.
+ * closed, slew, acceleration and deadband within their ranges, minimum <= maximum, slew, acceleration and deadband not
+ * below 0, `invert` and `contact` 0 or 1; closed within minimum .. maximum with contact, 0 without; a curve's segments
+ * in their number, order and ranges.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_RIG.
  */
@@ -127,24 +150,55 @@ int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
  * converts values stores the converted ones elsewhere. A value beyond its output's limits counts as the limit.
  *
  * Call it once per frame, for the slew limit counts in frames. Sums saturate nowhere within the limits of a checked
- * table; a move beyond +-2^30 counts as +-2^30, which every limit is far below.
+ * table; a move beyond +-2^30 counts as +-2^30, which every limit is far below. A limit of acceleration is not kept: it
+ * needs to know how fast an output moves (labial_rig_apply_ahead()).
  *
  * Returns LABIAL_OK or LABIAL_ERROR_NULL.
  */
 int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values);
 
+/* Frames that are looked at where an output has a limit of acceleration, this one included. */
+#define LABIAL_RIG_SIGHT 32
+
 /*
  * The same for a program that knows the frames that follow: `frames` are `count` frames of LABIAL_CHANNELS values, this
- * one first. An output that says where it is closed and has a limit of speed sets out early enough to be closed where
- * the lips touch, which a limit alone does not: of the frames in sight the first in which they touch decides how far
- * off the value may still be. With one frame it is labial_rig_apply().
+ * one first. `changes` are the caller's, one for each output: by how much its value changed in the last frame, 0 before
+ * the first; NULL where limits of acceleration need not be kept.
  *
- * A program that plays a stream keeps the last few frames that were delivered and shows the oldest: so it is late by as
- * many frames as it looks ahead, and delays the sound by as much. `labial bake` looks ahead without an end.
+ * An output that says where it is closed and has a limit of speed sets out early enough to be closed where the lips
+ * touch, which a limit alone does not: of the frames in sight the first in which they touch decides how far off the
+ * value may still be. An output that has a limit of acceleration, too, sets out so early that it also comes to rest
+ * there: it is never further from where it is closed (or from neutral, where it does not say that) than it is to be in
+ * any of the frames that it can still stop for, and so goes beyond none of them. It does so however few frames are in
+ * sight, and is late then.
+ *
+ * A program that plays a stream shows frames as many frames late as it looks ahead (labial_rig_delayed()).
+ * `labial bake` looks ahead without an end.
  *
  * Returns LABIAL_OK or LABIAL_ERROR_NULL, also for a count of 0.
  */
-int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values);
+int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values,
+                           int32_t *changes);
+
+/* Frames of a stream that wait to be shown. */
+typedef struct {
+    int16_t *frames; /* the caller's, LABIAL_CHANNELS * (ahead + 1) of them */
+    uint16_t ahead;  /* how many frames are looked ahead: by as many the face is late, and the sound is to be delayed */
+    uint16_t held;   /* 0 at first */
+} labial_rig_delay_t;
+
+/*
+ * labial_rig_apply_ahead() for a stream, in its frame callback: takes in a frame that was delivered, and moves `values`
+ * on by the frame that is `ahead` frames older. At the end `faps` is NULL, once for each frame that is still to be
+ * shown.
+ *
+ * It takes 26 bytes for each of ahead + 1 frames, and 4 for each of the changes; 10 frames are 200 ms and 286 bytes.
+ *
+ * Returns LABIAL_OK when `values` are those of a frame, LABIAL_WAITING when the first frames are still being taken in,
+ * LABIAL_DONE when all have been shown, or LABIAL_ERROR_NULL.
+ */
+int labial_rig_delayed(const labial_rig_t *rig, labial_rig_delay_t *delay, const int16_t *faps, int32_t *values,
+                       int32_t *changes);
 
 #ifdef __cplusplus
 }

@@ -274,35 +274,174 @@ static void looking_ahead_closes_in_time(void **state)
         static const int32_t wanted[12] = { 1440, 1480, 1520, 1560, 1560, 1520, 1480, 1440, 1400, 1440, 1480, 1520 };
         const int32_t last = seeing;
         labial_rig_apply(&rig, frames[i], &blind);
-        assert_int_equal(labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(12 - i), &seeing), LABIAL_OK);
+        assert_int_equal(labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(12 - i), &seeing, NULL), LABIAL_OK);
         assert_int_equal(seeing, wanted[i]);
         assert_true(seeing - last <= 40 && last - seeing <= 40);
         if (i == 8)
             assert_int_equal(blind, 1560);
     }
     value = 1600; /* out of reach: as fast as it goes */
-    labial_rig_apply_ahead(&rig, frames[6], 3, &value);
+    labial_rig_apply_ahead(&rig, frames[6], 3, &value, NULL);
     assert_int_equal(value, 1560);
     value = 1600; /* not in sight */
-    labial_rig_apply_ahead(&rig, frames[6], 2, &value);
+    labial_rig_apply_ahead(&rig, frames[6], 2, &value, NULL);
     assert_int_equal(value, 1600);
     output.slew = 0; /* no limit: nothing to be early for */
     value = 1500;
-    labial_rig_apply_ahead(&rig, frames[7], 2, &value);
+    labial_rig_apply_ahead(&rig, frames[7], 2, &value, NULL);
     assert_int_equal(value, 1600);
     output.slew = 40, output.contact = 0, output.closed = 0;
     value = 1600;
-    labial_rig_apply_ahead(&rig, frames[7], 2, &value);
+    labial_rig_apply_ahead(&rig, frames[7], 2, &value, NULL);
     assert_int_equal(value, 1600);
     /* From below as from above; and far ahead, where the room is as large as can be. */
     output.contact = 1, output.closed = 2000, output.slew = LABIAL_RIG_VALUE_MAX;
     value = 1600;
-    labial_rig_apply_ahead(&rig, frames[0], 12, &value);
+    labial_rig_apply_ahead(&rig, frames[0], 12, &value, NULL);
     assert_int_equal(value, 1600);
     output.slew = 150;
-    labial_rig_apply_ahead(&rig, frames[7], 2, &value);
+    labial_rig_apply_ahead(&rig, frames[7], 2, &value, NULL);
     assert_int_equal(value, 1750); /* wanted 1850, 150 short of 2000 */
-    assert_int_equal(labial_rig_apply_ahead(&rig, frames[0], 0, &value), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply_ahead(&rig, frames[0], 0, &value, NULL), LABIAL_ERROR_NULL);
+}
+
+/* By hand: a linkage that opens by half of what is wanted at first, then by twice as much. */
+static void curve_bends(void **state)
+{
+    static const labial_rig_curve_t curve = { 2, { { 1500, 1500, 1 << 19 }, { 1700, 1600, 1 << 21 } } };
+    labial_rig_output_t output = plain();
+    (void)state;
+    output.curve = &curve;
+    assert_int_equal(moved(&output, 1500, 100), 1550);
+    assert_int_equal(moved(&output, 1500, 101), 1551); /* 50.5 goes up */
+    assert_int_equal(moved(&output, 1500, 199), 1600);
+    assert_int_equal(moved(&output, 1500, 200), 1600);
+    assert_int_equal(moved(&output, 1500, 300), 1800);
+    assert_int_equal(moved(&output, 1500, 401), 2000); /* the limit is that of what comes out */
+    assert_int_equal(moved(&output, 1500, -100), 1450);
+    output.invert = 1;
+    assert_int_equal(moved(&output, 1500, -100), 1550);
+    assert_int_equal(moved(&output, 1500, INT16_MIN), 2000);
+    assert_int_equal(moved(&output, 1500, INT16_MAX), 1000);
+}
+
+/* A servo with a limit of acceleration, on its way down from 1600 to 1400 in the frame 8 with all in sight: it sets out
+ * where it must, comes to rest there and goes no further; with nothing in sight it is late, and does not go beyond. */
+static void acceleration_comes_to_rest(void **state)
+{
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int16_t frames[24][LABIAL_CHANNELS] = { { 0 } };
+    unsigned i, sight;
+    (void)state;
+    output.weights[FAP3] = 0;
+    output.weights[FAP52] = -LABIAL_RIG_ONE;
+    output.neutral = output.closed = output.minimum = 1400;
+    output.contact = 1;
+    output.slew = 60;
+    output.acceleration = 20;
+    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+    for (i = 0; i < 24; i++)
+        frames[i][FAP52] = i < 8 ? -200 : 0;
+    for (sight = 1; sight <= 24; sight++) {
+        int32_t value = 1600, change = 0, arrived = 0;
+        for (i = 0; i < 24; i++) {
+            const int32_t last = value, before = change;
+            const unsigned left = 24u - i;
+            assert_int_equal(labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(sight < left ? sight : left), &value,
+                                                    &change),
+                             LABIAL_OK);
+            assert_int_equal(change, value - last);
+            assert_true(change <= 60 && change >= -60 && change - before <= 20 && before - change <= 20);
+            assert_true(value >= 1400 && value <= 1600);
+            if (value == 1400 && !arrived)
+                arrived = (int32_t)i;
+        }
+        assert_true(arrived > 0 && (sight < 7 || arrived <= 8) && (sight > 1 || arrived > 12));
+    }
+    /* Without changes the limit is not kept, as by labial_rig_apply(). */
+    {
+        int32_t value = 1600;
+        labial_rig_apply_ahead(&rig, frames[8], 1, &value, NULL);
+        assert_int_equal(value, 1540);
+    }
+}
+
+/* Whatever is asked, seen or claimed of the last change, the limits hold. */
+static void acceleration_holds_for_all(void **state)
+{
+    unsigned round, frame, i;
+    (void)state;
+    seed = 5;
+    for (round = 0; round < 300; round++) {
+        labial_rig_output_t output = plain();
+        const labial_rig_t rig = { &output, 1 };
+        int16_t frames[40][LABIAL_CHANNELS];
+        int32_t value, change = 0;
+        const unsigned sight = 1u + chance() % 40u;
+        output.weights[FAP52] = LABIAL_RIG_ONE;
+        output.gain = between(-LABIAL_RIG_GAIN_MAX, LABIAL_RIG_GAIN_MAX) >> chance() % 20u;
+        output.slew = between(0, 400);
+        output.acceleration = between(1, 300) >> chance() % 8u;
+        output.acceleration += !output.acceleration;
+        output.contact = (uint8_t)(chance() % 2u);
+        output.closed = output.contact ? between(output.minimum, output.maximum) : 0;
+        assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+        for (i = 0; i < 40; i++)
+            for (frame = 0; frame < LABIAL_CHANNELS; frame++)
+                frames[i][frame] = (int16_t)between(-400, 400);
+        labial_rig_rest(&rig, &value);
+        for (frame = 0; frame < 40; frame++) {
+            const int32_t last = value, before = change;
+            const unsigned left = 40u - frame;
+            labial_rig_apply_ahead(&rig, frames[frame], (uint16_t)(sight < left ? sight : left), &value, &change);
+            assert_true(value >= output.minimum && value <= output.maximum && change == value - last);
+            assert_true(change - before <= output.acceleration && before - change <= output.acceleration);
+            assert_true(!output.slew || (change <= output.slew && change >= -output.slew));
+        }
+        change = INT32_MIN;
+        value = INT32_MAX;
+        labial_rig_apply_ahead(&rig, frames[0], 40, &value, &change);
+        assert_true(value >= output.minimum && value <= output.maximum);
+    }
+}
+
+/* A stream's frames come out in their order, as late as was asked, with what follows in sight. */
+static void delayed_frames_look_ahead(void **state)
+{
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int16_t frames[30][LABIAL_CHANNELS] = { { 0 } }, kept[6][LABIAL_CHANNELS];
+    labial_rig_delay_t delay = { kept[0], 5, 0 };
+    int32_t values[2], changes[2] = { 0, 0 };
+    unsigned i, shown = 0;
+    (void)state;
+    output.slew = 50;
+    output.acceleration = 15;
+    for (i = 0; i < 30; i++)
+        frames[i][FAP3] = (int16_t)(i % 9u < 5u ? 300 : -100);
+    labial_rig_rest(&rig, &values[0]);
+    labial_rig_rest(&rig, &values[1]);
+    for (i = 0; i < 36; i++) {
+        const int result = labial_rig_delayed(&rig, &delay, i < 30 ? frames[i] : NULL, &values[0], &changes[0]);
+        assert_int_equal(result, i < 5 ? LABIAL_WAITING : i < 35 ? LABIAL_OK : LABIAL_DONE);
+        if (result == LABIAL_OK) {
+            const unsigned left = 30u - shown;
+            labial_rig_apply_ahead(&rig, frames[shown], (uint16_t)(left < 6u ? left : 6u), &values[1], &changes[1]);
+            shown++;
+        }
+        assert_int_equal(values[0], values[1]);
+        assert_int_equal(changes[0], changes[1]);
+    }
+    assert_int_equal(shown, 30);
+    delay.held = 999; /* by a fault */
+    assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], values, changes), LABIAL_OK);
+    assert_int_equal(delay.held, 5);
+    assert_int_equal(labial_rig_delayed(NULL, &delay, frames[0], values, changes), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_delayed(&rig, NULL, frames[0], values, changes), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], NULL, changes), LABIAL_ERROR_NULL);
+    delay.frames = NULL;
+    assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], values, changes), LABIAL_ERROR_NULL);
 }
 
 /* A servo is not asked to move by less than its deadband, and reaches the limit of its speed all the same. */
@@ -430,30 +569,44 @@ static void unchecked_tables_stay_defined(void **state)
     seed = 2;
     for (round = 0; round < 20000; round++) {
         labial_rig_output_t output;
+        labial_rig_curve_t curve;
         const labial_rig_t rig = { &output, 1 };
-        uint8_t *bytes = (uint8_t *)&output;
+        uint8_t *bytes = (uint8_t *)&output, *bends = (uint8_t *)&curve;
         int16_t faps[LABIAL_CHANNELS];
-        int32_t values[2];
-        for (i = 0; i < sizeof output; i++)
+        int32_t values[2], changes[2];
+        for (i = 0; i < offsetof(labial_rig_output_t, curve); i++)
             bytes[i] = (uint8_t)(chance() % 3u ? chance() : (chance() % 2u ? 0x80u : 0xffu));
+        for (i = 0; i < sizeof curve; i++)
+            bends[i] = (uint8_t)chance();
+        output.curve = chance() % 4u ? NULL : &curve;
         for (i = 0; i < LABIAL_CHANNELS; i++)
             faps[i] = any_fap();
+        changes[0] = (int32_t)(chance() & 0x7fffffffu) - (int32_t)(chance() & 0x7fffffffu);
+        changes[1] = -77;
         values[0] = (int32_t)(chance() & 0x7fffffffu) - (int32_t)(chance() & 0x7fffffffu);
         values[1] = -77;
         sound += labial_rig_check(&rig) == LABIAL_OK;
         assert_int_equal(labial_rig_apply(&rig, faps, values), LABIAL_OK);
+        assert_int_equal(labial_rig_apply_ahead(&rig, faps, 1, values, changes), LABIAL_OK);
         assert_int_equal(labial_rig_rest(&rig, values), LABIAL_OK);
         assert_int_equal(values[1], -77);
+        assert_int_equal(changes[1], -77);
     }
     assert_int_equal(sound, 0);
 }
 
 static void check_names_every_fault(void **state)
 {
-    labial_rig_output_t good = plain(), bad[21];
+    static const labial_rig_curve_t none = { 0, { { 0, 0, 0 } } }, many = { 9, { { 0, 0, 0 } } },
+                                    far = { 1, { { LABIAL_RIG_VALUE_MAX + 1, 0, 0 } } },
+                                    high = { 1, { { 0, -LABIAL_RIG_VALUE_MAX - 1, 0 } } },
+                                    steep = { 1, { { 0, 0, LABIAL_RIG_SLOPE_MAX + 1 } } },
+                                    back = { 2, { { 5, 0, 1 }, { 5, 0, 1 } } };
+    static const labial_rig_curve_t *const curves[6] = { &none, &many, &far, &high, &steep, &back };
+    labial_rig_output_t good = plain(), bad[28];
     unsigned i, count = 0;
     (void)state;
-    for (i = 0; i < 21; i++)
+    for (i = 0; i < 28; i++)
         bad[i] = good;
     bad[count++].gain = LABIAL_RIG_GAIN_MAX + 1;
     bad[count++].gain = INT32_MIN;
@@ -470,6 +623,10 @@ static void check_names_every_fault(void **state)
     bad[count].contact = 1, bad[count++].closed = 999;
     bad[count].contact = 1, bad[count++].closed = 2001;
     bad[count++].deadband = -1;
+    bad[count++].acceleration = -1;
+    bad[count++].acceleration = LABIAL_RIG_VALUE_MAX + 1;
+    for (i = 0; i < 6; i++)
+        bad[count++].curve = curves[i];
     bad[count++].deadband = LABIAL_RIG_VALUE_MAX + 1;
     bad[count].weights[1] = 32767, bad[count].weights[2] = -32767; /* with 4096: above 65535 */
     count++;
@@ -487,15 +644,24 @@ static void check_names_every_fault(void **state)
 
 static void check_accepts_the_very_limits(void **state)
 {
+    labial_rig_curve_t curve = { LABIAL_RIG_SEGMENTS, { { 0, 0, 0 } } };
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
+    int32_t i;
     (void)state;
+    for (i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
+        curve.segments[i].from = i ? LABIAL_RIG_VALUE_MAX - LABIAL_RIG_SEGMENTS + 1 + i : -LABIAL_RIG_VALUE_MAX;
+        curve.segments[i].to = LABIAL_RIG_VALUE_MAX;
+        curve.segments[i].slope = -LABIAL_RIG_SLOPE_MAX;
+    }
+    output.curve = &curve;
     output.weights[0] = 32767;
     output.weights[7] = INT16_MIN; /* 65535 together */
     output.gain = -LABIAL_RIG_GAIN_MAX;
     output.neutral = -LABIAL_RIG_VALUE_MAX;
     output.minimum = -LABIAL_RIG_VALUE_MAX;
-    output.maximum = output.slew = output.closed = output.deadband = LABIAL_RIG_VALUE_MAX;
+    output.maximum = output.slew = output.closed = output.deadband = output.acceleration =
+        LABIAL_RIG_VALUE_MAX;
     output.invert = output.contact = 1;
     assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
     output.minimum = output.maximum;
@@ -521,7 +687,8 @@ static void null_and_empty_are_refused(void **state)
     assert_int_equal(labial_rig_apply(&rig, faps, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&empty, faps, &value), LABIAL_OK);
     assert_int_equal(value, 5);
-    assert_int_equal(sizeof output, 56);
+    assert_int_equal(sizeof output, sizeof(void *) == 4 ? 64 : 72);
+    assert_int_equal(sizeof(labial_rig_curve_t), 100);
 }
 
 int main(void)
@@ -535,7 +702,9 @@ int main(void)
         cmocka_unit_test(unchecked_tables_stay_defined),    cmocka_unit_test(check_names_every_fault),
         cmocka_unit_test(check_accepts_the_very_limits),    cmocka_unit_test(null_and_empty_are_refused),
         cmocka_unit_test(looking_ahead_closes_in_time),     cmocka_unit_test(contact_closes),
-        cmocka_unit_test(deadband_keeps_small_changes),
+        cmocka_unit_test(deadband_keeps_small_changes),     cmocka_unit_test(curve_bends),
+        cmocka_unit_test(acceleration_comes_to_rest),       cmocka_unit_test(acceleration_holds_for_all),
+        cmocka_unit_test(delayed_frames_look_ahead),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

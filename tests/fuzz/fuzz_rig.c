@@ -12,15 +12,34 @@
 
 #define OUTPUTS 4
 
+/* Of the output's layout up to its curve, which is a pointer. */
 typedef struct {
-    labial_rig_output_t outputs[OUTPUTS];
-    int32_t values[OUTPUTS];
-    uint8_t sound; /* which outputs have their ranges put right, so that the checks behind the first are reached */
+    uint8_t outputs[OUTPUTS][offsetof(labial_rig_output_t, curve)];
+    labial_rig_curve_t curve;
+    int32_t values[OUTPUTS], changes[OUTPUTS];
+    uint8_t curved; /* which outputs have the curve */
+    uint8_t sound; /* which outputs have their ranges put right, so that the checks behind the first are
+                    * reached, and whether the curve has */
 } input_t;
 
 static int32_t into(int32_t value, int32_t limit)
 {
     return (int32_t)((int64_t)value % ((int64_t)limit + 1));
+}
+
+static void mend_curve(labial_rig_curve_t *curve)
+{
+    unsigned i;
+    curve->count = (uint16_t)(1u + curve->count % LABIAL_RIG_SEGMENTS);
+    for (i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
+        labial_rig_segment_t *segment = &curve->segments[i];
+        segment->from = into(segment->from, LABIAL_RIG_VALUE_MAX / LABIAL_RIG_SEGMENTS);
+        segment->from = i ? segment[-1].from + 1 + (segment->from < 0 ? -segment->from : segment->from) : segment->from;
+        segment->to = into(segment->to, LABIAL_RIG_VALUE_MAX);
+        segment->slope = into(segment->slope, LABIAL_RIG_SLOPE_MAX);
+        if (segment->from > LABIAL_RIG_VALUE_MAX)
+            segment->from = LABIAL_RIG_VALUE_MAX, curve->count = (uint16_t)(i < curve->count ? i : curve->count);
+    }
 }
 
 /* Brings an output into the ranges of a checked table, its weights by dropping those that are too many. */
@@ -51,11 +70,14 @@ static void mend(labial_rig_output_t *output)
     output->closed = output->contact ? output->closed : 0;
     output->deadband = into(output->deadband, LABIAL_RIG_VALUE_MAX);
     output->deadband = output->deadband < 0 ? -output->deadband : output->deadband;
+    output->acceleration = into(output->acceleration, LABIAL_RIG_VALUE_MAX);
+    output->acceleration = output->acceleration < 0 ? -output->acceleration : output->acceleration;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     input_t input;
+    labial_rig_output_t outputs[OUTPUTS];
     labial_rig_t rig;
     int checked;
     unsigned i;
@@ -64,30 +86,47 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memcpy(&input, data, sizeof input);
     data += sizeof input;
     size -= sizeof input;
-    for (i = 0; i < OUTPUTS; i++)
+    if (input.sound >> OUTPUTS & 1u)
+        mend_curve(&input.curve);
+    for (i = 0; i < OUTPUTS; i++) {
+        memcpy(&outputs[i], input.outputs[i], sizeof input.outputs[i]);
+        outputs[i].curve = input.curved >> i & 1u ? &input.curve : NULL;
         if (input.sound >> i & 1u)
-            mend(&input.outputs[i]);
-    rig.outputs = input.outputs;
+            mend(&outputs[i]);
+    }
+    rig.outputs = outputs;
     rig.count = OUTPUTS;
     checked = labial_rig_check(&rig);
     REQUIRE(checked == LABIAL_OK || checked == LABIAL_ERROR_RIG);
-    REQUIRE((input.sound & 15u) != 15u || checked == LABIAL_OK);
-    for (; size >= 2u * LABIAL_CHANNELS; data += 2u * LABIAL_CHANNELS, size -= 2u * LABIAL_CHANNELS) {
-        int16_t faps[LABIAL_CHANNELS];
-        int32_t *values = (int32_t *)malloc(sizeof input.values); /* so that the sanitizer sees its end */
-        REQUIRE(values != NULL);
-        memcpy(faps, data, sizeof faps);
+    REQUIRE((input.sound & 31u) != 31u || checked == LABIAL_OK);
+    while (size >= 2u * LABIAL_CHANNELS) {
+        const size_t left = size / (2u * LABIAL_CHANNELS);
+        const uint16_t count = (uint16_t)(left < 40u ? left : 40u);
+        int16_t *frames = (int16_t *)malloc(2u * LABIAL_CHANNELS * count); /* so that the sanitizer sees their ends */
+        int32_t *values = (int32_t *)malloc(sizeof input.values);
+        int32_t *changes = (int32_t *)malloc(sizeof input.changes);
+        REQUIRE(frames != NULL && values != NULL && changes != NULL);
+        memcpy(frames, data, 2u * LABIAL_CHANNELS * count);
         memcpy(values, input.values, sizeof input.values);
-        REQUIRE(labial_rig_apply(&rig, faps, values) == LABIAL_OK);
+        memcpy(changes, input.changes, sizeof input.changes);
+        if (input.curved >> OUTPUTS & 1u)
+            REQUIRE(labial_rig_apply(&rig, frames, values) == LABIAL_OK);
+        else
+            REQUIRE(labial_rig_apply_ahead(&rig, frames, count, values, changes) == LABIAL_OK);
         for (i = 0; i < OUTPUTS && checked == LABIAL_OK; i++) {
-            const labial_rig_output_t *output = &input.outputs[i];
+            const labial_rig_output_t *output = &outputs[i];
             const int64_t change = (int64_t)values[i] - input.values[i];
             REQUIRE(values[i] >= output->minimum && values[i] <= output->maximum);
             if (output->slew && input.values[i] >= output->minimum && input.values[i] <= output->maximum)
                 REQUIRE(change <= output->slew && change >= -(int64_t)output->slew);
         }
         memcpy(input.values, values, sizeof input.values);
+        memcpy(input.changes, changes, sizeof input.changes);
+        free(frames);
         free(values);
+        free(changes);
+        data += 2u * LABIAL_CHANNELS;
+        size -= 2u * LABIAL_CHANNELS;
     }
     return 0;
 }

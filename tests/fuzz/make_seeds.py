@@ -62,14 +62,16 @@ def stream_seed(script: Script) -> bytes:
 
 def rig_seed() -> bytes:
     """Four outputs that are within their ranges, two with a slew limit, one with a deadband, two that say where they
-    are closed, and frames of a sentence (fuzz_rig.c)."""
+    are closed, two with a limit of acceleration, a curve for two, and frames of a sentence (fuzz_rig.c)."""
     frames = read_frames((ROOT / "tests" / "conformance" / "frames.txt").read_text(encoding="ascii"))["sentence"]
     outputs = b"".join(
-        struct.pack("<13hBB7i", *[4096 if k == channel else 0 for k in range(13)], channel % 2, channel // 2, 13430,
-                    300, 260, 380, 25 * (channel % 2), 320 * (channel // 2), 3 * (channel == 3))
+        struct.pack("<13hBB8i", *[4096 if k == channel else 0 for k in range(13)], channel % 2, channel // 2, 13430,
+                    300, 260, 380, 25 * (channel % 2), 320 * (channel // 2), 3 * (channel == 3), 8 * (channel > 1))
         for channel in range(OUTPUTS))
-    values = struct.pack("<4i", *[300] * OUTPUTS)
-    return outputs + values + bytes([15, 0, 0, 0]) + b"".join(struct.pack("<13h", *row) for row in frames[:FRAMES])
+    curve = struct.pack("<H2x24i", 2, 260, 260, 1 << 19, 320, 290, 3 << 19, *[0] * 18)
+    values = struct.pack("<8i", *[300] * OUTPUTS, *[0] * OUTPUTS)
+    return (outputs + curve + values + bytes([6, 31, 0, 0])
+            + b"".join(struct.pack("<13h", *row) for row in frames[:FRAMES]))
 
 
 def label_seeds() -> Dict[str, bytes]:

@@ -7,7 +7,7 @@
 #define FRAMES 65535
 
 static labial_rig_output_t outputs[OUTPUTS];
-static int32_t values[OUTPUTS];
+static int32_t values[OUTPUTS], changes[OUTPUTS];
 static int16_t frames[FRAMES * LABIAL_CHANNELS];
 
 int main(void)
@@ -16,6 +16,7 @@ int main(void)
     int16_t faps[LABIAL_CHANNELS];
     FILL(outputs);
     FILL(values);
+    FILL(changes);
     FILL(faps);
     FILL(frames);
     rig.outputs = OR_NULL(const labial_rig_output_t *, outputs);
@@ -24,6 +25,6 @@ int main(void)
     labial_rig_rest(OR_NULL(const labial_rig_t *, &rig), OR_NULL(int32_t *, values));
     labial_rig_apply(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, faps), OR_NULL(int32_t *, values));
     labial_rig_apply_ahead(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, frames), any_uint16,
-                           OR_NULL(int32_t *, values));
+                           OR_NULL(int32_t *, values), OR_NULL(int32_t *, changes));
     return 0;
 }

@@ -18,9 +18,10 @@ from labial.errors import LabialError
 from labial.fit.sentences import read_sentences
 from labial.native import compiler, library_root
 from labial.rig import table
-from labial.rig.description import read
+from labial.rig.description import CURVE_POINTS, read
 from labial.rig.gestures import SOURCES
 from labial.rig.table import FAP_MAX, convert, expected
+from labial.runtime.library import RigCurve
 from labial.runtime.rig import Rig
 from runtime import needs_runtime
 
@@ -170,6 +171,9 @@ def test_limits_are_the_librarys() -> None:
     assert int(defined["LABIAL_RIG_WEIGHT_SUM_MAX"]) == table.WEIGHT_SUM_MAX
     assert int(defined["LABIAL_RIG_GAIN_MAX"]) == table.GAIN_MAX
     assert int(defined["LABIAL_RIG_VALUE_MAX"]) == table.VALUE_MAX
+    assert int(defined["LABIAL_RIG_SLOPE_MAX"]) == table.SLOPE_MAX
+    assert (int(defined["LABIAL_RIG_SEGMENTS"]), int(defined["LABIAL_RIG_SIGHT"])) == (table.SEGMENTS, table.SIGHT)
+    assert len(RigCurve().segments) == table.SEGMENTS == CURVE_POINTS[1] - 1
     assert (int(defined["LABIAL_RIG_TOUCHING"]), int(defined["LABIAL_RIG_APART"])) == (table.TOUCHING, table.APART)
     assert float(defined["LABIAL_RIG_OPENING"]) == SOURCES["opening"].reach
 
@@ -211,7 +215,12 @@ def test_c_looks_ahead_as_python_does(tmp_path: Path) -> None:
         closed, full = rng.integers(800, 2200, 2)
         text = (f'[output.jaw]\nfrom = "opening"\nclosed = {closed}\nfull = {full + 1}\n'
                 f"slew = {rng.integers(5, 200)}\ndeadband = {rng.integers(0, 4)}\n"
-                f'[output.lip]\nfrom = "upper_lip"\nneutral = 1500\nfull = 1700\nclosed = 1450\n')
+                f'[output.lip]\nfrom = "upper_lip"\nneutral = 1500\nfull = 1700\nclosed = 1450\n'
+                f'[output.quick]\nfrom = "fap3"\nneutral = 1500\nfull = 1700\nreach = 150\nminimum = 1300\n'
+                f"acceleration = {rng.integers(1, 60)}\ndeadband = {rng.integers(0, 4)}\n"
+                + (f"slew = {rng.integers(5, 200)}\n" if number % 2 else "")
+                + "curve = [[1250, 3], [1450, 9], [1600, 12], [1750, 19]]\n"
+                + (f"closed = {rng.integers(1300, 1701)}\n" if number % 3 else ""))
         (tmp_path / "face.toml").write_text(text)
         expected = table.moved(convert(read(tmp_path / "face.toml", "face")), frames, 1 + number)
         face = Rig(tmp_path / "face.toml")
@@ -220,14 +229,116 @@ def test_c_looks_ahead_as_python_does(tmp_path: Path) -> None:
             assert list(face.apply(frames[place].tolist(), after.ravel().tolist()).values()) == row.tolist()
 
 
+ACCELERATION = "slew = {slew}\nacceleration = {acceleration}\n"
+
+
+@needs_runtime
+def test_a_servo_with_a_limit_of_acceleration_closes_too(tmp_path: Path) -> None:
+    """In 32 sentences: within 10 us of `closed` in p, b, m, and opening, at a common servo's limits with ten frames in
+    sight, at a slow one's with more; limits are kept, and with all in sight nothing goes beyond what is wanted."""
+    motion = read_sentences(Path(__file__).with_name("sentences.flite"))
+    frames = motion.frames.astype(np.int64)
+    for slew, acceleration, ahead, least, wide in ((90, 30, 10, 0.98, 0.9), (60, 20, 10, 0.98, 0.85),
+                                                   (40, 10, 10, 0.9, 0.75), (40, 10, 32, 0.98, 0.75),
+                                                   (60, 20, 1, 0.2, 0.9)):
+        (tmp_path / "face.toml").write_text(CLOSING + ACCELERATION.format(slew=slew, acceleration=acceleration))
+        rows = convert(read(tmp_path / "face.toml", "face"))
+        meant, values = table.wanted(rows[0], frames), table.moved(rows, frames, ahead)[:, 0]
+        changes = np.diff(values, prepend=[1400])
+        assert np.abs(changes).max() <= slew and np.abs(np.diff(changes, prepend=[0])).max() <= acceleration
+        assert ahead < 32 or (values - meant).max() <= 0
+        closed = np.mean([values[begin:end].min() <= 1410 for begin, end in motion.closures])
+        assert closed >= least and (ahead > 1 or closed < 0.6), (slew, ahead, closed)
+        assert np.percentile(values, 95) - 1400 >= wide * (np.percentile(meant, 95) - 1400)
+
+
+def test_coming_to_rest_by_hand(tmp_path: Path) -> None:
+    """From 1400 to 1500 and back with changes that differ by 20 at most, worked out on paper."""
+    (tmp_path / "face.toml").write_text('[output.jaw]\nfrom = "fap3"\nneutral = 1400\nfull = 1900\nreach = 500\n'
+                                        "acceleration = 20\n")
+    frames = np.zeros((13, 13), dtype=np.int64)
+    frames[1:9, 0] = 100
+    rows = convert(read(tmp_path / "face.toml", "face"))
+    seeing = [0, 20, 60, 90, 100, 100, 90, 60, 20, 0, 0, 0, 0]  # changes: 20 40 30 10 0 -10 -30 -40 -20 0
+    blind = [0, 20, 60, 90, 100, 100, 100, 100, 100, 80, 40, 10, 0]
+    assert table.moved(rows, frames, 13)[:, 0].tolist() == [1400 + value for value in seeing]
+    assert table.moved(rows, frames, 1)[:, 0].tolist() == [1400 + value for value in blind]
+
+
+CURVED = """
+[output.jaw]
+from = "opening"
+closed = 1400
+full = 1900
+curve = [[1400, 0], [1500, 12], [1650, 24], [1900, 30]]
+"""
+
+
+def test_a_linkage_opens_evenly(tmp_path: Path) -> None:
+    """Half of what is wanted is half of the 30 mm that were measured, where the servo is at 1537.5; so in another unit,
+    with openings that shrink with the pulse."""
+    (tmp_path / "a.toml").write_text(CURVED)
+    rig = read(tmp_path / "a.toml", "a")
+    frames = np.zeros((5, 13))
+    frames[:, 4] = [-600, -300, -240, -480, -540]
+    assert expected(rig, convert(rig), frames)[:, 0].tolist() == [1900, 1537.5, 1500, 1650, 1775]
+    assert table.wanted(convert(rig)[0], frames.astype(np.int64)).tolist() == [1900, 1538, 1500, 1650, 1775]
+    (tmp_path / "b.toml").write_text('unit = "quarter_us"\n' + CURVED.replace("1400, 0", "1900, 0")
+                                     .replace("1500, 12", "1800, 12").replace("1650, 24", "1650, 24")
+                                     .replace("[1900, 30]", "[1400, 30]").replace("closed = 1400", "closed = 1900")
+                                     .replace("full = 1900", "full = 1400"))
+    rig = read(tmp_path / "b.toml", "b")
+    assert expected(rig, convert(rig), frames)[:, 0].tolist() == [5600, 7050, 7200, 6600, 6100]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_generated_curves_are_the_float_rig(tmp_path: Path, seed: int) -> None:
+    """In C, to the bit the integers of Python; within a unit of a rig in float64, or as many as the curve is steep."""
+    rng = np.random.default_rng(seed)
+    text = f'unit = "{["us", "quarter_us", "pca9685", "plain"][seed]}"\n'
+    for number in range(4):
+        values = np.sort(rng.choice(np.arange(900, 2200, 40), rng.integers(2, 10), replace=False))
+        openings = np.cumsum(rng.uniform(0.5, 3.0, len(values))) * rng.choice([-1, 1])
+        neutral, full = rng.permutation([values[0], values[-1]])
+        points = ", ".join(f"[{value}, {opening:.3f}]" for value, opening in zip(values, openings))
+        text += (f'[output.o{number}]\nfrom = "opening"\nneutral = {neutral}\nfull = {full}\nminimum = 900\n'
+                 f"maximum = 2200\ncurve = [{points}]\n")
+    (tmp_path / "made.toml").write_text(text)
+    rig = read(tmp_path / "made.toml", "made")
+    table.write(rig, tmp_path)
+    frames = some_frames(seed)
+    found = native(tmp_path, "made", frames, f"-DLABIAL_NARROW_MULTIPLY={seed % 2}")
+    rows = convert(rig)
+    assert found.tolist() == np.stack([table.wanted(row, frames) for row in rows], axis=1).tolist()
+    for column, wanted, row in zip(found.T, expected(rig, rows, frames).T, rows):
+        assert np.abs(column - wanted).max() <= 1.0 + max(slope for _, _, slope in row.curve) / 2**20 / 2
+
+
+@needs_runtime
+def test_a_stream_looks_ahead(tmp_path: Path) -> None:
+    """labial.Rig.ahead() is apply() with the frames that follow, and shows all of them."""
+    (tmp_path / "face.toml").write_text(CLOSING + ACCELERATION.format(slew=60, acceleration=20))
+    frames = np.zeros((30, 13), dtype=np.int64)
+    frames[5:20, 4] = -400
+    expected = table.moved(convert(read(tmp_path / "face.toml", "face")), frames, 9)[:, 0].tolist()
+    face = Rig(tmp_path / "face.toml")
+    assert [values["jaw"] for values in face.ahead(frames.tolist(), 8)] == expected and max(expected) > 1600
+    face.rest()
+    assert [values["jaw"] for values in face.ahead(iter(frames.tolist()), 8)] == expected
+    with pytest.raises(LabialError, match="looks 0 to 65,534 frames ahead, not -1"):
+        next(face.ahead(frames.tolist(), -1))
+
+
 def test_degrees_are_pulses(tmp_path: Path) -> None:
     """90 degrees between 1000 and 2000 us are 1500; slew, deadband and gain are differences."""
     (tmp_path / "a.toml").write_text('unit = "degrees"\npulses = [1000, 2000]\n[output.jaw]\nfrom = "opening"\n'
-                                     "closed = 90\nfull = 126\nslew = 9\ndeadband = 1.8\n"
+                                     "closed = 90\nfull = 126\nslew = 9\ndeadband = 1.8\nacceleration = 3.6\n"
+                                     "curve = [[90, 0], [108, 6], [126, 8]]\n"
                                      '[output.lip]\nfrom = "fap51"\nneutral = 90\ngain = 0.18\nminimum = 72\n'
                                      "maximum = 108\n")
     jaw, lip = convert(read(tmp_path / "a.toml", "a"))
     assert (jaw.neutral, jaw.closed, jaw.minimum, jaw.maximum) == (1500, 1500, 1500, 1700)
+    assert jaw.acceleration == 20 and [part[:2] for part in jaw.curve] == [(1500, 1500), (1650, 1600)]
     assert (jaw.slew, jaw.deadband, lip.neutral, lip.minimum, lip.maximum) == (50, 10, 1500, 1400, 1600)
     assert lip.weights[3] * lip.gain / 4096 / 65536 == pytest.approx(1.0)
     (tmp_path / "b.toml").write_text('unit = "degrees"\n[output.jaw]\nfrom = "opening"\nclosed = 0\nfull = 180\n')
@@ -340,6 +451,26 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW + "invert = 1\n", "output.jaw.invert: 1 is neither true nor false"),
         (JAW + "slew = -1\n", "output.jaw.slew: -1 is not positive"),
         (JAW + "slew = 0\n", "output.jaw.slew: 0 is not positive; leave it out for no limit"),
+        (JAW + "acceleration = -1\n", "output.jaw.acceleration: -1 is not positive"),
+        (JAW + "acceleration = 1e8\n", "output.jaw.acceleration: 100000000 microseconds is beyond 16777215"),
+        (JAW + "acceleration = inf\n", "output.jaw.acceleration: inf is not a finite number"),
+        (JAW + "curve = 3\n", "output.jaw.curve: is a list of 2 to 9 points [VALUE, OPENING]"),
+        (JAW + "curve = [[1400, 0]]\n", "output.jaw.curve: is a list of 2 to 9 points"),
+        (JAW + "curve = [" + "[1400, 0]," * 10 + "]\n", "output.jaw.curve: is a list of 2 to 9 points"),
+        (JAW + "curve = [[1400, 0], 1900]\n", "output.jaw.curve: point 2 is not [VALUE, OPENING]"),
+        (JAW + "curve = [[1400, 0], [1900]]\n", "output.jaw.curve: point 2 is not [VALUE, OPENING]"),
+        (JAW + 'curve = [[1400, 0], [1900, "x"]]\n', "output.jaw.curve: 'x' is not a number"),
+        (JAW + "curve = [[1400, 0], [1900, nan]]\n", "output.jaw.curve: nan is not a finite number"),
+        (JAW + "curve = [[140, 0], [1900, 9]]\n", "output.jaw.curve: 140 is not a servo's pulse, 400 .. 2600"),
+        (JAW + "curve = [[1400, 0], [1600, 9], [1900, 8]]\n", "output.jaw.curve: from each value to the next larger"),
+        (JAW + "curve = [[1400, 0], [1400, 9], [1900, 12]]\n", "output.jaw.curve: from each value to the next larger"),
+        (JAW + "curve = [[1500, 0], [1900, 9]]\n", "output.jaw.curve: neutral, 1400, is not within 1500 .. 1900"),
+        (JAW + "curve = [[1400, 0], [1800, 9]]\n", "output.jaw.curve: full, 1900, is not within 1400 .. 1800"),
+        (JAW + "curve = [[1400, 0], [1700, 0.1], [1900, 90]]\n", "the output would move 540 times as far as evenly"),
+        (JAW + "curve = [[1400, 0], [1410, 1e-3], [1900, 9]]\n", "the output would move 180 times as far as evenly"),
+        (JAW + "curve = [[1401, 1], [1402, 2], [1400, 0], [1900, 9]]\n", None),
+        (GAIN + "curve = [[1400, 0], [1900, 9]]\n", "output.jaw.curve: goes with full, not with gain"),
+        (PLAIN + JAW + "curve = [[0, 0], [2e7, 2e7], [3e7, 4e7]]\n", "output.jaw.curve: what lies at 2e+07 is beyond"),
         (JAW + "minimum = 1950\n", "output.jaw.minimum: 1950 is above the maximum, 1900"),
         (JAW + "minimum = 1500\n", "output.jaw.neutral: 1400 is not within 1500 .. 1900"),
         (JAW + "maximum = 1800\n", "output.jaw.full: 1900 is not within 1400 .. 1800"),

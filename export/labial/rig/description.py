@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.errors import LabialError
 from labial.faps import CHANNELS
@@ -19,11 +19,13 @@ PULSE_MIN, PULSE_MAX = 400.0, 2600.0
 
 #: Pulses at 0 and 180 degrees where a description in degrees does not say: those of Arduino's library Servo.
 DEGREES = (544.0, 2400.0)
-_PLACES, _STEPS = ("neutral", "full", "minimum", "maximum", "closed"), ("gain", "slew", "deadband")
+_PLACES, _STEPS = ("neutral", "full", "minimum", "maximum", "closed"), ("gain", "slew", "acceleration", "deadband")
 
 _TOP_KEYS = ("unit", "frequency", "clock", "pulses", "output")
 _OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum", "invert", "slew", "closed",
-                "deadband")
+                "deadband", "acceleration", "curve")
+#: Points of a linkage's curve.
+CURVE_POINTS = (2, 9)
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,9 @@ class Output:
     given_gain: bool  #: whether the description has a gain, not a value at full extent
     closed: Optional[float] = None  #: the value where lips touch; None where the description does not say
     deadband: float = 0.0  #: units; the value stays where it would change by less
+    acceleration: float = 0.0  #: units per frame, per frame; 0 for no limit
+    #: What a linkage makes of even steps: values without it, and the values that do what they were to do.
+    curve: Tuple[Tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -90,6 +95,9 @@ def in_microseconds(output: Mapping[str, Any], ends: Optional[Tuple[float, float
     each = (ends[1] - ends[0]) / 180.0
 
     def convert(key: str, value: Any) -> Any:
+        if key == "curve" and isinstance(value, list):  # of points, whose first number is where the servo is
+            return [[convert("neutral", point[0]), *point[1:]] if isinstance(point, list) and point else point
+                    for point in value]
         if isinstance(value, bool) or not isinstance(value, (int, float)) or key not in (*_PLACES, *_STEPS):
             return value
         return value * each + (ends[0] if key in _PLACES else 0.0)
@@ -186,9 +194,10 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
         gain, minimum, maximum = table.number("gain"), table.number("minimum"), table.number("maximum")
         if gain == 0:
             raise table.error("gain", "is zero: the output would not move")
-    slew = table.number("slew") if "slew" in content else 0.0
-    if slew < 0 or ("slew" in content and slew == 0):
-        raise table.error("slew", f"{slew:g} is not positive; leave it out for no limit")
+    slew, acceleration = (table.number(key) if key in content else 0.0 for key in ("slew", "acceleration"))
+    for key, value in (("slew", slew), ("acceleration", acceleration)):
+        if key in content and value <= 0:
+            raise table.error(key, f"{value:g} is not positive; leave it out for no limit")
     deadband = table.number("deadband") if "deadband" in content else 0.0
     if deadband < 0:
         raise table.error("deadband", f"{deadband:g} is negative")
@@ -197,7 +206,48 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
                   **({"closed": closed} if closed is not None else {}))
     if closed is not None and not minimum <= closed <= maximum:
         raise table.error("closed", f"{closed:g} is not within {minimum:g} .. {maximum:g}")
-    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content, closed, deadband)
+    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content, closed, deadband,
+                  acceleration, _curve(table, unit, neutral))
+
+
+def _curve(table: Table, unit: Unit, neutral: float) -> Tuple[Tuple[float, float], ...]:
+    """The curve that makes a linkage open evenly, of points [VALUE, OPENING] that were measured on it: values as they
+    would be if equal steps opened it equally far, from neutral to full, and the values that do."""
+    if "curve" not in table.content:
+        return ()
+    given, (least, most) = table.content["curve"], CURVE_POINTS
+    if not isinstance(given, list) or not least <= len(given) <= most:
+        raise table.error("curve", f"is a list of {least} to {most} points [VALUE, OPENING]")
+    points: List[Tuple[float, float]] = []
+    for number, point in enumerate(given, 1):
+        if not isinstance(point, list) or len(point) != 2:
+            raise table.error("curve", f"point {number} is not [VALUE, OPENING]")
+        points.append((table.as_number("curve", point[0]), table.as_number("curve", point[1])))
+        if unit.servo and not PULSE_MIN <= points[-1][0] <= PULSE_MAX:
+            raise table.error("curve", f"{points[-1][0]:g} is not a servo's pulse, {PULSE_MIN:g} .. {PULSE_MAX:g} "
+                                       "microseconds")
+    if "full" not in table.content:
+        raise table.error("curve", "goes with full, not with gain")
+    points.sort()
+    steps = [(after[0] - before[0], after[1] - before[1]) for before, after in zip(points, points[1:])]
+    if any(value <= 0 for value, _ in steps) or not (all(opening > 0 for _, opening in steps)
+                                                     or all(opening < 0 for _, opening in steps)):
+        raise table.error("curve", "from each value to the next larger one the opening must grow, or from each shrink")
+    full = table.number("full")
+    for name, value in (("neutral", neutral), ("full", full)):
+        if not points[0][0] <= value <= points[-1][0]:
+            raise table.error("curve", f"{name}, {value:g}, is not within {points[0][0]:g} .. {points[-1][0]:g}, where "
+                                       "the opening was measured")
+    shut, wide = (_between(points, value) for value in (neutral, full))
+    return tuple(sorted((neutral + (full - neutral) * (opening - shut) / (wide - shut), value)
+                        for value, opening in points))
+
+
+def _between(points: Sequence[Tuple[float, float]], value: float) -> float:
+    """The opening at a value within those of the points."""
+    place = next(place for place in range(1, len(points)) if value <= points[place][0])
+    (low, start), (high, end) = points[place - 1:place + 1]
+    return start + (end - start) * (value - low) / (high - low)
 
 
 def _check_values(table: Table, unit: Unit, **values: float) -> None:

@@ -51,12 +51,25 @@ class LatencyStruct(Structure):
     _fields_ = [("frames", c_uint32), ("milliseconds", c_uint32), ("phonemes", ctypes.c_uint), ("delay", ctypes.c_uint)]
 
 
+class RigSegment(Structure):
+    """``labial_rig_segment_t``."""
+
+    _fields_ = [("first", c_int32), ("to", c_int32), ("slope", c_int32)]
+
+
+class RigCurve(Structure):
+    """``labial_rig_curve_t``."""
+
+    _fields_ = [("count", ctypes.c_uint16), ("segments", RigSegment * 8)]
+
+
 class RigOutput(Structure):
     """``labial_rig_output_t``."""
 
     _fields_ = [("weights", c_int16 * 13), ("invert", ctypes.c_uint8), ("contact", ctypes.c_uint8), ("gain", c_int32),
                 ("neutral", c_int32), ("minimum", c_int32), ("maximum", c_int32), ("slew", c_int32),
-                ("closed", c_int32), ("deadband", c_int32)]  # fmt: skip
+                ("closed", c_int32), ("deadband", c_int32), ("acceleration", c_int32),
+                ("curve", POINTER(RigCurve))]  # fmt: skip
 
 
 class RigTable(Structure):
@@ -86,7 +99,7 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "labial_model_load": (c_int, (c_void_p, c_void_p, c_size_t)),
     "labial_rig_check": (c_int, (POINTER(RigTable),)),
     "labial_rig_rest": (c_int, (POINTER(RigTable), c_void_p)),
-    "labial_rig_apply_ahead": (c_int, (POINTER(RigTable), c_void_p, ctypes.c_uint16, c_void_p)),
+    "labial_rig_apply_ahead": (c_int, (POINTER(RigTable), c_void_p, ctypes.c_uint16, c_void_p, c_void_p)),
 }
 
 
