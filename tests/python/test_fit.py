@@ -14,9 +14,11 @@ from avatars import TRUE, document_of, glb, made_head
 from labial.animation import outputs
 from labial.cli import main
 from labial.errors import DataError
+from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import read_table
 from labial.fit.judge import judge, matrix
+from labial.fit.kinds import kind_of, known
 from labial.fit.landmarks import read_head
 from labial.fit.sentences import read_sentences
 from labial.rig.description import read
@@ -93,6 +95,28 @@ def test_an_avatar_is_fitted_and_drawn(tmp_path: Path, capsys: pytest.CaptureFix
     found = judge(head, matrix(head, named), motion.frames, motion.closures)
     assert 0.9 <= found.ratio <= 1.1 and found.opening <= 1.0, found.text()
     assert found.closed >= 0.98 and found.deepest >= -2.5, found.text()
+
+
+def test_sides_by_a_letter() -> None:
+    """mouthSmile_L, as Face Cap spells it, is ARKit's mouthSmileLeft; catches a rig that leaves such shapes out."""
+    vertices, triangles, shapes = made_head()
+    found: Dict[str, set] = {}
+    for end in ("Left", "_L"):
+        other = "Right" if end == "Left" else "_R"
+        spelled = {name.replace("Left", end).replace("Right", other): move for name, move in shapes.items()}
+        head = read_head([Mesh("face", vertices, triangles, spelled)], "a.glb", {}).head
+        assert kind_of(head) == "arkit"
+        found[end] = set(known(head, "arkit").values())
+    assert found["_L"] == found["Left"] and "mouthStretchRight" in found["_L"]
+
+
+def test_a_mouth_that_is_open_at_rest_is_told() -> None:
+    """Its lips stay apart in p, b, m whatever is solved for."""
+    vertices, triangles, shapes = made_head()
+    apart = vertices - np.where(vertices[:, 1] < -0.2, 1.4, 0.0)[:, None] * np.eye(3)[1]
+    for rest, told in ((vertices, False), (apart, True)):
+        found = read_head([Mesh("face", rest, triangles, shapes)], "a.glb", {})
+        assert ("the inner lips are 2.0 mm apart at rest" in " ".join(found.doubts)) == told
 
 
 @needs_runtime

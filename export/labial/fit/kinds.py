@@ -79,6 +79,8 @@ def known(head: Head, kind: str) -> Dict[str, str]:
     for group in KINDS[kind].allowed:
         for ending in ("", "Left", "Right"):
             names[plain(group + ending)] = group + ending
+            if kind == "arkit" and ending:  # mouthSmile_L, as Face Cap and Character Creator spell it
+                names[plain(group + ending[0])] = group + ending
             if kind == "oculus":
                 names["viseme" + plain(group)] = group
     for other, name in _ALSO.items():
