@@ -119,3 +119,33 @@ def document_of(vertices: np.ndarray, triangles: np.ndarray, shapes: Mapping[str
                 "nodes": [{"mesh": 0, "name": "head", **(node or {})}], "meshes": [mesh], "accessors": accessors,
                 "bufferViews": views, "buffers": [{"byteLength": sum(map(len, parts))}]}
     return document, b"".join(parts)
+
+
+#: The bones of Mixamo's and Ready Player Me's skeletons: each one's parent, and where it lies from there, metres.
+BONES = {
+    "Hips": ("Armature", (0.0, 1.0, 0.0)), "Spine": ("Hips", (0.0, 0.1, 0.0)), "Spine1": ("Spine", (0.0, 0.1, 0.0)),
+    "Spine2": ("Spine1", (0.0, 0.1, 0.0)), "Neck": ("Spine2", (0.0, 0.1, 0.0)), "Head": ("Neck", (0.0, 0.1, 0.0)),
+    "LeftEye": ("Head", (0.03, 0.08, 0.08)), "RightEye": ("Head", (-0.03, 0.08, 0.08)),
+    **{side + name: (side + parent if parent not in ("Hips", "Spine2") else parent, (sign * x, y, 0.0))
+       for side, sign in (("Left", 1.0), ("Right", -1.0))
+       for name, parent, x, y in (
+           ("Shoulder", "Spine2", 0.05, 0.08), ("Arm", "Shoulder", 0.1, 0.0), ("ForeArm", "Arm", 0.25, 0.0),
+           ("Hand", "ForeArm", 0.25, 0.0), ("UpLeg", "Hips", 0.1, -0.05), ("Leg", "UpLeg", 0.0, -0.43),
+           ("Foot", "Leg", 0.0, -0.43), ("ToeBase", "Foot", 0.0, -0.05),
+           *((f"Hand{finger}{joint}", f"Hand{finger}{joint - 1}" if joint > 1 else "Hand", 0.03, 0.0)
+             for finger in ("Thumb", "Index", "Middle", "Ring", "Pinky") for joint in (1, 2, 3)))},
+}  # fmt: skip
+
+
+def add_skeleton(document: Dict) -> Dict[str, int]:
+    """Puts a document's head on a body of bones, below a node ``Armature``; the nodes' numbers by name."""
+    nodes = document["nodes"]
+    numbers = {"Armature": len(nodes)}
+    nodes.append({"name": "Armature", "children": []})
+    for name, (parent, place) in BONES.items():
+        numbers[name] = len(nodes)
+        nodes.append({"name": name, "translation": list(place)})
+        nodes[numbers[parent]].setdefault("children", []).append(numbers[name])
+    nodes[numbers["Head"]]["children"].append(0)
+    document["scenes"] = [{"nodes": [numbers["Armature"]]}]
+    return numbers

@@ -20,13 +20,16 @@ from pages import parse
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
 #: The pages whose JavaScript is compiled.
-PAGES = ("browser.md", "avatar.md", "kiosk.md", "timings.md")
+PAGES = ("browser.md", "adapters.md", "kiosk.md", "timings.md")
 #: What the code of pages takes from elsewhere: the elements that scripts find by their ids, and what the reader has.
 AROUND = """\
 declare const mouth: SVGElement;
 declare const face: import("labial/labial-mouth.js").LabialMouth;
 declare module "*/labial/index.js" { export * from "labial"; }
 declare module "*/labial/labial-mouth.js" { export * from "labial/labial-mouth.js"; }
+declare module "three/*";
+declare module "@pixiv/three-vrm";
+declare module "@met4citizen/talkinghead";
 """
 
 
@@ -70,6 +73,7 @@ def test_code_of_pages_compiles(project: Path) -> None:
     (project / files[0]).write_text(AROUND)
     for name in PAGES:
         page = SOURCE / "docs" / name
+        (project / page.stem).mkdir()
         for block in parse(page):
             if block.label == "js":
                 codes = [block.text]
@@ -77,8 +81,9 @@ def test_code_of_pages_compiles(project: Path) -> None:
                 codes = re.findall(r'<script type="module">\n(.*?)</script>', block.text, re.DOTALL)
             else:
                 continue
+            named = block.name if block.name and block.name.endswith(".js") else f"{block.line}.js"
             for code in codes:
-                files.append(f"{page.stem}-{block.line}.js")
+                files.append(f"{page.stem}/{named}")
                 (project / files[-1]).write_text(code + "\nexport {};\n")
     assert len(files) > 5
     files.append("kiosk.js")

@@ -1,0 +1,311 @@
+"""The code of docs/adapters.md in Chromium, with the real packages: TalkingHead, three-vrm and three.js move avatars
+that are made here, and what reaches the meshes is compared with the track at the sound's time."""
+
+from __future__ import annotations
+
+import functools
+import json
+import threading
+import wave
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterator, List
+
+import numpy as np
+import pytest
+
+from avatars import add_skeleton, document_of, glb, made_head
+from browser import CHROMIUM, REASON, Browser, Page
+from bundlers import MISSING, install, tools
+from npm import package
+from packages import SOURCE
+from pages import parse
+from test_mouths import SAY, say
+
+PAGE = SOURCE / "docs" / "adapters.md"
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING),
+              pytest.mark.skipif(not CHROMIUM, reason=REASON),
+              pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")]  # fmt: skip
+
+#: Rounded, spread and closed lips for five seconds, in which TalkingHead's mouth would move by itself.
+PHONEMES = [("sil", 300), *(("m", 90), ("AA", 160), ("b", 90), ("UW", 180), ("f", 90), ("IY", 140)) * 6, ("sil", 200)]
+SECONDS = sum(milliseconds for _, milliseconds in PHONEMES) / 1000
+ARKIT = """browDownLeft browDownRight browInnerUp browOuterUpLeft browOuterUpRight cheekPuff cheekSquintLeft
+    cheekSquintRight eyeBlinkLeft eyeBlinkRight eyeLookDownLeft eyeLookDownRight eyeLookInLeft eyeLookInRight
+    eyeLookOutLeft eyeLookOutRight eyeLookUpLeft eyeLookUpRight eyeSquintLeft eyeSquintRight eyeWideLeft eyeWideRight
+    jawForward jawLeft jawRight mouthDimpleLeft mouthDimpleRight mouthFrownLeft mouthFrownRight mouthFunnel mouthLeft
+    mouthLowerDownLeft mouthLowerDownRight mouthPressLeft mouthPressRight mouthRight mouthRollLower mouthRollUpper
+    mouthShrugLower mouthShrugUpper noseSneerLeft noseSneerRight tongueOut""".split()
+VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E I O U".split()
+
+#: The weights of a frame that is drawn, by name, from the first mesh that has shapes.
+READ = """(meshes) => Object.fromEntries(Object.entries(meshes[0].morphTargetDictionary)
+    .map(([name, place]) => [name, meshes[0].morphTargetInfluences[place]]))"""
+
+
+def lab(phonemes: List[Any]) -> str:
+    """The phonemes one after the other."""
+    ends = np.cumsum([0, *(milliseconds for _, milliseconds in phonemes)]) / 1000
+    return "".join(f"{a:.3f} {b:.3f} {label}\n" for (label, _), a, b in zip(phonemes, ends, ends[1:]))
+
+
+def avatar() -> bytes:
+    """The made head on a body, with all shapes of a Ready Player Me avatar and teeth that have some of them."""
+    vertices, triangles, shapes = made_head()
+    zero = np.zeros_like(vertices)
+    visemes = {"viseme_" + name: zero for name in VISEMES}
+    visemes["viseme_aa"] = 0.6 * shapes["jawOpen"]
+    document, binary = document_of(vertices, triangles, {**shapes, **dict.fromkeys(ARKIT, zero), **visemes})
+    document["meshes"].append({**document["meshes"][0], "name": "teeth"})
+    document["nodes"][0]["children"] = [1]
+    document["nodes"].append({"mesh": 1, "name": "teeth"})
+    add_skeleton(document)
+    return glb(document, binary)
+
+
+def vrm() -> bytes:
+    """The made head as VRM 1.0, whose expressions move each of its mouths by half."""
+    vertices, triangles, shapes = made_head(mouth="vrm")
+    document, binary = document_of(vertices, triangles, shapes)
+    numbers = add_skeleton(document)
+    bones = {"hips": "Hips", "spine": "Spine", "head": "Head"}
+    for side in ("Left", "Right"):
+        bones.update({side.lower() + bone: side + name for bone, name in (
+            ("UpperArm", "Arm"), ("LowerArm", "ForeArm"), ("Hand", "Hand"), ("UpperLeg", "UpLeg"), ("LowerLeg", "Leg"),
+            ("Foot", "Foot"))})  # fmt: skip
+    preset = {name: {"morphTargetBinds": [{"node": 0, "index": place, "weight": 0.5}]}
+              for place, name in enumerate(("aa", "ou", "ih"))}
+    document["extensionsUsed"] = ["VRMC_vrm"]
+    document["extensions"] = {"VRMC_vrm": {
+        "specVersion": "1.0",
+        "meta": {"name": "made", "authors": ["made"], "licenseUrl": "https://vrm.dev/licenses/1.0/"},
+        "humanoid": {"humanBones": {bone: {"node": numbers[name]} for bone, name in bones.items()}},
+        "expressions": {"preset": preset}}}
+    return glb(document, binary)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], str]]:
+    """Serves the page's code, the packages, avatars, a sound and its timings; the address of a page that runs a
+    script."""
+    folder = tmp_path_factory.mktemp("site") / "site"
+    install(package(tmp_path_factory.mktemp("npm") / "build"), folder)
+    for name in ("@met4citizen", "@pixiv", "three"):
+        (folder / "node_modules" / name).symlink_to(tools() / "node_modules" / name)
+    for block in parse(PAGE):
+        if block.name:
+            (folder / block.name).write_text(block.text, encoding="utf-8")
+    (folder / "avatar.glb").write_bytes(avatar())
+    (folder / "avatar.vrm").write_bytes(vrm())
+    (folder / "hello.lab").write_text(lab(PHONEMES))
+    with wave.open(str(folder / "hello.wav"), "wb") as sound:
+        sound.setparams((1, 2, 16000, 0, "NONE", ""))
+        sound.writeframes((3000 * np.sin(np.arange(16000 * SECONDS) / 8)).astype("<i2").tobytes())
+    imports = {"three": "three/build/three.module.js", "three/addons/": "three/examples/jsm/",
+               "@pixiv/three-vrm": "@pixiv/three-vrm/lib/three-vrm.module.js", "labial": "labial/index.js",
+               "@met4citizen/talkinghead": "@met4citizen/talkinghead/modules/talkinghead.mjs"}
+    numbers = iter(range(1000))
+
+    class Handler(SimpleHTTPRequestHandler):
+        def log_message(self, *_: Any) -> None:
+            pass
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(folder)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+
+    def address(script: str) -> str:
+        name = f"page-{next(numbers)}.html"
+        table = json.dumps({"imports": {key: f"./node_modules/{path}" for key, path in imports.items()}})
+        (folder / name).write_text(
+            f'<!doctype html><link rel="icon" href="data:,"><script type="importmap">{table}</script>'
+            f'<div id="avatar" style="width: 200px; height: 200px"></div><script type="module">\n'
+            f"const read = {READ};\n{script}</script>")
+        return f"http://127.0.0.1:{server.server_port}/{name}"
+
+    address.folder = folder  # type: ignore[attr-defined]
+    yield address
+    server.shutdown()
+    server.server_close()
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A browser that draws in three dimensions without a graphics card."""
+    options = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    with Browser(tmp_path_factory.mktemp("browser") / "profile", options) as opened:
+        yield opened
+
+
+def expected(folder: Path, face: str) -> Dict[str, np.ndarray]:
+    """The weights of every frame as labial-say has them; the file that it writes, hello_FACE.jsonl, is served, too."""
+    text = say((folder / "hello.lab").read_text(), face)
+    (folder / f"hello_{face}.jsonl").write_text(text)
+    rows = [json.loads(line)[face] for line in text.splitlines()]
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def between(values: np.ndarray, seconds: np.ndarray) -> np.ndarray:
+    """The weight at these times of the sound."""
+    return np.interp(50 * seconds, np.arange(len(values)), values)
+
+
+def differ(seen: List[float], values: np.ndarray) -> float:
+    """The largest difference."""
+    return float(np.abs(np.array(seen) - values).max())
+
+
+def test_shapes_of_every_mesh(site: Any, browser: Browser) -> None:
+    """A head and its teeth, by ARKit's names and by Ready Player Me's of visemes, at times that are looked at."""
+    arkit, oculus = (expected(site.folder, face) for face in ("arkit", "oculus"))
+    page = browser.page(site("""
+        import * as avatar from "./readyplayerme.js";
+        import { readFrames, at } from "./frames.js";
+        import { show } from "./shapes.js";
+        window.seen = [];
+        for (let frame = 0; frame < 200; frame++) {
+            const seconds = frame / 50;
+            avatar.draw(seconds);
+            const weights = avatar.meshes.map((mesh) => read([mesh]));
+            avatar.drawVisemes(seconds);
+            seen.push([seconds, ...weights, read(avatar.meshes)]);
+        }
+        const frames = await readFrames("hello_arkit.jsonl", "arkit");
+        show(avatar.meshes, at(frames, 1.005));
+        window.file = [read(avatar.meshes).jawOpen, frames[50].jawOpen, at(frames, 1e9) === frames.at(-1)];
+        """))  # fmt: skip
+    page.wait_for("window.file")
+    assert page.errors() == []
+    seen = page.evaluate("seen")
+    times = np.array([row[0] for row in seen])
+    for name, values in arkit.items():
+        for mesh in (1, 2):
+            assert differ([row[mesh][name] for row in seen], between(values, times)) <= 0.0015, name
+    for name, values in oculus.items():
+        shape = "viseme_" + {"ih": "I", "oh": "O", "ou": "U"}.get(name, name)
+        assert differ([row[3][shape] for row in seen], between(values, times)) <= 0.0015, name
+    drawn, frame, last = page.evaluate("file")
+    assert drawn == pytest.approx(frame) and drawn > 0 and last
+
+
+def test_vrm_moves(site: Any, browser: Browser) -> None:
+    """Expressions move the mesh's own shapes by their shares."""
+    page = browser.page(site("""
+        import { draw, vrm } from "./vrm.js";
+        const meshes = [];
+        vrm.scene.traverse((node) => node.morphTargetDictionary && meshes.push(node));
+        window.seen = [];
+        for (let frame = 0; frame < 200; frame++) {
+            const seconds = frame / 50;
+            draw(seconds, 0.02);
+            seen.push([seconds, read(meshes)]);
+        }
+        window.done = true;
+        """))  # fmt: skip
+    page.wait_for("window.done")
+    assert page.errors() == []
+    seen = page.evaluate("seen")
+    times = np.array([row[0] for row in seen])
+    for name, values in expected(site.folder, "vrm").items():
+        shape = {"aa": "A", "ou": "U", "ih": "I"}[name]
+        assert differ([row[1][shape] for row in seen], 0.5 * between(values, times)) <= 0.0015, name
+        assert values.max() > 0.1, name
+
+
+#: Notes the sound's time and the weights after each frame that TalkingHead draws.
+WATCH = """
+    function watch(head) {
+        window.seen = [];
+        const render = head.render.bind(head);
+        head.render = () => {
+            render();
+            if (window.began !== undefined) seen.push([head.audioCtx.currentTime - began, read(head.morphs)]);
+        };
+    }
+    const start = AudioBufferSourceNode.prototype.start;
+    AudioBufferSourceNode.prototype.start = function (when) {
+        if (this.buffer?.duration > 1) window.began = when;
+        start.call(this, when);
+    };
+"""
+
+
+def in_step(page: Page, expected: Dict[str, np.ndarray]) -> None:
+    """What TalkingHead drew is the track at the sound's time, up to a constant delay of a few frames."""
+    assert page.errors() == []
+    seen = [row for row in page.evaluate("seen") if 0.1 < row[0] < SECONDS - 0.3]
+    times = np.array([row[0] for row in seen])
+    assert len(times) > 20 and np.ptp(times) > 0.8 * SECONDS
+
+    def error(delay: float) -> float:
+        return max(float(np.sqrt(np.mean((between(values, times - delay) - [row[1][name] for row in seen]) ** 2)))
+                   for name, values in expected.items())
+
+    delays = np.arange(-0.2, 0.21, 0.01)
+    best = float(delays[np.argmin([error(delay) for delay in delays])])
+    assert abs(best) <= 0.08 and error(best) < 0.05, (best, error(best))
+
+
+def test_talkinghead_speaks(site: Any, browser: Browser) -> None:
+    """``speakAudio()`` with an animation: every shape follows to the end, in step, and then comes to rest."""
+    page = browser.page(site(WATCH + """
+        const ready = new Promise((resolve) => { window.resolve = resolve; });
+        const { TalkingHead } = await import("@met4citizen/talkinghead");
+        const speakAudio = TalkingHead.prototype.speakAudio;
+        TalkingHead.prototype.speakAudio = function (...all) { watch(this); speakAudio.apply(this, all); };
+        const { head } = await import("./speak.js");
+        window.head = head;
+        """))  # fmt: skip
+    page.wait_for("window.began !== undefined", 60)
+    page.wait_for(f"head.audioCtx.currentTime - began > {SECONDS + 1}", 60)
+    in_step(page, expected(site.folder, "arkit"))
+    assert max(page.evaluate("seen.at(-1)")[1][name] for name in expected(site.folder, "arkit")) < 0.05
+
+
+def test_talkinghead_streams(site: Any, browser: Browser) -> None:
+    """``streamAudio()`` with pieces of sound and phonemes that come every half second."""
+    page = browser.page(site(WATCH + """
+        import { TalkingHead } from "@met4citizen/talkinghead";
+        import { Labial } from "labial";
+        import { prepare } from "./talkinghead.js";
+        import { speak } from "./stream.js";
+        const head = new TalkingHead(document.getElementById("avatar"), { lipsyncModules: [], cameraView: "head" });
+        prepare(head);
+        await head.showAvatar({ url: "avatar.glb" });
+        await head.audioCtx.resume(); // which start() began; another rate closes the context
+        watch(head);
+        const labial = await Labial.load();
+        const phonemes = PHONEMES;
+        async function* pieces() {
+            for (let first = 0; first < phonemes.length; first += 5) {
+                const some = phonemes.slice(first, first + 5);
+                const total = some.reduce((sum, [, milliseconds]) => sum + milliseconds, 0);
+                const pcm = Int16Array.from({ length: 16 * total }, (_, i) => 3000 * Math.sin(i / 8));
+                yield { pcm, phonemes: some };
+                await new Promise((resolve) => setTimeout(resolve, 0.7 * total));
+            }
+        }
+        const begin = head._processStreamLipsyncQueue.bind(head);
+        head._processStreamLipsyncQueue = () => { window.began ??= head.audioCtx.currentTime; begin(); };
+        await speak(head, labial, pieces(), 16000);
+        window.head = head;
+        """.replace("PHONEMES", json.dumps(PHONEMES))))  # fmt: skip
+    page.wait_for("window.head && window.began !== undefined", 60)
+    page.wait_for(f"head.audioCtx.currentTime - began > {SECONDS + 1}", 60)
+    in_step(page, expected(site.folder, "arkit"))
+
+
+def test_talkinghead_gives_way(site: Any, browser: Browser) -> None:
+    """A shape that is set directly is drawn as it is set; null gives it back."""
+    page = browser.page(site("""
+        import { TalkingHead } from "@met4citizen/talkinghead";
+        import { show } from "./realtime.js";
+        const head = new TalkingHead(document.getElementById("avatar"), { lipsyncModules: [] });
+        await head.showAvatar({ url: "avatar.glb" });
+        Object.assign(window, { head, show, drawn: () => read(head.morphs).jawOpen });
+        """))  # fmt: skip
+    page.wait_for("!!window.head", 60)
+    page.evaluate("show(head, { jawOpen: 0.625 })")
+    page.wait_for("Math.abs(drawn() - 0.625) < 1e-6")
+    page.evaluate("show(head, { jawOpen: null })")
+    page.wait_for("drawn() < 0.05")
+    assert page.errors() == []
