@@ -8,8 +8,17 @@ export type Faps = Int16Array;
 /** A face's weights by name, 0 .. 1. */
 export type Weights<F extends Face = Face> = F extends Face ? Record<Faces[F], number> : never;
 
+/** A face of one's own, which `labial.rig()` read: an output as the built-in faces are. */
+export class Rig<Name extends string = string> {
+    #private;
+    private constructor();
+    readonly name: string;
+    /** The names of its weights. */
+    readonly outputs: readonly Name[];
+}
+
 /** How frames are given out. */
-export type Output = "faps" | Face;
+export type Output = "faps" | Face | Rig;
 
 /** Which labels mean which sounds: "auto" is any of the others, in their order. */
 export type Labels = "auto" | "arpabet" | "ipa" | "xsampa";
@@ -50,7 +59,8 @@ export interface StreamOptions<O extends Output = Output> {
 }
 
 /** A frame of an output. */
-export type FrameOf<O extends Output> = O extends Face ? Weights<O> : Faps;
+export type FrameOf<O extends Output> =
+    O extends Face ? Weights<O> : O extends Rig<infer Name> ? Record<Name, number> : Faps;
 
 /** The laughter model as the package labial-laughter has it, or the bytes of its .lbm file. */
 export type Laughter = string | ArrayBuffer | ArrayBufferView | { readonly default: unknown };
@@ -107,7 +117,7 @@ export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly faps: Int16Array;
     /** The mouth at a time of the sound, seconds, between two frames: what is shown while the sound is there. Before
      * the beginning and after the end it is the first and the last frame. The same object each time. */
-    at(seconds: number): O extends Face ? Weights<O> : Float32Array;
+    at(seconds: number): O extends "faps" ? Float32Array : FrameOf<O>;
     /** One frame. */
     frame(number: number): FrameOf<O>;
     [Symbol.iterator](): IterableIterator<FrameOf<O>>;
@@ -134,6 +144,8 @@ export class Labial {
     render<O extends Output = "faps">(timings: Iterable<Segment>, options?: StreamOptions<O>): Track<O>;
     /** A model from a binary file (`labial export --blob`), which is checked. */
     model(bytes: ArrayBuffer | ArrayBufferView): Model;
+    /** A face of one's own, from what `labial rig FACE.toml --json` wrote, parsed or as text, which is checked. */
+    rig<Name extends string = string>(description: unknown): Rig<Name>;
     /** The number of the phoneme that a label means. */
     phoneme(label: string | number, options?: { model?: Model; labels?: Labels; hint?: Labels; nearest?: boolean }): number;
     /** The label of a phoneme. */
@@ -142,7 +154,7 @@ export class Labial {
      * room for words, both 0 .. 1. */
     blend(speech: ArrayLike<number>, laugh: ArrayLike<number>, intensity: number, words: number, out?: Int16Array): Faps;
     /** The weights of a face that 13 FAPs mean. */
-    convert<F extends Face>(faps: ArrayLike<number>, output: F, out?: Partial<Weights<F>>): Weights<F>;
+    convert<F extends Face | Rig>(faps: ArrayLike<number>, output: F, out?: Partial<FrameOf<F>>): FrameOf<F>;
 }
 
 /** Readers of what voices tell of the sound they make; `source` is their JSON, parsed or as text. */

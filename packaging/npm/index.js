@@ -8,6 +8,13 @@ import speech from "./speech.js";
 
 export { LabialError, Stream, Track, timings };
 
+/** Outputs that a rig of one's own has at most. */
+const OUTPUTS_MAX = 1024;
+/** Numbers of an output in a rig's file, beside its weights, in the order of rig_output(), and how large they are at most. */
+const NUMBERS = Object.entries({
+    gain: 2 ** 28, neutral: 2 ** 24, minimum: 2 ** 24, maximum: 2 ** 24, invert: 1, contact: 1, closed: 2 ** 24,
+});
+
 /** Bytes of the place where labels, frames and weights are passed. */
 const SCRATCH = 16384;
 const LABEL_MAX = 256;
@@ -29,9 +36,19 @@ export class Model {
     }
 }
 
+/** A face of one's own. */
+export class Rig {
+    constructor(name, outputs) {
+        this.name = name;
+        this.outputs = Object.freeze(outputs);
+        Object.freeze(this);
+    }
+}
+
 /** The library. One serves any number of streams. */
 export class Labial {
     #scratch;
+    #rigs = new WeakMap(); // where their tables are
     #owned = new WeakSet();
     #loaded;
     #laughter; // where the laughter model comes from
@@ -97,6 +114,31 @@ export class Labial {
         return model;
     }
 
+    rig(description) {
+        const given = typeof description === "string" ? JSON.parse(description) : description;
+        const rows = Object.entries(given?.outputs ?? {});
+        if (given?.labial !== "rig" || rows.length < 1 || rows.length > OUTPUTS_MAX) {
+            throw new LabialError(`the rig is ${shown(given)}, not what labial rig --json wrote`);
+        }
+        const size = this.wasm.rig_output_size();
+        const at = this.memory.take(size * rows.length);
+        try {
+            rows.forEach(([name, row], i) => {
+                this.memory.int32(this.#scratch, CHANNELS + NUMBERS.length).set(numbersOf(name, row));
+                this.wasm.rig_output(at + size * i, this.#scratch);
+            });
+            const result = this.wasm.rig_check(at, rows.length);
+            if (result < 0) throw this.failure(result, shown(given.name));
+        } catch (error) {
+            this.memory.release(at, size * rows.length);
+            throw error;
+        }
+        const rig = new Rig(String(given.name), rows.map(([name]) => name));
+        this.#rigs.set(rig, at);
+        this.#loaded.register(rig, [at, size * rows.length]);
+        return rig;
+    }
+
     phoneme(label, { model = this.models.speech, labels = "auto", hint = "", nearest = false } = {}) {
         if (typeof label === "number") {
             if (!Number.isInteger(label) || label < 0 || label >= model.phonemes) throw this.failure(-6, shown(label));
@@ -153,9 +195,11 @@ export class Labial {
 
     /** The weights of the FAPs at an address of the module's memory. */
     weigh(at, output, out) {
-        const names = this.faces[output];
+        const rig = this.#rigs.get(output);
+        const names = rig === undefined ? this.faces[output] : output.outputs;
         const values = this.#scratch + 64;
-        this.wasm.weigh(Object.keys(this.faces).indexOf(output), at, values);
+        if (rig === undefined) this.wasm.weigh(Object.keys(this.faces).indexOf(output), at, values);
+        else this.wasm.rig_weigh(rig, names.length, at, values);
         const thousandths = this.memory.int32(values, names.length);
         for (let i = 0; i < names.length; i++) out[names[i]] = thousandths[i] / 1000;
         return out;
@@ -206,8 +250,9 @@ export class Labial {
     }
 
     checkOutput(output) {
-        if (output !== "faps" && !Object.hasOwn(this.faces, output)) {
-            throw new LabialError(`${shown(output)} is no output: faps, ${Object.keys(this.faces).join(", ")}`);
+        if (output !== "faps" && !this.#rigs.has(output) && !Object.hasOwn(this.faces, output)) {
+            throw new LabialError(`${shown(output)} is no output: faps, ${Object.keys(this.faces).join(", ")}, ` +
+                "or what this library's rig() made");
         }
         return output;
     }
@@ -228,6 +273,19 @@ function facesOf({ wasm, memory }) {
         Object.freeze(names);
     }
     return Object.freeze(faces);
+}
+
+/** The numbers of an output of a rig's file, which the library checks for what they mean. */
+function numbersOf(name, row) {
+    const { weights } = row ?? {};
+    const right = Array.isArray(weights) && weights.length === CHANNELS && weights.every((one) => whole(one, 32767)) &&
+        NUMBERS.every(([key, most]) => whole(row[key], most));
+    if (!right) throw new LabialError(`output ${shown(name)} is not one that labial rig --json wrote`);
+    return [...weights, ...NUMBERS.map(([key]) => row[key])];
+}
+
+function whole(value, most) {
+    return Number.isInteger(value) && Math.abs(value) <= most;
 }
 
 /** A share from 0 to 1, in 1/256. */

@@ -226,6 +226,42 @@ EXPORT(weigh) void weigh(unsigned face, const int16_t *faps, int32_t *out)
     labial_rig_apply(faces[face].rig, faps, out);
 }
 
+EXPORT(rig_output_size) uint32_t rig_output_size(void)
+{
+    return sizeof(labial_rig_output_t);
+}
+
+/* An output of a rig from its numbers: weights, then gain, neutral, minimum, maximum, invert, contact and closed. */
+EXPORT(rig_output) void rig_output(labial_rig_output_t *output, const int32_t *numbers)
+{
+    const int32_t *const rest = &numbers[LABIAL_CHANNELS];
+    memset(output, 0, sizeof *output);
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
+        output->weights[i] = (int16_t)numbers[i];
+    output->gain = rest[0];
+    output->neutral = rest[1];
+    output->minimum = rest[2];
+    output->maximum = rest[3];
+    output->invert = (uint8_t)rest[4];
+    output->contact = (uint8_t)rest[5];
+    output->closed = rest[6];
+}
+
+EXPORT(rig_check) int rig_check(const labial_rig_output_t *outputs, unsigned count)
+{
+    const labial_rig_t rig = { outputs, (uint16_t)count };
+    return labial_rig_check(&rig);
+}
+
+/* The same as weigh() for a rig of one's own. */
+EXPORT(rig_weigh)
+void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, int32_t *out)
+{
+    const labial_rig_t rig = { outputs, (uint16_t)count };
+    labial_rig_rest(&rig, out);
+    labial_rig_apply(&rig, faps, out);
+}
+
 EXPORT(model_load) int model_load(labial_blob_t *blob, const void *data, uint32_t size)
 {
     return labial_model_load(blob, data, size);

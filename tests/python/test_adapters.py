@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import json
+import shutil
 import threading
 import wave
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -17,6 +18,8 @@ import pytest
 from avatars import add_skeleton, document_of, glb, made_head
 from browser import CHROMIUM, REASON, Browser, Page
 from bundlers import MISSING, install, tools
+from labial.cli import main
+from labial.rig import description_of
 from npm import package
 from packages import SOURCE
 from pages import parse
@@ -185,6 +188,18 @@ def test_shapes_of_every_mesh(site: Any, browser: Browser) -> None:
         assert differ([row[3][shape] for row in seen], between(values, times)) <= 0.0015, name
     drawn, frame, last = page.evaluate("file")
     assert drawn == pytest.approx(frame) and drawn > 0 and last
+
+
+def test_rig_of_ones_own(site: Any, browser: Browser) -> None:
+    """The file that `labial rig --json` writes, in the place of "arkit"."""
+    shutil.copyfile(description_of("arkit"), site.folder / "mine.toml")
+    assert main(["rig", str(site.folder / "mine.toml"), "--json", "-o", str(site.folder)]) == 0
+    page = browser.page(site('import { track } from "./mine.js"; window.frames_ = [...track];'))
+    page.wait_for("!!window.frames_")
+    assert page.errors() == []
+    drawn = page.evaluate("frames_")
+    for name, values in expected(site.folder, "arkit").items():
+        assert [frame[name] for frame in drawn] == values.tolist(), name
 
 
 def test_vrm_moves(site: Any, browser: Browser) -> None:

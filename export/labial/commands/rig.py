@@ -13,14 +13,15 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("--name", help="of the C symbol and the files; the description's file name without it")
     command.add_argument("--calibrate", action="store_true", help="write a sketch for Arduino instead, which finds the "
                          "servos' pulses by commands over the serial line")
+    command.add_argument("--json", action="store_true", help="write NAME.json instead, for the npm package")
     command.add_argument("--no-figure", action="store_true", help="do not draw NAME.svg")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes NAME.h, NAME.c and, unless told not to, NAME.svg."""
+    """Writes NAME.h, NAME.c and, unless told not to, NAME.svg; or another file for which it was asked."""
     from labial.emit import check_name
     from labial.outputs import folder
-    from labial.rig import calibrate, figure, table
+    from labial.rig import calibrate, figure, table, web
     from labial.rig.description import read
 
     name = options.name or Path(options.description).stem
@@ -28,6 +29,9 @@ def run(options: argparse.Namespace) -> int:
     rig = read(options.description, name)
     if options.calibrate:
         print(calibrate.write(rig, options.output))
+        return 0
+    if options.json:
+        print(web.write(rig, options.output))
         return 0
     with folder(options.output) as made:
         paths = table.write(rig, made)

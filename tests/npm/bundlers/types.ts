@@ -33,6 +33,15 @@ labial.stream({ output: "vrmm" });
 // @ts-expect-error null until it is loaded
 labial.models.laughter.rate;
 
+const mine = labial.rig<"beak" | "brow">({});
+const beak: number | undefined = labial.stream({ output: mine }).tick()?.beak;
+labial.render([], { output: mine }).at(0).brow.toFixed();
+labial.convert(between, labial.rig("{}")).anything.toFixed();
+// @ts-expect-error the rig has no such output
+labial.convert(between, mine).jawOpen;
+// @ts-expect-error a rig comes from rig()
+labial.stream({ output: { name: "mine", outputs: ["beak"] } });
+
 /** Code that does not know the face. */
 function total(weights: Weights): number {
     return Object.values<number>(weights).reduce((sum, one) => sum + one, 0);
@@ -50,4 +59,4 @@ function follow(mouth: LabialMouth, track: Track, stream: Stream): void {
     mouth.track = vrm;
 }
 
-export { aa, any, faps, follow, ih, open, ou, sil };
+export { aa, any, beak, faps, follow, ih, open, ou, sil };
