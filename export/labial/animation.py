@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import json
 import re
-from typing import TYPE_CHECKING, Callable, Dict, NamedTuple, Optional, TextIO
+from typing import TYPE_CHECKING, Callable, Dict, Iterable, NamedTuple, Optional, TextIO
 
 from labial.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.rig import FACES, description_of
@@ -66,44 +66,50 @@ def _arkit_name(column: str) -> str:
     return column[0].lower() + column[1:]
 
 
-def write_fap(out: TextIO, frames: np.ndarray, fps: int, name: str) -> None:
-    """Writes (T, 13) frames as MPEG-4 text: a header, then per frame a mask of 68 and the values of the 23 FAPs of the
-    mouth, inner lips (4 to 13) moving as the outer ones (51 to 60)."""
+def _fap_head(name: str, fps: int, count: int) -> str:
+    return f"2.1 {re.sub(r'[^0-9A-Za-z_.-]+', '_', name) or 'labial'} {fps} {count}\n"
+
+
+def _fap_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
+    """MPEG-4 text: per frame a mask of 68 and the values of the 23 FAPs of the mouth, inner lips (4 to 13) moving as
+    the outer ones (51 to 60)."""
     import numpy as np
 
     columns = {fap: index for index, fap in enumerate(FAP_NUMBERS)}
     columns.update({fap: columns[fap + 47] for fap in range(4, 14)})
     used = sorted(columns)
     mask = " ".join("1" if fap in columns else "0" for fap in range(1, _FAPS + 1))
-    out.write(f"2.1 {re.sub(r'[^0-9A-Za-z_.-]+', '_', name) or 'labial'} {fps} {len(frames)}\n")
-    for number, frame in enumerate(np.rint(frames).astype(int)):
+    for number, frame in enumerate(np.rint(frames).astype(int), first):
         out.write(f"{mask}\n{number} " + " ".join(str(frame[columns[fap]]) for fap in used) + "\n")
 
 
-def write_live_link(out: TextIO, frames: np.ndarray, fps: int, name: str = "") -> None:
-    """Writes (T, 13) frames as Live Link Face records them: timecode ``HH:MM:SS:FF.000``, 61, then the columns."""
+def _live_link_head(name: str, fps: int, count: int) -> str:
+    return ",".join(("Timecode", "BlendShapeCount", *LIVE_LINK)) + "\n"
+
+
+def _live_link_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
+    """As Live Link Face records: timecode ``HH:MM:SS:FF.000``, 61, then the columns."""
     import numpy as np
 
-    out.write(",".join(("Timecode", "BlendShapeCount", *LIVE_LINK)) + "\n")
     weights = arkit(frames)
     still = np.zeros(len(frames))
     columns = np.stack([weights.get(_arkit_name(column), still) for column in LIVE_LINK], axis=1)
-    for number, row in enumerate(columns):
+    for number, row in enumerate(columns, first):
         seconds, frame = divmod(number, fps)
         values = [f"{value:.3f}" for value in row]
         timecode = f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}:{frame:02}.000"
         out.write(",".join((timecode, str(len(LIVE_LINK)), *values)) + "\n")
 
 
-def write_json_lines(out: TextIO, frames: np.ndarray, fps: int, name: str = "", *, rig: Optional[Rig] = None,
-                     with_faps: bool = True) -> None:
-    """Writes (T, 13) frames as one JSON object per line: frame, time in seconds, faps unless `with_faps` is False, and
-    under the rig's name (ARKit's where none is given) its outputs, as `outputs` gives them."""
+def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Optional[Rig] = None,
+               with_faps: bool = True) -> None:
+    """One JSON object per line: frame, time in seconds, faps unless `with_faps` is False, and under the rig's name
+    (ARKit's where none is given) its outputs, as `outputs` gives them."""
     import numpy as np
 
     rig = rig or face("arkit")
     values = outputs(rig, frames)
-    for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1))):
+    for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1)), first):
         out.write(json.dumps({
             "frame": number,
             "time": round(number / fps, 3),
@@ -112,30 +118,54 @@ def write_json_lines(out: TextIO, frames: np.ndarray, fps: int, name: str = "", 
         }, separators=(",", ":")) + "\n")
 
 
-def _write_csv(out: TextIO, frames: np.ndarray, fps: int, _: str) -> None:
-    from labial.frames import write_csv
-
-    write_csv(out, frames, fps)
+def _no_head(name: str, fps: int, count: int) -> str:
+    return ""
 
 
-def _write_weights(name: str, out: TextIO, frames: np.ndarray, fps: int, _: str) -> None:
-    write_json_lines(out, frames, fps, rig=face(name), with_faps=False)
+def _csv_head(name: str, fps: int, count: int) -> str:
+    from labial.frames import CSV_HEAD
+
+    return CSV_HEAD
+
+
+def _csv_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
+    from labial.frames import write_csv_rows
+
+    write_csv_rows(out, frames, first, fps)
+
+
+def _weight_rows(name: str, out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
+    _json_rows(out, frames, first, fps, rig=face(name), with_faps=False)
 
 
 class Format(NamedTuple):
     """A format of output."""
 
     about: str  #: what ``--help`` says of it
-    #: Writes to a text file: (T, 13) frames in FAP units, frames per second, name of the motion.
-    write: Callable[[TextIO, np.ndarray, int, str], None]
+    #: Writes to a text file: (n, 13) frames in FAP units, the number of the first, frames per second.
+    rows: Callable[[TextIO, np.ndarray, int, int], None]
+    #: What comes before: of the motion's name, frames per second, number of frames.
+    head: Callable[[str, int, int], str] = _no_head
+
+    def write(self, out: TextIO, parts: Iterable[np.ndarray], fps: int, name: str, count: int) -> None:
+        """Writes a motion of `count` frames, which come in parts (n, 13) in FAP units."""
+        out.write(self.head(name, fps, count))
+        first = 0
+        for part in parts:
+            self.rows(out, part, first, fps)
+            first += len(part)
+
+    def of_rig(self, rig: Rig) -> Format:
+        """The lines of JSON with another rig than ARKit's."""
+        return self._replace(rows=functools.partial(_json_rows, rig=rig))
 
 
 #: Every format by its name, which ``--to`` takes.
 FORMATS: Dict[str, Format] = {
-    "csv": Format("FAPs, a line per frame", _write_csv),
-    "fap": Format("MPEG-4 text", write_fap),
-    "livelink": Format("Live Link Face CSV, ARKit's blendshapes", write_live_link),
-    "jsonl": Format("FAPs and ARKit's blendshapes, a line of JSON per frame", write_json_lines),
-    **{name: Format("weights alone, a line of JSON per frame", functools.partial(_write_weights, name))
+    "csv": Format("FAPs, a line per frame", _csv_rows, _csv_head),
+    "fap": Format("MPEG-4 text", _fap_rows, _fap_head),
+    "livelink": Format("Live Link Face CSV, ARKit's blendshapes", _live_link_rows, _live_link_head),
+    "jsonl": Format("FAPs and ARKit's blendshapes, a line of JSON per frame", _json_rows),
+    **{name: Format("weights alone, a line of JSON per frame", functools.partial(_weight_rows, name))
        for name in FACES},
 }

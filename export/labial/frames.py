@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TextIO, Tuple
+from typing import Iterable, Iterator, Optional, TextIO, Tuple
 
 import numpy as np
 
@@ -17,10 +17,19 @@ _OVERSAMPLING = 16
 _ROUNDING = 0.0015
 
 
+#: The first line of a frames file.
+CSV_HEAD = ",".join(("time", *FAP_COLUMNS)) + "\n"
+
+
 def write_csv(out: TextIO, frames: np.ndarray, fps: float, start: float = 0.0) -> None:
     """Writes (T, 13) frames from `start` seconds, whose times are those of their beginnings, with two decimals."""
-    out.write(",".join(("time", *FAP_COLUMNS)) + "\n")
-    for t, frame in enumerate(frames):
+    out.write(CSV_HEAD)
+    write_csv_rows(out, frames, 0, fps, start)
+
+
+def write_csv_rows(out: TextIO, frames: np.ndarray, first: int, fps: float, start: float = 0.0) -> None:
+    """The lines of :func:`write_csv` of frames that begin with number `first`."""
+    for t, frame in enumerate(frames, first):
         out.write(f"{start + t / fps:.3f}," + ",".join(f"{value:.2f}" for value in frame) + "\n")
 
 
@@ -33,20 +42,45 @@ def sampled(times: np.ndarray, frames: np.ndarray, fps: float, count: int, origi
     into it.
     """
     steps = np.diff(times)
-    dense = len(steps) > 0 and np.median(steps) < 0.99 / fps
+    return _sampled(times, frames, fps, range(count), len(steps) > 0 and np.median(steps) < 0.99 / fps, origin)
+
+
+def _sampled(
+    times: np.ndarray, frames: np.ndarray, fps: float, numbers: range, dense: bool, origin: float = 0.0
+) -> np.ndarray:
+    """The frames of these numbers of :func:`sampled`, averaged where the motion is `dense`."""
     points = _OVERSAMPLING if dense else 1
-    moments = origin + (np.arange(count * points) + 0.5) / (fps * points)
+    moments = origin + (np.arange(numbers.start * points, numbers.stop * points) + 0.5) / (fps * points)
     samples = [np.interp(moments, times, channel) for channel in frames.T]
-    return np.stack(samples, axis=1).reshape(count, points, -1).mean(axis=1)
+    return np.stack(samples, axis=1).reshape(len(numbers), points, -1).mean(axis=1)
 
 
-def at_rate(frames: np.ndarray, fps: float, wanted: float) -> np.ndarray:
-    """(N, K) frames at `wanted` per second of frames (T, K) at `fps`, resampled by :func:`sampled`. Both begin at the
-    same time, and N is as near to the same duration as a whole number of frames can be."""
-    if fps == wanted or not len(frames):
-        return frames
-    count = max(math.floor(len(frames) * wanted / fps + 0.5), 1)
-    return sampled((np.arange(len(frames)) + 0.5) / fps, frames, wanted, count)
+def at_rate(parts: Iterable[np.ndarray], total: int, fps: float, wanted: float) -> Iterator[np.ndarray]:
+    """(n, K) frames at `wanted` per second of `total` frames at `fps` that come in parts (n, K), resampled by
+    :func:`sampled`: :func:`count_at` in all, which begin at the same time."""
+    if fps == wanted:
+        yield from parts
+        return
+    count, done, begin = count_at(total, fps, wanted), 0, 0
+    held: Optional[np.ndarray] = None
+    for part in parts:
+        held = part if held is None else np.concatenate([held, part])
+        known = begin + len(held)
+        # A frame ends before the middle of the last one that is known, unless there are no more.
+        until = count if known == total else max(math.floor((known - 1) * wanted / fps), done)
+        if until == done:
+            continue
+        times = (np.arange(begin, known) + 0.5) / fps
+        yield _sampled(times, held, wanted, range(done, until), total > 1 and 1.0 / fps < 0.99 / wanted)
+        done = until
+        unused = min(max(math.floor(done * fps / wanted) - 2, begin) - begin, len(held) - 1)
+        held, begin = held[unused:].copy(), begin + unused
+
+
+def count_at(total: int, fps: float, wanted: float) -> int:
+    """How many frames at `wanted` per second `total` frames at `fps` become: those whose duration is nearest, one at
+    least of any."""
+    return total if fps == wanted or not total else max(math.floor(total * wanted / fps + 0.5), 1)
 
 
 def even(times: np.ndarray, frames: np.ndarray) -> Tuple[float, np.ndarray]:

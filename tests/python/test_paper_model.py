@@ -51,7 +51,7 @@ def test_every_format_has_the_published_motion(given: Path, wanted: np.ndarray, 
     out = given / "out"
     assert main(["synth", str(given / "paper.npz"), str(given / "phones.lab"), "--to", name, "-o", str(out)]) == 0
     text = io.StringIO()
-    FORMATS[name].write(text, wanted, 50, "paper")
+    FORMATS[name].write(text, [wanted], 50, "paper", len(wanted))
     assert out.read_text() == text.getvalue()
 
 

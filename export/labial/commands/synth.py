@@ -5,12 +5,16 @@ from __future__ import annotations
 import argparse
 import functools
 import sys
+from contextlib import nullcontext
 from pathlib import Path
-from typing import Callable, Dict, List
+from typing import TYPE_CHECKING, Dict, List
 
 from labial.bundled import MODEL_HELP
 from labial.commands.common import add_labels, add_source, whole
 from labial.errors import LabialError
+
+if TYPE_CHECKING:
+    from labial.animation import Format
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
@@ -45,29 +49,25 @@ def _add_format(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the frames."""
     from labial.animation import FORMATS
-    from labial.frames import at_rate
+    from labial.frames import at_rate, count_at
     from labial.model import load
     from labial.outputs import check, writing
     from labial.phones import read_stream
-    from labial.reference.synthesis import synthesise
+    from labial.reference.synthesis import frames_of, in_parts
 
     check(options.output)
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source)
-    write = _rig_writer(options) if options.rig else FORMATS[options.to].write
-    frames, fps = synthesise(model, phonemes, whole=options.whole), options.fps or model.fps
-    frames = at_rate(frames, model.fps, fps)
-    name = Path(options.model).stem
-    if options.output:
-        with writing(options.output, "ascii") as out:
-            write(out, frames, fps, name)
-    else:
-        write(sys.stdout, frames, fps, name)
+    form = _of_rig(options) if options.rig else FORMATS[options.to]
+    count, fps, name = frames_of(model, phonemes), options.fps or model.fps, Path(options.model).stem
+    parts = at_rate(in_parts(model, phonemes, whole=options.whole), count, model.fps, fps)
+    with writing(options.output, "ascii") if options.output else nullcontext(sys.stdout) as out:
+        form.write(out, parts, fps, name, count_at(count, model.fps, fps))
     return 0
 
 
-def _rig_writer(options: argparse.Namespace) -> Callable[..., None]:
-    from labial.animation import write_json_lines
+def _of_rig(options: argparse.Namespace) -> Format:
+    from labial.animation import FORMATS
     from labial.rig.description import read
 
     if options.to != "jsonl":
@@ -75,4 +75,4 @@ def _rig_writer(options: argparse.Namespace) -> Callable[..., None]:
     name = Path(options.rig).stem
     if name in ("frame", "time", "faps"):
         raise LabialError(f"{options.rig}: {name!r} is taken in a line of JSON: name the file otherwise")
-    return functools.partial(write_json_lines, rig=read(options.rig, name))
+    return FORMATS[options.to].of_rig(read(options.rig, name))

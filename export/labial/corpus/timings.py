@@ -11,7 +11,7 @@ import math
 import os
 import warnings
 from dataclasses import dataclass
-from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
+from typing import Iterable, Iterator, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
@@ -43,11 +43,12 @@ class SourceSegment(Segment):
 def read_lab(path: PathLike) -> List[SourceSegment]:
     """Reads lines of ``start end label [apex [word]]``, seconds; or HTK's labels, which are called .lab, too. A line
     that starts with # is a comment."""
-    segments = []
-    rows = [row for row in _rows(path) if not row[1][0].startswith("#")]
-    if rows and _is_htk(rows[0][1]):
-        return read_htk(path)
-    for line, fields in rows:
+    segments: List[SourceSegment] = []
+    for line, fields in _rows(path):
+        if fields[0].startswith("#"):
+            continue
+        if not segments and _is_htk(fields):
+            return read_htk(path)
         if not 3 <= len(fields) <= 5:
             raise DataError(path, line, f"expected 'start end label [apex [word]]', found {len(fields)} columns")
         apex = number(path, line, fields[3], "apex") if len(fields) > 3 else None
@@ -98,7 +99,7 @@ def read_phseg(path: PathLike) -> List[SourceSegment]:
     between a segment's two ends.
     """
     segments: List[SourceSegment] = []
-    rows = _rows(path)
+    rows = list(_rows(path))
     if not rows or [name.lower() for name in rows[0][1][:4]] != ["sfrm", "efrm", "segascr", "phone"]:
         raise DataError(path, rows[0][0] if rows else None, "expected the header 'SFrm EFrm SegAScr Phone'")
     for count, (line, fields) in enumerate(rows[1:], 2):
@@ -228,16 +229,14 @@ def lab_of(segments: Iterable[Segment]) -> str:
     return "".join(f"{item.start:.4f} {item.end:.4f} {item.label}\n" for item in segments)
 
 
-def _rows(path: PathLike, comment: bool = False) -> List[Tuple[int, List[str]]]:
+def _rows(path: PathLike, comment: bool = False) -> Iterator[Tuple[int, List[str]]]:
     """Line number and fields of each line that has any, where `comment` without those of a comment behind a ``;``."""
-    rows = []
     for line, text in enumerate(lines_of(read_text(path)), 1):
         fields = fields_of(text)
         if comment:
             fields = fields[: next((n for n, field in enumerate(fields) if field.startswith(";")), len(fields))]
         if fields:
-            rows.append((line, fields))
-    return rows
+            yield line, fields
 
 
 def _is_htk(fields: Sequence[str]) -> bool:

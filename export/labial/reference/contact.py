@@ -27,21 +27,25 @@ def raised(
     silence: int,
     floor: np.ndarray,
     contact: np.ndarray,
+    begin: int = 0,
 ) -> Tuple[np.ndarray, np.ndarray]:
-    """Targets (T, 13) that keep the floors, and where they are in contact, (T, 13) bool.
+    """Targets (N, 13) that keep the floors, and where they are in contact, (N, 13) bool; they are those of N frames
+    from frame `begin` on.
 
-    `labels` (T,) are the frames' phonemes, `length` (S,) the frames of each phoneme, `rest` (T,) how far the mouth has
-    come to rest, of REST. `floor` (P, 13) is what a phoneme's targets do not fall below, in the unit of `target`;
-    `contact` (P, 13) bool says where it is contact, or for silence where the mouth comes to rest.
+    `labels` (T,) are the phonemes of all frames, `length` (S,) the frames of each phoneme, `rest` (T,) how far the
+    mouth has come to rest, of REST. `floor` (P, 13) is what a phoneme's targets do not fall below, in the unit of
+    `target`; `contact` (P, 13) bool says where it is contact, or for silence where the mouth comes to rest.
     """
-    frames = len(labels)
+    frames = len(target)
+    here = slice(begin, begin + frames)
     padded = np.concatenate([np.full(FRAMES, silence), labels, np.full(FRAMES, silence)])
 
     def label(lag: int) -> np.ndarray:
-        return padded[FRAMES + lag : FRAMES + lag + frames]
+        return padded[FRAMES + lag + begin : FRAMES + lag + begin + frames]
 
-    whole = np.repeat(length, length)
-    left = np.repeat(np.cumsum(length), length) - np.arange(frames)
+    whole = np.repeat(length, length)[here]
+    left = np.repeat(np.cumsum(length), length)[here] - np.arange(here.start, here.stop)
+    labels, rest = labels[here], rest[here]
     closing = ((whole < LONG) | (left <= LAST)) & (labels != silence)
     short = (label(1) != labels) & (label(1) != silence) & ~((label(1) == label(2)) & (label(2) == label(3)))
     single = (label(-1) != labels) & (label(-1) != silence) & (label(-1) != label(-2))

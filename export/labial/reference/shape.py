@@ -105,9 +105,10 @@ def add_kernels(
     return shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
 
 
-def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int) -> np.ndarray:
-    """(T, L) int64: the phoneme at each lag from each of T frames; `silence` outside the utterance."""
-    at = np.arange(len(phoneme_at))[:, None] + lag[None, :]
+def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int, here: slice = slice(None)) -> np.ndarray:
+    """(N, L) int64: the phoneme at each lag from each of T frames, or of those `here`; `silence` outside the
+    utterance."""
+    at = np.arange(len(phoneme_at))[here, None] + lag[None, :]
     inside = (at >= 0) & (at < len(phoneme_at))
     return np.where(inside, phoneme_at[np.clip(at, 0, max(len(phoneme_at) - 1, 0))], silence)
 
@@ -136,9 +137,10 @@ def targets_and_contact(
     milliseconds: Sequence[int],
     frames: Sequence[int],
     rest: Optional[np.ndarray] = None,
+    here: Optional[slice] = None,
 ) -> Tuple[np.ndarray, np.ndarray]:
     """The targets (T, 13) of :func:`targets`, and where they are in contact, (T, 13) bool; `rest` (T,) is how far the
-    mouth has come to rest in pauses."""
+    mouth has come to rest in pauses. Of all T frames, or of those `here` alone."""
     length = np.asarray(frames, dtype=np.int64)
     has_frames = length > 0
     phoneme, length = np.asarray(phonemes, dtype=np.int64)[has_frames], length[has_frames]
@@ -146,7 +148,8 @@ def targets_and_contact(
     selected = tables.select(phoneme, duration, *neighbours(phoneme, tables.silence))
     index = np.repeat(np.arange(len(phoneme)), length)
     labels = phoneme[index]
-    shape_at = tables.interpolated(selected[index], knot_shares(length, tables.knots))
-    moving = tables.targets(shape_at, tapped(labels, tables.lags, tables.silence))
+    here = slice(0, len(labels)) if here is None else here
+    shape_at = tables.interpolated(selected[index[here]], knot_shares(length, tables.knots)[here])
+    moving = tables.targets(shape_at, tapped(labels, tables.lags, tables.silence, here))
     rest = np.zeros(len(labels), dtype=np.int64) if rest is None else rest
-    return raised(moving, labels, length, rest, tables.silence, tables.floor, tables.contact)
+    return raised(moving, labels, length, rest, tables.silence, tables.floor, tables.contact, here.start)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional, Sequence, Tuple
+from typing import Iterator, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -10,12 +10,16 @@ from labial.errors import LabialError
 from labial.faps import CHANNELS
 from labial.fixed import SEARCHED
 from labial.reference import trajectory
+from labial.reference.contact import FRAMES
 from labial.reference.shape import targets_and_contact
 from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
-from labial.reference.units import rest, segments, unit_ends
-from labial.reference.viterbi import LAG
+from labial.reference.units import frame_counts, rest, segments, unit_ends
+from labial.reference.viterbi import LAG, Decode
 from labial.runtime.library import DURATION_MAX
+
+#: Frames that are worked on at once, some 10 KB each.
+PART = 3000
 
 
 def check(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> None:
@@ -43,6 +47,57 @@ def synthesise(
     """
     target, contact, ends = aims(tables, phonemes)
     return solution(tables, target, contact, ends, whole=whole, window=window, lag=lag, searched=searched)
+
+
+def in_parts(tables: Tables, phonemes: Sequence[Tuple[int, int]], part: int = PART) -> Iterator[np.ndarray]:
+    """The motion of :func:`synthesise`, to the last bit, some `part` frames (n, 13) at a time: memory does not grow
+    with the stream."""
+    search, solve = Decode(tables.chains, tables.stride), trajectory.Solve(tables.stride)
+    waiting = [np.zeros((0, CHANNELS), dtype=dtype) for dtype in (tables.dtype, bool)]  # targets and where in contact
+    for target, contact, ends, last in aims_in_parts(tables, phonemes, part):
+        path = search.take(target, ends, last)
+        known = [np.concatenate(pair) for pair in zip(waiting, (target, contact))]
+        waiting = [values[len(path) :] for values in known]
+        if len(path):
+            target, contact = (values[: len(path)] for values in known)
+            yield solve.take(tables.equation(path, target, contact), last)
+
+
+def aims_in_parts(
+    tables: Tables, phonemes: Sequence[Tuple[int, int]], part: int
+) -> Iterator[Tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:
+    """What :func:`aims` returns, some `part` frames at a time, and whether these are the last.
+
+    A part is made of some phonemes and of those around them that its targets depend on.
+    """
+    check(tables, phonemes)
+    counts = frame_counts([milliseconds for _, milliseconds in phonemes], tables.fps)
+    reach = max([FRAMES, *np.abs(tables.lags).tolist()])
+    left, begin = sum(counts), 0
+    while left:
+        end, frames = _until(counts, begin, part)
+        first = origin = 0
+        for first in range(begin, -1, -1):
+            if (origin := sum(counts[first:begin])) >= reach:
+                break
+        around = slice(first, _until(counts, end, reach)[0])
+        held = segments(phonemes[around], tables.silence, tables.ahead, tables.fps, counts[around])
+        given = [item.phoneme for item in held], [item.milliseconds for item in held], [item.frames for item in held]
+        resting, ends = rest(held), unit_ends(held, tables.boundary)
+        for moment in range(origin, origin + frames, part):  # of a pause as well, which may last an hour
+            here = slice(moment, min(moment + part, origin + frames))
+            left -= here.stop - here.start
+            yield (*targets_and_contact(tables, *given, resting, here), ends[here], not left)
+        begin = end
+
+
+def _until(counts: Sequence[int], begin: int, least: int) -> Tuple[int, int]:
+    """Behind which phoneme those from `begin` on have `least` frames, or the last one; and how many they have."""
+    end, frames = begin, 0
+    while end < len(counts) and frames < least:
+        frames += counts[end]
+        end += 1
+    return end, frames
 
 
 def aims(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Sequence, Tuple
+from typing import Iterator, Sequence, Tuple
 
 import numpy as np
 
 from labial.model import Model
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
+from labial.reference.units import frame_counts
 
 
 def is_published(model: Model) -> bool:
@@ -26,3 +27,16 @@ def synthesise(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool
     if whole or is_published(model):
         return published.synthesise(FloatTables(model), phonemes, whole=whole)
     return stream.synthesise(FloatTables(model), phonemes)
+
+
+def in_parts(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False) -> Iterator[np.ndarray]:
+    """The frames of :func:`synthesise` in parts (n, 13): of Labial's models as they are made, else all at once."""
+    if whole or is_published(model):
+        yield synthesise(model, phonemes, whole=whole)
+    else:
+        yield from stream.in_parts(FloatTables(model), phonemes)
+
+
+def frames_of(model: Model, phonemes: Sequence[Tuple[int, int]]) -> int:
+    """How many frames :func:`synthesise` makes of `phonemes`."""
+    return sum(frame_counts([milliseconds for _, milliseconds in phonemes], model.fps))

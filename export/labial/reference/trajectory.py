@@ -8,7 +8,8 @@ its own (rho) towards the position that it would have if all frames after it wer
 
 from __future__ import annotations
 
-from typing import Tuple
+from dataclasses import fields, replace
+from typing import Callable, Optional, Tuple
 
 import numpy as np
 
@@ -24,36 +25,64 @@ def _next(values: np.ndarray) -> np.ndarray:
     return np.concatenate([values[1:], np.zeros_like(values[:1])])
 
 
+def _rows(pick: Callable[..., np.ndarray], *terms: Equation) -> Equation:
+    """An equation each of whose members is made by `pick` of the members of `terms`."""
+    return Equation(*(pick(*(getattr(item, field.name) for item in terms)) for field in fields(Equation)))
+
+
+class Forward:
+    """The forward pass over a stream whose terms come in parts."""
+
+    def __init__(self) -> None:
+        self._kept: Optional[Equation] = None  # the frame before those to come, if any, and the one that waits
+        self._done = 0  # of the frames in `_kept`
+        self._state: Tuple[np.ndarray, ...] = ()
+
+    def take(self, terms: Equation, last: bool) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(n, 13) each: as :func:`forward`, for the frames whose successor is known, or for all that are left when
+        `terms`, of a frame or more, are the `last` ones."""
+        first = self._kept is None
+        terms = terms if self._kept is None else _rows(lambda a, b: np.concatenate([a, b]), self._kept, terms)
+        weight = terms.weight.copy()
+        if first:
+            weight[0, :, 1:] = 0.0  # rows whose delta window would leave the stream
+        if last:
+            weight[-1, :, 1:] = 0.0
+        delta, bend = weight[..., 1] / 4.0, weight[..., 2]
+        hold = weight[..., 0] + terms.anchor
+        aim = (weight[..., 0] * terms.mean[..., 0] + terms.anchor * terms.target) / hold
+        turn, pull = bend * terms.mean[..., 2], 2.0 * delta * terms.mean[..., 1]
+        pushed = -2.0 * turn + _next(turn - pull)
+        pushed[1:] += (turn + pull)[:-1]
+        across = _next(bend - delta)  # the element two beside the diagonal, c
+        along = 2.0 * (delta + _next(delta))
+        begin, end = self._done, len(hold) if last else len(hold) - 1
+        settled, rho, kappa = (np.zeros_like(hold) for _ in range(3))
+        # k[t-1], k[t-2], rho F and kappa F of t-1, settled of t-1, t-2
+        k1, k2, carried, bent, before1, before2 = self._state or (np.zeros(hold.shape[1:]),) * 6
+        for t in range(begin, end):
+            held = hold[t] + carried + 2.0 * k1 - k2
+            tied = along[t] + 2.0 * k1 + bent
+            pivot = held + tied + across[t]
+            rho[t], kappa[t] = held / pivot, across[t] / pivot
+            drawn = hold[t] * (aim[t] - before1) + k2 * (before1 - before2) + pushed[t]
+            settled[t] = before1 + drawn / held
+            k1, k2, carried, bent = rho[t] * across[t], k1, rho[t] * tied, kappa[t] * tied
+            before1, before2 = settled[t], before1
+        self._state = k1, k2, carried, bent, before1, before2
+        keep = max(end - 1, 0)
+        self._done = end - keep
+        self._kept = _rows(lambda values: values[keep:].copy(), replace(terms, weight=weight))
+        return settled[begin:end], rho[begin:end], kappa[begin:end]
+
+
 def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(T, 13) each: `settled`, rho and kappa of the frames.
 
     `settled` is the frame's value if all beyond it equalled it. With those beyond given it is
     m[t] = m[t+1] + rho[t] (settled[t] - m[t+1]) + kappa[t] (m[t+1] - m[t+2]).
     """
-    weight = terms.weight.copy()
-    weight[0, :, 1:] = 0.0  # rows whose delta window would leave the stream
-    weight[-1, :, 1:] = 0.0
-    delta, bend = weight[..., 1] / 4.0, weight[..., 2]
-    hold = weight[..., 0] + terms.anchor
-    aim = (weight[..., 0] * terms.mean[..., 0] + terms.anchor * terms.target) / hold
-    turn, pull = bend * terms.mean[..., 2], 2.0 * delta * terms.mean[..., 1]
-    pushed = -2.0 * turn + _next(turn - pull)
-    pushed[1:] += (turn + pull)[:-1]
-    across = _next(bend - delta)  # the element two beside the diagonal, c
-    along = 2.0 * (delta + _next(delta))
-    settled, rho, kappa = (np.zeros_like(hold) for _ in range(3))
-    zero = np.zeros(hold.shape[1:])
-    k1 = k2 = carried = bent = before1 = before2 = zero  # k[t-1], k[t-2], rho F and kappa F of t-1, settled of t-1, t-2
-    for t in range(len(hold)):
-        held = hold[t] + carried + 2.0 * k1 - k2
-        tied = along[t] + 2.0 * k1 + bent
-        pivot = held + tied + across[t]
-        rho[t], kappa[t] = held / pivot, across[t] / pivot
-        drawn = hold[t] * (aim[t] - before1) + k2 * (before1 - before2) + pushed[t]
-        settled[t] = before1 + drawn / held
-        k1, k2, carried, bent = rho[t] * across[t], k1, rho[t] * tied, kappa[t] * tied
-        before1, before2 = settled[t], before1
-    return settled, rho, kappa
+    return Forward().take(terms, True)
 
 
 def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0) -> np.ndarray:
@@ -76,8 +105,13 @@ def solve(terms: Equation, start: np.ndarray) -> np.ndarray:
     W stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame;
     those whose window would leave the stream are dropped.
     """
-    settled, rho, kappa = forward(terms)
-    frame = np.arange(len(settled))[:, None]
+    return _back(*forward(terms), start)
+
+
+def _back(settled: np.ndarray, rho: np.ndarray, kappa: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """(N, 13) the first N of the frames of a forward pass (T, 13), each by a way back of its own from `start`
+    (N, 13)."""
+    frame = np.arange(len(start))[:, None]
     channel = np.arange(settled.shape[1])
     m = np.take_along_axis(settled, start, axis=0)
     beyond = m  # m of the frame behind
@@ -87,6 +121,28 @@ def solve(terms: Equation, start: np.ndarray) -> np.ndarray:
         under_way = frame + back < start
         m, beyond = np.where(under_way, step, m), np.where(under_way, m, beyond)
     return m
+
+
+class Solve:
+    """:func:`solve` for a stream whose terms come in parts, without a lag."""
+
+    def __init__(self, stride: int, window: int = WINDOW) -> None:
+        self._stride, self._window = stride, window
+        self._forward = Forward()
+        self._passed: Tuple[np.ndarray, ...] = ()  # of the forward pass, from the first frame that is not delivered on
+        self._begin = 0  # that frame
+
+    def take(self, terms: Equation, last: bool) -> np.ndarray:
+        """(n, 13) the next frames whose way back has a start, or all that are left."""
+        passed = self._forward.take(terms, last)
+        joined = tuple(map(np.concatenate, zip(self._passed, passed))) if self._passed else passed
+        known = len(joined[0])
+        # The way back to a frame starts before the last one that is known, unless the stream ends there.
+        ready = known if last else max(known - 1 - self._window - self._stride, 0)
+        motion = _back(*joined, starts(known, self._stride, self._window, 0, self._begin)[:ready])
+        self._passed = tuple(item[ready:].copy() for item in joined)
+        self._begin += ready
+        return motion
 
 
 def solve_whole(terms: Equation) -> np.ndarray:

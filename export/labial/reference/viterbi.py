@@ -12,7 +12,7 @@ block, but at the end of a unit only its best state is kept.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, List, Sequence
+from typing import Callable, List, Optional, Sequence
 
 import numpy as np
 
@@ -54,7 +54,12 @@ def normal_chains(
 
 def block_at(frames: int, stride: int, begin: int = 0) -> np.ndarray:
     """(T, 13) int64: the block of each frame, per channel, of a solution whose first frame is the stream's `begin`."""
-    return np.maximum(-(((_CHANNEL - begin) % stride - np.arange(frames)[:, None]) // stride), 0)
+    return _blocks_of(np.arange(frames), stride, begin)
+
+
+def _blocks_of(frame: np.ndarray, stride: int, begin: int = 0) -> np.ndarray:
+    """(T, 13) int64: :func:`block_at` of the frames (T,)."""
+    return np.maximum(-(((_CHANNEL - begin) % stride - frame[:, None]) // stride), 0)
 
 
 def block_ends(frames: int, stride: int, channel: int) -> np.ndarray:
@@ -85,6 +90,7 @@ class Search:
     first: np.ndarray  #: (B, N, 13) the first state of each window
     winner: np.ndarray  #: (B, N, 13) the best one's place in it
     back: np.ndarray  #: (B, N, 13, W) each one's predecessor's place in the window of the block before
+    score: np.ndarray  #: (N, 13, W) those of the last block's window
 
     def path(self, lag: int) -> np.ndarray:
         """(B, N, 13) int64: the states from which the best of `lag` blocks later, or of the last block, come. A unit's
@@ -99,35 +105,82 @@ class Search:
         return result
 
 
-def search(chains: Chains, position: np.ndarray, closed: np.ndarray, searched: int = SEARCHED) -> Search:
+def search(
+    chains: Chains, position: np.ndarray, closed: np.ndarray, searched: int = SEARCHED, before: Optional[Search] = None
+) -> Search:
     """The search of B blocks of N utterances, for the targets (B, N, 13) that are looked at.
 
     `closed` (B, N, 13) says which blocks end a unit. Of the edges into a state the least wins, the first of equals, a
-    leap before all; of states the least, the first of equals.
+    leap before all; of states the least, the first of equals. `before` is the search of the blocks before these.
     """
     width = min(searched, chains.mean.shape[1])
     rank = np.arange(width)
     first = window(position, chains.mean, width)
     winner = np.zeros(position.shape, dtype=np.int64)
     back = np.zeros((*position.shape, width), dtype=np.int64)
-    score = state = None
+    score = state = best = None
+    if before is not None:
+        score, state, best = before.score, before.first[-1][..., None] + rank, before.winner[-1]
     for b in range(len(position)):
-        before, state = state, first[b][..., None] + rank
-        if b == 0:
+        left, state = state, first[b][..., None] + rank
+        if left is None:
             enter = chains.initial[_CHANNEL[:, None], state]
         else:
-            edges = chains.transition[_CHANNEL[:, None, None], before[..., :, None], state[..., None, :]]
+            edges = chains.transition[_CHANNEL[:, None, None], left[..., :, None], state[..., None, :]]
             through = score[..., :, None] + edges
             origin = through.argmin(axis=-2)
             least = np.take_along_axis(through, origin[..., None, :], axis=-2)[..., 0, :]
             leaps = least >= chains.leap
-            back[b] = np.where(leaps, winner[b - 1][..., None], origin)
+            back[b] = np.where(leaps, best[..., None], origin)
             enter = np.where(leaps, chains.leap, least)
         total = enter + chains.emission(position[b], state)
-        winner[b] = total.argmin(axis=-1)
+        best = winner[b] = total.argmin(axis=-1)
         score = np.minimum(total - total.min(axis=-1, keepdims=True), chains.leap)
         score[closed[b][..., None] & (rank != winner[b][..., None])] = chains.leap
-    return Search(first, winner, back)
+    return Search(first, winner, back, score)
+
+
+class Decode:
+    """:func:`decode` of one utterance whose targets come in parts, without a lag."""
+
+    def __init__(self, chains: Chains, stride: int, searched: int = SEARCHED) -> None:
+        self._chains, self._stride, self._searched = chains, stride, searched
+        self._target = np.zeros((0, CHANNELS))
+        self._end = np.zeros(0, dtype=bool)
+        self._begin = 0  # the frame that these begin with, the first one whose state is not told
+        self._blocks = 0  # that are searched
+        self._found: Optional[Search] = None
+
+    def take(self, target: np.ndarray, end: np.ndarray, last: bool) -> np.ndarray:
+        """(n, 13) int64: the states of the next frames, those whose blocks are complete, or of all that are left; for
+        the next targets (T, 13), of a frame or more, and which of them (T,) end units."""
+        # A block is searched when it is complete in all channels.
+        target = np.concatenate([self._target, target]) if len(self._target) else target
+        end = np.concatenate([self._end, end])
+        known = self._begin + len(target)
+        number = _blocks_of(np.arange(self._begin, known), self._stride)
+        blocks = int(number.max()) + 1 if last else known // self._stride
+        until = known if last else max(self._stride * (blocks - 1) + 1, 0)
+        path = np.zeros((0, CHANNELS), dtype=np.int64)
+        if until > self._begin:
+            block = np.arange(self._blocks, blocks)[:, None]
+            seen = np.clip(_CHANNEL % self._stride + self._stride * (block - 1) + 1 + self._stride // 2,
+                           self._begin, known - 1) - self._begin
+            closed = np.zeros((len(block), 1, CHANNELS), dtype=bool)
+            ending = number[np.flatnonzero(end)]
+            inside = (ending >= self._blocks) & (ending < blocks)
+            closed[ending[inside] - self._blocks, 0, np.nonzero(inside)[1]] = True
+            before, position = self._found, np.take_along_axis(target, seen, axis=0)[:, None]
+            self._found = search(self._chains, position, closed, self._searched, before)
+            state = (self._found.first + self._found.winner)[:, 0]
+            if before is not None:
+                state = np.concatenate([(before.first + before.winner)[-1:, 0], state])
+            told = number[: until - self._begin] - (self._blocks - (before is not None))
+            path = np.take_along_axis(state, told, axis=0)
+            self._blocks = blocks
+        self._target, self._end = target[len(path) :].copy(), end[len(path) :].copy()
+        self._begin += len(path)
+        return path
 
 
 def decode(chains: Chains, targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], stride: int, *, lag: int = LAG,

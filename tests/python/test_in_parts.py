@@ -1,0 +1,102 @@
+"""Motion that is made, resampled and written part by part: the same frames as all at once, in bounded memory."""
+
+from __future__ import annotations
+
+import io
+import tracemalloc
+from pathlib import Path
+from typing import List, Tuple
+
+import numpy as np
+import pytest
+
+from labial.animation import FORMATS
+from labial.cli import main
+from labial.faps import CHANNELS
+from labial.frames import at_rate, count_at, sampled
+from labial.model import load
+from labial.phones import drawn_streams
+from labial.quantise import quantise
+from labial.reference import stream
+from labial.reference.synthesis import synthesise
+from labial.reference.tables import ExportedTables, FloatTables, Tables
+
+Pairs = List[Tuple[int, int]]
+
+
+@pytest.fixture(scope="module", params=["speech_en", "laughter_synthetic"])
+def float_tables(request: pytest.FixtureRequest) -> FloatTables:
+    return FloatTables(load(request.param))
+
+
+def streams(tables: Tables) -> List[Pairs]:
+    """All that a cut may fall on: phonemes of no frames at either end and between, pauses longer than a part, several
+    pauses in a row, one-frame phonemes, and streams shorter than what the solution looks ahead."""
+    rng = np.random.default_rng(5)
+    drawn = [(phoneme, 0 if rng.random() < 0.2 else length if rng.random() < 0.8 else 20)
+             for phoneme, length in drawn_streams(load("speech_en"), 1, 25, 1)[0] if phoneme < len(tables.phonemes)]
+    silence = tables.silence
+    return [[(silence, 0)] * 30 + drawn + [(1, 0)] * 10,
+            [(silence, 2500), (silence, 900), *drawn[:9], (silence, 3000), (silence, 2500)],
+            *([(1, 20 * frames)] for frames in (1, 2, 3, 7, 10, 11))]
+
+
+def test_motion_is_the_same_in_parts(float_tables: FloatTables) -> None:
+    """To the last bit, whatever the parts. Would catch a score, a factor or a neighbour that a cut loses."""
+    for tables in (float_tables, ExportedTables(quantise(float_tables.model, "x"))):
+        for phonemes in streams(tables):
+            whole = stream.synthesise(tables, phonemes)
+            for part in (1, 100):
+                assert np.array_equal(np.concatenate(list(stream.in_parts(tables, phonemes, part))), whole), part
+        assert list(stream.in_parts(tables, [(tables.silence, 0)])) == []
+
+
+def test_memory_does_not_grow_with_the_stream() -> None:
+    """Would catch anything that is kept of each frame: twelve times as many take no more memory."""
+    tables = FloatTables(load("speech_en"))
+    phonemes = drawn_streams(tables.model, 1, 30, 2)[0]
+
+    def peak(times: int) -> int:
+        tracemalloc.start()
+        for _ in stream.in_parts(tables, phonemes * times, 100):
+            pass
+        found = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return found
+
+    peak(1)  # what the first use of a library takes
+    assert peak(24) < 1.3 * peak(2)
+
+
+@pytest.mark.parametrize("wanted", [7, 25, 49, 60, 120])
+def test_rates_are_the_same_in_parts(wanted: int) -> None:
+    """To the last bit, whatever the parts. Would catch a frame at a cut that lacks a neighbour."""
+    rng = np.random.default_rng(wanted)
+    for total in (1, 2, 3, 50, 501):
+        frames = rng.normal(0, 100, (total, CHANNELS))
+        count = count_at(total, 50, wanted)
+        assert abs(count / wanted - total / 50) <= 0.5001 / wanted or count == 1
+        whole = sampled((np.arange(total) + 0.5) / 50, frames, wanted, count)
+        for cuts in ([], np.arange(1, total), np.sort(rng.integers(0, total, 4))):
+            parts = np.split(frames, cuts)
+            assert np.array_equal(np.concatenate(list(at_rate(parts, total, 50, wanted))), whole)
+    assert not list(at_rate([], 0, 50, wanted)) and not count_at(0, 50, wanted)
+
+
+def test_files_do_not_show_the_parts(tmp_path: Path) -> None:
+    """Would catch a head or a number that begins anew with each part."""
+    model = load("speech_en")
+    phonemes = drawn_streams(model, 1, 800, 3)[0]
+    assert sum(length for _, length in phonemes) * 50 > 1000 * stream.PART  # two parts
+    moment, lines = 0, []
+    for phoneme, length in phonemes:
+        lines.append(f"{moment / 1000:.3f} {(moment + length) / 1000:.3f} {model.phonemes[phoneme]}\n")
+        moment += length
+    (tmp_path / "a.lab").write_text("".join(lines))
+    frames = synthesise(model, phonemes)
+    for name in ("csv", "fap", "livelink", "vrm"):
+        given = [str(tmp_path / "a.lab"), "-o", str(tmp_path / name), "--to", name]
+        assert main(["synth", "speech_en", *given]) == 0
+        text = io.StringIO()
+        FORMATS[name].write(text, [frames], 50, "speech_en", len(frames))
+        assert (tmp_path / name).read_text() == text.getvalue(), name
