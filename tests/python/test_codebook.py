@@ -120,7 +120,7 @@ def test_states_are_sorted_and_repeatable():
 
 def test_nearest_centres_are_the_trees_to_the_last_bit():
     """Catches a point that is not looked at although another centre has come nearer, and a distance that is rounded
-    otherwise; with points that are the same, centres that are, and ones that are as far."""
+    otherwise; with points that are the same, centres that are, ones that are as far, and ones that move alone."""
     rng = np.random.default_rng(4)
     for points in (scaled(2), np.round(scaled(3)), rng.normal(size=(500, 3))):
         nearest = _Nearest(points)
@@ -131,3 +131,5 @@ def test_nearest_centres_are_the_trees_to_the_last_bit():
             expected = assign(points, centres)
             assert np.array_equal(cell, expected[0]) and np.array_equal(squared, expected[1])
             centres = centres + rng.normal(size=centres.shape) * 0.3 * 0.3**step
+            if step > 6:  # one comes from afar
+                centres[step] = centres[20] + 0.1

@@ -27,6 +27,12 @@ MAXIMUM_ITERATIONS = 60
 #: Far more, as a share, than rounding does to a distance.
 _ROUNDING = 1e-9
 
+#: Points whose distances to all centres are worked out at once.
+_BLOCK = 1024
+
+#: Centres near a point's own that count for themselves; all others are as far as the next one.
+_NEAR = 4
+
 #: Least variance of a state, as a share of the feature's variance over the corpus.
 VARIANCE_FLOOR = 1e-3
 
@@ -55,41 +61,79 @@ class _Nearest:
     the last bit; what is saved is the search for points whose nearest centre no move can have changed.
 
     A point whose own centre is nearer than every other one could have come keeps it (Hamerly 2010): each knows how far
-    its second nearest centre was at least, from which what the centres moved since is taken off.
+    its second nearest centre was at least. From this is taken what the centres moved since: of those near its own
+    centre the most, while all further ones cannot be nearer than their distance from its own centre allows.
     """
 
     def __init__(self, points: np.ndarray) -> None:
         self._points = points
         self._columns = np.ascontiguousarray(points.T)
+        self._longest = float(np.square(points).sum(axis=1).max())
         self._before = np.zeros((0, points.shape[1]))
         self._cell = np.zeros(len(points), dtype=np.int64)
         self._others = np.zeros(len(points))  # least distance of any other centre
 
     def __call__(self, centres: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         """As :func:`assign`."""
-        if len(centres) == 1 or len(centres) != len(self._before):
-            return self._search(centres, np.arange(len(self._points)))
-        self._others -= np.sqrt(((centres - self._before) ** 2).sum(axis=1)).max() * (1 + _ROUNDING)
-        distance = self._own(centres)
-        return self._search(centres, np.flatnonzero(distance >= self._others * (1 - _ROUNDING)))
-
-    def _search(self, centres: np.ndarray, rows: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        tree, points = cKDTree(centres), self._points[rows]
-        if len(centres) > 1 and len(rows):
-            distance, nearest = tree.query(points, k=2)
-            self._cell[rows], self._others[rows] = nearest[:, 0], distance[:, 1]
-            level = np.flatnonzero(distance[:, 1] <= distance[:, 0] * (1 + _ROUNDING))  # as one that looks for one
-            if len(level):
-                self._cell[rows[level]] = tree.query(points[level])[1]
+        if len(centres) != len(self._before):
+            self._cell[:] = 0
+            distance, rows = np.zeros(len(self._cell)), np.arange(len(self._cell))
+        else:
+            distance = self._own(centres, self._columns, self._cell)
+            self._let_move(centres, distance)
+            rows = np.flatnonzero(distance >= self._others * (1 - _ROUNDING))
+        if len(centres) > 1:
+            self._search(centres, rows)
+        distance[rows] = self._own(centres, self._columns[:, rows], self._cell[rows])
         self._before = centres.copy()
-        return self._cell.copy(), self._own(centres) ** 2
+        return self._cell.copy(), np.square(distance, out=distance)
 
-    def _own(self, centres: np.ndarray) -> np.ndarray:
-        """(n,) distances to each point's centre, summed in the order in which the tree sums."""
-        total = np.zeros(len(self._cell))
-        for column, place in zip(self._columns, centres.T):
-            total += (column - place[self._cell]) ** 2
-        return np.sqrt(total)
+    def _let_move(self, centres: np.ndarray, distance: np.ndarray) -> None:
+        """Brings the least distances of other centres to the new places of the centres; `distance` (n,) is that of each
+        point's own one."""
+        moved = np.sqrt(np.square(centres - self._before).sum(axis=1)) * (1 + _ROUNDING)
+        apart = np.sqrt(np.square(centres[:, None] - centres).sum(axis=2))
+        np.fill_diagonal(apart, -1.0)  # first, also where two centres are one
+        order = np.argsort(apart, axis=1)[:, 1:]
+        near, further = order[:, :_NEAR], order[:, _NEAR : _NEAR + 1]
+        far = np.take_along_axis(apart, further, axis=1).min(axis=1, initial=np.inf)
+        close = np.minimum(self._others - moved[near].max(axis=1, initial=0.0).take(self._cell),
+                           far.take(self._cell) * (1 - _ROUNDING) - distance)
+        self._others = np.maximum(self._others - moved.max(), close)
+
+    def _search(self, centres: np.ndarray, rows: np.ndarray) -> None:
+        """Finds the nearest centres of the points `rows`. Squared distances are products of matrices, block by block,
+        and carry the number of their centre in their last bits; what lies closer together than these tell is left to
+        :func:`assign`."""
+        length = np.square(centres).sum(axis=1)[:, None]
+        slack = 1e-3 * _ROUNDING * max(self._longest, float(length.max()))  # still far more than rounding does
+        number = np.arange(len(centres), dtype=np.int64)[:, None]
+        mask = (1 << len(centres).bit_length()) - 1
+        factors = np.concatenate([-2.0 * centres, length + slack, np.ones((len(centres), 1))], axis=1)
+        for block in np.array_split(rows, range(_BLOCK, len(rows), _BLOCK)):
+            columns = self._columns[:, block]
+            squares = factors @ np.concatenate([columns, np.ones((1, len(block))), np.square(columns).sum(axis=0)[None]])
+            packed = squares.view(np.int64)  # positive numbers are in the order of their bits
+            packed &= ~mask
+            packed |= number
+            nearest = squares.min(axis=0)
+            self._cell[block] = cell = nearest.view(np.int64) & mask
+            squares[cell, np.arange(len(block))] = np.inf
+            second = squares.min(axis=0)
+            self._others[block] = np.sqrt(np.maximum(second * (1 - _ROUNDING) - 2 * slack, 0.0))
+            near = block[second * (1 - _ROUNDING) - 2 * slack <= nearest]
+            if len(near):
+                self._cell[near] = assign(self._points[near], centres)[0]
+
+    @staticmethod
+    def _own(centres: np.ndarray, columns: np.ndarray, cell: np.ndarray) -> np.ndarray:
+        """(n,) distances of points, columns (D, n), to the centres of their cells (n,), summed in the order in which
+        the tree sums."""
+        total = np.zeros(len(cell))
+        for column, place in zip(columns, centres.T):
+            away = column - place.take(cell)
+            total += np.multiply(away, away, out=away)
+        return np.sqrt(total, out=total)
 
 
 def _moments(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -121,7 +165,7 @@ def lloyd(
         distortion = float(distance.mean())
         empty = np.flatnonzero(count == 0)
         if not len(empty) and before - distortion <= tolerance * distortion:
-            break
+            return centres, cell, distortion
         before = np.inf if len(empty) else distortion
         centres = mean
         if len(empty):
