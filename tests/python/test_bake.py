@@ -11,6 +11,7 @@ from typing import List, Sequence
 import numpy as np
 import pytest
 
+from labial.bake.source import Source, read_track
 from labial.bake.track import AVR_LARGEST, FORMAT
 from labial.cli import main
 from labial.corpus.formats import SOUNDS
@@ -256,10 +257,89 @@ labial_player_t player;
 int main(void) {{ {name}_begin(&player); return *{name}_next(&player); }}
 """)
     command = ["avr-gcc", "-mmcu=atmega1284p", "-std=c99", "-Os", *warnings("c")]
-    assert "Bake the sound in parts" in run(*command, "-c", "over.c", cwd=tmp_path, status=1)
+    assert "an array of an AVR holds 32767: bake it with --parts 655" in run(*command, "-c", "over.c", cwd=tmp_path,
+                                                                             status=1)
+    assert main(["bake", str(tmp_path / "over.csv"), "-o", str(tmp_path / "parts.h"), "--parts", "655"]) == 0
+    (tmp_path / "parts.c").write_text((tmp_path / "over.c").read_text().replace("over", "parts").replace(
+        "&player);", "&player, 1);", 1))
+    run(*command, "parts.c", "-o", "parts.elf", cwd=tmp_path)
     run(*command, "fits.c", "-o", "fits.elf", cwd=tmp_path)
     ram = run("avr-size", "fits.elf", cwd=tmp_path).splitlines()[1].split()[1:3]
     assert [int(size) for size in ram] == [0, 4]
+
+
+# ---- Parts -----------------------------------------------------------------------------------------------------------
+
+#: Sentences of 1.5, 2 and 1 s, with pauses of half a second and of 2 s between, and one of .3 s within the second.
+SENTENCES = """0 0.5 SIL
+0.5 2.0 AA
+2.0 2.5 SIL
+2.5 3.5 OW
+3.5 3.8 SIL
+3.8 4.5 AE
+4.5 6.5 SIL
+6.5 7.5 IY
+"""
+
+PARTS_PROGRAM = """\
+#include <stdio.h>
+#include "cut.h"
+#include "whole.h"
+
+static labial_player_t player, parts;
+
+int main(void)
+{
+    unsigned part;
+    whole_begin(&player);
+    for (part = 0; part < CUT_PARTS; part++) {
+        const uint8_t *frame;
+        cut_begin(&parts, part);
+        printf("%lu", (unsigned long)cut_milliseconds(part));
+        for (frame = cut_next(&parts); frame != NULL; frame = cut_next(&parts))
+            if (whole_next(&player) == NULL || cut_jaw(frame) != whole_jaw(player.next - WHOLE_OUTPUTS))
+                printf(" differs");
+        printf("\\n");
+    }
+    cut_begin(&parts, CUT_PARTS);
+    printf("%lu %d %d\\n", (unsigned long)cut_milliseconds(CUT_PARTS), whole_next(&player) != NULL,
+           cut_next(&parts) != NULL);
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(("parts", "begins"), [
+    ("pauses", [0, 2.24, 6.2]),  # in the middle of a short pause, .3 s before the end of a long one
+    ("5", [0, 2.24, 6.2]),  # 6.2 s do not fit, and then not 5.5 either
+    ("6.5", [0, 6.2]),
+    ("2", [0, 2.0, 2.24, 4.24, 6.2]),  # has to be cut twice where there is no pause
+    ("60", [0]),
+])  # fmt: skip
+def test_parts_are_the_track_cut_in_pauses(parts: str, begins: List[float], tmp_path: Path, capsys) -> None:
+    """Catches a frame that is lost or played twice at a cut, cuts within speech, and parts that are too long. The track
+    lasts 8 s, with the rest at its end."""
+    (tmp_path / "a.lab").write_text(SENTENCES)
+    assert main(["bake", str(tmp_path / "a.lab"), "-o", str(tmp_path / "whole.h")]) == 0
+    capsys.readouterr()
+    assert main(["bake", str(tmp_path / "a.lab"), "-o", str(tmp_path / "cut.h"), "--parts", parts]) == 0
+    ends = [*begins[1:], 8.0]
+    assert capsys.readouterr().out.splitlines()[2:] == [
+        f"part {number}: {begin:.2f} to {end:.2f} s" for number, (begin, end) in enumerate(zip(begins, ends))]
+    (tmp_path / "main.c").write_text(PARTS_PROGRAM)
+    run(CC, "-std=c99", *warnings("c"), f"-I{tmp_path}", tmp_path / "main.c", "-o", tmp_path / "main")
+    assert run(tmp_path / "main").splitlines() == [*(f"{1000 * begin:.0f}" for begin in begins), "8000 0 0"]
+    if CXX:
+        run(CXX, "-std=c++11", "-x", "c++", *warnings("c++"), "-c", tmp_path / "main.c", "-o", tmp_path / "main.o")
+
+
+def test_frames_have_pauses_where_they_rest(tmp_path: Path) -> None:
+    """Of frames without phonemes: where they hardly move for long enough."""
+    times = np.arange(200) / 50
+    moving = (times < 1) | (times > 2)
+    frames_file(tmp_path / "a.csv", times, np.where(moving, 100 + 50 * np.sin(20 * times), 0.0))
+    pauses = read_track(Source(str(tmp_path / "a.csv"))).pauses
+    assert not pauses[:50].any() and pauses[52:99].all() and not pauses[102:].any()
 
 
 # ---- Errors ----------------------------------------------------------------------------------------------------------
@@ -288,6 +368,9 @@ LAB = "0.0 0.2 SIL\n0.2 0.5 AA\n"
     (["good.lab", "-o", "1st.h"], "'1st' is no name for a header"),
     (["pause.lab", "--as", "phonemes"], "pause.lab:2: 'AA' lasts 3601 s, more than the 3600 s"),
     (["good.lab", "--text-file", "good.lab"], "good.lab: a text goes with a sound"),
+    (["good.lab", "--parts", "0.5"], "--parts: '0.5' is neither a number of seconds within 1 .. 86400"),
+    (["good.lab", "--parts", "nan"], "--parts: 'nan' is neither a number of seconds"),
+    (["good.lab", "--parts", "5", "--as", "phonemes"], "--parts goes with --as track"),
 ])  # fmt: skip
 def test_errors_name_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
                               arguments: List[str], complaint: str) -> None:

@@ -7,7 +7,7 @@ import os
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Optional, Tuple, Union
+from typing import List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from labial.model import Model, load
 from labial.phones import Stream, phone_set, stream_of
 from labial.phonesets import AUTO
 from labial.see.motion import read_motion
+from labial.spans import spans
 
 PathLike = Union[str, os.PathLike]
 
@@ -29,6 +30,8 @@ FRAMES = (".csv", ".fap")
 RATE = 50
 #: Frames that a track has at most: five and a half hours.
 _LONGEST = 1_000_000
+#: Seconds of a pause in which a track may be cut, and FAP units that frames hardly move by, one from the next.
+PAUSE, _STILL = 0.4, 1.0
 #: Milliseconds of silence that what is baked ends with. In a long pause a mouth comes to rest within 16 frames.
 REST = 500
 
@@ -89,13 +92,23 @@ def _heard(source: Source) -> List[SourceSegment]:
     return [SourceSegment(item.start, item.end, item.label, None, "arpabet") for item in found.segments]
 
 
-def read_track(source: Source) -> np.ndarray:
-    """(T, 13) FAPs, float64, 50 frames a second from time 0, of a file of frames, of timings or of a sound."""
+class Motion(NamedTuple):
+    """Frames at `RATE` from time 0."""
+
+    frames: np.ndarray  #: (T, 13) FAPs, float64
+    pauses: np.ndarray  #: (T,) bool: in a pause of `PAUSE` or more
+
+
+def read_track(source: Source) -> Motion:
+    """The motion of a file of frames, of timings or of a sound. Pauses are silences; of frames those stretches in which
+    they hardly move."""
     if source.has_frames:
         if source.text is not None or source.model:
             raise LabialError(f"{source.path}: frames need neither a text nor a model")
         motion = read_motion(source.path)
-        return _at_rate(source.path, motion.times, motion.frames)
+        frames = _at_rate(source.path, motion.times, motion.frames)
+        still = np.abs(np.diff(frames, axis=0)).max(axis=1, initial=0.0) < _STILL
+        return Motion(frames, _long(np.append(still, False)))
     from labial.quantise import quantise
     from labial.reference import stream, synthesis
     from labial.reference.tables import ExportedTables
@@ -107,7 +120,19 @@ def read_track(source: Source) -> np.ndarray:
         frames = synthesis.synthesise(model, phonemes)
     else:  # on the tables that a board would have: a choice at a near tie is then the same as there
         frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
-    return _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
+    frames = _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
+    silence = model.phonemes.index(model.silence)
+    ends = np.cumsum([milliseconds for _, milliseconds in phonemes]) * RATE / 1000.0
+    at = np.minimum(np.searchsorted(ends, np.arange(len(frames)), side="right"), len(phonemes) - 1)
+    return Motion(frames, _long(np.array([number == silence for number, _ in phonemes])[at]))
+
+
+def _long(holds: np.ndarray) -> np.ndarray:
+    """(T,) bool: `holds` (T,), but for stretches shorter than `PAUSE`."""
+    result = np.zeros(len(holds), dtype=bool)
+    for begin, end in spans(holds):
+        result[begin:end] = end - begin >= PAUSE * RATE
+    return result
 
 
 def _check_length(path: PathLike, seconds: float) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from dataclasses import dataclass
+from typing import List, Optional, Sequence
 
 import numpy as np
 
@@ -13,13 +14,17 @@ from labial.rig.description import Output, Rig
 from labial.rig.gestures import GESTURES
 from labial.rig.table import TableOutput, moved
 from labial.rig.units import make_unit
+from labial.spans import spans
 
 #: LABIAL_PLAYER_FORMAT of labial_player.h.
 FORMAT = 1
 #: Largest difference of an output's limits, for which the player's sums stay below 2^31.
 SPAN_MAX = 8_000_000
-#: Bytes that an array has at most on an AVR.
+#: Bytes that an array has at most on an AVR, and those of its flash that are read by a pointer of 16 bits.
 AVR_LARGEST = 32767
+AVR_FLASH = 65535
+#: Frames before the end of a pause in which a part may begin: the mouth prepares for what follows.
+BEFORE = 15
 
 _OPENING = GESTURES["opening"]
 #: A jaw and nothing else, as examples/faces/jaw.toml describes it: microseconds with the lips closed and wide open.
@@ -43,8 +48,40 @@ def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray) -> np.n
     return ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)
 
 
-def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], frames: np.ndarray) -> str:
-    """NAME.h: the bytes, the constants of their units and the calls that play them. `source` is told in its comment."""
+@dataclass(frozen=True)
+class Part:
+    """Some of a track's frames, which have an array of their own."""
+
+    begin: int  #: their first
+    end: int  #: the one behind their last
+
+
+def parts(pauses: np.ndarray, longest: Optional[int]) -> List[Part]:
+    """Parts of a track, cut in the middle of a pause, or `BEFORE` its end where that is later.
+
+    `pauses` (T,) bool are the frames in pauses. Each part has at most `longest` frames and as many as it can, or ends
+    with the first pause where `longest` is None; a stretch without a pause that is longer is cut where it has to be.
+    """
+    cuts = [max((begin + end) // 2, end - BEFORE) for begin, end in spans(pauses) if begin and end < len(pauses)]
+    found: List[Part] = []
+    begin = 0
+    while begin < len(pauses):
+        ahead = [cut for cut in cuts if begin < cut]
+        if longest is None:
+            end = ahead[0] if ahead else len(pauses)
+        elif len(pauses) - begin <= longest:
+            end = len(pauses)
+        else:
+            end = max((cut for cut in ahead if cut - begin <= longest), default=begin + longest)
+        found.append(Part(begin, end))
+        begin = end
+    return found
+
+
+def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], frames: np.ndarray,
+           cut: Optional[Sequence[Part]] = None) -> str:
+    """NAME.h: the bytes, the constants of their units and the calls that play them. `source` is told in its comment.
+    With `cut` the track has parts, one or more, each of which can be begun with."""
     upper, count = name.upper(), len(table)
     data = as_bytes(rig, table, frames)
     about = (f"{name}.h - {len(data) / RATE:.1f} s of motion from {source}, {RATE} frames a second, a byte for each of "
@@ -66,17 +103,8 @@ def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], frame
 enum {{
 {places}
 }};
-{''.join(_limits(upper, output) for output in table)}{_avr_check(name, data)}
-static const uint8_t {name}_bytes[{data.size}] LABIAL_PLAYER_FLASH = {{
-{rows(data.ravel())}
-}};
-
-/* Goes to the beginning. */
-static inline void {name}_begin(labial_player_t *player)
-{{
-    labial_player_begin(player, {name}_bytes, {upper}_FRAMES);
-}}
-
+{''.join(_limits(upper, output) for output in table)}{_avr_check(name, data, cut)}
+{_whole(name, data) if cut is None else _in_parts(name, data, cut)}
 /* The next frame, every 20 ms, or NULL when the motion is over. */
 static inline const uint8_t *{name}_next(labial_player_t *player)
 {{
@@ -84,6 +112,56 @@ static inline const uint8_t *{name}_next(labial_player_t *player)
 }}
 {''.join(_reader(name, output, rig) for output in table)}
 #endif
+"""
+
+
+def _whole(name: str, data: np.ndarray) -> str:
+    return f"""static const uint8_t {name}_bytes[{data.size}] LABIAL_PLAYER_FLASH = {{
+{rows(data.ravel())}
+}};
+
+/* Goes to the beginning. */
+static inline void {name}_begin(labial_player_t *player)
+{{
+    labial_player_begin(player, {name}_bytes, {name.upper()}_FRAMES);
+}}
+"""
+
+
+def _in_parts(name: str, data: np.ndarray, cut: Sequence[Part]) -> str:
+    values = [data[part.begin : part.end].ravel() for part in cut]
+    arrays = "".join(f"""static const uint8_t {name}_bytes_{number}[{item.size}] LABIAL_PLAYER_FLASH = {{
+{rows(item)}
+}};
+
+""" for number, item in enumerate(values))
+    begins = "".join(f"""    case {number}:
+        labial_player_begin(player, {name}_bytes_{number}, {part.end - part.begin}u);
+        break;
+""" for number, part in enumerate(cut))
+    times = "".join(f"    case {number}:\n        return {part.begin * 1000 // RATE}ul;\n"
+                    for number, part in enumerate(cut))
+    return f"""/* The track's parts follow each other without a gap. */
+#define {name.upper()}_PARTS {len(cut)}u
+
+{arrays}/* Goes to the beginning of a part, the first of which is 0; there is no frame in one that is not there. */
+static inline void {name}_begin(labial_player_t *player, unsigned part)
+{{
+    switch (part) {{
+{begins}    default:
+        labial_player_begin(player, {name}_bytes_0, 0u);
+        break;
+    }}
+}}
+
+/* Milliseconds of the whole track at which a part begins, or at which the last one ends. */
+static inline uint32_t {name}_milliseconds(unsigned part)
+{{
+    switch (part) {{
+{times}    default:
+        return {len(data) * 1000 // RATE}ul;
+    }}
+}}
 """
 
 
@@ -109,12 +187,18 @@ static inline int32_t {name}_{output.name.lower()}(const uint8_t *frame)
 """
 
 
-def _avr_check(name: str, data: np.ndarray) -> str:
-    if data.size <= AVR_LARGEST:
+def _avr_check(name: str, data: np.ndarray, cut: Optional[Sequence[Part]]) -> str:
+    largest = max(part.end - part.begin for part in cut or [Part(0, len(data))]) * data.shape[1]
+    if data.size > AVR_FLASH:
+        problem = f"{name} has {data.size} bytes; a player of an AVR reads the first {AVR_FLASH} of its flash."
+    elif largest > AVR_LARGEST:
+        seconds = AVR_LARGEST // data.shape[1] // RATE
+        problem = f"{name} has {largest} bytes; an array of an AVR holds {AVR_LARGEST}: bake it with --parts {seconds}."
+    else:
         return ""
     return f"""
 #if defined(__AVR__)
-#error "{name} has {data.size} bytes; an array of an AVR holds {AVR_LARGEST}. Bake the sound in parts."
+#error "{problem}"
 #endif
 """
 
@@ -122,5 +206,5 @@ def _avr_check(name: str, data: np.ndarray) -> str:
 def check_names(rig: Rig) -> None:
     """Raises DataError for an output that is called as one of the header's own calls and constants."""
     for output in rig.outputs:
-        if output.name.lower() in ("begin", "next", "bytes", "frames"):
+        if output.name.lower() in ("begin", "next", "bytes", "frames", "parts", "milliseconds"):
             raise DataError(rig.path, None, f"output.{output.name}: this name is taken by the generated header")

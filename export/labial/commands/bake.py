@@ -17,6 +17,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          help="a byte per output and frame, which an Arduino Uno plays, or phonemes for boards that "
                          "run Labial (track)")
     command.add_argument("--rig", metavar="FACE.toml", help="what a track moves, as for rig; a jaw without it")
+    command.add_argument("--parts", metavar="SECONDS", help="a track in parts of so many seconds at most, cut in "
+                         "pauses, each of which can be begun with; pauses: cut in every pause of 0.4 s or more")
     add_said(command)
     add_source(command)
     add_labels(command)
@@ -27,12 +29,12 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes the header and, beside a track, its player."""
+    """Writes the header and, beside a track, its player; says where parts begin and end."""
     from labial.bake.bake import bake
     from labial.bake.source import Source
 
     source = Source(options.file, options.model, said(options), options.labels, options.source,
                     progress=shows_progress(options))
-    for path in bake(source, options.output, options.kind, options.rig, options.name):
-        print(path)
+    for line in bake(source, options.output, options.kind, options.rig, options.name, options.parts):
+        print(line)
     return 0

@@ -112,7 +112,8 @@ class _Nearest:
         factors = np.concatenate([-2.0 * centres, length + slack, np.ones((len(centres), 1))], axis=1)
         for block in np.array_split(rows, range(_BLOCK, len(rows), _BLOCK)):
             columns = self._columns[:, block]
-            squares = factors @ np.concatenate([columns, np.ones((1, len(block))), np.square(columns).sum(axis=0)[None]])
+            one, own = np.ones((1, len(block))), np.square(columns).sum(axis=0)[None]
+            squares = factors @ np.concatenate([columns, one, own])
             packed = squares.view(np.int64)  # positive numbers are in the order of their bits
             packed &= ~mask
             packed |= number
