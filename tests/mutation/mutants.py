@@ -108,7 +108,7 @@ def _statement(source: str, tokens: Sequence[_Token], i: int) -> str:
 
 
 def _changes(source: str, tokens: Sequence[_Token], i: int) -> Iterator[Tuple[str, str, str]]:
-    """What stands at token `i`, or in the bracket behind it, and may become something else: kind, old text, new text."""
+    """What stands at token `i`, or in the bracket behind it, and may become another: kind, old text, new text."""
     token, before = tokens[i], tokens[i - 1]
     is_binary = (before.kind in ("word", "number") and before.text not in _KEYWORDS) or before.text in (")", "]")
     if token.kind == "number":

@@ -1,7 +1,7 @@
 """Changes the library in small ways and says which changes no test notices.
 
     python3 tests/mutation/mutate.py --build build/mutate [--count 300] [--seed 1] [--jobs 2] [--survivors] [--list]
-                                     [--kinds argument constant reset] [--files units.c]
+                                     [--kinds argument constant reset] [--files units.c] [--suites test_units]
 
 Each mutant is one change in lib/, of one of the kinds that mutants.py names, chosen by a seed. It is
 compiled with sanitizers, and the C suites, the conformance streams and the device tests run on it, the file's own suite
@@ -75,8 +75,8 @@ def run(command: Sequence[object], **options: object) -> subprocess.CompletedPro
 class Bench:
     """The library and the tests, built once; mutants replace one object of the library."""
 
-    def __init__(self, folder: Path, compiler: str, cmocka: Sequence[str]) -> None:
-        self.folder, self.compiler, self.cmocka = folder, compiler, list(cmocka)
+    def __init__(self, folder: Path, compiler: str, cmocka: Sequence[str], suites: Sequence[str]) -> None:
+        self.folder, self.compiler, self.cmocka, self.suites = folder, compiler, list(cmocka), suites
         self.sources = sorted(LIB.glob("*.c"))
         self.reference: Dict[str, bytes] = {}
         self.tests: List[Test] = []
@@ -125,6 +125,8 @@ class Bench:
             programs["conformance"] = [ROOT / "tests/conformance/conformance.c", *streams, *board, *objects]
             programs["device_tests"] = [*sorted(device.glob("test_*.c")), device / "device_tests.c",
                                         device / "stand_in/src/unity.c", *streams, *board, *objects]
+        if self.suites:
+            programs = {name: parts for name, parts in programs.items() if name in self.suites}
         for name, parts in programs.items():
             program = self.folder / build / name
             libraries = [f"-L{self.folder / build}", "-llabial", "-lm"]
@@ -220,6 +222,7 @@ def main() -> int:
     parser.add_argument("--cmocka", nargs=2, metavar=("INCLUDE", "LIBRARY"), help="where cmocka is, if not installed")
     parser.add_argument("--kinds", nargs="*", choices=KINDS, help="of changes, instead of all")
     parser.add_argument("--files", nargs="*", help="of lib/, instead of all")
+    parser.add_argument("--suites", nargs="*", default=[], help="of tests/c, instead of all")
     parser.add_argument("--survivors", action="store_true", help="only the mutants in survivors.txt")
     parser.add_argument("--list", action="store_true", help="print the mutants and do nothing")
     options = parser.parse_args()
@@ -234,7 +237,7 @@ def main() -> int:
             print(f"{mutant.line}: {mutant.key}")
         return 0
     cmocka = [f"-I{options.cmocka[0]}", options.cmocka[1]] if options.cmocka else ["-lcmocka"]
-    bench = Bench(options.build.resolve(), options.compiler, cmocka)
+    bench = Bench(options.build.resolve(), options.compiler, cmocka, options.suites)
     verdicts = tried(bench, candidates, min(options.count, len(candidates)), options.jobs)
     survivors = [mutant for mutant, verdict in verdicts.items() if not verdict]
     unknown = [mutant for mutant in survivors if mutant.key not in known]
