@@ -14,6 +14,11 @@ const OUTPUTS_MAX = 1024;
 const NUMBERS = Object.entries({
     gain: 2 ** 28, neutral: 2 ** 24, minimum: 2 ** 24, maximum: 2 ** 24, invert: 1, contact: 1, closed: 2 ** 24,
 });
+/** Segments of an output's curve at most, and their numbers, likewise: where each begins, its value there, its slope. */
+const SEGMENTS_MAX = 8;
+const SEGMENT = [2 ** 24, 2 ** 24, 2 ** 25];
+/** All numbers of an output. */
+const RIG_NUMBERS = CHANNELS + NUMBERS.length + 1 + SEGMENTS_MAX * SEGMENT.length;
 
 /** Bytes of the place where labels, frames and weights are passed. */
 const SCRATCH = 16384;
@@ -120,22 +125,23 @@ export class Labial {
         if (given?.labial !== "rig" || rows.length < 1 || rows.length > OUTPUTS_MAX) {
             throw new LabialError(`the rig is ${shown(given)}, not what labial rig --json wrote`);
         }
-        const size = this.wasm.rig_output_size();
-        const at = this.memory.take(size * rows.length);
+        const [size, curve] = [this.wasm.rig_output_size(), this.wasm.rig_curve_size()];
+        const bytes = (size + curve) * rows.length; // the outputs, then the curves
+        const at = this.memory.take(bytes);
         try {
             rows.forEach(([name, row], i) => {
-                this.memory.int32(this.#scratch, CHANNELS + NUMBERS.length).set(numbersOf(name, row));
-                this.wasm.rig_output(at + size * i, this.#scratch);
+                this.memory.int32(this.#scratch, RIG_NUMBERS).set(numbersOf(name, row));
+                this.wasm.rig_output(at + size * i, at + size * rows.length + curve * i, this.#scratch);
             });
             const result = this.wasm.rig_check(at, rows.length);
             if (result < 0) throw this.failure(result, shown(given.name));
         } catch (error) {
-            this.memory.release(at, size * rows.length);
+            this.memory.release(at, bytes);
             throw error;
         }
         const rig = new Rig(String(given.name), rows.map(([name]) => name));
         this.#rigs.set(rig, at);
-        this.#loaded.register(rig, [at, size * rows.length]);
+        this.#loaded.register(rig, [at, bytes]);
         return rig;
     }
 
@@ -277,11 +283,16 @@ function facesOf({ wasm, memory }) {
 
 /** The numbers of an output of a rig's file, which the library checks for what they mean. */
 function numbersOf(name, row) {
-    const { weights } = row ?? {};
+    const { weights, curve = [] } = row ?? {};
     const right = Array.isArray(weights) && weights.length === CHANNELS && weights.every((one) => whole(one, 32767)) &&
-        NUMBERS.every(([key, most]) => whole(row[key], most));
+        NUMBERS.every(([key, most]) => whole(row[key], most)) &&
+        Array.isArray(curve) && curve.length <= SEGMENTS_MAX && curve.every(isSegment);
     if (!right) throw new LabialError(`output ${shown(name)} is not one that labial rig --json wrote`);
-    return [...weights, ...NUMBERS.map(([key]) => row[key])];
+    return [...weights, ...NUMBERS.map(([key]) => row[key]), curve.length, ...curve.flat()];
+}
+
+function isSegment(given) {
+    return Array.isArray(given) && given.length === SEGMENT.length && given.every((one, i) => whole(one, SEGMENT[i]));
 }
 
 function whole(value, most) {

@@ -231,8 +231,14 @@ EXPORT(rig_output_size) uint32_t rig_output_size(void)
     return sizeof(labial_rig_output_t);
 }
 
-/* An output of a rig from its numbers: weights, then gain, neutral, minimum, maximum, invert, contact and closed. */
-EXPORT(rig_output) void rig_output(labial_rig_output_t *output, const int32_t *numbers)
+EXPORT(rig_curve_size) uint32_t rig_curve_size(void)
+{
+    return sizeof(labial_rig_curve_t);
+}
+
+/* An output of a rig from its numbers: weights, then gain, neutral, minimum, maximum, invert, contact and closed; and at
+ * `curve`, if it has one, the number of its segments and three numbers of each. */
+EXPORT(rig_output) void rig_output(labial_rig_output_t *output, labial_rig_curve_t *curve, const int32_t *numbers)
 {
     const int32_t *const rest = &numbers[LABIAL_CHANNELS];
     memset(output, 0, sizeof *output);
@@ -245,6 +251,12 @@ EXPORT(rig_output) void rig_output(labial_rig_output_t *output, const int32_t *n
     output->invert = (uint8_t)rest[4];
     output->contact = (uint8_t)rest[5];
     output->closed = rest[6];
+    if (rest[7] == 0)
+        return;
+    memset(curve, 0, sizeof *curve);
+    curve->count = (uint16_t)rest[7];
+    memcpy(curve->segments, &rest[8], sizeof curve->segments);
+    output->curve = curve;
 }
 
 EXPORT(rig_check) int rig_check(const labial_rig_output_t *outputs, unsigned count)

@@ -63,6 +63,9 @@ def description(rng: random.Random) -> str:
                   f"maximum = {rng.uniform(0.3, 1):.2f}"]  # fmt: skip
         if rng.random() < 0.3:
             lines += ["closed = 0.1"]
+        if number % 3 == 1:
+            middle = [f"[{at}, {10 * at + (number + at) % 1:.2f}]" for at in (0.2, 0.4, 0.7)[: number % 4]]
+            lines += [f"curve = [{', '.join(['[-0.5, -5]', *middle, '[1.1, 12.5]'])}]"]
     return "\n".join(lines) + "\n"
 
 
@@ -95,6 +98,9 @@ def test_weights_are_those_of_python(tmp_path: Path) -> None:
     wrong = ["{}", "3", "null", json.dumps({**first, "outputs": {}}), changed(weights=[1] * 12),
              changed(weights=[40000] + [0] * 12), changed(gain=0.5), changed(gain="1"), changed(neutral=None),
              changed(minimum=5, maximum=4), changed(invert=2), changed(contact=-1), changed(closed=7),
+             changed(curve=3), changed(curve=[[1, 2]]), changed(curve=[[0, 0, 2**25 + 1]]),
+             changed(curve=[[0, 0, "1"]]),
+             changed(curve=[[5, 0, 1], [5, 0, 1]]), changed(curve=[[place, 0, 1] for place in range(9)]),
              json.dumps({**first, "outputs": {some: None}})]  # fmt: skip
     found = ran(package(tmp_path / "npm") / "index.js", {"rigs": texts, "frames": frames, "wrong": wrong})
     for path, weights in zip(paths, found["converted"]):
@@ -109,7 +115,8 @@ def test_weights_are_those_of_python(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("text", "message"), [
     ('unit = "us"\n[output.jaw]\nfrom = "jaw"\nneutral = 1400\nfull = 1900\n', "unit: --json is for faces of weights"),
-    ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nslew = 0.1\n', "output.jaw: slew and"),
+    ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nslew = 0.1\n', "output.jaw: slew, acc"),
+    ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nacceleration = 1\n', "deadband are for"),
 ])  # fmt: skip
 def test_servos_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str) -> None:
     """One line that names the file, and no file."""

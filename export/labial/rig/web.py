@@ -19,12 +19,13 @@ def text(rig: Rig) -> str:
         raise DataError(rig.path, None, f'unit: --json is for faces of weights, "weight", not {rig.unit.name!r}')
     outputs = {}
     for output in convert(rig):
-        if output.slew or output.deadband:
-            raise DataError(rig.path, None, f"output.{output.name}: slew and deadband are for servos, not for --json")
+        if output.slew or output.acceleration or output.deadband:
+            raise DataError(rig.path, None, f"output.{output.name}: slew, acceleration and deadband are for servos, "
+                            "not for --json")
         outputs[output.name] = {
             "weights": output.weights, "gain": output.gain, "neutral": output.neutral, "minimum": output.minimum,
             "maximum": output.maximum, "invert": int(output.invert), "contact": int(output.closed is not None),
-            "closed": output.closed or 0}  # fmt: skip
+            "closed": output.closed or 0, **({"curve": output.curve} if output.curve else {})}  # fmt: skip
     rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in outputs.items())
     return f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n'
 
