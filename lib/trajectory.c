@@ -20,8 +20,14 @@
  * c has 14 bits, so that its products are short.
  *
  * Formats: weights are integers; g, f, c, D, k, row, bent in Q16; rho and kappa in Q24, 16 bits where they are kept for
- * the backward pass; q and m in Q12 FAP. All of g, f, c and D stay below 2^30 because LABIAL_WEIGHT_SUM_MAX bounds the
- * diagonal; g is never below the hold, and rho and kappa lie within 0 .. 1 as long as d is not above dd.
+ * the backward pass; q and m in Q12 FAP. g is never below the hold, f and c never below zero as long as d is not above
+ * dd, and so rho and kappa lie within 0 .. 1.
+ *
+ * All of g, f, c and D stay below 2^30, from frame to frame however many there are: what rounding takes from or adds to
+ * row, bent and k makes the factors those of a matrix with slightly other entries, exactly. A pivot D is that matrix's
+ * diagonal less what is eliminated, which is not negative, and the diagonal is h + 2 d + 6 dd of the largest ones at
+ * most: LABIAL_WEIGHT_SUM_MAX, 65,536 short of 2^30. row and bent are too large by 7 at most, since an inverse is too
+ * large by a tenth; k is too small by 30, since rho may be by 3 and c has 28 bits: together less than 100.
  */
 #include "trajectory.h"
 
@@ -73,7 +79,7 @@ static inline uint32_t unscaled(int32_t scaled, unsigned shift)
     return shift < 6u ? (uint32_t)scaled >> (6u - shift) : (uint32_t)scaled << (shift - 6u);
 }
 
-/* 0 .. 2^24 as 16 bits; one is a little less. */
+/* 0 .. 2^24 as 16 bits, of which the largest stands for one. */
 static uint16_t short_part(uint32_t part)
 {
     const uint32_t rounded = (part + 128u) >> 8;
@@ -179,7 +185,8 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
 /* How far the frame of `at` lies from the next, whose position is `m` and which lies `moved` from the one after it. */
 static inline int32_t step_back(const labial_factors_t *at, int32_t m, int32_t moved)
 {
-    return labial_part16(at->q - m, at->rho) + labial_part16(moved, at->kappa);
+    const uint32_t rho = at->rho + ((at->rho + 1u) >> 16); /* the largest stands for one */
+    return labial_part16(at->q - m, rho) + labial_part16(moved, at->kappa);
 }
 
 void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsigned wanted, unsigned place,

@@ -77,8 +77,8 @@ const char *labial_result_text(int result);
 /*
  * Receives a frame: `frame` counts frames since labial_init(), `faps` are the 13 channels in FAP units, valid during
  * the call. Called from labial_tick() alone, whose work is then done: it may call any function, of the same stream too,
- * which then does and returns what it would after the tick. labial_restart() is so refused before the last frame, and
- * labial_init() begins with frame 0 anew. A labial_tick() from here delivers the next frame before the first one
+ * which then does and returns what it would after the tick: labial_restart() is refused while frames are still to come,
+ * and labial_init() begins with frame 0 anew. A labial_tick() from here delivers the next frame before the first one
  * returns, on top of its stack.
  */
 typedef void (*labial_frame_fn)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);

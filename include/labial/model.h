@@ -58,7 +58,7 @@ extern "C" {
  * stream that begins with a pause begins at rest. */
 #define LABIAL_REST_FRAMES 16
 
-/* Limits of equation 3 within a channel. With them its solution is right to .11 FAP unit (lib/trajectory.c). */
+/* Limits of equation 3 within a channel. With them its solution is right to .1 FAP unit (lib/trajectory.c). */
 #define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `contact_weight` + 2 x largest weight[0] + 6 x weight[1] */
 #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
 #define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
