@@ -177,11 +177,12 @@ int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS
 
 /* What lies ahead of an output. Upwards: what is below is asked of the mirrored values. */
 typedef struct {
-    int32_t wanted[LABIAL_RIG_SIGHT];  /* units, of this frame and those that follow */
-    int32_t highest[LABIAL_RIG_SIGHT]; /* units: from where it can still come to rest at what is wanted in each of them */
-    unsigned count;                    /* of frames, 1 or more; as in the last one it goes on */
-    int32_t rest;                      /* units: the place that the value may always go to */
-    int32_t speed, acceleration;       /* units per frame, and per frame and frame; both positive */
+    int32_t wanted[LABIAL_RIG_SIGHT]; /* units, of this frame and those that follow */
+    int32_t
+        highest[LABIAL_RIG_SIGHT]; /* units: from where it can still come to rest at what is wanted in each of them */
+    unsigned count;                /* of frames, 1 or more; as in the last one it goes on */
+    int32_t rest;                  /* units: the place that the value may always go to */
+    int32_t speed, acceleration;   /* units per frame, and per frame and frame; both positive */
 } sight_t;
 
 /* From a place that is `room` above a target, speeding up for k frames is slowing down for k frames seen backwards. */

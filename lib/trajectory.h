@@ -6,8 +6,8 @@
  * q is the state path, U the diagonal of the states' variances, A that of the anchors' precisions and x the targets.
  * Rows of W whose delta window would leave the solution are dropped. The factorisation continues from frame to frame;
  * the backward pass starts LABIAL_WINDOW frames ahead of those that are wanted, as if all frames beyond were equal to
- * the first of them. With weights that labial_model_check() accepts, the error is below .1 FAP unit (as the
- * tests show).
+ * the first of them. With weights that labial_model_check() accepts, the error is below .1 FAP unit (as the tests
+ * show).
  */
 #ifndef LABIAL_TRAJECTORY_H
 #define LABIAL_TRAJECTORY_H

@@ -121,7 +121,7 @@ typedef struct {
     {                                                                                                                  \
         { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 1,                                   \
             LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open),   \
-            (closed) < (open) ? (open) : (closed), 0, (closed), 0, 0, 0                                                      \
+            (closed) < (open) ? (open) : (closed), 0, (closed), 0, 0, 0                                                \
     }
 
 /* ---- Calls ------------------------------------------------------------------------------------------------------- */

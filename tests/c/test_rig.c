@@ -348,9 +348,9 @@ static void acceleration_comes_to_rest(void **state)
         for (i = 0; i < 24; i++) {
             const int32_t last = value, before = change;
             const unsigned left = 24u - i;
-            assert_int_equal(labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(sight < left ? sight : left), &value,
-                                                    &change),
-                             LABIAL_OK);
+            assert_int_equal(
+                labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(sight < left ? sight : left), &value, &change),
+                LABIAL_OK);
             assert_int_equal(change, value - last);
             assert_true(change <= 60 && change >= -60 && change - before <= 20 && before - change <= 20);
             assert_true(value >= 1400 && value <= 1600);
@@ -660,8 +660,7 @@ static void check_accepts_the_very_limits(void **state)
     output.gain = -LABIAL_RIG_GAIN_MAX;
     output.neutral = -LABIAL_RIG_VALUE_MAX;
     output.minimum = -LABIAL_RIG_VALUE_MAX;
-    output.maximum = output.slew = output.closed = output.deadband = output.acceleration =
-        LABIAL_RIG_VALUE_MAX;
+    output.maximum = output.slew = output.closed = output.deadband = output.acceleration = LABIAL_RIG_VALUE_MAX;
     output.invert = output.contact = 1;
     assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
     output.minimum = output.maximum;

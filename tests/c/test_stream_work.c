@@ -126,7 +126,8 @@ static void the_fullest_ticks_select_no_shape(void **state)
         const uint8_t was = place.stream.next.halves;
         const labial_shape_t spoken = place.stream.shape;
         for (; left > 0 && labial_room(&place.stream) > 0; left--)
-            assert_int_equal(labial_push(&place.stream, left * 7u % SPEECH_EN_PHONEMES, left % 2u ? 20 : 60), LABIAL_OK);
+            assert_int_equal(labial_push(&place.stream, left * 7u % SPEECH_EN_PHONEMES, left % 2u ? 20 : 60),
+                             LABIAL_OK);
         assert_true(labial_tick(&place.stream) >= 0);
         if (tick > 0 && tick % speech_en.search_stride == 0) {
             const int has_begun = memcmp(&spoken, &place.stream.shape, sizeof spoken) != 0;
