@@ -410,7 +410,7 @@ static double diagonal(unsigned t, unsigned length)
     double sum = fixture_weight_value(s->hold);
     int i;
     if (contact[t])
-        sum = fmax(sum, fixture_weight_value(channel.firm));
+        sum = fmax(sum, fixture_weight_value(channel.contact_weight));
     for (i = -1; i <= 1; i++) {
         const int row = (int)t + i;
         if (row > 0 && row + 1 < (int)length) {
@@ -470,7 +470,7 @@ static void pivots_stay_below_the_diagonal(void **state)
     }
     memset(states, 0, sizeof states);
     memset(contact, 0, sizeof contact);
-    model.channels[0].firm = 0;
+    model.channels[0].contact_weight = 0;
     for (dd = 0; fixture_weight_value((uint8_t)dd) * 6 + LABIAL_WEIGHT_MIN <= LABIAL_WEIGHT_SUM_MAX; dd++)
         for (d = 0; d <= dd; d += 1 + d / 16) {
             const double left =
@@ -545,7 +545,7 @@ static void contact_holds_a_frame_at_its_target(void **state)
  * firmer it is held, and with the firmest weight nearly all. Would catch a weight that is read and not used. */
 static void firm_contact_is_met(void **state)
 {
-    static const double firm[] = { 0, 500, 2000, 14000 };
+    static const double contact_weight[] = { 0, 500, 2000, 14000 };
     double reached[4];
     unsigned i, t;
     (void)state;
@@ -562,8 +562,8 @@ static void firm_contact_is_met(void **state)
     }
     for (i = 0; i < 4; i++) {
         double wanted[FRAMES];
-        model.channels[0].contact_weight = not_above(firm[i]);
-        compare(FRAMES, "firm", i);
+        model.channels[0].contact_weight = not_above(contact_weight[i]);
+        compare(FRAMES, "contact_weight", i);
         oracle_trajectory(&channel, path, target, contact, 0, FRAMES, NULL, wanted);
         reached[i] = (wanted[20] - channel.centre) / 3200.0;
     }
