@@ -19,8 +19,6 @@ from npm import MISSING, package
 from runtime import needs_runtime
 
 NODE = shutil.which("node")
-pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(bool(MISSING), reason=MISSING),
-              pytest.mark.skipif(not NODE, reason="needs node: install the Debian package nodejs")]  # fmt: skip
 
 #: Reads rigs, as text, and frames; the weights of each rig in each frame, from convert() and from a stream.
 SCRIPT = r"""
@@ -77,6 +75,10 @@ def ran(url: Path, given: Dict[str, Any]) -> Any:
     return json.loads(done.stdout)
 
 
+@pytest.mark.slow
+@needs_runtime
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
+@pytest.mark.skipif(not NODE, reason="needs node: install the Debian package nodejs")
 def test_weights_are_those_of_python(tmp_path: Path) -> None:
     """Every rig, built-in or random, in random frames and the largest; and files that are not whole are refused."""
     rng = random.Random(20)
@@ -115,8 +117,8 @@ def test_weights_are_those_of_python(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("text", "message"), [
     ('unit = "us"\n[output.jaw]\nfrom = "jaw"\nneutral = 1400\nfull = 1900\n', "unit: --json is for faces of weights"),
-    ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nslew = 0.1\n', "output.jaw: slew, acc"),
-    ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nacceleration = 1\n', "deadband are for"),
+    ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nslew = 0.1\n', "output.jaw.slew: is for"),
+    ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nacceleration = 0.05\n', "jaw.acceleration"),
 ])  # fmt: skip
 def test_servos_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str) -> None:
     """One line that names the file, and no file."""

@@ -19,9 +19,9 @@ def text(rig: Rig) -> str:
         raise DataError(rig.path, None, f'unit: --json is for faces of weights, "weight", not {rig.unit.name!r}')
     outputs = {}
     for output in convert(rig):
-        if output.slew or output.acceleration or output.deadband:
-            raise DataError(rig.path, None, f"output.{output.name}: slew, acceleration and deadband are for servos, "
-                            "not for --json")
+        for key in ("slew", "deadband", "acceleration"):
+            if getattr(output, key):
+                raise DataError(rig.path, None, f"output.{output.name}.{key}: is for servos, not for --json")
         outputs[output.name] = {
             "weights": output.weights, "gain": output.gain, "neutral": output.neutral, "minimum": output.minimum,
             "maximum": output.maximum, "invert": int(output.invert), "contact": int(output.closed is not None),
