@@ -245,19 +245,20 @@ WATCH = """
 
 
 def in_step(page: Page, expected: Dict[str, np.ndarray]) -> None:
-    """What TalkingHead drew is the track at the sound's time, up to a constant delay of a few frames."""
+    """What TalkingHead drew is the track at the sound's time. It counts from its last picture before the sound, so that
+    lips may lead by as long as a picture takes."""
     assert page.errors() == []
     seen = [row for row in page.evaluate("seen") if 0.1 < row[0] < SECONDS - 0.3]
     times = np.array([row[0] for row in seen])
-    assert len(times) > 20 and np.ptp(times) > 0.8 * SECONDS
+    assert len(times) > 12 and np.ptp(times) > 0.8 * SECONDS
 
     def error(delay: float) -> float:
         return max(float(np.sqrt(np.mean((between(values, times - delay) - [row[1][name] for row in seen]) ** 2)))
                    for name, values in expected.items())
 
-    delays = np.arange(-0.2, 0.21, 0.01)
+    delays = np.arange(-0.4, 0.41, 0.01)
     best = float(delays[np.argmin([error(delay) for delay in delays])])
-    assert abs(best) <= 0.08 and error(best) < 0.05, (best, error(best))
+    assert abs(best) <= 0.05 + np.median(np.diff(times)) and error(best) < 0.05, (best, error(best))
 
 
 def test_talkinghead_speaks(site: Any, browser: Browser) -> None:
