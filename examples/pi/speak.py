@@ -24,11 +24,15 @@ import labial
 from servos import Printer, open_servos
 from utterance import Utterance
 
+#: Frames that the face looks ahead: more than any servo needs to go from one end to the other.
+AHEAD = 50
+
 
 def moves(utterance: Utterance, face: labial.Rig) -> List[Dict[str, int]]:
-    """Servos for each frame. All frames move the face, in order, so that none is missing from its limits of speed."""
+    """Servos for each frame. All frames move the face, in order, so that none is missing from its limits of speed; and
+    since all are known, slow servos set out as early as they need to."""
     motion = labial.render(utterance.timings, labels=utterance.labels, nearest=True)
-    return [labial.Frame(number, faps).rig(face) for number, faps in enumerate(motion)]
+    return list(face.ahead(motion, AHEAD))
 
 
 def follow(frames: Sequence[Any], rate: int, show: Callable[[int, Any], None], begin: float,
