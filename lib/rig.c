@@ -189,7 +189,7 @@ typedef struct {
 static void look_up(sight_t *sight)
 {
     unsigned i, k;
-    for (i = 0; i < sight->count; i++) {
+    for (i = 0; i < LABIAL_RIG_SIGHT; i++) {
         int32_t room = 0, step = 0, lowest = INT32_MAX;
         for (k = i; k < sight->count; k++) {
             const int32_t above = sight->wanted[k] > sight->rest ? sight->wanted[k] : sight->rest;
@@ -226,7 +226,7 @@ static int32_t not_above(const sight_t *sight, int32_t value, int32_t change, in
     if (stays_below(sight, value, change) || !stays_below(sight, value, least))
         return stays_below(sight, value, change) ? change : least;
     while (labial_sub(high, low) > 1) {
-        const int32_t middle = low + labial_sub(high, low) / 2;
+        const int32_t middle = labial_add(low, labial_sub(high, low) / 2);
         if (stays_below(sight, value, middle))
             low = middle;
         else
@@ -258,15 +258,15 @@ static int32_t steered(sight_t *sight, int32_t last, int32_t change, int32_t dea
     least = labial_clamp(labial_sub(change, sight->acceleration), sight->speed);
     most = labial_clamp(labial_add(change, sight->acceleration), sight->speed);
     next = labial_sub(sight->wanted[0], last);
-    if (next < deadband && next > -deadband)
+    if (next < deadband && labial_sub(0, next) < deadband)
         next = 0;
     next = next < least ? least : next > most ? most : next;
     look_up(sight);
     next = not_above(sight, last, next, least);
     mirror(sight);
     look_up(sight);
-    next = -not_above(sight, labial_sub(0, last), -next, -most);
-    return flip ? -next : next;
+    next = labial_sub(0, not_above(sight, labial_sub(0, last), labial_sub(0, next), labial_sub(0, most)));
+    return flip ? labial_sub(0, next) : next;
 }
 
 static int32_t clipped(int32_t value, int32_t low, int32_t high)
@@ -288,8 +288,8 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
         const int32_t last = limited(output, values[i]);
         if (changes && output->acceleration > 0) {
             sight.count = count < LABIAL_RIG_SIGHT ? count : LABIAL_RIG_SIGHT;
-            for (k = 0; k < sight.count; k++)
-                sight.wanted[k] = target(output, frames + (size_t)LABIAL_CHANNELS * k);
+            for (k = 0; k < LABIAL_RIG_SIGHT; k++)
+                sight.wanted[k] = k < sight.count ? target(output, frames + (size_t)LABIAL_CHANNELS * k) : 0;
             sight.rest = at_rest(output);
             sight.acceleration = clipped(output->acceleration, 1, LABIAL_RIG_VALUE_MAX);
             sight.speed = clipped(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX, 1,

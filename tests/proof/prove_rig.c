@@ -1,30 +1,43 @@
-/* Any table, checked or not, of as many outputs as there can be; any FAPs and values. */
+/* Any table, checked or not, of several outputs; any FAPs and values. A pointer among the numbers of 65,535 outputs would
+ * be one of them to the prover, so they are few, and filled without their pointers. */
 #include "labial/rig.h"
 
 #include "prove.h"
 
-#define OUTPUTS 65535
+#define OUTPUTS 3
 #define FRAMES 65535
 
 static labial_rig_output_t outputs[OUTPUTS];
+static labial_rig_curve_t curve;
 static int32_t values[OUTPUTS], changes[OUTPUTS];
 static int16_t frames[FRAMES * LABIAL_CHANNELS];
 
 int main(void)
 {
     labial_rig_t rig;
+    labial_rig_delay_t delay;
+    unsigned i;
     int16_t faps[LABIAL_CHANNELS];
-    FILL(outputs);
+    FILL(curve);
+    for (i = 0; i < OUTPUTS; i++) {
+        Frama_C_make_unknown((char *)&outputs[i], offsetof(labial_rig_output_t, curve));
+        outputs[i].curve = OR_NULL(const labial_rig_curve_t *, &curve);
+    }
     FILL(values);
     FILL(changes);
     FILL(faps);
     FILL(frames);
     rig.outputs = OR_NULL(const labial_rig_output_t *, outputs);
-    rig.count = any_uint16;
+    rig.count = (uint16_t)(any_uint16 % (OUTPUTS + 1u));
     labial_rig_check(OR_NULL(const labial_rig_t *, &rig));
     labial_rig_rest(OR_NULL(const labial_rig_t *, &rig), OR_NULL(int32_t *, values));
     labial_rig_apply(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, faps), OR_NULL(int32_t *, values));
     labial_rig_apply_ahead(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, frames), any_uint16,
                            OR_NULL(int32_t *, values), OR_NULL(int32_t *, changes));
+    delay.frames = OR_NULL(int16_t *, frames);
+    delay.ahead = (uint16_t)(any_uint16 & 0x7fffu); /* all that `frames` have room for */
+    delay.held = any_uint16;
+    labial_rig_delayed(OR_NULL(const labial_rig_t *, &rig), OR_NULL(labial_rig_delay_t *, &delay),
+                       OR_NULL(const int16_t *, faps), OR_NULL(int32_t *, values), OR_NULL(int32_t *, changes));
     return 0;
 }
