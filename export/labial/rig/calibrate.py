@@ -9,7 +9,7 @@ from typing import Union
 from labial import __version__
 from labial.errors import DataError
 from labial.outputs import writing
-from labial.rig.description import PULSE_MAX, PULSE_MIN, Rig
+from labial.rig.description import CURVE_POINTS, PULSE_MAX, PULSE_MIN, Rig
 
 #: Outputs that the sketch can tell apart by a digit.
 OUTPUTS_MAX = 10
@@ -33,6 +33,8 @@ def sketch(rig: Rig) -> str:
  *     c        here the lips just touch         g     to where the face rests
  *     f        here the mouth is full open      p     prints the description's lines
  *     l h      the least and the greatest pulse that the mechanics allow
+ *     m12      here the mouth is open by 12: a whole number, in tenths of a millimetre or whatever you measure. Two to
+ *              {CURVE_POINTS[1]} such points are the linkage's curve
  *
  * Servos at pins: change `pins`. Boards of the ESP32 family use ESP32Servo.h. Where a chip makes the pulses, change
  * show().
@@ -47,6 +49,9 @@ static int pulses[OUTPUTS] = {{ {begins} }}; // microseconds
 static int found[OUTPUTS][5]; // neutral, closed, full, minimum, maximum; 0 where it was not set
 static const char *const keys[5] = {{ "neutral", "closed", "full", "minimum", "maximum" }};
 static Servo servos[OUTPUTS];
+static int points[OUTPUTS]; // of the curve
+static int measured[OUTPUTS][{CURVE_POINTS[1]}][2]; // pulse, opening
+static int opening = -1; // while its digits come in
 static int chosen = 0;
 
 static void show(int output)
@@ -73,6 +78,32 @@ static void keep(int key)
     Serial.println(pulses[chosen]);
 }}
 
+static void keepOpening()
+{{
+    if (points[chosen] < {CURVE_POINTS[1]}) {{
+        measured[chosen][points[chosen]][0] = pulses[chosen];
+        measured[chosen][points[chosen]][1] = opening;
+        points[chosen]++;
+    }}
+    Serial.print(names[chosen]);
+    Serial.print(" open ");
+    Serial.println(opening);
+    opening = -1;
+}}
+
+static void printCurve(int output)
+{{
+    Serial.print("curve = [");
+    for (int point = 0; point < points[output]; point++) {{
+        Serial.print(point > 0 ? ", [" : "[");
+        Serial.print(measured[output][point][0]);
+        Serial.print(", ");
+        Serial.print(measured[output][point][1]);
+        Serial.print("]");
+    }}
+    Serial.println("]");
+}}
+
 static void printAll()
 {{
     for (int output = 0; output < OUTPUTS; output++) {{
@@ -86,6 +117,8 @@ static void printAll()
                 Serial.println(found[output][key]);
             }}
         }}
+        if (points[output] >= {CURVE_POINTS[0]})
+            printCurve(output);
     }}
 }}
 
@@ -97,7 +130,7 @@ void setup()
         found[output][0] = pulses[output];
         show(output);
     }}
-    Serial.println("0 .. 9, + - > <, n c f l h, g, p");
+    Serial.println("0 .. 9, + - > <, n c f l h, m, g, p");
 }}
 
 void loop()
@@ -105,6 +138,13 @@ void loop()
     if (!Serial.available())
         return;
     const int command = Serial.read();
+    if (opening >= 0) {{
+        if (command >= '0' && command <= '9') {{
+            opening = constrain(10 * opening + (command - '0'), 0, 3000);
+            return;
+        }}
+        keepOpening();
+    }}
     if (command >= '0' && command < '0' + OUTPUTS) {{
         chosen = command - '0';
         Serial.println(names[chosen]);
@@ -140,6 +180,9 @@ void loop()
         break;
     case 'h':
         keep(4);
+        break;
+    case 'm':
+        opening = 0;
         break;
     case 'p':
         printAll();
