@@ -83,6 +83,23 @@ def test_everything_is_in_the_page(tmp_path: Path, frames: Path, avatar: Path, s
             assert module in imports
 
 
+@pytest.mark.parametrize(("jaw", "told"), [(1.0, ""), (0.25, "its mouth opens 0."), (3.0, "its mouth opens 2.")])
+def test_heads_that_the_built_in_weights_do_not_suit_are_told(tmp_path: Path, frames: Path, stand_in: Path, jaw: float,
+                                                              told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """A jaw that goes a quarter as far as the made head's, or three times; of a rig of one's own nothing is said."""
+    vertices, triangles, shapes = made_head()
+    for name in ("jawOpen", "mouthClose"):
+        shapes[name] = jaw * shapes[name]
+    path, out = tmp_path / "odd.glb", str(tmp_path / "page.html")
+    path.write_bytes(glb(*document_of(vertices, triangles, shapes)))
+    command = ["page", str(frames), "--head", str(path), "--three", str(stand_in), "-o", out]
+    assert main(command) == 0
+    said = capsys.readouterr().err
+    assert told in said and (f"warning: {path}: with the built-in weights" in said) == bool(told), said
+    (tmp_path / "mine.toml").write_text('unit = "weight"\n[output.jawOpen]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
+    assert main([*command, "--rig", str(tmp_path / "mine.toml")]) == 0 and capsys.readouterr().err == ""
+
+
 def test_expressions_of_vrm_move_their_shapes(tmp_path: Path, frames: Path, stand_in: Path) -> None:
     """three.js knows the mesh's shapes alone, not the expressions that are made of them."""
     vertices, triangles, shapes = made_head(mouth="vrm")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import os
+import warnings
 from pathlib import Path
 from typing import Any, Dict, Optional, Tuple, Union
 
@@ -13,8 +14,10 @@ import numpy as np
 from labial.animation import face, outputs
 from labial.errors import DataError, LabialError
 from labial.fit.avatar import read as read_avatar
+from labial.fit.judge import matrix, opening
 from labial.fit.kinds import KINDS, kind_of, known
 from labial.fit.landmarks import Found, read_head
+from labial.fit.meaning import fap
 from labial.fit.write import output_name
 from labial.frames import even
 from labial.rig.description import Rig, read
@@ -23,6 +26,9 @@ from labial.see.page import LARGEST_SOUND, script_data
 
 PathLike = Union[str, os.PathLike]
 
+#: Share of the opening that is meant within which a head shows it well enough, and millimetres of it from which on that
+#: can be told.
+_RIGHT, _LEAST = (0.8, 1.25), 2.0
 PLAYER = Path(__file__).with_name("head.html")
 #: Modules of the npm package three, what a page imports them as, and what stands in them for each other.
 _THREE: Dict[str, str] = {
@@ -81,6 +87,16 @@ def _shapes(found: Found, rig: Optional[PathLike]) -> Tuple[Rig, Dict[str, str]]
     return chosen, used
 
 
+def _warn(where: str, found: Found, weights: Dict[str, np.ndarray], frames: np.ndarray) -> None:
+    """Says so where the built-in weights open this head much less or more than the frames mean."""
+    head = found.head
+    meant = float(np.percentile(-(fap(frames, 51) + fap(frames, 52)), 95)) * head.mns / 1024.0
+    ratio = float(np.percentile(opening(head, matrix(head, weights)), 95)) / max(meant, _LEAST)
+    if meant > _LEAST and not _RIGHT[0] <= ratio <= _RIGHT[1]:
+        warnings.warn(f"{where}: with the built-in weights its mouth opens {ratio:.2f} times as far as is meant; "
+                      "`labial fit` makes a rig for it, and --rig takes that", stacklevel=3)
+
+
 def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, audio: Optional[PathLike] = None,
               title: Optional[str] = None, three: Optional[PathLike] = None) -> str:
     """The page as text. `avatar` is a .glb or .vrm; `rig` a description, without which the built-in one of the avatar's
@@ -103,6 +119,8 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
     except ValueError as error:
         raise LabialError(f"{motion.name}: {error}") from None
     weights = outputs(chosen, frames)
+    if rig is None:
+        _warn(where, found, {shape: weights[name] for name, shape in used.items()}, frames)
     columns: Dict[str, np.ndarray] = {}  # by the mesh's own shapes, of which VRM's expressions are made
     for name, shape in used.items():
         for own, share in found.mesh.parts.get(shape, [(shape, 1.0)]):
