@@ -77,14 +77,14 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     /*@ assert sum >= 32768; */
     LABIAL_CHECK(sum >= 32768u);
     for (i = 1; i <= count; i++) {
-        uint32_t share;                   /* of the mixture, Q12 */
+        uint16_t share; /* of the mixture, Q12 */
         c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
-        share = i < count ? labial_quotient(likelihoods[c] * ONE, sum) : rest;
+        share = (uint16_t)(i < count ? labial_quotient(likelihoods[c] * ONE, sum) : rest);
         rest -= share;
         if (share > 0) {
             selection->components[counting] = (uint8_t)c;
-            selection->shares[counting] = (uint16_t)share;
-            selection->tilts[counting++] = (int16_t)(((int32_t)share * deviations[c]) >> 6);
+            selection->shares[counting] = share;
+            selection->tilts[counting++] = (int16_t)((share * (int32_t)deviations[c]) >> 6);
         }
     }
     selection->count = (uint8_t)counting;
@@ -242,11 +242,12 @@ static void add_taps(const labial_model_t *model, const uint8_t *labels, int16_t
 uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
                              int16_t target[LABIAL_CHANNELS])
 {
+    const int32_t share = taken->share;
     unsigned k;
     add_taps(model, taken->labels, target);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const int32_t start = shape->knots[0][k];
-        const int32_t position = start + (((shape->knots[1][k] - start) * (int32_t)taken->share + 8192) >> 14) +
+        const int32_t position = start + (((shape->knots[1][k] - start) * share + 8192) >> 14) +
                                  labial_scaled(target[k], model->channels[k].kernel_scale);
         target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
     }

@@ -72,8 +72,6 @@ static int take_frame(labial_t *stream)
     labial_taken_t taken;
     unsigned i;
     int result;
-    if (stream->next.halves < 2u && labial_units_at_first(&stream->units, stream->models))
-        select_halves(stream, 2);
     result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
     if (result == LABIAL_STARVED || (result == LABIAL_DONE && stream->pending == 0))
         return result;
@@ -201,12 +199,6 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     return LABIAL_OK;
 }
 
-/* Whether the model in `slot` is still needed: for phonemes in the queue or frames that are not yet solved. */
-static int is_in_use(const labial_t *stream, unsigned slot)
-{
-    return labial_channels_uses(&stream->channels, slot) || labial_units_uses(&stream->units, slot);
-}
-
 int labial_use(labial_t *stream, const labial_model_t *model)
 {
     unsigned slot, chosen = LABIAL_MODELS;
@@ -227,8 +219,8 @@ int labial_use(labial_t *stream, const labial_model_t *model)
             chosen = slot;
             break;
         }
-        if (!stream->models[slot] || !is_in_use(stream, slot))
-            chosen = slot;
+        if (!labial_channels_uses(&stream->channels, slot) && !labial_units_uses(&stream->units, slot))
+            chosen = slot; /* neither frames to be solved nor phonemes in the queue are of its model */
     }
     if (chosen == LABIAL_MODELS)
         return LABIAL_ERROR_MODELS;
@@ -271,19 +263,25 @@ int labial_end(labial_t *stream)
 
 int labial_tick(labial_t *stream)
 {
-    int result = status(stream);
+    int must_select, result = status(stream);
     if (result != LABIAL_OK)
         return result;
     if (stream->ease_length) {
         ease(stream);
         return LABIAL_OK;
     }
+    must_select = stream->next.halves < 2u && labial_units_at_first(&stream->units, stream->models);
+    if (must_select)
+        select_halves(stream, 2);
     result = take_frame(stream);
     if (result == LABIAL_OK) {
         labial_channels_step(&stream->channels, stream->models);
-        if (stream->channels.phase > 0) { /* the first of a stride's ticks, with most channels, should not have to */
+        if (stream->channels.phase > 0) { /* the first of a stride's ticks has most channels, and should not have to */
             const int is_last = stream->channels.phase + 1u == stream->channels.stride;
-            select_halves(stream, is_last && labial_units_at_first(&stream->units, stream->models) ? 2u : 1u);
+            if (is_last && labial_units_at_first(&stream->units, stream->models))
+                select_halves(stream, 2);
+            else if (!must_select)
+                select_halves(stream, 1);
         }
         if (deliver(stream))
             return LABIAL_OK;
