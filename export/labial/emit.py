@@ -196,10 +196,11 @@ def _entries_bytes(model: ExportedModel) -> int:
 
 
 def names_source(model: ExportedModel) -> str:
-    """NAME_names.c: labels and aliases in the order of their bytes. Raises ModelError when there are too many."""
+    """NAME_names.c: labels and aliases in the order of their bytes. Raises ModelError for what is no entry of 1 to 31
+    bytes and at least one set of labels, which lib/names.c relies on, and where there are too many."""
     size = _entries_bytes(model)
-    if size > 65535 or any(len(name.encode()) > _LENGTH_MAX for name, *_ in model.names):
-        raise ModelError(f"names are longer than {_LENGTH_MAX} bytes, or 65,535 together")
+    if size > 65535 or not all(0 < len(name.encode()) <= _LENGTH_MAX and sets for name, _, sets in model.names):
+        raise ModelError(f"names must have 1 to {_LENGTH_MAX} bytes, and 65,535 together with 2 more for each")
     entries = "\n".join(f"    {_packed(*entry)}," for entry in model.names).rstrip(",")
     labels = textwrap.fill(", ".join(_string(label) for label in model.phonemes), width=118, initial_indent="    ",
                            subsequent_indent="    ")

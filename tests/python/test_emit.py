@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -56,6 +57,33 @@ def test_refuses_names_that_c_cannot_use(tmp_path: Path, name: str) -> None:
     with pytest.raises(ModelError, match="no name for a model"):
         emit.write(quantise(random_model(1), name), tmp_path)
     assert not list(tmp_path.iterdir())
+
+
+def entries_of(source: str) -> bytes:
+    """The bytes of the entries in a NAME_names.c."""
+    found = re.search(r"entries\[(\d+)\] = \{\n(.*?)\n\};", source, re.DOTALL)
+    assert found
+    values = bytes(ord(item[1]) if item[0] == "'" else int(item, 0) for item in re.findall(r"'.'|\w+", found[2]))
+    assert len(values) == int(found[1])
+    return values
+
+
+def test_names_are_whole_entries() -> None:
+    """lib/names.c walks from entry to entry and trusts the last one to end with the table."""
+    exported = quantise(random_model(1), "some_model")
+    longest = tuple((f"{i:04d}".ljust(31, "x"), i % len(exported.phonemes), ("ipa",)) for i in range(65535 // 33))
+    for names in (exported.names, (), longest):
+        data, at = entries_of(emit.names_source(replace(exported, names=names))), 0
+        for name, phoneme, sets in names:
+            length = data[at + 1] & 31
+            assert data[at] == phoneme < len(exported.phonemes) and data[at + 1] & 0xe0 and sets
+            assert data[at + 2 : at + 2 + length] == name.encode() and length > 0
+            at += 2 + length
+        assert at == len(data)
+    for bad in ((("", 0, ("ipa",)),), (("x" * 32, 0, ("ipa",)),), (("\u0259" * 16, 0, ("ipa",)),), (("x", 0, ()),),
+                (*longest, ("x" * 31, 0, ("ipa",)))):
+        with pytest.raises(ModelError, match="names must have 1 to 31 bytes"):
+            emit.names_source(replace(exported, names=bad))
 
 
 @pytest.mark.parametrize("method", ["paper", "labial"])
