@@ -116,7 +116,7 @@ static int transitions_are_sound(const labial_model_t *model, const labial_chann
     return 1;
 }
 
-/* weight * |mean|, below 2^33 / 4 with any weight within the limits. */
+/* weight * |mean|, below 2^26 with any weight within the limits; modulo 2^32 with others, whose sum is refused. */
 static uint32_t pull(uint32_t weight, int32_t mean)
 {
     return weight * (uint32_t)(mean < 0 ? -mean : mean);
@@ -137,7 +137,7 @@ static int state_is_sound(const labial_channel_t *channel, const labial_state_t 
     if (!is_position(state->mean) || !is_position(motion) || !is_position(motion2))
         return 0;
     if (!is_within(hold, LABIAL_WEIGHT_MIN, LABIAL_WEIGHT_SUM_MAX) || delta > delta2 ||
-        delta2 > LABIAL_STIFFNESS_MAX * hold || delta2 > LABIAL_WEIGHT_SUM_MAX / 6)
+        delta2 > LABIAL_STIFFNESS_MAX * hold)
         return 0;
     extremes->least_hold = hold < extremes->least_hold ? hold : extremes->least_hold;
     extremes->most_hold = larger(extremes->most_hold, hold);
