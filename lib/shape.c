@@ -77,7 +77,7 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     /*@ assert sum >= 32768; */
     LABIAL_CHECK(sum >= 32768u);
     for (i = 1; i <= count; i++) {
-        uint16_t share; /* of the mixture, Q12 */
+        uint16_t share;                   /* of the mixture, Q12 */
         c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
         share = (uint16_t)(i < count ? labial_quotient(likelihoods[c] * ONE, sum) : rest);
         rest -= share;

@@ -139,6 +139,28 @@ static void the_ends_are_exact(void **state)
     }
 }
 
+/* Lips that are far open and a table of whole shares: the laugh alone, however far apart the two are. Would catch a
+ * freedom that ends just below one, which moves nothing where frames are near each other. */
+static void open_lips_follow_wholly(void **state)
+{
+    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
+    unsigned c;
+    int i;
+    (void)state;
+    seed = 9;
+    for (i = 0; i < 2000; i++) {
+        labial_blend_t blend = draw_table();
+        for (c = 0; c < LABIAL_CHANNELS; c++)
+            blend.shares[c] = LABIAL_BLEND_FULL;
+        draw_frame(speech, 32767);
+        draw_frame(laugh, 32767);
+        speech[3] = (int16_t)draw(-32767, 0); /* the middle of the upper lip, and of the lower one */
+        speech[4] = (int16_t)draw(-32767, -1000);
+        assert_int_equal(labial_blend(&blend, LABIAL_BLEND_FULL, LABIAL_BLEND_FULL, speech, laugh, out), LABIAL_OK);
+        assert_memory_equal(out, laugh, sizeof out);
+    }
+}
+
 /* Whatever the laugh does and however loud it is: lips that meet in speech meet in the same place, and the jaw does not
  * open any further than it does in speech. */
 static void closures_are_kept(void **state)
@@ -359,6 +381,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(follows_the_equation),
         cmocka_unit_test(the_ends_are_exact),
+        cmocka_unit_test(open_lips_follow_wholly),
         cmocka_unit_test(closures_are_kept),
         cmocka_unit_test(what_is_free_laughs),
         cmocka_unit_test(what_is_free_is_rounded_to_the_nearest),

@@ -137,7 +137,7 @@ static void every_truncation_that_is_sealed_is_refused(void **state)
     for (m = 0; m < 2; m++) {
         const size_t size = serialise(models[m]);
         size_t n;
-        for (n = 12; n < size; n += LABIAL_TEST_SHARE) {
+        for (n = 12; n < size; n += n < 64 ? 1 : LABIAL_TEST_SHARE) { /* each that may end within the header */
             labial_blob_t blob;
             void *copy;
             int result;

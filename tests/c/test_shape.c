@@ -174,11 +174,11 @@ static void context_has_a_direction(void **state)
     assert_int_equal(shape.knots[0][4], 10);
 }
 
-/* Of the longest durations and the strangest tables: within the range of positions. */
+/* Of the longest durations and the strangest tables: within the range of positions, up to its ends. */
 static void extremes_stay_within_the_range(void **state)
 {
     fixture_random_t random = { 33 };
-    unsigned round, i;
+    unsigned round, i, at_ends = 0;
     (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(600); round++) {
         labial_shape_t shape;
@@ -199,10 +199,13 @@ static void extremes_stay_within_the_range(void **state)
             components[i].duration_mean = (uint16_t)fixture_random(&random);
         }
         oracle_shape(&f.model, 0, (uint16_t)fixture_random(&random), 0, 1, &shape);
-        for (i = 0; i < 2 * LABIAL_CHANNELS; i++)
-            assert_in_range(shape.knots[i / LABIAL_CHANNELS][i % LABIAL_CHANNELS] + LABIAL_POSITION_MAX, 0,
-                            2 * LABIAL_POSITION_MAX);
+        for (i = 0; i < 2 * LABIAL_CHANNELS; i++) {
+            const int value = shape.knots[i / LABIAL_CHANNELS][i % LABIAL_CHANNELS];
+            assert_in_range(value + LABIAL_POSITION_MAX, 0, 2 * LABIAL_POSITION_MAX);
+            at_ends |= value == LABIAL_POSITION_MAX ? 1u : value == -LABIAL_POSITION_MAX ? 2u : 0u;
+        }
     }
+    assert_int_equal(at_ends, 3);
 }
 
 static double limited(double value)
@@ -221,7 +224,7 @@ static void targets_are_shapes_kernels_and_floors(void **state)
     static int8_t kernels[ROWS * LABIAL_CHANNELS], last[ROWS];
     static uint32_t words[ROWS * 3];
     fixture_random_t random = { 34 };
-    unsigned round, i, k, raised = 0;
+    unsigned round, i, k, raised = 0, at_ends = 0;
     (void)state;
     fixture_rich(&f);
     memset(f.contacts, 0, sizeof f.contacts);
@@ -267,11 +270,13 @@ static void targets_are_shapes_kernels_and_floors(void **state)
                 raised += wanted < least;
                 wanted = wanted < least ? least : wanted;
             }
+            at_ends |= target[k] == LABIAL_POSITION_MAX ? 1u : target[k] == -LABIAL_POSITION_MAX ? 2u : 0u;
             if (fabs(target[k] - wanted) > 1.01) /* two roundings */
                 fail_msg("%u taps, channel %u: %d, not %g", taps, k, target[k], wanted);
         }
     }
     assert_true(raised > FIXTURE_ROUNDS(500)); /* floors were met */
+    assert_int_equal(at_ends, 3);              /* and both ends of the range */
 }
 
 /* What a neighbour adds to a knot on channel k; `side` is 128 for the next one. */

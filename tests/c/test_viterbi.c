@@ -359,6 +359,28 @@ static void ties_go_to_the_lower_state(void **state)
     }
 }
 
+/* Farther than 1023 / 64 a state costs no more, and just within that what it says: a state that far and a cost of 8176
+ * comes before one of 8160 + 17, and behind one of 8160 + 15. */
+static void far_states_cost_the_farthest(void **state)
+{
+    labial_search_t search;
+    (void)state;
+    set_up_flat(2, 1);
+    emissions[0].mean = -2000;
+    emissions[0].gain = 0; /* z is 16 times the distance */
+    emissions[1].mean = 1022;
+    emissions[1].gain = 0x40; /* z is the distance */
+    memset(&search, 0, sizeof search);
+    emissions[1].cost = 17;
+    labial_viterbi_begin(&model, &channel, 0, &search);
+    labial_viterbi_span(&search, 1);
+    assert_int_equal(labial_viterbi_state(&search, 0), 0);
+    emissions[1].cost = 15;
+    labial_viterbi_begin(&model, &channel, 0, &search);
+    labial_viterbi_span(&search, 1);
+    assert_int_equal(labial_viterbi_state(&search, 0), 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -371,6 +393,7 @@ int main(void)
         cmocka_unit_test(a_leap_is_taken_where_no_edge_is_cheaper),
         cmocka_unit_test(eight_bits_are_enough),
         cmocka_unit_test(ties_go_to_the_lower_state),
+        cmocka_unit_test(far_states_cost_the_farthest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

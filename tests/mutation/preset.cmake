@@ -6,11 +6,17 @@ labial_check_sanitizers("${LABIAL_SANITIZERS}")
 if(NOT LABIAL_CMOCKA_LIBRARY)
   message(FATAL_ERROR "Mutation needs cmocka: install the Debian package libcmocka-dev.")
 endif()
-set(which --count 300)
+# labial_mutate(<name> <option of mutate.py>...)
+function(labial_mutate name)
+  add_test(NAME ${name} COMMAND "${Python3_EXECUTABLE}" -u "${CMAKE_CURRENT_SOURCE_DIR}/mutation/mutate.py"
+    --build "${CMAKE_CURRENT_BINARY_DIR}/${name}" --compiler "${CMAKE_C_COMPILER}" ${ARGN}
+    --cmocka "${LABIAL_CMOCKA_INCLUDE}" "${LABIAL_CMOCKA_LIBRARY}")
+  set_tests_properties(${name} PROPERTIES TIMEOUT 14400)
+endfunction()
+
 if(LABIAL_INSTRUMENT STREQUAL "sanitize")
-  set(which --count 2 --files viterbi.c --suites test_viterbi)
+  labial_mutate(mutate --count 2 --files viterbi.c --suites test_viterbi)
+else()
+  labial_mutate(mutate --count 300 --kinds sign number condition statement)
+  labial_mutate(mutate_users --count 120 --kinds argument constant reset) # what users would notice
 endif()
-add_test(NAME mutate COMMAND "${Python3_EXECUTABLE}" -u "${CMAKE_CURRENT_SOURCE_DIR}/mutation/mutate.py"
-  --build "${CMAKE_CURRENT_BINARY_DIR}/mutation" --compiler "${CMAKE_C_COMPILER}" ${which}
-  --cmocka "${LABIAL_CMOCKA_INCLUDE}" "${LABIAL_CMOCKA_LIBRARY}")
-set_tests_properties(mutate PROPERTIES TIMEOUT 14400)
