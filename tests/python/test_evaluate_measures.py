@@ -74,6 +74,8 @@ def test_correlation_and_amplitude() -> None:
     motion = np.array([[0.0, 1.0, 0.0], [3.0, 0.0, 1.0], [6.0, 1.0, 0.0]])
     np.testing.assert_allclose(correlation(human, motion), [1, -1, 0])
     np.testing.assert_allclose(amplitude(human, motion), [3, 1, np.nan])
+    # Catches a channel that was not measured, whose mean is not quite its only value, and which then has an amplitude.
+    assert np.isnan(amplitude(np.full((7, 1), 0.1) + np.spacing(0.1) * np.arange(7)[:, None], motion[:7, :1])).all()
 
 
 def test_correlation_is_pooled_over_utterances() -> None:

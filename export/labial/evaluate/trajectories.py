@@ -48,9 +48,10 @@ def correlation(human: np.ndarray, motion: np.ndarray) -> np.ndarray:
 
 
 def amplitude(human: np.ndarray, motion: np.ndarray) -> np.ndarray:
-    """(K,) standard deviation of the motion over that of the human's."""
+    """(K,) standard deviation of the motion over that of the human's; NaN where that does not move."""
     spread = human.std(axis=0)
-    return np.where(spread > 0, motion.std(axis=0) / np.where(spread > 0, spread, 1.0), np.nan)
+    moves = spread > 1e-9
+    return np.where(moves, motion.std(axis=0) / np.where(moves, spread, 1.0), np.nan)
 
 
 def differences(frames: np.ndarray, mask: np.ndarray, order: int) -> np.ndarray:
