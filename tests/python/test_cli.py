@@ -129,13 +129,15 @@ def test_options_of_one_method_are_not_silently_ignored(
     for method, options, warned in (
         ("paper", [], False), ("labial", ["--look-ahead", "60", "--search-stride", "1"], False),
         ("paper", ["--search-stride", "1"], True), ("paper", ["--look-ahead", "60"], True),
+        ("labial", ["--talker-variance", "0.5"], False), ("paper", ["--talker-variance", "0.5"], True),
         ("paper", ["--normalise"], False), ("labial", ["--normalise"], True),
     ):
         assert main(["train", "corpus", "-o", str(given / "m.npz"), "--method", method, *options]) == 0
         err = capsys.readouterr().err
         assert (f"--method {method}" in err) == warned and all(name in err for name in options[::2] if warned)
     assert asked[1]["look_ahead"] == 0.06 and asked[1]["search_stride"] == 1
-    assert not {"look_ahead", "search_stride"} & set(asked[0])
+    assert not {"look_ahead", "search_stride", "talker_variance"} & set(asked[0])
+    assert asked[4]["talker_variance"] == 0.5
     assert [options["normalise"] for options in asked[-2:]] == [True, True] and not asked[0]["normalise"]
 
 

@@ -13,7 +13,7 @@ from labial.reference.shape import targets
 from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
 from labial.train.closures import floors
-from labial.train.expression import AMPLITUDE, restored
+from labial.train.expression import AMPLITUDE, gains
 from labial.train.recordings import Recording
 from labial.train.workers import Workers
 from models import random_model, without_floors
@@ -81,7 +81,7 @@ def test_amplitude_is_brought_to_its_goal() -> None:
         motion = synthesise(FloatTables(model), [(p, 120) for p in phonemes])
         material.append(sequence(phonemes, 1.4 * motion, 6))
     with Workers(1, False) as workers:
-        wide = restored(model, material, workers)
+        wide = widened(model, *gains(model, material, workers))
     found = np.concatenate([synthesise(FloatTables(wide), [(int(p), 120) for p in item.phoneme]) for item in material])
     human = np.concatenate([item.frames for item in material])
     assert np.abs(found.std(axis=0) / human.std(axis=0) - AMPLITUDE).max() < 0.06
@@ -96,7 +96,7 @@ def test_a_channel_is_widened_about_the_middle_of_its_range() -> None:
     motion = 2.0 * synthesise(FloatTables(model), [(p, 120) for p in phonemes])
     motion[:, 2] = 4.0 * np.maximum(motion[:, 2], np.percentile(motion[:, 2], 80))
     with Workers(1, False) as workers:
-        wide = restored(model, [sequence(phonemes, motion, 6)], workers)
+        wide = widened(model, *gains(model, [sequence(phonemes, motion, 6)], workers))
     asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
     before, after = (targets(FloatTables(item), *asked) for item in (model, wide))
     gain = np.ptp(after, axis=0) / np.ptp(before, axis=0)

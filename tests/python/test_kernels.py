@@ -10,10 +10,12 @@ import pytest
 from labial.reference.shape import Choice, add_kernels, knot_shares, neighbours, shapes
 from labial.train.kernels import (
     PAIR_COUNT,
+    Kernels,
     Penalties,
     fit_kernels,
     lags,
     pair_codes,
+    regression,
     tapped,
 )
 from labial.train.recordings import Recording
@@ -51,6 +53,11 @@ def choice_of(material) -> Choice:
     phoneme = np.concatenate([item.phoneme for item in material])
     offset = np.clip(np.concatenate([item.duration for item in material]) - 0.10, -0.06, 0.06)
     return Choice(phoneme[:, None], np.ones((len(phoneme), 1)), offset[:, None])
+
+
+def fitted_to(material, stand_in, penalties: Penalties) -> Kernels:
+    asked = regression(material, tables(), CLASS, stand_in, 0, FPS, penalties)
+    return fit_kernels(asked, material, choice_of(material))
 
 
 def targets(item: Recording, given: ShapeTables, kernel: np.ndarray) -> np.ndarray:
@@ -92,7 +99,7 @@ def test_recovers_planted_kernels():
     # Catches a kernel, shape or slope laid at the wrong lag, phoneme or scale: motion of other episodes is predicted.
     material, _, _ = planted(1, 120)
     weak = Penalties(kernel=1e-2, shape=1e-2, slope=1e-2, silence=1.0)
-    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, weak)
+    fitted = fitted_to(material, range(PHONEMES), weak)
     for item in planted(2, 5)[0]:
         error = targets(item, fitted.tables, fitted.kernel) - item.frames
         assert np.sqrt((error**2).mean()) < 0.01 * item.frames.std()
@@ -102,7 +109,7 @@ def test_recovers_the_curve_itself():
     # Catches kernels that only predict in sum: away from lag 0, where shapes do the same, differences are unique.
     material, _, kernel = planted(3, 200)
     weak = Penalties(kernel=1e-2, shape=1e-2, slope=1e-2, silence=1.0)
-    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, weak)
+    fitted = fitted_to(material, range(PHONEMES), weak)
     away = np.abs(lags(FPS)) >= 2
     found, true = ((item[1:5] - item[1])[:, away] for item in (fitted.kernel, kernel))
     assert np.abs(found - true).max() < 0.05 * np.abs(true).max()
@@ -124,7 +131,7 @@ def test_equals_the_regression_in_two_parts(monkeypatch: pytest.MonkeyPatch, int
         material = [replace(i, weight=np.tile(row, (len(i.frames), 1))) for i, row in zip(material, each)]
     penalties = Penalties(kernel=20.0, residual=6.0, smoothness=0.0, shape=15.0, slope=25.0, silence=0.25, pair=8.0,
                           intercept=intercept)
-    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, penalties)
+    fitted = fitted_to(material, range(PHONEMES), penalties)
 
     lag, classes, pairs = lags(FPS), 3, [tuple(key) for key in fitted.pair_key.tolist()]
     assert 2 < len(pairs) < 40
@@ -166,13 +173,13 @@ def test_equals_the_regression_in_two_parts(monkeypatch: pytest.MonkeyPatch, int
 def test_a_weight_for_all_changes_nothing_and_makes_no_pair() -> None:
     # Catches penalties that do not go with the weights, and rows for what is seen often by weight alone.
     material, _, _ = planted(6, 12)
-    once = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, Penalties())
+    once = fitted_to(material, range(PHONEMES), Penalties())
     heavy = [replace(item, weight=np.full(item.frames.shape, 7.0)) for item in material]
-    again = fit_kernels(heavy, choice_of(heavy), tables(), CLASS, range(PHONEMES), 0, FPS, Penalties())
+    again = fitted_to(heavy, range(PHONEMES), Penalties())
     np.testing.assert_array_equal(again.pair_key, once.pair_key)
     np.testing.assert_allclose(again.kernel, once.kernel, atol=1e-6)
     silent = [*material, *(replace(item, weight=np.zeros(item.frames.shape)) for item in planted(7, 12)[0])]
-    without = fit_kernels(silent, choice_of(silent), tables(), CLASS, range(PHONEMES), 0, FPS, Penalties())
+    without = fitted_to(silent, range(PHONEMES), Penalties())
     np.testing.assert_array_equal(without.pair_key, once.pair_key)
     np.testing.assert_allclose(without.tables.shape, once.tables.shape, atol=1e-6)
 
@@ -188,7 +195,7 @@ def test_a_substituted_phoneme_moves_as_its_substitute():
     # Catches a phoneme whose whole class is missing and that would rest at the mean of all motion.
     material, _, _ = planted(5, 20)
     stand_in = [0, 1, 2, 3, 4, 1]
-    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, stand_in, 0, FPS, Penalties())
+    fitted = fitted_to(material, stand_in, Penalties())
     np.testing.assert_array_equal(fitted.kernel[5], fitted.kernel[1])
     np.testing.assert_array_equal(fitted.tables.shape[5], fitted.tables.shape[1])
     np.testing.assert_array_equal(fitted.tables.slope[5], fitted.tables.slope[1])
@@ -210,7 +217,7 @@ def test_pairs_are_recovered_and_rare_ones_left_out():
             frames[start : start + item.length[i]] = value
         material.append(replace(item, frames=frames))
     stiff = Penalties(kernel=1e6)
-    fitted = fit_kernels(material, choice_of(material), tables(), CLASS, range(PHONEMES), 0, FPS, stiff)
+    fitted = fitted_to(material, range(PHONEMES), stiff)
     row = {tuple(key): value for key, value in zip(fitted.pair_key.tolist(), fitted.pair_shape.mean(axis=1)[:, 0])}
     for key, value in truth.items():
         others = [row[other] for other in row if other[:2] == key[:2] and other != key]

@@ -183,7 +183,8 @@ def test_training_sees_what_the_run_time_will_do(monkeypatch):
         return match_states(tables, paths, targets, *others)
 
     monkeypatch.setattr(pipeline, "match_states", matched)
-    monkeypatch.setattr(pipeline, "restored", lambda model, material, workers: model)  # would widen what was seen
+    unchanged = np.ones(13), np.zeros(13)
+    monkeypatch.setattr(pipeline, "gains", lambda model, material, workers: unchanged)  # would widen what was seen
     corpus = [episode(seed, 0.3 + 0.05 * seed) for seed in range(8)]
     model = train(corpus, method="labial", jobs=1, search_stride=3, **OPTIONS)
     tables = FloatTables(replace(model, log_transition=seen["tables"].log_transition))  # those that were searched with

@@ -43,6 +43,13 @@ def add_fps(command: argparse.ArgumentParser) -> None:
     command.add_argument("--fps", type=positive, default=FPS, help=f"frames per second ({FPS})")
 
 
+def add_talker_variance(command: argparse.ArgumentParser) -> None:
+    """``--talker-variance``; see :mod:`labial.train.talkers`."""
+    command.add_argument("--talker-variance", type=number, metavar="V", help="--method labial: learn what talkers "
+                         "share and let each stray from it, by this variance relative to that of what is shared (1 "
+                         "is what was chosen on talkers left out); weights of corpora then do not count")
+
+
 def add_engine(command: argparse.ArgumentParser) -> None:
     """``--engine``, as :class:`labial.train.workers.Workers` takes it."""
     command.add_argument("--engine", metavar="dask=ADDRESS", help="work on the Dask cluster whose scheduler is at "

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import argparse
 
-from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, positive, seed, shows_progress
+from labial.commands.common import (
+    add_engine,
+    add_fps,
+    add_kind,
+    add_quiet,
+    add_talker_variance,
+    positive,
+    seed,
+    shows_progress,
+)
 from labial.defaults import SPLITS
 from labial.errors import LabialError, needs
 
@@ -26,6 +35,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          help="train without the episodes that hold these words, judge these words' frames alone")
     command.add_argument("--leave-out-talkers", action="store_true", help="train without each talker of the second "
                          "and further corpora in turn, judge that talker, in place of random splits")
+    add_talker_variance(command)
     add_quiet(command)
 
 
@@ -39,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     if words and options.leave_out_talkers:
         raise LabialError("--hold-out-words and --leave-out-talkers do not go together")
     asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
-                    options.leave_out_talkers)
+                    options.leave_out_talkers, options.talker_variance)
     for path in evaluated(options.corpus, options.output, asked, jobs=options.jobs, engine=options.engine,
                           progress=shows_progress(options)):
         print(path)

@@ -1,4 +1,4 @@
-"""``labial train``: from corpora to a model."""
+"""``labial train``: from corpora to a model, and from a model to that of one talker."""
 
 from __future__ import annotations
 
@@ -8,7 +8,17 @@ import os
 import warnings
 from typing import Any, Dict
 
-from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, positive, seed, shows_progress, whole
+from labial.commands.common import (
+    add_engine,
+    add_fps,
+    add_kind,
+    add_quiet,
+    add_talker_variance,
+    positive,
+    seed,
+    shows_progress,
+    whole,
+)
 from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE
 from labial.errors import needs
 
@@ -31,12 +41,15 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("--search-stride", type=positive, metavar="FRAMES", help="--method labial: frames that "
                          f"share a state of the decoded path ({SEARCH_STRIDE}); 1 decodes every frame, as --method "
                          "paper always does")
+    add_talker_variance(command)
     command.add_argument("--normalise", action="store_true", help="--method paper: divide features by their standard "
                          "deviations before they are clustered, as --method labial always does; the text does not")
     command.add_argument("--seed", type=seed, default=0)
     command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1,
                          help="processes; the result is the same")
     add_engine(command)
+    command.add_argument("--adapt", metavar="MODEL", help="do not train: give a model that was trained with "
+                         "--talker-variance the deviation of one talker, from half a minute of him or more")
     command.add_argument("--attribution", default="",
                          help="what whoever passes the model on must say; kept in the model")
     add_quiet(command, "bars")
@@ -51,6 +64,8 @@ def run(options: argparse.Namespace) -> int:
     from labial.outputs import check
 
     check(options.output)
+    if options.adapt is not None:
+        return _adapt(options)
     own = _labials_own(options)
     check_options(kind=options.kind, method=options.method, fps=options.fps, codebook=options.codebook,
                   components=options.components, jobs=options.jobs, engine=options.engine, **own)
@@ -67,6 +82,22 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def _adapt(options: argparse.Namespace) -> int:
+    """``--adapt``: writes the model of one talker."""
+    from labial.corpus import read_corpus
+    from labial.model import load, save
+    from labial.train import adapted
+
+    shared = load(options.adapt)
+    episodes = [episode for corpus in options.corpus for episode in read_corpus(corpus, shared.kind)]
+    model = adapted(shared, episodes, options.attribution)
+    save(model, options.output)
+    about = model.training["adapted"]
+    print(f"{options.output}: {options.adapt}, adapted to {about['episodes']} episodes, "
+          f"{about['frames'] / model.fps:.0f} s")
+    return 0
+
+
 def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
     """What only ``--method labial`` has; warns where an option has no effect with the method that it is given for."""
     own: Dict[str, Any] = {}
@@ -74,6 +105,8 @@ def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
         own["look_ahead"] = options.look_ahead / 1000.0
     if options.search_stride is not None:
         own["search_stride"] = options.search_stride
+    if options.talker_variance is not None:
+        own["talker_variance"] = options.talker_variance
     if own and options.method == "paper":
         names = " and ".join("--" + name.replace("_", "-") for name in own)
         warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)

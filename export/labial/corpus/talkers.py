@@ -130,15 +130,29 @@ def brought_together(corpora: Sequence[Sequence[Episode]], silence: str) -> List
     mean = np.average([moments[name][0] for name in first], axis=0, weights=share)
     deviation = np.sqrt(np.average([moments[name][1] ** 2 for name in first], axis=0, weights=share))
 
-    def brought(item: Episode) -> Episode:
-        own_mean, own_deviation = moments[item.source.recording]
-        if len(first) == 1 and item.source.recording in first:
-            return item
-        moves = own_deviation > 1e-9
-        scale = np.where(moves, deviation / np.where(moves, own_deviation, 1.0), 1.0)
-        return replace(item, frames=mean + (item.frames - own_mean) * scale)
+    alone = first if len(first) == 1 else {}
+    return [[item if item.source.recording in alone else _brought(item, moments[item.source.recording], mean, deviation)
+             for item in corpus] for corpus in corpora]
 
-    return [[brought(item) for item in corpus] for corpus in corpora]
+
+def brought_to(corpus: Sequence[Episode], silence: str, mean: np.ndarray, deviation: np.ndarray) -> List[Episode]:
+    """The corpus with each recording's mean and standard deviation per channel, outside `silence`, brought to these,
+    (13,) FAP each."""
+    values: Dict[str, List[np.ndarray]] = {}
+    for item in corpus:
+        values.setdefault(item.source.recording, []).append(item.frames[item.sounding(silence)])
+    moments = {name: _moments(np.concatenate(frames)) for name, frames in values.items()}
+    return [_brought(item, moments[item.source.recording], mean, deviation) for item in corpus]
+
+
+def _brought(
+    item: Episode, own: Tuple[np.ndarray, np.ndarray], mean: np.ndarray, deviation: np.ndarray
+) -> Episode:
+    """The episode with its recording's mean and standard deviation, `own`, brought to others."""
+    own_mean, own_deviation = own
+    moves = own_deviation > 1e-9
+    scale = np.where(moves, deviation / np.where(moves, own_deviation, 1.0), 1.0)
+    return replace(item, frames=mean + (item.frames - own_mean) * scale)
 
 
 def _moments(frames: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:

@@ -39,6 +39,7 @@ class Options:
     fps: int = FPS
     held_out: Tuple[str, ...] = ()
     leave_out_talkers: bool = False  #: in place of random splits
+    talker_variance: Optional[float] = None  #: of Labial's models: talkers as random effects
     synthetic: bool = False  #: the motion was computed, not recorded; every table and plot says so
 
 
@@ -89,7 +90,7 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Ou
     phone_set = PHONE_SETS[options.kind]
     learnt = [corpus[i] for i in split.training]
     training = Training(learnt, phone_set, options.fps, options.seed + split.number, unseen_words=bool(split.words),
-                        added=[corpus[i].episode for i in split.added])
+                        added=[corpus[i].episode for i in split.added], talker_variance=options.talker_variance)
     masks = judged_frames([corpus[i] for i in split.test], phone_set, split.words or ())
     judged = [(i, mask) for i, mask in zip(split.test, masks) if mask.any()]
     if not judged:

@@ -14,6 +14,7 @@ from labial.evaluate.methods import select
 from labial.evaluate.protocol import Options, Outcome, evaluate
 from labial.outputs import check_folder, folder
 from labial.train.pipeline import check_jobs
+from labial.train.talkers import check_variance
 from labial.train.workers import Workers
 
 
@@ -35,6 +36,7 @@ def run(
     select(options.methods)  # before the corpora are read
     check_folder(output)
     check_jobs(jobs)
+    check_variance(options.talker_variance)
     Workers(jobs, False, engine)
     options = replace(options, synthetic=is_synthetic(corpora[0]))
     first, *others = read_corpora(corpora, options.kind)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Callable, Dict, List, Protocol, Sequence, Set, Tuple, TypeVar
+from typing import Callable, Dict, List, Optional, Protocol, Sequence, Set, Tuple, TypeVar
 
 import numpy as np
 
@@ -47,9 +47,10 @@ class Training:
 
     def __init__(
         self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int, unseen_words: bool = False,
-        added: Sequence[Episode] = (),
+        added: Sequence[Episode] = (), talker_variance: Optional[float] = None,
     ) -> None:
         self.added = list(added)
+        self.talker_variance = talker_variance
         self.unseen_words = unseen_words
         self.utterances = list(utterances)
         self.phone_set = phone_set
@@ -126,6 +127,7 @@ class Training:
                 progress=False,
                 divide=self.divide,
                 normalise=normalise,
+                talker_variance=self.talker_variance if method == "labial" else None,
             )
         return self._models[key]
 

@@ -6,7 +6,7 @@ goes far in a few phonemes, in which widening about the mean would exceed human 
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Sequence, Tuple
 
 import numpy as np
 
@@ -31,11 +31,12 @@ EPISODES = 160
 RANGE = (5.0, 95.0)
 
 #: Gains are not taken beyond this, nor below 1.
-LARGEST_GAIN = 1.6
+LARGEST_GAIN = 3.0
 
 
-def restored(model: Model, material: Sequence[Recording], workers: Workers) -> Model:
-    """The model widened, channel by channel, until its motion outside silence reaches AMPLITUDE or CORNERS."""
+def gains(model: Model, material: Sequence[Recording], workers: Workers) -> Tuple[np.ndarray, np.ndarray]:
+    """The gain of each channel (13,), with which the model's motion outside silence reaches AMPLITUDE or CORNERS, and
+    the pose (13,), FAP, about which it is to be widened."""
     goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS, AMPLITUDE)
     count = min(len(material), EPISODES)
     chosen = [material[index] for index in np.linspace(0, len(material) - 1, count).round().astype(int)]
@@ -43,7 +44,7 @@ def restored(model: Model, material: Sequence[Recording], workers: Workers) -> M
     sounding = np.concatenate([item.phoneme_at() != silence for item in chosen])
     learnt = sounding[:, None] & (np.concatenate([item.weights for item in chosen]) > 0)
     frames = np.concatenate([item.frames for item in chosen])
-    human = _deviation(frames, learnt)
+    human = deviation_of(frames, learnt)
     taught = learnt.any(axis=0)  # by the episodes chosen
     middle = np.array([np.mean(np.percentile(values[of], RANGE)) if of.any() else 0.0
                        for values, of in zip(frames.T, learnt.T)])
@@ -51,13 +52,13 @@ def restored(model: Model, material: Sequence[Recording], workers: Workers) -> M
     for _ in range(3):  # the state tables and the floors resist the gain, so that one step falls short
         current = widened(model, gain, middle)
         motion = np.concatenate(workers.run("amplitude", _motion, [(current, item) for item in chosen]))
-        reached = _deviation(motion, learnt) / np.maximum(human, 1e-9)
+        reached = deviation_of(motion, learnt) / np.maximum(human, 1e-9)
         wanted = np.clip(gain * goal / np.maximum(reached, 1e-9), 1.0, LARGEST_GAIN)
         gain = np.where(taught, wanted, 1.0)
-    return widened(model, gain, middle)
+    return gain, middle
 
 
-def _deviation(frames: np.ndarray, learnt: np.ndarray) -> np.ndarray:
+def deviation_of(frames: np.ndarray, learnt: np.ndarray) -> np.ndarray:
     """(13,) standard deviations of those values of frames (T, 13) that `learnt` (T, 13) says; 0 where it says none."""
     return np.array([values[of].std() if of.any() else 0.0 for values, of in zip(frames.T, learnt.T)])
 

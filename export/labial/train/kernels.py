@@ -25,7 +25,7 @@ its class's kernel. Along the taps the prior is a first-order process of correla
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Iterator, List, Sequence, Tuple
+from typing import Iterator, List, Sequence, Tuple, Union
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -34,7 +34,7 @@ from scipy.sparse import csc_matrix, csr_matrix, diags, hstack, identity, vstack
 from labial.defaults import LOOK_AHEAD
 from labial.faps import CHANNELS
 from labial.quantise import LIMITS
-from labial.reference.shape import Choice, knot_shares, neighbours, pairs_beside, tapped
+from labial.reference.shape import Choice, add_kernels, knot_shares, neighbours, pairs_beside, shapes, tapped
 from labial.train.recordings import Recording
 from labial.train.shapes import ShapeTables
 
@@ -171,7 +171,7 @@ def _blocks(
         first, occurrence, frames = last, end, 0
 
 
-def _columns_alike(material: Sequence[Recording]) -> List[np.ndarray]:
+def columns_alike(material: Sequence[Recording]) -> List[np.ndarray]:
     """The channels whose values count alike in every frame, in groups."""
     alike = np.ones((CHANNELS, CHANNELS), dtype=bool)
     for item in material:
@@ -202,12 +202,12 @@ class _Sums:
         sums = csr_matrix((np.ones(len(weight)), (utterance, np.arange(len(weight)))))
         self._of_utterances.append(((sums @ weighted).toarray(), sums @ (weight[:, None] * motion), sums @ weight))
 
-    def solved(self, prior: np.ndarray, intercept: float) -> np.ndarray:
-        """(D, C) the coefficients, with inverse prior covariance `prior` (D, D) and an intercept for each utterance of
-        penalty `intercept`.
+    def equations(self, intercept: float, prior: Union[float, np.ndarray] = 0.0) -> Tuple[np.ndarray, np.ndarray]:
+        """The matrix (D, D) and right sides (D, C) of the normal equations, X' W X + prior and X' W y, of which an
+        intercept for each utterance, of penalty `intercept`, is solved for.
 
-        The intercepts u are solved for first: with S the utterances' weighted sums of the design, s their weights,
-        (X' W X + prior - S' (s + intercept)^-1 S) b = X' W y - S' (s + intercept)^-1 (weighted sums of y).
+        With S the utterances' weighted sums of the design and s their weights, these are
+        X' W X + prior - S' (s + intercept)^-1 S and X' W y - S' (s + intercept)^-1 (weighted sums of y).
         """
         normal, right = self._normal.toarray() + prior, self._right
         if np.isfinite(intercept):
@@ -215,7 +215,7 @@ class _Sums:
             shrunk = design_sums / (weights + intercept)[:, None]
             normal -= design_sums.T @ shrunk
             right = right - shrunk.T @ motion_sums
-        return cho_solve(cho_factor(normal), right)
+        return normal, right
 
 
 @dataclass(frozen=True)
@@ -236,9 +236,83 @@ class Kernels:
         return np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
 
 
-def fit_kernels(
+@dataclass(frozen=True)
+class Regression:
+    """What is regressed: the columns of the design (D), kernels, shapes, slopes and pairs, and what they mean."""
+
+    tables: ShapeTables  #: their shapes and slopes are not used
+    viseme_class: np.ndarray  #: (P,)
+    stand_in: Sequence[int]  #: (P,)
+    silence: int
+    fps: int
+    lag: np.ndarray  #: (L,) int64 frames
+    pairs: np.ndarray  #: (R,) codes of :func:`pair_codes`
+    penalties: Penalties
+    knots: int  #: K
+
+    @property
+    def deviation(self) -> np.ndarray:
+        """(N,) seconds: the standard deviation of each component's durations."""
+        return np.sqrt(self.tables.duration_variance)
+
+    @property
+    def sizes(self) -> Tuple[int, int, int]:
+        """How many columns are taps of kernels, components (shapes, and as many slopes), and knots of pairs."""
+        return len(self.viseme_class) * len(self.lag), len(self.tables.shape), self.knots * len(self.pairs)
+
+    def prior(self) -> np.ndarray:
+        """(D, D) inverse prior covariance of the coefficients of a channel."""
+        taps, components, knots = self.sizes
+        prior = np.zeros((taps + 2 * components + knots,) * 2)
+        kernels = slice(0, taps)
+        prior[kernels, kernels] = self.penalties.kernel * kernel_prior(self.viseme_class, len(self.lag), self.penalties)
+        index = np.arange(taps, len(prior))
+        prior[index, index] = np.repeat(
+            [self.penalties.shape, self.penalties.slope, self.penalties.pair], [components, components, knots]
+        )
+        return prior
+
+    def sums(self, material: Sequence[Recording], choice: Choice, base: np.ndarray) -> List[_Sums]:
+        """What the regression needs of `material`, whose motion is taken from `base` (13,) FAP; `choice` are its
+        occurrences' components."""
+        taps, components, knots = self.sizes
+        groups = [_Sums(taps + 2 * components + knots, channels) for channels in columns_alike(material)]
+        for block in _blocks(material, choice, self.silence, self.penalties, self.fps):
+            design = _design(block.material, block.choice, self.deviation, len(self.viseme_class), self.lag,
+                             self.silence, self.pairs, self.knots)
+            motion, number = block.motion, np.arange(len(block.material))
+            utterance = np.repeat(number, [len(item.frames) for item in block.material])
+            for sums in groups:
+                of = sums.channels
+                sums.add(design, motion[:, of] - base[of], block.weight[:, of[0]], utterance)
+        return groups
+
+    def base(self, material: Sequence[Recording], choice: Choice) -> np.ndarray:
+        """(13,) FAP: the weighted mean of the motion."""
+        total = weight = np.zeros((0, CHANNELS))
+        for block in _blocks(material, choice, self.silence, self.penalties, self.fps):  # row by row, as a sum of all
+            total = np.concatenate([total, block.motion * block.weight]).sum(axis=0, keepdims=True)
+            weight = np.concatenate([weight, block.weight]).sum(axis=0, keepdims=True)
+        return total[0] / weight[0]
+
+    def kernels(self, solution: np.ndarray, base: np.ndarray) -> Kernels:
+        """What the coefficients (D, 13), of motion taken from `base` (13,) FAP, mean."""
+        phonemes = len(self.viseme_class)
+        taps, components, _ = self.sizes
+        shape, slope, pair = np.split(solution[taps:], [components, 2 * components])
+        fitted = Kernels(
+            kernel=solution[:taps].reshape(phonemes, len(self.lag), CHANNELS),
+            lag=self.lag,
+            tables=replace(self.tables, shape=base + shape, slope=slope / self.deviation[:, None]),
+            pair_key=np.stack([self.pairs // (2 * phonemes), self.pairs // phonemes % 2, self.pairs % phonemes],
+                              axis=1),
+            pair_shape=pair.reshape(self.knots, len(self.pairs), CHANNELS).transpose(1, 0, 2),
+        )
+        return substitute(fitted, self.stand_in)
+
+
+def regression(
     material: Sequence[Recording],
-    choice: Choice,
     tables: ShapeTables,
     viseme_class: np.ndarray,
     stand_in: Sequence[int],
@@ -247,54 +321,39 @@ def fit_kernels(
     penalties: Penalties,
     look_ahead: float = LOOK_AHEAD,
     knots: int = PAIR_KNOTS,
-) -> Kernels:
-    """Fits kernels, shapes and slopes to the human motion of `material`; `choice` are its occurrences' components.
-
-    `viseme_class` is (P,), `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is
-    in seconds; `knots` is K.
-    """
-    lag = lags(fps, look_ahead)
-    phonemes, taps, components = len(viseme_class), len(lag), len(tables.shape)
-    deviation = np.sqrt(tables.duration_variance)
+) -> Regression:
+    """The columns for `material`, of whose pairs those that are frequent. `viseme_class` is (P,), `stand_in` (P,) the
+    phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is in seconds; `knots` is K."""
     learnt = np.concatenate([item.learnt() for item in material])
-    code, count = np.unique(pair_codes(material, phonemes, silence)[learnt], return_counts=True)
-    pairs = code[count >= PAIR_COUNT]
-    width = phonemes * taps + 2 * components + knots * len(pairs)
-    groups = [_Sums(width, channels) for channels in _columns_alike(material)]
-    total = weight = np.zeros((0, CHANNELS))
-    for block in _blocks(material, choice, silence, penalties, fps):  # row by row, as a sum of all would go
-        total = np.concatenate([total, block.motion * block.weight]).sum(axis=0, keepdims=True)
-        weight = np.concatenate([weight, block.weight]).sum(axis=0, keepdims=True)
-    base = total[0] / weight[0]
-    for block in _blocks(material, choice, silence, penalties, fps):
-        design = _design(block.material, block.choice, deviation, phonemes, lag, silence, pairs, knots)
-        motion, number = block.motion, np.arange(len(block.material))
-        utterance = np.repeat(number, [len(item.frames) for item in block.material])
-        for sums in groups:
-            of = sums.channels
-            sums.add(design, motion[:, of] - base[of], block.weight[:, of[0]], utterance)
+    code, count = np.unique(pair_codes(material, len(viseme_class), silence)[learnt], return_counts=True)
+    return Regression(tables, viseme_class, stand_in, silence, fps, lags(fps, look_ahead), code[count >= PAIR_COUNT],
+                      penalties, knots)
 
-    prior = np.zeros((width, width))
-    kernels = slice(0, phonemes * taps)
-    prior[kernels, kernels] = penalties.kernel * kernel_prior(viseme_class, taps, penalties)
-    index = np.arange(phonemes * taps, len(prior))
-    prior[index, index] = np.repeat(
-        [penalties.shape, penalties.slope, penalties.pair], [components, components, knots * len(pairs)]
-    )
-    solution = np.empty((width, CHANNELS))
-    for sums in groups:
+
+def fit_kernels(asked: Regression, material: Sequence[Recording], choice: Choice) -> Kernels:
+    """Fits kernels, shapes and slopes to the human motion of `material`; `choice` are its occurrences' components."""
+    base, prior = asked.base(material, choice), asked.prior()
+    solution = np.empty((len(prior), CHANNELS))
+    for sums in asked.sums(material, choice, base):
         strength = max(float(item.weights[:, sums.channels[0]].max()) for item in material)
-        solution[:, sums.channels] = sums.solved(strength * prior, strength * penalties.intercept)
+        normal, right = sums.equations(strength * asked.penalties.intercept, strength * prior)
+        solution[:, sums.channels] = cho_solve(cho_factor(normal), right)
+    return asked.kernels(solution, base)
 
-    shape, slope, pair = np.split(solution[phonemes * taps :], [components, 2 * components])
-    fitted = Kernels(
-        kernel=solution[kernels].reshape(phonemes, taps, CHANNELS),
-        lag=lag,
-        tables=replace(tables, shape=base + shape, slope=slope / deviation[:, None]),
-        pair_key=np.stack([pairs // (2 * phonemes), pairs // phonemes % 2, pairs % phonemes], axis=1),
-        pair_shape=pair.reshape(knots, len(pairs), CHANNELS).transpose(1, 0, 2),
-    )
-    return substitute(fitted, stand_in)
+
+def targets_without_floors(
+    choice: Choice, own: Sequence[Kernels], material: Sequence[Recording], silence: int
+) -> List[np.ndarray]:
+    """The targets (T, 13) of recordings, FAP, each by kernels of its `own`, before floors and contact; `choice` is that
+    of the occurrences of `material`."""
+    result, first = [], 0
+    for fitted, item in zip(own, material):
+        rows = slice(first, first + len(item.phoneme))
+        first = rows.stop
+        shape = shapes(fitted.tables, Choice(choice.component[rows], choice.share[rows], choice.offset[rows]))
+        held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
+        result.append(add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence))
+    return result
 
 
 def substitute(fitted: Kernels, stand_in: Sequence[int]) -> Kernels:

@@ -8,6 +8,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from labial.amplitude import widened
 from labial.apex import told
 from labial.corpus.episode import Episode
 from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE
@@ -17,15 +18,26 @@ from labial.model import Model
 from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.quantise import LIMITS
 from labial.reference.contact import FRAMES, raised
-from labial.reference.shape import Choice, add_kernels, choose, shapes
+from labial.reference.shape import choose
+from labial.train.adapt import about_talkers
 from labial.train.closures import FIRMNESS, floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
-from labial.train.expression import restored
-from labial.train.kernels import PAIR_KNOTS, REACH, Kernels, Penalties, fit_kernels, lags
+from labial.train.expression import deviation_of, gains
+from labial.train.kernels import (
+    PAIR_KNOTS,
+    REACH,
+    Kernels,
+    Penalties,
+    fit_kernels,
+    lags,
+    regression,
+    targets_without_floors,
+)
 from labial.train.recordings import Occurrences, Recording, occurrences, recordings, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
 from labial.train.states import Scales, StateTables, codebook_tables, decode, match_states
+from labial.train.talkers import check_variance, counted_once, fit_talkers, penalties_of
 from labial.train.workers import Workers
 
 #: Utterances whose paths are decoded at once.
@@ -48,6 +60,7 @@ class _Setting:
     normalised: bool  #: features are divided by their standard deviations before they are clustered
     penalties: Penalties
     scales: Scales
+    talker_variance: Optional[float]  #: of talkers as random effects; None: talkers are not told apart
 
     @property
     def silence(self) -> int:
@@ -155,27 +168,9 @@ def _stretches(
     return motion, begins
 
 
-def _targets(
-    choice: Choice,
-    fitted: Kernels,
-    material: Sequence[Recording],
-    silence: int,
-    floor: np.ndarray,
-    contact: np.ndarray,
-) -> List[np.ndarray]:
-    """The target (T, 13) of every sequence, FAP; `choice` is that of the occurrences of `material`."""
-    selected = np.split(shapes(fitted.tables, choice), np.cumsum([len(item.phoneme) for item in material])[:-1])
-    result = []
-    for shape, item in zip(selected, material):
-        held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
-        moving = add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence)
-        result.append(raised(moving, item.phoneme_at(), item.length, item.rest, silence, floor, contact)[0])
-    return result
-
-
 def _setting(
     kind: str, method: str, fps: int, codebook: int, components: int, seed: int, look_ahead: float,
-    search_stride: int, divide: Division, normalise: bool,
+    search_stride: int, divide: Division, normalise: bool, talker_variance: Optional[float] = None,
 ) -> _Setting:
     if kind not in KINDS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
@@ -191,16 +186,19 @@ def _setting(
             raise LabialError(f"{name} is {value}, not within 1 .. {most}")
     if not 0.0 <= look_ahead <= REACH:
         raise LabialError(f"look-ahead is {look_ahead} s, not within 0 .. {REACH}")
+    check_variance(talker_variance)
     extended = method == "labial"
+    talker_variance = talker_variance if extended else None
     return _Setting(PHONE_SETS[kind], extended, fps, codebook, components, seed, look_ahead,
-                    search_stride if extended else 1, divide, extended or normalise, Penalties(), Scales())
+                    search_stride if extended else 1, divide, extended or normalise, penalties_of(talker_variance),
+                    Scales(), talker_variance)
 
 
 def check_options(*, kind: str, method: str, fps: int, codebook: int, components: int, jobs: int,
-                  engine: Optional[str] = None, look_ahead: float = LOOK_AHEAD, search_stride: int = SEARCH_STRIDE
-                  ) -> None:
+                  engine: Optional[str] = None, look_ahead: float = LOOK_AHEAD, search_stride: int = SEARCH_STRIDE,
+                  talker_variance: Optional[float] = None) -> None:
     """Raises LabialError for what :func:`train` would refuse: to be called before a corpus is read."""
-    _setting(kind, method, fps, codebook, components, 0, look_ahead, search_stride, lbg, False)
+    _setting(kind, method, fps, codebook, components, 0, look_ahead, search_stride, lbg, False, talker_variance)
     check_jobs(jobs)
     Workers(jobs, False, engine)
 
@@ -236,11 +234,19 @@ def _extent(material: Sequence[Recording], silence: int) -> Dict[str, object]:
     return {"channel_range": np.round(reach, 3).tolist(), "mean_pose": np.round(pose, 3).tolist()}
 
 
+def _deviation(material: Sequence[Recording], silence: int) -> np.ndarray:
+    """(13,) FAP: the standard deviation of each channel outside silence, of what is learnt from."""
+    learnt = np.concatenate([(item.weights > 0) & (item.phoneme_at() != silence)[:, None] for item in material])
+    return deviation_of(np.concatenate([item.frames for item in material]), learnt)
+
+
 def _material(corpus: Sequence[Episode], setting: _Setting) -> List[Recording]:
     material = recordings(corpus, setting.phone_set, setting.fps)
     if setting.extended:
         ahead = max(int(lags(setting.fps, setting.look_ahead)[-1]), FRAMES)
         material = [with_pauses_cut(item, setting.silence, ahead, setting.fps) for item in material]
+    if setting.talker_variance is not None:
+        material = [counted_once(item) for item in material]
     _check_taught(material)
     return material
 
@@ -258,11 +264,19 @@ def _fit_shapes(
         return _Shapes(none, np.full((phonemes, CHANNELS), -np.inf), np.zeros((phonemes, CHANNELS), dtype=bool))
     floor, contact = floors(material, setting.phone_set, setting.fps)
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
-    kernels = fit_kernels(
-        material, choice, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
+    asked = regression(
+        material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
         _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
     )
-    targets = _targets(choice, kernels, material, setting.silence, floor, contact)
+    if setting.talker_variance is None:
+        kernels = fit_kernels(asked, material, choice)
+        own = [kernels] * len(material)
+    else:
+        kernels, of = fit_talkers(asked, material, choice, setting.talker_variance)
+        own = [of[item.talker] for item in material]
+    moving = targets_without_floors(choice, own, material, setting.silence)
+    targets = [raised(target, item.phoneme_at(), item.length, item.rest, setting.silence, floor, contact)[0]
+               for target, item in zip(moving, material)]
     return _Shapes(kernels, floor, contact, targets)
 
 
@@ -370,6 +384,7 @@ def train(
     search_stride: int = SEARCH_STRIDE,
     divide: Division = lbg,
     normalise: bool = False,
+    talker_variance: Optional[float] = None,
 ) -> Model:
     """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
 
@@ -377,12 +392,15 @@ def train(
     `components` C of each phoneme's mixture. `look_ahead` is how far the temporal kernels reach into what follows,
     seconds; less makes a stream's frames earlier. `search_stride` is how many frames share a state of the decoded path.
     The published method has neither; its features are clustered as they are, unless `normalise` divides each by its
-    standard deviation, as Labial's always are. `divide` makes the codebooks' cells; with more than one job it must be a
-    module's own function. `attribution` is kept in the model: redistribution requires it. The same arguments give the
-    same model, whatever `jobs`, the number of processes, and `engine` are (:class:`labial.train.workers.Workers`). The
-    model keeps what each phoneme backed off to (:func:`backed_off`), the corpus's counts and all options.
+    standard deviation, as Labial's always are. `talker_variance` makes talkers random effects
+    (:mod:`labial.train.talkers`), in place of their corpora's weights. `divide` makes the codebooks' cells; with more
+    than one job it must be a module's own function. `attribution` is kept in the model: redistribution requires it. The
+    same arguments give the same model, whatever `jobs`, the number of processes, and `engine` are
+    (:class:`labial.train.workers.Workers`). The model keeps what each phoneme backed off to (:func:`backed_off`), the
+    corpus's counts and all options.
     """
-    setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide, normalise)
+    setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide, normalise,
+                       talker_variance)
     check_jobs(jobs)
     if not corpus:
         raise LabialError("the corpus is empty")
@@ -394,7 +412,13 @@ def train(
         shaped = _fit_shapes(setting, material, items, plan, workers)
         states = _fit_states(setting, material, shaped, workers)
         model = _model(setting, shaped, states, plan, attribution, _training(setting, material, counts, plan))
-        return restored(model, material, workers) if setting.extended else model
+        if not setting.extended:
+            return model
+        gain, middle = gains(model, material, workers)
+        if setting.talker_variance is not None:
+            talkers = about_talkers(setting.talker_variance, _deviation(material, setting.silence), gain, middle)
+            model = replace(model, training={**model.training, "talkers": talkers})
+        return widened(model, gain, middle)
 
 
 def without_apex(corpus: Sequence[Episode]) -> List[str]:

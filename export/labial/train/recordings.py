@@ -30,6 +30,7 @@ class Recording:
     frames: np.ndarray  #: (T, 13) human motion, FAP
     weight: Optional[np.ndarray] = None  #: (T, 13) how much each value counts, 0 for not at all; None: 1 everywhere
     resting: Optional[np.ndarray] = None  #: (T,) int64, how far the mouth rests in pauses; None: not at all
+    talker: str = ""
 
     @property
     def rest(self) -> np.ndarray:
@@ -75,6 +76,7 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
                 apex=resampled.apex[seen],
                 frames=resampled.motion,
                 weight=_weights(episode.source, np.repeat(phoneme, length) == silence),
+                talker=episode.source.talker,
             )
         )
     if not result:

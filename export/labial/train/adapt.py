@@ -1,0 +1,128 @@
+"""A talker's own voice: what talkers share, from a model, and his own deviation, from half a minute of him.
+
+The model is one that was trained with talkers as random effects (:mod:`labial.train.talkers`). Its kernels, shapes,
+slopes and pairs are b; those of the talker are b + u, with u by its posterior mean given his motion and the variance of
+talkers. Everything else of the model, its mixtures, floors and states, stays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, List, Sequence
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from labial.amplitude import mean_pose, widened
+from labial.corpus.episode import Episode
+from labial.corpus.talkers import brought_to
+from labial.errors import LabialError
+from labial.faps import CHANNELS
+from labial.model import Model
+from labial.phonesets import PHONE_SETS
+from labial.reference.contact import FRAMES
+from labial.reference.shape import ShapeTables, choose
+from labial.train.kernels import Kernels, Regression, columns_alike, targets_without_floors
+from labial.train.recordings import Recording, occurrences, recordings, with_pauses_cut
+from labial.train.talkers import (
+    LARGEST_VARIANCE,
+    counted_once,
+    covariance_of,
+    deviation_of,
+    equations_of,
+    penalties_of,
+)
+
+#: What a model says of the talkers it was trained on; (13,) each but the variance.
+KEYS = ("variance", "deviation", "gain", "middle")
+
+
+def about_talkers(
+    variance: float, deviation: np.ndarray, gain: np.ndarray, middle: np.ndarray
+) -> Dict[str, object]:
+    """For `Model.training["talkers"]`: the variance of talkers; the standard deviation of their motion outside silence,
+    FAP, all being of one scale; by what gain the model was widened, about what pose, FAP."""
+    return {"variance": variance, "deviation": deviation.tolist(), "gain": gain.tolist(), "middle": middle.tolist()}
+
+
+def _known(model: Model) -> Dict[str, np.ndarray]:
+    """What the model says of its talkers; raises LabialError where it says nothing, or nothing that can be."""
+    told = model.training.get("talkers")
+    if model.method != "labial" or not isinstance(told, dict):
+        raise LabialError("the model was not trained with --talker-variance, so that it does not tell what talkers "
+                          "share")
+    try:
+        found = {name: np.asarray(told[name], dtype=np.float64) for name in KEYS}
+        fits = all(found[name].shape == (CHANNELS,) and np.isfinite(found[name]).all() for name in KEYS[1:])
+        fits = fits and found["variance"].shape == () and 0.0 < float(found["variance"]) <= LARGEST_VARIANCE
+        fits = fits and bool((found["gain"] > 0).all() and (found["deviation"] >= 0).all())
+    except (KeyError, TypeError, ValueError):
+        fits = False
+    if not fits:
+        raise LabialError("what the model says of its talkers is damaged")
+    return found
+
+
+def _material(model: Model, corpus: Sequence[Episode], about: Dict[str, np.ndarray]) -> List[Recording]:
+    """The talker's recordings, with the mean and the scale that the model's talkers have."""
+    phone_set = PHONE_SETS[model.kind]
+    if model.phonemes != phone_set.phonemes:
+        raise LabialError(f"the model's phonemes are not those of {model.kind}")
+    talkers = sorted({item.source.talker for item in corpus})
+    if len(talkers) > 1:
+        raise LabialError(f"a model is adapted to one talker, but there are {', '.join(talkers)}")
+    scaled = brought_to(corpus, phone_set.silence, mean_pose(model), about["deviation"])
+    silence, ahead = phone_set.phonemes.index(phone_set.silence), max(int(model.kernel_lag.max(initial=0)), FRAMES)
+    return [counted_once(with_pauses_cut(item, silence, ahead, model.fps))
+            for item in recordings(scaled, phone_set, model.fps)]
+
+
+def _deviation(
+    model: Model, material: List[Recording], about: Dict[str, np.ndarray], order: np.ndarray
+) -> Kernels:
+    """What is added to the model's own, with its pairs in ascending `order` (R,)."""
+    plain = widened(model, 1.0 / about["gain"], about["middle"])
+    silence = model.phonemes.index(model.silence)
+    key = model.pair_key[order]
+    tables = ShapeTables(**{name: getattr(plain, name) for name in ShapeTables.__dataclass_fields__})
+    shared = Kernels(plain.kernel, plain.kernel_lag, tables, key, plain.pair_shape[order])
+    items = occurrences(material, PHONE_SETS[model.kind])
+    choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
+    asked = Regression(
+        tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps, model.kernel_lag,
+        (2 * key[:, 0] + key[:, 1]) * len(model.phonemes) + key[:, 2], penalties_of(float(about["variance"])),
+        model.pair_shape.shape[1],
+    )
+    made = targets_without_floors(choice, [shared] * len(material), material, silence)
+    left = [replace(item, frames=item.frames - motion) for item, motion in zip(material, made)]
+    covariance = covariance_of(asked.prior(), float(about["variance"]))
+    zero = np.zeros((len(covariance), CHANNELS))
+    own, equations = zero.copy(), equations_of(asked, left, choice, zero[0])
+    for channels in columns_alike(left):
+        if channels[0] in equations:
+            own[:, channels] = deviation_of(equations, channels, covariance, zero)
+    return asked.kernels(own * about["gain"], zero[0])
+
+
+def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> Model:
+    """The model of the one talker of `corpus`, whose labels are phonemes of the model's kind.
+
+    `attribution` is added to the model's. Raises LabialError for a model that was not trained with talkers as random
+    effects, and for a corpus of several talkers.
+    """
+    about = _known(model)
+    material = _material(model, corpus, about)
+    order = np.argsort((2 * model.pair_key[:, 0] + model.pair_key[:, 1]) * len(model.phonemes) + model.pair_key[:, 2])
+    with threadpool_limits(1):  # the same bits on any number of cores
+        own = _deviation(model, material, about, order)
+    back = np.argsort(order)
+    frames = sum(len(item.frames) for item in material)
+    return replace(
+        model,
+        shape=model.shape + own.tables.shape,
+        slope=model.slope + own.tables.slope,
+        kernel=model.kernel + own.kernel,
+        pair_shape=model.pair_shape + own.pair_shape[back],
+        attribution=" ".join(filter(None, [model.attribution, attribution])),
+        training={**model.training, "adapted": {"episodes": len(material), "frames": frames}},
+    )

@@ -1,0 +1,146 @@
+"""Talkers as random effects: what they share, and how each of them strays from it (docs/method.md, Several talkers).
+
+The coefficients of talker t's regression, kernels, shapes, slopes and pairs, are b + u_t. With P the inverse prior
+covariance that one talker alone would have, and v the variance of talkers,
+
+    b ~ N(0, C),    u_t ~ N(0, V),    C = (SHARED P)^-1,    V = v C
+
+and what all talkers' normal equations A_t, B_t say of b, with u_t marginalised, is
+
+    (sum over t of (I + A_t V)^-1 A_t  +  C^-1) b = sum over t of (I + A_t V)^-1 B_t
+    u_t = V (I + A_t V)^-1 (B_t - A_t b)
+
+However much there is of a talker, (I + A_t V)^-1 A_t stays below V^-1: forty minutes of one say no more about people
+than one person can. A channel that one talker alone teaches is fitted as without talkers, with prior P.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Dict, Optional, Sequence, Tuple
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from labial.errors import LabialError
+from labial.faps import CHANNELS
+from labial.reference.shape import Choice
+from labial.train.kernels import Kernels, Penalties, Regression, columns_alike
+from labial.train.recordings import Recording
+
+#: How many times stronger the prior of what talkers share is than that of one talker; chosen, as SLOPE, on talkers left
+#: out, where 1 was the best v.
+SHARED = 3.0
+
+#: The largest v: beyond it nothing is shared.
+LARGEST_VARIANCE = 1000.0
+
+#: The penalty of slopes: how one talker's slow phonemes differ from his fast ones does not carry over to others.
+SLOPE = 150.0
+
+
+def check_variance(variance: Optional[float]) -> None:
+    """Raises LabialError unless talkers may have this variance."""
+    if variance is not None and not 0.0 < variance <= LARGEST_VARIANCE:
+        raise LabialError(f"talker variance is {variance:g}, not above 0 and at most {LARGEST_VARIANCE:g}")
+
+
+def penalties_of(variance: Optional[float]) -> Penalties:
+    """The penalties of a regression with talkers of this variance, or without talkers."""
+    return Penalties() if variance is None else Penalties(slope=SLOPE)
+
+
+def counted_once(item: Recording) -> Recording:
+    """The recording with every value that is learnt from counting alike, whatever its corpus weighs."""
+    return item if item.weight is None else replace(item, weight=(item.weight > 0).astype(np.float64))
+
+
+def covariance_of(prior: np.ndarray, variance: float) -> np.ndarray:
+    """V (D, D), given P (D, D) and v."""
+    return variance / SHARED * np.linalg.inv(prior)
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Normal equations of some channels, without the columns (D,) of which the talker has nothing."""
+
+    columns: np.ndarray  #: (K,) those that there is something of
+    normal: np.ndarray  #: (K, K)
+    right: np.ndarray  #: (K, C)
+
+    def marginal(self, covariance: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """(I + A V)^-1 A and (I + A V)^-1 B of a deviation's covariance V (D, D)."""
+        own = covariance[np.ix_(self.columns, self.columns)]
+        count = len(self.columns)
+        both = np.linalg.solve(np.eye(count) + self.normal @ own, np.concatenate([self.normal, self.right], axis=1))
+        return (both[:, :count] + both[:, :count].T) / 2, both[:, count:]
+
+    def deviation(self, covariance: np.ndarray, shared: np.ndarray) -> np.ndarray:
+        """(D, C) u = V (I + A V)^-1 (B - A b) beside the shared coefficients b (D, C)."""
+        own = covariance[np.ix_(self.columns, self.columns)]
+        left = self.right - self.normal @ shared[self.columns]
+        return covariance[:, self.columns] @ np.linalg.solve(np.eye(len(own)) + self.normal @ own, left)
+
+
+def equations_of(
+    asked: Regression, material: Sequence[Recording], choice: Choice, base: np.ndarray
+) -> Dict[int, Tuple[Equations, int]]:
+    """By channel, for those that the talker of `material` teaches: his equations and which column of their right sides
+    is the channel's."""
+    found: Dict[int, Tuple[Equations, int]] = {}
+    taught = np.any([item.weights.any(axis=0) for item in material], axis=0)
+    for sums in asked.sums(material, choice, base):
+        if not taught[sums.channels[0]]:
+            continue
+        normal, right = sums.equations(asked.penalties.intercept)
+        columns = np.flatnonzero(normal.diagonal() > 0)
+        equations = Equations(columns, normal[np.ix_(columns, columns)], right[columns])
+        found.update({int(channel): (equations, place) for place, channel in enumerate(sums.channels)})
+    return found
+
+
+def deviation_of(
+    found: Dict[int, Tuple[Equations, int]], channels: np.ndarray, covariance: np.ndarray, shared: np.ndarray
+) -> np.ndarray:
+    """(D, C) a talker's deviation from the shared coefficients (D, 13) in `channels` (C,), which have the same
+    equations but for their right sides; V is `covariance` (D, D)."""
+    equations = found[int(channels[0])][0]
+    right = equations.right[:, [found[int(channel)][1] for channel in channels]]
+    return replace(equations, right=right).deviation(covariance, shared[:, channels])
+
+
+def _rows(material: Sequence[Recording], choice: Choice, chosen: Sequence[int]) -> Choice:
+    """What `choice` says of the occurrences of the chosen recordings."""
+    ends = np.cumsum([len(item.phoneme) for item in material])
+    rows = np.concatenate([np.arange(ends[i] - len(material[i].phoneme), ends[i]) for i in chosen])
+    return Choice(choice.component[rows], choice.share[rows], choice.offset[rows])
+
+
+def fit_talkers(
+    asked: Regression, material: Sequence[Recording], choice: Choice, variance: float
+) -> Tuple[Kernels, Dict[str, Kernels]]:
+    """What all talkers of `material` share, and each talker's own, by name; `choice` are the components of the
+    material's occurrences, `variance` is v."""
+    base, prior = asked.base(material, choice), asked.prior()
+    covariance = covariance_of(prior, variance)
+    each: Dict[str, Dict[int, Tuple[Equations, int]]] = {}
+    for talker in dict.fromkeys(item.talker for item in material):
+        chosen = [index for index, item in enumerate(material) if item.talker == talker]
+        each[talker] = equations_of(asked, [material[i] for i in chosen], _rows(material, choice, chosen), base)
+    shared = np.zeros((len(prior), CHANNELS))
+    own = {talker: np.zeros(shared.shape) for talker in each}
+    for channels in columns_alike(material):
+        first = int(channels[0])
+        teachers = [talker for talker, equations in each.items() if first in equations]
+        alone = len(teachers) == 1
+        normal, right = prior * (1.0 if alone else SHARED), np.zeros((len(prior), len(channels)))
+        for talker in teachers:
+            equations = each[talker][first][0]
+            places = [each[talker][int(channel)][1] for channel in channels]
+            a, b = (equations.normal, equations.right) if alone else equations.marginal(covariance)
+            normal[np.ix_(equations.columns, equations.columns)] += a
+            right[equations.columns] += b[:, places]
+        shared[:, channels] = cho_solve(cho_factor(normal), right)
+        for talker in [] if alone else teachers:
+            own[talker][:, channels] = deviation_of(each[talker], channels, covariance, shared)
+    return asked.kernels(shared, base), {name: asked.kernels(shared + part, base) for name, part in own.items()}
