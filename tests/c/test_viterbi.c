@@ -372,11 +372,11 @@ static void far_states_cost_the_farthest(void **state)
     emissions[1].gain = 0x40; /* z is the distance */
     memset(&search, 0, sizeof search);
     emissions[1].cost = 17;
-    labial_viterbi_begin(&model, &channel, 0, &search);
+    labial_viterbi_step(&model, &channel, 0, LABIAL_BEGINS, &search);
     labial_viterbi_span(&search, 1);
     assert_int_equal(labial_viterbi_state(&search, 0), 0);
     emissions[1].cost = 15;
-    labial_viterbi_begin(&model, &channel, 0, &search);
+    labial_viterbi_step(&model, &channel, 0, LABIAL_BEGINS, &search);
     labial_viterbi_span(&search, 1);
     assert_int_equal(labial_viterbi_state(&search, 0), 1);
 }
