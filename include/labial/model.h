@@ -172,9 +172,9 @@ int labial_model_check(const labial_model_t *model);
  * for any input. Where models change, a tick takes at most the sum of their costs, one for each run of a model's
  * phonemes within the latest `search_stride` frames.
  *
- * The bundled models cost about 40,000, and their ticks take 19,400 at most. A model that labial_model_check() accepts
- * can cost 180,000, so a program that plays models of others compares this number with what its processor has for a
- * frame:
+ * The bundled models cost about 41,000 and 36,000, and their ticks take 19,400 at most. A model that
+ * labial_model_check() accepts can cost 180,000, so a program that plays models of others compares this number with
+ * what its processor has for a frame:
  *
  *     if (labial_model_load(&blob, data, size) != LABIAL_OK || labial_model_cost(&blob.model) > 50000)
  *         return -1; // 50,000 instructions 50 times a second are about a quarter of a Cortex-M0 at 16 MHz

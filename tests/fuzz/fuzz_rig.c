@@ -18,7 +18,7 @@ typedef struct {
     labial_rig_curve_t curve;
     int32_t values[OUTPUTS], changes[OUTPUTS];
     uint8_t curved; /* which outputs have the curve */
-    uint8_t sound; /* which outputs have their ranges put right, so that the checks behind the first are
+    uint8_t sound;  /* which outputs have their ranges put right, so that the checks behind the first are
                     * reached, and whether the curve has */
 } input_t;
 
