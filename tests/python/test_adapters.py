@@ -1,5 +1,5 @@
 """The code of docs/adapters.md in Chromium, with the real packages: TalkingHead, three-vrm and three.js move avatars
-that are made here, and what reaches the meshes is compared with the track at the sound's time."""
+that are made here, and what reaches the meshes is compared with what labial-say writes."""
 
 from __future__ import annotations
 
