@@ -9,11 +9,11 @@ from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.align.confidence import Stretch, comments, stretches, unspoken, unsure
+from labial.align.confidence import LOW, Stretch, comments, stretches, unspoken, unsure
 from labial.align.recogniser import Found, Recogniser
 from labial.align.silence import LONGEST_PAUSE_UNHEARD, with_silences
 from labial.align.sound import RATE, prepared, read_sound, silences
-from labial.align.words import pronunciations, words_of
+from labial.align.words import phrases_of, pronunciations
 from labial.corpus.episode import Segment
 from labial.corpus.timings import lab_of
 from labial.errors import DataError, LabialError
@@ -41,6 +41,17 @@ class Piece:
     end: float
     score: float  #: of the mean frame, see :class:`Recogniser`; 0 for a silent one
     stretches: List[Stretch]
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether some of it is likely to be wrong."""
+        return self.score < MISFIT or any(item.confidence < LOW for item in self.stretches)
+
+    @property
+    def confidence(self) -> float:
+        """The mean of the stretches'."""
+        length = sum(item.end - item.start for item in self.stretches)
+        return sum(item.confidence * (item.end - item.start) for item in self.stretches) / max(length, 1e-9)
 
 
 @dataclass(frozen=True)
@@ -76,11 +87,11 @@ def aligned(path: PathLike, text: Optional[str] = None, progress: Optional[Progr
     if text is None:
         pieces = _found(sound, recogniser, progress)
     else:
-        words = words_of(text)
-        if not words:
+        phrases = phrases_of(text)
+        if not phrases:
             raise LabialError("the text has no words")
-        _learn(recogniser, words)
-        pieces = _followed(path, sound, words, recogniser, progress)
+        _learn(recogniser, [word for phrase in phrases for word in phrase])
+        pieces = _followed(path, sound, phrases, recogniser, progress)
     _judge(path, sound, pieces, text is not None)
     segments = [segment for piece in pieces for segment in piece.segments]
     return Alignment(tuple(_joined(segments)), tuple(stretch for piece in pieces for stretch in piece.stretches))
@@ -102,6 +113,10 @@ class Sound:
     def part(self, start: float, end: float) -> np.ndarray:
         """What the recogniser takes of a piece."""
         return self.prepared[round(start * RATE) : round(end * RATE)]
+
+    def silent(self, start: float, end: float) -> bool:
+        """Whether all of a piece is silence."""
+        return any(a <= start and b >= end for a, b in self.silences)
 
     def cut(self, start: float, longest: float) -> float:
         """Where a piece from `start` may end: in the last silence of its latter half, in its quietest moment without
@@ -144,8 +159,8 @@ def _found(sound: Sound, recogniser: Recogniser, progress: Optional[Progress]) -
     start = 0.0
     while start < sound.length:
         end = sound.cut(start, LONGEST_PIECE)
-        silent = any(a <= start and b >= end for a, b in sound.silences)
-        pieces.append(sound.piece(start, end, None if silent else recogniser.find(sound.part(start, end))))
+        found = None if sound.silent(start, end) else recogniser.find(sound.part(start, end))
+        pieces.append(sound.piece(start, end, found))
         start = end
         if progress:
             progress(start, sound.length)
@@ -153,32 +168,50 @@ def _found(sound: Sound, recogniser: Recogniser, progress: Optional[Progress]) -
 
 
 def _followed(
-    path: PathLike, sound: Sound, words: Sequence[str], recogniser: Recogniser, progress: Optional[Progress]
+    path: PathLike, sound: Sound, phrases: Sequence[Sequence[str]], recogniser: Recogniser,
+    progress: Optional[Progress],
 ) -> List[Piece]:
     """Pieces that follow the text: each is searched with a part of the next one, so that what comes after a word has a
-    say in where it is."""
+    say in where it is. A piece that does not fit is searched again, for phrases of the text and phonemes between."""
+    words = [word for phrase in phrases for word in phrase]
     pieces: List[Piece] = []
     start, at = 0.0, 0
     while start < sound.length:
         end, count = sound.length, len(words) - at
-        if sound.length - start > LONGEST_PIECE + OVERLAP and count:
+        if sound.length - start > LONGEST_PIECE + OVERLAP:
             end, count = _next_piece(sound, start, words[at:], recogniser)
-        found = recogniser.phonemes(sound.part(start, end), words[at : at + count]) if count else None
+        part = sound.part(start, end)
+        found = recogniser.phonemes(part, words[at : at + count]) if count else None
         if count and found is None and end == sound.length:
-            count, found = _heard_of(sound.part(start, end), words[at:], recogniser)
-        if count and found is None:
-            raise DataError(path, None, f"the text does not fit the sound from {start:.1f} s on: "
-                            f"'{' '.join(words[at : at + 6])} ...' is not found there")
-        pieces.append(sound.piece(start, end, found))
+            count, found = _heard_of(part, words[at:], recogniser)
+        piece = sound.piece(start, end, found)
+        if (found is None and not sound.silent(start, end)) or piece.doubtful:
+            most = at + int(_FASTEST * (end - start)) + 1
+            loose = recogniser.loosely(part, _between(phrases, at, most))
+            other = sound.piece(start, end, loose[0]) if loose is not None else piece
+            if loose is not None and (found is None or other.confidence > piece.confidence):
+                piece, count, found = other, loose[1], loose[0]
+            if found is None and count:
+                raise DataError(path, None, f"the text does not fit the sound from {start:.1f} s on: "
+                                f"'{' '.join(words[at : at + 6])} ...' is not found there")
+        pieces.append(piece)
         start, at = end, at + count
         if progress:
             progress(start, sound.length)
     if at < len(words):
-        rest = " ".join(words[at : at + 6])
-        if at < len(words) / 2:
-            raise DataError(path, None, f"the text does not fit: the sound ends before '{rest} ...'")
-        warnings.warn(f"{os.fspath(path)}: the text goes on behind the sound: '{rest} ...' is left out", stacklevel=3)
+        warnings.warn(f"{os.fspath(path)}: the text goes on behind the sound: '{' '.join(words[at : at + 6])} ...' is "
+                      "left out", stacklevel=3)
     return pieces
+
+
+def _between(phrases: Sequence[Sequence[str]], begin: int, end: int) -> List[Sequence[str]]:
+    """The phrases, or what is left of them, of the words from `begin` to before `end`."""
+    result: List[Sequence[str]] = []
+    at = 0
+    for phrase in phrases:
+        result.append(phrase[max(begin - at, 0) : max(end - at, 0)])
+        at += len(phrase)
+    return [phrase for phrase in result if phrase]
 
 
 def _heard_of(samples: np.ndarray, words: Sequence[str], recogniser: Recogniser) -> Tuple[int, Optional[Found]]:
@@ -218,7 +251,7 @@ def _judge(path: PathLike, sound: Sound, pieces: Sequence[Piece], has_text: bool
     worst = min(pieces, key=lambda piece: piece.score)
     if worst.score < MISFIT:
         where = "" if len(pieces) == 1 else f" from {worst.start:.1f} to {worst.end:.1f} s"
-        warnings.warn(f"{name}: {what}{where}; the mouth will not match what is heard", stacklevel=3)
+        warnings.warn(f"{name}: {what}{where}; the mouth may not match what is heard", stacklevel=3)
     elif spoken < LEAST_SPOKEN * heard:
         warnings.warn(f"{name}: {what}: words are in {spoken:.1f} of {heard:.1f} s that are not silent", stacklevel=3)
     where = unsure([stretch for piece in pieces for stretch in piece.stretches])

@@ -28,6 +28,8 @@ _UNSPOKEN = 0.6
 _CONSTANT, _SCORE, _LONG = 3.64, 0.0587, -2.59
 #: Scores below it say no more than that the sound is another.
 _LEAST = -90.0
+#: The score of a phoneme of which no text tells.
+UNTOLD = -70.0
 #: Seconds that people hardly ever speak a vowel or a consonant for.
 _LONG_VOWEL, _LONG_CONSONANT = 0.35, 0.25
 

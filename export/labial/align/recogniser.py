@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from pocketsphinx import Decoder
 
-from labial.align.confidence import Heard
+from labial.align.confidence import UNTOLD, Heard
 from labial.align.sound import RATE
 from labial.corpus.episode import Segment
+from labial.phonesets import ARPABET
 
 #: Frames per second, and how far a frame's middle lies behind its number: its window is longer than its step.
 FRAME_RATE = 100
@@ -17,6 +19,13 @@ _OFFSET = (0.025625 - 1 / FRAME_RATE) / 2
 #: So wide that a text is followed where it fits badly.
 _BEAM = 1e-200
 _WIDE = {"beam": _BEAM, "wbeam": _BEAM, "pbeam": _BEAM, "bestpath": False}
+#: Wide enough where whatever is heard has its phonemes.
+_NARROW = {"beam": 1e-64, "wbeam": 1e-48, "pbeam": 1e-64, "bestpath": False}
+#: Words of one phoneme, which stand for what the text lacks, are called by this and the phoneme.
+_PHONE = "_"
+#: Probabilities of such a word between two phrases, and of a phrase that is not said. They are weighed by the decoder's
+#: language weight, 6.5.
+_BETWEEN, _LEFT_OUT = 1e-5, 1e-6
 #: A second pass on 30 ms of sound at least: a phoneme has three states.
 _SHORTEST = int(0.1 * RATE)
 
@@ -30,11 +39,14 @@ class Found(NamedTuple):
 
 
 class Recogniser:
-    """Two decoders, each made when it is first needed: one that follows words, one that finds them."""
+    """Three decoders, each made when it is first needed: one that follows words, one that follows phrases of them with
+    whatever is between, one that finds words."""
 
     def __init__(self) -> None:
         self._follower: Optional[Decoder] = None
         self._finder: Optional[Decoder] = None
+        self._loose: Optional[Decoder] = None
+        self._learnt = {_PHONE + phone: phone for phone in ARPABET}
 
     @property
     def follower(self) -> Decoder:
@@ -50,8 +62,10 @@ class Recogniser:
 
     def learn(self, pronunciations: Dict[str, str]) -> None:
         """Adds words to the dictionary."""
-        for number, (word, phonemes) in enumerate(pronunciations.items(), 1):
-            self.follower.add_word(word, phonemes, number == len(pronunciations))
+        self._learnt.update(pronunciations)
+        for decoder in (self.follower, self._loose):
+            if decoder is not None:
+                _learn(decoder, pronunciations)
 
     def follow(self, samples: np.ndarray, words: Sequence[str]) -> Optional[List[Tuple[str, float, float]]]:
         """`words` and the silences between them with begin and end in seconds; None where they do not fit at all.
@@ -72,6 +86,28 @@ class Recogniser:
         self.follower.activate_search("part")
         return _words(self.follower, samples)
 
+    def loosely(self, samples: np.ndarray, phrases: Sequence[Sequence[str]]) -> Optional[Tuple[Found, int]]:
+        """Phonemes where any of `phrases`, which may be none, may be missing and anything may be said between them, and
+        how many words of them are behind when the sound ends; None where no phoneme is found."""
+        if len(samples) < _SHORTEST:
+            return None
+        if self._loose is None:
+            self._loose = Decoder(lm=None, loglevel="FATAL", **_NARROW)
+            self.learn(dict(self._learnt))
+        words = [word for phrase in phrases for word in phrase]
+        bounds = [0, *itertools.accumulate(map(len, phrases))]
+        end = len(words) + 1
+        steps = [(state, state + 1, 1.0, word) for state, word in enumerate(words)]
+        steps += [(bound, bound, _BETWEEN, _PHONE + phone) for bound in bounds for phone in ARPABET]
+        left_out = [(bound, after, _LEFT_OUT) for bound, after in zip(bounds, bounds[1:])]
+        ways_out = [(state, end, 1.0) for state in range(end)]
+        self._loose.add_fsg("loose", self._loose.create_fsg("loose", 0, end, [*steps, *left_out, *ways_out]))
+        self._loose.activate_search("loose")
+        told = [word.split("(")[0] for word, _, _ in _words(self._loose, samples)
+                if word[0] not in "<[("]  # neither silence nor a step without a word
+        found = self.phonemes(samples, told)
+        return None if found is None else (found, _behind(phrases, told))
+
     def phonemes(self, samples: np.ndarray, words: Sequence[str]) -> Optional[Found]:
         """Phonemes of `words` in seconds of `samples`, as of :func:`_phonemes`; None as above."""
         return _phonemes(self.follower, samples) if self.follow(samples, words) else None
@@ -84,6 +120,24 @@ class Recogniser:
             self._finder = Decoder(loglevel="FATAL", fwdflat=False, maxhmmpf=5000)
         self._finder.activate_search()
         return _phonemes(self._finder, samples) if _words(self._finder, samples) else None
+
+
+def _behind(phrases: Sequence[Sequence[str]], told: Sequence[str]) -> int:
+    """How many words of `phrases` are behind when `told`, words of some of them in order, end."""
+    told = [word for word in told if not word.startswith(_PHONE)]
+    at = count = behind = 0
+    for phrase in phrases:
+        count += len(phrase)
+        rest = told[at : at + len(phrase)]
+        if rest and list(phrase[: len(rest)]) == rest:
+            at += len(rest)
+            behind = count - len(phrase) + len(rest)
+    return behind
+
+
+def _learn(decoder: Decoder, pronunciations: Dict[str, str]) -> None:
+    for number, (word, phonemes) in enumerate(pronunciations.items(), 1):
+        decoder.add_word(word, phonemes, number == len(pronunciations))
 
 
 def _decode(decoder: Decoder, samples: np.ndarray) -> None:
@@ -106,16 +160,18 @@ def _phonemes(decoder: Decoder, samples: np.ndarray) -> Optional[Found]:
     try:
         decoder.set_alignment()
         _decode(decoder, samples)  # no hyp() from here on: it crashes in this search
-        found = [phone for word in decoder.get_alignment() for phone in word]
+        found = [(word.name, phone) for word in decoder.get_alignment() for phone in word]
     except RuntimeError:
         return None
     segments, heard = [], []
-    for phone in found:
+    for word, phone in found:
         start = phone.start / FRAME_RATE + (_OFFSET if phone.start else 0.0)
         label = phone.name if phone.name.isalpha() else "SIL"
         segments.append(Segment(start, (phone.start + phone.duration) / FRAME_RATE + _OFFSET, label))
-        heard.append(Heard(start, segments[-1].end, label, phone.score / max(phone.duration, 1)))
-    sounding = [phone for phone in found if phone.name.isalpha() and phone.name != "SIL"]
+        score = UNTOLD if word.startswith(_PHONE) else phone.score / max(phone.duration, 1)
+        heard.append(Heard(start, segments[-1].end, label, score))
+    sounding = [item for item in heard if item.label != "SIL"]
     if not sounding:
         return None
-    return Found(segments, sum(phone.score for phone in sounding) / sum(phone.duration for phone in sounding), heard)
+    length = np.array([item.end - item.start for item in sounding])
+    return Found(segments, float(np.average([item.score for item in sounding], weights=length)), heard)

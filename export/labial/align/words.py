@@ -37,23 +37,41 @@ _ENDINGS: Dict[str, str] = {
 #: A vowel, one consonant and an e at the end: the vowel is that of its letter's name.
 _LONG = {"a": "EY", "e": "IY", "i": "AY", "o": "OW", "u": "UW", "y": "AY"}
 
+#: What ends a phrase, and how many words one has at most.
+_MARK = re.compile(r"[.,;:!?\n]")
+_LONGEST = 5
+
 Lookup = Callable[[str], Optional[str]]
 
 
 def words_of(text: str) -> List[str]:
-    """The words of a text in small letters, as the dictionary writes them.
+    """The words of a text in small letters, as the dictionary writes them. Raises LabialError as :func:`phrases_of`."""
+    return [word for phrase in phrases_of(text) for word in phrase]
+
+
+def phrases_of(text: str) -> List[List[str]]:
+    """The words of a text, as of :func:`words_of`, in phrases: what stands between punctuation marks or in a line, in
+    even parts where it has more than `_LONGEST` words.
 
     Raises LabialError for what cannot be read aloud by rule, figures and other alphabets, and names it.
     """
-    words: List[str] = []
+    phrases: List[List[str]] = []
     strange: List[str] = []
+    last = 0
     for match in _WORD.finditer(text):
         word = _without_accents(match.group().lower().translate(_PLAIN))
-        (words if _LETTERS.fullmatch(word) else strange).append(word)
+        if not _LETTERS.fullmatch(word):
+            strange.append(word)
+        elif not phrases or _MARK.search(text, last, match.start()):
+            phrases.append([word])
+        else:
+            phrases[-1].append(word)
+        last = match.end()
     if strange:
         some = ", ".join(repr(word) for word in dict.fromkeys(strange[:8]))
         raise LabialError(f"the text must be English words, figures written out as they are spoken; not {some}")
-    return words
+    return [phrase[len(phrase) * part // parts : len(phrase) * (part + 1) // parts]
+            for phrase in phrases for parts in [-(-len(phrase) // _LONGEST)] for part in range(parts)]
 
 
 def pronunciations(words: List[str], lookup: Lookup) -> Tuple[Dict[str, str], List[str]]:
