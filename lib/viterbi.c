@@ -73,7 +73,7 @@ static inline uint32_t enter(labial_search_t *search, const uint16_t *transition
 #endif
     do {
         const unsigned predecessor = (uint8_t)*transition - first;
-        if (predecessor < LABIAL_SEARCHED) {
+        if (predecessor < LABIAL_SEARCHED) { /* in the window, as all are where there are fewer states */
             const uint32_t score = scores[predecessor] + ((uint32_t)*transition >> 8);
             if (score < least) {
                 least = score;
