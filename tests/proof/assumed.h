@@ -8,6 +8,9 @@
 
 #include "labial/labial.h"
 
+/* Short contacts are seen from the frames beside them, as far as the library keeps labels. */
+#define ASSUMED_FLOORS (LABIAL_REACH >= LABIAL_CONTACT_FRAMES ? 255 : 0)
+
 #define ASSUMED_OF_MODEL(X)                                                                                            \
     X(frames_per_second, 1, 250)                                                                                       \
     X(component_count, 1, 65535)                                                                                       \
@@ -21,7 +24,7 @@
     X(kernel_taps, 0, LABIAL_KERNEL_TAPS_MAX)                                                                          \
     X(kernel_stride, 0, 255)                                                                                           \
     X(kernel_behind, 0, LABIAL_KERNEL_TAPS_MAX - 1)                                                                    \
-    X(floor_count, 0, 255)                                                                                             \
+    X(floor_count, 0, ASSUMED_FLOORS)                                                                                  \
     X(pair_knots, 1, 2)                                                                                                \
     X(pair_count, 0, 65535)
 
@@ -30,7 +33,7 @@
     X(component_count, 1, LABIAL_PHONEME_COMPONENTS_MAX)                                                               \
     X(viseme_class, 0, LABIAL_CLASSES_MAX - 1)                                                                         \
     X(boundary, 0, 1)                                                                                                  \
-    X(floor, 0, 255)
+    X(floor, 0, ASSUMED_FLOORS)
 
 #define ASSUMED_OF_CHANNEL(X)                                                                                          \
     X(centre, -LABIAL_POSITION_MAX, LABIAL_POSITION_MAX)                                                               \
