@@ -199,6 +199,9 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     assert [item.split.talker for item in outcomes] == ["x", "y"]
     assert [len(item.split.added) for item in outcomes] == [2, 2]
     assert all(item.measures["labial"]["lips/mean"] > 0.9 for item in outcomes)
+    others = protocol.evaluate(a, replace(asked, talker_variance=1.0), further=b, progress=False)
+    assert all(item.measures["labial"]["lips/mean"] > 0.9 for item in others)
+    assert [item.measures["labial"] for item in others] != [item.measures["labial"] for item in outcomes]
     assert np.allclose(lips(b[0].frames)[:, 4], -(b[0].frames[:, 3] + b[0].frames[:, 4]))
 
 

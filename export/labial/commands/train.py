@@ -92,7 +92,7 @@ def _adapt(options: argparse.Namespace) -> int:
     episodes = [episode for corpus in options.corpus for episode in read_corpus(corpus, shared.kind)]
     model = adapted(shared, episodes, options.attribution)
     save(model, options.output)
-    about = model.training["adapted"]
+    about: Any = model.training["adapted"]
     print(f"{options.output}: {options.adapt}, adapted to {about['episodes']} episodes, "
           f"{about['frames'] / model.fps:.0f} s")
     return 0
