@@ -46,7 +46,7 @@ class Recogniser:
         self._follower: Optional[Decoder] = None
         self._finder: Optional[Decoder] = None
         self._loose: Optional[Decoder] = None
-        self._learnt = {_PHONE + phone: phone for phone in ARPABET}
+        self._learnt: Dict[str, str] = {}
 
     @property
     def follower(self) -> Decoder:
@@ -93,7 +93,9 @@ class Recogniser:
             return None
         if self._loose is None:
             self._loose = Decoder(lm=None, loglevel="FATAL", **_NARROW)
-            self.learn(dict(self._learnt))
+            phones = {_PHONE + phone: phone for phone in ARPABET}
+            _learn(self._loose, {**self._learnt, **phones})
+            _learn(self.follower, phones)
         words = [word for phrase in phrases for word in phrase]
         bounds = [0, *itertools.accumulate(map(len, phrases))]
         end = len(words) + 1
