@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from labial.train import backed_off, kernels, pipeline, train
 from labial.train.codebook import features, lbg
 from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
 from labial.train.recordings import Recording, with_pauses_cut
-from labial.train.states import DYNAMIC_RANGE, Scales, limit_range, match_states
+from labial.train.states import DYNAMIC_RANGE, Scales, StateTables, limit_range, match_states
 
 LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
 OPTIONS = {"kind": "speech", "codebook": 12, "components": 2, "progress": False, "attribution": "synthetic"}
@@ -257,3 +258,20 @@ def test_blocks_do_not_change_the_model(corpus, models, monkeypatch):
     monkeypatch.setattr(kernels._Sums, "add", counted)
     assert saved(train(corpus, method="labial", jobs=1, **OPTIONS)) == saved(models["labial"])
     assert len(taken) > 3 and max(taken) < 1500
+
+
+def test_states_are_matched_channel_by_channel():
+    """What a frame takes, bytes: catches copies of all channels of all frames, which took 500."""
+    rng = np.random.default_rng(0)
+    size, frames = 8, (500, 13)
+    mean = np.sort(rng.normal(0, 50, (13, size)), axis=1)
+    tables = StateTables(mean, np.ones((13, size)), np.zeros((13, size, 3)), np.ones((13, size, 3)),
+                         np.zeros((13, size)), np.zeros((13, size, size)), np.zeros((13, size)), 3)
+    paths = [rng.integers(0, size, frames) for _ in range(40)]
+    human = [rng.normal(size=frames) for _ in paths]
+    weights = [np.broadcast_to(1.0, frames)] * len(paths)
+    tracemalloc.start()
+    match_states(tables, paths, human, human, weights, Scales())
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 200 * frames[0] * len(paths)

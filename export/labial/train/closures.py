@@ -13,7 +13,7 @@ import numpy as np
 
 from labial.faps import CHANNELS, FAP_NUMBERS
 from labial.phonesets import PhoneSet
-from labial.train.recordings import Recording
+from labial.train.recordings import Recording, taught
 
 #: Viseme classes that make contact, and the FAPs that do: those of the upper lip, which lower it, and of the lower lip,
 #: which raise it.
@@ -46,9 +46,7 @@ def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tupl
     The pose is the mean, by weight, over the FIRMEST occurrences of the phoneme's class, each at its frame of closest
     contact.
     """
-    frames = np.concatenate([item.frames for item in material])
-    counts = np.concatenate([item.weights for item in material]) > 0
-    least = np.array([np.percentile(values[of], LEAST) for values, of in zip(frames.T, counts.T)])
+    least = np.array([np.percentile(taught(material, channel), LEAST) for channel in range(CHANNELS)])
     result = np.tile(least, (len(phone_set.phonemes), 1))
     contacts = np.zeros(result.shape, dtype=bool)
     classes = np.array(phone_set.viseme_class)

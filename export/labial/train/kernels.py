@@ -209,7 +209,8 @@ class _Sums:
         With S the utterances' weighted sums of the design and s their weights, these are
         X' W X + prior - S' (s + intercept)^-1 S and X' W y - S' (s + intercept)^-1 (weighted sums of y).
         """
-        normal, right = self._normal.toarray() + prior, self._right
+        normal, right = self._normal.toarray(), self._right
+        normal += prior
         if np.isfinite(intercept):
             design_sums, motion_sums, weights = (np.concatenate(items) for items in zip(*self._of_utterances))
             shrunk = design_sums / (weights + intercept)[:, None]
@@ -336,7 +337,8 @@ def fit_kernels(asked: Regression, material: Sequence[Recording], choice: Choice
     solution = np.empty((len(prior), CHANNELS))
     for sums in asked.sums(material, choice, base):
         strength = max(float(item.weights[:, sums.channels[0]].max()) for item in material)
-        normal, right = sums.equations(strength * asked.penalties.intercept, strength * prior)
+        weighed = prior if strength == 1.0 else strength * prior  # which is as large as the matrix itself
+        normal, right = sums.equations(strength * asked.penalties.intercept, weighed)
         solution[:, sums.channels] = cho_solve(cho_factor(normal), right)
     return asked.kernels(solution, base)
 

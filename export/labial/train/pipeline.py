@@ -34,7 +34,7 @@ from labial.train.kernels import (
     regression,
     targets_without_floors,
 )
-from labial.train.recordings import Occurrences, Recording, occurrences, recordings, with_pauses_cut
+from labial.train.recordings import Occurrences, Recording, occurrences, recordings, taught, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
 from labial.train.states import Scales, StateTables, codebook_tables, decode, match_states
 from labial.train.talkers import check_variance, counted_once, fit_talkers, penalties_of
@@ -135,7 +135,7 @@ def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int, Division,
 
 
 def _decode(task: Tuple[List[np.ndarray], List[np.ndarray], StateTables]) -> List[np.ndarray]:
-    return decode(*task)
+    return [path.astype(np.int16) for path in decode(*task)]
 
 
 def _unit_ends(item: Recording, boundary: np.ndarray) -> np.ndarray:
@@ -224,13 +224,16 @@ def _check_taught(material: Sequence[Recording]) -> None:
 
 def _extent(material: Sequence[Recording], silence: int) -> Dict[str, object]:
     """How far the channels reach, from their 1st to their 99th percentile, and their mean pose outside silence."""
-    everything = np.concatenate([item.frames for item in material])
-    weight = np.concatenate([item.weights for item in material])
-    reach = [np.ptp(np.percentile(values[of > 0], [1, 99])) for values, of in zip(everything.T, weight.T)]
-    sounding = np.concatenate([item.phoneme_at() != silence for item in material])
-    if sounding.any():
-        everything, weight = everything[sounding], weight[sounding]
-    pose = np.average(everything, axis=0, weights=weight)
+    reach = [np.ptp(np.percentile(taught(material, channel), [1, 99])) for channel in range(CHANNELS)]
+    sounding = [item.phoneme_at() != silence for item in material]
+    if not any(of.any() for of in sounding):
+        sounding = [~of for of in sounding]
+    total = weight = np.zeros((0, CHANNELS))
+    for item, of in zip(material, sounding):  # row by row, as a sum of all would go
+        counts = item.weights[of]
+        total = np.concatenate([total, item.frames[of] * counts]).sum(axis=0, keepdims=True)
+        weight = np.concatenate([weight, counts]).sum(axis=0, keepdims=True)
+    pose = total[0] / weight[0]
     return {"channel_range": np.round(reach, 3).tolist(), "mean_pose": np.round(pose, 3).tolist()}
 
 
@@ -294,9 +297,10 @@ def _fit_states(
     ends = [_unit_ends(item, setting.boundary) for item in material]
     batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
     decoded = workers.run("matched states", _decode, [(targets[batch], ends[batch], states) for batch in batches])
-    weights = [item.weights for item in material]
-    if shaped.contact[setting.silence].any():  # targets rest where people part their lips
-        weights = [own * (item.rest == 0)[:, None] for own, item in zip(weights, material)]
+    counts = [item.rest == 0 if shaped.contact[setting.silence].any() else np.ones(len(item.frames), dtype=bool)
+              for item in material]  # not where targets rest and people part their lips
+    weights = [np.broadcast_to(1.0 * of[:, None], item.frames.shape) if item.weight is None  # without memory for each
+               else item.weight * of[:, None] for of, item in zip(counts, material)]
     paths = [path for batch in decoded for path in batch]
     return match_states(states, paths, targets, [item.frames for item in material], weights, setting.scales)
 

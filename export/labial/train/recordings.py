@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Iterable, List, Optional, Tuple
+from typing import Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -49,6 +49,12 @@ class Recording:
     def phoneme_at(self) -> np.ndarray:
         """(T,) int64: the phoneme of each frame."""
         return np.repeat(self.phoneme, self.length)
+
+
+def taught(material: Sequence[Recording], channel: int) -> np.ndarray:
+    """(N,) the values of a channel that count."""
+    return np.concatenate([item.frames[:, channel] if item.weight is None
+                           else item.frames[item.weight[:, channel] > 0, channel] for item in material])
 
 
 def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Recording]:

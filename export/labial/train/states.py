@@ -100,21 +100,20 @@ def match_states(
     """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, 13) of targets and
     human motion (T, 13) in FAP, whose values count by `weights` (T, 13). What the search sees of a target stays as it
     is."""
-    path, target, motion, weight = (np.concatenate(items) for items in (paths, targets, human, weights))
     size = tables.emission_mean.shape[1]
     mean = np.empty((CHANNELS, size, 3))
     variance = np.empty((CHANNELS, size, 3))
     anchor = np.empty((CHANNELS, size))
-    for channel in range(CHANNELS):
-        states = path[:, channel]
+    for channel in range(CHANNELS):  # of one at a time there are copies
+        states, target, motion, weight = (np.concatenate([item[:, channel] for item in items])
+                                          for items in (paths, targets, human, weights))
         rows = np.concatenate([features(item[:, channel]) for item in human])
-        floor = np.maximum(VARIANCE_FLOOR * rows[weight[:, channel] > 0].var(axis=0), 1e-6)
+        floor = np.maximum(VARIANCE_FLOOR * rows[weight > 0].var(axis=0), 1e-6)
         for feature in range(3):
             prior = tables.state_mean[channel, :, feature]
-            mean[channel, :, feature], spread = _state_moments(rows[:, feature], weight[:, channel], states, prior)
+            mean[channel, :, feature], spread = _state_moments(rows[:, feature], weight, states, prior)
             variance[channel, :, feature] = np.maximum(spread, floor[feature])
-        stray = motion[:, channel] - target[:, channel]
-        _, residual = _state_moments(stray, weight[:, channel], states, np.zeros(size))
+        _, residual = _state_moments(motion - target, weight, states, np.zeros(size))
         anchor[channel] = scales.anchor / np.maximum(residual, floor[0])
     scale = np.array([scales.static, scales.delta, scales.acceleration])
     precision, anchor = limit_range(scale / variance, anchor)
