@@ -250,8 +250,7 @@ def train_channel(
     phonemes, and so units, begin; `stride` is how many frames a transition spans. Features are `normalised` by their
     standard deviations before they are clustered, or clustered as they are, in FAP units per frame and frame squared.
     """
-    rows = [features(item) for item in motion]
-    points = np.concatenate(rows)
+    points = np.concatenate([features(item) for item in motion])
     overall = points.var(axis=0)
     scale = np.where(normalised & (overall > 1e-12), np.sqrt(overall), 1.0)
     _, cell, _ = divide(points / scale, size)
@@ -263,7 +262,7 @@ def train_channel(
     order = np.lexsort((mean[:, 2], mean[:, 1], mean[:, 0]))
     rank = np.empty(size, dtype=np.int64)
     rank[order] = np.arange(size)
-    ends = np.cumsum([len(item) for item in rows])[:-1]
+    ends = np.cumsum([len(item) for item in motion])[:-1]
     paths: List[np.ndarray] = np.split(rank[cell], ends)
     return Codebook(
         mean=mean[order],
