@@ -19,8 +19,19 @@ MISSING = NO_PACKAGE or ("" if NPM else "needs npm: install the Debian packages 
 
 
 def tools() -> Path:
-    """The folder whose node_modules has the tools; installed once, below LABIAL_BUNDLERS where that is set."""
+    """The folder whose node_modules has the tools; installed once, below LABIAL_BUNDLERS where that is set, whoever
+    else asks for it meanwhile."""
+    import fcntl  # which Windows lacks
+
     folder = Path(os.environ.get("LABIAL_BUNDLERS") or Path(tempfile.gettempdir()) / "labial-bundlers")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with open(f"{folder}.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        _install_tools(folder)
+    return folder
+
+
+def _install_tools(folder: Path) -> None:
     names = ("package.json", "package-lock.json", "build.mjs")
     stamp = folder / hashlib.sha256(b"".join((FOLDER / name).read_bytes() for name in names)).hexdigest()[:16]
     if not stamp.exists():
@@ -30,7 +41,6 @@ def tools() -> Path:
             shutil.copyfile(FOLDER / name, folder / name)
         run(NPM, "install", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)
         stamp.touch()
-    return folder
 
 
 def node(version: int) -> Path:

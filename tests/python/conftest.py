@@ -9,7 +9,7 @@ from typing import List
 import pytest
 
 #: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
-TOGETHER = ("test_bundlers", "test_kiosk", "test_laughter_corpus", "test_npm_types", "test_packages",
+TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter_corpus", "test_npm_types", "test_packages",
             "test_packages_cmake", "test_train", "test_wheel", "test_wheels")  # fmt: skip
 
 
@@ -18,6 +18,7 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "slow: takes long; runs where LABIAL_REQUIRE_ALL is set, as in .ci/run")
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist looks at the groups
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
     """Groups the tests of some modules (``--dist loadgroup``), and leaves the slow tests out, but where
     LABIAL_REQUIRE_ALL is set in the environment."""
