@@ -269,9 +269,9 @@ static int32_t steered(sight_t *sight, int32_t last, int32_t change, int32_t dea
     return flip ? labial_sub(0, next) : next;
 }
 
-static int32_t clipped(int32_t value, int32_t low, int32_t high)
+static int32_t at_most(int32_t value, int32_t most)
 {
-    return value < low ? low : value > high ? high : value;
+    return value > most ? most : value;
 }
 
 int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values,
@@ -291,8 +291,8 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
             for (k = 0; k < LABIAL_RIG_SIGHT; k++)
                 sight.wanted[k] = k < sight.count ? target(output, frames + (size_t)LABIAL_CHANNELS * k) : 0;
             sight.rest = at_rest(output);
-            sight.acceleration = clipped(output->acceleration, 1, LABIAL_RIG_VALUE_MAX);
-            sight.speed = clipped(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX, 1,
+            sight.acceleration = at_most(output->acceleration, LABIAL_RIG_VALUE_MAX);
+            sight.speed = at_most(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX,
                                   LABIAL_RIG_SIGHT * sight.acceleration);
             values[i] = limited(output, labial_add(last, steered(&sight, last, changes[i], output->deadband)));
         } else {

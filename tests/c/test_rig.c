@@ -444,6 +444,25 @@ static void delayed_frames_look_ahead(void **state)
     assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], values, changes), LABIAL_ERROR_NULL);
 }
 
+/* A table that was not checked: more acceleration than there is counts as the most, so that nothing overflows. */
+static void acceleration_beyond_its_limit_is_the_limit(void **state)
+{
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int16_t faps[LABIAL_CHANNELS] = { 400 };
+    int32_t values[2] = { 1500, 1500 }, changes[2] = { 0, 0 };
+    unsigned i;
+    (void)state;
+    for (i = 0; i < 6; i++) {
+        output.acceleration = LABIAL_RIG_VALUE_MAX;
+        labial_rig_apply_ahead(&rig, faps, 1, &values[0], &changes[0]);
+        output.acceleration = INT32_MAX;
+        labial_rig_apply_ahead(&rig, faps, 1, &values[1], &changes[1]);
+        assert_int_equal(values[0], values[1]);
+        faps[0] = (int16_t)-faps[0];
+    }
+}
+
 /* A servo is not asked to move by less than its deadband, and reaches the limit of its speed all the same. */
 static void deadband_keeps_small_changes(void **state)
 {
@@ -672,6 +691,8 @@ static void null_and_empty_are_refused(void **state)
     const labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 }, empty = { &output, 0 }, hollow = { NULL, 1 };
     const int16_t faps[LABIAL_CHANNELS] = { 0 };
+    int16_t kept[LABIAL_CHANNELS];
+    labial_rig_delay_t delay = { kept, 0, 0 };
     int32_t value = 5;
     (void)state;
     assert_int_equal(labial_rig_check(NULL), LABIAL_ERROR_NULL);
@@ -685,6 +706,11 @@ static void null_and_empty_are_refused(void **state)
     assert_int_equal(labial_rig_apply(&rig, NULL, &value), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&rig, faps, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&empty, faps, &value), LABIAL_OK);
+    assert_int_equal(labial_rig_apply_ahead(NULL, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply_ahead(&hollow, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply_ahead(&rig, NULL, 1, &value, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply_ahead(&rig, faps, 1, NULL, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_delayed(&hollow, &delay, faps, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(value, 5);
     assert_int_equal(sizeof output, sizeof(void *) == 4 ? 64 : 72);
     assert_int_equal(sizeof(labial_rig_curve_t), 100);
@@ -693,16 +719,27 @@ static void null_and_empty_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_is_neutral_within_limits),    cmocka_unit_test(gain_and_weights_multiply),
-        cmocka_unit_test(every_fap_has_its_weight),         cmocka_unit_test(limits_hold_whatever_the_faps),
-        cmocka_unit_test(inversion_mirrors_the_move),       cmocka_unit_test(neutral_beyond_a_limit_is_a_threshold),
-        cmocka_unit_test(slew_bounds_the_change_per_frame), cmocka_unit_test(last_value_is_not_trusted),
-        cmocka_unit_test(jaw_macro_closes_and_opens),       cmocka_unit_test(random_rigs_equal_double),
-        cmocka_unit_test(unchecked_tables_stay_defined),    cmocka_unit_test(check_names_every_fault),
-        cmocka_unit_test(check_accepts_the_very_limits),    cmocka_unit_test(null_and_empty_are_refused),
-        cmocka_unit_test(looking_ahead_closes_in_time),     cmocka_unit_test(contact_closes),
-        cmocka_unit_test(deadband_keeps_small_changes),     cmocka_unit_test(curve_bends),
-        cmocka_unit_test(acceleration_comes_to_rest),       cmocka_unit_test(acceleration_holds_for_all),
+        cmocka_unit_test(rest_is_neutral_within_limits),
+        cmocka_unit_test(gain_and_weights_multiply),
+        cmocka_unit_test(every_fap_has_its_weight),
+        cmocka_unit_test(limits_hold_whatever_the_faps),
+        cmocka_unit_test(inversion_mirrors_the_move),
+        cmocka_unit_test(neutral_beyond_a_limit_is_a_threshold),
+        cmocka_unit_test(slew_bounds_the_change_per_frame),
+        cmocka_unit_test(last_value_is_not_trusted),
+        cmocka_unit_test(jaw_macro_closes_and_opens),
+        cmocka_unit_test(random_rigs_equal_double),
+        cmocka_unit_test(unchecked_tables_stay_defined),
+        cmocka_unit_test(check_names_every_fault),
+        cmocka_unit_test(check_accepts_the_very_limits),
+        cmocka_unit_test(null_and_empty_are_refused),
+        cmocka_unit_test(looking_ahead_closes_in_time),
+        cmocka_unit_test(contact_closes),
+        cmocka_unit_test(deadband_keeps_small_changes),
+        cmocka_unit_test(curve_bends),
+        cmocka_unit_test(acceleration_beyond_its_limit_is_the_limit),
+        cmocka_unit_test(acceleration_comes_to_rest),
+        cmocka_unit_test(acceleration_holds_for_all),
         cmocka_unit_test(delayed_frames_look_ahead),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -251,8 +251,8 @@ def main_of_the_test() -> None:
         status, count, said = run(inject, case, 0, NOTHING)
         new = left()
         wrong = [] if status == 0 and set(case.targets) <= set(new) else [f"does not run: {status}, {said}"]
-        for turn in range(0 if wrong else rounds):  # a full disk, a kill and a signal in turn
-            after, mode = draw.randrange(count), (FULL, KILL, TERM)[turn % 3]
+        ways = [(after, mode) for after in range(count) for mode in (FULL, KILL, TERM)]
+        for after, mode in [] if wrong else draw.sample(ways, min(rounds, len(ways))):
             lay(case)
             status, _, said = run(inject, case, after, mode)
             what = f"{('', 'full', 'killed', 'ended')[mode]} at {after} of {count}"

@@ -33,7 +33,7 @@ HERE = Path(__file__).parent
 
 
 def injected(folder: Path, corpus: Path, rounds: int) -> Dict[str, List[str]]:  # noqa: F811
-    """What is wrong after each command, interrupted `rounds` times."""
+    """What is wrong after each command, interrupted in `rounds` ways, or in all that there are."""
     shutil.copytree(corpus, folder / "corpus")
     library = folder / "injector.so"
     subprocess.run([CC, "-shared", "-fPIC", "-O1", "-o", library, HERE / "injector.c", "-ldl"], check=True)
