@@ -19,11 +19,10 @@ foreach(source IN LISTS suites)
 endforeach()
 
 if(NOT CMAKE_CROSSCOMPILING)
-  if(LABIAL_REQUIRE_ALL OR NOT LABIAL_INSTRUMENT STREQUAL "none")
-    add_subdirectory(limits)
+  if(LABIAL_INSTRUMENT STREQUAL "none")
+    message(STATUS "Builds for other limits are left to the presets `sanitize` and `memcheck`.")
   else()
-    message(STATUS "Builds for other limits are left to .ci/run and to the preset `sanitize`: -DLABIAL_REQUIRE_ALL=ON "
-                   "tests them here, too.")
+    add_subdirectory(limits)
   endif()
 
   # labial-say's parser of timings; the same cases hold Python's and JavaScript's readers (python/test_grammar.py).
