@@ -269,11 +269,6 @@ static int32_t steered(sight_t *sight, int32_t last, int32_t change, int32_t dea
     return flip ? labial_sub(0, next) : next;
 }
 
-static int32_t at_most(int32_t value, int32_t most)
-{
-    return value > most ? most : value;
-}
-
 int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values,
                            int32_t *changes)
 {
@@ -291,9 +286,9 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
             for (k = 0; k < LABIAL_RIG_SIGHT; k++)
                 sight.wanted[k] = k < sight.count ? target(output, frames + (size_t)LABIAL_CHANNELS * k) : 0;
             sight.rest = at_rest(output);
-            sight.acceleration = at_most(output->acceleration, LABIAL_RIG_VALUE_MAX);
-            sight.speed = at_most(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX,
-                                  LABIAL_RIG_SIGHT * sight.acceleration);
+            sight.acceleration = labial_clamp(output->acceleration, LABIAL_RIG_VALUE_MAX);
+            sight.speed = labial_clamp(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX,
+                                       LABIAL_RIG_SIGHT * sight.acceleration);
             values[i] = limited(output, labial_add(last, steered(&sight, last, changes[i], output->deadband)));
         } else {
             int32_t wanted = target(output, frames), room = 0;
