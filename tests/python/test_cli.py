@@ -141,6 +141,7 @@ def test_options_of_one_method_are_not_silently_ignored(
     assert [options["normalise"] for options in asked[-2:]] == [True, True] and not asked[0]["normalise"]
 
 
+@pytest.mark.slow
 def test_amplitude_widens_what_is_exported(given: Path) -> None:
     """Calmed to nothing the target stands still, so that kernels and slopes vanish from the tables."""
     for factor, moves in (("1", True), ("0", False)):

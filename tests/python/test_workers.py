@@ -126,6 +126,7 @@ def working(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> List[str]:
     return [sys.executable, "main.py"]
 
 
+@pytest.mark.slow
 def test_a_killed_worker_is_said_in_one_line(working: List[str]) -> None:
     """What the kernel does when memory runs out is no defect of Labial's."""
     done = subprocess.run([*working, "killed", "--jobs", "2"], capture_output=True, text=True, timeout=120)
@@ -136,7 +137,7 @@ def test_a_killed_worker_is_said_in_one_line(working: List[str]) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc and /dev/shm")
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)])
 def test_a_signal_ends_the_workers(working: List[str], number: signal.Signals) -> None:
     """No process goes on working for nobody, and no semaphore stays."""
     shared = set(os.listdir("/dev/shm"))
@@ -173,6 +174,7 @@ def test_a_cluster_that_is_lost_is_named(working: List[str]) -> None:
     assert lines[0].startswith(f"labial: the work: the Dask cluster at {engine[5:]} failed: KilledWorker")
 
 
+@pytest.mark.slow
 def test_an_evaluation_goes_on_where_it_was(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                             capsys: pytest.CaptureFixture) -> None:
     """Splits that were finished are not worked on again, the report has the same bytes, and nothing of another corpus
