@@ -181,7 +181,7 @@ def wanted(output: TableOutput, frames: np.ndarray) -> np.ndarray:
         first, to, slope = np.array(output.curve, dtype=np.int64).T
         linear = np.clip(values, -VALUE_MAX, VALUE_MAX)
         place = np.clip(np.searchsorted(first, linear, side="right") - 1, 0, None)
-        values = to[place] + (((linear - first[place]) * slope[place] + (1 << 19)) >> 20)
+        values = to[place] + (((linear - first[place]) * slope[place] + _SLOPE_ONE // 2) // _SLOPE_ONE)
     values = np.clip(values, output.minimum, output.maximum)
     if output.closed is not None:
         values = values + (((output.closed - values) * touching(frames) + (1 << 11)) >> 12)

@@ -22,7 +22,7 @@ from labial.model import Model
 from labial.phonesets import PHONE_SETS
 from labial.reference.contact import FRAMES
 from labial.reference.shape import ShapeTables, choose
-from labial.train.kernels import Kernels, Regression, columns_alike, targets_without_floors
+from labial.train.kernels import Kernels, Regression, code_of, columns_alike, targets_without_floors
 from labial.train.recordings import Recording, occurrences, recordings, with_pauses_cut
 from labial.train.talkers import (
     LARGEST_VARIANCE,
@@ -90,8 +90,7 @@ def _deviation(
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
     asked = Regression(
         tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps, model.kernel_lag,
-        (2 * key[:, 0] + key[:, 1]) * len(model.phonemes) + key[:, 2], penalties_of(float(about["variance"])),
-        model.pair_shape.shape[1],
+        code_of(*key.T, len(model.phonemes)), penalties_of(float(about["variance"])), model.pair_shape.shape[1],
     )
     made = targets_without_floors(choice, [shared] * len(material), material, silence)
     left = [replace(item, frames=item.frames - motion) for item, motion in zip(material, made)]
@@ -112,7 +111,7 @@ def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> M
     """
     about = _known(model)
     material = _material(model, corpus, about)
-    order = np.argsort((2 * model.pair_key[:, 0] + model.pair_key[:, 1]) * len(model.phonemes) + model.pair_key[:, 2])
+    order = np.argsort(code_of(*model.pair_key.T, len(model.phonemes)))
     with threadpool_limits(1):  # the same bits on any number of cores
         own = _deviation(model, material, about, order)
     back = np.argsort(order)

@@ -86,14 +86,18 @@ def kernel_prior(viseme_class: np.ndarray, taps: int, penalties: Penalties) -> n
     return np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(penalties.smoothness**distance))
 
 
+def code_of(phoneme: np.ndarray, side: Union[int, np.ndarray], neighbour: np.ndarray, phonemes: int) -> np.ndarray:
+    """A phoneme with its previous (`side` 0) or next neighbour (1) as one number, (2 phoneme + side) P + neighbour."""
+    return (2 * phoneme + side) * phonemes + neighbour
+
+
 def pair_codes(material: Sequence[Recording], phonemes: int, silence: int) -> np.ndarray:
-    """(occurrences, 2): each phoneme with its previous and with its next neighbour, as one number each,
-    (2 phoneme + side) P + neighbour."""
+    """(occurrences, 2): the codes of each phoneme with its previous and with its next neighbour."""
     codes = []
     for item in material:
         before, after = neighbours(item.phoneme, silence)
-        own = 2 * item.phoneme * phonemes
-        codes.append(np.stack([own + before, own + phonemes + after], axis=1))
+        codes.append(np.stack([code_of(item.phoneme, 0, before, phonemes), code_of(item.phoneme, 1, after, phonemes)],
+                              axis=1))
     return np.concatenate(codes)
 
 
@@ -247,7 +251,7 @@ class Regression:
     silence: int
     fps: int
     lag: np.ndarray  #: (L,) int64 frames
-    pairs: np.ndarray  #: (R,) codes of :func:`pair_codes`
+    pairs: np.ndarray  #: (R,) codes (:func:`code_of`)
     penalties: Penalties
     knots: int  #: K
 
