@@ -1,12 +1,12 @@
-"""What integers and deciding early cost in each step: the solver against float64, the window and the state paths
-against what knows the whole utterance.
+"""The errors of integers and of deciding early in each step: the solver against float64, the window and the state paths
+against solutions of the whole utterance.
 
-Runs as a program of its own, with numpy and the exporter on the path, and prints JSON:
+A separate program, with numpy and the exporter on the path, that prints JSON:
 
     accuracy.py MODEL.npz NAME SOLVER KIND [CORPUS]
 
-NAME is the bundled model's C name, SOLVER labial-bench-solve, KIND what it calls the model. The phoneme streams are
-those of the corpus's episodes, or drawn from the model.
+NAME is the bundled model's C name, SOLVER labial-bench-solve, KIND its name of the model. The phoneme streams are those
+of the corpus's episodes, or random ones from the model.
 """
 
 from __future__ import annotations
@@ -20,22 +20,21 @@ from typing import Dict, List, Sequence
 
 import numpy as np
 
-from labial import emit
 from labial.corpus import read_corpus
 from labial.errors import LabialError
-from labial.faps import CHANNELS
-from labial.loss import path_loss
-from labial.model import Model, load
-from labial.phones import Stream, drawn_streams, stream_of
-from labial.quantise import ExportedModel, quantise
+from labial.evaluate.loss import path_loss
 from labial.reference.stream import aims, synthesise
 from labial.reference.tables import ExportedTables, FloatTables
 from labial.reference.trajectory import solve_whole
+from labial.tables import emit
+from labial.tables.model import Model, load
+from labial.tables.phones import Stream, drawn_streams, stream_of
+from labial.tables.quantise import ExportedModel, quantise
 
 #: Episodes of a corpus that are used, evenly spread over it.
 EPISODES = 60
 
-#: Frames that SOLVER takes at most, BENCH_SOLVE of unit.h.
+#: Most frames of SOLVER, BENCH_SOLVE of unit.h.
 LONGEST = 400
 
 #: A unit of error in FAP units: 1/1024 of full scale, which is what positions can be: 1024 FAP units to either side
@@ -52,7 +51,7 @@ def corpus_streams(path: str, model: Model) -> List[Stream]:
 
 
 def check_bundled(exported: ExportedModel, root: Path) -> None:
-    """LabialError where the bundled C tables are not what the trained model exports to."""
+    """Raises LabialError if the bundled C tables are not those of the trained model."""
     with tempfile.TemporaryDirectory(prefix="labial-bench-") as folder:
         emit.write(exported, Path(folder))
         name = f"{exported.name}.c"
@@ -61,7 +60,7 @@ def check_bundled(exported: ExportedModel, root: Path) -> None:
 
 
 def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequence[Stream]) -> np.ndarray:
-    """(frames, 13) FAP: the library's solution less the float64 one, for the same tables, paths and targets, streams
+    """(frames, C) FAP: the library's solution less the float64 one, for the same tables, paths and targets, streams
     being cut where they are longer than the library's program takes."""
     given, expected = [], []
     for stream in streams:
@@ -71,14 +70,14 @@ def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequen
             span = slice(begin, begin + LONGEST)
             expected.append(solve_whole(tables.equation(path[span], target[span])))
             given.append(np.uint16(len(expected[-1])).tobytes())
-            for k in range(CHANNELS):
+            for k in range(target.shape[1]):
                 given.append(path[span, k].astype(np.uint8).tobytes() + target[span, k].astype(np.int16).tobytes())
     done = subprocess.run(list(solver), input=b"".join(given), stdout=subprocess.PIPE, check=True)
     found = np.frombuffer(done.stdout, dtype=np.int16)
     errors, begin = [], 0
     for solution in expected:
         size = solution.size
-        own = found[begin : begin + size].reshape(CHANNELS, -1).T
+        own = found[begin : begin + size].reshape(solution.shape[1], -1).T
         errors.append(tables.to_fap(own) - solution)
         begin += size
     if begin != len(found):
@@ -87,8 +86,8 @@ def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequen
 
 
 def window_errors(tables: ExportedTables, streams: Sequence[Stream]) -> np.ndarray:
-    """(frames, 13) FAP: the motion as it is delivered, each frame by a way back from its window's end, less that by one
-    way back from the last frame."""
+    """(frames, 13) FAP: the delivered motion, with a backward pass from each frame's window, less the motion of one
+    backward pass from the last frame."""
     return np.concatenate([synthesise(tables, stream) - synthesise(tables, stream, whole=True) for stream in streams])
 
 
@@ -110,7 +109,7 @@ def measure(
 
 
 def main(arguments: List[str]) -> int:
-    """Prints the figures as JSON; a status of 1 and a sentence for what cannot be used."""
+    """Prints the figures as JSON; status 1 and a message for invalid input."""
     path, name, solver, kind, *corpus = arguments
     try:
         model = load(path)

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Measures Labial: what a frame costs on every board and on the host, bytes, stack, accuracy.
+"""Measures Labial: instructions per frame on every board and on the host, bytes, stack, accuracy.
 
     cmake --workflow --preset bench              measures, writes build/bench/bench.json and bench.md, and checks
     python3 bench/bench.py --update              makes what was measured last the baseline, bench/baseline.json, and the
                                                  figures of README.md
 
-Needs the programs of the preset `bench` in its build folder; what a machine lacks is left out with a sentence.
+Needs the programs of the preset `bench` in its build folder; measurements without their tools are skipped with a
+message.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import sys
 from pathlib import Path
 from typing import Callable, List
 
-from measure import baseline, boards, host, loss, mlpg, npm, profile, readme, runtime, sizes, stack, table
+from measure import baseline, boards, host, loss, mlpg, profile, readme, sizes, stack, table
 from measure.core import Bench, LeftOut
 
 
@@ -52,8 +53,8 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
         attempt(boards.measure, board, checksums)
     print("Host: speed, instructions, equation 3, loss", flush=True)
     attempt(host.measure, compiler)
-    attempt(runtime.measure, compiler)
-    attempt(npm.measure)
+    attempt(host.python, compiler)
+    attempt(host.npm)
     attempt(mlpg.measure, compiler)
     attempt(mlpg.hts_engine)
     attempt(mlpg.sptk)
@@ -65,7 +66,7 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
 
 
 def _check(bench: Bench, path: Path, require_all: bool) -> bool:
-    """Says how the figures compare with the baseline; whether that is acceptable."""
+    """Prints how the figures compare with the baseline; returns whether that is acceptable."""
     if not path.is_file():
         print(f"There is no {path}; write it by: python3 bench/bench.py --update")
         return False
@@ -81,7 +82,7 @@ def _check(bench: Bench, path: Path, require_all: bool) -> bool:
 
 
 def main() -> int:
-    """Returns the exit status: 1 when the check fails, or when something is left out that must not be."""
+    """Returns the exit status: 1 if the check fails, or if a required measurement was skipped."""
     options = _options()
     recorded, committed = options.build / "bench.json", options.source / "bench" / "baseline.json"
     if options.update:

@@ -13,7 +13,7 @@ int main(void)
 {
     uint32_t instructions = 0;
     unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (k = 0; k < BENCH_CHANNELS; k++) {
         bench_unit_fill(&unit, &speech_en, k);
         board_count_start();
         bench_unit_solve(&unit, &speech_en, k, motion);
@@ -22,7 +22,7 @@ int main(void)
     board_print("instructions ");
     board_print_unsigned(instructions);
     board_print("\nframes ");
-    board_print_unsigned(LABIAL_CHANNELS * BENCH_UNIT);
+    board_print_unsigned(BENCH_CHANNELS * BENCH_UNIT);
     board_put('\n');
     return 0;
 }

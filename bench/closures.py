@@ -1,4 +1,4 @@
-"""How often servos with limits of speed and acceleration close in p, b, m, and how far they still open.
+"""Measures how often servos with limits of speed and acceleration close in p, b, m, and how far they open.
 
     closures.py SENTENCES.txt VOICE ...
 
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from array import array
 from dataclasses import replace
 from pathlib import Path
 from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
@@ -19,15 +20,17 @@ import numpy as np
 
 import labial
 from labial.bake.track import JAW
-from labial.rig.table import TableOutput, convert, moved, wanted
+from labial.rig.description import Rig
+from labial.rig.table import convert, expected
+from labial.runtime.rig import Rig as Face
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples" / "pi"))
 
-#: Limits of servos: units per frame, and per frame and frame. A common one, a slow one, a heavy jaw's.
+#: Limits of servos: units per frame, and per frame and frame: a common servo, a slow one, a heavy jaw.
 SERVOS = ((None, None), (90, None), (90, 30), (60, None), (60, 20), (40, None), (40, 10))
-#: Frames in sight; the last is all that `labial bake` looks at.
+#: Frames in sight; the last value is that of `labial bake`.
 SIGHTS = (1, 6, 10, 32)
-#: Frames that a closure may be early or late, and us within which it is one.
+#: Frames that a closure may be early or late, and its tolerance in us.
 AROUND, CLOSED = 1, 10
 _STOPS = ("p", "b", "m")
 
@@ -70,20 +73,20 @@ def moving(timings: Sequence[Tuple[str, float]]) -> Said:
     return Said(frames, [span for span in closures if span[0] < span[1]])
 
 
-def jaw(slew: Optional[int], acceleration: Optional[int]) -> TableOutput:
+def jaw(slew: Optional[int], acceleration: Optional[int]) -> Rig:
     """A jaw of 500 us with these limits."""
     described = replace(JAW.outputs[0], slew=slew or 0.0, acceleration=acceleration or 0.0)
-    return convert(replace(JAW, outputs=(described,)))[0]
+    return replace(JAW, outputs=(described,))
 
 
-def measure(said: Sequence[Said], output: TableOutput, sight: int) -> Tuple[float, float]:
+def measure(said: Sequence[Said], described: Rig, sight: int) -> Tuple[float, float]:
     """The share of p, b, m that close, and the 95th percentile of the opening as a share of that without limits."""
     closed, opened, meant = [], [], []
     for item in said:
-        values = moved([output], item.frames, sight)[:, 0]
+        values = np.array(Face.of(described).play(array("h", item.frames.astype(np.int16).tobytes()), sight))
         closed += [abs(values[begin:end] - 1400).min() <= CLOSED for begin, end in item.closures]
         opened.append(values - 1400)
-        meant.append(wanted(output, item.frames) - 1400)
+        meant.append(expected(described, convert(described), item.frames)[:, 0] - 1400)
     share = np.percentile(np.concatenate(opened), 95) / np.percentile(np.concatenate(meant), 95)
     return float(np.mean(closed)), float(share)
 
@@ -98,8 +101,8 @@ def main(arguments: Sequence[str]) -> int:
     print(f"{sum(len(item.closures) for item in said)} p, b, m in {len(said)} sentences")
     print("slew acceleration | closed, opening with " + ", ".join(map(str, SIGHTS)) + " frames in sight")
     for slew, acceleration in SERVOS:
-        output = jaw(slew, acceleration)
-        cells = [measure(said, output, sight) for sight in SIGHTS]
+        described = jaw(slew, acceleration)
+        cells = [measure(said, described, sight) for sight in SIGHTS]
         print(f"{slew or '-':>4} {acceleration or '-':>12} | " + "  ".join(f"{a:.3f} {b:.2f}" for a, b in cells))
     return 0
 

@@ -1,4 +1,4 @@
-"""What heads show of sentences that no rig was solved for: with the built-in rigs, and with one that is fitted to them.
+"""Judges heads on sentences that no rig was solved for: with the built-in rigs, and with a fitted rig.
 
     heads.py SENTENCES.flite[+MORE.flite] HEAD.glb|.vrm|.csv ...
 
@@ -16,7 +16,6 @@ from typing import Dict, List, Mapping, Sequence
 
 import numpy as np
 
-from labial.animation import face, outputs
 from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
 from labial.fit.fit import fit
@@ -26,11 +25,12 @@ from labial.fit.kinds import KINDS, kind_of, known
 from labial.fit.landmarks import read_head
 from labial.fit.sentences import Motion, read_sentences
 from labial.fit.write import output_name
+from labial.rig.animation import face, outputs
 from labial.rig.description import read
 
-#: The built-in rig's names where Oculus' kind has others.
+#: Names in the built-in rig that differ from those of the kind `oculus`.
 _SPELLED = {"I": "ih", "O": "oh", "U": "ou"}
-#: Shapes that a head must have for a built-in rig to be judged on it.
+#: Shapes that a head needs for a built-in rig.
 _LEAST = {"arkit": 4, "oculus": 8, "vrm": 3}
 
 
@@ -57,7 +57,7 @@ def row(name: str, head: Head, weights: Mapping[str, np.ndarray], motion: Motion
 
 
 def built_in(head: Head, kind: str, motion: Motion) -> Dict[str, np.ndarray]:
-    """The weights of the built-in rig of a kind, by the head's names; none where the head lacks its shapes."""
+    """The weights of the built-in rig of a kind, by the head's names; none if the head lacks its shapes."""
     names = known(head, kind)
     if len(names) < _LEAST[kind] or ("jawOpen" if kind == "arkit" else "aa") not in names.values():
         return {}

@@ -1,5 +1,5 @@
 /*
- * labial-bench-mlpg labial|hts|compare|sptk|about N - equation 3 of N units of 13 channels, for callgrind and massif:
+ * labial-bench-mlpg labial|hts|compare|sptk|about N - equation 3 of N units of 12 channels, for callgrind and massif:
  *
  *   labial    by the library
  *   hts       by hts_engine's HTS_PStreamSet_create(), which takes the same means and variances as public structures
@@ -41,7 +41,7 @@ static void fill(bench_unit_t *unit)
 {
     unsigned k;
     bench_unit_t one;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (k = 0; k < BENCH_CHANNELS; k++) {
         unsigned t;
         bench_unit_fill(&one, model, k);
         for (t = 0; t < BENCH_UNIT; t++) {
@@ -61,19 +61,19 @@ extern HTS_Boolean HTS_PStreamSet_create(HTS_PStreamSet *set, HTS_SStreamSet *st
 extern double HTS_PStreamSet_get_parameter(HTS_PStreamSet *set, size_t stream, size_t frame, size_t dimension);
 extern void HTS_PStreamSet_clear(HTS_PStreamSet *set);
 
-static double means[BENCH_UNIT][WINDOWS * LABIAL_CHANNELS], variances[BENCH_UNIT][WINDOWS * LABIAL_CHANNELS];
+static double means[BENCH_UNIT][WINDOWS * BENCH_CHANNELS], variances[BENCH_UNIT][WINDOWS * BENCH_CHANNELS];
 
 /* Every frame is a state of its own, since the channels' states change apart. */
 static void hts_states(const bench_unit_t *unit)
 {
     unsigned t, k, w;
     for (t = 0; t < BENCH_UNIT; t++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+        for (k = 0; k < BENCH_CHANNELS; k++) {
             double mean[WINDOWS], precision[WINDOWS];
             rows(&unit[k], k, t, mean, precision);
             for (w = 0; w < WINDOWS; w++) {
-                means[t][w * LABIAL_CHANNELS + k] = mean[w];
-                variances[t][w * LABIAL_CHANNELS + k] = precision[w] > 0.0 ? 1.0 / precision[w] : 1e30;
+                means[t][w * BENCH_CHANNELS + k] = mean[w];
+                variances[t][w * BENCH_CHANNELS + k] = precision[w] > 0.0 ? 1.0 / precision[w] : 1e30;
             }
         }
 }
@@ -98,7 +98,7 @@ static int hts_solve(const bench_unit_t *unit, unsigned long count, double (*res
         variance_rows[t] = variances[t];
         durations[t] = 1;
     }
-    stream.vector_length = LABIAL_CHANNELS;
+    stream.vector_length = BENCH_CHANNELS;
     stream.mean = mean_rows;
     stream.vari = variance_rows;
     stream.win_size = WINDOWS;
@@ -117,7 +117,7 @@ static int hts_solve(const bench_unit_t *unit, unsigned long count, double (*res
             return 1;
         if (result && count == 0)
             for (t = 0; t < BENCH_UNIT; t++)
-                for (k = 0; k < LABIAL_CHANNELS; k++)
+                for (k = 0; k < BENCH_CHANNELS; k++)
                     result[t][k] = HTS_PStreamSet_get_parameter(&solved, 0, t, k);
         HTS_PStreamSet_clear(&solved);
     }
@@ -131,7 +131,7 @@ static int compare(bench_unit_t *unit)
     unsigned t, k;
     if (hts_solve(unit, 1, expected))
         return 1;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (k = 0; k < BENCH_CHANNELS; k++) {
         bench_solve(model, k, unit[k].path, BENCH_UNIT, &unit[k].targets[0][k]);
         for (t = 0; t < BENCH_UNIT; t++) {
             const double difference = fabs(unit[k].targets[t][k] - expected[t][k]) / 16.0;
@@ -148,7 +148,7 @@ static void labial_solve(const bench_unit_t *unit, unsigned long count)
     static int16_t motion[BENCH_HOLD][LABIAL_CHANNELS];
     unsigned k;
     while (count-- > 0)
-        for (k = 0; k < LABIAL_CHANNELS; k++)
+        for (k = 0; k < BENCH_CHANNELS; k++)
             bench_unit_solve(&unit[k], model, k, motion);
 }
 
@@ -157,8 +157,8 @@ static void sptk_write(const bench_unit_t *unit, unsigned long count)
     unsigned t, k, w;
     while (count-- > 0)
         for (t = 0; t < BENCH_UNIT; t++) {
-            float frame[2][WINDOWS][LABIAL_CHANNELS];
-            for (k = 0; k < LABIAL_CHANNELS; k++) {
+            float frame[2][WINDOWS][BENCH_CHANNELS];
+            for (k = 0; k < BENCH_CHANNELS; k++) {
                 double mean[WINDOWS], precision[WINDOWS];
                 rows(&unit[k], k, t, mean, precision);
                 for (w = 0; w < WINDOWS; w++) {
@@ -172,7 +172,7 @@ static void sptk_write(const bench_unit_t *unit, unsigned long count)
 
 int main(int argc, char **argv)
 {
-    static bench_unit_t unit[LABIAL_CHANNELS];
+    static bench_unit_t unit[BENCH_CHANNELS];
     const long count = argc == 3 ? atol(argv[2]) : 0;
     if (count > 0) {
         if (strcmp(argv[1], "about") == 0) {
@@ -181,7 +181,7 @@ int main(int argc, char **argv)
 #else
             puts("hts_engine: no");
 #endif
-            printf("memory: %u bytes\n", (unsigned)(LABIAL_CHANNELS * BENCH_MEMORY));
+            printf("memory: %u bytes\n", (unsigned)(BENCH_CHANNELS * BENCH_MEMORY));
             return 0;
         }
         fill(unit);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measures the Python run-time: what a frame takes, rendered whole and one by one.
+"""Measures the Python run-time: microseconds per frame, rendered whole and one by one.
 
-    PYTHONPATH=export LABIAL_RUNTIME=build/bench/packaging/python/labial_runtime.so python3 bench/runtime.py
+    PYTHONPATH=export LABIAL_RUNTIME=build/bench/flat/labial_runtime.so python3 bench/runtime.py
 
 prints the microseconds per frame of each way, the best of `RUNS` runs, as JSON. numpy is not needed.
 """
@@ -17,7 +17,7 @@ import labial
 #: All sorts of phonemes, closures, a pause: 1.26 s.
 SENTENCE = [("SIL", 120), ("M", 70), ("AY", 160), ("B", 60), ("EY", 110), ("B", 55), ("IY", 90), ("M", 65), ("EY", 120),
             ("B", 50), ("IY", 80), ("HH", 60), ("AE", 110), ("P", 75), ("IY", 35)]
-#: How often it is said in a run: 6,300 frames.
+#: Repetitions in a run: 6,300 frames.
 TIMES = 100
 RUNS = 5
 

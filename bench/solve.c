@@ -12,6 +12,7 @@
 
 #include "labial/labial.h"
 #include "laughter_synthetic.h"
+#include "protrusion.h"
 #include "speech_en.h"
 #include "unit.h"
 
@@ -53,7 +54,7 @@ int main(int argc, char **argv)
             fprintf(stderr, "labial-bench-solve: a unit of %u frames\n", frames);
             return 1;
         }
-        for (k = 0; k < LABIAL_CHANNELS; k++)
+        for (k = 0; k < labial_channel_count(model); k++)
             if (!solve(model, k, frames)) {
                 fputs("labial-bench-solve: malformed input\n", stderr);
                 return 1;

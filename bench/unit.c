@@ -43,7 +43,7 @@ void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, uns
             frames[i].target[k] = unit->targets[t + i][k];
             frames[i].marks = marks_of(t + i, BENCH_UNIT);
         }
-        labial_trajectory_terms(&model->channels[k], unit->path[t], &terms);
+        labial_trajectory_terms(&model->channels[k], unit->path[t], LABIAL_GAIN_ONE, &terms);
         labial_trajectory_rows(&solver, &terms, frames, k, HOLD, work + LABIAL_WINDOW + 1);
         if (t >= LABIAL_WINDOW + HOLD)
             labial_trajectory_back(work + LABIAL_WINDOW + HOLD - 1, LABIAL_WINDOW, HOLD, HOLD - 1u, HOLD,
@@ -60,7 +60,7 @@ void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, u
     unsigned t;
     labial_terms_t terms;
     for (t = 0; t < length; t++) {
-        labial_trajectory_terms(&model->channels[k], path[t], &terms);
+        labial_trajectory_terms(&model->channels[k], path[t], LABIAL_GAIN_ONE, &terms);
         frame.target[k] = positions[t * LABIAL_CHANNELS];
         frame.marks = marks_of(t, length);
         labial_trajectory_rows(&solver, &terms, &frame, k, 1, &factors[t]);

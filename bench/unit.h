@@ -6,9 +6,10 @@
 
 #include "labial/labial.h"
 
-#define BENCH_UNIT 42   /* frames */
-#define BENCH_HOLD 3u   /* frames that a state lasts, and that a channel's turn takes */
-#define BENCH_SOLVE 400 /* frames that bench_solve() takes at most */
+#define BENCH_CHANNELS LABIAL_CHANNELS_SOLVED /* that every model has */
+#define BENCH_UNIT 42                         /* frames */
+#define BENCH_HOLD 3u                         /* frames that a state lasts, and that a channel's turn takes */
+#define BENCH_SOLVE 400                       /* frames that bench_solve() takes at most */
 
 /* Bytes that the solver needs of a channel, as the workspace holds them. */
 #define BENCH_MEMORY (sizeof(labial_solver_t) + sizeof(labial_kept_t))

@@ -1,8 +1,8 @@
-"""Prints a corpus's utterances as labial-bench-delay reads them, with numpy and the exporter on the path:
+"""Prints a corpus's utterances for labial-bench-delay, with numpy and the exporter on the path:
 
     utterances.py MODEL.npz CORPUS
 
-A line for each: numbers of phonemes and milliseconds by turns.
+A line for each: phoneme numbers and milliseconds, alternating.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import List
 
 from labial.corpus import read_corpus
 from labial.errors import LabialError
-from labial.model import load
-from labial.phones import stream_of
+from labial.tables.model import load
+from labial.tables.phones import stream_of
 
 
 def main(arguments: List[str]) -> int:
-    """Prints the lines; a status of 1 and a sentence for what cannot be used."""
+    """Prints the lines; status 1 and a message for invalid input."""
     try:
         model = load(arguments[0])
         for episode in read_corpus(arguments[1], model.kind):

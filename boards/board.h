@@ -1,5 +1,5 @@
 /*
- * board.h - what a firmware image can ask of its board: text, an exit status, an instruction counter, stack depth.
+ * board.h - the functions of a board for firmware images: text, an exit status, an instruction counter, stack depth.
  *
  *     cmake --workflow --preset m0      builds every image for a board and runs it under QEMU; see boards/presets.json
  *
@@ -11,7 +11,7 @@
  * Images are freestanding: no C library, no heap; <stdint.h>, <stddef.h> and the few functions of <string.h> that
  * boards/include declares. RAM starts with the image's variables, the rest is stack: on m0 and rv32 there are 16 KB
  * together, on m0 flash ends at 256 KB; the link fails where an image does not fit. The same calls exist on the host,
- * where labial_firmware() makes an ordinary program; what the host cannot tell is said with each call.
+ * where labial_firmware() makes an ordinary program; each call says what the host cannot measure.
  *
  * A processor fault ends the image with exit status 99, a stack that met the variables with 98.
  */
@@ -29,7 +29,7 @@ extern const char board_name[];
 
 /* ---- Text, to QEMU's standard output --------------------------------------------------------------------------- */
 
-/* Lines are kept until they end or fill a buffer of 80 bytes; what is left is written when the image ends. */
+/* Lines are buffered until they end or fill 80 bytes; the remainder is written when the image ends. */
 void board_put(char character);
 void board_print(const char *text);
 void board_print_unsigned(uint32_t number);
@@ -44,7 +44,7 @@ void board_exit(int status);
 /* The longest stretch that can be counted on every board; 0 on the host, which has no counter. */
 #define BOARD_COUNT_MAX 10000000u
 
-/* What board_count() says of a stretch that was too long. */
+/* The result of board_count() for a stretch that was too long. */
 #define BOARD_COUNT_OVERFLOW UINT32_MAX
 
 /*
@@ -55,7 +55,7 @@ void board_exit(int status);
 void board_count_start(void);
 uint32_t board_count(void);
 
-/* ---- Interrupts, on Arm boards alone ----------------------------------------------------------------------------- */
+/* ---- Interrupts, only on Arm boards ----------------------------------------------------------------------------- */
 
 /* Interrupts that have a vector. */
 #define BOARD_INTERRUPTS 32

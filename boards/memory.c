@@ -1,6 +1,6 @@
 /*
- * memory.c - the C library's functions that compilers and the library call, for boards without a C library. Copies go
- * by words where both sides are aligned, as they are in every C library worth measuring with.
+ * memory.c - the C library's functions that compilers and the library call, for boards without a C library. They copy
+ * words where both sides are aligned, like the usual C libraries.
  */
 #include <stdint.h>
 #include <string.h>

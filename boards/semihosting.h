@@ -1,6 +1,6 @@
 /*
- * semihosting.h - how an image reaches the debugger that runs it, here QEMU: an operation's number, a parameter and a
- * trap that the debugger knows. Arm's "Semihosting for AArch32 and AArch64" defines the operations; RISC-V's are these.
+ * semihosting.h - calls to the debugger that runs an image, here QEMU: an operation's number, a parameter and a trap
+ * that the debugger knows. Arm's "Semihosting for AArch32 and AArch64" defines the operations; RISC-V's are these.
  */
 #ifndef BOARD_SEMIHOSTING_H
 #define BOARD_SEMIHOSTING_H

@@ -13,7 +13,7 @@
 #define STATUS_FAULT 99
 #define STATUS_STACK 98
 
-/* Set by the linker script; only their addresses mean something. */
+/* Set by the linker script; only their addresses have a meaning. */
 extern uint32_t board_data_begin[], board_data_end[], board_data_image[];
 extern uint32_t board_bss_begin[], board_bss_end[];
 extern uint32_t board_stack_begin[], board_stack_end[];

@@ -1,18 +1,18 @@
 /*
- * target.h - what target.c and the processor's own part ask of one another.
+ * target.h - the interface of target.c and the processor-specific part.
  */
 #ifndef BOARD_TARGET_H
 #define BOARD_TARGET_H
 
 #include "board.h"
 
-/* Called by reset, with a stack and nothing else: variables, main(), exit. Does not return. */
+/* Called by reset, with only a stack: initialises variables, calls main() and exits. Does not return. */
 void board_start(void);
 
 /* Called on any processor fault. Does not return. */
 void board_fault(void);
 
-/* Measures what board_count_start() and board_count() take themselves. */
+/* Measures the cost of board_count_start() and board_count(). */
 void board_count_calibrate(void);
 
 static inline uint32_t *board_stack_pointer(void)

@@ -1,5 +1,5 @@
 /*
- * uncounted.c - board.h where neither instructions nor the stack's depth can be told: on the host and in WebAssembly.
+ * uncounted.c - board.h without counts of instructions and stack depth: on the host and in WebAssembly.
  */
 #include "board.h"
 

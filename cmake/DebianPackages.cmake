@@ -23,7 +23,7 @@ function(labial_debian_packages variable directory)
   find_program(LABIAL_DPKG_DEB dpkg-deb)
   mark_as_advanced(LABIAL_APT_GET LABIAL_DPKG_DEB)
   if(NOT LABIAL_APT_GET OR NOT LABIAL_DPKG_DEB)
-    message(STATUS "Not installed, and there is no apt to fetch it with; Debian calls it: ${names}")
+    message(STATUS "Not installed, and apt is unavailable; install the Debian packages: ${names}")
     return()
   endif()
 

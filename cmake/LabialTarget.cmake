@@ -5,7 +5,7 @@ set(LABIAL_WARNINGS
     -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wundef -Wcast-qual -Wdouble-promotion)
 set(LABIAL_C_WARNINGS -Wstrict-prototypes -Wmissing-prototypes)
 
-# Undefined behaviour ends the test that meets it instead of being reported and passed over.
+# Undefined behaviour aborts the test instead of only being reported.
 set(LABIAL_SANITIZERS -fsanitize=address,undefined,alignment -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 if(LABIAL_INSTRUMENT STREQUAL "sanitize")

@@ -1,12 +1,12 @@
 /*
- * blend.c - a frame of speech and a frame of laughter made one, closures of speech kept.
+ * blend.c - blends a frame of speech and a frame of laughter, keeping the closures of speech (labial/blend.h).
  */
 #include "labial/blend.h"
 
 #include "fixed.h"
 #include "labial/labial.h"
 
-/* Channels, and bits by channel of what speech keeps in a closure. */
+/* Channels, and bits of the channels that follow speech in a closure. */
 #define JAW 0u
 #define UPPER_MIDLIP 3u
 #define LOWER_MIDLIP 4u
@@ -19,7 +19,7 @@ const labial_blend_t labial_blend_default = {
     { 90, 154, 154, 90, 90, 230, 230, 90, 90, 90, 90, 230, 230 }, 120, 240, 150, 270,
 };
 
-/* How free the channel is of a closure, Q14, at a `distance` from it: not at all up to `low`, wholly from `high`. */
+/* How free the channel is of a closure, Q14, at a `distance` from it: 0 up to `low`, one from `high` on. */
 static uint32_t freedom(int32_t distance, int32_t low, int32_t high)
 {
     if (distance <= low)

@@ -7,14 +7,16 @@
 
 #include "fixed.h"
 #include "labial/labial.h"
+#include "protrusion.h"
 
 #define HEADER_SIZE 32u
 #define CHECKED_FROM 12u /* first byte that the checksum covers */
 
-enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_TWO_KNOTS = 4 };
+enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_TWO_KNOTS = 4, HAS_PROTRUSION = 8 };
 
 typedef char labial_tables_are_packed[sizeof(labial_phoneme_t) == 6 && sizeof(labial_component_t) == 6 &&
-                                              sizeof(labial_emission_t) == 4 && sizeof(labial_state_t) == 8
+                                              sizeof(labial_emission_t) == 4 && sizeof(labial_state_t) == 8 &&
+                                              sizeof(labial_protrusion_t) == 4 + 2 * LABIAL_PROTRUSION_VALUES
                                           ? 1
                                           : -1];
 
@@ -94,7 +96,8 @@ static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessor
 
 static void read_tables(reader_t *reader, unsigned optional, labial_model_t *model, labial_channel_t *channels)
 {
-    const uint32_t components = model->component_count, shape = components * LABIAL_CHANNELS;
+    const uint32_t width = (optional & HAS_PROTRUSION) ? LABIAL_CHANNELS_SOLVED : LABIAL_CHANNELS;
+    const uint32_t components = model->component_count, shape = components * width;
     const uint32_t rows = (uint32_t)model->phoneme_count * model->kernel_taps;
     unsigned k;
     model->phonemes = (const labial_phoneme_t *)table(reader, model->phoneme_count, sizeof(labial_phoneme_t));
@@ -106,19 +109,23 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
         model->slopes = (const int8_t *)table(reader, shape, 1u);
     if (model->kernel_taps) {
         model->kernels = (const uint32_t *)table(reader, rows, 12u);
-        model->last_kernels = (const int8_t *)table(reader, rows, 1u);
+        if (width == LABIAL_CHANNELS)
+            model->last_kernels = (const int8_t *)table(reader, rows, 1u);
     }
     if (model->pair_count) {
         model->pair_keys = (const uint16_t *)table(reader, model->pair_count, 2u);
-        model->pairs =
-            (const int8_t *)table(reader, (uint32_t)model->pair_count * model->pair_knots * LABIAL_CHANNELS, 1u);
+        model->pairs = (const int8_t *)table(reader, (uint32_t)model->pair_count * model->pair_knots * width, 1u);
     }
     if (model->floor_count) {
-        model->floors = (const int16_t *)table(reader, (uint32_t)model->floor_count * LABIAL_CHANNELS, 2u);
+        model->floors = (const int16_t *)table(reader, (uint32_t)model->floor_count * width, 2u);
         model->contacts = (const uint16_t *)table(reader, model->floor_count, 2u);
     }
-    for (k = 0; k < LABIAL_CHANNELS; k++)
+    if (optional & HAS_PROTRUSION)
+        model->protrusion = (const labial_protrusion_t *)table(reader, 1u, sizeof(labial_protrusion_t));
+    for (k = 0; k < width; k++)
         read_channel(reader, model->state_count, model->predecessors, &channels[k]);
+    if (width < LABIAL_CHANNELS)
+        channels[width] = channels[width - 1u];
     model->channels = channels;
 }
 
@@ -137,7 +144,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
         return LABIAL_ERROR_MODEL;
     if (u16(header + 12) != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
-    if (header[28] > (HAS_CONTEXTS | HAS_SLOPES | HAS_TWO_KNOTS))
+    if (header[28] > (HAS_CONTEXTS | HAS_SLOPES | HAS_TWO_KNOTS | HAS_PROTRUSION))
         return LABIAL_ERROR_MODEL;
     if (u32(header + 8) != checksum(header + CHECKED_FROM, size - CHECKED_FROM))
         return LABIAL_ERROR_MODEL;

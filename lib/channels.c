@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "protrusion.h"
 #include "trajectory.h"
 #include "units.h"
 #include "viterbi.h"
@@ -24,7 +25,7 @@ void labial_channels_reset(labial_channels_t *channels)
 {
     /* Zeros, or a first backward pass would go on into frames that were forgotten. */
     memset(channels->progress, 0, LABIAL_WORKSPACE_SIZE((uint32_t)channels->stride));
-    channels->entered = channels->beyond = 0;
+    channels->entered = channels->beyond = channels->full = 0;
     channels->phase = (uint8_t)(channels->stride - 1u);
 }
 
@@ -37,11 +38,30 @@ static void shift(labial_channels_t *channels)
         channels->entered++;
     for (i = 1; i < size; i++)
         channels->frames[i - 1u] = channels->frames[i];
+    for (i = LABIAL_DELAY(channels->stride); i > 0; i--)
+        channels->slots[i] = channels->slots[i - 1u];
+    if (channels->full > 0)
+        channels->full--;
 }
 
-labial_frame_t *labial_channels_enter(labial_channels_t *channels)
+/* Lets the last channel go on after frames that had none: in the midst of a solution, whose frames before count for
+ * nothing; a pending row must be held by something. */
+static void resume(labial_progress_t *progress)
+{
+    memset(progress, 0, sizeof *progress);
+    progress->solver.hold = LABIAL_WEIGHT_MIN;
+}
+
+labial_frame_t *labial_channels_enter(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
+                                      unsigned slot)
 {
     shift(channels);
+    channels->slots[0] = (uint8_t)slot;
+    if (labial_channel_count(models[slot]) == LABIAL_CHANNELS) {
+        if (LABIAL_LAG == 0 && channels->full == 0)
+            resume(&channels->progress[LABIAL_CHANNELS - 1]);
+        channels->full = (uint8_t)(LABIAL_DELAY(channels->stride) + 1);
+    }
     return &channels->frames[channels->stride + LABIAL_LAG - 1];
 }
 
@@ -53,45 +73,55 @@ void labial_channels_run_out(labial_channels_t *channels)
 
 int labial_channels_uses(const labial_channels_t *channels, unsigned slot)
 {
-    const unsigned size = channels->stride + LABIAL_LAG;
+    const unsigned delay = LABIAL_DELAY(channels->stride);
     unsigned age;
-    for (age = channels->beyond; age < size && age < channels->entered; age++)
-        if (channels->frames[size - 1u - age].slot == slot)
+    for (age = channels->beyond; age < delay && age < channels->entered; age++)
+        if (channels->slots[age] == slot)
             return 1;
     return 0;
 }
 
-const int16_t *labial_channels_due(const labial_channels_t *channels)
+const int16_t *labial_channels_due(const labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS])
 {
-    return channels->entered > LABIAL_DELAY(channels->stride) ? channels->motion + channels->phase * LABIAL_CHANNELS
-                                                              : NULL;
+    const unsigned delay = LABIAL_DELAY(channels->stride);
+    int16_t *motion = channels->motion + channels->phase * LABIAL_CHANNELS;
+    if (channels->entered <= delay)
+        return NULL;
+    labial_protrusion_complete(models[channels->slots[delay]], motion);
+    return motion;
 }
 
 /* One channel in its step. */
 typedef struct {
     const labial_model_t *const *models;
+    const uint8_t *slots;         /* by age */
     const labial_frame_t *latest; /* the frame of age 0 */
     labial_progress_t *progress;
     labial_factors_t *end; /* those of age LABIAL_LAG, the latest frame whose row can be known */
     unsigned channel;
+    int32_t gain; /* articulation */
 } step_t;
+
+/* The model of the frame of an age. */
+static const labial_model_t *model_of(const step_t *step, int age)
+{
+    return step->models[step->slots[age]];
+}
 
 /* Searches a state for the frames from `age` on, down to `least` or to the end of their solution, by the target of the
  * frame of age `middle` or of the one nearest to it; returns the age of the last. */
 static int search(const step_t *step, int age, int least, int middle)
 {
-    const labial_frame_t *frame = step->latest - age;
-    const labial_model_t *model = step->models[frame->slot];
-    const labial_channel_t *channel = &model->channels[step->channel];
+    const labial_model_t *model = model_of(step, age);
     labial_search_t *own = &step->progress->search;
     const int first = age;
-    unsigned marks = frame->marks;
+    unsigned marks = step->latest[-age].marks;
     int32_t position;
     while (!(marks & LABIAL_ENDS) && age > least)
         marks |= step->latest[-(--age)].marks;
     middle = middle > first ? first : middle < age ? age : middle;
     position = step->latest[-middle].target[step->channel];
-    labial_viterbi_step(model, channel, position, marks, own);
+    labial_viterbi_step(model, &model->channels[step->channel], position, marks, own);
     labial_viterbi_span(own, (unsigned)(first - age + 1));
     return age;
 }
@@ -106,7 +136,7 @@ static int solve(const step_t *step, int age, int last, int searched)
         const labial_frame_t *frame = step->latest - first;
         const unsigned state = labial_viterbi_state(own, (unsigned)(age - searched));
         labial_terms_t terms;
-        labial_trajectory_terms(&step->models[frame->slot]->channels[step->channel], state, &terms);
+        labial_trajectory_terms(&model_of(step, first)->channels[step->channel], state, step->gain, &terms);
         do /* without a lag all of them are of one solution and have the same state */
             age--;
         while (age >= last && (LABIAL_LAG == 0 || (!(step->latest[-(age + 1)].marks & LABIAL_ENDS) &&
@@ -123,7 +153,8 @@ static inline void keep(labial_factors_t *to, const labial_factors_t *from)
     *(labial_kept_t *)(void *)to = *(const labial_kept_t *)(const void *)from;
 }
 
-static void step_channel(const labial_channels_t *channels, const labial_model_t *const *models, unsigned channel)
+static void step_channel(const labial_channels_t *channels, const labial_model_t *const *models, unsigned channel,
+                         int32_t gain)
 {
     const int stride = channels->stride, beyond = channels->beyond, entered = channels->entered;
     const int newest = beyond > LABIAL_LAG ? beyond : LABIAL_LAG; /* whose row is due */
@@ -132,10 +163,12 @@ static void step_channel(const labial_channels_t *channels, const labial_model_t
     int row = (entered < stride + LABIAL_LAG ? entered : stride + LABIAL_LAG) - 1;
     step_t step;
     step.models = models;
+    step.slots = channels->slots;
     step.latest = channels->frames + stride + LABIAL_LAG - 1;
     step.progress = &channels->progress[channel];
     step.end = work + LABIAL_WINDOW + stride;
     step.channel = channel;
+    step.gain = gain;
     keep(work, step.progress->kept.of);
     step.end->q = 0; /* stays so where the latest row waits for the next one */
     step.end->rho = step.end->kappa = 0;
@@ -161,9 +194,11 @@ static void step_channel(const labial_channels_t *channels, const labial_model_t
     keep(step.progress->kept.of, work + stride);
 }
 
-void labial_channels_step(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS])
+void labial_channels_step(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS], int32_t gain)
 {
+    /* With a lag the last channel never rests: its rows ask for the states of frames long before. */
+    const unsigned count = LABIAL_LAG > 0 || channels->full > 0 ? LABIAL_CHANNELS : LABIAL_CHANNELS_SOLVED;
     unsigned channel;
-    for (channel = channels->phase; channel < LABIAL_CHANNELS; channel += channels->stride)
-        step_channel(channels, models, channel);
+    for (channel = channels->phase; channel < count; channel += channels->stride)
+        step_channel(channels, models, channel, gain);
 }

@@ -4,7 +4,9 @@
  * A state lasts `stride` frames, and so channels take turns: in each tick those that are next are searched and solved
  * for the frames since their last step, up to the latest one, and go back from there to the frames that are due.
  * Channel c has its step every `stride` ticks, c ticks apart from channel 0. So every tick does about the same work,
- * and a frame is complete LABIAL_DELAY(stride) ticks after it was taken.
+ * and a frame is complete LABIAL_DELAY(stride) ticks after it was taken. The last channel has none while all frames in
+ * hand are of models that compute FAP 17 (protrusion.h). Beside frames of others it moves theirs as the tables in its
+ * place say, and nobody asks.
  */
 #ifndef LABIAL_CHANNELS_H
 #define LABIAL_CHANNELS_H
@@ -17,19 +19,23 @@ void labial_channels_init(labial_channels_t *channels, unsigned stride, void *wo
 /* Drops all frames. */
 void labial_channels_reset(labial_channels_t *channels);
 
-/* Advances by a tick; returns the frame that was taken, for the caller to fill in. */
-labial_frame_t *labial_channels_enter(labial_channels_t *channels);
+/* Advances by a tick; returns the frame that was taken, of the model in `slot`, for the caller to fill in. */
+labial_frame_t *labial_channels_enter(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
+                                      unsigned slot);
 
 /* Advances by a tick beyond the last frame that was taken, whose marks say so. */
 void labial_channels_run_out(labial_channels_t *channels);
 
-/* Searches and solves the channels that are next. */
-void labial_channels_step(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS]);
+/* Searches and solves the channels that are next; the frames that are solved now have the articulation `gain`, in
+ * 1/LABIAL_GAIN_ONE (trajectory.h). */
+void labial_channels_step(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS], int32_t gain);
 
-/* The motion of the frame that is due, Q4 FAP, of LABIAL_CHANNELS; NULL when none is. Valid until the next step. */
-const int16_t *labial_channels_due(const labial_channels_t *channels);
+/* Completes the frame that is due; returns its motion, Q4 FAP, of LABIAL_CHANNELS; NULL when none is. Called once a tick;
+ * valid until the next step. */
+const int16_t *labial_channels_due(const labial_channels_t *channels,
+                                   const labial_model_t *const models[LABIAL_MODELS]);
 
-/* Whether frames of the model in `slot` are still to be searched or solved. */
+/* Whether frames of the model in `slot` are still to be completed. */
 int labial_channels_uses(const labial_channels_t *channels, unsigned slot);
 
 #endif

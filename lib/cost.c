@@ -1,10 +1,11 @@
 /*
- * cost.c - how much work a model's tables make.
+ * cost.c - the work of a tick with a model (labial/model.h).
  *
- * Each term is the number of times that a step can be taken in one tick, times the instructions that a Cortex-M0 takes
- * for it at most, as GCC compiles it with -Os or -O2. tests/device/model_cost.c counts them.
+ * Each term is the number of times that a step can occur in one tick, times the most instructions that a Cortex-M0
+ * takes for it, compiled by GCC with -Os or -O2. tests/device/model_cost.c counts them.
  */
 #include "labial/labial.h"
+#include "protrusion.h"
 
 enum {
     PER_TICK = 3500,     /* the queue, floors and contact, fades, the callback's frame */
@@ -20,10 +21,10 @@ enum {
     PER_STEP_BACK = 32   /* of the backward pass */
 };
 
-/* Shapes that one tick can select: that of the phoneme which begins, and that of the next. */
+/* Shapes that one tick can select: that of the phoneme that begins, and that of the next. */
 #define SELECTED 2u
 
-/* Comparisons that a binary search among `count` takes. */
+/* Comparisons of a binary search among `count`. */
 static uint32_t comparisons(uint32_t count)
 {
     uint32_t result = 0;
@@ -39,12 +40,12 @@ static uint32_t selection(const labial_model_t *model)
     for (p = 0; p < model->phoneme_count; p++)
         if (model->phonemes[p].component_count > most)
             most = model->phonemes[p].component_count;
-    if (model->pair_count) /* with the phoneme before and with the one behind */
+    if (model->pair_count) /* with the phoneme before and with the one after */
         pairs = 2u * (comparisons(model->pair_count) * PER_COMPARISON + (uint32_t)model->pair_knots * PER_KNOT);
     return most * PER_COMPONENT + pairs;
 }
 
-/* What one channel step takes: a step of the search, the rows of its frames and one more at the end, the backward
+/* Instructions of one channel step: a step of the search, the rows of its frames and one more at the end, the backward
  * pass. */
 static uint32_t channel_step(const labial_model_t *model, uint32_t stride)
 {
@@ -60,7 +61,7 @@ uint32_t labial_model_cost(const labial_model_t *model)
     if (!model || model->search_stride == 0)
         return 0;
     stride = model->search_stride;
-    channels = (LABIAL_CHANNELS + stride - 1u) / stride;
+    channels = (labial_channel_count(model) + stride - 1u) / stride;
     return PER_TICK + (uint32_t)model->kernel_taps * PER_TAP + SELECTED * selection(model) +
            channels * channel_step(model, stride);
 }

@@ -1,5 +1,5 @@
 /*
- * faps.c - the channels' MPEG-4 numbers, and the 23 FAPs made from them (labial/faps.h).
+ * faps.c - the channels' MPEG-4 numbers, and their extension to 23 FAPs (labial/faps.h).
  */
 #include "labial/faps.h"
 

@@ -8,7 +8,7 @@
 uint32_t labial_quotient(uint32_t a, uint32_t b)
 {
 #if LABIAL_NARROW_MULTIPLY && !defined(__ARM_FEATURE_IDIV)
-    /* Bit by bit, in less code than compilers link for it. */
+    /* Bit by bit: smaller than the division that compilers link. */
     uint32_t quotient = 0, bit = 1;
     for (; b <= a >> 5; b <<= 4)
         bit <<= 4;

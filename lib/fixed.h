@@ -1,8 +1,8 @@
 /*
- * fixed.h - the arithmetic that every step shares: rounded products, minifloat weights, Gaussian costs.
+ * fixed.h - arithmetic that all steps share: rounded products, minifloat weights, Gaussian costs.
  *
- * Signed right shifts are arithmetic on every compiler the library is built with; the build stops where they are not.
- * Sums that a damaged model could drive beyond 32 bits are made in uint32, whose overflow is defined.
+ * Signed right shifts must be arithmetic; the build stops where they are not. Sums that a damaged model could drive
+ * beyond 32 bits are computed in uint32, whose overflow is defined.
  */
 #ifndef LABIAL_FIXED_H
 #define LABIAL_FIXED_H
@@ -11,8 +11,8 @@
 
 typedef char labial_arithmetic_shift_is_required[((-1) >> 1) == -1 ? 1 : -1];
 
-/* Cores whose widest product is 32 x 32 -> 32 bits make wider ones of several. Set by hand to test that both ways give
- * the same bits. */
+/* 1 for cores whose widest product is 32 x 32 -> 32 bits: wider products are computed in parts. Set by hand to test
+ * that both variants give the same bits. */
 #ifndef LABIAL_NARROW_MULTIPLY
 #if defined(__ARM_ARCH_6M__) || defined(__ARM_ARCH_8M_BASE__)
 #define LABIAL_NARROW_MULTIPLY 1
@@ -21,7 +21,7 @@ typedef char labial_arithmetic_shift_is_required[((-1) >> 1) == -1 ? 1 : -1];
 #endif
 #endif
 
-/* What holds, but for a reason that a prover of single values does not see, who is told by an ACSL assertion beside it.
+/* A condition that holds for a reason that the prover cannot see; an ACSL assertion beside it states it to the prover.
  * Checked where LABIAL_CHECKED is defined, as in the sanitizer build (docs/testing.md). */
 #ifdef LABIAL_CHECKED
 #define LABIAL_CHECK(condition) ((condition) ? (void)0 : __builtin_trap())
@@ -56,7 +56,7 @@ static inline int32_t labial_mulshift(int32_t a, int32_t b, unsigned shift)
 #endif
 }
 
-/* x * f / 2^16, rounded down, for f up to 65536. The result has the size of x. */
+/* x * f / 2^16, rounded down, for f up to 65536. The result is not larger than x. */
 static inline int32_t labial_part16(int32_t x, uint32_t f)
 {
 #if LABIAL_NARROW_MULTIPLY
@@ -67,14 +67,14 @@ static inline int32_t labial_part16(int32_t x, uint32_t f)
 #endif
 }
 
-/* x * f / 2^24 for f up to 2^24: the upper 16 bits of f times x, and the lower eight times the upper half of x. Below
- * the true value by less than three. */
+/* x * f / 2^24 for f up to 2^24: the upper 16 bits of f times x, plus the lower eight times the upper half of x. The
+ * result is below the true value by less than three. */
 static inline int32_t labial_part24(int32_t x, uint32_t f)
 {
     return labial_part16(x, f >> 8) + (((x >> 16) * (int32_t)(f & 255u)) >> 8);
 }
 
-/* The number that an 8-bit minifloat weight stands for, 0 .. 507904. */
+/* The value of an 8-bit minifloat weight, 0 .. 507904. */
 static inline uint32_t labial_weight(uint8_t code)
 {
     const uint32_t exponent = (uint32_t)code >> 4, mantissa = (uint32_t)code & 15u;
@@ -100,18 +100,17 @@ static inline uint32_t labial_z_cost(uint32_t z)
     return (z * z) >> 7;
 }
 
-/* a / b, of b > 0. Behind a call, for compilers that know the operands' ranges link signed division beside it. */
+/* a / b, for b > 0. A function, since compilers that know the operands' ranges would also link signed division. */
 uint32_t labial_quotient(uint32_t a, uint32_t b);
 
-/* How far a transition has gone at `step` of `steps`, 65535 at most, Q14: 3 s^2 - 2 s^3, which starts and ends without
- * a jolt. */
+/* Progress of a smooth transition at `step` of `steps`, which are at most 65535: 3 s^2 - 2 s^3, Q14. */
 static inline int32_t labial_ease(unsigned step, unsigned steps)
 {
     const uint32_t s = labial_quotient((uint32_t)step << 14, steps);
     return (int32_t)(((s * s >> 14) * ((3u << 14) - 2u * s)) >> 14);
 }
 
-/* value, not beyond +-limit. */
+/* value, limited to +-limit. */
 static inline int32_t labial_clamp(int32_t value, int32_t limit)
 {
     return value > limit ? limit : value < -limit ? -limit : value;

@@ -1,5 +1,5 @@
 /*
- * laugh.c - laughs of a wanted length. export/labial/laughs.py computes the same and is the source of the tables, which
+ * laugh.c - laughs of a given length. export/labial/reference/laughs.py computes the same and writes the tables, which
  * keep every duration, period and train within its limits (tests/c/test_laugh.c).
  */
 #include "labial/laugh.h"
@@ -75,7 +75,7 @@ static void add(labial_laugh_t *laugh, unsigned phoneme, uint32_t milliseconds)
     laugh->count++;
 }
 
-/* The same in the grade that `loudness`, 0 to 255 of the intensity, asks for; between two grades by dither. */
+/* The same in the grade for `loudness`, 0 to 255 of the intensity; a dither alternates between two grades. */
 static void add_graded(labial_laugh_t *laugh, unsigned phoneme, uint32_t milliseconds, uint32_t loudness)
 {
     const unsigned soft = soft_grades[phoneme];
@@ -103,7 +103,7 @@ static void begin_train(labial_laugh_t *laugh)
 
 static void pulse(labial_laugh_t *laugh, uint32_t room)
 {
-    uint32_t period, sound, rest, stop;
+    uint32_t period, sound, remainder, stop;
     int32_t deviation;
     unsigned note;
     if (chance(laugh, CHANGE))
@@ -123,20 +123,20 @@ static void pulse(labial_laugh_t *laugh, uint32_t room)
     sound = duration(laugh, note);
     if (sound > period - 40u)
         sound = period - 40u;
-    rest = period - sound;
+    remainder = period - sound;
     if (laugh->kind == BREATH_FIRST) {
-        add_graded(laugh, LABIAL_LAUGH_FRICATIVE, rest, laugh->loudness);
+        add_graded(laugh, LABIAL_LAUGH_FRICATIVE, remainder, laugh->loudness);
         add_graded(laugh, note, sound, laugh->loudness);
     } else if (laugh->kind == STOP_FIRST) {
         stop = duration(laugh, LABIAL_LAUGH_PLOSIVE);
-        if (stop > rest - 20u)
-            stop = rest - 20u;
+        if (stop > remainder - 20u)
+            stop = remainder - 20u;
         add(laugh, LABIAL_LAUGH_PLOSIVE, stop);
         add_graded(laugh, note, sound, laugh->loudness);
-        add(laugh, LABIAL_LAUGH_SILENCE, rest - stop);
+        add(laugh, LABIAL_LAUGH_SILENCE, remainder - stop);
     } else {
         add_graded(laugh, note, sound, laugh->loudness);
-        add(laugh, LABIAL_LAUGH_SILENCE, rest);
+        add(laugh, LABIAL_LAUGH_SILENCE, remainder);
     }
     laugh->loudness = (uint8_t)((laugh->loudness * PULSE_DECAY) >> 8);
 }
@@ -166,13 +166,13 @@ static void pause_between_trains(labial_laugh_t *laugh, uint32_t room)
             breath = room;
         laugh->count = 0;
         add(laugh, LABIAL_LAUGH_NE, breath);
-        if (breath + PERIOD > room) { /* no pulse fits behind it: the laugh ends with air drawn in */
+        if (breath + PERIOD > room) { /* no pulse fits after it: the laugh ends with air drawn in */
             laugh->tail = laugh->left - breath;
             return;
         }
     }
     laugh->train_loudness = (uint8_t)((laugh->train_loudness * TRAIN_DECAY) >> 8);
-    if (laugh->train_loudness < SOFTEST) /* a laugh that is longer than a bout is several */
+    if (laugh->train_loudness < SOFTEST) /* a laugh that is longer than a bout has several bouts */
         laugh->train_loudness = 255;
     begin_train(laugh);
 }
@@ -192,7 +192,7 @@ static void onset(labial_laugh_t *laugh, uint32_t room)
         add(laugh, onsets[i], milliseconds);
 }
 
-/* Decides on what comes next; a pause may emit nothing. */
+/* Chooses the next phonemes; a pause may emit nothing. */
 static void compose(labial_laugh_t *laugh)
 {
     const uint32_t room = laugh->left > laugh->tail ? laugh->left - laugh->tail : 0u;

@@ -1,6 +1,6 @@
 /*
- * laugh_table.h - the statistics of laughter behind laugh.c. Written by export/labial/laughs.py from those of the
- * synthetic corpus; do not edit.
+ * laugh_table.h - the statistics of laughter behind laugh.c. Written by export/labial/reference/laughs.py from those of
+ * the synthetic corpus; do not edit.
  */
 #ifndef LABIAL_LAUGH_TABLE_H
 #define LABIAL_LAUGH_TABLE_H

@@ -1,10 +1,11 @@
 /*
- * model.c - whether a model's tables are what labial/model.h says.
+ * model.c - checks that a model's tables are as labial/model.h requires.
  */
 #include <stddef.h>
 
 #include "fixed.h"
 #include "labial/labial.h"
+#include "protrusion.h"
 
 static int is_within(uint32_t value, uint32_t least, uint32_t most)
 {
@@ -21,13 +22,13 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* Whether no pointer is null that the counts make necessary. */
+/* Whether all pointers that the counts require are set. */
 static int tables_are_there(const labial_model_t *model)
 {
     unsigned k;
     if (!model->phonemes || !model->components || !model->shapes || !model->channels)
         return 0;
-    if (model->kernel_taps && (!model->kernels || !model->last_kernels))
+    if (model->kernel_taps && (!model->kernels || !(model->last_kernels || model->protrusion)))
         return 0;
     if (model->pair_count && (!model->pair_keys || !model->pairs))
         return 0;
@@ -71,12 +72,13 @@ static int pairs_are_sound(const labial_model_t *model)
 
 static int floors_are_sound(const labial_model_t *model)
 {
+    const unsigned width = labial_channel_count(model);
     unsigned i, k;
     for (i = 0; i < model->floor_count; i++) {
-        if (model->contacts[i] >> LABIAL_CHANNELS)
+        if (model->contacts[i] >> width)
             return 0;
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
-            const int16_t floor = model->floors[i * LABIAL_CHANNELS + k];
+        for (k = 0; k < width; k++) {
+            const int16_t floor = model->floors[i * width + k];
             if (floor < LABIAL_NO_FLOOR || floor > LABIAL_POSITION_MAX)
                 return 0;
         }
@@ -116,18 +118,18 @@ static int transitions_are_sound(const labial_model_t *model, const labial_chann
     return 1;
 }
 
-/* weight * |mean|, below 2^26 with any weight within the limits; modulo 2^32 with others, whose sum is refused. */
+/* weight * |mean|: below 2^26 for weights within the limits; modulo 2^32 for others, whose sum is refused. */
 static uint32_t pull(uint32_t weight, int32_t mean)
 {
     return weight * (uint32_t)(mean < 0 ? -mean : mean);
 }
 
-/* What the states of a channel ask of equation 3 at most: weights, and their products with the means. */
+/* Extreme weights of a channel's states in equation 3, and of their products with the means. */
 typedef struct {
     uint32_t least_hold, most_hold, delta, delta2, delta_pull, delta2_pull;
 } extremes_t;
 
-/* Whether one state is in range; `extremes` takes it up. */
+/* Whether one state is in range; updates `extremes`. */
 static int state_is_sound(const labial_channel_t *channel, const labial_state_t *state, extremes_t *extremes)
 {
     const int32_t motion = labial_scaled(state->motion[0], channel->motion_scale[0]),

@@ -7,7 +7,7 @@
 
 #include "labial/labial.h"
 
-/* Labels are compared without their marks up to this many bytes; no alias of a phone set is longer. */
+/* Longest label, in bytes, that is compared without its marks; no alias of a phone set is longer. */
 #define LABEL_MAX 32
 
 /* A length and the sets of labels share a byte of an entry. */
@@ -36,7 +36,7 @@ static int find_exactly(const labial_names_t *names, unsigned labels, const char
     return LABIAL_ERROR_NAME;
 }
 
-/* ---- Marks, the same as in export/labial/labels.py ------------------------------------------------------------- */
+/* ---- Marks, the same as in export/labial/corpus/labels.py ------------------------------------------------------ */
 
 static int is_one_of(char c, const char *set)
 {
@@ -56,8 +56,8 @@ static int is_letter(char c)
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
 }
 
-/* Bytes of the mark at `at`, where `left` bytes are left: Praat's backslash sequences, combining marks but for the
- * cedilla, signs of length and of secondary articulation. 0 when it is none. */
+/* Bytes of the mark at `at`, where `left` bytes are left: Praat's backslash sequences, combining marks except the
+ * cedilla, signs of length and of secondary articulation. 0 when there is none. */
 static size_t mark_length(const char *at, size_t left)
 {
     if (at[0] == '\\' && left > 2u) {
@@ -94,7 +94,7 @@ static size_t leading_length(const char *at, size_t left)
     return is_one_of(at[0], "'\",%?") ? 1u : 0u;
 }
 
-/* Bytes of X-SAMPA's, Kaldi's and eSpeak's marks at the end of `length` bytes; what is left is not empty. */
+/* Bytes of X-SAMPA's, Kaldi's and eSpeak's marks at the end of `length` bytes; the remainder is not empty. */
 static size_t trailing_length(const char *text, size_t length)
 {
     char last;
@@ -107,7 +107,7 @@ static size_t trailing_length(const char *text, size_t length)
     return is_one_of(last, ":=~;.^\"-") && text[length - 2u] != ' ' ? 1u : 0u;
 }
 
-/* `name` without the blanks around it; `length` becomes what is left. */
+/* `name` without the blanks around it; `length` becomes the remaining length. */
 static const char *trim(const char *name, size_t *length)
 {
     for (; *length > 0u && is_blank(name[0]); (*length)--)
@@ -117,7 +117,7 @@ static const char *trim(const char *name, size_t *length)
     return name;
 }
 
-/* Writes `name` without its marks to `text`. Returns its length: 0 when it is empty, marks alone or too long. */
+/* Writes `name` without its marks to `text`. Returns the length: 0 when `name` is empty, only marks or too long. */
 static size_t without_marks(const char *name, size_t length, char text[LABEL_MAX])
 {
     size_t count = 0, skip, i;
@@ -175,7 +175,7 @@ static int is_bracketed(const char *text, size_t length)
     return 0;
 }
 
-/* Whether there is a letter of any alphabet, or something else that is not ASCII. */
+/* Whether there is a letter of any alphabet, or another character that is not ASCII. */
 static int has_letter(const char *text, size_t length)
 {
     for (; length > 0u; length--, text++)

@@ -1,5 +1,5 @@
 /*
- * result.c - a sentence for each result (labial/labial.h).
+ * result.c - a description of each result (labial/labial.h).
  */
 #include "labial/labial.h"
 

@@ -1,5 +1,5 @@
 /*
- * rig.c - FAPs to servos and blendshapes. Uses nothing of the stream, so that either can be linked without the other.
+ * rig.c - FAPs to servos and blendshapes. Independent of the stream, so that either can be linked without the other.
  */
 #include "labial/rig.h"
 
@@ -7,16 +7,16 @@
 
 #include "fixed.h"
 
-/* Channels of FAP 51 and FAP 52, whose sum is below 0 by as much as the lips are open. */
+/* Channels of FAP 51 and FAP 52: the opening of the lips is minus their sum. */
 #define UPPER_LIP 3
 #define LOWER_LIP 4
 
 #define CONTACT_ONE 16777216
 
-/* Beyond every limit a value may have, with room for a neutral on top. */
+/* Beyond every limit of a value, with room for adding a neutral. */
 #define MOVE_MAX 1073741824
 
-/* No two values of a checked table are as far apart. */
+/* Beyond the distance of any two values of a checked table. */
 #define ROOM_MAX 33554432
 
 static int within(int32_t value, int32_t limit)
@@ -61,7 +61,7 @@ static int output_is_sound(const labial_rig_output_t *output)
            closing_is_sound(output) && curve_is_sound(output->curve);
 }
 
-/* value within the output's limits; the maximum where a table that was not checked has them crossed. */
+/* value within the output's limits; the maximum where an unchecked table has minimum > maximum. */
 static int32_t limited(const labial_rig_output_t *output, int32_t value)
 {
     if (value < output->minimum)
@@ -86,7 +86,7 @@ static int32_t contact(const int16_t faps[LABIAL_CHANNELS])
     return apart * (CONTACT_ONE / (LABIAL_RIG_APART - LABIAL_RIG_TOUCHING));
 }
 
-/* A curve's value; `linear` beyond what any table means counts as that. */
+/* A curve's value; `linear` is limited to the range of checked tables. */
 static int32_t bent(const labial_rig_curve_t *curve, int32_t linear)
 {
     const labial_rig_segment_t *segment = curve->segments;
@@ -140,7 +140,7 @@ int labial_rig_rest(const labial_rig_t *rig, int32_t *values)
     return LABIAL_OK;
 }
 
-/* `wanted`, or as near to it as the output's `closed` is far: `room` is how much it may change until lips touch. */
+/* `wanted`, limited to a distance of `room` from `closed`: how much the value can change until lips touch. */
 static int32_t towards_closed(const labial_rig_output_t *output, int32_t wanted, int32_t room)
 {
     const int32_t low = labial_sub(output->closed, room), high = labial_add(output->closed, room);
@@ -175,17 +175,17 @@ int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS
 
 /* ---- Limits of acceleration -------------------------------------------------------------------------------------- */
 
-/* What lies ahead of an output. Upwards: what is below is asked of the mirrored values. */
+/* The frames ahead of an output, for limits from above; limits from below use the mirrored values. */
 typedef struct {
     int32_t wanted[LABIAL_RIG_SIGHT]; /* units, of this frame and those that follow */
     int32_t
-        highest[LABIAL_RIG_SIGHT]; /* units: from where it can still come to rest at what is wanted in each of them */
-    unsigned count;                /* of frames, 1 or more; as in the last one it goes on */
-    int32_t rest;                  /* units: the place that the value may always go to */
+        highest[LABIAL_RIG_SIGHT]; /* units: from here it can still come to rest at the wanted value of each frame */
+    unsigned count;                /* of frames, 1 or more; the last one continues without end */
+    int32_t rest;                  /* units: the value of the output at rest, which is always allowed */
     int32_t speed, acceleration;   /* units per frame, and per frame and frame; both positive */
 } sight_t;
 
-/* From a place that is `room` above a target, speeding up for k frames is slowing down for k frames seen backwards. */
+/* Computes `highest`. Slowing down to a target over k frames covers the same `room` as speeding up over k frames. */
 static void look_up(sight_t *sight)
 {
     unsigned i, k;
@@ -204,7 +204,7 @@ static void look_up(sight_t *sight)
     }
 }
 
-/* Whether a value that goes on from `value` by `change`, and by less from then on, goes nowhere above what is ahead. */
+/* Whether a value that moves on from `value` by `change`, and brakes from then on, stays below `highest`. */
 static int stays_below(const sight_t *sight, int32_t value, int32_t change)
 {
     unsigned i;
@@ -219,7 +219,7 @@ static int stays_below(const sight_t *sight, int32_t value, int32_t change)
     }
 }
 
-/* The change that is nearest to `change` and stays below what is ahead; `least` where none does. */
+/* The change that is nearest to `change` and stays below `highest`; `least` where none does. */
 static int32_t not_above(const sight_t *sight, int32_t value, int32_t change, int32_t least)
 {
     int32_t low = least, high = change;
@@ -243,8 +243,8 @@ static void mirror(sight_t *sight)
     sight->rest = labial_sub(0, sight->rest);
 }
 
-/* The next change of a value that stands at `last` and changed by `change`. What keeps it from crossing the place of
- * rest has the last word: where it cannot be both in time and slow enough it is late. */
+/* The next change of a value that is at `last` and changed by `change`. Not crossing the rest value has priority: where
+ * the value cannot be both in time and slow enough, it is late. */
 static int32_t steered(sight_t *sight, int32_t last, int32_t change, int32_t deadband)
 {
     const int flip = last < sight->rest;
@@ -312,7 +312,7 @@ int labial_rig_delayed(const labial_rig_t *rig, labial_rig_delay_t *delay, const
     int result;
     if (!rig || !rig->outputs || !delay || !delay->frames || !values)
         return LABIAL_ERROR_NULL;
-    if (delay->held > delay->ahead) /* set by a fault: not beyond the frames' end */
+    if (delay->held > delay->ahead) /* invalid: stay within the frames */
         delay->held = delay->ahead;
     if (faps) {
         for (i = 0; i < LABIAL_CHANNELS; i++)

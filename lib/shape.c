@@ -7,8 +7,11 @@
 #include <string.h>
 
 #include "fixed.h"
+#include "protrusion.h"
 
 #define ONE 4096u /* the whole of a mixture, Q12 */
+
+#define FAR (2u * LABIAL_CONTACT_FRAMES) /* farther than contacts are looked for, frames */
 
 #define FIRST_HALF 8u /* channels whose shape the first half of a selection mixes */
 
@@ -23,6 +26,11 @@ static const uint16_t coarse[16] = { 32768, 19875, 12055, 7312, 4435, 2690, 1631
                                      600,   364,   221,   134,  81,   49,   30,   18 };
 static const uint16_t fine[16] = { 32768, 31760, 30783, 29836, 28918, 28028, 27166, 26330,
                                    25520, 24735, 23974, 23236, 22521, 21828, 21157, 20506 };
+
+/* By how much lips part between two contacts, FAP: half a standard deviation of the lips in speech; and in which
+ * channels they do, FAPs 51, 52, 55 to 58. */
+static const uint8_t parted[LABIAL_CHANNELS] = { 0, 0, 0, 28, 100, 0, 0, 25, 25, 86, 86, 0, 0 };
+#define PARTING 0x798u
 
 /* Q15 */
 static uint16_t likelihood(uint32_t cost)
@@ -93,13 +101,14 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
 /* Mixes the channels of the first or second half of a phoneme's shape, the same at both knots. */
 static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, labial_selection_t *selection)
 {
-    const unsigned count = selection->count, end = selection->halves == 0 ? FIRST_HALF : LABIAL_CHANNELS;
+    const unsigned count = selection->count, width = labial_channel_count(model);
+    const unsigned end = selection->halves == 0 ? FIRST_HALF : width;
     unsigned c, k;
     for (k = selection->halves == 0 ? 0u : FIRST_HALF; k < end; k++) {
         const labial_channel_t *channel = &model->channels[k];
         int32_t mean = 0, change = 0; /* in table steps, Q12 */
         for (c = 0; c < count; c++) {
-            const size_t at = ((size_t)phoneme->first_component + selection->components[c]) * LABIAL_CHANNELS + k;
+            const size_t at = ((size_t)phoneme->first_component + selection->components[c]) * width + k;
             mean += (int32_t)selection->shares[c] * model->shapes[at];
             if (model->slopes)
                 change += selection->tilts[c] * model->slopes[at];
@@ -119,7 +128,7 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
  * in `pair_keys`. */
 static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *shape)
 {
-    const unsigned knots = model->pair_knots;
+    const unsigned knots = model->pair_knots, width = labial_channel_count(model);
     unsigned low = 0, high = model->pair_count, j, k;
     while (low < high) {
         const unsigned middle = (low + high) / 2u;
@@ -131,8 +140,8 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
     if (low >= model->pair_count || model->pair_keys[low] != key)
         return;
     for (j = 0; j < 2u; j++) {
-        const int8_t *row = model->pairs + ((size_t)low * knots + (knots > 1u ? j : 0u)) * LABIAL_CHANNELS;
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const int8_t *row = model->pairs + ((size_t)low * knots + (knots > 1u ? j : 0u)) * width;
+        for (k = 0; k < width; k++) {
             const int32_t added = labial_scaled(row[k], model->channels[k].pair_scale);
             shape->knots[j][k] = (int16_t)labial_clamp(shape->knots[j][k] + added, LABIAL_POSITION_MAX);
         }
@@ -160,17 +169,22 @@ static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
     return floor ? model->contacts[floor - 1u] : 0u;
 }
 
+/* The floors of a phoneme that makes contact, or of silence in which channels come to rest: only one with floors does. */
+static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
+{
+    const unsigned floor = model->phonemes[phoneme].floor;
+    /*@ assert floor > 0; */
+    LABIAL_CHECK(floor > 0u);
+    return model->floors + (floor - 1u) * labial_channel_count(model);
+}
+
 /* Brings those of the channels that come to rest in silence `rest` of LABIAL_REST_FRAMES of the way there. */
 static void settle(const labial_model_t *model, unsigned channels, int32_t rest, int16_t target[LABIAL_CHANNELS])
 {
-    const unsigned floor = model->phonemes[model->silence].floor;
-    const int16_t *pose;
+    const int16_t *pose = floors_of(model, model->silence);
+    const unsigned width = labial_channel_count(model);
     unsigned k;
-    /* Channels come to rest by the contacts of silence, which only a floor has. */
-    /*@ assert floor > 0; */
-    LABIAL_CHECK(floor > 0u);
-    pose = model->floors + (floor - 1u) * LABIAL_CHANNELS;
-    for (k = 0; k < LABIAL_CHANNELS; k++, channels >>= 1)
+    for (k = 0; k < width; k++, channels >>= 1)
         if (channels & 1u)
             target[k] = (int16_t)(target[k] + (pose[k] - target[k]) * rest / LABIAL_REST_FRAMES);
 }
@@ -179,18 +193,55 @@ static void settle(const labial_model_t *model, unsigned channels, int32_t rest,
 static void apply_floor(const labial_model_t *model, unsigned phoneme, unsigned channels,
                         int16_t target[LABIAL_CHANNELS])
 {
-    const unsigned floor = model->phonemes[phoneme].floor;
+    const unsigned floor = model->phonemes[phoneme].floor, width = labial_channel_count(model);
     unsigned k;
     if (floor == 0 || channels == 0)
         return;
-    for (k = 0; k < LABIAL_CHANNELS; k++, channels >>= 1) {
-        const int16_t least = model->floors[(floor - 1u) * LABIAL_CHANNELS + k];
+    for (k = 0; k < width; k++, channels >>= 1) {
+        const int16_t least = model->floors[(floor - 1u) * width + k];
         if ((channels & 1u) && target[k] < least)
             target[k] = least;
     }
 }
 
-/* Contact of a phoneme and of short ones beside it; returns the channels. */
+/* How many frames away the nearest phoneme is that makes contact, forwards (`step` is 1) or backwards (-1); FAR where
+ * there is none within LABIAL_CONTACT_FRAMES, or silence is nearer. */
+static unsigned distance_to_contact(const labial_model_t *model, const uint8_t *labels, int step)
+{
+    unsigned distance;
+    for (distance = 1; distance <= LABIAL_CONTACT_FRAMES; distance++) {
+        labels += step;
+        if (*labels == model->silence)
+            break;
+        if (contacts_of(model, *labels))
+            return distance;
+    }
+    return FAR;
+}
+
+/* Parts the lips in a frame between two contacts that are LABIAL_CONTACT_FRAMES or less apart, in the channels that both
+ * have. */
+static void part(const labial_model_t *model, const uint8_t *labels, int16_t target[LABIAL_CHANNELS])
+{
+    const unsigned ahead = distance_to_contact(model, labels, 1);
+    const unsigned behind = ahead < FAR ? distance_to_contact(model, labels, -1) : FAR;
+    const unsigned width = labial_channel_count(model);
+    const int16_t *last, *next;
+    unsigned channels, k;
+    if (ahead == FAR || behind == FAR || ahead + behind > LABIAL_CONTACT_FRAMES + 1u)
+        return;
+    channels = contacts_of(model, labels[-(int)behind]) & contacts_of(model, labels[ahead]) & PARTING;
+    last = floors_of(model, labels[-(int)behind]);
+    next = floors_of(model, labels[ahead]);
+    for (k = 0; k < width; k++) {
+        const int32_t floor = last[k] < next[k] ? last[k] : next[k];
+        const int32_t most = labial_clamp(floor - parted[k] * 16, LABIAL_POSITION_MAX);
+        if ((channels >> k & 1u) && floor > LABIAL_NO_FLOOR && target[k] > most)
+            target[k] = (int16_t)most;
+    }
+}
+
+/* Contact of a phoneme and of short ones beside it, and lips that part between two; returns the channels in contact. */
 static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, int16_t target[LABIAL_CHANNELS])
 {
     const uint8_t *labels = taken->labels;
@@ -206,15 +257,19 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
         settle(model, own, taken->rest, target);
     apply_floor(model, labels[1], before, target);
     apply_floor(model, labels[-1], after, target);
+    if (!(own | before | after) && labels[0] != model->silence)
+        part(model, labels, target);
     return (is_open ? 0u : own) | before | after;
 }
 
-/* What the kernels' taps add up to on every channel, in steps. Two channels of a word are summed at once. */
+/* What the kernels' taps add up to on every channel, in steps; 0 on one that the model does not have. Two channels of a
+ * word are summed at once. */
 static void add_taps(const labial_model_t *model, const uint8_t *labels, int16_t *sums)
 {
     const uint32_t *words[LABIAL_KERNEL_TAPS_MAX], *const *row; /* of each tap's phoneme */
     const uint32_t halves = 0x00ff00ffu;
     const unsigned taps = model->kernel_taps;
+    const int8_t *const last_kernels = model->last_kernels;
     int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, for no pointer may pass the end */
     const int32_t bias = (int32_t)(taps * 128u);
     unsigned tap, group;
@@ -222,9 +277,10 @@ static void add_taps(const labial_model_t *model, const uint8_t *labels, int16_t
     for (tap = 0; tap < taps; tap++, lag += model->kernel_stride) {
         const size_t at = (size_t)labels[lag] * taps + tap;
         words[tap] = model->kernels + at * 3u;
-        last += model->last_kernels[at];
+        if (last_kernels)
+            last += last_kernels[at];
     }
-    for (group = 0; group < LABIAL_CHANNELS / 4u; group++) {
+    for (group = 0; group < LABIAL_CHANNELS_SOLVED / 4u; group++) {
         uint32_t even = 0, odd = 0;
         for (row = words; row < words + taps; row++) {
             const uint32_t word = (*row)[group];
@@ -243,9 +299,10 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
                              int16_t target[LABIAL_CHANNELS])
 {
     const int32_t share = taken->share;
+    const unsigned width = labial_channel_count(model);
     unsigned k;
     add_taps(model, taken->labels, target);
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (k = 0; k < width; k++) {
         const int32_t start = shape->knots[0][k];
         const int32_t position = start + (((shape->knots[1][k] - start) * share + 8192) >> 14) +
                                  labial_scaled(target[k], model->channels[k].kernel_scale);

@@ -16,12 +16,16 @@
 #include "channels.h"
 #include "fixed.h"
 #include "shape.h"
+#include "trajectory.h"
 #include "units.h"
 
 #define MAGIC 0x4c41424cu /* "LABL" */
 
 /* Frames over which a solution that begins anew fades in. */
 #define FADE 8u
+
+/* Percent by which the articulation changes from frame to frame, at most. */
+#define SLEW 10
 
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
@@ -46,17 +50,24 @@ static void select_halves(labial_t *stream, unsigned halves)
                                 &stream->next);
 }
 
+/* Percent in 1/LABIAL_GAIN_ONE, rounded: times 2.56, which is 5243 / 2^11. */
+static int32_t gain_of(unsigned percent)
+{
+    return (int32_t)((percent * 5243u + 1024u) >> 11);
+}
+
 /* Stores a frame that was taken, and its target. */
 static void store(labial_t *stream, const labial_taken_t *taken)
 {
-    labial_frame_t *frame = labial_channels_enter(&stream->channels);
+    labial_frame_t *frame = labial_channels_enter(&stream->channels, stream->models, taken->slot);
     if (taken->is_first) {
         stream->shape = stream->next.shape;
         stream->next.halves = 0;
     }
     frame->contacts = labial_shape_target(stream->models[taken->slot], &stream->shape, taken, frame->target);
-    frame->slot = taken->slot;
     frame->marks = taken->marks;
+    stream->articulation =
+        (uint8_t)(stream->articulation + labial_clamp((int32_t)stream->wanted - stream->articulation, SLEW));
     if ((taken->marks & LABIAL_BEGINS) && (stream->channels.entered > 1u || stream->shown))
         stream->begins[0] |= 1u;
 }
@@ -114,7 +125,7 @@ static void begin_fade(labial_t *stream)
 static int deliver(labial_t *stream)
 {
     const unsigned delay = LABIAL_DELAY(stream->channels.stride);
-    const int16_t *motion = labial_channels_due(&stream->channels);
+    const int16_t *motion = labial_channels_due(&stream->channels, stream->models);
     unsigned k;
     if (!motion)
         return 0;
@@ -173,6 +184,7 @@ static void reset_input(labial_t *stream)
     labial_channels_reset(&stream->channels);
     stream->pending = 0;
     stream->ended = stream->begun = stream->next.halves = 0;
+    stream->articulation = stream->wanted;
     stream->fade_step = 0;
     stream->ease_length = stream->ease_step = 0;
 }
@@ -193,6 +205,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     stream->models[0] = model;
     stream->callback = callback;
     stream->user = user;
+    stream->wanted = 100;
     labial_channels_init(&stream->channels, model->search_stride, workspace);
     stream->magic = MAGIC;
     reset_input(stream);
@@ -220,7 +233,7 @@ int labial_use(labial_t *stream, const labial_model_t *model)
             break;
         }
         if (!labial_channels_uses(&stream->channels, slot) && !labial_units_uses(&stream->units, slot))
-            chosen = slot; /* neither frames to be solved nor phonemes in the queue are of its model */
+            chosen = slot; /* neither frames to be delivered nor phonemes in the queue are of its model */
     }
     if (chosen == LABIAL_MODELS)
         return LABIAL_ERROR_MODELS;
@@ -275,7 +288,7 @@ int labial_tick(labial_t *stream)
         select_halves(stream, 2);
     result = take_frame(stream);
     if (result == LABIAL_OK) {
-        labial_channels_step(&stream->channels, stream->models);
+        labial_channels_step(&stream->channels, stream->models, gain_of(stream->articulation));
         if (stream->channels.phase > 0) { /* the first of a stride's ticks has most channels, and should not have to */
             const int is_last = stream->channels.phase + 1u == stream->channels.stride;
             if (is_last && labial_units_at_first(&stream->units, stream->models))
@@ -315,6 +328,17 @@ int labial_restart(labial_t *stream)
         return LABIAL_ERROR_STATE;
     reset_input(stream);
     memcpy(stream->earlier, stream->pose, sizeof stream->earlier); /* which is at rest */
+    return LABIAL_OK;
+}
+
+int labial_articulation(labial_t *stream, unsigned percent)
+{
+    const int result = status(stream);
+    if (result != LABIAL_OK)
+        return result;
+    stream->wanted = (uint8_t)(percent < LABIAL_ARTICULATION_MAX ? percent : LABIAL_ARTICULATION_MAX);
+    if (stream->channels.entered == 0) /* nothing moves yet that could be jolted */
+        stream->articulation = stream->wanted;
     return LABIAL_OK;
 }
 

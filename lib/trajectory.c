@@ -19,6 +19,9 @@
  * delta-delta means. Rounding rho or kappa moves m by that share of a difference, and nothing where the motion rests.
  * c has 14 bits, so that its products are short.
  *
+ * An articulation g multiplies x and p, and so all that is on the right-hand side. The largest doubles the bounds of q
+ * and m, which have room for that.
+ *
  * Formats: weights are integers; g, f, c, D, k, row, bent in Q16; rho and kappa in Q24, 16 bits where they are kept for
  * the backward pass; q and m in Q12 FAP. g is never below the hold, f and c never below zero as long as d is not above
  * dd, and so rho and kappa lie within 0 .. 1.
@@ -138,20 +141,28 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     solver->bent = labial_part24(f, kappa) + 2 * solver->k1;
 }
 
-void labial_trajectory_terms(const labial_channel_t *channel, unsigned number, labial_terms_t *terms)
+/* A mean of delta or delta-delta, Q4. */
+static inline int32_t moving(const labial_channel_t *channel, const labial_state_t *state, unsigned which, int32_t gain)
+{
+    return (state->motion[which] * ((channel->motion_scale[which] * gain) >> 8) + 128) >> 8;
+}
+
+void labial_trajectory_terms(const labial_channel_t *channel, unsigned number, int32_t gain, labial_terms_t *terms)
 {
     const labial_state_t *state = &channel->states[number];
     const int32_t contact = (int32_t)labial_weight(channel->contact_weight);
     const int32_t delta2 = (int32_t)labial_weight(state->weight[1]);
-    terms->origin = state->mean;
-    terms->position = ((int32_t)channel->centre + state->mean) * 256;
-    terms->share = (int32_t)state->share + (state->share >> 7);
+    const int32_t share = (((int32_t)state->share + (state->share >> 7)) * gain) >> 4;
+    terms->share = share;
+    terms->centre = channel->centre;
+    terms->gain = gain;
+    terms->position = (terms->centre + state->mean) * gain - ((state->mean * share) >> 4);
     terms->hold = (int32_t)labial_weight(state->hold);
     terms->contact_weight = contact > terms->hold ? contact : terms->hold;
     terms->delta = (int32_t)labial_weight(state->weight[0]);
     terms->stiff = delta2 - terms->delta;
-    terms->delta_pull = 2 * terms->delta * labial_scaled(state->motion[0], channel->motion_scale[0]);
-    terms->delta2_pull = delta2 * labial_scaled(state->motion[1], channel->motion_scale[1]);
+    terms->delta_pull = 2 * terms->delta * moving(channel, state, 0, gain);
+    terms->delta2_pull = delta2 * moving(channel, state, 1, gain);
 }
 
 void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms, const labial_frame_t *frame,
@@ -175,8 +186,14 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
             solver->pull = solver->next_pull - 2 * terms->delta2_pull;
             solver->next_pull = terms->delta2_pull + terms->delta_pull;
         }
-        solver->hold = (uint16_t)(contact ? terms->contact_weight : terms->hold);
-        solver->position = terms->position + (frame->target[channel] - terms->origin) * (contact ? 256 : terms->share);
+        if (contact) {
+            solver->hold = (uint16_t)terms->contact_weight;
+            solver->position = (terms->centre + frame->target[channel]) *
+                               (terms->gain < LABIAL_GAIN_ONE ? terms->gain : LABIAL_GAIN_ONE);
+        } else {
+            solver->hold = (uint16_t)terms->hold;
+            solver->position = terms->position + ((frame->target[channel] * terms->share) >> 4);
+        }
         if (is_last)
             factor(solver, 0, 0, own);
     }

@@ -4,10 +4,12 @@
  *     (W' U^-1 W + A) m = W' U^-1 mu_q + A x
  *
  * q is the state path, U the diagonal of the states' variances, A that of the anchors' precisions and x the targets.
- * Rows of W whose delta window would leave the solution are dropped. The factorisation continues from frame to frame;
- * the backward pass starts LABIAL_WINDOW frames ahead of those that are wanted, as if all frames beyond were equal to
- * the first of them. With weights that labial_model_check() accepts, the error is below .1 FAP unit (as the tests
- * show).
+ * Rows of W whose delta window would leave the solution are dropped. With an articulation g, mu_q and x are g times as
+ * far from the neutral face, and so is m: the matrix and the path are the same. In contact x is so at most once.
+ *
+ * The factorisation continues from frame to frame; the backward pass starts LABIAL_WINDOW frames ahead of those that are
+ * wanted, as if all frames beyond were equal to the first of them. With weights that labial_model_check() accepts, the error is below .1 FAP unit (as the tests
+ * show), and below .2 with the largest articulation.
  */
 #ifndef LABIAL_TRAJECTORY_H
 #define LABIAL_TRAJECTORY_H
@@ -16,10 +18,11 @@
 
 /* What a state adds to equation 3 in each of its frames. */
 typedef struct {
-    int32_t position;       /* Q12 FAP: the mean of the static feature */
-    int32_t origin;         /* the target, a position, at which the anchor agrees with it */
-    int32_t share;          /* of the anchor in `hold`, in 1/256 */
+    int32_t position;       /* Q12 FAP: where the frame is held with a target of 0 */
+    int32_t share;          /* of the target in where it is held, Q12 */
     int32_t hold;           /* weight */
+    int32_t centre;         /* Q4 FAP: of positions */
+    int32_t gain;           /* articulation, in 1/256 */
     int32_t contact_weight; /* weight of a frame in contact */
     int32_t delta;          /* a quarter of its weight */
     int32_t stiff;          /* weight of delta-delta, less `delta` */
@@ -27,8 +30,11 @@ typedef struct {
     int32_t delta2_pull;    /* delta-delta's weight times its mean, Q4 */
 } labial_terms_t;
 
-/* The terms of a state of a channel. */
-void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms);
+/* An articulation of 1; the largest is twice that. */
+#define LABIAL_GAIN_ONE 256
+
+/* The terms of a state of a channel, with an articulation in 1/256. */
+void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, int32_t gain, labial_terms_t *terms);
 
 /*
  * Adds the rows of `count` successive frames of `channel` that have the same terms. A frame in contact is tied to its

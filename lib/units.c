@@ -24,7 +24,7 @@ void labial_units_reset(labial_units_t *units)
 {
     units->head = units->count = 0;
     units->taken = units->frames = 0;
-    units->remainder = 500; /* so that frames are those of the rounded sum */
+    units->remainder = 500; /* one half: rounds the sum of the durations */
     units->begins = 1;
 }
 
@@ -56,7 +56,7 @@ int labial_units_uses(const labial_units_t *units, unsigned slot)
     return 0;
 }
 
-/* Frames that the model looks ahead, with its kernels and for short contacts. */
+/* The model's look-ahead in frames, for its kernels and for short contacts. */
 static unsigned look_ahead(const labial_model_t *model)
 {
     const unsigned reach =
@@ -68,7 +68,7 @@ static unsigned look_ahead(const labial_model_t *model)
 /* The middle of frame `frame` of `frames` from 0 to 1, Q14. */
 static uint16_t share_of(uint32_t frame, uint32_t frames)
 {
-    /* No phoneme is empty, nor either of the two that a silence is taken as. */
+    /* No phoneme is empty, nor is either part of a long silence. */
     /*@ assert frames > 0; */
     LABIAL_CHECK(frames > 0);
     for (; frames >= 65536u; frames >>= 1)
@@ -76,7 +76,7 @@ static uint16_t share_of(uint32_t frame, uint32_t frames)
     return (uint16_t)labial_quotient((2u * frame + 1u) << 13, frames);
 }
 
-/* Frames of the first of the two phonemes that a long silence is taken as; 0 for all others. */
+/* Frames of the first of the two phonemes that stand for a long silence; 0 for all other phonemes. */
 static uint32_t head_of(const labial_segment_t *segment, const labial_model_t *model)
 {
     const unsigned ahead = look_ahead(model);
@@ -96,7 +96,7 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     const labial_model_t *model;
     uint32_t from = units->taken, head;
     unsigned i = 0, slot;
-    if (units->count > 0 && !labial_units_at_first(units, models)) { /* the rest of a silence, or the next segment */
+    if (units->count > 0 && !labial_units_at_first(units, models)) { /* in a silence, or in the next segment */
         head = head_of(segment, models[segment->slot]);
         i = from > head;
         from = i ? 0u : head;
@@ -124,8 +124,8 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     return from < head || i + 1u < units->count || ended;
 }
 
-/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` behind it; silence from where the
- * solution ends. */
+/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` frames after it; silence after
+ * the end of the solution. */
 static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsigned ahead)
 {
     uint8_t *label = units->labels + LABIAL_REACH, *const last = label + ahead;
@@ -148,15 +148,30 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
         *label++ = silence;
 }
 
-/* How far the mouth has come to rest in a pause that does not yet lead on to something. */
+/* Whether frame `frame` of a phoneme of `frames` lies outside of its contact, which the middle half of its frames make,
+ * but LABIAL_CONTACT_FRAMES of them at least; the last ones of a phoneme that includes a pause. */
+static int lies_open(uint32_t frame, uint32_t frames)
+{
+    uint32_t held = (frames + 1u) / 2u;
+    if (frames >= LABIAL_CONTACT_LONG)
+        return frames - frame > LABIAL_CONTACT_LAST;
+    if (held < LABIAL_CONTACT_FRAMES)
+        held = LABIAL_CONTACT_FRAMES;
+    if (frames <= held)
+        return 0;
+    frames = (frames - held) / 2u; /* those before it */
+    return frame < frames || frame >= frames + held;
+}
+
+/* Progress to rest in a pause, before its last frames, which lead to the next phoneme. */
 static uint8_t rest_of(labial_units_t *units)
 {
     if (units->taken == 0)
-        units->rested = units->begins; /* nothing leads to where it rests */
+        units->rested = units->begins; /* a stream that begins with a pause begins at rest */
     return (uint8_t)(units->taken < LABIAL_REST_FRAMES && !units->rested ? units->taken + 1u : LABIAL_REST_FRAMES);
 }
 
-/* Goes on to the next frame, of the next segment where this one ends; returns the marks of the frame that was taken. */
+/* Advances to the next frame, of the next segment where this one ends; returns the marks of the accepted frame. */
 static unsigned go_on(labial_units_t *units, const labial_segment_t *segment, int is_boundary, int is_last)
 {
     unsigned marks = units->begins ? (unsigned)LABIAL_BEGINS : 0u;
@@ -205,7 +220,7 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     taken->rest = 0;
     if (head > 0 && (begin < head || is_last))
         taken->rest = rest_of(units);
-    taken->is_open = end - begin >= LABIAL_CONTACT_LONG && segment->frames - units->taken > LABIAL_CONTACT_LAST;
+    taken->is_open = (uint8_t)lies_open(units->taken - begin, end - begin);
     taken->marks = (uint8_t)go_on(units, segment, model->phonemes[segment->phoneme].boundary, is_last);
     return LABIAL_OK;
 }

@@ -1,15 +1,16 @@
 /*
- * units.h - phonemes to frames: the queue of what was pushed, taken frame by frame.
+ * units.h - phonemes to frames: the queue of pushed phonemes, read frame by frame.
  *
- * A frame is taken when everything that its target depends on is known: what its model's kernels reach, and the next
- * phoneme. So frames never depend on when their phonemes were pushed. A pause delays nothing: a silence that is longer
- * than the kernels look ahead is treated as two phonemes, the first of which does not depend on what follows.
+ * A frame is accepted, that is taken from the queue, when everything that its target depends on is known: the phonemes
+ * that its model's kernels reach, and the next phoneme. So frames never depend on when their phonemes were pushed. A
+ * pause adds no delay: a silence that is longer than the kernels look ahead is treated as two phonemes, the first of
+ * which does not depend on what follows.
  *
  *     pushed    | m |  ey  | b |   iy   |          silence           | m |
  *     taken     | m |  ey  | b |   iy   |      silence     | silence | m |
  *     units     | m    ey  | b |   iy   |      silence       silence   m |
  *
- * A unit runs from the end of a boundary phoneme (a vowel, p, b, m) to that of the next. Where the model changes a
+ * A unit runs from the end of a boundary phoneme (a vowel, p, b, m) to the end of the next. Where the model changes, a
  * solution ends, and another begins with the next frame.
  */
 #ifndef LABIAL_UNITS_H
@@ -25,15 +26,15 @@ typedef struct {
     uint16_t ms;
 } labial_spoken_t;
 
-/* A frame that was taken. */
+/* An accepted frame. */
 typedef struct {
-    const uint8_t *labels; /* its phoneme, among those of the frames around it, LABIAL_REACH to either side, of which
-                            * those that the kernels reach count; valid until the next is taken */
-    uint16_t share;        /* how far it lies from the start of its phoneme to its end, Q14 */
+    const uint8_t *labels; /* its phoneme, amid those of LABIAL_REACH frames to either side, of which those within the
+                            * kernels' reach are set; valid until the next frame is accepted */
+    uint16_t share;        /* its place from the start of its phoneme to the end, Q14 */
     uint8_t slot;          /* its model */
     uint8_t is_first;      /* of its phoneme */
-    uint8_t is_open;       /* it lies in a phoneme that includes a pause, before its contact */
-    uint8_t rest;          /* how far the mouth has come to rest in a pause, of LABIAL_REST_FRAMES; 0 elsewhere */
+    uint8_t is_open;       /* it lies outside of the contact that its phoneme may make */
+    uint8_t rest;          /* progress to rest in a pause, 1 .. LABIAL_REST_FRAMES; 0 elsewhere */
     uint8_t marks;
 } labial_taken_t;
 
@@ -51,9 +52,9 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
                            uint32_t frames_per_second);
 
 /*
- * Takes the next frame; `ended` says that no more phonemes will come.
+ * Accepts the next frame; `ended` says that no more phonemes will come.
  *
- * Returns LABIAL_OK, LABIAL_STARVED when more must be known, or LABIAL_DONE when every frame was taken.
+ * Returns LABIAL_OK, LABIAL_STARVED when more phonemes are needed, or LABIAL_DONE after the last frame.
  */
 int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_taken_t *taken);

@@ -44,7 +44,7 @@ static inline uint32_t emission(const labial_emission_t *state, int32_t position
     return labial_z_cost(z < EMISSION_Z_MAX ? z : EMISSION_Z_MAX) + state->cost;
 }
 
-/* The paths so far move back by a step, or are forgotten. */
+/* Ages the stored paths by a step, or drops them. */
 static void age(labial_search_t *search, int is_first)
 {
 #if LABIAL_LAG > 0
@@ -60,7 +60,8 @@ static void age(labial_search_t *search, int is_first)
 #endif
 }
 
-/* The least cost of entering state `i` of a window, by its transitions or from the best state; notes where from. */
+/* The least cost of entering state `i` of a window, by its transitions or from the best state; stores the
+ * predecessor. */
 static inline uint32_t enter(labial_search_t *search, const uint16_t *transition, const uint16_t *const end, unsigned i)
 {
     const unsigned first = search->first;
@@ -126,7 +127,7 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
         }
     }
 #if LABIAL_LAG > 0
-    for (i = 0; i < search->undecided; i++) { /* trace back through the steps that are not decided */
+    for (i = 0; i < search->undecided; i++) { /* trace back through the undecided steps */
         best = search->back[i][best];
         search->path[i + 1u] = (uint8_t)(search->firsts[i] + best);
     }

@@ -1,12 +1,12 @@
 /*
  * viterbi.h - targets to states: the most likely path of one channel through its codebook, step by step.
  *
- * A score is the cost of the best path into a state, less that of the best state, at most LABIAL_DEAD. Besides from its
- * predecessors every state can be entered from the best state of the previous step, at the cost LABIAL_DEAD, the
- * highest of a transition: so a state that is this far behind need not be kept, and eight bits are enough.
+ * A score is the cost of the best path into a state, less that of the best state, at most LABIAL_DEAD. Every state can
+ * be entered from its predecessors, and from the best state of the previous step at the cost LABIAL_DEAD, the highest
+ * cost of a transition. So a state with this score need not be stored, and eight bits are enough.
  *
- * Only the LABIAL_SEARCHED states around the one that is nearest to the target are searched; the others are dead.
- * Probable paths hardly leave this window, and it makes all steps take the same work.
+ * Only the LABIAL_SEARCHED states around the one nearest to the target are searched; the others are dead. Probable
+ * paths hardly leave this window, and it makes all steps take the same work.
  *
  * The state of a step is decided LABIAL_LAG frames later, by tracing back from the state that is best then, or at the
  * end of the unit if that comes earlier; nothing before the end of a unit is decided after it.
@@ -20,13 +20,13 @@
 #define LABIAL_DEAD 255u
 
 /*
- * The next step of a path, for a target `position`. `marks` are those of its frames (units.h): with LABIAL_BEGINS it is
- * a path's first step; with LABIAL_UNIT_ENDS it ends a unit, and whatever follows comes from its best state.
+ * Makes the next step of a path, for a target `position`. `marks` are those of its frames (units.h): with LABIAL_BEGINS
+ * it is a path's first step; with LABIAL_UNIT_ENDS it ends a unit, and the next step starts from its best state.
  */
 void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position, unsigned marks,
                          labial_search_t *search);
 
-/* How many frames the last step stands for. */
+/* Sets the number of frames of the last step. */
 static inline void labial_viterbi_span(labial_search_t *search, unsigned frames)
 {
 #if LABIAL_LAG > 0

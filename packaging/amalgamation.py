@@ -1,6 +1,6 @@
-"""The library as two files: labial.h holds the public headers, labial.c all the rest, each file whole and unchanged.
+"""The library as two files: labial.h has the public headers, labial.c everything else, each file whole and unchanged.
 
-A header stands where it is first included. File-scope names and macros of lib/ differ from file to file, which
+A header is placed where it is first included. File-scope names and macros of lib/ differ from file to file, which
 tests/python/test_packages.py checks by compiling the result.
 """
 
@@ -16,7 +16,7 @@ _INCLUDE = re.compile(r'^#include "(?:labial/)?([^"]+)"\n', re.MULTILINE)
 
 
 def _joined(source: Source, files: List[Path], title: str, above: List[Path]) -> str:
-    """`files` one after the other, without the headers `above`, which the result takes as known."""
+    """`files` one after the other, without the headers `above`, which the result requires."""
     headers = {path.name: path for path in source.public + source.private}
     done = list(above)
 

@@ -2,7 +2,7 @@
 
 A sketch includes <speech_en.h>, or <Labial.h> for all public headers. Private sources lie in src/lib, which is not on
 the include path of sketches. The IDE offers examples for the architectures of the library, so that a sketch for others,
-which does not use the library, lies in extras/.
+which does not use the library, is in extras/.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ARCHITECTURES = (
     "nrf52", "renesas_portenta", "renesas_uno", "rp2040", "sam", "samd", "stm32", "zephyr",
 )  # fmt: skip
 
-#: Sketches for an Uno: they play what was computed elsewhere, without the library.
+#: Sketches for an Uno: they play baked motion, without the library.
 WITHOUT_LIBRARY = ("UnoJaw",)
 
 #: Where the headers lie that sketches share with other examples. A sketch's folder holds copies of them.

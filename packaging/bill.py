@@ -1,5 +1,5 @@
-"""A release's bill of materials, in the format CycloneDX 1.5: what its packages are, contain, can use and are built
-with."""
+"""A release's bill of materials, in the format CycloneDX 1.5: its packages, their contents, optional dependencies and
+build tools."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ Item = Dict[str, Any]
 
 
 def bill(tree: Path, packages: List[Path], moment: int) -> Item:
-    """The document for the packages that were built of the sources in `tree`; `moment`, in seconds since 1970, is when
-    the release was made. The same packages give the same document."""
+    """The document for the packages that were built from the sources in `tree`; `moment` is the time of the release in
+    seconds since 1970. The same packages give the same document."""
     version = _found(tree / "export/labial/__init__.py", r'^__version__ = "(.*)"$')[0]
     files = [_file(path) for path in packages]
     components = [*files, *_corpora(tree), *_python_packages(tree)]
@@ -42,7 +42,7 @@ def _file(path: Path) -> Item:
 
 
 def _corpora(tree: Path) -> List[Item]:
-    """What the bundled models were trained on, as their headers say it."""
+    """The training data of the bundled models, from their headers."""
     found = []
     for header in sorted((tree / "lib" / "models").glob("*.h")):
         (notice,) = re.findall(r"do not\s+\*?\s*edit\. ([^/]*)\.\s+\*/", header.read_text(encoding="utf-8"))

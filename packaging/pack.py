@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Lays Labial out for other build systems, with nothing but Python 3.9.
+"""Packs Labial for other build systems. Needs only Python 3.9 or newer.
 
     pack.py amalgamation -o DIR    labial.h, labial.c and the models, to drop into any project
     pack.py arduino -o DIR         a library for the Arduino IDE; --zip for "Add .ZIP Library"
-    pack.py platformio -o DIR      what a PlatformIO project needs in its lib/ folder
-    pack.py esp-idf -o DIR         what an ESP-IDF project needs in its components/ folder
-    pack.py zephyr -o DIR          a Zephyr module
-    pack.py version [X.Y.Z]        prints the version, or sets it in every file that holds it
+    pack.py platformio -o DIR what a PlatformIO project needs in its lib/ folder pack.py esp-idf -o DIR what an ESP-IDF
+    project needs in its components/ folder pack.py zephyr -o DIR a Zephyr module pack.py version [X.Y.Z] prints the
+    version, or sets it in every file that holds it
 
-PlatformIO, ESP-IDF and Zephyr can also use the source tree as it is. ``--models FOLDER`` takes models that ``labial
+PlatformIO, ESP-IDF and Zephyr can also use the source tree directly. ``--models FOLDER`` takes models that ``labial
 export`` wrote instead of the bundled ones.
 """
 
@@ -26,7 +25,7 @@ from source import URL, PackError, Source, exit_status, set_version, version
 
 
 def _empty_folder(path: Path) -> Path:
-    """`path` as a folder to write to; whatever lies there is the user's and stays."""
+    """`path` as a folder to write to, which must be new or empty."""
     if path.exists() and (not path.is_dir() or any(path.iterdir())):
         raise PackError(f"{path}: exists and is not an empty folder")
     path.mkdir(parents=True, exist_ok=True)

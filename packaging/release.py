@@ -6,9 +6,9 @@
 
 DIR gets the sources, the two files, the folders for Arduino, PlatformIO, ESP-IDF and Zephyr as archives, the Python
 package as source and as wheels for Linux, the npm packages, a bill of materials, and SHA256SUMS. Everything is built
-from a fresh copy of the tag, so that nothing of the working folder gets in. The tag's version must be that of the
-sources, and CHANGELOG.md must have a section for it that no longer says "unreleased". ``--without python npm`` leaves
-out what needs more than Python.
+from a fresh copy of the tag, so that the working folder has no effect. The tag's version must be that of the sources,
+and CHANGELOG.md must have a section for it that no longer says "unreleased". ``--without python npm`` skips the
+packages that need more than Python.
 
 Needs git; the Python package cmake and what packaging/wheels.txt names, which is fetched; the npm packages clang, lld,
 node and npm.
@@ -37,7 +37,7 @@ FOLDERS = ("amalgamation", "arduino", "platformio", "esp-idf", "zephyr")
 
 
 def run(command: List[object], folder: Path) -> str:
-    """Standard output of a command. PackError holds the last line of what a failing one said."""
+    """Standard output of a command. For a failing one, PackError has the last line of its output."""
     words = [str(part) for part in command]
     done = subprocess.run(words, cwd=folder, capture_output=True, encoding="utf-8", check=False)
     if done.returncode:

@@ -1,4 +1,4 @@
-"""The source tree as packages see it: its version, its files and the models."""
+"""The source tree for packages: its version, its files and the models."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from typing import Callable, Dict, List, Optional
 #: The folder of the source tree.
 ROOT = Path(__file__).resolve().parents[1]
 
-#: Where the version is written, as one pattern per file whose group is the number; the public header holds the parts.
+#: Files with the version, each with a pattern whose group is the number; the public header has the parts.
 VERSIONS: Dict[str, str] = {
     "export/labial/__init__.py": r'^__version__ = "([^"]*)"$',
     "idf_component.yml": r'^version: "([^"]*)"$',
     "library.json": r'^  "version": "([^"]*)",$',
-    "packaging/npm/package.json": r'^  "version": "([^"]*)",$',
-    "packaging/npm/laughter/package.json": r'^  "version": "([^"]*)",$',
+    "web/package.json": r'^  "version": "([^"]*)",$',
+    "web/laughter/package.json": r'^  "version": "([^"]*)",$',
 }
-#: Where a person finds the project, unless a release names another place.
+#: The project's address, unless a release names another.
 URL = "https://example.org/labial"
 _HEADER = "include/labial/labial.h"
 _PARTS = ("MAJOR", "MINOR", "PATCH")
 
 
 class PackError(Exception):
-    """Something given cannot be packed; the text says what and where."""
+    """An input cannot be packed; the message says what and where."""
 
 
 def exit_status(program: str, work: Callable[[], None]) -> int:
@@ -42,7 +42,7 @@ def exit_status(program: str, work: Callable[[], None]) -> int:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Writes a file with line feeds, whatever the system's own line ends are."""
+    """Writes a file with line feeds on every system."""
     path.write_bytes(text.encode("utf-8"))
 
 
@@ -54,7 +54,7 @@ def _part(text: str, part: str) -> re.Match:
 
 
 def version() -> str:
-    """The version that the public header holds, ``X.Y.Z``; every other file follows it."""
+    """The version in the public header, ``X.Y.Z``; all other files follow it."""
     text = (ROOT / _HEADER).read_text(encoding="utf-8")
     return ".".join(_part(text, part)[1] for part in _PARTS)
 

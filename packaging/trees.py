@@ -8,7 +8,7 @@ from typing import Dict, Tuple
 
 from source import ROOT, Source
 
-#: What each needs beside include/ and lib/.
+#: The files that each needs besides include/ and lib/.
 MANIFESTS: Dict[str, Tuple[str, ...]] = {
     "platformio": ("library.json",),
     "esp-idf": ("CMakeLists.txt", "cmake/EspIdfComponent.cmake", "idf_component.yml"),

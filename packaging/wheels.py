@@ -13,16 +13,11 @@ Needs cmake and make or ninja; fetches what wheels.txt names into a folder that 
 from __future__ import annotations
 
 import argparse
-import base64
-import hashlib
 import os
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
-import zipfile
 from pathlib import Path
 from typing import Dict, List, Optional
 
@@ -31,10 +26,10 @@ from source import ROOT, PackError, exit_status
 PLATFORMS = ("x86_64", "aarch64")
 GLIBC = "2.17"
 #: What the build reads, beside what `sdist.include` of pyproject.toml leaves out of it.
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "include", "lib", "packaging/python", "cmake/LabialTarget.cmake",
-           "export/labial", "export/models")
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "include", "lib", "flat", "cmake/BundledModels.cmake",
+           "cmake/LabialTarget.cmake", "export/labial", "export/models")
 #: Seconds since 1970: the first time that a zip file can name.
-EARLIEST = 315532800
+EARLIEST = "315532800"
 
 #: Run by the environment's Python in the sources' folder, with the platform, the compiler's script and the folder.
 BUILD = """
@@ -91,42 +86,21 @@ def built(python: Path, platform: str, folder: Path) -> Path:
     return found
 
 
-def tagged(wheel: Path, platform: str, epoch: int, output: Path) -> Path:
-    """Writes the wheel anew into `output`: its platform, and nothing in it that another build would have otherwise."""
-    name, version = wheel.name.split("-")[:2]
+def tagged(python: Path, wheel: Path, platform: str, output: Path) -> Path:
+    """Moves the wheel into `output` with the tag of its platform."""
     tag = f"manylinux_{GLIBC.replace('.', '_')}_{platform}"
-    info = f"{name}-{version}.dist-info"
-    with zipfile.ZipFile(wheel) as archive:
-        files = {entry: archive.read(entry) for entry in archive.namelist() if not entry.endswith("/")}
-    text = files[f"{info}/WHEEL"].decode("utf-8")
-    files[f"{info}/WHEEL"] = re.sub(r"^Tag: .*$", f"Tag: py3-none-{tag}", text, count=1, flags=re.M).encode("utf-8")
-    if text.count("\nTag: ") != 1:
-        raise PackError(f"{wheel.name}: not of one platform")
-    del files[f"{info}/RECORD"]
-    rows = [f"{entry},sha256={_digest(data)},{len(data)}\n" for entry, data in sorted(files.items())]
-    files[f"{info}/RECORD"] = ("".join(rows) + f"{info}/RECORD,,\n").encode("utf-8")
-    target = output / f"{name}-{version}-py3-none-{tag}.whl"
-    moment = time.gmtime(max(epoch, EARLIEST))[:6]
-    with zipfile.ZipFile(target, "w") as archive:
-        for entry, data in sorted(files.items(), key=lambda item: (".dist-info/" in item[0], item[0])):
-            info_of = zipfile.ZipInfo(entry, moment)
-            info_of.compress_type = zipfile.ZIP_DEFLATED
-            info_of.external_attr = (0o755 if entry.endswith(".so") else 0o644) << 16
-            archive.writestr(info_of, data)
-    return target
-
-
-def _digest(data: bytes) -> str:
-    return base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode("ascii")
+    command = [python, "-m", "wheel", "tags", "--python-tag", "py3", "--abi-tag", "none", "--platform-tag", tag, wheel]
+    name = run(command, dict(os.environ), wheel.parent).split()[-1]
+    return Path(shutil.move(wheel.with_name(name), output / name))
 
 
 def wheels(platforms: List[str], output: Path) -> List[Path]:
     """Builds a wheel for each platform into the folder `output`; returns them."""
-    epoch = int(os.environ.get("SOURCE_DATE_EPOCH") or EARLIEST)
+    os.environ["SOURCE_DATE_EPOCH"] = os.environ.get("SOURCE_DATE_EPOCH") or EARLIEST
     output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="labial-wheels-") as temporary:
         python = environment(Path(temporary) / "environment")
-        return [tagged(built(python, platform, Path(temporary) / platform), platform, epoch, output)
+        return [tagged(python, built(python, platform, Path(temporary) / platform), platform, output)
                 for platform in platforms]
 
 

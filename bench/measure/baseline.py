@@ -1,4 +1,4 @@
-"""Holds what was measured against the committed baseline."""
+"""Compares measurements with the committed baseline."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ def read(path: Path) -> List[Figure]:
 
 
 def checked(figures: Sequence[Figure]) -> List[Figure]:
-    """What a baseline keeps."""
+    """The figures of a baseline."""
     return [figure for figure in figures if figure.checked]
 
 
-#: So many figures of a target are named when they were not measured; of more, their number is said.
+#: Up to so many missing figures of a target are named; of more, only their number.
 _NAMED = 4
 
 
 def compare(old: Sequence[Figure], new: Sequence[Figure]) -> Tuple[List[str], List[str]]:
-    """A sentence for every figure that got worse by more than TOLERANCE, and one for every reason why figures of the
+    """A message for every figure that got worse by more than TOLERANCE, and for every reason why figures of the
     baseline were not compared."""
     measured: Dict[Tuple[str, str], Figure] = {(figure.target, figure.figure): figure for figure in new}
     worse: List[str] = []

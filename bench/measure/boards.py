@@ -1,4 +1,4 @@
-"""The emulated boards: their compilers, the figures that their images print."""
+"""The emulated boards: their compilers, and the figures that their images print."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from measure.core import Bench, run, tool, version
 #: Seconds of input that each image synthesises.
 SECONDS = 20
 
-#: Bytes that the images' callback may take of the stack.
+#: Most bytes of stack of the images' callback.
 _CALLBACK_STACK = 32
 
-#: Frames per second that the share of a processor is reckoned at.
+#: Frames per second for the share of a processor.
 RATE = 50
 
 
@@ -82,7 +82,7 @@ def build(bench: Bench, board: Board) -> Dict[str, List[str]]:
 
 
 def printed(command: List[str]) -> Dict[str, int]:
-    """What an image prints: lines of a name and a number."""
+    """The output of an image: lines of a name and a number."""
     text = run(command).stdout.decode()
     found = dict(re.findall(r"^(\w+) (\d+)$", text, re.MULTILINE))
     return {name: int(number) for name, number in found.items()}
@@ -123,7 +123,7 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
 
 
 def _check_stack(bench: Bench, board: Board, painted: int) -> None:
-    """RuntimeError where a run took more stack than the call graph allows; the callback, a leaf, is not in that."""
+    """Raises RuntimeError if a run used more stack than the call graph allows, which excludes the callback, a leaf."""
     bound = bench.value(board.preset, "stack -O2: every function")
     if bound is not None and painted > bound + _CALLBACK_STACK:
         raise RuntimeError(f"{board.core}: {painted} bytes of stack were used, the call graph allows {bound}")

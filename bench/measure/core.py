@@ -1,4 +1,4 @@
-"""What every measurement uses: figures, running tools, and saying plainly what is left out."""
+"""Shared by all measurements: figures, running tools, and reporting skipped measurements."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import Dict, List, Optional, Sequence, Union
 
 
 class LeftOut(Exception):
-    """Why a figure cannot be measured on this machine, as one sentence."""
+    """The reason why a figure cannot be measured on this machine."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One measured number. `tool` is what it depends on beside the sources: a compiler and its version."""
+    """One measured number. `tool` is what it depends on besides the sources: a compiler and its version."""
 
     target: str
     figure: str
@@ -33,7 +33,7 @@ class Figure:
 
     @property
     def versus_others(self) -> bool:
-        """Whether it is a ratio of what another program takes to what Labial takes."""
+        """Whether it is the ratio of another program's figure to Labial's."""
         return self.unit.startswith("times Labial's ")
 
     @property
@@ -49,7 +49,7 @@ class Figure:
 
 @dataclass
 class Bench:
-    """Where things are, and what has been measured so far."""
+    """Paths, and the figures measured so far."""
 
     source: Path
     build: Path
@@ -58,7 +58,7 @@ class Bench:
 
     def add(self, target: str, figure: str, value: float, unit: str, command: Sequence[Union[str, Path]],
             tool: str) -> None:
-        """Keeps a figure with its command, as :meth:`shown` shows it."""
+        """Stores a figure with its command, as formatted by :meth:`shown`."""
         self.figures.append(Figure(target, figure, value, unit, self.shown(command), tool))
 
     def shown(self, command: Sequence[Union[str, Path]]) -> str:

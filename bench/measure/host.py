@@ -1,13 +1,18 @@
-"""The host: frames per second, instructions under callgrind, and the checksums that the boards must arrive at."""
+"""The host: frames per second, instructions under callgrind, and the checksums that the boards must reproduce; the
+Python run-time and the npm packages: microseconds per frame and bytes."""
 
 from __future__ import annotations
 
+import gzip
+import json
+import os
 import re
+import sys
 from pathlib import Path
 from typing import Dict, List, Sequence, Union
 
 from measure.boards import RATE, SECONDS
-from measure.core import Bench, run, tool, version
+from measure.core import Bench, LeftOut, run, tool, version
 
 #: Seconds of motion that are timed; a run takes a fraction of a second.
 TIMED_SECONDS = 600
@@ -27,12 +32,12 @@ def collected(command: Sequence[Union[str, Path]], function: str = "") -> int:
 
 
 def shown_callgrind(command: Sequence[Union[str, Path]], function: str) -> List[Union[str, Path]]:
-    """The command that :func:`collected` runs, as it is shown."""
+    """The command of :func:`collected`, for display."""
     return ["valgrind", "--tool=callgrind", *([f"--toggle-collect={function}"] if function else []), *command]
 
 
 def heap_peak(command: Sequence[Union[str, Path]], scratch: Path) -> int:
-    """The most bytes that a program holds on its heap at a time, by massif, allocator's overhead not counted."""
+    """The peak heap of a program in bytes, by massif, without the allocator's overhead."""
     valgrind = tool("valgrind", "valgrind", "What massif counts")
     out = scratch / "massif.out"
     run([valgrind, "--tool=massif", "--peak-inaccuracy=0.0", f"--massif-out-file={out}", *command])
@@ -41,7 +46,7 @@ def heap_peak(command: Sequence[Union[str, Path]], scratch: Path) -> int:
 
 
 def parse(line: str) -> Dict[str, float]:
-    """What labial-bench prints."""
+    """The output of labial-bench."""
     found = re.match(r"(\d+) frames in [\d.]+ s: (\d+) frames/s, .*checksum ([0-9a-f]{8})\)", line)
     if not found:
         raise RuntimeError(f"labial-bench printed: {line}")
@@ -49,7 +54,7 @@ def parse(line: str) -> Dict[str, float]:
 
 
 def checksums(bench: Bench) -> Dict[str, int]:
-    """What the boards' frames must sum up to, by model."""
+    """The checksums of the boards' frames, by model."""
     program = bench.build / "bench" / "labial-bench"
     return {model: int(parse(run([program, model, str(SECONDS)]).stdout.decode())["checksum"]) for model in MODELS}
 
@@ -68,3 +73,52 @@ def measure(bench: Bench, compiler: str) -> None:
         frames = parse(run(command).stdout.decode())["frames"]
         bench.add("host", f"{model}: mean", round(collected(command, "labial_tick") / frames), "instructions/frame",
                   shown_callgrind(command, "labial_tick"), version(compiler))
+
+
+def python(bench: Bench, compiler: str) -> None:
+    """The figures of bench/runtime.py, and the size of the shared library."""
+    library = bench.build / "flat" / "labial_runtime.so"
+    if not library.is_file():
+        raise LeftOut(f"The Python run-time is left out: {bench.shown([library])} is not built.")
+    environment = {"PYTHONPATH": "export", "LABIAL_RUNTIME": str(library)}
+    command = [sys.executable, bench.source / "bench" / "runtime.py"]
+    done = run(command, cwd=bench.source, env={**os.environ, **environment})
+    shown = ["env", *(f"{name}={bench.shown([value])}" for name, value in environment.items()), "python3", command[1]]
+    interpreter = ".".join(map(str, sys.version_info[:3]))
+    for way, value in json.loads(done.stdout).items():
+        bench.add("python", f"speech: {way}", value, "us/frame", shown, f"Python {interpreter}, {version(compiler)}")
+    bench.add("python", "shared library with both models", library.stat().st_size, "bytes", ["ls", "-l", library],
+              version(compiler))
+
+
+def npm(bench: Bench) -> None:
+    """Builds the package and measures it under node. Compressed bytes are those of gzip at its highest level."""
+    what = "The npm package"
+    for name, package in (("clang", "clang"), ("wasm-ld", "lld"), ("node", "nodejs"), ("npm", "npm")):
+        tool(name, package, what)
+    folder = bench.build / "wasm"
+    toolchain = bench.source / "boards" / "toolchains" / "wasm.cmake"
+    run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={toolchain}", "-DCMAKE_BUILD_TYPE=Release",
+         "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF"])
+    run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
+    compiler = version("clang")
+    module = folder / "web" / "labial.wasm"
+    names = ("index.js", "memory.js", "speech.js", "stream.js", "timings.js", "track.js", "unpack.js")
+    scripts = [folder / "npm" / name for name in names]
+    laughter = folder / "npm-laughter" / "index.js"
+    bench.add("wasm", "module with speech", module.stat().st_size, "bytes", ["ls", "-l", module], compiler)
+    bench.add("wasm", "a page that speaks, each script compressed", sum(map(_compressed, scripts)), "bytes",
+              ["gzip", "-9c", folder / "npm" / "*.js", "|", "wc", "-c", "#", *names], compiler)
+    bench.add("wasm", "laughter, compressed", _compressed(laughter), "bytes",
+              ["gzip", "-9c", laughter, "|", "wc", "-c"], compiler)
+    for packed in sorted(folder.glob("labial-*.tgz")):
+        name = "packed laughter package" if "laughter" in packed.name else "packed package"
+        bench.add("wasm", name, packed.stat().st_size, "bytes", ["ls", "-l", packed], compiler)
+    command = ["node", bench.source / "bench" / "npm.mjs", folder / "npm"]
+    engine = "node " + run(["node", "--version"]).stdout.decode().strip().lstrip("v")
+    for way, value in json.loads(run(command).stdout).items():
+        bench.add("wasm", f"speech: {way}", value, "us/frame", command, f"{engine}, {compiler}")
+
+
+def _compressed(path: Path) -> int:
+    return len(gzip.compress(path.read_bytes(), 9, mtime=0))

@@ -1,4 +1,4 @@
-"""Runs accuracy.py, which needs numpy, in a Python that has it."""
+"""Runs accuracy.py in a Python that has numpy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Dict, List, Optional, Union
 from measure.core import Bench, LeftOut, run
 from measure.sizes import MODELS
 
-#: Figures, what accuracy.py calls them, and their units.
+#: Figures, their names in accuracy.py, and their units.
 FIGURES = (
     ("MLPG error, largest", "solver_largest", "1/1024 of full scale"),
     ("MLPG error, RMS", "solver_rms", "1/1024 of full scale"),
@@ -58,7 +58,7 @@ def environment(bench: Bench) -> Dict[str, str]:
 
 
 def model_path(bench: Bench, name: str) -> Path:
-    """A bundled model as it was trained."""
+    """The trained model of a bundled one."""
     return bench.source / "export" / "models" / f"{name}.npz"
 
 

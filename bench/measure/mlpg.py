@@ -11,15 +11,15 @@ from typing import List, Union
 from measure.core import Bench, LeftOut, run, version
 from measure.host import collected, heap_peak, shown_callgrind
 
-#: Units of 42 frames and 13 channels that are solved; FEW and MANY tell SPTK's cost per frame from its start.
+#: Units of 42 frames and 12 channels that are solved; FEW and MANY tell SPTK's cost per frame from its start.
 UNITS, FEW, MANY = 20, 5, 25
 
-FRAMES = 42 * 13  #: of all channels of one unit
+FRAMES = 42 * 12  #: of all channels of one unit
 
 UNIT = "instructions/frame and channel"
 
-#: Solves a unit in turns of three frames, as a stream and the boards' image do: decodes the state, takes up the rows,
-#: and goes back from the latest.
+#: Solves a unit in steps of three frames, like a stream and the boards' image: decodes the state, adds the rows, and
+#: makes a backward pass from the latest.
 SOLVE = "bench_unit_solve"
 
 
@@ -49,7 +49,7 @@ def _beside(bench: Bench, name: str, count: float, memory: int, command: List[Un
 
 
 def hts_engine(bench: Bench) -> None:
-    """hts_engine's HTS_PStreamSet_create(), given the same equation unit by unit; its solution must be Labial's."""
+    """hts_engine's HTS_PStreamSet_create(), for the same equation unit by unit; its solution must equal Labial's."""
     program = bench.build / "bench" / "labial-bench-mlpg"
     if b"hts_engine: yes" not in run([program, "about", "1"]).stdout:
         raise LeftOut("The comparison with hts_engine is left out: install the Debian package libhtsengine-dev "
@@ -74,8 +74,8 @@ def sptk_mlpg() -> List[str]:
 
 
 def sptk(bench: Bench) -> None:
-    """SPTK's program, given the same frames as one sequence: what each further frame costs, reading and writing
-    included, and the most memory that it holds."""
+    """SPTK's program, for the same frames as one sequence: the cost of each further frame, including reading and
+    writing, and its peak memory."""
     program = bench.build / "bench" / "labial-bench-mlpg"
     mlpg = [*sptk_mlpg(), "-l", "13", "-i", "1", "-d", "-0.5", "0", "0.5", "-d", "1", "-2", "1"]
     with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:

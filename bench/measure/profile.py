@@ -1,7 +1,7 @@
-"""Where instructions and cycles go, by a plugin that counts what QEMU executes at every address.
+"""Instructions and cycles by function, from a plugin that counts what QEMU executes at every address.
 
-QEMU counts no cycles. Those of a core are summed up from Arm's table of them, without wait states; where the table has
-a range, as for loads that may overlap and for divisions, the most is taken. For other cores no such table is published.
+QEMU does not count cycles. Those of a core are sums from Arm's table, without wait states; for a range, such as for
+loads that may overlap and for divisions, the largest value is used. For other cores no such table is published.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Dict, List, Tuple
 from measure.boards import BOARDS, RATE, Board, build, printed
 from measure.core import Bench, LeftOut, run, version
 
-#: Functions of the image itself, which are no part of what the library costs.
+#: Functions of the image itself, which are not part of the library.
 _IMAGE = re.compile(r"main|board_.*|bench_.*")
 
 #: Cycles of each core's instructions; the first that matches counts. Taken conditional branches and listed registers
@@ -37,7 +37,7 @@ _TAKEN = 2  #: further cycles of a conditional branch that is taken
 
 @dataclass(frozen=True)
 class Row:
-    """What a function takes per frame delivered, without what it calls."""
+    """The cost of a function per delivered frame, without its callees."""
 
     function: str
     instructions: float
@@ -67,7 +67,7 @@ def measure(bench: Bench, rows: List[Row]) -> None:
     """Cycles per frame of both models on every core whose cycles are known; `rows` receives the profile of speech on
     the first of them, most instructions first.
 
-    LeftOut where the plugin (bench/plugin.c) cannot be compiled or QEMU takes none.
+    Raises LeftOut if the plugin (bench/plugin.c) cannot be compiled or QEMU does not support plugins.
     """
     for board in (board for board in BOARDS if board.preset in _CYCLES):
         images = build(bench, board)

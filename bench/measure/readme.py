@@ -1,4 +1,4 @@
-"""Keeps README.md's figures those of the baseline."""
+"""Updates README.md's figures from the baseline."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ TARGETS = (*(board.preset for board in BOARDS), "host")
 
 
 def updated(text: str, figures: Sequence[Figure]) -> str:
-    """README.md's `text` with these figures. ValueError names what it lacks."""
+    """README.md's `text` with these figures. A ValueError names a missing line."""
     value: Dict[Tuple[str, str], float] = {(one.target, one.figure): one.value for one in figures}
 
     def number(figure: str, target: str = "m0") -> str:
@@ -42,14 +42,14 @@ def updated(text: str, figures: Sequence[Figure]) -> str:
         (r"(\| stack \| )[\d,]+( \| at most; )[\d,]+",
          rf"\g<1>{number('stack -Os: all of lib')}\g<2>{number('stack -O2: all of lib')}"),
         (r"(\| only if used \| \| ).*", rf"\g<1>{used}"),
-        (r"(\| npm package \| )[\d,]+( \| what a page that speaks fetches, compressed; laughter )[\d,]+",
+        (r"(\| npm package \| )[\d,]+( \| compressed, fetched by a page that speaks; )[\d,]+",
          rf"\g<1>{number('a page that speaks, each script compressed', 'wasm')}"
          rf"\g<2>{number('laughter, compressed', 'wasm')}"),
         (r"(\| speech, mean \| ).*", rf"\g<1>{cells('speech: mean')}"),
         (r"(\| laughter, mean \| ).*", rf"\g<1>{cells('laughter: mean')}"),
         (r"(\| worst tick, times the mean \| ).*", rf"\g<1>{worst} | |"),
         (r"(\| share of the core at 50 frames/s, speech \| )([^|]*\|){5}", rf"\g<1>{shares} |"),
-        (r"(Cortex-M0 takes )[\d,]+ cycles for the [\d,]+", rf"\g<1>{taken}"),
+        (r"(The Cortex-M0 takes )[\d,]+ cycles for the [\d,]+", rf"\g<1>{taken}"),
     ):
         text, count = re.subn("^" + pattern, replacement, text, flags=re.MULTILINE)
         if count != 1:

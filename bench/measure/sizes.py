@@ -10,18 +10,18 @@ from typing import Dict, List
 from measure.boards import Board, compiler, cpu_flags
 from measure.core import Bench, run, version
 
-#: Files of lib/ that play compiled-in models. A program links the others only when it calls them, or for models from
-#: outside (model.c, the check, and blob.c).
-CORE = ("stream", "channels", "units", "shape", "viterbi", "trajectory", "fixed")
+#: Files of lib/ that play compiled-in models. A program links the others only if it calls them, or for models from
+#: files (model.c, the check, and blob.c).
+CORE = ("stream", "channels", "units", "shape", "viterbi", "trajectory", "protrusion", "fixed")
 
 LEVELS = ("-Os", "-O2")
 
-#: The bundled models: their C file, and what they are called here.
+#: The bundled models: their C file, and their names here.
 MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 
 
-#: Parts of RAM and their bytes in C; the workspace's add up to LABIAL_WORKSPACE_SIZE() for what a state lasts in the
-#: bundled models, but for rounding to four.
+#: Parts of RAM and their bytes in C; those of the workspace add up to LABIAL_WORKSPACE_SIZE() for the stride of the
+#: bundled models, except for rounding to four.
 PARTS = {
     "labial_t: queue and labels": "sizeof(labial_units_t)",
     "labial_t: shapes": "sizeof(labial_shape_t) + sizeof(labial_selection_t)",
@@ -39,7 +39,7 @@ STRIDE = 3
 
 
 def compile_command(bench: Bench, board: Board, level: str) -> List[str]:
-    """How a file of the library is compiled for a board, up to its name."""
+    """The command that compiles a file of the library for a board, up to the file's name."""
     return [compiler(board), *cpu_flags(bench, board), level, "-std=c99", "-ffreestanding", "-isystem",
             str(bench.source / "boards" / "include"), f"-I{bench.source / 'include'}", "-c"]
 
@@ -89,8 +89,8 @@ def measure(bench: Bench, board: Board) -> None:
 
 
 def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
-    """Bytes of what `objects` link from the compiler's own library, such as division; RuntimeError where they need more
-    than that and what every C compiler relies on."""
+    """Bytes that `objects` link from the compiler's library, such as division; raises RuntimeError if they need more
+    than that and the functions that every C compiler relies on."""
     prefix, linked = board.prefix, objects[0].with_name("linked.o")
     flags = cpu_flags(bench, board)
     archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()

@@ -1,4 +1,4 @@
-"""The most stack that a call of the library can take, from the compiler's frames and call graph."""
+"""The worst-case stack of a call of the library, from the compiler's frames and call graph."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from measure.boards import Board, compiler, cpu_flags
 from measure.core import Bench, run, version
 from measure.sizes import LEVELS, compile_command
 
-#: How a call through a pointer appears; the only one is the program's own callback, whose stack is not the library's.
+#: The node of a call through a pointer; the only one is the program's callback, whose stack does not count.
 _INDIRECT = "__indirect_call"
 
 _NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
@@ -38,7 +38,7 @@ class CallGraph:
             self.calls.setdefault(caller, set()).add(callee)
 
     def missing(self) -> Set[str]:
-        """Functions that are called and whose frame is not known."""
+        """Called functions whose frame is unknown."""
         called = set().union(*self.calls.values()) if self.calls else set()
         return called - set(self.frames) - {_INDIRECT}
 

@@ -1,15 +1,15 @@
-"""bench.md: the figures as the tables that one looks for before choosing a processor."""
+"""bench.md: the figures as tables for choosing a processor."""
 
 from __future__ import annotations
 
-from typing import List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from measure.boards import BOARDS, RATE, SECONDS
-from measure.core import Bench
+from measure.core import Bench, Figure
 from measure.profile import Row
-from measure.sizes import CORE, LEVELS, PARTS
+from measure.sizes import CORE
 
-#: What is aimed at: what it is called, target, figure, the limit, and whether the limit is the least.
+#: Goals: name, target, figure, the limit, and whether the limit is a minimum.
 GOALS = (
     ("speech, Cortex-M0", "m0", "speech: mean", 18000, False),
     ("worst tick / mean, speech, Cortex-M0", "m0", "speech: worst tick / mean", 1.25, False),
@@ -35,6 +35,73 @@ GOALS = (
 )
 
 
+#: Targets with their own columns, by the column's title.
+COLUMNS: Dict[str, str] = {**{board.preset: board.core for board in BOARDS}, "host": "x86-64"}
+
+
+def _of(target: str) -> Callable[[Figure], bool]:
+    return lambda figure: figure.target == target
+
+
+def _on_a_processor(what: str) -> Callable[[Figure], bool]:
+    """Of the targets with columns those figures that are about "Equation 3", "Speed", "Bytes" or "A frame"."""
+    def about(figure: Figure) -> str:
+        return ("Equation 3" if figure.figure.startswith("MLPG") else "Speed" if figure.timed
+                else "Bytes" if figure.unit == "bytes" else "A frame")
+
+    return lambda figure: figure.target in COLUMNS and about(figure) == what
+
+
+#: Sections: a title, a text, and whether a figure is shown there.
+SECTIONS: Tuple[Tuple[str, str, Callable[[Figure], bool]], ...] = (
+    ("A frame of 13 channels",
+     f"Built with -O2; {SECONDS} s of a sentence, or of laughter, in a loop. The mean is that of all calls of "
+     "`labial_tick()` from the first, while nothing is ready yet, to the last, divided by the frames delivered; the "
+     "worst tick is the worst of them all. By turns, the model changes every few phonemes; the worst tick of that "
+     "stream counts as one in which it does. QEMU counts no cycles. Where Arm publishes how many each instruction "
+     "takes, they are summed up: without wait states, the most where there is a range, `labial_init()` and pushing "
+     f"included. Shares are of these cycles at {RATE} frames/s. Clocks: "
+     + "; ".join(f"{board.core} {board.clock} MHz ({board.chip})" for board in BOARDS) + ".",
+     _on_a_processor("A frame")),
+    ("Bytes",
+     "Code is .text with read-only data. What plays compiled-in models, the total, is "
+     f"{', '.join(f'`{name}.c`' for name in CORE)}. The other files of `lib/` are linked only when a program calls "
+     "them: `model.c`, the check of a model, and `blob.c` for models from binary files. The compiler's helpers are "
+     "functions of its own, such as division where the processor has none; what the C library brings for `memcpy`, "
+     "`memmove`, `memset` is not counted. Stack counts all of these. The most that it can take comes from the "
+     "compiler's frames and call graph and from the machine code of its own functions; the program's callback is not "
+     "in it, but in what was painted.", _on_a_processor("Bytes")),
+    ("Equation 3 alone",
+     "Units of 42 frames of the speech model's states, three frames each, solved as a stream does it: in turns of "
+     "three frames, each of which ends with its way back. On x86-64, by callgrind and massif. hts_engine: its "
+     "`HTS_PStreamSet_create()`, which is handed the same means and variances unit by unit as its public structures, "
+     "in doubles, its allocations included; its solution is Labial's whole one to less than a tenth of a FAP unit. "
+     "SPTK: its program `mlpg`, which recurses over the frames as they arrive; the same frames as one sequence, what "
+     "each further frame costs, reading and writing included. Memory: Labial's solvers and factors of all channels, "
+     "however long the utterance; the others' heap at its peak.", _on_a_processor("Equation 3")),
+    ("What integers cost",
+     "MLPG: the library's solution of whole utterances, rounded to 1/16 FAP unit as it is, against float64 for the "
+     "same tables, state paths and targets. Full scale is what a position can be, 1,024 FAP units to either side, "
+     "so that the unit of error is one FAP unit. Window: what the motion differs from such a whole solution, in "
+     "float64, because each frame is delivered when `LABIAL_WINDOW` frames beyond it are known. Paths: the "
+     "likelihood, under the trained float64 model, that the exported tables' path, decided as the frames come, "
+     "loses to the best path through the whole utterance by a search over all transitions, which like the library's "
+     "sees one frame of those that share a state.", _of("accuracy")),
+    ("The latest frame",
+     "Phonemes are pushed when they begin, pauses too with their whole duration, `labial_end()` is called when the "
+     "last one is over, and one tick follows in each frame period: how long after its own time a frame comes, the "
+     "largest of each utterance.", _of("delay")),
+    ("Python",
+     "On the host, by bench/runtime.py: utterances rendered whole by `labial.render()`, and frame by frame from a "
+     "`labial.Stream`, parsing of labels included.", _of("python")),
+    ("WebAssembly",
+     "The npm package under node, on the host, by bench/npm.mjs: utterances rendered whole by `labial.render()`, "
+     "ticks of a `labial.stream()`, and `track.at()`, 60 times per second. Compressed by gzip at its highest "
+     "level.", _of("wasm")),
+    ("Speed of the host, one core", "", _on_a_processor("Speed")),
+)  # fmt: skip
+
+
 def _number(value: Optional[float]) -> str:
     if value is None:
         return ""
@@ -48,155 +115,18 @@ def _rows(head: Sequence[str], rows: Sequence[Sequence[str]]) -> List[str]:
     return [*lines, *("| " + " | ".join(row) + " |" for row in rows), ""]
 
 
-def _by_board(bench: Bench, figures: Sequence[Tuple[str, str]], host: bool = False) -> List[str]:
-    """A row for each (label, figure) that is known anywhere, a column for each board."""
-    targets = [board.preset for board in BOARDS] + (["host"] if host else [])
-    rows = []
-    for label, figure in figures:
-        values = [bench.value(target, figure) for target in targets]
-        if any(value is not None for value in values):
-            rows.append([label, *map(_number, values)])
-    return _rows(["", *(board.core for board in BOARDS), *(["x86-64"] if host else [])], rows)
-
-
-def _cost(bench: Bench) -> List[str]:
-    rows = []
-    for model in ("speech", "laughter"):
-        rows += [(f"{model}: instructions per frame, mean", f"{model}: mean"),
-                 ("worst tick", f"{model}: worst tick"),
-                 ("worst tick / mean", f"{model}: worst tick / mean"),
-                 ("cycles per frame, mean", f"{model}: cycles"),
-                 ("share of the core, %", f"{model}: share of the core"),
-                 ("pushing the phonemes of a frame", f"{model}: pushing"),
-                 ("`labial_init()`, once", f"{model}: labial_init()")]
-    rows += [("speech and laughter by turns: mean", "turns: mean"),
-             ("worst tick in which the model changes", "turns: worst change"),
-             ("worst tick in which the model changes / mean", "turns: worst change / mean")]
-    clocks = "; ".join(f"{board.core} {board.clock} MHz ({board.chip})" for board in BOARDS)
-    return [
-        "## A frame of 13 channels", "",
-        f"Built with -O2; {SECONDS} s of a sentence, or of laughter, in a loop. The mean is that of all calls of "
-        "`labial_tick()` from the first, while nothing is ready yet, to the last, divided by the frames delivered; the "
-        "worst tick is the worst of them all. By turns, the model changes every few phonemes; the worst tick of that "
-        f"stream counts as one in which it does. QEMU counts no cycles. Where Arm publishes how many each instruction "
-        "takes, they are summed up: without wait states, the most where there is a range, `labial_init()` and pushing "
-        f"included. Shares are of these cycles at {RATE} frames/s. Clocks: " + clocks + ".", "",
-        *_by_board(bench, rows, host=True),
-    ]
-
-
-def _memory(bench: Bench) -> List[str]:
-    rows = []
-    for level in LEVELS:
-        rows += [(f"code that plays compiled-in models, {level}", f"code {level}: total"),
-                 (f"the compiler's helpers that it links, {level}", f"code {level}: compiler's helpers"),
-                 (f"code, all of `lib/`, {level}", f"code {level}: all of lib")]
-    for model in ("speech", "laughter"):
-        rows += [(f"{model} model", f"{model}: model"), (f"{model} names, only if used", f"{model}: names")]
-    rows += [("`labial_t`", "labial_t")]
-    rows += [(f"of it {part.split(': ')[1]}", part) for part in PARTS if part.startswith("labial_t")]
-    for model in ("speech", "laughter"):
-        rows += [(f"workspace, {model}", f"{model}: workspace")]
-    rows += [(f"of it {part.split(': ')[1]}", part) for part in PARTS if part.startswith("workspace")]
-    rows += [("workspace and `labial_t`, speech", "speech: workspace and labial_t"),
-             (".data and .bss of library and models", ".data and .bss of library and models")]
-    for level in LEVELS:
-        rows += [(f"stack, {level}: `labial_tick()`, at most", f"stack {level}: labial_tick()"),
-                 (f"stack, {level}: any function of labial.h, at most", f"stack {level}: every function"),
-                 (f"stack, {level}: any function of all headers, at most", f"stack {level}: all of lib")]
-    rows += [("stack, -O2: painted, speech, callback included", "speech: stack, painted"),
-             ("stack, -O2: painted, laughter, callback included", "laughter: stack, painted")]
-    core = ", ".join(f"`{name}.c`" for name in CORE)
-    return [
-        "## Bytes", "",
-        f"Code is .text with read-only data. What plays compiled-in models is {core}. The other files of `lib/` are "
-        "linked only when a program calls them: `model.c`, the check of a model, and `blob.c` for models from binary "
-        "files. The compiler's helpers are functions of its own, such as division where the processor has none; what "
-        "the C library brings for `memcpy`, `memmove`, `memset` is not counted. Stack counts all of these. The most "
-        "that it can take comes from the compiler's frames and call graph and from the machine code of its own "
-        "functions; the program's callback is not in it.", "",
-        *_by_board(bench, rows),
-        "By file:", "",
-        *_files(bench),
-    ]
-
-
-def _files(bench: Bench) -> List[str]:
-    names = []
-    for figure in bench.figures:
-        if figure.figure.startswith("code ") and figure.figure.endswith(".c"):
-            name = figure.figure.split(": ")[1]
-            if name not in names:
-                names.append(name)
-    head, rows = [""], []
-    for board in BOARDS:
-        head += [f"{board.core} {level}" for level in LEVELS]
-    names.sort(key=lambda name: name.split(".")[0] not in CORE)
-    played = [name for name in names if name.split(".")[0] in CORE]
-    labels = {"total": "**plays compiled-in models**", "all of lib": "**all of `lib/`**"}
-    for name in [*played, "total", *names[len(played):], "all of lib"]:
-        row = [labels.get(name, name)]
-        for board in BOARDS:
-            row += [_number(bench.value(board.preset, f"code {level}: {name}")) for level in LEVELS]
-        rows.append(row)
-    return _rows(head, rows)
-
-
-def _mlpg(bench: Bench) -> List[str]:
-    lines = [
-        "## Equation 3 alone", "",
-        "Instructions per frame and channel: units of 42 frames of the speech model's states, three frames each, "
-        "solved as a stream does it: in turns of three frames, each of which ends with its way back.", "",
-        *_by_board(bench, [("`labial_trajectory_ask()`, `_row()` and `_back()`", "MLPG")], host=True),
-    ]
-    rows = [["Labial", _number(bench.value("host", "MLPG")), "1",
-             _number(bench.value("host", "MLPG: memory")), "1"]]
-    for name in ("hts_engine", "SPTK"):
-        if bench.value("host", f"MLPG by {name}") is not None:
-            rows.append([name, *(_number(bench.value("host", f"MLPG by {name}{part}"))
-                                 for part in ("", " / Labial", ": heap", " / Labial: memory"))])
-    return [
-        *lines,
-        "On x86-64, by callgrind and massif. hts_engine: its `HTS_PStreamSet_create()`, which is handed the same means "
-        "and variances unit by unit as its public structures, in doubles, its allocations included; its solution "
-        "is Labial's whole one to less than a tenth of a FAP unit. SPTK: its program `mlpg`, which recurses over the "
-        "frames as they arrive; the same frames as one sequence, what each further frame costs, reading and writing "
-        "included. Memory: Labial's solvers and factors of all channels, however long the utterance; the others' heap "
-        "at its peak.", "",
-        *_rows(["", "instructions per frame and channel", "times Labial's", "bytes", "times Labial's"], rows),
-    ]
-
-
-#: Sections that show all figures of a target: the target, a title, a text, and how a value is written.
-SECTIONS = (
-    ("accuracy", "What integers cost",
-     "MLPG: the library's solution of whole utterances, rounded to 1/16 FAP unit as it is, against float64 for the "
-     "same tables, state paths and targets. Full scale is what a position can be, 1,024 FAP units to either side, "
-     "so that the unit of error is one FAP unit. Window: what the motion differs from such a whole solution, in "
-     "float64, because each frame is delivered when `LABIAL_WINDOW` frames beyond it are known. Paths: the "
-     "likelihood, under the trained float64 model, that the exported tables' path, decided as the frames come, "
-     "loses to the best path through the whole utterance by a search over all transitions, which like the library's "
-     "sees one frame of those that share a state.", "{:.4f}".format),
-    ("delay", "The latest frame",
-     "Phonemes are pushed when they begin, pauses too with their whole duration, `labial_end()` is called when the "
-     "last one is over, and one tick follows in each frame period: how long after its own time a frame comes, the "
-     "largest of each utterance.", _number),
-    ("python", "Python",
-     "On the host, by bench/runtime.py: utterances rendered whole by `labial.render()`, and frame by frame from a "
-     "`labial.Stream`, parsing of labels included.", _number),
-    ("wasm", "WebAssembly",
-     "The npm package under node, on the host, by bench/npm.mjs: utterances rendered whole by `labial.render()`, "
-     "ticks of a `labial.stream()`, and `track.at()`, 60 times per second. Compressed by gzip at its highest "
-     "level.", _number),
-)
-
-
 def _sections(bench: Bench) -> List[str]:
+    """The sections that have figures: a row for each figure, a column for each target."""
     lines: List[str] = []
-    for target, title, text, number in SECTIONS:
-        rows = [[figure.figure, number(figure.value), figure.unit] for figure in bench.figures
-                if figure.target == target]
-        lines += [f"## {title}", "", text, "", *_rows(["", "", ""], rows)] if rows else []
+    for title, text, belongs in SECTIONS:
+        figures = [one for one in bench.figures if belongs(one)]
+        targets = [name for name in COLUMNS if any(one.target == name for one in figures)] or [""]
+        rows = [[figure, *(_number(next((one.value for one in figures if one.figure == figure and one.unit == unit
+                                         and target in ("", one.target)), None)) for target in targets), unit]
+                for figure, unit in dict.fromkeys((one.figure, one.unit) for one in figures)]
+        if rows:
+            head = ["", *(COLUMNS.get(target, "") for target in targets), ""]
+            lines += [f"## {title}", "", *([text, ""] if text else []), *_rows(head, rows)]
     return lines
 
 
@@ -223,7 +153,7 @@ def _goal_value(bench: Bench, target: str, figure: str) -> Optional[float]:
 
 
 def goals(bench: Bench) -> List[Tuple[str, float, float, bool]]:
-    """What is aimed at: name, limit, value and whether it is reached, for all that was measured."""
+    """Goals: name, limit, value and whether it is reached, for all measured figures."""
     found = []
     for name, target, figure, limit, least in GOALS:
         value = _goal_value(bench, target, figure)
@@ -243,9 +173,7 @@ def markdown(bench: Bench, profile: Sequence[Row]) -> str:
     tools = sorted({figure.tool for figure in bench.figures if any(c.isdigit() for c in figure.tool)})
     lines = ["# Figures", "", "Measured by `cmake --workflow --preset bench`; `bench.json` has the command of each.",
              f"Tools: {', '.join(tools)}.", ""]
-    lines += [*_cost(bench), *_memory(bench), *_mlpg(bench), *_sections(bench)]
-    speeds = [[figure.figure, _number(figure.value), figure.unit] for figure in bench.figures if figure.timed]
-    lines += ["## Speed of the host, one core", "", *_rows(["", "", ""], speeds)] if speeds else []
+    lines += _sections(bench)
     lines += _profile(profile) if profile else []
     lines += _goals(bench)
     if bench.left_out:

@@ -1,6 +1,6 @@
 /*
  * board.c - board.h in WebAssembly. Text goes to the program that runs the image (run.mjs); there is no counter of
- * instructions, and the depth of the stack cannot be told.
+ * instructions, and the depth of the stack is unknown.
  */
 #include "board.h"
 
@@ -12,7 +12,7 @@ IMPORT("exit") extern void wasm_exit(int32_t status);
 int main(void);
 int32_t run(void);
 
-/* What run.mjs calls. */
+/* Called by run.mjs. */
 __attribute__((export_name("run"))) int32_t run(void)
 {
     return main();

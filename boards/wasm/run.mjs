@@ -1,5 +1,5 @@
 // Runs an image that was built for WebAssembly: node run.mjs IMAGE.wasm. Its text goes to the standard output, and what
-// main() returns becomes the exit status; a trap is 99, as a fault of a processor is on the other boards.
+// main() returns becomes the exit status; a trap is 99, like a processor fault on the other boards.
 import { readFile } from "node:fs/promises";
 
 class Exit extends Error {

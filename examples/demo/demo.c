@@ -42,7 +42,7 @@ static uint32_t frame_at(uint64_t milliseconds)
     return (uint32_t)((milliseconds * speech_en.frames_per_second + 500u) / 1000u);
 }
 
-/* A phoneme too short for a frame of its own is not on the page. */
+/* A phoneme without a frame is not on the page. */
 static int show_phonemes(page_t *page, const score_t *score)
 {
     for (size_t i = 0; i < score->phoneme_count; i++) {
@@ -71,7 +71,7 @@ static int synthesise(demo_t *demo, char **paths)
     return demo->failed ? out_of_memory() : show_phonemes(&demo->page, score);
 }
 
-/* The whole of a file with a null character behind it, to be freed; null, with a message, when it cannot be read. */
+/* The content of a file with a null character after it, to be freed; null, with a message, when it cannot be read. */
 static char *read_file(const char *path, size_t *size)
 {
     FILE *in = fopen(path, "rb");
@@ -103,7 +103,7 @@ static char *read_file(const char *path, size_t *size)
     return text;
 }
 
-/* What the page is made of beside the motion; what is read is to be freed. */
+/* The parts of the page besides the motion; the caller frees them. */
 typedef struct {
     char *player, *mouth, *sound;
     size_t player_size, mouth_size, sound_size;

@@ -97,7 +97,7 @@ static void write_data(const page_t *page, FILE *out)
     putc('}', out);
 }
 
-/* Where `text` holds `part`, null unless it does once. */
+/* The place of `part` in `text`, null unless it occurs exactly once. */
 static const char *only(const char *text, const char *part)
 {
     const char *place = strstr(text, part);

@@ -1,5 +1,5 @@
 /*
- * page.h - motion and the phonemes it came from, written as a page that plays them.
+ * page.h - writes motion and its phonemes as a page that plays them.
  */
 #ifndef LABIAL_EXAMPLE_PAGE_H
 #define LABIAL_EXAMPLE_PAGE_H
@@ -10,7 +10,7 @@
 
 #include "labial/model.h"
 
-/* What the template holds, each once and in this order, where the data and the drawing's module go. */
+/* Placeholders of the template for the data and the drawing's module, each once and in this order. */
 #define PAGE_DATA "@LABIAL_DATA@"
 #define PAGE_MOUTH "@LABIAL_MOUTH@"
 
@@ -35,12 +35,12 @@ typedef struct {
     size_t phoneme_count, phoneme_room;
 } page_t;
 
-/* Append a copy of a frame or a phoneme. Return 0, or -1 when memory is short. */
+/* Append a copy of a frame or a phoneme. Return 0, or -1 when out of memory. */
 int page_add_frame(page_t *page, const int16_t faps[LABIAL_CHANNELS]);
 int page_add_phoneme(page_t *page, const page_phoneme_t *phoneme);
 
-/* Writes `template_text`, with the page's data as JSON in the place of PAGE_DATA and the drawing's module in that of
- * PAGE_MOUTH, to `out`. Returns 0, or -1 when either is not there exactly once or writing fails. */
+/* Writes `template_text` to `out`, with PAGE_DATA replaced by the page's data as JSON and PAGE_MOUTH by the drawing's
+ * module. Returns 0, or -1 when either does not occur exactly once or writing fails. */
 int page_write(const page_t *page, const char *template_text, FILE *out);
 
 void page_release(page_t *page);

@@ -1,5 +1,5 @@
 /*
- * score.c - files of timings to one list of phonemes, and where the laughs are.
+ * score.c - converts files of timings to one list of phonemes and the times of laughs.
  */
 #include "score.h"
 
@@ -24,7 +24,7 @@ static int failed(const reader_t *reader, const char *why, const char *what)
     return -1;
 }
 
-/* The words pause where the laugh is. It sets in before and dies away behind, within the file. */
+/* The words pause during the laugh. It begins before the pause and fades after it, within the file. */
 static int add_laugh(reader_t *reader, const timings_phoneme_t *phoneme)
 {
     score_t *score = reader->score;
@@ -77,7 +77,7 @@ static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
     return 0;
 }
 
-/* Of the phonemes from `first` on, those that are spoken while there is laughter are of another kind. */
+/* Marks the phonemes from `first` on that are spoken during laughter. */
 static void mark_laughing(score_t *score, size_t first)
 {
     size_t l = 0;
@@ -99,19 +99,9 @@ int score_read(score_t *score, const char *path, const score_voice_t *voice)
         fprintf(stderr, "labial-demo: %s: cannot open\n", path);
         return -1;
     }
-    int byte, result = 0;
-    timings_init(&reader.timings, TIMINGS_AUTO, NULL, on_phoneme, &reader);
-    while (result == 0 && (byte = getc(in)) != EOF)
-        result = timings_put(&reader.timings, (unsigned char)byte);
-    if (result == 0)
-        result = timings_end(&reader.timings);
-    if (result == TIMINGS_MALFORMED)
+    const int result = timings_read(&reader.timings, in, LABIAL_TIMINGS_AUTO, NULL, on_phoneme, &reader);
+    if (result < 0)
         failed(&reader, reader.timings.message, "");
-    timings_free(&reader.timings);
-    if (ferror(in)) {
-        fprintf(stderr, "labial-demo: %s: cannot read\n", path);
-        result = -1;
-    }
     fclose(in);
     if (result != 0)
         return -1;

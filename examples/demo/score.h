@@ -1,5 +1,5 @@
 /*
- * score.h - what is to be performed: phonemes one after the other, and laughs that are heard under the words.
+ * score.h - the score: phonemes one after the other, and laughs under the words.
  */
 #ifndef LABIAL_EXAMPLE_SCORE_H
 #define LABIAL_EXAMPLE_SCORE_H
@@ -10,11 +10,11 @@
 #include "labial/model.h"
 #include "labial/names.h"
 
-/* Words are spoken laughing for so long before and after the laugh itself, milliseconds. */
+/* Time before and after the laugh in which words are spoken laughing, milliseconds. */
 #define SCORE_LEAD 2000u
 #define SCORE_TRAIL 900u
 
-/* Who utters a file's phonemes. */
+/* The voice of a file's phonemes. */
 typedef struct {
     const labial_model_t *model;
     const labial_names_t *names;
@@ -49,7 +49,7 @@ typedef struct {
 } score_t;
 
 /* Appends the timings of a file (say/timings.h) in a voice. A laugh in a file of speech is a pause in the words, and
- * sets in SCORE_LEAD before it. Returns 0, or -1 after having said on stderr what is wrong. */
+ * begins SCORE_LEAD before it. Returns 0, or -1 after printing the error. */
 int score_read(score_t *score, const char *path, const score_voice_t *voice);
 
 void score_release(score_t *score);

@@ -2,7 +2,7 @@
  * together.c - two streams run side by side from the first to the last frame: one talks, the other one laughs and rests
  * between laughs. Every frame is the blend of both.
  *
- * A device does what one turn of the loop in together_play() does in each frame period, once.
+ * A device makes one iteration of the loop in together_play() in each frame period.
  */
 #include "together.h"
 
@@ -14,7 +14,7 @@
 #include "laughter_synthetic.h"
 #include "speech_en.h"
 
-/* Milliseconds over which laughter sets in and dies away, and over which it takes the mouth from the words. */
+/* Milliseconds over which laughter begins and fades, and over which it takes the mouth from the words. */
 #define RAMP 240u
 
 #define TALK_SIZE LABIAL_LARGER(SPEECH_EN_WORKSPACE_SIZE, LAUGHTER_SYNTHETIC_WORKSPACE_SIZE)
@@ -62,8 +62,8 @@ static int feed_talk(together_t *t)
 
 /* ---- The stream that laughs ------------------------------------------------------------------------------------ */
 
-/* The next phoneme of this stream: of a laugh, or the rest up to the next one. Returns LABIAL_OK, LABIAL_DONE behind the
- * last laugh, or an error. */
+/* The next phoneme of this stream: of a laugh, or the silence up to the next one. Returns LABIAL_OK, LABIAL_DONE after
+ * the last laugh, or an error. */
 static int next_to_laugh(together_t *t, unsigned *phoneme, uint32_t *milliseconds)
 {
     int result = labial_laugh_next(&t->generator, phoneme, milliseconds);
@@ -101,7 +101,7 @@ static int feed_laugh(together_t *t)
 
 /* ---- Both ------------------------------------------------------------------------------------------------------ */
 
-/* How far a ramp has gone that began at `from`, or has to go that ends at `to`, milliseconds: 0 to full. */
+/* The value, 0 to full, of a ramp that rises from `from` on and falls until `to`, milliseconds. */
 static unsigned ramp(uint64_t from, uint64_t to)
 {
     if (to <= from)
@@ -114,7 +114,7 @@ static unsigned least(unsigned a, unsigned b)
     return a < b ? a : b;
 }
 
-/* The talk and, where the score has one, the laugh, at `now` (milliseconds), from both streams' latest frames. */
+/* The blend of the talk and, if the score has one, the laugh, at `now` (milliseconds), from the latest frames. */
 static void blend_at(together_t *t, uint64_t now, int16_t faps[LABIAL_CHANNELS])
 {
     unsigned intensity = 0, words = LABIAL_BLEND_FULL;

@@ -1,15 +1,15 @@
 // A page that speaks, laughs when it is tapped, and can be interrupted at any moment.
-import { Labial, timings } from "labial";
+import { Labial } from "labial";
 import "labial/labial-mouth.js";
 
-// What is said: a sound, the times of its phonemes, and who reads these. For a server's voice, change this line.
-const WORDS = { sound: "welcome.flac", timings: "welcome.lab", read: timings.fromLab };
 
 const [face] = document.getElementsByTagName("labial-mouth");
 const [voice] = document.getElementsByTagName("audio");
 const [status] = document.getElementsByTagName("p");
 const labial = await Labial.load({ laughter: () => import("labial-laughter") });
 const laughter = labial.stream();
+// What is said: a sound, the times of its phonemes, and who reads these. For a server's voice, change this line.
+const WORDS = { sound: "welcome.flac", timings: "welcome.lab", read: (text) => labial.read(text) };
 let turn = 0; // whoever asked last has the mouth
 
 /** Interrupts what the mouth does. The result is that of `prepare`, once the mouth is at rest; null when somebody else

@@ -20,7 +20,7 @@ static volatile servos_face_t queue[SERVOS_QUEUE];
 static volatile uint32_t pushed, begun, ended, passed;
 static volatile uint32_t playing, ending;
 
-/* The handler's own, but for looking at. */
+/* Written only by the handler. */
 static volatile uint32_t periods, interrupts, late;
 static uint16_t lengths[SERVOS_COUNT]; /* of this period's pulses */
 static unsigned edge;                  /* next one: 2 n begins servo n's pulse, 2 n + 1 ends it */
@@ -89,7 +89,8 @@ void board_interrupt(unsigned number)
         TIMER_COMPARE(TIMER1, 0) = 0;
         begin_period();
     }
-    /* A read after the writes, so that the events are gone before the handler returns and would be called again. */
+    /* Reads after the writes, so that the events are cleared before the handler returns; else it would be called
+     * again. */
     (void)TIMER_COMPARE(TIMER1, 0);
 }
 

@@ -3,9 +3,9 @@
  * queue of faces that they show.
  *
  * TIMER1 counts microseconds and starts anew every 20 ms. Servo n's pulse begins 0.1 + 3 n ms into the period, so that
- * pulses of at most 2.5 ms never overlap and the servos do not all draw their current at once; its end is where its
- * length says. Both edges are made by the interrupt's handler with the same delay after the timer's event, so that a
- * pulse is as long as asked for to within about a microsecond, whatever the main program computes meanwhile.
+ * pulses of at most 2.5 ms never overlap and the servos do not all draw their current at once; its length determines
+ * its end. The interrupt handler makes both edges with the same delay after the timer's event, so that a pulse has its
+ * length to within about a microsecond, whatever the main program computes meanwhile.
  *
  * The main program puts faces into the queue as it has computed them, early or late within a period; the handler shows
  * one per period. So the motion is even although some frames take longer to compute than others.
@@ -36,8 +36,8 @@ unsigned servos_room(void);
 /* Puts a face into the queue; there must be room. */
 void servos_push(const int32_t lengths[SERVOS_COUNT]);
 
-/* From the next period on one face per period is shown. The last one stays when there is none; this is late unless
- * servos_end() has said that no more will come, after which faces wait for servos_play() again. */
+/* Shows one face per period from the next period on. The last one stays when there is none, which counts as late unless
+ * servos_end() has said that no more will come; after that, faces wait for servos_play() again. */
 void servos_play(void);
 void servos_end(void);
 
@@ -50,7 +50,7 @@ void servos_wait(void);
 /* Microseconds since servos_start(), from a timer of their own. */
 uint32_t servos_clock(void);
 
-/* What happened so far: periods that ended, interrupts, and periods in which a face was late. */
+/* Counters: periods that ended, interrupts, and periods in which a face was late. */
 typedef struct {
     uint32_t periods, interrupts, late;
 } servos_counts_t;

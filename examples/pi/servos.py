@@ -1,4 +1,4 @@
-"""Where the servos are: a PCA9685 on the I2C bus, or a printed line for each frame where there is none."""
+"""Servos on a PCA9685 on the I2C bus, or a printed line for each frame without one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import labial
 
 
 class Printer:
-    """Prints the values of each frame, after the milliseconds at which they are due."""
+    """Prints the time in milliseconds and the values of each frame."""
 
     def __init__(self, out: Optional[TextIO] = None) -> None:
         self._out = out or sys.stdout
@@ -21,7 +21,7 @@ class Printer:
         print(f"{milliseconds:6d} ms: {line}", file=self._out)
 
     def close(self) -> None:
-        """Nothing is left to do."""
+        """Does nothing."""
 
 
 class PCA9685:
@@ -47,12 +47,12 @@ class PCA9685:
                                            [0, 0, ticks & 0xFF, ticks >> 8])
 
     def close(self) -> None:
-        """No more pulses, so that nothing hums or holds."""
+        """Stops all pulses, so that the servos neither hum nor hold."""
         self._bus.write_byte_data(self._address, self.ALL_OFF_HIGH, self.FULLY_OFF)
 
 
 def open_servos(rig: labial.Rig, bus: int = 1) -> Any:
-    """The PCA9685 on /dev/i2c-`bus`; a :class:`Printer`, and a sentence that says why, where there is none."""
+    """The PCA9685 on /dev/i2c-`bus`; else a :class:`Printer`, and a message that says why."""
     try:
         from smbus2 import SMBus
 

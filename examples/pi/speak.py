@@ -4,8 +4,8 @@
     python3 speak.py "Hello there."
     python3 speak.py --piper en_US-lessac-medium.onnx < lines.txt
 
-speaks the text, or every line of standard input, by espeak-ng or Piper, plays it by aplay and moves the servos of
-face.toml with it.
+speaks the text, or every line of standard input, with espeak-ng or Piper, plays it with aplay and moves the servos of
+face.toml in step.
 """
 
 from __future__ import annotations
@@ -22,23 +22,22 @@ from typing import Any, Callable, Dict, List, Optional, Sequence
 
 import labial
 from servos import Printer, open_servos
-from utterance import Utterance
+from voices import Espeak, Piper, Utterance
 
-#: Frames that the face looks ahead: more than any servo needs to go from one end to the other.
+#: Look-ahead of the face in frames: more than any servo needs for its full range.
 AHEAD = 50
 
 
 def moves(utterance: Utterance, face: labial.Rig) -> List[Dict[str, int]]:
-    """Servos for each frame. All frames move the face, in order, so that none is missing from its limits of speed; and
-    since all are known, slow servos set out as early as they need to."""
-    motion = labial.render(utterance.timings, labels=utterance.labels, nearest=True)
-    return list(face.ahead(motion, AHEAD))
+    """Values of the servos for each frame. All frames are applied in order, since limits of speed are per frame; and
+    since all are known, slow servos start early enough."""
+    return list(face.ahead(utterance.motion, AHEAD))
 
 
 def follow(frames: Sequence[Any], rate: int, show: Callable[[int, Any], None], begin: float,
            clock: Callable[[], float] = time.monotonic, sleep: Callable[[float], None] = time.sleep) -> None:
-    """Shows each of `frames` while it is due by the clock, `rate` per second from `begin` on. What is late is passed
-    over: a busy moment costs a frame, not the lips' step."""
+    """Shows each of `frames` when it is due by the clock, `rate` per second from `begin` on. Late frames are skipped: a
+    busy moment costs a frame, but the lips stay in step."""
     shown = -1
     while shown + 1 < len(frames):
         due = min(math.floor((clock() - begin) * rate + 1e-6), len(frames) - 1)
@@ -50,7 +49,7 @@ def follow(frames: Sequence[Any], rate: int, show: Callable[[int, Any], None], b
 
 
 def speak(utterance: Utterance, face: labial.Rig, servos: Any, device: str, delay: float) -> None:
-    """Plays an utterance and moves the servos with it; `delay` is what the sound device takes to be heard, seconds."""
+    """Plays an utterance and moves the servos in step; `delay` is the latency of the sound device, seconds."""
     rate = labial.speech_en.fps
     frames = moves(utterance, face)
     with tempfile.TemporaryDirectory() as folder:
@@ -65,7 +64,7 @@ def speak(utterance: Utterance, face: labial.Rig, servos: Any, device: str, dela
             if player and player.wait() != 0:
                 raise RuntimeError("aplay could not play the sound")
         finally:
-            if player:  # after Ctrl-C no sound goes on behind closed lips
+            if player:  # after Ctrl-C no sound continues with closed lips
                 player.kill()
                 player.wait()
             servos.show(len(frames) * 1000 // rate, face.rest())
@@ -85,15 +84,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     options = parser.parse_args(arguments)
     try:
         face = labial.Rig(options.face)
-        voice: Any
-        if options.piper:
-            from piper_voice import Piper
-
-            voice = Piper(options.piper)
-        else:
-            from espeak import Espeak
-
-            voice = Espeak(options.voice)
+        voice = Piper(options.piper) if options.piper else Espeak(options.voice)
         servos = Printer() if options.servos == "print" else open_servos(face)
         try:
             for line in [options.text] if options.text else sys.stdin:

@@ -1,6 +1,6 @@
 /*
- * servos.c - five servos on a PCA9685 (examples/faces/servos.toml). Prints what goes over the I2C bus, each line one
- * write to the chip: the register, then the bytes.
+ * servos.c - five servos on a PCA9685 (examples/faces/servos.toml). Prints the traffic on the I2C bus, one write to the
+ * chip in each line: the register, then the bytes.
  *
  *     labial-rig-servos
  */
@@ -16,7 +16,7 @@
 #define LED0_ON_L 0x06u       /* four registers per channel: on low, on high, off low, off high */
 #define PRESCALE 0xfeu
 
-/* What a board's I2C driver does. */
+/* Stands for a board's I2C driver. */
 static void write_registers(unsigned first, const uint8_t *bytes, unsigned count)
 {
     unsigned i;

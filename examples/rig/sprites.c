@@ -43,8 +43,8 @@ typedef struct {
     unsigned count;
 } film_t;
 
-/* Takes the picture for the film's features. Two rules keep the mouth from flickering: a picture stays for two frames
- * at least, and gives way only to one that is clearly nearer, by a fifth of the distance. */
+/* Chooses the picture for the film's features. Two rules keep the mouth from flickering: a picture stays for at least
+ * two frames, and is replaced only by one that is clearly nearer, by a fifth of the distance. */
 static void choose(film_t *film)
 {
     unsigned nearest = 0, i;

@@ -9,14 +9,14 @@
 
 #define DFPLAYER_BAUD 9600
 
-/* From power-up until the module takes commands: it reads its card first. Its manual says 1.5 to 3 s. */
+/* From power-up until the module accepts commands: it reads its card first. Its manual says 1.5 to 3 s. */
 #ifndef DFPLAYER_READY_MS
 #define DFPLAYER_READY_MS 3000
 #endif
 
 /*
- * From the end of a command to the sound. The manual names 200 ms for what the module does before it can play from its
- * card. Modules with other chips take up to half a second: if the jaw comes before the sound, make it longer.
+ * From the end of a command to the sound. The manual states 200 ms for preparing a file on the card. Modules with other
+ * chips take up to half a second: if the jaw moves before the sound, increase it.
  */
 #ifndef DFPLAYER_DELAY_MS
 #define DFPLAYER_DELAY_MS 200
@@ -26,7 +26,7 @@
 
 /*
  * Command 0x0f: plays file `file` (1 .. 255) of folder `folder` (1 .. 99), which are called 01/001.wav and so on. The
- * checksum is what brings the sum of itself and the bytes from the version (0xff) to the file's number to 2^16.
+ * checksum plus the bytes from the version (0xff) to the file's number is 2^16.
  */
 static inline void dfplayer_play(uint8_t command[DFPLAYER_COMMAND_SIZE], uint8_t folder, uint8_t file)
 {

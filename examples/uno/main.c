@@ -1,7 +1,7 @@
 /*
  * main.c - a jaw that moves to a recording, on an Arduino Uno (ATmega328P, 16 MHz) without Arduino's software.
  *
- * talk.h holds the jaw's motion (labial bake), a DFPlayer Mini the sound. Both begin at reset, and again whenever the
+ * talk.h has the jaw's motion (labial bake), a DFPlayer Mini the sound. Both begin at reset, and again whenever the
  * button is pressed.
  *
  *     pin 9   servo's signal
@@ -25,7 +25,7 @@
 #define COUNTS_PER_US (F_CPU / 8u / 1000000u) /* of timer 1 */
 #define COMMAND_MS (DFPLAYER_COMMAND_SIZE * 10ul * 1000u / DFPLAYER_BAUD + 1u)
 
-/* Periods that last at least so many milliseconds. */
+/* The number of periods for at least so many milliseconds. */
 #define PERIODS(ms) (uint16_t)(((ms) + PERIOD_MS - 1u) / PERIOD_MS)
 
 static labial_player_t player;
@@ -78,7 +78,7 @@ static void talk(void)
     wait_for_period(0);
     for (i = 0; i < sizeof command; i++)
         serial_write(command[i]);
-    /* The last of these periods is the one in which the timer takes frame 0 over. */
+    /* In the last of these periods the timer loads frame 0. */
     wait_for_period((uint16_t)(PERIODS(COMMAND_MS + DFPLAYER_DELAY_MS) - 2u));
     talk_begin(&player);
     while ((frame = talk_next(&player)) != NULL) {

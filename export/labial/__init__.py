@@ -10,9 +10,8 @@
             print(frame.number, frame.faps)
     motion = labial.render([("HH", 70), ("AY", 230)])
 
-This is the run-time (``labial.runtime``), the C library called from Python, which needs nothing but Python;
-docs/python.md is its manual. The other modules are the exporter, which trains models and writes them as tables for C
-and needs numpy.
+This is the run-time (``labial.runtime``), the C library called from Python, which needs only Python; docs/python.md is
+its manual. The other modules are the exporter, which trains models, writes them as tables for C, and needs numpy.
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, List
 
-from labial.runtime import BUNDLED
-
+#: The bundled models. The order of a kind's phonemes is part of the interface: their names are those of every model.
+BUNDLED = ("speech_en", "laughter_synthetic")
 __version__ = "0.3.0"
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ _HOMES = {"Frame": "frame", "Latency": "frame", "Model": "models", "Rig": "rig",
 
 
 def __getattr__(name: str) -> Any:
-    """The run-time's names, loaded with the library when they are first asked for: exporting needs no library."""
+    """Loads the run-time and its library on first use of one of its names: exporting needs no library."""
     if name in ("errors", "runtime"):
         return import_module(f"labial.{name}")
     if name in BUNDLED:

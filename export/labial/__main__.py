@@ -1,7 +1,131 @@
-"""``python -m labial``."""
+"""The command ``labial``, also ``python -m labial``. `labial.commands` lists its commands and has a module for each."""
 
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import signal
 import sys
+import traceback
+import warnings
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from pathlib import Path
+from types import FrameType
+from typing import Iterator, List, NoReturn, Optional, Sequence
 
-from labial.cli import main
+from labial import __version__
+from labial.commands import COMMANDS
+from labial.errors import LabialError, needs
 
-sys.exit(main())
+
+class _Parser(argparse.ArgumentParser):
+    """Prints an error in the arguments in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {_one_line(message)}\n")
+
+
+def _one_line(text: str) -> str:
+    """`text` as one printable line: control characters and bytes that are not UTF-8 are escaped."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser of a command line. It imports only the module of the command that `arguments` name."""
+    top = _Parser(
+        prog="labial", description="Trains lip-motion models and exports them for the C library."
+    )
+    top.add_argument("--version", action="version", version=f"labial {__version__}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, text in COMMANDS.items():
+        command = commands.add_parser(name, help=text)
+        if name in arguments:
+            module = import_module(f"labial.commands.{name.replace('-', '_')}")
+            module.add_arguments(command)
+            command.set_defaults(run=module.run)
+    return top
+
+
+class _Ended(BaseException):
+    """Raised by a signal that ends the command; handlers of the exception remove temporary files."""
+
+
+@contextmanager
+def _ending() -> Iterator[None]:
+    """Within the block, SIGTERM and SIGHUP raise `_Ended` instead of ending the process at once."""
+    def end(number: int, _: Optional[FrameType]) -> None:
+        raise _Ended(number)
+
+    before = {}
+    for name in ("SIGTERM", "SIGHUP"):
+        with suppress(AttributeError, ValueError):  # Windows has no SIGHUP; only the main thread may set handlers
+            number = getattr(signal, name)
+            if signal.getsignal(number) is signal.SIG_DFL:
+                before[number] = signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    """Runs the command and returns its exit status: 0; 1 when an input cannot be used; 3 for an internal error; 128
+    plus the signal's number when a signal ended it."""
+    given = sys.argv[1:] if arguments is None else arguments
+    options = parser(given).parse_args(given)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="surrogateescape")  # file names are written unchanged
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: _complain(f"warning: {message}")
+        try:
+            with _ending(), needs(f"labial {options.command}", "tools"):
+                status = int(options.run(options))
+                sys.stdout.flush()
+                return status
+        except LabialError as error:
+            _complain(str(error))
+        except BrokenPipeError:  # the reader of the output closed the pipe
+            _drop_output()
+        except OSError as error:
+            _complain(f"{_name(error)}: {error.strerror or error}")
+            _drop_output()
+        except MemoryError:
+            _complain("there is not enough memory for this")
+        except KeyboardInterrupt:
+            _complain("interrupted")
+            return 130
+        except _Ended as ended:
+            _complain(f"ended by {signal.Signals(ended.args[0]).name}")
+            return 128 + int(ended.args[0])
+        except Exception as error:
+            _complain(_defect(error))
+            return 3
+    return 1
+
+
+def _complain(text: str) -> None:
+    print(f"labial: {_one_line(text)}", file=sys.stderr)
+
+
+def _drop_output() -> None:
+    """Discards unwritten standard output, so that Python does not try to write it again at exit."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _name(error: OSError) -> str:
+    return os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes, os.PathLike)) else "the output"
+
+
+def _defect(error: Exception) -> str:
+    """The message for an internal error."""
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    return (f"this is a defect of labial, please report it: {type(error).__name__}: {error} "
+            f"({Path(place.filename).name}, line {place.lineno})")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

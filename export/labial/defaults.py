@@ -1,5 +1,4 @@
-"""Values of options that commands and functions have in common. Nothing is imported, so that help is there without
-numpy."""
+"""Default values of options that commands and functions share. Imports nothing, so that help works without numpy."""
 
 #: Kinds of corpora and models, and methods a model may be trained with; the first kind and the last method are the
 #: default.
@@ -12,11 +11,13 @@ WHICH_FACE = ("largest", "left", "right")
 #: Frames per second of a model.
 FPS = 50
 
-#: States of each channel and components of each phoneme's mixture.
+#: States of each channel and components of each phoneme's mixture, the published ones; and those of Labial's method by
+#: kind. States that track the motion (labial.train.tracking) are few, so that the search sees most of them.
 CODEBOOK = 50
 COMPONENTS = 5
+SIZES = {"speech": (CODEBOOK, COMPONENTS), "laughter": (10, 1)}
 
-#: Seconds that the kernels reach into what follows; see DESIGN.md for what more would buy.
+#: Look-ahead of the kernels, seconds (docs/experiments.md compares others).
 LOOK_AHEAD = 0.12
 
 #: Frames that share a state of the decoded path. Targets move slowly enough that more states change nothing.

@@ -1,4 +1,4 @@
-"""Errors that a user can cause and mend."""
+"""Errors that a user can cause and correct."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Iterator, Optional, Union
 
 
 class LabialError(Exception):
-    """Something the user gave cannot be used; the message says what and where."""
+    """An input cannot be used; the message says what and where."""
 
 
 class DataError(LabialError):
     """A file's content is wrong. The message begins with ``file:line:`` (or ``file:``)."""
 
-    def __init__(self, path: Union[str, os.PathLike], line: Optional[int], message: str) -> None:
+    def __init__(self, path: Union[str, os.PathLike[str]], line: Optional[int], message: str) -> None:
         where = f"{os.fspath(path)}:{line}" if line is not None else os.fspath(path)
         super().__init__(f"{where}: {message}")
 
@@ -28,7 +28,7 @@ class ModelError(LabialError):
 
 
 class StreamError(LabialError):
-    """The library refuses a call; the message holds its own sentence (``labial_result_text``)."""
+    """The library refuses a call; the message contains its description (``labial_result_text``)."""
 
     def __init__(self, result: int, message: str) -> None:
         super().__init__(message)
@@ -37,8 +37,8 @@ class StreamError(LabialError):
 
 @contextmanager
 def needs(what: str, extra: str) -> Iterator[None]:
-    """Around the imports of an optional package: LabialError says that `what`, such as "training", needs it, and which
-    `extra` of this package brings it."""
+    """Wraps the imports of an optional package: a LabialError says that `what`, such as "training", needs it, and which
+    `extra` of this package installs it."""
     try:
         yield
     except ModuleNotFoundError as error:

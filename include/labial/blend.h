@@ -1,5 +1,5 @@
 /*
- * labial/blend.h - speech and laughter at the same time: a frame of each in, one frame of words spoken laughing out.
+ * labial/blend.h - speaking while laughing: blends a frame of speech and a frame of laughter.
  *
  * Two streams run side by side, one with a speech and one with a laughter model of the same frame rate. Each keeps its
  * latest frame, and once per frame period the two are blended:
@@ -8,19 +8,19 @@
  *     labial_tick(&laugh); // callback copies the frame to laugh[]
  *     labial_blend(&labial_blend_default, intensity, words, speech, laugh, faps);
  *
- * `intensity` says how much laughter there is, `words` how much of it has to make room for words. The program moves
- * both in ramps of 200 to 300 ms: a break in either is a break in the motion. docs/laughing.md has whole programs.
+ * `intensity` is the amount of laughter, `words` how far it must give way to words. The program changes both in ramps
+ * of 200 to 300 ms, since a jump in either is a jump in the motion. docs/laughing.md has complete programs.
  *
  * For each channel c, with s the speech's and l the laugh's value and everything else in 0 .. 1:
  *
  *     out[c] = s[c] + (l[c] - s[c]) * intensity * (1 - words * (1 - share[c] * free[c]))     rounded to the nearest
  *
- * With words = 1 a channel follows the laugh by its share, while lips that meet stay together: `free` is 0 where the
- * speech needs the channel for a closure, 1 where it does not, and 3 x^2 - 2 x^3 in between. Closures are read from the
- * speech frame itself, so that its phonemes are not needed:
+ * With words = 1 a channel follows the laugh by its share, but lips that meet stay together: `free` is 0 where speech
+ * needs the channel for a closure, 1 where it does not, and 3 x^2 - 2 x^3 in between. The speech frame itself shows the
+ * closures, so that its phonemes are not needed:
  *
- *     opening = -(FAP 51 + FAP 52)   how far the middles of the lips are apart: small in p, b, m
- *     drop    = -FAP 52              how far the lower lip has gone down: small in f, v, where it touches the teeth
+ *     opening = -(FAP 51 + FAP 52)   distance of the middles of the lips: small in p, b, m
+ *     drop    = -FAP 52              how far the lower lip is lowered: small in f, v, where it touches the teeth
  *
  *     upper lip (FAPs 51, 55, 56)              x = (opening - closed) / (open - closed)
  *     lower lip (FAPs 52, 57, 58)              the same or, if less, x = (drop - touching) / (dropped - touching)

@@ -6,23 +6,23 @@
 
 #include <stdint.h>
 
-/* How many frames ahead of the delivered ones the trajectory's backward pass starts, 1 .. 48. Each frame makes the motion
- * smoother and costs a frame of delay and 104 bytes of workspace. With the bundled models 3 frames leave an error of
- * .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. */
+/* How many frames ahead of the delivered ones the trajectory's backward pass starts, 1 .. 48. Each frame makes the
+ * motion smoother and costs a frame of delay and 104 bytes of workspace. With the bundled models 3 frames leave an
+ * error of .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 3
 #endif
 
-/* How many frames after a step the search decides on its state, if the unit does not end earlier, 0 .. 40. Each
- * frame makes the path more probable and costs a frame of delay and about 175 bytes of workspace; with the bundled
- * models the difference is not visible. With a lag as long as the longest unit, the states of each unit are the
- * likeliest path through it (Viterbi) among those that LABIAL_SEARCHED leaves. */
+/* How many frames after a step the search decides its state, if the unit does not end earlier, 0 .. 40. Each frame
+ * makes the path more probable and costs a frame of delay and about 175 bytes of workspace; with the bundled models the
+ * difference is not visible. With a lag as long as the longest unit, the states of each unit are the most probable path
+ * through it (Viterbi) among the states that LABIAL_SEARCHED allows. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0
 #endif
 
-/* States that a step of the search looks at, of those of a channel: the ones around that whose mean is nearest to the
- * target, 2 .. 64. With as many as a model has, no path is left out. Each costs a byte of workspace in each channel,
+/* States of a channel that a step of the search considers, 2 .. 64: those around the state whose mean is nearest to the
+ * target. With all states of a model, the search considers every path. Each costs a byte of workspace in each channel,
  * LABIAL_LAG bytes more with a lag, and its share of the search's time. */
 #ifndef LABIAL_SEARCHED
 #define LABIAL_SEARCHED 8
@@ -42,13 +42,13 @@
 #endif
 
 /* Models whose phonemes can be in a stream at the same time, 1 .. 255. Another model can replace a model when all
- * its phonemes have been taken in, and after them as many frames as share a state. */
+ * frames of its phonemes have been delivered. */
 #ifndef LABIAL_MODELS
 #define LABIAL_MODELS 2
 #endif
 
-/* What does not compile: values out of range, sums without parentheses (which the code would take apart), unsigned
- * ones. */
+/* These values do not compile: numbers out of range, sums without parentheses (which the macros would break apart), and
+ * unsigned numbers. */
 #define LABIAL_IS_NUMBER_(x, least, most) (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
 #if !LABIAL_IS_NUMBER_(LABIAL_WINDOW, 1, 48)
 #error "LABIAL_WINDOW must be a number from 1 to 48."
@@ -75,7 +75,7 @@
 #error "LABIAL_MODELS must be a number from 1 to 255."
 #endif
 
-/* Ticks from taking a frame in to delivering it. */
+/* Ticks from accepting a frame to delivering it. */
 #define LABIAL_DELAY(stride) (LABIAL_WINDOW + LABIAL_LAG + (stride))
 
 #endif

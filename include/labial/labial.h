@@ -12,14 +12,14 @@
  *         wait_for_next_frame();
  *
  * The library never allocates, keeps no state outside `stream` and `workspace`, computes in integers only and gives the
- * same bits on every target. Calls on one stream must not overlap, but for those of its callback; calls on different
+ * same bits on every target. Calls on one stream must not overlap, except those from its callback; calls on different
  * streams may. The structure may be moved or copied between calls as long as the workspace stays where it is and only
- * one copy continues to be used. Nothing needs to be released.
+ * one copy is used from then on. Nothing needs to be released.
  *
- * Trusted: models that the exporter wrote and the program was linked with; labial_init() and labial_use() check only
- * their format and frame rate. Not trusted: phoneme numbers, durations, the order of calls, and models from files: no
- * value of these can make the library read or write outside its memory. A model from a file may be used only after
- * labial_model_load() (labial/blob.h) has accepted it.
+ * The library trusts models that the exporter wrote and that are linked into the program; labial_init() and
+ * labial_use() check only their format and frame rate. It does not trust phoneme numbers, durations, the order of
+ * calls, or models from files: no value of these can make it read or write outside its memory. A model from a file may
+ * be used only after labial_model_load() (labial/blob.h) has accepted it.
  */
 #ifndef LABIAL_H
 #define LABIAL_H
@@ -42,7 +42,10 @@ extern "C" {
 /* Longest duration of one phoneme, milliseconds: one hour. */
 #define LABIAL_DURATION_MAX 3600000u
 
-/* ---- Results. Zero is success, a positive value says how a stream stands, a negative one is an error. ------------ */
+/* Largest articulation, percent. */
+#define LABIAL_ARTICULATION_MAX 200u
+
+/* ---- Results. Zero is success, a positive value tells a stream's state, a negative one is an error. -------------- */
 
 #define LABIAL_RESULTS(X)                                                                                              \
     X(LABIAL_OK, 0, "success")                                                                                         \
@@ -60,32 +63,32 @@ extern "C" {
     X(LABIAL_ERROR_RATE, -9, "the model's frame rate or search stride is not the stream's")                            \
     X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still to be played")                       \
     X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                      \
-    X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")
+    X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")                         \
+    X(LABIAL_ERROR_TIMINGS, -13, "the timings are malformed; the parser's message says how")
 
 typedef enum {
 #define LABIAL_RESULT_VALUE(name, value, text) name = value,
     LABIAL_RESULTS(LABIAL_RESULT_VALUE)
 #undef LABIAL_RESULT_VALUE
-        LABIAL_RESULT_LAST_ = LABIAL_ERROR_RIG
+        LABIAL_RESULT_LAST_ = LABIAL_ERROR_TIMINGS
 } labial_result_t;
 
-/* A sentence for any result, "unknown result" for other numbers. Linked only when used. */
+/* A description of any result, "unknown result" for other numbers. Linked only when used. */
 const char *labial_result_text(int result);
 
 /* ---- The stream ------------------------------------------------------------------------------------------------ */
 
 /*
  * Receives a frame: `frame` counts frames since labial_init(), `faps` are the 13 channels in FAP units, valid during
- * the call. Called from labial_tick() alone, whose work is then done: it may call any function, of the same stream too,
- * which then does and returns what it would after the tick: labial_restart() is refused while frames are still to come,
- * and labial_init() begins with frame 0 anew. A labial_tick() from here delivers the next frame before the first one
- * returns, on top of its stack.
+ * the call. labial_tick() calls it last. So the callback may call any function, also on the same stream, as if the tick
+ * had returned: labial_restart() is refused while frames are still to come, and labial_init() begins with frame 0
+ * again. A labial_tick() from the callback delivers the next frame before the first tick returns, on top of its stack.
  */
 typedef void (*labial_frame_fn)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
 
 /*
  * Bytes of workspace for models that search a state every `stride` frames, a multiple of four; a constant expression
- * when `stride` is. Its parts are, in this order: how far each channel is; the frames whose targets are still needed;
+ * when `stride` is. Its parts are, in this order: the state of each channel; the frames whose targets are still needed;
  * the motion that is not yet delivered.
  */
 #define LABIAL_WORKSPACE_SIZE(stride)                                                                                  \
@@ -99,12 +102,12 @@ uint32_t labial_workspace_size(const labial_model_t *model);
 #define LABIAL_LARGER(a, b) ((a) > (b) ? (a) : (b))
 
 /*
- * Prepares a stream whose first phonemes are those of `model`; whatever it contained before is forgotten.
+ * Prepares a stream whose first phonemes are those of `model`, and discards what it contained.
  *
- * `workspace` is aligned to four bytes and has at least labial_workspace_size() bytes of the largest model that the
- * stream will use; it belongs to the stream until it is initialised anew or no longer used.
+ * `workspace` must be aligned to four bytes and have at least labial_workspace_size() bytes of the largest model that
+ * the stream will use; it belongs to the stream until the stream is initialised again or no longer used.
  *
- * The model must stay where it is for the same time. It is trusted: it was compiled in, or labial_model_load() accepted
+ * The model must stay where it is for the same time. It is trusted: it is compiled in, or labial_model_load() accepted
  * it. `callback` receives the frames, with `user` as its first argument.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_WORKSPACE. After an error the stream is
@@ -114,9 +117,9 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
                 labial_frame_fn callback, void *user);
 
 /*
- * Makes the next pushes phonemes of `model`, speech or laughter. Each model treats the other's phonemes as silence;
- * where the stream changes from one to the other, the motion fades over 8 frames. The model is trusted as that of
- * labial_init() is.
+ * Selects `model`, speech or laughter, for the phonemes of the next pushes. Each model treats the other's phonemes as
+ * silence; where the stream changes from one to the other, the motion fades over 8 frames. The model is trusted like
+ * that of labial_init().
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
  * LABIAL_ERROR_RATE (frames per second and search stride are those of the stream's first model) or LABIAL_ERROR_MODELS.
@@ -124,39 +127,39 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 int labial_use(labial_t *stream, const labial_model_t *model);
 
 /*
- * Appends a phoneme of the current model with its duration in milliseconds, 0 to LABIAL_DURATION_MAX. Durations are
- * added exactly: after any number of pushes the frames amount to the rounded sum of the durations. A phoneme that gets
- * no frame of its own is skipped, and its time is added to the next.
+ * Appends a phoneme of the current model with its duration in milliseconds, 0 to LABIAL_DURATION_MAX. Rounding errors
+ * do not accumulate: after any number of pushes the number of frames is the rounded sum of the durations. A phoneme
+ * that gets no frame is skipped, and its time is added to the next one.
  *
  * How a phoneme looks depends on what follows: its frames wait until the next phoneme and everything within the
- * kernels' reach are known, or until labial_end(). Pauses of any length delay nothing: a silence is pushed whole when
- * it begins.
+ * kernels' reach are known, or until labial_end(). A pause of any length adds no delay if it is pushed whole when it
+ * begins.
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (after labial_end() or
  * labial_cancel()), LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION or LABIAL_ERROR_FULL.
  */
 int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds);
 
-/* Phonemes that can be pushed before the queue is full; 0 when none, or when the stream takes no more. */
+/* Phonemes that can be pushed before the queue is full; 0 when none, or when the stream accepts no more. */
 unsigned labial_room(const labial_t *stream);
 
 /* No more phonemes will come. Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE. */
 int labial_end(labial_t *stream);
 
 /*
- * Call once per frame period. Takes in one frame of what was pushed and delivers the one that was taken in
+ * Call once per frame period. Accepts one frame of the pushed phonemes and delivers the frame that was accepted
  * LABIAL_DELAY(stride) ticks before; every call does about the same work. When phonemes come too late, the stream is
  * late by one frame for each tick that returned LABIAL_STARVED, and catches up by as many extra calls (docs/kiosk.md).
  *
- * Returns LABIAL_OK when the callback was called, once; LABIAL_WAITING, LABIAL_STARVED or LABIAL_DONE when there was
- * nothing to deliver; LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ * Returns LABIAL_OK after one call of the callback; LABIAL_WAITING, LABIAL_STARVED or LABIAL_DONE when there was no
+ * frame to deliver; LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_tick(labial_t *stream);
 
 /*
- * Drops all that was pushed and not yet delivered, and eases the last delivered frame back to the neutral face (all
- * FAPs 0) over `milliseconds`, rounded up to whole frames and at most 1,000 of them; then the stream is done. With 0
- * one neutral frame follows.
+ * Drops everything that is not yet delivered, and eases the last delivered frame back to the neutral face (all FAPs 0)
+ * over `milliseconds`, rounded up to whole frames, at most 1,000; then the stream is done. With 0 one neutral frame
+ * follows.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
@@ -164,21 +167,36 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds);
 
 /*
  * Continues a stream that is done or was cancelled: phonemes can be pushed again, frame numbers continue, and the first
- * frames are cross-faded from the frame delivered last, so that there is no jump. The current model stays.
+ * frames are cross-faded from the last delivered frame, so that there is no jump. The current model stays.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (before labial_init(), or while frames are still to come).
  */
 int labial_restart(labial_t *stream);
 
-/* How much of the input has been pushed and not yet delivered. */
+/*
+ * How far the mouth moves: every channel's distance from the neutral face, in percent of what the models learned. It is
+ * 100 after labial_init(); 50 is a mumble, 130 a shout, 0 the neutral face; more than LABIAL_ARTICULATION_MAX counts as
+ * that. Lips still meet in p, b, m and the lower lip still touches the teeth in f, v: what is in contact is moved by
+ * 100 percent at most. It costs no time.
+ *
+ * It may change at any time, as often as one likes: with each frame that is taken in, the articulation comes nearer to
+ * the one that was told last, by up to 10 percent, so that the motion has no jolt. Frames show that
+ * LABIAL_DELAY(stride) ticks later, or up to `stride` ticks less. Before the first frame, and after a cancel or a
+ * restart, it is the new one at once. It holds for all models, and a cancel or a restart keeps it.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_articulation(labial_t *stream, unsigned percent);
+
+/* The input that has been pushed and not yet delivered. */
 typedef struct {
     uint32_t frames;       /* pushed and not yet delivered */
     uint32_t milliseconds; /* the same as time, rounded to the nearest */
-    unsigned phonemes;     /* in the queue: pushed, with frames that are not yet taken in */
-    unsigned delay;        /* ticks from taking a frame in to delivering it: LABIAL_DELAY() */
+    unsigned phonemes;     /* in the queue: pushed, with frames that are not yet accepted */
+    unsigned delay;        /* ticks from accepting a frame to delivering it: LABIAL_DELAY() */
 } labial_latency_t;
 
-/* The stream's look-ahead at this moment; all zero for a null or uninitialised stream. */
+/* The stream's current latency; all zero for a null or uninitialised stream. */
 labial_latency_t labial_latency(const labial_t *stream);
 
 #ifdef __cplusplus

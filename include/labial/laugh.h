@@ -1,5 +1,5 @@
 /*
- * labial/laugh.h - laughs of a wanted length, for programs that have no timings of laughter.
+ * labial/laugh.h - generates laughs of a given length, for programs that have no timings of laughter.
  *
  * The generator yields phonemes of laughter with their durations, one at a time, to be pushed onto a stream whose model
  * is one of laughter (labial_use()):
@@ -12,8 +12,8 @@
  *         labial_push(&stream, phoneme, milliseconds);        // while labial_room() > 0
  *
  * Its statistics are those of the synthetic laughter corpus: pulses 210 ms apart in trains of three, more or less, with
- * inhalations between the trains. The same length, intensity and seed give the same laugh on every machine; there is
- * no state but the caller's structure.
+ * inhalations between the trains. The same length, intensity and seed give the same laugh on every machine; the
+ * caller's structure is the only state.
  */
 #ifndef LABIAL_LAUGH_H
 #define LABIAL_LAUGH_H
@@ -24,12 +24,11 @@
 extern "C" {
 #endif
 
-/* The highest intensity. At 0 a laugh is a hum behind nearly closed lips, at the highest the mouth is wide open, and
- * in between jaw, lips and corners change gradually: the generator yields soft, plain and loud grades of the
- * phonemes and alternates between two grades where the loudness lies between them; the model has the opening of
- * each. Pulses get softer along a train and from train to train. Half the highest intensity has the corpus's rhythm;
- * a higher one makes trains longer, pauses shorter and vowels longer and more open, a lower one hums more pulses
- * with closed lips. */
+/* The highest intensity. At 0 a laugh is a hum behind nearly closed lips, at the highest the mouth is wide open, and in
+ * between jaw, lips and corners change gradually: the generator yields soft, plain and loud grades of the phonemes, and
+ * alternates between two grades for a loudness between them; the model has the opening of each grade. Pulses get softer
+ * along a train and from train to train. Half the highest intensity has the corpus's rhythm; a higher one makes trains
+ * longer, pauses shorter and vowels longer and more open, a lower one hums more pulses with closed lips. */
 #define LABIAL_LAUGH_FULL 256u
 
 /* The phonemes of every laughter model that the exporter writes, in the order of their numbers: twelve, then the soft
@@ -63,10 +62,10 @@ enum {
     LABIAL_LAUGH_PHONEMES
 };
 
-/* A laugh under way. The caller's memory; private; may be moved or copied between calls. */
+/* A laugh in progress, in the caller's memory. Its members are private; it may be moved or copied between calls. */
 typedef struct {
     uint32_t left;         /* milliseconds to come */
-    uint32_t tail;         /* of them, the rest at the end */
+    uint32_t tail;         /* of them, the silence at the end */
     uint32_t random;       /* state of the random numbers, never 0 */
     uint16_t intensity;    /* 0 .. LABIAL_LAUGH_FULL */
     uint16_t durations[6]; /* of the phonemes that are decided, milliseconds */
@@ -87,8 +86,8 @@ typedef struct {
 int labial_laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
 
 /*
- * The next phoneme and its duration, at least 20 ms unless the whole laugh is shorter; together they last exactly as
- * long as was asked for.
+ * Yields the next phoneme and its duration, at least 20 ms unless the whole laugh is shorter; together the phonemes
+ * last exactly as long as requested.
  *
  * Returns LABIAL_OK, LABIAL_DONE after the last one (nothing is written), or LABIAL_ERROR_NULL.
  */

@@ -1,9 +1,9 @@
 /*
- * labial/model.h - what a model is made of, as the exporter writes it and the run-time reads it.
+ * labial/model.h - the tables of a model, as the exporter writes them and the run-time reads them.
  *
  * A model is a set of constant tables: it stays in flash, is never written, and may serve any number of streams at
  * once. Programs do not fill these structures by hand: `labial export` writes a C file that does, and
- * labial_model_load() (labial/blob.h) lays one over a blob.
+ * labial_model_load() (labial/blob.h) makes one refer to a blob.
  *
  * Number formats, the same in every table:
  *
@@ -30,26 +30,31 @@
 extern "C" {
 #endif
 
-/* Version of the tables' meaning. A generated model of another version does not compile, and a blob of another version
- * is refused. */
-#define LABIAL_MODEL_FORMAT 4
+/* Version of this format. A generated model of another version does not compile, and a blob of another version is
+ * refused. */
+#define LABIAL_MODEL_FORMAT 5
 
 /* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
 #define LABIAL_CHANNELS 13
 
-/* Limits that the run-time's arithmetic and memory are built for; labial_model_check() refuses a model beyond them. */
+/* Channels that tables of a model with `protrusion` have: FAP 60 in the place of FAP 17, which has none. */
+#define LABIAL_CHANNELS_SOLVED 12
+
+/* Limits of the run-time's arithmetic and memory; labial_model_check() refuses a model that exceeds them. */
 #define LABIAL_PHONEMES_MAX 128         /* phonemes of one model */
 #define LABIAL_CLASSES_MAX 32           /* viseme classes of one model */
 #define LABIAL_PHONEME_COMPONENTS_MAX 8 /* mixture components of one phoneme */
 #define LABIAL_STATES_MAX 64            /* codebook entries of one channel */
 #define LABIAL_KERNEL_TAPS_MAX 32       /* taps of one temporal kernel */
+#define LABIAL_PROTRUSION_VALUES 17     /* ends of the intervals of labial_protrusion_t */
 #define LABIAL_SEARCH_STRIDE_MAX 8      /* frames that share a state */
 #define LABIAL_NO_FLOOR (-16384)        /* in `floors`: below every position */
 #define LABIAL_POSITION_MAX 16383       /* Q4: +-1023.9 FAP units around the channel's centre */
 
-/* Frames that a contact lasts at least: a shorter phoneme borrows the frame before it and, if it has only one frame,
- * the frame after it as well. A phoneme of LABIAL_CONTACT_LONG frames or more includes a pause, and is in contact
- * only in its last LABIAL_CONTACT_LAST frames. */
+/* The least length of a contact in frames; a longer phoneme is in contact in the middle half of its frames. A shorter
+ * one borrows the frame before it and, if it has only one frame, the frame after it as well. A phoneme of
+ * LABIAL_CONTACT_LONG frames or more includes a pause, and is in contact only in its last LABIAL_CONTACT_LAST
+ * frames. */
 #define LABIAL_CONTACT_FRAMES 3
 #define LABIAL_CONTACT_LONG 15
 #define LABIAL_CONTACT_LAST 8
@@ -58,13 +63,14 @@ extern "C" {
  * stream that begins with a pause begins at rest. */
 #define LABIAL_REST_FRAMES 16
 
-/* Limits of equation 3 within a channel. With them its solution is right to .1 FAP unit (lib/trajectory.c). */
+/* Limits of equation 3 within a channel. Within them the error of its solution is below .1 FAP unit
+ * (lib/trajectory.c). */
 #define LABIAL_WEIGHT_SUM_MAX 16383 /* largest `hold` or `contact_weight` + 2 x largest weight[0] + 6 x weight[1] */
 #define LABIAL_WEIGHT_MIN 8         /* the least `hold` */
 #define LABIAL_STIFFNESS_MAX 16     /* a state's weight[1] over its `hold`; weight[0] is not above weight[1] */
 #define LABIAL_PULL_MAX 65535 /* Q4: four times the largest weight[i] * |mean[1 + i]|, summed, over least `hold` */
 
-/* A phoneme: which mixture components are its own and which viseme class its neighbours see. */
+/* A phoneme: its mixture components, and the viseme class that its neighbours see. */
 typedef struct {
     uint16_t first_component; /* index into `components` */
     uint8_t component_count;  /* 1 .. LABIAL_PHONEME_COMPONENTS_MAX */
@@ -87,8 +93,8 @@ typedef struct {
     uint8_t cost; /* log sigma, cost, less the least of its channel */
 } labial_emission_t;
 
-/* What a codebook entry contributes to the trajectory (equation 3): means of m, its delta and its delta-delta, per
- * frame, and an anchor that ties the frame to its target, which the published method does not have. */
+/* A codebook entry in the trajectory (equation 3): means of m, its delta and its delta-delta, per frame, and an anchor
+ * that ties the frame to its target, which the published method does not have. */
 typedef struct {
     int16_t mean;      /* position */
     int8_t motion[2];  /* means of delta and delta-delta, in steps of motion_scale */
@@ -97,9 +103,9 @@ typedef struct {
     uint8_t weight[2]; /* a quarter of delta's; delta-delta's */
 } labial_state_t;
 
-/* One channel's scales and its hidden Markov model. States are in the order of their emissions' means. Each has as many
- * possible predecessors as the model says, in ascending order, the last repeated where there are fewer: the predecessor
- * in the low byte of a transition, the transition's cost in the high one. */
+/* One channel's scales and its hidden Markov model. States are sorted by their emissions' means. Each state has
+ * `predecessors` transitions, in ascending order of the predecessor, the last one repeated where there are fewer. A
+ * transition has its predecessor in the low byte and its cost in the high byte. */
 typedef struct {
     int16_t centre;                     /* Q4 FAP: added to every position on output */
     uint16_t shape_scale;               /* positions per step of `shapes`, Q8; at most 32767 */
@@ -114,7 +120,18 @@ typedef struct {
     const uint8_t *initials;            /* state_count, cost of starting there */
 } labial_channel_t;
 
-/* A model. Arrays are row-major in the order given; those marked optional may be null. */
+/* FAP 17, protrusion of the top lip, over the mean of FAP 53 and 54, the corners: values from `low` on in 16 even
+ * intervals, linear in between, constant beyond. With s = FAP 53 + FAP 54 in Q4 and
+ * u = clamp(s - 2 * low, 0, 65535) * gain >> 12, at most 4096, it is between values i = u >> 8 and i + 1:
+ * values[i] + ((values[i + 1] - values[i]) * (u & 255) + 128 >> 8). The published method does not have it. */
+typedef struct {
+    int16_t low;                              /* Q4 FAP */
+    uint16_t gain;                            /* 2^24 over twice the width of all intervals in Q4 FAP */
+    int16_t values[LABIAL_PROTRUSION_VALUES]; /* Q4 FAP */
+} labial_protrusion_t;
+
+/* A model. Of its channels there are C: 13, or LABIAL_CHANNELS_SOLVED with `protrusion`. Arrays are row-major in the
+ * order given; those marked optional may be null. */
 typedef struct {
     uint16_t format;            /* LABIAL_MODEL_FORMAT */
     uint16_t frames_per_second; /* 1 .. 250 */
@@ -123,10 +140,10 @@ typedef struct {
     uint8_t class_count;        /* V: 1 .. LABIAL_CLASSES_MAX */
     uint8_t state_count;        /* Q: 1 .. LABIAL_STATES_MAX */
     uint8_t predecessors;       /* K: 1 .. LABIAL_STATES_MAX */
-    uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the target of the middle
-                                 * one, or of the later of two, is what the search sees */
-    uint8_t silence;            /* the phoneme that stands before, after and for what is another model's; long ones are
-                                 * taken as two (lib/units.h) */
+    uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the search sees the target
+                                 * of the middle one, or of the later of two */
+    uint8_t silence;            /* the phoneme before the first, after the last, and in place of another model's; a long
+                                 * one counts as two (lib/units.h) */
     uint8_t mixture_mean;       /* 1: shapes are the mixture's mean; 0: those of its best component (equation 2) */
     uint8_t kernel_taps;        /* L: 0 .. LABIAL_KERNEL_TAPS_MAX; 0 without temporal kernels */
     uint8_t kernel_stride;      /* frames from tap to tap */
@@ -139,42 +156,43 @@ typedef struct {
     const labial_component_t *components; /* N */
     const uint8_t *contexts;    /* N x V, in 1/2 nat: cost of the previous phoneme's class in the low four bits, of the
                                 * next one's in the high four; less the least of a phoneme's components; optional */
-    const int8_t *shapes;       /* N x 13, mean shape in steps of shape_scale */
-    const int8_t *slopes;       /* N x 13, change of shape per unit of z, in steps of slope_scale; optional */
+    const int8_t *shapes;       /* N x C, mean shape in steps of shape_scale */
+    const int8_t *slopes;       /* N x C, change of shape per unit of z, in steps of slope_scale; optional */
     const uint32_t *kernels;    /* P x L x 3, in steps of kernel_scale: channels 0 to 11, four to a word, the first in
                                 * the low byte, each 128 more than its steps; null when L is 0 */
-    const int8_t *last_kernels; /* P x L, channel 12, in steps of its kernel_scale; null when L is 0 */
+    const int8_t *last_kernels; /* P x L, channel 12, in steps of its kernel_scale; null when L is 0 or C is 12 */
     const uint16_t *pair_keys;  /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one;
                                 * null when R is 0 */
-    const int8_t *pairs;        /* R x K' x 13, what such a neighbour adds to the phoneme's shape, in steps of
+    const int8_t *pairs;        /* R x K' x C, what such a neighbour adds to the phoneme's shape, in steps of
                                 * pair_scale */
-    const int16_t *floors;    /* F x 13, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
+    const int16_t *floors;      /* F x C, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
                                 * none; null when F is 0 */
-    const uint16_t *contacts; /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
+    const uint16_t *contacts;   /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
                                 * neighbours do: its `hold` is `contact_weight` at least, for LABIAL_CONTACT_FRAMES
                                 * frames or more. In silence: it is where the channel comes to rest in a pause.
                                 * Null when F is 0 */
-    const labial_channel_t *channels; /* 13 */
+    const labial_protrusion_t *protrusion; /* of which FAP 17 is computed; optional: without it that is a channel */
+    const labial_channel_t *channels;      /* 13; where C is 12, the last is another one again */
 } labial_model_t;
 
 /*
- * Checks everything that a stream relies on, which labial_init() and labial_use() take for granted: the version, every
- * count, index and sum, and that no pointer that is needed is null. It cannot know how long the arrays are; a model
- * from outside the program goes through labial_model_load(), which does.
+ * Checks everything that labial_init() and labial_use() assume: the version, every count, index and sum, and that no
+ * required pointer is null. It cannot know how long the arrays are; load a model from outside the program by
+ * labial_model_load(), which does.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_MODEL (labial/labial.h).
  */
 int labial_model_check(const labial_model_t *model);
 
 /*
- * How much work the model makes: an upper estimate of the instructions that one labial_tick() takes on a Cortex-M0, the
- * slowest of the processors that the library is measured on; the others take about three quarters of them. It is valid
- * for any input. Where models change, a tick takes at most the sum of their costs, one for each run of a model's
- * phonemes within the latest `search_stride` frames.
+ * The work of a tick: an upper estimate, for any input, of the instructions that one labial_tick() takes on a
+ * Cortex-M0, the slowest of the processors that the library is measured on; the others take about three quarters of
+ * them. Where models change, a tick takes at most the sum of their costs, one for each run of a model's phonemes within
+ * the latest `search_stride` frames.
  *
- * The bundled models cost about 41,000 and 36,000, and their ticks take 19,400 at most. A model that
- * labial_model_check() accepts can cost 180,000, so a program that plays models of others compares this number with
- * what its processor has for a frame:
+ * The bundled models cost about 36,000 and 35,000, and their ticks take 19,400 at most. A model that
+ * labial_model_check() accepts can cost 180,000. So a program that plays foreign models compares this number with the
+ * instructions that its processor has for a frame:
  *
  *     if (labial_model_load(&blob, data, size) != LABIAL_OK || labial_model_cost(&blob.model) > 50000)
  *         return -1; // 50,000 instructions 50 times a second are about a quarter of a Cortex-M0 at 16 MHz

@@ -1,6 +1,7 @@
 /*
- * labial/private.h - what a stream is made of, for labial/labial.h alone: declared so that programs can allocate a stream
- * statically. All members are private, and may change with any version. Each structure belongs to one file of lib/.
+ * labial/private.h - the parts of a stream, for labial/labial.h alone. They are declared so that programs can allocate
+ * a stream statically. All members are private and may change with any version. Each structure belongs to one file of
+ * lib/.
  */
 #ifndef LABIAL_PRIVATE_H
 #define LABIAL_PRIVATE_H
@@ -18,16 +19,16 @@ typedef struct {
     uint8_t slot;    /* model it belongs to */
 } labial_segment_t;
 
-/* The queue of what was pushed and not yet taken frame by frame (units.c). */
+/* The queue of phonemes that were pushed and whose frames are not all accepted yet (units.c). */
 typedef struct {
     uint8_t head, count;
     uint8_t before;     /* phoneme in front of the oldest segment */
     uint8_t begins;     /* the next frame is the first of a solution */
     uint8_t rested;     /* the oldest segment is a pause that a solution began with */
-    uint16_t remainder; /* of a frame, in 1/1000, that the durations so far leave over, from one half on */
-    uint32_t taken;     /* frames of the oldest segment that were taken */
-    uint32_t frames;    /* of all segments that are not yet taken */
-    uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last that was taken */
+    uint16_t remainder; /* of all durations so far: a part of a frame, in 1/1000, starting from one half */
+    uint32_t taken;     /* frames of the oldest segment that were accepted */
+    uint32_t frames;    /* of all segments, not yet accepted */
+    uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last accepted one */
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
 
@@ -46,7 +47,7 @@ typedef struct {
     int16_t tilts[LABIAL_PHONEME_COMPONENTS_MAX];      /* how much of the slope counts: share times deviation, Q12 */
 } labial_selection_t;
 
-/* Where the search of one channel stands (viterbi.c). */
+/* State of the search of one channel (viterbi.c). */
 typedef struct {
     uint8_t first; /* state of the window */
     uint8_t best;  /* state, counted from the first */
@@ -56,11 +57,11 @@ typedef struct {
     uint8_t spans[LABIAL_LAG + 1];             /* frames of these steps */
     uint8_t undecided;                         /* steps before the last whose states may still change */
     uint8_t firsts[LABIAL_LAG];                /* windows of the steps before the last */
-    uint8_t back[LABIAL_LAG][LABIAL_SEARCHED]; /* and where in them the states of the next step come from */
+    uint8_t back[LABIAL_LAG][LABIAL_SEARCHED]; /* predecessors in them of the next step's states */
 #endif
 } labial_search_t;
 
-/* Where the solution of one channel stands (trajectory.c): the recursion, and the row that the next one completes. */
+/* State of the solution of one channel (trajectory.c): the recursion, and the row that the next one completes. */
 typedef struct {
     int32_t row, bent; /* Q16 */
     int32_t k1, k2;    /* Q16 */
@@ -70,26 +71,26 @@ typedef struct {
     uint16_t hold, delta;
 } labial_solver_t;
 
-/* What the backward pass needs of a frame (trajectory.c). */
+/* A frame's numbers for the backward pass (trajectory.c). */
 typedef struct {
     int32_t q; /* Q12 FAP */
     uint16_t rho, kappa;
 } labial_factors_t;
 
-/* A frame that was taken (stream.c). */
+/* An accepted frame (stream.c). */
 typedef struct {
     uint32_t contacts;               /* bit k: channel k is in contact */
     int16_t target[LABIAL_CHANNELS]; /* positions */
-    uint8_t slot;                    /* its model */
     uint8_t marks;
 } labial_frame_t;
 
-/* The factors that a channel's next step goes back through, the latest last; a structure, so that it is copied whole. */
+/* The factors that a channel keeps for its next backward pass, the latest last; a structure, so that it is copied
+ * whole. */
 typedef struct {
     labial_factors_t of[LABIAL_WINDOW + 1];
 } labial_kept_t;
 
-/* Where one channel stands (channels.c). */
+/* State of one channel (channels.c). */
 typedef struct {
     labial_solver_t solver;
     labial_kept_t kept;
@@ -98,13 +99,15 @@ typedef struct {
 
 /* All channels (channels.c). The pointers are to parts of the workspace. */
 typedef struct {
-    uint8_t stride;              /* frames that share a state */
-    uint8_t phase;               /* channels phase, phase + stride, ... are next */
-    uint8_t entered;             /* frames that were taken, 255 for more */
-    uint8_t beyond;              /* ticks since the last frame was taken */
-    labial_progress_t *progress; /* LABIAL_CHANNELS */
-    labial_frame_t *frames;      /* the latest stride + LABIAL_LAG, the last one taken at the end */
-    int16_t *motion;             /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
+    uint8_t stride;  /* frames that share a state */
+    uint8_t phase;   /* channels phase, phase + stride, ... step next */
+    uint8_t entered; /* accepted frames, 255 for more */
+    uint8_t beyond;  /* ticks since the last frame was accepted */
+    uint8_t full;    /* ticks for which frames are in hand whose model has all LABIAL_CHANNELS */
+    uint8_t slots[LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) + 1]; /* i: model of the frame that was accepted i ticks ago */
+    labial_progress_t *progress;                               /* LABIAL_CHANNELS */
+    labial_frame_t *frames; /* the latest stride + LABIAL_LAG, the newest at the end */
+    int16_t *motion;        /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
 } labial_channels_t;
 
 #define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
@@ -115,8 +118,10 @@ typedef struct {
     uint8_t slot;         /* model of the next push */
     uint8_t ended;        /* no more phonemes will come */
     uint8_t begun;        /* a frame was delivered since the stream was initialised or restarted */
-    uint8_t shown;        /* a frame was delivered since the stream was initialised: what begins fades in from `pose` */
+    uint8_t shown;        /* a frame was delivered since labial_init(): a new solution fades in from `pose` */
     uint8_t fade_step;    /* 0 when nothing fades */
+    uint8_t wanted;       /* articulation, percent */
+    uint8_t articulation; /* of the latest frame */
     uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
     uint16_t ease_step;
     uint32_t frame;   /* number of the next frame */

@@ -121,9 +121,9 @@ uint8_t fixture_gain_code(double sigma)
     return (uint8_t)nearest;
 }
 
-double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which)
+double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which, int32_t gain)
 {
-    const int32_t scaled = state->motion[which] * (int32_t)channel->motion_scale[which] + 128;
+    const int32_t scaled = state->motion[which] * (channel->motion_scale[which] * gain / 256) + 128;
     return scaled >= 0 ? scaled / 256 : -((255 - scaled) / 256); /* rounded down */
 }
 
@@ -318,6 +318,37 @@ void fixture_laughter(fixture_model_t *fixture)
     fixture->phonemes[FIXTURE_HA].boundary = 1;
     for (i = 0; i < LABIAL_CHANNELS; i++) /* silence near neutral, as that of the speech models */
         fixture->shapes[2 * FIXTURE_LAUGH_SIL * LABIAL_CHANNELS + i] = 5;
+}
+
+/* A row of 13 values without that of FAP 17, that of FAP 60 in its place. */
+#define NARROW(type, table, rows)                                                                                      \
+    for (row = 0; row < (rows); row++) {                                                                               \
+        type wide[LABIAL_CHANNELS];                                                                                    \
+        memcpy(wide, (table) + row * LABIAL_CHANNELS, sizeof wide);                                                    \
+        wide[2] = wide[12];                                                                                            \
+        memcpy((table) + row * LABIAL_CHANNELS_SOLVED, wide, LABIAL_CHANNELS_SOLVED * sizeof wide[0]);                 \
+    }
+
+void fixture_without_17(fixture_model_t *f)
+{
+    size_t row;
+    unsigned i;
+    NARROW(int8_t, f->shapes, FIXTURE_COMPONENTS)
+    NARROW(int8_t, f->slopes, FIXTURE_COMPONENTS)
+    NARROW(int8_t, f->pairs, FIXTURE_PAIRS * 2u)
+    NARROW(int16_t, f->floors, FIXTURE_FLOORS)
+    for (row = 0; row < FIXTURE_PHONEMES * FIXTURE_TAPS; row++)
+        f->kernels[row * 3] = (f->kernels[row * 3] & 0xff00ffffu) | (uint32_t)(f->last_kernels[row] + 128) << 16;
+    for (i = 0; i < FIXTURE_FLOORS; i++)
+        f->contacts[i] = (uint16_t)((f->contacts[i] & 0x0ffbu) | (f->contacts[i] >> 12 & 1u) << 2);
+    f->channels[2] = f->channels[12];
+    f->channels[12] = f->channels[5];
+    f->model.last_kernels = NULL;
+    f->model.protrusion = &f->protrusion;
+    f->protrusion.low = -1593;
+    f->protrusion.gain = 2621; /* 16 intervals of 200 Q4 */
+    for (i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
+        f->protrusion.values[i] = (int16_t)(i * (i % 3) * 6 + (i % 2) * 25);
 }
 
 void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t *laugh, fixture_model_t *slow)

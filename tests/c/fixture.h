@@ -55,6 +55,7 @@ typedef struct {
     int8_t pairs[FIXTURE_PAIRS * 2 * LABIAL_CHANNELS];
     int16_t floors[FIXTURE_FLOORS * LABIAL_CHANNELS];
     uint16_t contacts[FIXTURE_FLOORS];
+    labial_protrusion_t protrusion;
     labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     uint16_t transitions[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];
@@ -88,7 +89,11 @@ void fixture_laughter(fixture_model_t *fixture);
  * may, to both sides. */
 void fixture_slow(fixture_model_t *fixture);
 
-/* All four. */
+/* Takes FAP 17 of a fixture away: all its tables are written again without that channel, FAP 60 in its place, and a table
+ * of it over the corners is added, whose values go up and down by a FAP unit for each unit of the corners at most. */
+void fixture_without_17(fixture_model_t *fixture);
+
+/* The four that have all channels. */
 void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t *laugh, fixture_model_t *slow);
 
 /* Shape of the first component of a speech phoneme on one channel, Q4 FAP, `centre` included. */
@@ -102,8 +107,8 @@ double fixture_weight_value(uint8_t code);
 uint8_t fixture_gain_code(double sigma);
 double fixture_gain_value(uint8_t code);
 
-/* The mean of a state's delta, or with 1 of its delta-delta, in positions. */
-double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which);
+/* The mean of a state's delta, or with 1 of its delta-delta, in positions, with an articulation of `gain` / 256. */
+double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which, int32_t gain);
 
 /* Kernels as a model has them, of steps of 13 channels in each row. */
 void fixture_pack_kernels(const int8_t *steps, size_t rows, uint32_t *kernels, int8_t *last_kernels);
@@ -205,6 +210,11 @@ int fixture_push(fixture_host_t *host, const fixture_phoneme_t *phoneme);
 /* Plays all of `input`, ends the stream, and ticks until it is done. Returns 0 when all went as it must, else -1 with
  * host->complaint set. */
 int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, fixture_feed_t feed);
+
+/* The same with as many phonemes in the queue as there is room for, so that each tick takes a frame in: frame t with an
+ * articulation of told[t] percent, of which there are `room`. */
+int fixture_play_told(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, const uint8_t *told,
+                      size_t room);
 
 /* Open, play with `feed`, and leave the host open for a look at its recorder. Returns as fixture_play(). */
 int fixture_run(fixture_host_t *host, const labial_model_t *model, const fixture_phoneme_t *input, size_t count,

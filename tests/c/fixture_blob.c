@@ -78,7 +78,7 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
 
 size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
 {
-    const size_t n = model->component_count;
+    const size_t n = model->component_count, channels = model->protrusion ? LABIAL_CHANNELS_SOLVED : LABIAL_CHANNELS;
     writer_t w;
     unsigned i;
     w.out = out;
@@ -100,7 +100,10 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     put(&w, model->kernel_taps, 1);
     put(&w, model->kernel_stride, 1);
     put(&w, model->kernel_behind, 1);
-    put(&w, (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u) | (model->pair_knots == 2 ? 4u : 0u), 1);
+    put(&w,
+        (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u) | (model->pair_knots == 2 ? 4u : 0u) |
+            (model->protrusion ? 8u : 0u),
+        1);
     put(&w, model->floor_count, 1);
     put(&w, model->pair_count, 2);
     for (i = 0; i < model->phoneme_count; i++) {
@@ -119,26 +122,34 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     pad(&w);
     put_bytes(&w, model->contexts, n * model->class_count);
     pad(&w);
-    put_bytes(&w, model->shapes, n * LABIAL_CHANNELS);
+    put_bytes(&w, model->shapes, n * channels);
     pad(&w);
-    put_bytes(&w, model->slopes, n * LABIAL_CHANNELS);
+    put_bytes(&w, model->slopes, n * channels);
     pad(&w);
     for (i = 0; i < 3u * model->phoneme_count * model->kernel_taps; i++)
         put(&w, model->kernels[i], 4);
-    put_bytes(&w, model->last_kernels, (size_t)model->phoneme_count * model->kernel_taps);
+    if (!model->protrusion)
+        put_bytes(&w, model->last_kernels, (size_t)model->phoneme_count * model->kernel_taps);
     pad(&w);
     for (i = 0; i < model->pair_count; i++)
         put(&w, model->pair_keys[i], 2);
     pad(&w);
-    put_bytes(&w, model->pairs, (size_t)model->pair_count * model->pair_knots * LABIAL_CHANNELS);
+    put_bytes(&w, model->pairs, (size_t)model->pair_count * model->pair_knots * channels);
     pad(&w);
-    for (i = 0; i < (unsigned)model->floor_count * LABIAL_CHANNELS; i++)
+    for (i = 0; i < (unsigned)model->floor_count * channels; i++)
         put(&w, (uint16_t)model->floors[i], 2);
     pad(&w);
     for (i = 0; i < model->floor_count; i++)
         put(&w, model->contacts[i], 2);
     pad(&w);
-    for (i = 0; i < LABIAL_CHANNELS; i++)
+    if (model->protrusion) {
+        put(&w, (uint16_t)model->protrusion->low, 2);
+        put(&w, model->protrusion->gain, 2);
+        for (i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
+            put(&w, (uint16_t)model->protrusion->values[i], 2);
+        pad(&w);
+    }
+    for (i = 0; i < channels; i++)
         put_channel(&w, &model->channels[i], model->state_count, model->predecessors);
     if (w.size <= room)
         fixture_seal(out, w.size);

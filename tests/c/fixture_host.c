@@ -213,6 +213,28 @@ int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t co
     return host->complaint ? -1 : 0;
 }
 
+int fixture_play_told(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, const uint8_t *told,
+                      size_t room)
+{
+    size_t next = 0, t;
+    for (t = 0; t < room; t++) {
+        int result;
+        while (next < count && labial_room(host->stream) > 0 && fixture_push(host, &input[next]) == LABIAL_OK)
+            next++;
+        if (next == count && !host->ended)
+            fixture_end(host);
+        if ((t == 0 || told[t] != told[t - 1] || t % 7 == 0) && labial_articulation(host->stream, told[t]) != LABIAL_OK)
+            fixture_complain(host, "an articulation is refused");
+        result = fixture_tick(host);
+        if (result == LABIAL_STARVED)
+            fixture_complain(host, "a full queue starves");
+        if (result == LABIAL_DONE || host->complaint)
+            return host->complaint ? -1 : 0;
+    }
+    fixture_complain(host, "there are more frames than were told of");
+    return -1;
+}
+
 int fixture_run(fixture_host_t *host, const labial_model_t *model, const fixture_phoneme_t *input, size_t count,
                 fixture_feed_t feed)
 {

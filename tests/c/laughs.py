@@ -9,11 +9,11 @@ import struct
 import sys
 import zlib
 
-from labial.laughs import pieces
-from labial.phonesets import LAUGHTER
+from labial.corpus.phonesets import LAUGHTER
+from labial.reference.laughs import pieces
 
-HEAD = """/* Written by laughs.py from export/labial/laughs.py; do not edit: milliseconds, intensity, seed; number of
- * phonemes, CRC-32. */
+HEAD = """/* Written by laughs.py from export/labial/reference/laughs.py; do not edit: milliseconds, intensity, seed;
+ * number of phonemes, CRC-32. */
 static const struct {
     uint32_t milliseconds, intensity, seed, count, crc;
 } laughs[] = {

@@ -73,21 +73,32 @@ void oracle_search(const labial_model_t *model, unsigned channel, const oracle_f
 
 /*
  * Equation 3 for one channel: the matrix is W' U^-1 W + A, multiplied out row of W by row of W. A frame in contact (bit
- * `bit` of `contacts`) is held at its target alone, by the channel's `contact_weight` at least. Frame t is taken from a
+ * `bit` of `contacts`) is held at its target alone, by the channel's `contact_weight` at least. With `gain`, in 1/256, frame
+ * t is articulated: all that holds it and moves it counts gain[t] times, from FAP 0 on, contact at most once; null: all
+ * once. Frame t is taken from a
  * way back that begins at frame start[t], as if all frames beyond were equal to that one; null: at the last frame.
  * Q4 FAP, not rounded.
  */
 void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, const int16_t *targets,
-                       const uint16_t *contacts, unsigned bit, size_t count, const size_t *start, double *motion);
+                       const uint16_t *contacts, unsigned bit, const int32_t *gain, size_t count, const size_t *start,
+                       double *motion);
 
 /* Where the way back to a stream's frames `first` .. `first` + `count` - 1 begins, counted from `first`. */
 void oracle_starts(const labial_model_t *model, unsigned channel, size_t first, size_t count, size_t *start);
 
+/* ---- FAP 17 of the corners (lib/protrusion.h) ---- */
+
+/* How many channels a model's tables have. */
+unsigned oracle_channels(const labial_model_t *model);
+
+/* The frame that the motion of a model's channels makes, in place, Q4 FAP. */
+void oracle_complete(const labial_model_t *model, double motion[LABIAL_CHANNELS]);
+
 /* ---- A whole stream ---- */
 
-/* The frames of a stream, Q4 FAP, `held` being the pose it fades in from, or null. At least `room` frames fit; returns
- * their number. */
+/* The frames of a stream, Q4 FAP, `held` being the pose it fades in from, or null; `told` the articulation, percent, that
+ * holds when each frame is taken in, or null for 100. At least `room` frames fit; returns their number. */
 size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_t *input, size_t count,
-                     const double *held, double (*motion)[LABIAL_CHANNELS], size_t room);
+                     const double *held, const uint8_t *told, double (*motion)[LABIAL_CHANNELS], size_t room);
 
 #endif

@@ -11,6 +11,9 @@
 /* The rules' numbers, as written down for the model's authors. */
 enum { SHORT = 3, LONG = 15, CLOSED = 8, RESTING = 16 };
 
+/* FAP units that the lips part by: those of FAPs 51, 52, 55 to 58. */
+static const int PARTED[LABIAL_CHANNELS] = { 0, 0, 0, 28, 100, 0, 0, 25, 25, 86, 86, 0, 0 };
+
 static const labial_model_t *model_of(const labial_model_t *const *models, const oracle_frame_t *frame)
 {
     return models[frame->model];
@@ -20,7 +23,7 @@ static const labial_model_t *model_of(const labial_model_t *const *models, const
 static const int16_t *floor_of(const labial_model_t *model, unsigned phoneme)
 {
     const unsigned floor = model->floor_count ? model->phonemes[phoneme].floor : 0;
-    return floor ? model->floors + (floor - 1) * LABIAL_CHANNELS : NULL;
+    return floor ? model->floors + (floor - 1) * oracle_channels(model) : NULL;
 }
 
 static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
@@ -57,15 +60,27 @@ static void aim(const labial_model_t *const *models, const oracle_frame_t *frame
     (void)labial_shape_target(&bare, &shape, &taken, target);
 }
 
+/* Whether a contact of `whole` frames is made in frame `number`: in as many in the middle as half of them, rounded up, or
+ * three; an odd frame is left at the end. Of those of a long one the last alone. */
+static int is_made(uint64_t number, uint64_t whole)
+{
+    uint64_t outside = 0; /* frames */
+    if (whole >= LONG)
+        return whole - number <= CLOSED;
+    while (whole - outside > SHORT && 2 * (outside + 1) <= whole)
+        outside++;
+    return number >= outside / 2 && whole - number > outside - outside / 2;
+}
+
 /* The floors of the frame's own phoneme; returns where these are contact. */
 static unsigned keep_floors(const labial_model_t *model, const oracle_frame_t *frame, int16_t target[LABIAL_CHANNELS])
 {
     const int16_t *floor = floor_of(model, frame->phoneme);
     const unsigned contacts = contacts_of(model, frame->phoneme);
     const int is_silent = frame->phoneme == model->silence;
-    const int is_closed = !is_silent && (frame->whole < LONG || frame->whole - frame->number <= CLOSED);
+    const int is_closed = !is_silent && is_made(frame->number, frame->whole);
     unsigned k;
-    for (k = 0; floor && k < LABIAL_CHANNELS; k++) {
+    for (k = 0; floor && k < oracle_channels(model); k++) {
         const int is_contact = contacts >> k & 1;
         if (is_contact && is_silent)
             target[k] = (int16_t)(target[k] + (floor[k] - target[k]) * (int)frame->rest / RESTING);
@@ -81,10 +96,49 @@ static unsigned borrow(const labial_model_t *model, unsigned phoneme, int16_t ta
     const int16_t *floor = floor_of(model, phoneme);
     const unsigned contacts = contacts_of(model, phoneme);
     unsigned k;
-    for (k = 0; floor && k < LABIAL_CHANNELS; k++)
+    for (k = 0; floor && k < oracle_channels(model); k++)
         if ((contacts >> k & 1) && target[k] < floor[k])
             target[k] = floor[k];
     return contacts;
+}
+
+/* Parts the lips in frames `from` to `to`, between two phonemes that make contact, where no contact borrows them. */
+static void part(const labial_model_t *model, unsigned last, unsigned next, size_t from, size_t to,
+                 int16_t (*targets)[LABIAL_CHANNELS], const uint16_t *contacts)
+{
+    const int16_t *one = floor_of(model, last), *other = floor_of(model, next);
+    const unsigned both = contacts_of(model, last) & contacts_of(model, next);
+    size_t t;
+    unsigned k;
+    for (t = from; t < to; t++) {
+        if (contacts[t])
+            continue;
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const int parts = PARTED[k] > 0 && (both >> k & 1) && one[k] > -16384 && other[k] > -16384;
+            int most = (one[k] < other[k] ? one[k] : other[k]) - 16 * PARTED[k];
+            most = most < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX : most;
+            if (parts && targets[t][k] > most)
+                targets[t][k] = (int16_t)most;
+        }
+    }
+}
+
+/* Looks through a solution for contacts that are close to one another. */
+static void part_close_contacts(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count,
+                                int16_t (*targets)[LABIAL_CHANNELS], const uint16_t *contacts)
+{
+    size_t t, last = 0; /* the latest frame of a phoneme that makes contact, which `seen` says there is */
+    int seen = 0;
+    for (t = 0; t < count; t++) {
+        const labial_model_t *model = model_of(models, &frames[t]);
+        seen = seen && !frames[t].begins && frames[t].phoneme != model->silence;
+        if (frames[t].phoneme == model->silence || !contacts_of(model, frames[t].phoneme))
+            continue;
+        if (seen && t - last <= SHORT + 1)
+            part(model, frames[last].phoneme, frames[t].phoneme, last + 1, t, targets, contacts);
+        last = t;
+        seen = 1;
+    }
 }
 
 void oracle_targets(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count,
@@ -107,4 +161,5 @@ void oracle_targets(const labial_model_t *const *models, const oracle_frame_t *f
         if (end - t == 1 && end < count && !frames[end].begins)
             contacts[end] |= (uint16_t)borrow(model, phoneme, targets[end]);
     }
+    part_close_contacts(models, frames, count, targets, contacts);
 }

@@ -31,35 +31,49 @@ static void add_row(equation_t *equations, size_t t, double before, double own, 
     }
 }
 
+/* A position with an articulation: the same from FAP 0, which is as far as its channel's centre from 0. */
+static double articulated(const labial_channel_t *channel, double position, double gain)
+{
+    return (channel->centre + position) * gain - channel->centre;
+}
+
 static void fill(equation_t *equations, const labial_channel_t *channel, const uint8_t *path, const int16_t *targets,
-                 const uint16_t *contacts, unsigned bit, size_t count)
+                 const uint16_t *contacts, unsigned bit, const int32_t *gains, size_t count)
 {
     size_t t;
     for (t = 0; t < count; t++) {
+        const int32_t gain = gains ? gains[t] : 256;
+        const double g = gain / 256.0;
         const labial_state_t *state = &channel->states[path[t]];
         const double firm = fixture_weight_value(channel->contact_weight);
         double hold = fixture_weight_value(state->hold);
-        double anchor = hold * (state->share < 128 ? state->share : state->share + 1) / 256.0;
-        if (contacts[t] >> bit & 1u)
-            anchor = hold = firm > hold ? firm : hold;
-        add_row(equations, t, 0, 1, 0, hold - anchor, state->mean);
-        add_row(equations, t, 0, 1, 0, anchor, targets[t]);
+        /* of the target in where the frame is held, which has 12 bits */
+        const double share = (state->share < 128 ? state->share : state->share + 1) * gain / 16 / 4096.0;
+        if (contacts[t] >> bit & 1u) {
+            hold = firm > hold ? firm : hold;
+            add_row(equations, t, 0, 1, 0, hold, articulated(channel, targets[t], g < 1.0 ? g : 1.0));
+        } else {
+            add_row(equations, t, 0, 1, 0, hold,
+                    articulated(channel, state->mean, g) + share * (targets[t] - state->mean));
+        }
         if (t == 0 || t + 1 == count)
             continue;
         add_row(equations, t, -0.5, 0, 0.5, 4.0 * fixture_weight_value(state->weight[0]),
-                fixture_motion(channel, state, 0));
-        add_row(equations, t, 1, -2, 1, fixture_weight_value(state->weight[1]), fixture_motion(channel, state, 1));
+                fixture_motion(channel, state, 0, gain));
+        add_row(equations, t, 1, -2, 1, fixture_weight_value(state->weight[1]),
+                fixture_motion(channel, state, 1, gain));
     }
 }
 
 void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, const int16_t *targets,
-                       const uint16_t *contacts, unsigned bit, size_t count, const size_t *start, double *motion)
+                       const uint16_t *contacts, unsigned bit, const int32_t *gain, size_t count, const size_t *start,
+                       double *motion)
 {
     equation_t *e = (equation_t *)calloc(count + 2, sizeof *e);
     size_t t, i;
     if (!e)
         abort();
-    fill(e, channel, path, targets, contacts, bit, count);
+    fill(e, channel, path, targets, contacts, bit, gain, count);
     for (t = 0; t < count; t++) /* Gauss: frame t leaves the two equations behind its own */
         for (i = 1; i <= 2 && t + i < count; i++) {
             const double factor = e[t + i].a[2 - i] / e[t].a[2];
@@ -95,6 +109,27 @@ void oracle_starts(const labial_model_t *model, unsigned channel, size_t first, 
     }
 }
 
+/* ---- FAP 17 of the corners ---- */
+
+unsigned oracle_channels(const labial_model_t *model)
+{
+    return model->protrusion ? 12 : 13;
+}
+
+void oracle_complete(const labial_model_t *model, double motion[LABIAL_CHANNELS])
+{
+    const labial_protrusion_t *table = model->protrusion;
+    double at;
+    int i;
+    if (!table)
+        return;
+    motion[12] = motion[2];
+    at = ((motion[5] + motion[6]) / 2 - table->low) * 2 * table->gain / 1048576; /* intervals of 2^20 / gain */
+    at = at < 0 ? 0 : at > 16 ? 16 : at;
+    i = at < 15 ? (int)at : 15;
+    motion[2] = table->values[i] + (at - i) * (table->values[i + 1] - table->values[i]);
+}
+
 /* ---- A whole stream ---- */
 
 #define FADE 8
@@ -104,8 +139,32 @@ typedef struct {
     oracle_frame_t *frames;
     int16_t (*targets)[LABIAL_CHANNELS];
     uint16_t *contacts;
+    int32_t *reached; /* articulation of each frame, in 1/256 */
     size_t count;
 } stream_t;
+
+/* What the articulation is when a frame is taken in: it is 10 percent nearer to what is told than before. */
+static void reach(const stream_t *stream, const uint8_t *told)
+{
+    int percent = told && stream->count > 0 ? told[0] : 100;
+    size_t t;
+    for (t = 0; t < stream->count; t++) {
+        const int way = (told ? told[t] : 100) - percent;
+        percent += way > 10 ? 10 : way < -10 ? -10 : way;
+        stream->reached[t] = (percent * 256 + 50) / 100;
+    }
+}
+
+/* The articulation of a channel's frame: that of the frame that is taken in when its row is made, in the channel's next
+ * turn after LABIAL_LAG frames. */
+static int32_t gain_at(const stream_t *stream, unsigned channel, size_t t)
+{
+    const size_t stride = stream->models[0]->search_stride;
+    size_t turn = t + LABIAL_LAG;
+    while (turn % stride != channel % stride)
+        turn++;
+    return stream->reached[turn < stream->count ? turn : stream->count - 1];
+}
 
 static double limited(double value)
 {
@@ -120,23 +179,29 @@ static void solve(const stream_t *stream, size_t first, size_t count, double (*m
     int16_t *targets = (int16_t *)malloc(count * sizeof *targets);
     size_t *start = (size_t *)malloc(count * sizeof *start), t;
     double *m = (double *)malloc(count * sizeof *m);
+    int32_t *gain = (int32_t *)malloc(count * sizeof *gain);
     unsigned c;
-    if (!path || !targets || !start || !m)
+    if (!path || !targets || !start || !m || !gain)
         abort();
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (c = 0; c < oracle_channels(model); c++) {
         oracle_search(model, c, stream->frames + first, (const int16_t(*)[LABIAL_CHANNELS])(stream->targets + first),
                       first, count, path);
-        for (t = 0; t < count; t++)
+        for (t = 0; t < count; t++) {
             targets[t] = stream->targets[first + t][c];
+            gain[t] = gain_at(stream, c, first + t);
+        }
         oracle_starts(model, c, first, count, start);
-        oracle_trajectory(&model->channels[c], path, targets, stream->contacts + first, c, count, start, m);
+        oracle_trajectory(&model->channels[c], path, targets, stream->contacts + first, c, gain, count, start, m);
         for (t = 0; t < count; t++)
             motion[first + t][c] = limited(m[t]);
     }
+    for (t = 0; t < count; t++)
+        oracle_complete(model, motion[first + t]);
     free(path);
     free(targets);
     free(start);
     free(m);
+    free(gain);
 }
 
 /* Frame j of a fade, from `held`, which moves on by `pace` / 2, / 4, ... */
@@ -169,7 +234,7 @@ static void fade(const stream_t *stream, const double *pose, double (*motion)[LA
 }
 
 size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_t *input, size_t count,
-                     const double *held, double (*motion)[LABIAL_CHANNELS], size_t room)
+                     const double *held, const uint8_t *told, double (*motion)[LABIAL_CHANNELS], size_t room)
 {
     stream_t stream;
     size_t first, t;
@@ -177,10 +242,12 @@ size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_
     stream.frames = (oracle_frame_t *)malloc(room * sizeof *stream.frames);
     stream.targets = (int16_t(*)[LABIAL_CHANNELS])malloc(room * sizeof *stream.targets);
     stream.contacts = (uint16_t *)malloc(room * sizeof *stream.contacts);
-    if (!stream.frames || !stream.targets || !stream.contacts)
+    stream.reached = (int32_t *)malloc(room * sizeof *stream.reached);
+    if (!stream.frames || !stream.targets || !stream.contacts || !stream.reached)
         abort();
     stream.count = oracle_units(models, input, count, stream.frames, room);
     oracle_targets(models, stream.frames, stream.count, stream.targets, stream.contacts);
+    reach(&stream, told);
     for (first = t = 0; t < stream.count; t++)
         if (stream.frames[t].ends) {
             solve(&stream, first, t + 1 - first, motion);
@@ -190,5 +257,6 @@ size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_
     free(stream.frames);
     free(stream.targets);
     free(stream.contacts);
+    free(stream.reached);
     return stream.count;
 }

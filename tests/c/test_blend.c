@@ -1,11 +1,7 @@
 /*
  * test_blend.c - frames of speech and laughter made one: the equation of labial/blend.h, and closures that stay closed.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
@@ -96,13 +92,12 @@ static labial_blend_t draw_table(void)
 }
 
 /* Would catch a channel in the wrong group, a limit or a factor that is left out, and lost precision. */
-static void follows_the_equation(void **state)
+TEST(follows_the_equation)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     double worst = 0;
     unsigned c;
     int i;
-    (void)state;
     seed = 1;
     for (i = 0; i < 50000; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
@@ -122,11 +117,10 @@ static void follows_the_equation(void **state)
 }
 
 /* Would catch a laugh that leaks into plain speech, or speech into a laugh without words. */
-static void the_ends_are_exact(void **state)
+TEST(the_ends_are_exact)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     int i;
-    (void)state;
     seed = 2;
     for (i = 0; i < 20000; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
@@ -141,12 +135,11 @@ static void the_ends_are_exact(void **state)
 
 /* Lips that are far open and a table of whole shares: the laugh alone, however far apart the two are. Would catch a
  * freedom that ends just below one, which moves nothing where frames are near each other. */
-static void open_lips_follow_wholly(void **state)
+TEST(open_lips_follow_wholly)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     unsigned c;
     int i;
-    (void)state;
     seed = 9;
     for (i = 0; i < 2000; i++) {
         labial_blend_t blend = draw_table();
@@ -163,13 +156,12 @@ static void open_lips_follow_wholly(void **state)
 
 /* Whatever the laugh does and however loud it is: lips that meet in speech meet in the same place, and the jaw does not
  * open any further than it does in speech. */
-static void closures_are_kept(void **state)
+TEST(closures_are_kept)
 {
     static const uint8_t upper[] = { 3, 7, 8 }, lower[] = { 4, 9, 10 };
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     unsigned c;
     int i;
-    (void)state;
     seed = 3;
     for (i = 0; i < 60000; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
@@ -189,12 +181,11 @@ static void closures_are_kept(void **state)
 }
 
 /* Would catch lips that are held always, which the test above would not mind: vowels laugh, corners laugh anywhere. */
-static void what_is_free_laughs(void **state)
+TEST(what_is_free_laughs)
 {
     int16_t speech[LABIAL_CHANNELS] = { 0 }, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     const labial_blend_t *blend = &labial_blend_default;
     unsigned c;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++)
         laugh[c] = 1000;
     assert_int_equal(labial_blend(blend, 256, 256, speech, laugh, out), LABIAL_OK); /* at rest */
@@ -218,7 +209,7 @@ static void what_is_free_laughs(void **state)
 /* Corners at full intensity, whose share of the way is 1 - words (256 - share) / 2^16 exactly: rounded to the nearest FAP
  * unit, half of one towards the laugh. Of each odd share, every remainder of 2^16 comes once. Would catch a half that is
  * off by the least that can be. */
-static void what_is_free_is_rounded_to_the_nearest(void **state)
+TEST(what_is_free_is_rounded_to_the_nearest)
 {
     static const uint8_t corners[] = { 5, 6, 11, 12 };
     static const uint16_t shares[] = { 1, 101, 203, 255 };
@@ -227,7 +218,6 @@ static void what_is_free_is_rounded_to_the_nearest(void **state)
     const unsigned words = 255;
     int way;
     unsigned i;
-    (void)state;
     for (i = 0; i < 4; i++)
         blend.shares[corners[i]] = shares[i];
     for (way = 0; way <= 65535; way++) {
@@ -250,12 +240,11 @@ static int toward(int from, int value, int to)
 }
 
 /* Would catch a ramp that turns back. */
-static void monotone_in_intensity_and_words(void **state)
+TEST(monotone_in_intensity_and_words)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], before[LABIAL_CHANNELS];
     unsigned c, step;
     int i;
-    (void)state;
     seed = 4;
     for (i = 0; i < 600; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
@@ -273,7 +262,7 @@ static void monotone_in_intensity_and_words(void **state)
 }
 
 /* Would catch any overflow: a value beyond both of those that it was made of. */
-static void extremes_stay_between(void **state)
+TEST(extremes_stay_between)
 {
     static const int16_t ends[] = { INT16_MIN, INT16_MIN + 1, -1, 0, 1, INT16_MAX - 1, INT16_MAX };
     static const unsigned levels[] = { 0, 1, 127, 128, 255, 256, 257, 65536, UINT32_MAX };
@@ -281,7 +270,6 @@ static void extremes_stay_between(void **state)
     labial_blend_t blend;
     unsigned c;
     int i;
-    (void)state;
     seed = 5;
     for (i = 0; i < 100000; i++) {
         blend = labial_blend_default;
@@ -307,13 +295,12 @@ static void extremes_stay_between(void **state)
 
 /* Would catch a jump where a limit is passed. The blend may move as far as the faster of its inputs and, while the lips
  * pass from held to free, by what that lets in: the steepest of 3 x^2 - 2 x^3 is 1.5. */
-static void continuous(void **state)
+TEST(continuous)
 {
     int16_t speech[2][LABIAL_CHANNELS], laugh[2][LABIAL_CHANNELS], out[2][LABIAL_CHANNELS];
     const labial_blend_t *blend = &labial_blend_default;
     unsigned c;
     int i, k;
-    (void)state;
     seed = 6;
     for (i = 0; i < 50000; i++) {
         const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)(i % 2 ? 256 : draw(0, 256));
@@ -339,11 +326,10 @@ static void continuous(void **state)
     }
 }
 
-static void in_place_and_beyond_full(void **state)
+TEST(in_place_and_beyond_full)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], same[LABIAL_CHANNELS];
     int i;
-    (void)state;
     seed = 7;
     for (i = 0; i < 1000; i++) {
         const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)draw(0, 256);
@@ -362,11 +348,10 @@ static void in_place_and_beyond_full(void **state)
     }
 }
 
-static void null_writes_nothing(void **state)
+TEST(null_writes_nothing)
 {
     const int16_t in[LABIAL_CHANNELS] = { 1, 2, 3 };
     int16_t out[LABIAL_CHANNELS], kept[LABIAL_CHANNELS];
-    (void)state;
     memset(out, 0x33, sizeof out);
     memcpy(kept, out, sizeof out);
     assert_int_equal(labial_blend(NULL, 1, 1, in, in, out), LABIAL_ERROR_NULL);
@@ -376,20 +361,4 @@ static void null_writes_nothing(void **state)
     assert_memory_equal(out, kept, sizeof out);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(follows_the_equation),
-        cmocka_unit_test(the_ends_are_exact),
-        cmocka_unit_test(open_lips_follow_wholly),
-        cmocka_unit_test(closures_are_kept),
-        cmocka_unit_test(what_is_free_laughs),
-        cmocka_unit_test(what_is_free_is_rounded_to_the_nearest),
-        cmocka_unit_test(monotone_in_intensity_and_words),
-        cmocka_unit_test(extremes_stay_between),
-        cmocka_unit_test(continuous),
-        cmocka_unit_test(in_place_and_beyond_full),
-        cmocka_unit_test(null_writes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -2,11 +2,7 @@
  * test_contact.c - contact and rest, from phonemes to targets: cases worked by hand from the rules of labial/model.h, and
  * random streams against oracle_shape.c, which puts contact upon the whole stream phoneme by phoneme.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
@@ -24,14 +20,13 @@ static fixture_model_t f;
 
 /* Every target is 0 but for floors. P closes LIPS, S is to be an f and closes TEETH; both have a floor for the JAW that is
  * none of contact. O has a plain floor for LIPS. In a pause LIPS come to -800, the JAW stays above -5. */
-static int setup(void **state)
+SETUP(setup)
 {
     static const int16_t floors[4][3] = { { 1000, LABIAL_NO_FLOOR, 100 },
                                           { 500, LABIAL_NO_FLOOR, LABIAL_NO_FLOOR },
                                           { LABIAL_NO_FLOOR, 700, 200 },
                                           { -800, LABIAL_NO_FLOOR, -5 } };
     unsigned i;
-    (void)state;
     fixture_plain(&f);
     memset(f.shapes, 0, sizeof f.shapes);
     f.model.floor_count = FIXTURE_FLOORS;
@@ -133,29 +128,73 @@ static void teeth(const char *text, const char *wanted)
 }
 
 /* A contact lasts three frames at least; would catch a frame too few or too many, at either side. */
-static void short_stops_borrow_frames(void **state)
+TEST(short_stops_borrow_frames)
 {
-    (void)state;
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
     lips("t3 p0 t3", "......");
     lips("t3 p1 t3", "..xxx..");
     lips("t3 p2 t3", "..xxx...");
     lips("t3 p3 t3", "...xxx...");
-    lips("t3 p4 t3", "...xxxx...");
-    lips("t3 p14 t3", "...xxxxxxxxxxxxxx...");
     lips("t1 p1 t1", "xxx");
     lips("t1 p1 t1 p1 t1", "xxxxx");
     lips("t3 p1 p1 t3", "..xxx..."); /* two that follow one another are one contact */
     lips("t3 p2 p1 t3", "...xxx...");
-    lips("t3 p9 p1 t3", "...xxxxxxxxxx...");
+    lips("t3 p9 p1 t3", ".....xxxxx..x...");
     lips("t3 p1 p1 p1 t3", "...xxx...");
 }
 
+/* Half of the frames, rounded up, but three of them; would catch a frame that lies elsewhere. */
+TEST(stops_close_in_their_middle)
+{
+    lips("t3 p4 t3", "...xxx....");
+    lips("t3 p5 t3", "....xxx....");
+    lips("t3 p6 t3", "....xxx.....");
+    lips("t3 p7 t3", "....xxxx.....");
+    lips("t3 p8 t3", ".....xxxx.....");
+    lips("t3 p13 t3", "......xxxxxxx......");
+    lips("t3 p14 t3", "......xxxxxxx.......");
+}
+
+/* What lies between two contacts is FAP 52 100 units below the contact at most, where neither borrows it; would
+ * catch lips that part too far from a contact, in a pause, or where a contact has just been borrowed. */
+TEST(close_contacts_are_told_apart)
+{
+    static const struct {
+        const char *text, *where; /* p of contact, o where the lips part */
+    } cases[] = {
+        { "p3 t1 p3", "pppoppp" },     { "p3 t2 p3", "pppooppp" },    { "p3 t3 p3", "pppoooppp" },
+        { "p3 t4 p3", "ppp....ppp" },  { "p3 t1 a1 p3", "pppooppp" }, { "p3 t2 p2", "pppoppp" },
+        { "p3 t1 p2", "pppppp" },      { "p1 t3 p3", "ppooppp" },     { "p3 _1 p3", "ppp.ppp" },
+        { "p3 t1 _1 p3", "ppp..ppp" }, { "p3 t2 f3", "ppp..fff" },    { "t2 p3 t2", "..ppp.." },
+        { "p4 t1 p4", "ppp.oppp." },   { "p5 t2 p3", ".ppp.ooppp" },
+    };
+    const unsigned channel = 4, at = FIXTURE_P;
+    int16_t *floor = f.floors + (f.phonemes[at].floor - 1) * LABIAL_CHANNELS;
+    size_t i, t;
+    floor[channel] = 1000;
+    f.contacts[0] = 1u << channel;
+    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const size_t n = speak(cases[i].text);
+        assert_int_equal(n, strlen(cases[i].where));
+        for (t = 0; t < n; t++) {
+            const int where = cases[i].where[t], wanted = where == 'p' ? 1000 : where == 'o' ? 1000 - 1600 : 0;
+            if (targets[t][channel] != wanted || (contacts[t] >> channel & 1) != (where == 'p'))
+                fail_msg("%s, frame %zu: %d, not %d", cases[i].text, t, targets[t][channel], wanted);
+        }
+    }
+    floor[channel] = -16000; /* no position lies lower than the least */
+    assert_int_equal(speak("p3 t1 p3"), 7);
+    assert_int_equal(targets[3][channel], -LABIAL_POSITION_MAX);
+    floor[channel] = LABIAL_NO_FLOOR;
+    f.contacts[0] = 1u << LIPS;
+    speak("p3 t1 p3"); /* a channel that does not move the lips is not parted */
+    assert_int_equal(targets[3][LIPS], 0);
+}
+
 /* What swallowed a pause closes for its last eight frames; before that it is free of its contact, not of its floors. */
-static void long_stops_close_at_their_end(void **state)
+TEST(long_stops_close_at_their_end)
 {
     size_t t, n;
-    (void)state;
     lips("t3 p15 t3", "..........xxxxxxxx...");
     lips("t3 p16 t3", "...........xxxxxxxx...");
     lips("t3 p40 t3", "...................................xxxxxxxx...");
@@ -168,11 +207,10 @@ static void long_stops_close_at_their_end(void **state)
 }
 
 /* A borrowed frame takes over what is contact, nothing else; neither is a plain floor contact, nor its frames lent. */
-static void only_contact_is_borrowed(void **state)
+TEST(only_contact_is_borrowed)
 {
     static const int wanted[] = { 0, 0, 0, 100, 0, 0, 0 }, floors[] = { 0, 0, 500, 1000, 1000, 1000, 0 };
     size_t t;
-    (void)state;
     assert_int_equal(speak("t3 p1 t3"), 7);
     for (t = 0; t < 7; t++)
         assert_int_equal(targets[t][JAW], wanted[t]);
@@ -184,15 +222,14 @@ static void only_contact_is_borrowed(void **state)
 }
 
 /* Two contacts beside one another, in different places: each has its three frames, also those of the other phoneme. */
-static void an_f_before_a_p_keeps_its_teeth(void **state)
+TEST(an_f_before_a_p_keeps_its_teeth)
 {
-    (void)state;
     teeth("t3 f2 p1 t3", "..xxx....");
     lips("t3 f2 p1 t3", "....xxx..");
     teeth("t3 f1 p1 t3", "..xxx...");
     lips("t3 f1 p1 t3", "...xxx..");
-    teeth("t3 f4 p4 t3", "...xxxx.......");
-    lips("t3 f4 p4 t3", ".......xxxx...");
+    teeth("t3 f4 p4 t3", "...xxx........");
+    lips("t3 f4 p4 t3", ".......xxx....");
     teeth("f1 p1", "xx");
     lips("f1 p1", "xx");
     assert_int_equal(speak("t3 f2 p1 t3"), 9);
@@ -201,9 +238,8 @@ static void an_f_before_a_p_keeps_its_teeth(void **state)
 }
 
 /* There is nothing to borrow before a stream's first frame and behind its last, nor from another model. */
-static void stops_at_the_ends_have_their_own_frames(void **state)
+TEST(stops_at_the_ends_have_their_own_frames)
 {
-    (void)state;
     lips("p1", "x");
     lips("p1 t3", "xx..");
     lips("p2 t3", "xx...");
@@ -220,10 +256,9 @@ static void stops_at_the_ends_have_their_own_frames(void **state)
 
 /* 800 in 16 steps of 50, then at rest; but for the last three frames. A stop beside a pause borrows of it like of any
  * other phoneme, and the stop is what counts there. */
-static void pauses_come_to_rest_and_lead_on(void **state)
+TEST(pauses_come_to_rest_and_lead_on)
 {
     size_t t, n;
-    (void)state;
     n = speak("t2 _30 t2");
     assert_int_equal(n, 34);
     for (t = 0; t < n; t++) {
@@ -261,7 +296,7 @@ static void pauses_come_to_rest_and_lead_on(void **state)
 }
 
 /* Would catch a rule that holds alone and not beside the others: every frame of random streams, all of a rich model. */
-static void random_streams_keep_contact(void **state)
+TEST(random_streams_keep_contact)
 {
     static fixture_model_t rich;
     static fixture_phoneme_t input[COUNT];
@@ -269,7 +304,6 @@ static void random_streams_keep_contact(void **state)
     static int16_t wanted[MANY][LABIAL_CHANNELS];
     static uint16_t touched[MANY];
     unsigned seed, i, c, touching = 0;
-    (void)state;
     fixture_rich(&rich);
     for (seed = 0; seed < FIXTURE_ROUNDS(300); seed++) {
         const unsigned phonemes = COUNT < LABIAL_QUEUE ? COUNT : LABIAL_QUEUE;
@@ -301,9 +335,8 @@ static void random_streams_keep_contact(void **state)
 #else
 
 /* Would catch a library that reads beyond its labels: it cannot see whether a contact is short. */
-static void a_library_that_sees_too_little_refuses_floors(void **state)
+TEST(a_library_that_sees_too_little_refuses_floors)
 {
-    (void)state;
     assert_int_equal(labial_model_check(&f.model), LABIAL_ERROR_MODEL);
     f.model.floor_count = 0;
     f.phonemes[FIXTURE_P].floor = f.phonemes[FIXTURE_O].floor = 0;
@@ -313,20 +346,4 @@ static void a_library_that_sees_too_little_refuses_floors(void **state)
 
 #endif
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#if LABIAL_REACH >= LABIAL_CONTACT_FRAMES
-        cmocka_unit_test(short_stops_borrow_frames),
-        cmocka_unit_test(long_stops_close_at_their_end),
-        cmocka_unit_test(only_contact_is_borrowed),
-        cmocka_unit_test(an_f_before_a_p_keeps_its_teeth),
-        cmocka_unit_test(stops_at_the_ends_have_their_own_frames),
-        cmocka_unit_test(pauses_come_to_rest_and_lead_on),
-        cmocka_unit_test(random_streams_keep_contact),
-#else
-        cmocka_unit_test(a_library_that_sees_too_little_refuses_floors),
-#endif
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

@@ -1,28 +1,22 @@
 /*
  * test_faps.c - FAP numbers and the 23 FAPs of a mouth with inner lips, against MPEG-4's own numbering.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
 #include "labial/faps.h"
 
 /* Would catch a channel out of order: every model trained with the right order would move the wrong point. */
-static void channels_have_their_numbers(void **state)
+TEST(channels_have_their_numbers)
 {
     static const uint8_t numbers[LABIAL_CHANNELS] = { 3, 16, 17, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60 };
-    (void)state;
     assert_memory_equal(labial_fap_numbers, numbers, sizeof numbers);
 }
 
-static void expanded_numbers_ascend(void **state)
+TEST(expanded_numbers_ascend)
 {
     unsigned i = 0, fap;
-    (void)state;
     for (fap = 3; fap <= 60; fap++)
         if (fap <= 13 || fap == 16 || fap == 17 || fap >= 51)
             assert_int_equal(labial_fap_numbers_expanded[i++], fap);
@@ -35,14 +29,13 @@ static int wanted(unsigned fap)
     return 1000 + (int)(fap >= 4 && fap <= 13 ? fap - 4 + 51 : fap);
 }
 
-static void inner_lip_moves_as_the_outer(void **state)
+TEST(inner_lip_moves_as_the_outer)
 {
     struct {
         int16_t before, faps[LABIAL_FAPS_EXPANDED], after;
     } out = { -77, { 0 }, -78 };
     int16_t in[LABIAL_CHANNELS];
     unsigned i;
-    (void)state;
     for (i = 0; i < LABIAL_CHANNELS; i++)
         in[i] = (int16_t)(1000 + labial_fap_numbers[i]);
     labial_expand(in, out.faps);
@@ -53,11 +46,10 @@ static void inner_lip_moves_as_the_outer(void **state)
 }
 
 /* Would catch arithmetic on the values, which must be copies. */
-static void extreme_values_are_copied(void **state)
+TEST(extreme_values_are_copied)
 {
     int16_t in[LABIAL_CHANNELS], out[LABIAL_FAPS_EXPANDED];
     unsigned i;
-    (void)state;
     for (i = 0; i < LABIAL_CHANNELS; i++)
         in[i] = i % 2 ? INT16_MIN : INT16_MAX;
     labial_expand(in, out);
@@ -68,11 +60,10 @@ static void extreme_values_are_copied(void **state)
     assert_int_equal(out[22], INT16_MAX); /* 60, channel 12 */
 }
 
-static void null_does_nothing(void **state)
+TEST(null_does_nothing)
 {
     const int16_t in[LABIAL_CHANNELS] = { 1 };
     int16_t out[LABIAL_FAPS_EXPANDED], kept[LABIAL_FAPS_EXPANDED];
-    (void)state;
     memset(out, 0x33, sizeof out);
     memcpy(kept, out, sizeof out);
     labial_expand(NULL, out);
@@ -81,14 +72,4 @@ static void null_does_nothing(void **state)
     assert_memory_equal(out, kept, sizeof out);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(channels_have_their_numbers),
-        cmocka_unit_test(expanded_numbers_ascend),
-        cmocka_unit_test(inner_lip_moves_as_the_outer),
-        cmocka_unit_test(extreme_values_are_copied),
-        cmocka_unit_test(null_does_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

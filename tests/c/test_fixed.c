@@ -1,11 +1,7 @@
 /*
  * test_fixed.c - the shared arithmetic, in both of its forms, against exact 64-bit integers and doubles.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <math.h>
 
@@ -73,11 +69,10 @@ static void check_product(int32_t a, int32_t b, unsigned shift)
 }
 
 /* Would catch a lost carry between the four small products, and rounding that differs from target to target. */
-static void products_are_rounded_alike_and_exactly(void **state)
+TEST(products_are_rounded_alike_and_exactly)
 {
     fixture_random_t random = { 1 };
     unsigned i, k, shift;
-    (void)state;
     for (shift = 16; shift <= 31; shift++) {
         for (i = 0; i < CORNERS; i++)
             for (k = 0; k < CORNERS; k++)
@@ -92,11 +87,10 @@ static void products_are_rounded_alike_and_exactly(void **state)
 
 /* x f / 2^16 rounded down, for every f up to one, and x f / 2^24 less than three below it. Would catch a sign lost between
  * the halves of x, and a target whose parts differ from another's. */
-static void parts_are_rounded_alike(void **state)
+TEST(parts_are_rounded_alike)
 {
     fixture_random_t random = { 2 };
     unsigned i;
-    (void)state;
     for (i = 0; i < 400000; i++) {
         const int32_t x = i < 24 * CORNERS ? corners[i % CORNERS] : (int32_t)fixture_random(&random) >> i % 31;
         const uint32_t f = i % 5 ? fixture_below(&random, 65537) : i % 10 ? 65536 : 0;
@@ -110,19 +104,17 @@ static void parts_are_rounded_alike(void **state)
     }
 }
 
-static void sums_wrap(void **state)
+TEST(sums_wrap)
 {
-    (void)state;
     assert_int_equal(labial_add(2147483647, 1), INT32_MIN);
     assert_int_equal(labial_sub(INT32_MIN, 1), 2147483647);
     assert_int_equal(labial_add(-5, 3), -2);
     assert_int_equal(labial_sub(-5, 3), -8);
 }
 
-static void weights_are_minifloats(void **state)
+TEST(weights_are_minifloats)
 {
     unsigned code;
-    (void)state;
     for (code = 0; code < 256; code++) {
         assert_true((double)labial_weight((uint8_t)code) == fixture_weight_value((uint8_t)code));
         assert_true(code == 0 || labial_weight((uint8_t)code) > labial_weight((uint8_t)(code - 1)));
@@ -133,23 +125,21 @@ static void weights_are_minifloats(void **state)
 }
 
 /* steps * scale / 2^8, halves up: with every step, at the ends of the scale and between. */
-static void steps_are_scaled_and_rounded(void **state)
+TEST(steps_are_scaled_and_rounded)
 {
     static const uint16_t scales[] = { 0, 1, 127, 128, 255, 256, 257, 16383, 32767, 65535 };
     unsigned i;
     int steps;
-    (void)state;
     for (i = 0; i < sizeof scales / sizeof scales[0]; i++)
         for (steps = -4096; steps <= 4096; steps++)
             assert_int_equal(labial_scaled(steps, scales[i]), (int)floor(steps * (double)scales[i] / 256.0 + 0.5));
 }
 
 /* z = x * gain / 2^12 in Q6 and z^2 / 2^7 the exponent, both rounded down; z ends at the limit. */
-static void gaussian_costs_follow_their_formula(void **state)
+TEST(gaussian_costs_follow_their_formula)
 {
     fixture_random_t random = { 3 };
     unsigned i;
-    (void)state;
     for (i = 0; i < 200000; i++) {
         const uint32_t x = fixture_random(&random) >> (16 + i % 16);
         const uint16_t gain = (uint16_t)(fixture_random(&random) >> (16 + i / 16 % 16));
@@ -171,10 +161,9 @@ static void gaussian_costs_follow_their_formula(void **state)
 /* 3 s^2 - 2 s^3 in Q14, of an s that is rounded down as its square and the result are: would catch a jolt, a turn, an
  * end that is not reached, and an overflow with the longest easing there is (1,000 frames), the shortest, or what is
  * said to be the most. */
-static void easing_follows_its_curve(void **state)
+TEST(easing_follows_its_curve)
 {
     unsigned steps, step;
-    (void)state;
     for (steps = 1; steps <= 65535; steps = steps < 1000 ? steps + 1 : steps < 1002 ? 65535 : 65536) {
         int32_t last = 0;
         assert_int_equal(labial_ease(0, steps), 0);
@@ -190,9 +179,8 @@ static void easing_follows_its_curve(void **state)
     }
 }
 
-static void clamping(void **state)
+TEST(clamping)
 {
-    (void)state;
     assert_int_equal(labial_clamp(11, 10), 10);
     assert_int_equal(labial_clamp(-11, 10), -10);
     assert_int_equal(labial_clamp(10, 10), 10);
@@ -201,11 +189,10 @@ static void clamping(void **state)
 }
 
 /* Would catch a bit of the quotient that is skipped or taken twice, and a divisor that is shifted out. */
-static void quotients_are_exact(void **state)
+TEST(quotients_are_exact)
 {
     fixture_random_t random = { 7 };
     unsigned i, j;
-    (void)state;
     for (i = 0; i < CORNERS; i++)
         for (j = 0; j < CORNERS; j++) {
             const uint32_t a = (uint32_t)corners[i], b = (uint32_t)corners[j];
@@ -222,18 +209,4 @@ static void quotients_are_exact(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(products_are_rounded_alike_and_exactly),
-        cmocka_unit_test(sums_wrap),
-        cmocka_unit_test(steps_are_scaled_and_rounded),
-        cmocka_unit_test(parts_are_rounded_alike),
-        cmocka_unit_test(weights_are_minifloats),
-        cmocka_unit_test(gaussian_costs_follow_their_formula),
-        cmocka_unit_test(easing_follows_its_curve),
-        cmocka_unit_test(clamping),
-        cmocka_unit_test(quotients_are_exact),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

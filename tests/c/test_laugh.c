@@ -1,11 +1,7 @@
 /*
  * test_laugh.c - laughs of a wanted length: exact totals, no state but the caller's, phonemes that the model has.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
@@ -65,11 +61,10 @@ static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
 }
 
 /* Would catch a phoneme that is lost, counted twice or cut to nothing at the end, at any length. */
-static void totals_are_exact(void **state)
+TEST(totals_are_exact)
 {
     uint32_t length, seed;
     unsigned intensity;
-    (void)state;
     for (length = 0; length < 6000; length += length < 700 ? 1 : 37)
         for (seed = 0; seed < 4; seed++)
             for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity += 64) {
@@ -81,10 +76,9 @@ static void totals_are_exact(void **state)
 }
 
 /* Would catch phonemes longer than any of the statistics, such as one that fills what is left. */
-static void no_phoneme_fills_the_rest(void **state)
+TEST(no_phoneme_fills_the_rest)
 {
     uint32_t seed;
-    (void)state;
     for (seed = 0; seed < 300; seed++) {
         assert_true(sum_of(20000, 128, seed).longest <= 920);
         assert_true(sum_of(1800, 128, seed).longest <= 920);
@@ -94,10 +88,9 @@ static void no_phoneme_fills_the_rest(void **state)
 
 /* Would catch a step of the grammar, a draw or a rounding that is not the exporter's: each laugh is the reference's, phoneme
  * by phoneme. */
-static void laughs_are_those_of_the_reference(void **state)
+TEST(laughs_are_those_of_the_reference)
 {
     unsigned i;
-    (void)state;
     for (i = 0; i < sizeof laughs / sizeof laughs[0]; i++) {
         static uint8_t bytes[3 * 2000];
         labial_laugh_t laugh;
@@ -117,21 +110,19 @@ static void laughs_are_those_of_the_reference(void **state)
 }
 
 /* Would catch an intensity that is not cut off at the highest. */
-static void more_than_the_highest_intensity_is_the_highest(void **state)
+TEST(more_than_the_highest_intensity_is_the_highest)
 {
     const sum_t most = sum_of(9000, LABIAL_LAUGH_FULL, 3), more = sum_of(9000, LABIAL_LAUGH_FULL + 1u, 3),
                 far = sum_of(9000, 70000u, 3);
-    (void)state;
     assert_memory_equal(&most, &more, sizeof most);
     assert_memory_equal(&most, &far, sizeof most);
 }
 
 /* Would catch a seed that is not used, or used up to a few bits only. */
-static void seeds_give_different_laughs(void **state)
+TEST(seeds_give_different_laughs)
 {
     labial_laugh_t a, b;
     unsigned bit, same = 0;
-    (void)state;
     for (bit = 0; bit < 32; bit++) {
         unsigned phoneme_a, phoneme_b, i;
         uint32_t ms_a, ms_b;
@@ -151,11 +142,10 @@ static void seeds_give_different_laughs(void **state)
 }
 
 /* Would catch an intensity that changes nothing, or the wrong way. */
-static void intensity_opens_the_mouth(void **state)
+TEST(intensity_opens_the_mouth)
 {
     uint32_t seed, open[3] = { 0, 0, 0 }, hummed[3] = { 0, 0, 0 }, a[3] = { 0, 0, 0 };
     unsigned i;
-    (void)state;
     for (i = 0; i < 3; i++)
         for (seed = 0; seed < 200; seed++) {
             const sum_t sum = sum_of(5000, i * 128, seed);
@@ -173,12 +163,11 @@ static void intensity_opens_the_mouth(void **state)
     }
 }
 
-static void errors(void **state)
+TEST(errors)
 {
     labial_laugh_t laugh;
     unsigned phoneme = 99;
     uint32_t ms = 99;
-    (void)state;
     assert_int_equal(labial_laugh_begin(NULL, 100, 1, 1), LABIAL_ERROR_NULL);
     assert_int_equal(labial_laugh_begin(&laugh, LABIAL_DURATION_MAX + 1u, 1, 1), LABIAL_ERROR_DURATION);
     assert_int_equal(labial_laugh_begin(&laugh, 0, 1, 1), LABIAL_OK);
@@ -234,9 +223,8 @@ static seen_t laughed(unsigned intensity, uint32_t seed)
 }
 
 /* Would catch phoneme numbers that are not the bundled model's. */
-static void the_numbers_are_the_bundled_models(void **state)
+TEST(the_numbers_are_the_bundled_models)
 {
-    (void)state;
     assert_int_equal(LABIAL_LAUGH_PHONEMES, LAUGHTER_SYNTHETIC_PHONEMES);
     assert_int_equal(LABIAL_LAUGH_SILENCE, LAUGHTER_SYNTHETIC_SILENCE);
     assert_int_equal(LABIAL_LAUGH_NE, LAUGHTER_SYNTHETIC_NE);
@@ -266,13 +254,12 @@ static void the_numbers_are_the_bundled_models(void **state)
 
 /* Would catch an intensity that does not reach the mouth: at 0 a hum behind nearly closed lips, at the highest a mouth
  * wide open, jaw and corners with it, and in each step between more than in the one before. */
-static void intensity_reaches_the_mouth(void **state)
+TEST(intensity_reaches_the_mouth)
 {
     enum { SEEDS = 12, STEPS = 4 };
     seen_t sum[STEPS + 1];
     unsigned step;
     uint32_t seed;
-    (void)state;
     memset(sum, 0, sizeof sum);
     for (step = 0; step <= STEPS; step++)
         for (seed = 0; seed < SEEDS; seed++) {
@@ -297,11 +284,10 @@ static void intensity_reaches_the_mouth(void **state)
 /* The first train's pulses: the median, two thirds of the corpus's without intensity and four thirds at the highest,
  * times a factor that the first draw chooses (Marsaglia's xorshift of 13, 17 and 5), rounded to the nearest. Would catch
  * another median, another draw, and a half that is off by the least that can be. */
-static void trains_are_as_long_as_intensity_and_chance_have_it(void **state)
+TEST(trains_are_as_long_as_intensity_and_chance_have_it)
 {
     unsigned intensity;
     uint32_t seed;
-    (void)state;
     for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++)
         for (seed = 0; seed < 300; seed++) {
             labial_laugh_t laugh;
@@ -336,10 +322,9 @@ static unsigned grade_of_first(unsigned intensity, unsigned turn)
 /* All turns together come to exactly the grade that the loudness asks for, in 1/256: nothing up to SOFT, then GRADES for
  * each 1/256, up to two. Would catch a turn of 256 that comes to another grade, and an intensity at which grades begin or
  * end too early or too late. */
-static void turns_share_out_the_grades(void **state)
+TEST(turns_share_out_the_grades)
 {
     unsigned intensity, turn;
-    (void)state;
     for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++) {
         const double asked = floor((intensity - (double)SOFT) * GRADES / 256.0);
         unsigned sum = 0;
@@ -362,10 +347,9 @@ static unsigned sum_of_shares(const uint8_t *shares, const int16_t *tilts, size_
 
 /* Would catch tables from other statistics, for which the generator, that clamps nothing, is not built: a duration
  * below the shortest, a period beyond its limits, a train without pulses. */
-static void the_tables_keep_the_limits(void **state)
+TEST(the_tables_keep_the_limits)
 {
     size_t i, j;
-    (void)state;
     for (i = 0; i < COUNT_OF(stretches); i++)
         for (j = 1; j < COUNT_OF(medians); j++)
             assert_true(medians[j] * stretches[i] / 128 * 218 / 256 >= SHORTEST);
@@ -389,21 +373,4 @@ static void the_tables_keep_the_limits(void **state)
                     (soft_grades[i] >= COUNT_OF(soft_grades) && soft_grades[i] + 1 < LABIAL_LAUGH_PHONEMES));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(totals_are_exact),
-        cmocka_unit_test(no_phoneme_fills_the_rest),
-        cmocka_unit_test(laughs_are_those_of_the_reference),
-        cmocka_unit_test(more_than_the_highest_intensity_is_the_highest),
-        cmocka_unit_test(seeds_give_different_laughs),
-        cmocka_unit_test(intensity_opens_the_mouth),
-        cmocka_unit_test(errors),
-        cmocka_unit_test(the_numbers_are_the_bundled_models),
-        cmocka_unit_test(intensity_reaches_the_mouth),
-        cmocka_unit_test(trains_are_as_long_as_intensity_and_chance_have_it),
-        cmocka_unit_test(turns_share_out_the_grades),
-        cmocka_unit_test(the_tables_keep_the_limits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -2,11 +2,7 @@
  * test_marks.c - which marks do not change a label's sound: every character of the first plane of Unicode and every pair
  * of ASCII's is tried before or behind a label, and held against the lists of labial/names.h, by their code points.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,12 +55,11 @@ static int is_one_of(unsigned point, const unsigned *points, size_t count)
 }
 
 /* Would catch a mark that is forgotten, a range that is too long by one, and half a mark. */
-static void every_character_is_a_mark_or_none(void **state)
+TEST(every_character_is_a_mark_or_none)
 {
     static const unsigned signs[] = { 0x2b0, 0x2b2, 0x2b7, 0x2d0, 0x2d1, 0x2e0, 0x2e1, 0x2e4, 0x207f };
     static const unsigned stress[] = { 0x2c8, 0x2cc, 0x294 };
     unsigned point;
-    (void)state;
     for (point = 0x80; point < 0x10000; point++) {
         char text[8] = "B";
         const int is_mark = (point >= 0x300 && point <= 0x36f && point != 0x327) ||
@@ -83,10 +78,9 @@ static void every_character_is_a_mark_or_none(void **state)
 }
 
 /* Would catch a mark made of bytes that are no character: every pair of which the first is not ASCII. */
-static void two_bytes_are_a_mark_where_they_are_a_character(void **state)
+TEST(two_bytes_are_a_mark_where_they_are_a_character)
 {
     unsigned a, b;
-    (void)state;
     for (a = 0x80; a < 0x100; a++)
         for (b = 0; b < 0x100; b++) {
             const char behind[] = { 'B', (char)a, (char)b }, before[] = { (char)a, (char)b, 'B' };
@@ -97,10 +91,9 @@ static void two_bytes_are_a_mark_where_they_are_a_character(void **state)
 }
 
 /* Would catch an ASCII mark that is forgotten, taken at the wrong end, or dropped behind a blank. */
-static void every_sign_is_a_mark_or_none(void **state)
+TEST(every_sign_is_a_mark_or_none)
 {
     unsigned c;
-    (void)state;
     for (c = 0; c < 0x80; c++) {
         const char one = (char)c;
         const int is_blank = c == ' ' || c == '\t' || c == '\r' || c == '\n';
@@ -128,10 +121,9 @@ static void every_sign_is_a_mark_or_none(void **state)
 }
 
 /* Would catch a Praat sequence that is forgotten, or a backslash that takes what follows with it. */
-static void every_backslash_sequence_is_a_mark_or_none(void **state)
+TEST(every_backslash_sequence_is_a_mark_or_none)
 {
     unsigned a, b;
-    (void)state;
     for (a = 1; a < 0x80; a++)
         for (b = 1; b < 0x80; b++) {
             const char behind[] = { 'B', '\\', (char)a, (char)b }, before[] = { '\\', (char)a, (char)b, 'B' };
@@ -145,11 +137,10 @@ static void every_backslash_sequence_is_a_mark_or_none(void **state)
 }
 
 /* Would catch marks that are looked for beyond what is left of a label, and lengths that are off by one. */
-static void what_is_left_decides(void **state)
+TEST(what_is_left_decides)
 {
     char text[70];
     size_t length;
-    (void)state;
     assert_int_equal(find("_h", 2), LABIAL_ERROR_NAME);
     assert_int_equal(find("B::::", 5), B);
     assert_int_equal(find("B_h_h:", 6), B);
@@ -173,12 +164,11 @@ static void what_is_left_decides(void **state)
 }
 
 /* Would catch brackets that need not match, letters beyond ASCII that count for none, and a vowel that stands for noise. */
-static void what_is_no_sound_is_silence(void **state)
+TEST(what_is_no_sound_is_silence)
 {
     static const char open[] = "<[({+*#", close[] = ">])}+*#";
     char text[40];
     unsigned i, k, c;
-    (void)state;
     for (i = 0; i < 7; i++)
         for (k = 0; k < 7; k++) {
             text[0] = open[i];
@@ -208,9 +198,8 @@ static void what_is_no_sound_is_silence(void **state)
 }
 
 /* Would catch the shortest beginning taken for the longest, and letters that are skipped though a label begins there. */
-static void the_longest_beginning_comes_first(void **state)
+TEST(the_longest_beginning_comes_first)
 {
-    (void)state;
     assert_int_equal(nearest("AAB", 3), AA);
     assert_int_equal(nearest("BAA", 3), B);
     assert_int_equal(nearest("zAAB", 4), AA);
@@ -218,11 +207,10 @@ static void the_longest_beginning_comes_first(void **state)
     assert_int_equal(labial_find_nearest(&names, LABIAL_LABELS_IPA, "AAB", 3, SILENCE), B);
 }
 
-static void null_is_an_error(void **state)
+TEST(null_is_an_error)
 {
     labial_names_t none = names;
     uint8_t *byte = (uint8_t *)malloc(1);
-    (void)state;
     assert_non_null(byte);
     none.entries = NULL;
     assert_int_equal(labial_find_in(&none, ANY, "B", 1), LABIAL_ERROR_NULL);
@@ -234,17 +222,4 @@ static void null_is_an_error(void **state)
     free(byte);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_character_is_a_mark_or_none),
-        cmocka_unit_test(two_bytes_are_a_mark_where_they_are_a_character),
-        cmocka_unit_test(every_sign_is_a_mark_or_none),
-        cmocka_unit_test(every_backslash_sequence_is_a_mark_or_none),
-        cmocka_unit_test(what_is_left_decides),
-        cmocka_unit_test(what_is_no_sound_is_silence),
-        cmocka_unit_test(the_longest_beginning_comes_first),
-        cmocka_unit_test(null_is_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -3,11 +3,7 @@
  *
  * Each refusal starts from a model that is accepted and changes one thing, so that a check that was forgotten shows.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
@@ -17,17 +13,15 @@ static fixture_model_t f; /* what model_check.h changes */
 
 #include "model_check.h"
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_rich(&f);
     return 0;
 }
 
 /* Would catch a rule that is stricter than the header: exporters could not write such models. */
-static void accepts_the_fixtures(void **state)
+TEST_AFTER(setup, accepts_the_fixtures)
 {
-    (void)state;
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
     fixture_plain(&f);
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
@@ -37,10 +31,9 @@ static void accepts_the_fixtures(void **state)
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
 }
 
-static void refuses_null(void **state)
+TEST_AFTER(setup, refuses_null)
 {
     unsigned c;
-    (void)state;
     assert_int_equal(labial_model_check(NULL), LABIAL_ERROR_NULL);
     TRY(const labial_phoneme_t *, f.model.phonemes, NULL, LABIAL_ERROR_NULL);
     TRY(const labial_component_t *, f.model.components, NULL, LABIAL_ERROR_NULL);
@@ -59,9 +52,8 @@ static void refuses_null(void **state)
 }
 
 /* Would catch a model that must carry tables of what it does not use. */
-static void optional_tables_may_be_null(void **state)
+TEST_AFTER(setup, optional_tables_may_be_null)
 {
-    (void)state;
     ACCEPTED(const uint8_t *, f.model.contexts, NULL);
     ACCEPTED(const int8_t *, f.model.slopes, NULL);
     f.model.kernel_taps = f.model.kernel_behind = 0;
@@ -75,18 +67,34 @@ static void optional_tables_may_be_null(void **state)
     REFUSED(uint8_t, f.phonemes[FIXTURE_P].floor, 1); /* a row of a table that is not there */
 }
 
-static void refuses_other_versions(void **state)
+/* Would catch tables of 13 channels asked of a model that has 12, and a bit of the thirteenth let through. */
+TEST_AFTER(setup, models_that_compute_protrusion_have_twelve_channels)
 {
-    (void)state;
+    unsigned c;
+    fixture_without_17(&f);
+    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    TRY(const uint32_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL);
+    for (c = 0; c < LABIAL_CHANNELS; c++)
+        TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
+    REFUSED(uint16_t, f.contacts[0], 1u << 12);
+    ACCEPTED(uint16_t, f.contacts[0], 1u << 11);
+    ACCEPTED(int16_t, f.protrusion.low, -32768);
+    ACCEPTED(uint16_t, f.protrusion.gain, 65535);
+    ACCEPTED(int16_t, f.protrusion.values[16], -32768);
+    REFUSED(int16_t, f.floors[FIXTURE_FLOORS * 12 - 1], LABIAL_NO_FLOOR - 1);
+    ACCEPTED(int16_t, f.floors[FIXTURE_FLOORS * 12], LABIAL_NO_FLOOR - 1); /* behind the table */
+}
+
+TEST_AFTER(setup, refuses_other_versions)
+{
     TRY(uint16_t, f.model.format, 0, LABIAL_ERROR_VERSION);
     TRY(uint16_t, f.model.format, LABIAL_MODEL_FORMAT + 1, LABIAL_ERROR_VERSION);
     TRY(uint16_t, f.model.format, LABIAL_MODEL_FORMAT << 8, LABIAL_ERROR_VERSION);
 }
 
-static void refuses_counts_out_of_range(void **state)
+TEST_AFTER(setup, refuses_counts_out_of_range)
 {
     unsigned i;
-    (void)state;
     REFUSED(uint16_t, f.model.frames_per_second, 0);
     REFUSED(uint16_t, f.model.frames_per_second, 251);
     ACCEPTED(uint16_t, f.model.frames_per_second, 1);
@@ -115,10 +123,9 @@ static void refuses_counts_out_of_range(void **state)
     ACCEPTED(uint8_t, f.model.mixture_mean, 0);
 }
 
-static void refuses_bad_phonemes(void **state)
+TEST_AFTER(setup, refuses_bad_phonemes)
 {
     unsigned p;
-    (void)state;
     for (p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
         REFUSED(uint8_t, f.phonemes[p].component_count, 0);
         REFUSED(uint16_t, f.phonemes[p].first_component, 2 * FIXTURE_SPEECH_COUNT);
@@ -139,11 +146,10 @@ static void refuses_bad_phonemes(void **state)
 
 /* The low byte of a transition is a state: would catch one that the model does not have, in any of the transitions.
  * Costs may be any. */
-static void refuses_bad_transitions(void **state)
+TEST_AFTER(setup, refuses_bad_transitions)
 {
     const unsigned last = FIXTURE_SPEECH_STATES - 1;
     unsigned c, i;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         for (i = 0; i < FIXTURE_SPEECH_STATES * FIXTURE_PREDECESSORS; i++) {
             REFUSED(uint16_t, f.transitions[c][i], last + 1);
@@ -157,11 +163,10 @@ static void refuses_bad_transitions(void **state)
 }
 
 /* Would catch a limit on transitions that is narrower than the largest model. */
-static void accepts_transitions_of_the_largest_model(void **state)
+TEST_AFTER(setup, accepts_transitions_of_the_largest_model)
 {
     static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
     unsigned i, c;
-    (void)state;
     fixture_slow(&f);
     for (i = 0; i < LABIAL_STATES_MAX * LABIAL_STATES_MAX; i++)
         transitions[i] = (uint16_t)(0x0700 | i % LABIAL_STATES_MAX);
@@ -175,10 +180,9 @@ static void accepts_transitions_of_the_largest_model(void **state)
 
 /* The window of states that is searched is found by halves: would catch an order that is not looked at, at either end.
  * Equal means are in order. */
-static void refuses_states_out_of_order(void **state)
+TEST_AFTER(setup, refuses_states_out_of_order)
 {
     unsigned c, q;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         for (q = 1; q < FIXTURE_SPEECH_STATES; q++) {
             REFUSED(int16_t, f.emissions[c][q].mean, f.emissions[c][q - 1].mean - 1);
@@ -188,11 +192,10 @@ static void refuses_states_out_of_order(void **state)
     }
 }
 
-static void refuses_positions_out_of_range(void **state)
+TEST_AFTER(setup, refuses_positions_out_of_range)
 {
     const unsigned last = FIXTURE_SPEECH_STATES - 1;
     unsigned c;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         REFUSED(int16_t, f.emissions[c][0].mean, LABIAL_POSITION_MAX + 1);
         REFUSED(int16_t, f.emissions[c][last].mean, -LABIAL_POSITION_MAX - 1);
@@ -211,10 +214,9 @@ static void refuses_positions_out_of_range(void **state)
     }
 }
 
-static void refuses_floors_out_of_range(void **state)
+TEST_AFTER(setup, refuses_floors_out_of_range)
 {
     const unsigned last = FIXTURE_FLOORS * LABIAL_CHANNELS - 1;
-    (void)state;
     REFUSED(int16_t, f.floors[0], LABIAL_POSITION_MAX + 1);
     REFUSED(int16_t, f.floors[last], LABIAL_NO_FLOOR - 1);
     REFUSED(int16_t, f.floors[last], INT16_MIN);
@@ -224,10 +226,9 @@ static void refuses_floors_out_of_range(void **state)
 }
 
 /* Would catch contact of a channel that there is not: the run-time shifts by channels. */
-static void refuses_contacts_of_no_channel(void **state)
+TEST_AFTER(setup, refuses_contacts_of_no_channel)
 {
     unsigned row, bit;
-    (void)state;
     for (row = 0; row < FIXTURE_FLOORS; row++) {
         for (bit = 0; bit < 16; bit++)
             TRY(uint16_t, f.contacts[row], 1u << bit, bit < LABIAL_CHANNELS ? LABIAL_OK : LABIAL_ERROR_MODEL);
@@ -239,9 +240,8 @@ static void refuses_contacts_of_no_channel(void **state)
 }
 
 /* Pairs have one knot or two, even where there are none: would catch a stride of none or of three through `pairs`. */
-static void refuses_knots_other_than_one_and_two(void **state)
+TEST_AFTER(setup, refuses_knots_other_than_one_and_two)
 {
-    (void)state;
     ACCEPTED(uint8_t, f.model.pair_knots, 1);
     ACCEPTED(uint8_t, f.model.pair_knots, 2);
     REFUSED(uint8_t, f.model.pair_knots, 0);
@@ -254,9 +254,8 @@ static void refuses_knots_other_than_one_and_two(void **state)
 }
 
 /* Would catch keys that the binary search cannot find. */
-static void refuses_pairs_out_of_order(void **state)
+TEST_AFTER(setup, refuses_pairs_out_of_order)
 {
-    (void)state;
     REFUSED(uint16_t, f.pair_keys[1], f.pair_keys[0]);
     REFUSED(uint16_t, f.pair_keys[FIXTURE_PAIRS - 1], 0);
     REFUSED(uint16_t, f.pair_keys[0], 65535);
@@ -265,10 +264,9 @@ static void refuses_pairs_out_of_order(void **state)
     TRY(const int8_t *, f.model.pairs, NULL, LABIAL_ERROR_NULL);
 }
 
-static void refuses_scales_out_of_range(void **state)
+TEST_AFTER(setup, refuses_scales_out_of_range)
 {
     unsigned c;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         REFUSED(uint16_t, f.channels[c].shape_scale, 32768);
         REFUSED(uint16_t, f.channels[c].shape_scale, 65535);
@@ -281,11 +279,10 @@ static void refuses_scales_out_of_range(void **state)
     }
 }
 
-static void refuses_kernels_beyond_their_reach(void **state)
+TEST_AFTER(setup, refuses_kernels_beyond_their_reach)
 {
     static uint32_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * 3];
     static int8_t last_kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1)];
-    (void)state;
     f.model.kernels = kernels;
     f.model.last_kernels = last_kernels;
     f.model.kernel_taps = 3;
@@ -310,12 +307,11 @@ static void refuses_kernels_beyond_their_reach(void **state)
 
 /* Every number of taps, stride and place: accepted exactly where no tap reads a label that the library does not keep, which
  * is what lib/shape.c and the proofs take for granted. */
-static void kernels_stay_within_the_labels(void **state)
+TEST_AFTER(setup, kernels_stay_within_the_labels)
 {
     static uint32_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * 3];
     static int8_t last_kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1)];
     int taps, stride, behind, accepted = 0;
-    (void)state;
     f.model.kernels = kernels;
     f.model.last_kernels = last_kernels;
     for (taps = 1; taps <= LABIAL_KERNEL_TAPS_MAX + 1; taps++)
@@ -335,10 +331,9 @@ static void kernels_stay_within_the_labels(void **state)
 }
 
 /* Counts at their bounds, from both sides: what is refused above is accepted here. */
-static void accepts_the_bounds_of_counts(void **state)
+TEST_AFTER(setup, accepts_the_bounds_of_counts)
 {
     unsigned i;
-    (void)state;
     fixture_plain(&f);
     ACCEPTED(uint8_t, f.model.class_count, LABIAL_CLASSES_MAX);
     ACCEPTED(uint8_t, f.model.class_count, FIXTURE_CLASSES);
@@ -361,14 +356,13 @@ static void accepts_the_bounds_of_counts(void **state)
 }
 
 /* Would catch an index or a product that is too narrow for the largest model the limits allow. */
-static void accepts_the_largest_counts(void **state)
+TEST_AFTER(setup, accepts_the_largest_counts)
 {
     enum { COMPONENTS = LABIAL_PHONEMES_MAX * LABIAL_PHONEME_COMPONENTS_MAX };
     static labial_phoneme_t phonemes[LABIAL_PHONEMES_MAX];
     static labial_component_t components[COMPONENTS];
     static int8_t shapes[COMPONENTS * LABIAL_CHANNELS];
     unsigned p;
-    (void)state;
     fixture_slow(&f);
     for (p = 0; p < LABIAL_PHONEMES_MAX; p++) {
         phonemes[p].first_component = (uint16_t)(p * LABIAL_PHONEME_COMPONENTS_MAX);
@@ -392,28 +386,4 @@ static void accepts_the_largest_counts(void **state)
     REFUSED(uint8_t, phonemes[LABIAL_PHONEMES_MAX - 1].viseme_class, LABIAL_CLASSES_MAX);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(accepts_the_fixtures, setup),
-        cmocka_unit_test_setup(refuses_null, setup),
-        cmocka_unit_test_setup(optional_tables_may_be_null, setup),
-        cmocka_unit_test_setup(refuses_other_versions, setup),
-        cmocka_unit_test_setup(refuses_counts_out_of_range, setup),
-        cmocka_unit_test_setup(refuses_bad_phonemes, setup),
-        cmocka_unit_test_setup(refuses_bad_transitions, setup),
-        cmocka_unit_test_setup(accepts_transitions_of_the_largest_model, setup),
-        cmocka_unit_test_setup(refuses_states_out_of_order, setup),
-        cmocka_unit_test_setup(refuses_positions_out_of_range, setup),
-        cmocka_unit_test_setup(refuses_floors_out_of_range, setup),
-        cmocka_unit_test_setup(refuses_contacts_of_no_channel, setup),
-        cmocka_unit_test_setup(refuses_knots_other_than_one_and_two, setup),
-        cmocka_unit_test_setup(refuses_pairs_out_of_order, setup),
-        cmocka_unit_test_setup(refuses_scales_out_of_range, setup),
-        cmocka_unit_test_setup(refuses_kernels_beyond_their_reach, setup),
-        cmocka_unit_test_setup(kernels_stay_within_the_labels, setup),
-        cmocka_unit_test_setup(accepts_the_bounds_of_counts, setup),
-        cmocka_unit_test_setup(accepts_the_largest_counts, setup),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

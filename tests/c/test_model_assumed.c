@@ -3,11 +3,7 @@
  * labial_model_check() grants: every value of each member, in a model all of whose tables are longer than any count may
  * be, so that nothing but the rule for that member refuses it.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,10 +27,9 @@ static uint16_t transitions[MANY * MANY];
 static uint8_t initials[MANY];
 
 /* As little as there can be of everything. */
-static int setup(void **state)
+SETUP(setup)
 {
     unsigned i;
-    (void)state;
     memset(&model, 0, sizeof model);
     memset(channels, 0, sizeof channels);
     memset(phonemes, 0, sizeof phonemes);
@@ -99,10 +94,9 @@ static void try_all(const char *member, void *place, size_t size, long least, lo
 }
 
 /* Would catch a limit that is one off, or that another rule keeps only in models whose tables are full. */
-static void members_of_the_model(void **state)
+TEST_AFTER(setup, members_of_the_model)
 {
     labial_model_t *const object = &model;
-    (void)state;
     model.phoneme_count = LABIAL_PHONEMES_MAX; /* of which silence is any */
     try_all("silence", &object->silence, 1, 0, LABIAL_PHONEMES_MAX - 1);
     model.phoneme_count = 1;
@@ -115,10 +109,9 @@ static void members_of_the_model(void **state)
     ASSUMED_OF_MODEL(TRY_OTHER)
 }
 
-static void members_of_phonemes(void **state)
+TEST_AFTER(setup, members_of_phonemes)
 {
     unsigned i;
-    (void)state;
     model.phoneme_count = 2;
     model.class_count = LABIAL_CLASSES_MAX;
     model.component_count = 65535;
@@ -131,17 +124,15 @@ static void members_of_phonemes(void **state)
     }
 }
 
-static void members_of_channels(void **state)
+TEST_AFTER(setup, members_of_channels)
 {
     labial_channel_t *const object = &channels[LABIAL_CHANNELS - 1]; /* for the others' ends see test_model.c */
-    (void)state;
     ASSUMED_OF_CHANNEL(TRY_ALL)
 }
 
 /* Of the lowest and the highest of two states, which must stay in order. */
-static void members_of_emissions(void **state)
+TEST_AFTER(setup, members_of_emissions)
 {
-    (void)state;
     model.state_count = 1;
     {
         labial_emission_t *const object = &emissions[0];
@@ -153,11 +144,10 @@ static void members_of_emissions(void **state)
 }
 
 /* What one weight may be depends on the others: with these each may be as large as anywhere. */
-static void members_of_states(void **state)
+TEST_AFTER(setup, members_of_states)
 {
     labial_state_t *const object = &states[1];
     unsigned hold, code;
-    (void)state;
     model.state_count = 2;
     try_all("mean", &object->mean, 2, -LABIAL_POSITION_MAX, LABIAL_POSITION_MAX);
     try_all("hold", &object->hold, 1, 8, 0xaf);
@@ -173,12 +163,4 @@ static void members_of_states(void **state)
         }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(members_of_the_model, setup), cmocka_unit_test_setup(members_of_phonemes, setup),
-        cmocka_unit_test_setup(members_of_channels, setup),  cmocka_unit_test_setup(members_of_emissions, setup),
-        cmocka_unit_test_setup(members_of_states, setup),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

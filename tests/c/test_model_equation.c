@@ -2,11 +2,7 @@
  * test_model_equation.c - the limits of equation 3 that labial_model_check() holds a model to: each is accepted at its
  * bound and refused beyond it. test_trajectory.c says that the solver keeps its promise within them.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fixture.h"
 
@@ -42,13 +38,18 @@ static void hold_all(unsigned c, uint8_t hold, uint8_t delta, uint8_t delta2)
     f.channels[c].motion_scale[0] = f.channels[c].motion_scale[1] = 256;
 }
 
+SETUP(setup)
+{
+    fixture_plain(&f);
+    return 0;
+}
+
 /* The largest hold, twice the largest weight of delta and six times that of delta-delta, each of any state: would catch
  * a sum over the weights of each state for itself, and another factor. */
-static void refuses_weights_beyond_the_largest_sum(void **state)
+TEST_AFTER(setup, refuses_weights_beyond_the_largest_sum)
 {
     const double sum = LABIAL_WEIGHT_SUM_MAX;
     unsigned c;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         const uint8_t dd = not_above(1400), d = not_above(1000);
         labial_state_t *const s = f.states[c];
@@ -73,11 +74,10 @@ static void refuses_weights_beyond_the_largest_sum(void **state)
 
 /* `contact_weight` takes the place of the largest hold where it is larger, in every channel for itself: would catch a
  * sum without it, one with both, and a limit that a model without contact would have. */
-static void refuses_contact_that_is_too_firm(void **state)
+TEST_AFTER(setup, refuses_contact_that_is_too_firm)
 {
     const double sum = LABIAL_WEIGHT_SUM_MAX;
     unsigned c;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         const uint8_t dd = not_above(1400), d = not_above(1000);
         const double room = sum - 6 * fixture_weight_value(dd) - 2 * fixture_weight_value(d);
@@ -99,10 +99,9 @@ static void refuses_contact_that_is_too_firm(void **state)
 }
 
 /* Would catch a stiffness measured by another state's hold, and motion that no factorisation of this kind bears. */
-static void refuses_motion_that_is_too_stiff(void **state)
+TEST_AFTER(setup, refuses_motion_that_is_too_stiff)
 {
     unsigned c, code;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         hold_all(c, not_above(500), 0, 0);
@@ -130,12 +129,11 @@ static uint16_t scale_of(int mean)
 
 /* Four times the largest weight times mean of delta, and of delta-delta, whatever their signs and states, over the least
  * hold: exactly, for weights of 8 and 16. */
-static void refuses_pulls_beyond_the_largest(void **state)
+TEST_AFTER(setup, refuses_pulls_beyond_the_largest)
 {
     const int all = LABIAL_PULL_MAX * LABIAL_WEIGHT_MIN / 4 / 16; /* of a weight of 16; rounded down */
     unsigned c;
     int sign;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = f.states[c];
         uint16_t *const scale = f.channels[c].motion_scale;
@@ -162,11 +160,10 @@ static void refuses_pulls_beyond_the_largest(void **state)
 }
 
 /* Means are positions, whatever they weigh, to either side. */
-static void refuses_motion_out_of_range(void **state)
+TEST_AFTER(setup, refuses_motion_out_of_range)
 {
     unsigned c, i;
     int sign;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++)
         for (i = 0; i < 2; i++)
             for (sign = -1; sign <= 1; sign += 2) {
@@ -180,10 +177,9 @@ static void refuses_motion_out_of_range(void **state)
             }
 }
 
-static void refuses_states_that_nothing_holds(void **state)
+TEST_AFTER(setup, refuses_states_that_nothing_holds)
 {
     unsigned c;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         hold_all(c, 40, 0, 0);
@@ -197,10 +193,9 @@ static void refuses_states_that_nothing_holds(void **state)
 
 /* Would catch a check whose own products leave 32 bits: weights and means as large as they can be, which amount to little
  * modulo 2^32, and a delta-delta that is light enough for its hold and too heavy by itself. */
-static void refuses_products_that_overflow(void **state)
+TEST_AFTER(setup, refuses_products_that_overflow)
 {
     unsigned c;
-    (void)state;
     for (c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         hold_all(c, not_above(500), 0, 0);
@@ -218,23 +213,4 @@ static void refuses_products_that_overflow(void **state)
     }
 }
 
-static int setup(void **state)
-{
-    (void)state;
-    fixture_plain(&f);
-    return 0;
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(refuses_weights_beyond_the_largest_sum, setup),
-        cmocka_unit_test_setup(refuses_contact_that_is_too_firm, setup),
-        cmocka_unit_test_setup(refuses_motion_that_is_too_stiff, setup),
-        cmocka_unit_test_setup(refuses_pulls_beyond_the_largest, setup),
-        cmocka_unit_test_setup(refuses_motion_out_of_range, setup),
-        cmocka_unit_test_setup(refuses_states_that_nothing_holds, setup),
-        cmocka_unit_test_setup(refuses_products_that_overflow, setup),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

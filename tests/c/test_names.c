@@ -1,11 +1,7 @@
 /*
  * test_names.c - phonemes by name: labels, aliases, and the marks that do not change the mouth's shape.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -65,13 +61,13 @@ static uint8_t *pack(labial_names_t *packed, unsigned count)
     return bytes;
 }
 
-static int set_up(void **state)
+SETUP(set_up)
 {
     *state = pack(&names, COUNT);
     return 0;
 }
 
-static int tear_down(void **state)
+SETUP(tear_down)
 {
     free(*state);
     return 0;
@@ -83,10 +79,9 @@ static int find(const char *name)
 }
 
 /* Would catch an entry that is passed over, the last one above all. */
-static void every_entry_is_found(void **state)
+TEST(every_entry_is_found)
 {
     unsigned i;
-    (void)state;
     for (i = 0; i < COUNT; i++) {
         const size_t length = strlen(entries[i].name);
         unsigned set;
@@ -98,9 +93,8 @@ static void every_entry_is_found(void **state)
 }
 
 /* Would catch a set of labels that is not looked at, or the wrong meaning coming first where none is named. */
-static void sets_have_labels_of_their_own(void **state)
+TEST(sets_have_labels_of_their_own)
 {
-    (void)state;
     assert_int_equal(labial_find_in(&names, ARPABET, "S", 1), 3);
     assert_int_equal(labial_find_in(&names, XSAMPA, "S", 1), 7);
     assert_int_equal(labial_find_in(&names, XSAMPA, "'S:", 3), 7);
@@ -116,9 +110,8 @@ static void sets_have_labels_of_their_own(void **state)
 }
 
 /* Would catch a slip that becomes a vowel without a word: digits are names only where X-SAMPA is asked for. */
-static void lone_digits_are_of_x_sampa(void **state)
+TEST(lone_digits_are_of_x_sampa)
 {
-    (void)state;
     assert_int_equal(labial_find_in(&names, XSAMPA, "2", 1), 5);
     assert_int_equal(labial_find_in(&names, XSAMPA, "2:", 2), 5);
     assert_int_equal(find("2"), LABIAL_ERROR_NAME);
@@ -126,9 +119,8 @@ static void lone_digits_are_of_x_sampa(void **state)
     assert_int_equal(labial_find_in(&names, IPA, "2", 1), LABIAL_ERROR_NAME);
 }
 
-static void length_is_obeyed(void **state)
+TEST(length_is_obeyed)
 {
-    (void)state;
     assert_int_equal(labial_find(&names, "AA1xyz", 3), 2);
     assert_int_equal(labial_find(&names, "AA1xyz", 2), 1);
     assert_int_equal(labial_find(&names, "AA1xyz", 1), 9);
@@ -136,31 +128,28 @@ static void length_is_obeyed(void **state)
     assert_int_equal(labial_find(&names, "si\0l", 4), LABIAL_ERROR_NAME);
 }
 
-static void unknown_names_are_refused(void **state)
+TEST(unknown_names_are_refused)
 {
     static const char *const unknown[] = {
         "AAA", "0",    "ZZ",   "b",    "AB",       "AAx", "Zzzzzzzzzzzzzzzzzzzzzzzzzzzz",
         "si",  "sill", "\xff", "\xca", "\xca\x8a", "x1",  "1AA"
     };
     unsigned i;
-    (void)state;
     for (i = 0; i < sizeof unknown / sizeof unknown[0]; i++)
         if (find(unknown[i]) != LABIAL_ERROR_NAME)
             fail_msg("%s is %d", unknown[i], find(unknown[i]));
 }
 
-static void empty_names_are_refused(void **state)
+TEST(empty_names_are_refused)
 {
-    (void)state;
     assert_int_equal(find(""), LABIAL_ERROR_NAME);
     assert_int_equal(labial_find(&names, "AA", 0), LABIAL_ERROR_NAME);
 }
 
-static void null_is_an_error(void **state)
+TEST(null_is_an_error)
 {
     static const uint8_t nothing[1] = { 0 };
     labial_names_t none;
-    (void)state;
     memset(&none, 0, sizeof none);
     assert_int_equal(labial_find(NULL, "AA", 2), LABIAL_ERROR_NULL);
     assert_int_equal(labial_find(&names, NULL, 2), LABIAL_ERROR_NULL);
@@ -168,9 +157,8 @@ static void null_is_an_error(void **state)
     assert_int_equal(labial_find(&none, "AA", 2), LABIAL_ERROR_NAME); /* an empty table */
 }
 
-static void stress_digits_are_dropped(void **state)
+TEST(stress_digits_are_dropped)
 {
-    (void)state;
     assert_int_equal(find("AA0"), 1);
     assert_int_equal(find("AA2"), 1);
     assert_int_equal(find("AE1"), 3);
@@ -179,16 +167,14 @@ static void stress_digits_are_dropped(void **state)
 }
 
 /* Would catch stripping before looking: names that end in a digit or a colon are names first. */
-static void a_name_as_it_stands_comes_first(void **state)
+TEST(a_name_as_it_stands_comes_first)
 {
-    (void)state;
     assert_int_equal(find("AA1"), 2);
     assert_int_equal(find("_:"), 8);
 }
 
-static void ipa_marks_are_dropped(void **state)
+TEST(ipa_marks_are_dropped)
 {
-    (void)state;
     assert_int_equal(find("\xcb\x88\xc9\x91"), 1);         /* primary stress, alpha */
     assert_int_equal(find("\xcb\x8c\xc9\x91"), 1);         /* secondary stress, alpha */
     assert_int_equal(find("\xc9\x91\xcb\x90"), 1);         /* alpha, long */
@@ -201,13 +187,12 @@ static void ipa_marks_are_dropped(void **state)
 }
 
 /* Would catch a mark taken for a name, half a mark, and a length that wraps below zero. */
-static void marks_alone_are_unknown(void **state)
+TEST(marks_alone_are_unknown)
 {
     static const char *const marks[] = { "\xcb\x88", "\xcb\x8c", "\xcb\x90",         "\xcb\x88\xcb\x90",
                                          "\xcb",     "\x88",     "\xcb\x88\xcb\x88", "1",
                                          "00",       "\x90",     "\xcb\x88\x31" };
     unsigned i;
-    (void)state;
     for (i = 0; i < sizeof marks / sizeof marks[0]; i++)
         if (find(marks[i]) != LABIAL_ERROR_NAME)
             fail_msg("mark %u is %d", i, find(marks[i]));
@@ -218,9 +203,8 @@ static void marks_alone_are_unknown(void **state)
 }
 
 /* Would catch a mark that is dropped at the wrong end, and letters that are taken for marks. */
-static void other_marks_are_dropped(void **state)
+TEST(other_marks_are_dropped)
 {
-    (void)state;
     assert_int_equal(find("'AA"), 1);
     assert_int_equal(find("%,\"B"), 4);
     assert_int_equal(find("a:"), 5);
@@ -249,10 +233,9 @@ static int find_nearest(const char *name)
 }
 
 /* Would catch a label that stops the caller, a short beginning taken for a long one, and noise that moves the lips. */
-static void every_label_has_a_nearest_phoneme(void **state)
+TEST(every_label_has_a_nearest_phoneme)
 {
     char longer[300];
-    (void)state;
     assert_int_equal(find_nearest("AA1"), 2);
     assert_int_equal(find_nearest("AAX"), 1);
     assert_int_equal(find_nearest("Ax"), 9);
@@ -272,11 +255,10 @@ static void every_label_has_a_nearest_phoneme(void **state)
 }
 
 /* Would catch a search that only works at one size of the table. */
-static void tables_of_every_size(void **state)
+TEST(tables_of_every_size)
 {
     labial_names_t part = names;
     unsigned count, i;
-    (void)state;
     for (count = 1; count <= COUNT; count++) {
         uint8_t *bytes = pack(&part, count);
         for (i = 0; i < COUNT; i++) {
@@ -291,23 +273,4 @@ static void tables_of_every_size(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_entry_is_found),
-        cmocka_unit_test(length_is_obeyed),
-        cmocka_unit_test(unknown_names_are_refused),
-        cmocka_unit_test(empty_names_are_refused),
-        cmocka_unit_test(null_is_an_error),
-        cmocka_unit_test(stress_digits_are_dropped),
-        cmocka_unit_test(a_name_as_it_stands_comes_first),
-        cmocka_unit_test(ipa_marks_are_dropped),
-        cmocka_unit_test(other_marks_are_dropped),
-        cmocka_unit_test(sets_have_labels_of_their_own),
-        cmocka_unit_test(lone_digits_are_of_x_sampa),
-        cmocka_unit_test(every_label_has_a_nearest_phoneme),
-        cmocka_unit_test(marks_alone_are_unknown),
-        cmocka_unit_test(tables_of_every_size),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+SUITE(set_up, tear_down)

@@ -2,15 +2,12 @@
  * test_rig.c - FAPs to outputs: each part of an output by hand, random rigs against a computation in double, and what
  * must hold for every table and every FAP.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "fixture.h"
 #include "labial/rig.h"
 
 #define FAP3 0
@@ -42,26 +39,23 @@ static int32_t moved(const labial_rig_output_t *output, int32_t last, int16_t fa
     return value[0];
 }
 
-static uint32_t seed;
+static fixture_random_t dice;
 
-/* Numbers of a linear congruential generator; the same on every machine. */
 static uint32_t chance(void)
 {
-    seed = seed * 1664525u + 1013904223u;
-    return (seed >> 16) | ((seed * 69069u) & 0xffff0000u);
+    return fixture_random(&dice);
 }
 
 static int32_t between(int32_t low, int32_t high)
 {
-    return low + (int32_t)(chance() % ((uint32_t)(high - low) + 1u));
+    return low + (int32_t)fixture_below(&dice, (uint32_t)(high - low) + 1u);
 }
 
-static void rest_is_neutral_within_limits(void **state)
+TEST(rest_is_neutral_within_limits)
 {
     labial_rig_output_t outputs[3];
     const labial_rig_t rig = { outputs, 3 };
     int32_t values[4] = { 1, 2, 3, -77 };
-    (void)state;
     outputs[0] = outputs[1] = outputs[2] = plain();
     outputs[1].neutral = 900;
     outputs[2].neutral = 2100;
@@ -73,10 +67,9 @@ static void rest_is_neutral_within_limits(void **state)
 }
 
 /* Would catch a gain or a weight of another Q format, and a rounding that is not to the nearest. */
-static void gain_and_weights_multiply(void **state)
+TEST(gain_and_weights_multiply)
 {
     labial_rig_output_t output = plain();
-    (void)state;
     assert_int_equal(moved(&output, 1500, 100), 1600);
     assert_int_equal(moved(&output, 1500, -100), 1400);
     output.gain = LABIAL_RIG_GAIN(600, 400);
@@ -91,10 +84,9 @@ static void gain_and_weights_multiply(void **state)
     assert_int_equal(moved(&output, 1500, -4), 1501); /* 0.5 goes up to 1 */
 }
 
-static void every_fap_has_its_weight(void **state)
+TEST(every_fap_has_its_weight)
 {
     unsigned i, k;
-    (void)state;
     for (i = 0; i < LABIAL_CHANNELS; i++) {
         labial_rig_output_t output = plain();
         const labial_rig_t rig = { &output, 1 };
@@ -110,10 +102,9 @@ static void every_fap_has_its_weight(void **state)
     }
 }
 
-static void limits_hold_whatever_the_faps(void **state)
+TEST(limits_hold_whatever_the_faps)
 {
     labial_rig_output_t output = plain();
-    (void)state;
     assert_int_equal(moved(&output, 1500, 500), 2000);
     assert_int_equal(moved(&output, 1500, 501), 2000);
     assert_int_equal(moved(&output, 1500, INT16_MAX), 2000);
@@ -124,10 +115,9 @@ static void limits_hold_whatever_the_faps(void **state)
 }
 
 /* A servo mounted the other way round moves from the same neutral to the other side. */
-static void inversion_mirrors_the_move(void **state)
+TEST(inversion_mirrors_the_move)
 {
     labial_rig_output_t output = plain();
-    (void)state;
     output.invert = 1;
     assert_int_equal(moved(&output, 1500, 100), 1400);
     assert_int_equal(moved(&output, 1500, -100), 1600);
@@ -135,21 +125,19 @@ static void inversion_mirrors_the_move(void **state)
     assert_int_equal(moved(&output, 1500, INT16_MIN), 2000);
 }
 
-static void neutral_beyond_a_limit_is_a_threshold(void **state)
+TEST(neutral_beyond_a_limit_is_a_threshold)
 {
     labial_rig_output_t output = plain();
-    (void)state;
     output.neutral = 900;
     assert_int_equal(moved(&output, 1000, 60), 1000);
     assert_int_equal(moved(&output, 1000, 160), 1060);
 }
 
-static void slew_bounds_the_change_per_frame(void **state)
+TEST(slew_bounds_the_change_per_frame)
 {
     labial_rig_output_t output = plain();
     int32_t value = 1500;
     int frames = 0;
-    (void)state;
     output.slew = 70;
     for (; value < 2000; frames++) {
         const int32_t next = moved(&output, value, 1000);
@@ -166,16 +154,15 @@ static void slew_bounds_the_change_per_frame(void **state)
 }
 
 /* Values that were never set, or set by a fault, must neither drive a servo beyond its limits nor overflow. */
-static void last_value_is_not_trusted(void **state)
+TEST(last_value_is_not_trusted)
 {
     labial_rig_output_t output = plain();
-    (void)state;
     output.slew = 10;
     assert_int_equal(moved(&output, INT32_MAX, 0), 1990);
     assert_int_equal(moved(&output, INT32_MIN, 0), 1010);
 }
 
-static void jaw_macro_closes_and_opens(void **state)
+TEST(jaw_macro_closes_and_opens)
 {
     static const labial_rig_output_t up = LABIAL_RIG_JAW(1400, 1900), down = LABIAL_RIG_JAW(1900, 1400);
     static const struct {
@@ -187,7 +174,6 @@ static void jaw_macro_closes_and_opens(void **state)
         { 0, -72, 1400 },  { 20, -92, 1400 },  { 0, -136, 1513 }, { 0, -104, 1443 },
     };
     unsigned i;
-    (void)state;
     for (i = 0; i < sizeof poses / sizeof poses[0]; i++) {
         const labial_rig_output_t both[2] = { up, down };
         const labial_rig_t rig = { both, 2 };
@@ -203,31 +189,28 @@ static void jaw_macro_closes_and_opens(void **state)
 }
 
 /* Lips that touch, as FAPs say it in p, b, m, bring an output to where it is closed; lips that part let it go. */
-static void contact_closes(void **state)
+TEST(contact_closes)
 {
     static const struct {
         int16_t top, bottom;
         int32_t value;
-    } poses[] = {
-        { 0, 0, 1450 },
-        { 0, -71, 1450 },
-        { 0, -72, 1450 },
-        { 40, -112, 1450 },
-        { 0, -73, 1453 },
-        { 0, -104, 1543 },
-        { 0, -135, 1603 },
-        { 0, -136, 1604 },
-        { 0, -137, 1603 },
-        { 0, -400, 1340 },
-        { -400, 0, 1740 },
-        { 300, 300, 1450 },
-        { INT16_MAX, INT16_MAX, 1450 },
-        { INT16_MIN, INT16_MIN, 2000 },
-    };
+    } poses[] = { { 0, 0, 1450 },
+                  { 0, -71, 1450 },
+                  { 0, -72, 1450 },
+                  { 40, -112, 1450 },
+                  { 0, -73, 1453 },
+                  { 0, -104, 1543 },
+                  { 0, -135, 1603 },
+                  { 0, -136, 1604 },
+                  { 0, -137, 1603 },
+                  { 0, -400, 1340 },
+                  { -400, 0, 1740 },
+                  { 300, 300, 1450 },
+                  { INT16_MAX, INT16_MAX, 1450 },
+                  { INT16_MIN, INT16_MIN, 2000 } };
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
     unsigned i;
-    (void)state;
     output.weights[FAP3] = 0;
     output.weights[FAP52] = LABIAL_RIG_ONE;
     output.neutral = 1740; /* minus the lower lip's opening */
@@ -255,14 +238,13 @@ static void contact_closes(void **state)
 
 /* A slow servo that sees where lips touch sets out early and is closed there; one that does not is late. What it does
  * may change no frame by more than its limit, and with one frame in sight it is labial_rig_apply(). */
-static void looking_ahead_closes_in_time(void **state)
+TEST(looking_ahead_closes_in_time)
 {
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
     int16_t frames[12][LABIAL_CHANNELS] = { { 0 } };
     int32_t blind = 1400, seeing = 1400, value;
     unsigned i;
-    (void)state;
     output.weights[FAP3] = 0;
     output.weights[FAP52] = -LABIAL_RIG_ONE;
     output.neutral = output.closed = output.minimum = 1400;
@@ -306,11 +288,10 @@ static void looking_ahead_closes_in_time(void **state)
 }
 
 /* By hand: a linkage that opens by half of what is wanted at first, then by twice as much. */
-static void curve_bends(void **state)
+TEST(curve_bends)
 {
     static const labial_rig_curve_t curve = { 2, { { 1500, 1500, 1 << 19 }, { 1700, 1600, 1 << 21 } } };
     labial_rig_output_t output = plain();
-    (void)state;
     output.curve = &curve;
     assert_int_equal(moved(&output, 1500, 100), 1550);
     assert_int_equal(moved(&output, 1500, 101), 1551); /* 50.5 goes up */
@@ -327,13 +308,12 @@ static void curve_bends(void **state)
 
 /* A servo with a limit of acceleration, on its way down from 1600 to 1400 in the frame 8 with all in sight: it sets out
  * where it must, comes to rest there and goes no further; with nothing in sight it is late, and does not go beyond. */
-static void acceleration_comes_to_rest(void **state)
+TEST(acceleration_comes_to_rest)
 {
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
     int16_t frames[24][LABIAL_CHANNELS] = { { 0 } };
     unsigned i, sight;
-    (void)state;
     output.weights[FAP3] = 0;
     output.weights[FAP52] = -LABIAL_RIG_ONE;
     output.neutral = output.closed = output.minimum = 1400;
@@ -368,11 +348,10 @@ static void acceleration_comes_to_rest(void **state)
 }
 
 /* Whatever is asked, seen or claimed of the last change, the limits hold. */
-static void acceleration_holds_for_all(void **state)
+TEST(acceleration_holds_for_all)
 {
     unsigned round, frame, i;
-    (void)state;
-    seed = 5;
+    dice.state = 5;
     for (round = 0; round < 300; round++) {
         labial_rig_output_t output = plain();
         const labial_rig_t rig = { &output, 1 };
@@ -407,7 +386,7 @@ static void acceleration_holds_for_all(void **state)
 }
 
 /* A stream's frames come out in their order, as late as was asked, with what follows in sight. */
-static void delayed_frames_look_ahead(void **state)
+TEST(delayed_frames_look_ahead)
 {
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
@@ -415,7 +394,6 @@ static void delayed_frames_look_ahead(void **state)
     labial_rig_delay_t delay = { kept[0], 5, 0 };
     int32_t values[2], changes[2] = { 0, 0 };
     unsigned i, shown = 0;
-    (void)state;
     output.slew = 50;
     output.acceleration = 15;
     for (i = 0; i < 30; i++)
@@ -445,14 +423,13 @@ static void delayed_frames_look_ahead(void **state)
 }
 
 /* A table that was not checked: more acceleration than there is counts as the most, so that nothing overflows. */
-static void acceleration_beyond_its_limit_is_the_limit(void **state)
+TEST(acceleration_beyond_its_limit_is_the_limit)
 {
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
     int16_t faps[LABIAL_CHANNELS] = { 400 };
     int32_t values[2] = { 1500, 1500 }, changes[2] = { 0, 0 };
     unsigned i;
-    (void)state;
     for (i = 0; i < 6; i++) {
         output.acceleration = LABIAL_RIG_VALUE_MAX;
         labial_rig_apply_ahead(&rig, faps, 1, &values[0], &changes[0]);
@@ -464,10 +441,9 @@ static void acceleration_beyond_its_limit_is_the_limit(void **state)
 }
 
 /* A servo is not asked to move by less than its deadband, and reaches the limit of its speed all the same. */
-static void deadband_keeps_small_changes(void **state)
+TEST(deadband_keeps_small_changes)
 {
     labial_rig_output_t output = plain();
-    (void)state;
     output.deadband = 5;
     assert_int_equal(moved(&output, 1500, 4), 1500);
     assert_int_equal(moved(&output, 1500, -4), 1500);
@@ -550,11 +526,10 @@ static double expected(const labial_rig_output_t *output, const int16_t faps[LAB
 /* Would catch an overflow, a wrong rounding or a limit that is left, anywhere in the range of a checked table. All sums
  * and products are exact in double: they are below 2^59 in steps of which at most 53 bits matter after rounding; where
  * that rounding of the double itself could decide, one unit is allowed. */
-static void random_rigs_equal_double(void **state)
+TEST(random_rigs_equal_double)
 {
     unsigned round, frame, i, off = 0;
-    (void)state;
-    seed = 1;
+    dice.state = 1;
     for (round = 0; round < 4000; round++) {
         const labial_rig_output_t output = any_sound_output();
         const labial_rig_t rig = { &output, 1 };
@@ -581,11 +556,10 @@ static void random_rigs_equal_double(void **state)
 }
 
 /* Tables and values of random bytes: whatever comes out, no sanitizer may object and nothing else is written. */
-static void unchecked_tables_stay_defined(void **state)
+TEST(unchecked_tables_stay_defined)
 {
     unsigned round, i, sound = 0;
-    (void)state;
-    seed = 2;
+    dice.state = 2;
     for (round = 0; round < 20000; round++) {
         labial_rig_output_t output;
         labial_rig_curve_t curve;
@@ -614,7 +588,7 @@ static void unchecked_tables_stay_defined(void **state)
     assert_int_equal(sound, 0);
 }
 
-static void check_names_every_fault(void **state)
+TEST(check_names_every_fault)
 {
     static const labial_rig_curve_t none = { 0, { { 0, 0, 0 } } }, many = { 9, { { 0, 0, 0 } } },
                                     far = { 1, { { LABIAL_RIG_VALUE_MAX + 1, 0, 0 } } },
@@ -624,7 +598,6 @@ static void check_names_every_fault(void **state)
     static const labial_rig_curve_t *const curves[6] = { &none, &many, &far, &high, &steep, &back };
     labial_rig_output_t good = plain(), bad[28];
     unsigned i, count = 0;
-    (void)state;
     for (i = 0; i < 28; i++)
         bad[i] = good;
     bad[count++].gain = LABIAL_RIG_GAIN_MAX + 1;
@@ -661,13 +634,12 @@ static void check_names_every_fault(void **state)
     }
 }
 
-static void check_accepts_the_very_limits(void **state)
+TEST(check_accepts_the_very_limits)
 {
     labial_rig_curve_t curve = { LABIAL_RIG_SEGMENTS, { { 0, 0, 0 } } };
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
     int32_t i;
-    (void)state;
     for (i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
         curve.segments[i].from = i ? LABIAL_RIG_VALUE_MAX - LABIAL_RIG_SEGMENTS + 1 + i : -LABIAL_RIG_VALUE_MAX;
         curve.segments[i].to = LABIAL_RIG_VALUE_MAX;
@@ -686,7 +658,7 @@ static void check_accepts_the_very_limits(void **state)
     assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
 }
 
-static void null_and_empty_are_refused(void **state)
+TEST(null_and_empty_are_refused)
 {
     const labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 }, empty = { &output, 0 }, hollow = { NULL, 1 };
@@ -694,7 +666,6 @@ static void null_and_empty_are_refused(void **state)
     int16_t kept[LABIAL_CHANNELS];
     labial_rig_delay_t delay = { kept, 0, 0 };
     int32_t value = 5;
-    (void)state;
     assert_int_equal(labial_rig_check(NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_check(&hollow), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_check(&empty), LABIAL_ERROR_RIG);
@@ -716,31 +687,4 @@ static void null_and_empty_are_refused(void **state)
     assert_int_equal(sizeof(labial_rig_curve_t), 100);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_is_neutral_within_limits),
-        cmocka_unit_test(gain_and_weights_multiply),
-        cmocka_unit_test(every_fap_has_its_weight),
-        cmocka_unit_test(limits_hold_whatever_the_faps),
-        cmocka_unit_test(inversion_mirrors_the_move),
-        cmocka_unit_test(neutral_beyond_a_limit_is_a_threshold),
-        cmocka_unit_test(slew_bounds_the_change_per_frame),
-        cmocka_unit_test(last_value_is_not_trusted),
-        cmocka_unit_test(jaw_macro_closes_and_opens),
-        cmocka_unit_test(random_rigs_equal_double),
-        cmocka_unit_test(unchecked_tables_stay_defined),
-        cmocka_unit_test(check_names_every_fault),
-        cmocka_unit_test(check_accepts_the_very_limits),
-        cmocka_unit_test(null_and_empty_are_refused),
-        cmocka_unit_test(looking_ahead_closes_in_time),
-        cmocka_unit_test(contact_closes),
-        cmocka_unit_test(deadband_keeps_small_changes),
-        cmocka_unit_test(curve_bends),
-        cmocka_unit_test(acceleration_beyond_its_limit_is_the_limit),
-        cmocka_unit_test(acceleration_comes_to_rest),
-        cmocka_unit_test(acceleration_holds_for_all),
-        cmocka_unit_test(delayed_frames_look_ahead),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

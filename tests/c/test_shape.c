@@ -4,11 +4,7 @@
  * The oracle takes costs as the tables state them, in whole units of 1/32 nat, so that what is compared is the choice
  * and the mixture, not the rounding of costs.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
@@ -132,11 +128,10 @@ static void compare(unsigned count, unsigned ms, unsigned previous, unsigned nex
 }
 
 /* All combinations of what a model may have, on random tables and durations from none to beyond every component. */
-static void selection_follows_the_formula(void **state)
+TEST(selection_follows_the_formula)
 {
     fixture_random_t random = { 31 };
     unsigned round;
-    (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(4000); round++) {
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
@@ -151,11 +146,10 @@ static void selection_follows_the_formula(void **state)
 }
 
 /* Would catch previous and next taken for each other. */
-static void context_has_a_direction(void **state)
+TEST(context_has_a_direction)
 {
     fixture_random_t random = { 32 };
     labial_shape_t shape;
-    (void)state;
     make(&random, 2);
     f.model.mixture_mean = 0;
     components[0] = components[1];
@@ -175,11 +169,10 @@ static void context_has_a_direction(void **state)
 }
 
 /* Of the longest durations and the strangest tables: within the range of positions, up to its ends. */
-static void extremes_stay_within_the_range(void **state)
+TEST(extremes_stay_within_the_range)
 {
     fixture_random_t random = { 33 };
     unsigned round, i, at_ends = 0;
-    (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(600); round++) {
         labial_shape_t shape;
         const unsigned count = 1 + round % COMPONENTS;
@@ -218,14 +211,13 @@ static double limited(double value)
 /* The shape between its knots plus, for every tap i, the curve of the phoneme at (i - behind) * stride, and not below the
  * floor of the frame's own phoneme: would catch taps in the wrong order, a wrong row of either table, a missing limit.
  * Nothing is contact here; test_contact.c is about that. */
-static void targets_are_shapes_kernels_and_floors(void **state)
+TEST(targets_are_shapes_kernels_and_floors)
 {
     enum { ROWS = FIXTURE_SPEECH_COUNT * LABIAL_KERNEL_TAPS_MAX };
     static int8_t kernels[ROWS * LABIAL_CHANNELS], last[ROWS];
     static uint32_t words[ROWS * 3];
     fixture_random_t random = { 34 };
     unsigned round, i, k, raised = 0, at_ends = 0;
-    (void)state;
     fixture_rich(&f);
     memset(f.contacts, 0, sizeof f.contacts);
     for (round = 0; round < FIXTURE_ROUNDS(2000); round++) {
@@ -314,12 +306,11 @@ static unsigned compare_pairs(unsigned number, unsigned previous, unsigned next)
 /* Every known pair adds its own row, every other nothing: would catch a search that misses the first, the last or the
  * middle row, a side or a phoneme taken for another, a row of one knot taken for two, the kernels' scale, a missing
  * limit. */
-static void pairs_add_their_row_and_others_nothing(void **state)
+TEST(pairs_add_their_row_and_others_nothing)
 {
     static labial_phoneme_t many[LABIAL_PHONEMES_MAX];
     fixture_random_t random = { 35 };
     unsigned number, round, k, added = 0;
-    (void)state;
     fixture_rich(&f);
     for (k = 0; k < LABIAL_CHANNELS; k++)
         f.channels[k].pair_scale = (uint16_t)(fixture_random(&random) >> (16 + k));
@@ -340,7 +331,7 @@ static void pairs_add_their_row_and_others_nothing(void **state)
 
 /* Of a pair that adds 160 at the start and takes as much away at the end: by hand, at the phoneme's very ends, in its
  * middle and at the middles of its frames. Would catch knots taken the other way round, or a share beside its frame. */
-static void pairs_move_from_start_to_end(void **state)
+TEST(pairs_move_from_start_to_end)
 {
     static const struct {
         unsigned share;
@@ -352,7 +343,6 @@ static void pairs_move_from_start_to_end(void **state)
     labial_shape_t shape;
     labial_taken_t taken;
     unsigned i;
-    (void)state;
     fixture_plain(&f);
     memset(f.shapes, 0, sizeof f.shapes);
     memset(labels, FIXTURE_A, sizeof labels);
@@ -376,15 +366,4 @@ static void pairs_move_from_start_to_end(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(selection_follows_the_formula),
-        cmocka_unit_test(context_has_a_direction),
-        cmocka_unit_test(extremes_stay_within_the_range),
-        cmocka_unit_test(targets_are_shapes_kernels_and_floors),
-        cmocka_unit_test(pairs_add_their_row_and_others_nothing),
-        cmocka_unit_test(pairs_move_from_start_to_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -6,11 +6,7 @@
  * pushed, frames are numbered on without a gap, and nothing beside the stream and its workspace is written to. Every
  * hour one sentence must give the frames that it gave a stream that was new.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
@@ -223,13 +219,12 @@ static size_t speak(int16_t kept[SENTENCE][LABIAL_CHANNELS])
 }
 
 /* Would catch a frame lost or doubled in any of what a day brings, state that decays, and any write beside the memory. */
-static void a_day_is_exact_to_the_frame(void **state)
+TEST(a_day_is_exact_to_the_frame)
 {
     static int16_t first[SENTENCE][LABIAL_CHANNELS], again[SENTENCE][LABIAL_CHANNELS];
     const uint64_t length = (uint64_t)FIXTURE_ROUNDS(24 * 60) * (HOUR / 60u);
     size_t frames;
     unsigned sentences = 0;
-    (void)state;
     begin_day(0u - (uint32_t)(length / 2u));
     frames = speak(first);
     assert_in_range(frames, FADE + 1u, SENTENCE);
@@ -262,12 +257,11 @@ static void a_day_is_exact_to_the_frame(void **state)
 
 /* Would catch a frame number that is taken for the count of frames: restarted at number 0, a face that is not neutral
  * would jump. */
-static void a_restart_at_the_wrap_does_not_jump(void **state)
+TEST(a_restart_at_the_wrap_does_not_jump)
 {
     static int16_t before[SENTENCE][LABIAL_CHANNELS], after[SENTENCE][LABIAL_CHANNELS];
     unsigned c, frames = 10;
     int moved = 0;
-    (void)state;
     begin_day(0u - frames);
     day.kept = before;
     push(SPEECH_EN_AA, frames * 1000u / RATE);
@@ -285,11 +279,4 @@ static void a_restart_at_the_wrap_does_not_jump(void **state)
     assert_true(moved);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_day_is_exact_to_the_frame),
-        cmocka_unit_test(a_restart_at_the_wrap_does_not_jump),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -4,11 +4,7 @@
  * The host of the fixture checks on every tick that the callback comes once per LABIAL_OK, that frames are numbered
  * without a gap, and that waiting, starving and being done are told apart (fixture_host.c).
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,9 +16,8 @@
 static fixture_model_t plain, rich, slow;
 static fixture_phoneme_t input[COUNT];
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_plain(&plain);
     fixture_rich(&rich);
     fixture_slow(&slow);
@@ -36,12 +31,11 @@ static void run(fixture_host_t *host, const labial_model_t *model, size_t count,
 }
 
 /* Would catch a frame that depends on what happens to be in the queue, and a stall on any kind of input. */
-static void frames_do_not_depend_on_the_feeding(void **state)
+TEST(frames_do_not_depend_on_the_feeding)
 {
     const labial_model_t *models[2];
     unsigned m;
     int kind, feed;
-    (void)state;
     models[0] = &plain.model;
     models[1] = &rich.model;
     for (m = 0; m < 2; m++) {
@@ -66,11 +60,10 @@ static void frames_do_not_depend_on_the_feeding(void **state)
 }
 
 /* Would catch a pointer of the structure into itself. The old place is overwritten and freed. */
-static void frames_do_not_depend_on_where_the_structure_lies(void **state)
+TEST(frames_do_not_depend_on_where_the_structure_lies)
 {
     fixture_host_t wanted, host;
     const labial_model_t *model = &rich.model;
-    (void)state;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 5);
     run(&wanted, model, COUNT, FIXTURE_CHANCE);
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
@@ -83,11 +76,10 @@ static void frames_do_not_depend_on_where_the_structure_lies(void **state)
 }
 
 /* Would catch memory that is read before it is written: the hosts fill it with other values before labial_init(). */
-static void frames_do_not_depend_on_what_memory_held(void **state)
+TEST(frames_do_not_depend_on_what_memory_held)
 {
     fixture_host_t wanted, host;
     const uint32_t size = labial_workspace_size(&rich.model);
-    (void)state;
     fixture_stream(input, 40, FIXTURE_RANDOM, 8);
     run(&wanted, &rich.model, 40, FIXTURE_FILL);
     run(&host, &rich.model, 40, FIXTURE_FILL); /* the stream is used, then initialised anew */
@@ -106,7 +98,7 @@ static void frames_do_not_depend_on_what_memory_held(void **state)
 }
 
 /* Would catch static variables, and a workspace that is larger inside than outside. */
-static void two_streams_do_not_disturb_each_other(void **state)
+TEST(two_streams_do_not_disturb_each_other)
 {
     static fixture_phoneme_t other[COUNT];
     fixture_host_t alone[2], together[2];
@@ -115,7 +107,6 @@ static void two_streams_do_not_disturb_each_other(void **state)
     size_t next[2] = { 0, 0 };
     int done[2] = { 0, 0 };
     unsigned i, rounds = 0;
-    (void)state;
     models[0] = &rich.model;
     models[1] = &slow.model;
     inputs[0] = input;
@@ -147,11 +138,10 @@ static void two_streams_do_not_disturb_each_other(void **state)
     }
 }
 
-static void a_stream_without_phonemes_is_done_at_once(void **state)
+TEST(a_stream_without_phonemes_is_done_at_once)
 {
     fixture_host_t host;
     const labial_model_t *model = &plain.model;
-    (void)state;
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
     fixture_end(&host);
@@ -163,10 +153,9 @@ static void a_stream_without_phonemes_is_done_at_once(void **state)
 
 /* A phoneme held for long is its own shape (equation 2), for that is also a state's mean in the plain model; or that of
  * another state, when it is so near that their costs are equal: z below 11.3 / 64, hence 4 FAP units. */
-static void a_held_phoneme_settles_to_its_shape(void **state)
+TEST(a_held_phoneme_settles_to_its_shape)
 {
     unsigned p, c, i;
-    (void)state;
     for (p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
         fixture_host_t host;
         size_t middle;
@@ -190,12 +179,11 @@ static void a_held_phoneme_settles_to_its_shape(void **state)
 
 /* Would catch a wrong sign, a wrong centre, wrapped arithmetic: the plain model's motion stays near its states' means,
  * and it moves over most of the range of the phonemes' shapes. */
-static void motion_stays_within_the_states_range(void **state)
+TEST(motion_stays_within_the_states_range)
 {
     fixture_host_t host;
     unsigned c, q;
     size_t i;
-    (void)state;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 31);
     run(&host, &plain.model, COUNT, FIXTURE_FILL);
     for (c = 0; c < LABIAL_CHANNELS; c++) {
@@ -224,16 +212,4 @@ static void motion_stays_within_the_states_range(void **state)
     fixture_close(&host);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_do_not_depend_on_the_feeding),
-        cmocka_unit_test(frames_do_not_depend_on_where_the_structure_lies),
-        cmocka_unit_test(frames_do_not_depend_on_what_memory_held),
-        cmocka_unit_test(two_streams_do_not_disturb_each_other),
-        cmocka_unit_test(a_stream_without_phonemes_is_done_at_once),
-        cmocka_unit_test(a_held_phoneme_settles_to_its_shape),
-        cmocka_unit_test(motion_stays_within_the_states_range),
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

@@ -3,11 +3,7 @@
  * effect, what is refused gives the error that it gives from anywhere else, and the frames are those of a stream whose
  * program makes the same calls between ticks.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
@@ -148,6 +144,12 @@ static void end(actor_t *actor)
         assert_int_equal(labial_restart(&actor->stream), LABIAL_ERROR_STATE); /* frames are still to come */
 }
 
+static void articulate(actor_t *actor)
+{
+    assert_int_equal(labial_articulation(&actor->stream, 40), LABIAL_OK);
+    assert_int_equal(labial_articulation(NULL, 40), LABIAL_ERROR_NULL);
+}
+
 static void cancel(actor_t *actor)
 {
     assert_int_equal(labial_restart(&actor->stream), LABIAL_ERROR_STATE); /* the stream has not ended */
@@ -179,15 +181,15 @@ static void tick(actor_t *actor)
     assert_int_equal(labial_tick(&actor->stream), LABIAL_OK);
 }
 
-static void each_call_does_the_same_within_and_without(void **state)
+TEST(each_call_does_the_same_within_and_without)
 {
     const actor_t *actor;
-    (void)state;
     assert_int_equal(compare(look, 5)->count, PUSHED);
     assert_true(compare(push, 5)->count > 2 * PUSHED);
     assert_int_equal(compare(use, 5)->count, PUSHED + (LABIAL_MODELS > 1 ? 15 : 0));
     assert_int_equal(compare(end, 5)->count, PUSHED);
     assert_int_equal(compare(end, PUSHED - 1)->count, PUSHED); /* which has long ended */
+    assert_int_equal(compare(articulate, 5)->count, PUSHED);
     assert_int_equal(compare(cancel, 5)->count, 6 + 5);
     assert_int_equal(compare(cancel_twice, 5)->count, 6 + 5);
     actor = compare(restart, PUSHED - 1);
@@ -208,11 +210,10 @@ static void tick_on(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNE
     (void)labial_tick(&actor->stream);
 }
 
-static void ticks_within_ticks_deliver_in_order(void **state)
+TEST(ticks_within_ticks_deliver_in_order)
 {
     static actor_t nested, straight;
     int result;
-    (void)state;
     play(&straight, look, 5, 0);
     memset(&nested, 0, sizeof nested);
     assert_int_equal(
@@ -229,9 +230,8 @@ static void ticks_within_ticks_deliver_in_order(void **state)
     assert_memory_equal(nested.faps, straight.faps, PUSHED * sizeof nested.faps[0]);
 }
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_rich(&rich);
     fixture_laughter(&laugh);
     fixture_rich(&other_rate);
@@ -239,11 +239,4 @@ static int setup(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_call_does_the_same_within_and_without),
-        cmocka_unit_test(ticks_within_ticks_deliver_in_order),
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

@@ -1,11 +1,7 @@
 /*
  * test_stream_cancel.c - cancelling eases to the neutral face; a stream that is over goes on after a restart.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +13,8 @@
 static fixture_model_t rich;
 static fixture_phoneme_t input[80];
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_rich(&rich);
     return 0;
 }
@@ -65,7 +60,7 @@ static int is_neutral(const int16_t *frame)
 }
 
 /* Would catch rounding down, a length of zero, an overflow of milliseconds times frames per second. */
-static void easing_takes_the_time_asked_for_rounded_up(void **state)
+TEST(easing_takes_the_time_asked_for_rounded_up)
 {
     static const struct {
         unsigned rate;
@@ -93,7 +88,6 @@ static void easing_takes_the_time_asked_for_rounded_up(void **state)
         { 250, 3996, 999 },
     };
     unsigned i;
-    (void)state;
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fixture_host_t host;
         size_t frames;
@@ -108,12 +102,11 @@ static void easing_takes_the_time_asked_for_rounded_up(void **state)
 }
 
 /* Would catch an overshoot, a turn on the way and a jump at its beginning. */
-static void easing_is_monotonic_and_even(void **state)
+TEST(easing_is_monotonic_and_even)
 {
     static const unsigned lengths[] = { 1, 2, 3, 7, 10, 50, 333, 1000 };
     unsigned i, c, moved = 0;
     size_t t;
-    (void)state;
     for (i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         const int n = (int)lengths[i];
         fixture_host_t host;
@@ -136,11 +129,10 @@ static void easing_is_monotonic_and_even(void **state)
     assert_true(moved > 10); /* there was something to ease */
 }
 
-static void nothing_is_accepted_after_a_cancel(void **state)
+TEST(nothing_is_accepted_after_a_cancel)
 {
     fixture_host_t host;
     labial_latency_t latency;
-    (void)state;
     begin(&host, FIXTURE_RATE, 30);
     fixture_cancel(&host, 100);
     assert_int_equal(labial_room(host.stream), 0);
@@ -156,10 +148,9 @@ static void nothing_is_accepted_after_a_cancel(void **state)
 }
 
 /* Would catch an ease from a pose that never was: all there is to ease is the neutral face. */
-static void cancel_before_the_first_frame_stays_neutral(void **state)
+TEST(cancel_before_the_first_frame_stays_neutral)
 {
     unsigned ticks;
-    (void)state;
     for (ticks = 0; ticks < 4; ticks++) {
         fixture_host_t host;
         unsigned i;
@@ -183,12 +174,11 @@ static void play_again(fixture_host_t *host, size_t count)
 }
 
 /* Would catch numbering that begins anew, time that is carried over, and a jump from the pose that was held. */
-static void a_stream_is_taken_up_where_it_stopped(void **state)
+TEST(a_stream_is_taken_up_where_it_stopped)
 {
     fixture_host_t host, fresh;
     size_t first, i;
     unsigned c, far = 0;
-    (void)state;
     rich.model.frames_per_second = FIXTURE_RATE;
     for (i = 0; i < 30; i++) {
         input[i].phoneme = FIXTURE_A;
@@ -227,12 +217,11 @@ static void a_stream_is_taken_up_where_it_stopped(void **state)
     fixture_close(&fresh);
 }
 
-static void a_cancelled_stream_is_taken_up_from_neutral(void **state)
+TEST(a_cancelled_stream_is_taken_up_from_neutral)
 {
     fixture_host_t host;
     size_t first;
     unsigned c;
-    (void)state;
     begin(&host, FIXTURE_RATE, 30);
     fixture_cancel(&host, 200);
     assert_int_equal(drain(&host), 10);
@@ -247,12 +236,11 @@ static void a_cancelled_stream_is_taken_up_from_neutral(void **state)
 }
 
 /* Would catch state that one round leaves behind for the next. */
-static void many_rounds(void **state)
+TEST(many_rounds)
 {
     fixture_host_t host;
     fixture_random_t random = { 5 };
     unsigned round;
-    (void)state;
     begin(&host, FIXTURE_RATE, 10);
     fixture_cancel(&host, 0);
     (void)drain(&host);
@@ -267,16 +255,4 @@ static void many_rounds(void **state)
     fixture_close(&host);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(easing_takes_the_time_asked_for_rounded_up),
-        cmocka_unit_test(easing_is_monotonic_and_even),
-        cmocka_unit_test(nothing_is_accepted_after_a_cancel),
-        cmocka_unit_test(cancel_before_the_first_frame_stays_neutral),
-        cmocka_unit_test(a_stream_is_taken_up_where_it_stopped),
-        cmocka_unit_test(a_cancelled_stream_is_taken_up_from_neutral),
-        cmocka_unit_test(many_rounds),
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

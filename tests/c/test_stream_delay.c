@@ -2,11 +2,7 @@
  * test_stream_delay.c - what each tick does, foretold: a frame is taken as soon as all that it needs was pushed, and
  * delivered LABIAL_DELAY() ticks of taking later, whatever the feeding.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
@@ -20,9 +16,8 @@ static fixture_phoneme_t input[COUNT];
 static oracle_frame_t frames[MANY];
 static unsigned long starved, waited;
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_all(&plain, &rich, &laugh, &slow);
     return 0;
 }
@@ -72,12 +67,11 @@ static void foretell(const labial_model_t *const *models, unsigned model_count, 
 
 /* Would catch a delay that depends on the past, a frame that is held back, a tick that fails while input is there, a
  * shortage that is called the end or the beginning. */
-static void every_tick_is_foretold(void **state)
+TEST(every_tick_is_foretold)
 {
     fixture_model_t *const all[] = { &plain, &rich, &slow };
     int kind;
     uint32_t seed;
-    (void)state;
     for (kind = 0; kind < FIXTURE_HOUR; kind++)
         for (seed = 0; seed<24; seed += LABIAL_TEST_SHARE> 1 ? 5 : 1) {
             fixture_model_t *const f = all[seed % 3];
@@ -95,12 +89,11 @@ static void every_tick_is_foretold(void **state)
 }
 
 /* The same where models change: their slots are free in time, for no frame may be late. */
-static void changes_of_model_delay_nothing(void **state)
+TEST(changes_of_model_delay_nothing)
 {
 #if LABIAL_MODELS > 1
     const labial_model_t *const models[] = { &rich.model, &laugh.model };
     uint32_t seed;
-    (void)state;
     for (seed = 0; seed < FIXTURE_ROUNDS(40); seed++) {
         fixture_random_t random = { seed + 99 };
         size_t i;
@@ -112,27 +105,24 @@ static void changes_of_model_delay_nothing(void **state)
         foretell(models, 2, seed % 4 * 10, seed);
     }
 #else
-    (void)state;
     (void)laugh;
 #endif
 }
 
 /* The delay is that of the window, the lag and the stride and nothing else; the program is told. */
-static void the_delay_is_the_sum_of_its_parts(void **state)
+TEST(the_delay_is_the_sum_of_its_parts)
 {
-    (void)state;
     assert_int_equal(LABIAL_DELAY(1), LABIAL_WINDOW + LABIAL_LAG + 1);
     assert_int_equal(LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX), LABIAL_WINDOW + LABIAL_LAG + LABIAL_SEARCH_STRIDE_MAX);
 }
 
 /* An hour of silence holds up neither what comes before it nor what comes after. */
-static void an_hour_of_silence_is_played_as_it_comes(void **state)
+TEST(an_hour_of_silence_is_played_as_it_comes)
 {
     const labial_model_t *const model = &rich.model;
     const size_t hour = LABIAL_DURATION_MAX / 1000 * FIXTURE_RATE;
     fixture_host_t host;
     size_t i;
-    (void)state;
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     assert_int_equal(labial_push(host.stream, FIXTURE_A, 100), LABIAL_OK); /* 5 frames */
     assert_int_equal(labial_push(host.stream, FIXTURE_SIL, LABIAL_DURATION_MAX), LABIAL_OK);
@@ -152,13 +142,4 @@ static void an_hour_of_silence_is_played_as_it_comes(void **state)
     fixture_close(&host);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_tick_is_foretold),
-        cmocka_unit_test(changes_of_model_delay_nothing),
-        cmocka_unit_test(the_delay_is_the_sum_of_its_parts),
-        cmocka_unit_test(an_hour_of_silence_is_played_as_it_comes),
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

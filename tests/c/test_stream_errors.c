@@ -1,11 +1,7 @@
 /*
  * test_stream_errors.c - misuse: every wrong call says what is wrong and leaves the stream as it was.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +13,8 @@
 static fixture_model_t plain, rich, slow, laugh, other_rate, older, third, fourth;
 static fixture_phoneme_t input[COUNT];
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_all(&plain, &rich, &laugh, &slow);
     fixture_laughter(&third);
     fixture_laughter(&fourth);
@@ -60,14 +55,13 @@ static void commit_errors(labial_t *stream, int ended)
 }
 
 /* Would catch an error that is found after something was changed already. */
-static void errors_leave_the_stream_unchanged(void **state)
+TEST(errors_leave_the_stream_unchanged)
 {
     fixture_host_t calm, host;
     const labial_model_t *model = &rich.model;
     size_t i = 0;
     unsigned rounds = 0;
     int result = LABIAL_WAITING;
-    (void)state;
     if (fixture_run(&calm, model, input, COUNT, FIXTURE_FILL) != 0)
         fail_msg("%s", calm.complaint);
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
@@ -93,12 +87,11 @@ static void errors_leave_the_stream_unchanged(void **state)
 }
 
 /* "labial_room(): phonemes that can be pushed before the queue is full". */
-static void the_queue_takes_as_many_as_it_says(void **state)
+TEST(the_queue_takes_as_many_as_it_says)
 {
     fixture_host_t host;
     const labial_model_t *model = &rich.model;
     unsigned room, i;
-    (void)state;
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     room = labial_room(host.stream);
     assert_int_equal(room, LABIAL_QUEUE);
@@ -115,56 +108,47 @@ static void the_queue_takes_as_many_as_it_says(void **state)
     fixture_close(&host);
 }
 
-static void check_unusable(labial_t *stream)
+static void check_refuses(labial_t *stream, int result)
 {
     const labial_latency_t latency = labial_latency(stream);
-    assert_int_equal(labial_push(stream, 0, 100), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_use(stream, &plain.model), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_end(stream), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_tick(stream), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_cancel(stream, 100), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_restart(stream), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_push(stream, 0, 100), result);
+    assert_int_equal(labial_use(stream, &plain.model), result);
+    assert_int_equal(labial_end(stream), result);
+    assert_int_equal(labial_tick(stream), result);
+    assert_int_equal(labial_cancel(stream, 100), result);
+    assert_int_equal(labial_restart(stream), result);
+    assert_int_equal(labial_articulation(stream, 100), result);
     assert_int_equal(labial_room(stream), 0);
     assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0);
 }
 
 /* Would catch the use of pointers that were never set. */
-static void nothing_works_before_init(void **state)
+TEST(nothing_works_before_init)
 {
     static const int fills[] = { 0x00, 0xff, 0x01, 0xa5, 0x7f };
     labial_t *stream = (labial_t *)malloc(sizeof *stream);
     unsigned i, k;
-    (void)state;
     assert_non_null(stream);
     for (i = 0; i < sizeof fills / sizeof fills[0]; i++) {
         memset(stream, fills[i], sizeof *stream);
-        check_unusable(stream);
+        check_refuses(stream, LABIAL_ERROR_STATE);
     }
     for (i = 0; i < 20; i++) {
         fixture_random_t random = { i + 1 };
         for (k = 0; k < sizeof *stream; k++)
             ((uint8_t *)stream)[k] = (uint8_t)fixture_random(&random);
-        check_unusable(stream);
+        check_refuses(stream, LABIAL_ERROR_STATE);
     }
     free(stream);
 }
 
-static void null_streams_are_refused(void **state)
+TEST(null_streams_are_refused)
 {
-    const labial_latency_t latency = labial_latency(NULL);
-    (void)state;
-    assert_int_equal(labial_push(NULL, 0, 100), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_use(NULL, &plain.model), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_end(NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_tick(NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_cancel(NULL, 1), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_restart(NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_room(NULL), 0);
-    assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0);
+    check_refuses(NULL, LABIAL_ERROR_NULL);
 }
 
 /* Would catch a failed labial_init() that leaves an earlier stream half alive. */
-static void a_failed_init_makes_the_stream_unusable(void **state)
+TEST(a_failed_init_makes_the_stream_unusable)
 {
     const uint32_t size = labial_workspace_size(&plain.model);
     uint32_t *workspace = (uint32_t *)malloc(size + 4u); /* room enough for the misaligned ones */
@@ -172,7 +156,6 @@ static void a_failed_init_makes_the_stream_unusable(void **state)
     uint8_t *bytes = (uint8_t *)workspace;
     fixture_recorder_t recorder;
     unsigned i;
-    (void)state;
     assert_true(workspace && stream);
     memset(&recorder, 0, sizeof recorder);
     for (i = 0; i < 10; i++) {
@@ -220,7 +203,7 @@ static void a_failed_init_makes_the_stream_unusable(void **state)
         }
         if (got != wanted)
             fail_msg("case %u: %d, not %d", i, got, wanted);
-        check_unusable(stream);
+        check_refuses(stream, LABIAL_ERROR_STATE);
     }
     assert_int_equal(labial_init(NULL, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_ERROR_NULL);
     assert_int_equal(recorder.count, 0);
@@ -230,11 +213,10 @@ static void a_failed_init_makes_the_stream_unusable(void **state)
 
 /* Would catch a formula that differs between macro and function; the tests' workspaces are exactly this large. Only the
  * stride matters. */
-static void workspace_sizes_agree(void **state)
+TEST(workspace_sizes_agree)
 {
     static uint32_t constant[LABIAL_WORKSPACE_SIZE(1) / 4];
     unsigned stride;
-    (void)state;
     assert_int_equal(sizeof constant, labial_workspace_size(&plain.model));
     for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
         slow.model.search_stride = (uint8_t)stride;
@@ -251,13 +233,12 @@ static void workspace_sizes_agree(void **state)
 
 /* Would catch writes beside the workspace where no sanitizer looks, on a target for instance; also when the workspace
  * is larger than need be, where parts may be counted from its end, or of an odd size; at every stride. */
-static void memory_beside_the_workspace_is_untouched(void **state)
+TEST(memory_beside_the_workspace_is_untouched)
 {
     enum { GUARD = 64, EXTRA = 9 };
     static uint32_t memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4 + EXTRA + GUARD];
     uint8_t *const bytes = (uint8_t *)memory;
     unsigned extra, i, k, round;
-    (void)state;
     for (round = 0; round < 24; round++) {
         labial_t stream;
         fixture_recorder_t recorder;
@@ -290,15 +271,14 @@ static void memory_beside_the_workspace_is_untouched(void **state)
 }
 
 /* More models than LABIAL_MODELS: refused while phonemes of all others are held, accepted once ticks have taken up those
- * of one, and at the latest when nothing is solved in its terms any more. Would catch a slot that is given away too early,
+ * of one, and at the latest when its last frame is delivered. Would catch a slot that is given away too early,
  * and one that is never free again. */
-static void too_many_models_are_refused_until_ticks_make_room(void **state)
+TEST(too_many_models_are_refused_until_ticks_make_room)
 {
     const labial_model_t *const models[FIXTURE_MODELS] = { &rich.model, &laugh.model, &third.model, &fourth.model };
-    const unsigned frames = 100, still_needed = FIXTURE_STRIDE + LABIAL_LAG;
+    const unsigned frames = 100, still_needed = LABIAL_DELAY(FIXTURE_STRIDE);
     fixture_host_t host;
     unsigned i, ticks = 0;
-    (void)state;
     assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
     assert_in_range(LABIAL_MODELS, 1, FIXTURE_MODELS - 1); /* what this test is written for */
     if (LABIAL_QUEUE <= LABIAL_MODELS) {                   /* too short to hold phonemes of so many */
@@ -339,12 +319,11 @@ static void too_many_models_are_refused_until_ticks_make_room(void **state)
 #if LABIAL_MODELS == 2 && LABIAL_QUEUE >= 4
 /* A model that was chosen and not used makes room at once, and so does one whose phonemes never came. Would catch a place
  * that is kept for no phoneme, and a frame that was never taken counted as the first model's. */
-static void models_that_nothing_was_pushed_of_make_room(void **state)
+TEST(models_that_nothing_was_pushed_of_make_room)
 {
     fixture_host_t host;
     const labial_model_t *const models[FIXTURE_MODELS] = { &rich.model, &laugh.model, &third.model, &fourth.model };
     int entered;
-    (void)state;
     for (entered = 0; entered < 3; entered++) {
         int ticks;
         assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
@@ -373,20 +352,4 @@ static void models_that_nothing_was_pushed_of_make_room(void **state)
 }
 #endif
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_leave_the_stream_unchanged),
-        cmocka_unit_test(the_queue_takes_as_many_as_it_says),
-        cmocka_unit_test(nothing_works_before_init),
-        cmocka_unit_test(null_streams_are_refused),
-        cmocka_unit_test(a_failed_init_makes_the_stream_unusable),
-        cmocka_unit_test(workspace_sizes_agree),
-        cmocka_unit_test(memory_beside_the_workspace_is_untouched),
-        cmocka_unit_test(too_many_models_are_refused_until_ticks_make_room),
-#if LABIAL_MODELS == 2 && LABIAL_QUEUE >= 4
-        cmocka_unit_test(models_that_nothing_was_pushed_of_make_room),
-#endif
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

@@ -1,11 +1,7 @@
 /*
  * test_stream_switch.c - speech and laughter in one stream: no jump where they meet, exact time, room made for a third.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fixture.h"
 
@@ -15,9 +11,8 @@
 static fixture_model_t speech, laugh, slow;
 static fixture_phoneme_t input[COUNT];
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_rich(&speech);
     fixture_laughter(&laugh);
     fixture_slow(&slow);
@@ -59,7 +54,7 @@ static void play(fixture_host_t *host, unsigned model_count, size_t count, fixtu
 
 /* Would catch frames lost or doubled where models meet, whatever the length of the runs: many are shorter than the
  * cross-fade, some one frame, some none. The frames must not depend on the feeding here either. */
-static void switching_keeps_time_and_does_not_depend_on_feeding(void **state)
+TEST(switching_keeps_time_and_does_not_depend_on_feeding)
 {
     static const struct {
         uint32_t longest, shortest_ms, range_ms;
@@ -70,7 +65,6 @@ static void switching_keeps_time_and_does_not_depend_on_feeding(void **state)
     };
     unsigned i, seed;
     int feed;
-    (void)state;
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
             fixture_host_t wanted;
@@ -92,14 +86,13 @@ static void switching_keeps_time_and_does_not_depend_on_feeding(void **state)
 
 /* Would catch a join without a cross-fade: both models hold shapes far apart, and the way from one to the other takes
  * the frames of the fade instead of one. */
-static void models_are_faded_into_each_other(void **state)
+TEST(models_are_faded_into_each_other)
 {
     fixture_host_t host;
     unsigned i;
     size_t frame;
     int inside = 0, at_joins = 0, far = 0;
     unsigned c;
-    (void)state;
     for (i = 0; i < 40; i++) { /* ten phonemes of 100 ms each in turn: models change every 50 frames */
         input[i].model = (uint8_t)(i / 10 % 2);
         input[i].phoneme = (uint8_t)(input[i].model ? FIXTURE_FRICATIVE : i % 2 ? FIXTURE_A : FIXTURE_S);
@@ -127,12 +120,11 @@ static void models_are_faded_into_each_other(void **state)
 
 /* Would catch phoneme numbers that are looked up in the wrong model: those of the other model are silence. A stream
  * whose laughter is unlike silence only in phonemes that speech does not have gives the same speech. */
-static void the_other_models_phonemes_are_silence(void **state)
+TEST(the_other_models_phonemes_are_silence)
 {
     fixture_host_t a, b;
     unsigned i;
     size_t frame;
-    (void)state;
     for (i = 0; i < 30; i++) {
         input[i].model = (uint8_t)(i >= 15);
         input[i].phoneme = (uint8_t)(i % 4);
@@ -151,10 +143,9 @@ static void the_other_models_phonemes_are_silence(void **state)
 
 /* A model makes room for another when its phonemes have been taken up and their frames are no longer needed: so it
  * must, in turn after turn, where the phonemes between them are many. */
-static void three_models_in_turn_make_room(void **state)
+TEST(three_models_in_turn_make_room)
 {
     unsigned seed, i;
-    (void)state;
     for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
         fixture_host_t host;
         alternate(3, 1, 150, 200, seed);
@@ -168,11 +159,10 @@ static void three_models_in_turn_make_room(void **state)
 }
 
 /* Where they are few, the third model may never be taken. The stream must say so and come to a proper end. */
-static void a_model_that_is_refused_does_no_harm(void **state)
+TEST(a_model_that_is_refused_does_no_harm)
 {
     const labial_model_t *models[3];
     unsigned seed, refused = 0;
-    (void)state;
     models[0] = &speech.model;
     models[1] = &laugh.model;
     models[2] = &slow.model;
@@ -202,14 +192,4 @@ static void a_model_that_is_refused_does_no_harm(void **state)
     assert_true(refused > 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(switching_keeps_time_and_does_not_depend_on_feeding),
-        cmocka_unit_test(models_are_faded_into_each_other),
-        cmocka_unit_test(the_other_models_phonemes_are_silence),
-        cmocka_unit_test(three_models_in_turn_make_room),
-        cmocka_unit_test(a_model_that_is_refused_does_no_harm),
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

@@ -2,11 +2,7 @@
  * test_stream_time.c - exact time: the frames delivered are the rounded sum of the durations, and what the stream says
  * of its latency adds up on the way.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fixture.h"
 
@@ -16,9 +12,8 @@
 static fixture_model_t plain, rich;
 static fixture_phoneme_t input[MANY];
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_plain(&plain);
     fixture_rich(&rich);
     return 0;
@@ -39,12 +34,11 @@ static void play(fixture_model_t *f, unsigned rate, size_t count, fixture_feed_t
 }
 
 /* Would catch rounding per phoneme, dropped or shortened phonemes, frames lost where units are cut or joined. */
-static void every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes(void **state)
+TEST(every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes)
 {
     static const unsigned rates[] = { 1, 24, 30, 50, 60, 99, 250 };
     unsigned r;
     int kind;
-    (void)state;
     for (kind = 0; kind < FIXTURE_HOUR; kind++) {
         for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
             fixture_stream(input, KIND, (fixture_kind_t)kind, r);
@@ -54,9 +48,8 @@ static void every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes(void **st
     }
 }
 
-static void two_thousand_phonemes_are_exact(void **state)
+TEST(two_thousand_phonemes_are_exact)
 {
-    (void)state;
     fixture_stream(input, MANY, FIXTURE_LONG, 9);
     play(&rich, 50, FIXTURE_ROUNDS(MANY), FIXTURE_FILL, "long");
     fixture_stream(input, MANY, FIXTURE_MILLI, 9);
@@ -64,9 +57,8 @@ static void two_thousand_phonemes_are_exact(void **state)
 }
 
 /* Would catch 16-bit counts of frames, and a window that a phoneme of 180,000 frames overflows. */
-static void one_hour_is_exact(void **state)
+TEST(one_hour_is_exact)
 {
-    (void)state;
     fixture_stream(input, 3, FIXTURE_HOUR, 4);
     play(&plain, 50, 3, FIXTURE_FILL, "an hour");
     input[0].phoneme = FIXTURE_A;
@@ -81,11 +73,10 @@ static int is_nearest_ms(uint64_t ms, uint64_t frames, unsigned rate)
 }
 
 /* The same for every number of pushes, not only at the end. */
-static void every_prefix_is_exact(void **state)
+TEST(every_prefix_is_exact)
 {
     static const unsigned rates[] = { 1, 7, 24, 30, 50, 60, 240, 250 };
     unsigned r, i, round;
-    (void)state;
     for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
         for (round = 0; round < FIXTURE_ROUNDS(8); round++) {
             fixture_host_t host;
@@ -113,13 +104,12 @@ static void every_prefix_is_exact(void **state)
 }
 
 /* Would catch 32-bit products: a queue full of hours is 900,000 frames times the queue; its milliseconds still fit. */
-static void a_queue_full_of_hours_is_counted_exactly(void **state)
+TEST(a_queue_full_of_hours_is_counted_exactly)
 {
     fixture_host_t host;
     const labial_model_t *model = &plain.model;
     uint32_t count = 0;
     labial_latency_t latency;
-    (void)state;
     plain.model.frames_per_second = 250;
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     for (; labial_room(host.stream) > 0; count++)
@@ -139,7 +129,7 @@ static void a_queue_full_of_hours_is_counted_exactly(void **state)
 }
 
 /* Would catch a count that drifts from what is pushed and delivered, at any moment of a stream. */
-static void latency_is_what_was_pushed_and_not_delivered(void **state)
+TEST(latency_is_what_was_pushed_and_not_delivered)
 {
     fixture_host_t host;
     const labial_model_t *model = &rich.model;
@@ -148,7 +138,6 @@ static void latency_is_what_was_pushed_and_not_delivered(void **state)
     uint32_t pushed = 0;
     int result = LABIAL_WAITING;
     labial_latency_t latency;
-    (void)state;
     fixture_stream(input, 200, FIXTURE_RANDOM, 14);
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     latency = labial_latency(host.stream);
@@ -178,13 +167,12 @@ static void latency_is_what_was_pushed_and_not_delivered(void **state)
 
 /* "A phoneme that gets no frame of its own is skipped": it is no neighbour, has no part in the kernels and is no
  * boundary. The rich model sees all of these. */
-static void phonemes_without_time_leave_no_trace(void **state)
+TEST(phonemes_without_time_leave_no_trace)
 {
     static fixture_phoneme_t padded[3 * 100];
     fixture_host_t without, with;
     fixture_random_t random = { 6 };
     size_t i, n = 0;
-    (void)state;
     fixture_stream(input, 100, FIXTURE_RANDOM, 17);
     for (i = 0; i < 100; i++) {
         uint32_t extra = fixture_below(&random, 3);
@@ -206,16 +194,4 @@ static void phonemes_without_time_leave_no_trace(void **state)
     fixture_close(&with);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes),
-        cmocka_unit_test(two_thousand_phonemes_are_exact),
-        cmocka_unit_test(one_hour_is_exact),
-        cmocka_unit_test(every_prefix_is_exact),
-        cmocka_unit_test(a_queue_full_of_hours_is_counted_exactly),
-        cmocka_unit_test(latency_is_what_was_pushed_and_not_delivered),
-        cmocka_unit_test(phonemes_without_time_leave_no_trace),
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

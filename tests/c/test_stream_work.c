@@ -2,11 +2,7 @@
  * test_stream_work.c - the even share of ticks: which channels a tick searches and solves, and when it selects a shape.
  * What is delivered does not tell, but a tick that does the work of several is late on a small processor.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
@@ -15,9 +11,8 @@
 
 static fixture_model_t rich, slow;
 
-static int setup(void **state)
+SETUP(setup)
 {
-    (void)state;
     fixture_rich(&rich);
     fixture_slow(&slow);
     return 0;
@@ -77,9 +72,8 @@ static void channels_take_turns(const labial_model_t *model)
     assert_true(turns > 400 && moved * 10 > turns * 8);
 }
 
-static void channels_take_turns_in_every_stride(void **state)
+TEST(channels_take_turns_in_every_stride)
 {
-    (void)state;
     channels_take_turns(&rich.model);
     channels_take_turns(&slow.model);
     channels_take_turns(&speech_en);
@@ -88,10 +82,9 @@ static void channels_take_turns_in_every_stride(void **state)
 /* Would catch a shape that is selected when its phoneme begins, in a tick that has enough to do: where phonemes are known
  * and last as many frames as channels have turns, it is selected before, half of it in each of the ticks with fewer
  * channels. */
-static void shapes_are_selected_ahead(void **state)
+TEST(shapes_are_selected_ahead)
 {
     unsigned left = 120, tick, begun = 0, halves = 0;
-    (void)state;
     begin(&speech_en);
     for (tick = 0;; tick++) {
         const uint8_t was = place.stream.next.halves;
@@ -117,10 +110,9 @@ static void shapes_are_selected_ahead(void **state)
 
 /* A phoneme of one frame leaves no tick between its own and the next one's. Would catch a shape that is selected in a
  * tick with most channels, though the tick before could have done it. */
-static void the_fullest_ticks_select_no_shape(void **state)
+TEST(the_fullest_ticks_select_no_shape)
 {
     unsigned left = 120, tick, begun = 0;
-    (void)state;
     begin(&speech_en);
     for (tick = 0; left > 0; tick++) {
         const uint8_t was = place.stream.next.halves;
@@ -138,12 +130,4 @@ static void the_fullest_ticks_select_no_shape(void **state)
     assert_in_range(begun, 20, 80);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(channels_take_turns_in_every_stride),
-        cmocka_unit_test(shapes_are_selected_ahead),
-        cmocka_unit_test(the_fullest_ticks_select_no_shape),
-    };
-    return cmocka_run_group_tests(tests, setup, NULL);
-}
+SUITE(setup, NULL)

@@ -2,11 +2,7 @@
  * test_viterbi.c - the search for the likeliest state path, against exhaustive search and against the dense programme of
  * oracle_viterbi.c. Costs are those of labial/model.h.
  */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "suite.h"
 
 #include <string.h>
 
@@ -124,11 +120,10 @@ static void check_scores(const labial_search_t *search, const double *cost, int 
 
 /* Would catch a transition taken the other way round or into a wrong state, a leap from any but the best state or at
  * another cost, a score cut off too early, an initial cost that is forgotten. */
-static void scores_are_those_of_exhaustive_search(void **state)
+TEST(scores_are_those_of_exhaustive_search)
 {
     fixture_random_t random = { 11 };
     unsigned round, t;
-    (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(1500); round++) {
         const unsigned many = round % 20 == 0, count = 1 + round % (many ? 3u : (unsigned)EXHAUSTED);
         double least[LABIAL_STATES_MAX];
@@ -172,11 +167,10 @@ static unsigned check_path(const labial_search_t *search, unsigned last, unsigne
 /* Long runs over all sizes of models, with units and solutions that end at random: would catch a back-pointer or a window
  * of the wrong step, a unit's end that loses the path or lets another state live, steps of several frames taken for
  * single ones, a path that forgets what was decided in the solution before. */
-static void paths_are_those_of_the_dense_programme(void **state)
+TEST(paths_are_those_of_the_dense_programme)
 {
     fixture_random_t random = { 12 };
     unsigned round, t, changed = 0, leaps = 0, units = 0;
-    (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(400); round++) {
         unsigned spans[STEPS], begin = 0;
         labial_search_t search;
@@ -205,12 +199,11 @@ static void paths_are_those_of_the_dense_programme(void **state)
 }
 
 /* A unit no longer than the lag is searched as published: the best of all paths into its last step. */
-static void a_unit_within_the_lag_has_the_best_path(void **state)
+TEST(a_unit_within_the_lag_has_the_best_path)
 {
 #if LABIAL_LAG >= 4
     fixture_random_t random = { 13 };
     unsigned round, t;
-    (void)state;
     for (round = 0; round < FIXTURE_ROUNDS(1000); round++) {
         const unsigned count = 1 + round % EXHAUSTED;
         double least[LABIAL_STATES_MAX], cost, best = ORACLE_NONE;
@@ -237,7 +230,6 @@ static void a_unit_within_the_lag_has_the_best_path(void **state)
             fail_msg("round %u, %u steps: a path of %g where the best is %g", round, count, cost, best);
     }
 #else
-    (void)state;
     (void)exhaust;
     assert_in_range(LABIAL_LAG, 0, 3); /* the suites with a lag do this */
 #endif
@@ -260,7 +252,7 @@ static void set_up_flat(unsigned states, unsigned predecessors)
 #if LABIAL_SEARCHED == 8 /* what the cases are worked for */
 /* States around the nearest, at every place a position can have: between two, upon one, half-way, beyond both ends, upon
  * several that are alike. Would catch a search by halves that is one off, and a window that leaves the states. */
-static void the_window_lies_around_the_nearest_state(void **state)
+TEST(the_window_lies_around_the_nearest_state)
 {
     /* of 20 states at 100, 200, ..., with three at 1000; by hand */
     static const struct {
@@ -270,7 +262,6 @@ static void the_window_lies_around_the_nearest_state(void **state)
                   { 950, 4 },    { 951, 5 },   { 1000, 5 },  { 1001, 7 },  { 1050, 7 },  { 1051, 8 },  { 1150, 8 },
                   { 1250, 9 },   { 1251, 10 }, { 1400, 11 }, { 1500, 12 }, { 2000, 12 }, { 16383, 12 } };
     unsigned i, q;
-    (void)state;
     set_up_flat(20, 1);
     for (q = 0; q < 20; q++) {
         emissions[q].mean = (int16_t)(q < 9 ? 100 * (q + 1) : q < 12 ? 1000 : 100 * (q - 1));
@@ -288,14 +279,13 @@ static void the_window_lies_around_the_nearest_state(void **state)
 
 /* Costs at the limits of the leap: would catch `<` for `<=` or a leap of another size. The only ways into state 1 are its
  * transition from itself, which is 10 behind, and a leap. */
-static void a_leap_is_taken_where_no_edge_is_cheaper(void **state)
+TEST(a_leap_is_taken_where_no_edge_is_cheaper)
 {
     static const struct {
         uint8_t transition;
         unsigned score, from;
     } cases[] = { { 3, 6, 1 }, { 244, 247, 1 }, { 245, 248, 0 }, { 246, 248, 0 }, { 255, 248, 0 } };
     unsigned i;
-    (void)state;
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         labial_search_t search;
         set_up_flat(2, 2);
@@ -315,11 +305,10 @@ static void a_leap_is_taken_where_no_edge_is_cheaper(void **state)
 
 /* Would catch scores that wrap, and dead states that come to life: the largest costs there are, again and again. So far
  * from the target all states are alike, and the lowest is taken. */
-static void eight_bits_are_enough(void **state)
+TEST(eight_bits_are_enough)
 {
     labial_search_t search;
     unsigned q, t;
-    (void)state;
     set_up_flat(LABIAL_STATES_MAX, 1);
     for (q = 0; q < LABIAL_STATES_MAX; q++) {
         emissions[q].mean = (int16_t)(q * 500 - 16000);
@@ -337,11 +326,10 @@ static void eight_bits_are_enough(void **state)
 }
 
 /* "The lowest at a tie": without it targets could differ. */
-static void ties_go_to_the_lower_state(void **state)
+TEST(ties_go_to_the_lower_state)
 {
     labial_search_t search;
     unsigned q, t;
-    (void)state;
     set_up_flat(5, 5);
     for (q = 0; q < 5; q++) {
         emissions[q].gain = fixture_gain_code(1850);
@@ -361,10 +349,9 @@ static void ties_go_to_the_lower_state(void **state)
 
 /* Farther than 1023 / 64 a state costs no more, and just within that what it says: a state that far and a cost of 8176
  * comes before one of 8160 + 17, and behind one of 8160 + 15. */
-static void far_states_cost_the_farthest(void **state)
+TEST(far_states_cost_the_farthest)
 {
     labial_search_t search;
-    (void)state;
     set_up_flat(2, 1);
     emissions[0].mean = -2000;
     emissions[0].gain = 0; /* z is 16 times the distance */
@@ -381,19 +368,4 @@ static void far_states_cost_the_farthest(void **state)
     assert_int_equal(labial_viterbi_state(&search, 0), 1);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scores_are_those_of_exhaustive_search),
-        cmocka_unit_test(paths_are_those_of_the_dense_programme),
-        cmocka_unit_test(a_unit_within_the_lag_has_the_best_path),
-#if LABIAL_SEARCHED == 8
-        cmocka_unit_test(the_window_lies_around_the_nearest_state),
-#endif
-        cmocka_unit_test(a_leap_is_taken_where_no_edge_is_cheaper),
-        cmocka_unit_test(eight_bits_are_enough),
-        cmocka_unit_test(ties_go_to_the_lower_state),
-        cmocka_unit_test(far_states_cost_the_farthest),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

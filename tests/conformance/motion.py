@@ -9,10 +9,12 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from labial.faps import CHANNELS
-from labial.reference.stream import aims, solution
+from labial.files.faps import CHANNELS
+from labial.reference.stream import aims, gains, solution
 from labial.reference.tables import Tables
+from labial.reference.trajectory import WINDOW
 from labial.reference.units import frame_counts
+from labial.reference.viterbi import LAG
 from scripts import Part, Push, Script, ease_frames
 
 #: Frames over which what begins anew fades in.
@@ -57,17 +59,31 @@ def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray) -> np.ndarray:
     return base + (fresh - base) * smooth(step / (FADE + 1))
 
 
+def part_gain(part: Part, frames: int, stride: int, percent: int, window: int = WINDOW, lag: int = LAG) -> np.ndarray:
+    """(frames, 13) the articulation of the frames of a part, which begins with `percent`. When n frames are delivered,
+    n and the delay are taken in."""
+    wanted = np.full(frames, percent)
+    for after, later in part.articulation:
+        wanted[after + window + lag + stride if after else 0 :] = later
+    return gains(wanted, stride, lag)
+
+
 def part_motion(
-    tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool, **limits: int
+    tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool, percent: int = 100, **limits: int
 ) -> np.ndarray:
     """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without easing. `held` (13,) is the pose
-    from which it fades in when it is `resumed`; `limits` are the `window`, `lag` and
-    `searched` of a library that is built for others."""
+    from which it fades in when it is `resumed`; `percent` the articulation that it begins with; `limits` are the
+    `window`, `lag` and `searched` of a library that is built for others."""
     motion = np.zeros((0, CHANNELS))
     faded_until = 0  # the frame behind the last that a fade has touched
-    for run in runs(part.pushes, tables["speech"].fps):
+    own_runs = runs(part.pushes, tables["speech"].fps)
+    until = [run.begin + sum(run.counts) for run in own_runs]
+    gain = part_gain(part, max(until, default=0), tables["speech"].stride, percent,
+                     **{name: value for name, value in limits.items() if name != "searched"})
+    for run, end in zip(own_runs, until):
         own = tables[run.model]
-        fresh = solution(own, *aims(own, run.phonemes, run.counts), begin=run.begin, **limits)
+        articulated = gain[run.begin : end, : len(own.solved)]
+        fresh = solution(own, *aims(own, run.phonemes, run.counts), articulated, begin=run.begin, **limits)
         if run.begin or resumed:
             rests = run.begin < 2 or run.begin <= faded_until
             moved = np.zeros(CHANNELS) if rests else motion[-1] - motion[-2]
@@ -80,11 +96,12 @@ def part_motion(
 def script_motion(tables: Dict[str, Tables], script: Script, **limits: int) -> np.ndarray:
     """(T, 13) float64, FAP: all frames of a stream; `limits` as in :func:`part_motion`."""
     rate = tables["speech"].fps
-    held = np.zeros(CHANNELS)
+    held, percent = np.zeros(CHANNELS), 100
     shown: List[np.ndarray] = [np.zeros((0, CHANNELS))]
     for part in script.parts:
         resumed = any(len(frames) for frames in shown)
-        motion = part_motion(tables, part, held, resumed, **limits)
+        motion = part_motion(tables, part, held, resumed, percent, **limits)
+        percent = part.articulation[-1][1] if part.articulation else percent
         shown.append(motion)
         held = motion[-1] if len(motion) else held
         if part.cancel:

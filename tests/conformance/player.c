@@ -12,19 +12,31 @@ typedef struct {
     const char *complaint;
     conformance_feed_t feed;
     unsigned model;
-    uint32_t frames;    /* in all */
-    uint32_t take;      /* of them before the part that is played, which labial_restart() began */
-    uint32_t cancel_at; /* frames of the part after which it is cancelled, UINT32_MAX if it ends */
-    uint32_t ticks;     /* of the part */
-    uint32_t pushed;    /* milliseconds, of the part */
-    unsigned idle;      /* ticks since the last frame or push */
-    int last;           /* what the tick before returned */
+    uint32_t frames;                /* in all */
+    uint32_t take;                  /* of them before the part that is played, which labial_restart() began */
+    uint32_t cancel_at;             /* frames of the part after which it is cancelled, UINT32_MAX if it ends */
+    uint32_t ticks;                 /* of the part */
+    uint32_t pushed;                /* milliseconds, of the part */
+    unsigned idle;                  /* ticks since the last frame or push */
+    int last;                       /* what the tick before returned */
+    const conformance_step_t *next; /* a step of the part that sets the articulation, or what follows these */
 } player_t;
 
 static void complain(player_t *player, const char *what)
 {
     if (!player->complaint)
         player->complaint = what;
+}
+
+/* Sets the articulation, if it is to change after as many frames as there are. */
+static void articulate(player_t *player)
+{
+    const conformance_step_t *step = player->next;
+    if (step->kind != CONFORMANCE_ARTICULATION || player->frames - player->take != step->value)
+        return;
+    player->next++;
+    if (labial_articulation(player->stream, step->milliseconds) != LABIAL_OK)
+        complain(player, "an articulation is refused");
 }
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -34,6 +46,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
         complain(player, "a frame has the wrong number");
     player->frames++;
     player->sink(player->user, frame, faps);
+    articulate(player);
 }
 
 static int is_cut(const player_t *player)
@@ -150,7 +163,7 @@ static void drain(player_t *player)
 /* After how many frames the part that begins with step `i` is cancelled. */
 static uint32_t cancelled_at(const conformance_stream_t *script, unsigned i)
 {
-    while (script->steps[i].kind == CONFORMANCE_PUSH)
+    while (script->steps[i].kind == CONFORMANCE_PUSH || script->steps[i].kind == CONFORMANCE_ARTICULATION)
         i++;
     return script->steps[i].kind == CONFORMANCE_CANCEL ? script->steps[i].value : UINT32_MAX;
 }
@@ -163,6 +176,8 @@ static void begin_part(player_t *player, const conformance_stream_t *script, uns
     player->ticks = player->pushed = 0;
     player->idle = 0;
     player->last = LABIAL_WAITING;
+    player->next = &script->steps[i];
+    articulate(player);
 }
 
 const char *conformance_play(const conformance_stream_t *script, conformance_feed_t feed, labial_t *stream,
@@ -175,12 +190,14 @@ const char *conformance_play(const conformance_stream_t *script, conformance_fee
     player.user = user;
     player.feed = feed;
     player.model = CONFORMANCE_SPEECH;
-    begin_part(&player, script, 0);
     if (labial_init(stream, &speech_en, workspace, workspace_size, on_frame, &player) != LABIAL_OK)
         return "labial_init() failed";
+    begin_part(&player, script, 0);
 
     for (i = 0; i < script->step_count && !player.complaint; i++) {
         const conformance_step_t *step = &script->steps[i];
+        if (step->kind == CONFORMANCE_ARTICULATION)
+            continue;
         if (step->kind == CONFORMANCE_PUSH) {
             if (!is_cut(&player))
                 make_room(&player);
@@ -193,6 +210,8 @@ const char *conformance_play(const conformance_stream_t *script, conformance_fee
         if (i + 1u < script->step_count && step[1].kind == CONFORMANCE_AGAIN)
             continue;
         drain(&player);
+        if (player.next->kind == CONFORMANCE_ARTICULATION)
+            complain(&player, "an articulation is set after the part's frames");
         if (i + 1u < script->step_count) {
             if (labial_restart(stream) != LABIAL_OK)
                 complain(&player, "a restart is refused");

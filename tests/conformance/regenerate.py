@@ -8,6 +8,7 @@ reference as closely as the method asks.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -17,15 +18,15 @@ from typing import Dict, Sequence
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
+CC = os.environ.get("LABIAL_CC") or "cc"
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(ROOT / "export")]
 
-from labial.check import LARGEST, RMS  # noqa: E402
 from labial.errors import LabialError  # noqa: E402
-from labial.model import load  # noqa: E402
-from labial.native import compiler  # noqa: E402
-from labial.quantise import ExportedModel, quantise  # noqa: E402
+from labial.evaluate.check import LARGEST, RMS  # noqa: E402
 from labial.reference.tables import ExportedTables  # noqa: E402
+from labial.tables.model import load  # noqa: E402
+from labial.tables.quantise import ExportedModel, quantise  # noqa: E402
 from motion import script_motion  # noqa: E402
 from scripts import MODELS, Frames, Script, as_c, read, read_frames  # noqa: E402
 
@@ -47,7 +48,7 @@ def library_frames(vectors: str, **limits: int) -> str:
                    *(ROOT / "lib" / "models" / f"{model}.c" for model in MODELS.values())]
         includes = [f"-I{path}" for path in (ROOT / "include", ROOT / "lib" / "models", ROOT / "boards", HERE)]
         defined = [f"-DLABIAL_{limit.upper()}={value}" for limit, value in limits.items()]
-        command = [compiler(), "-std=c99", "-O2", '-DBOARD_NAME="host"', *defined, *includes, *map(str, sources),
+        command = [CC, "-std=c99", "-O2", '-DBOARD_NAME="host"', *defined, *includes, *map(str, sources),
                    "-o", str(folder / "print_frames")]
         for step in (command, [str(folder / "print_frames")]):
             done = subprocess.run(step, capture_output=True, text=True)

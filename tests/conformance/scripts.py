@@ -11,9 +11,9 @@ from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.emit import phoneme_constants
 from labial.errors import LabialError
-from labial.quantise import ExportedModel
+from labial.tables.emit import phoneme_constants
+from labial.tables.quantise import ExportedModel
 
 #: Word in ``streams.txt`` and name of the bundled model's symbol, in the order of ``vectors.h``.
 MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
@@ -34,11 +34,13 @@ class Push:
 @dataclass(frozen=True)
 class Part:
     """What is pushed before an end or, with `cancel` (frames before it, milliseconds of easing), before a cancel, which
-    `again` repeats (frames of the easing before it, milliseconds of another)."""
+    `again` repeats (frames of the easing before it, milliseconds of another); `articulation` is what it is set to
+    (frames of the part before it, percent)."""
 
     pushes: Tuple[Push, ...]
     cancel: Optional[Tuple[int, int]]
     again: Tuple[Tuple[int, int], ...] = ()
+    articulation: Tuple[Tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -59,11 +61,12 @@ def read(path: Path, models: Dict[str, ExportedModel]) -> List[Script]:
     scripts: List[Script] = []
     parts: List[Part] = []
     pushes: List[Push] = []
+    articulation: List[Tuple[int, int]] = []
     name = ""
 
     def finish() -> None:
         if name and (pushes or not parts):
-            parts.append(Part(tuple(pushes), None))
+            parts.append(Part(tuple(pushes), None, articulation=tuple(articulation)))
         if name:
             scripts.append(Script(name, tuple(parts)))
 
@@ -77,21 +80,27 @@ def read(path: Path, models: Dict[str, ExportedModel]) -> List[Script]:
             match = re.fullmatch(r"([a-z_]+): \S.*", rest)
             if not match or match.group(1) in [script.name for script in scripts]:
                 raise LabialError(f"{where}: a stream needs a name of its own, small letters, and a reason")
-            name, parts, pushes = match.group(1), [], []
+            name, parts, pushes, articulation = match.group(1), [], [], []
         elif word in MODELS and name:
             pushes += _pushes(where, word, rest, models[word])
         elif word == "turns" and name:
             pushes += _turns(where, rest, models)
         elif (word == "end" and not rest or word == "cancel" and re.fullmatch(r"\d+ \d+", rest)) and name:
             at = rest.split()
-            parts.append(Part(tuple(pushes), (int(at[0]), int(at[1])) if at else None))
-            pushes = []
+            parts.append(Part(tuple(pushes), (int(at[0]), int(at[1])) if at else None,
+                              articulation=tuple(articulation)))
+            pushes, articulation = [], []
         elif word == "again" and re.fullmatch(r"\d+ \d+", rest) and parts and parts[-1].cancel and not pushes:
             after, milliseconds = map(int, rest.split())
             eased = (parts[-1].cancel, *parts[-1].again)[-1][1]
             if after >= ease_frames(eased, models["speech"].fps):
                 raise LabialError(f"{where}: the easing over {eased} ms is done before its frame {after}")
             parts[-1] = replace(parts[-1], again=(*parts[-1].again, (after, milliseconds)))
+        elif word == "articulation" and re.fullmatch(r"\d+ \d+", rest) and name:
+            after, percent = map(int, rest.split())
+            if articulation and after <= articulation[-1][0]:
+                raise LabialError(f"{where}: the articulation changes after {articulation[-1][0]} frames already")
+            articulation.append((after, percent))
         else:
             raise LabialError(f"{where}: {line!r} is not understood")
     finish()
@@ -132,11 +141,13 @@ def as_c(scripts: Sequence[Script], models: Dict[str, ExportedModel], frames: Op
     text += ["", "#define PUSH(model, phoneme, ms) { CONFORMANCE_PUSH, CONFORMANCE_##model, phoneme, ms }",
              "#define END { CONFORMANCE_END, 0, 0, 0 }",
              "#define CANCEL(frames, ms) { CONFORMANCE_CANCEL, 0, frames, ms }",
-             "#define AGAIN(frames, ms) { CONFORMANCE_AGAIN, 0, frames, ms }"]
+             "#define AGAIN(frames, ms) { CONFORMANCE_AGAIN, 0, frames, ms }",
+             "#define ARTICULATION(frames, percent) { CONFORMANCE_ARTICULATION, 0, frames, percent }"]
     table = []
     for script in scripts:
         steps: List[str] = []
         for part in script.parts:
+            steps += ["ARTICULATION({}, {})".format(*change) for change in part.articulation]
             steps += [f"PUSH({push.model.upper()}, {constants[push.model][push.phoneme]}, {push.milliseconds})"
                       for push in part.pushes]
             steps.append("END" if part.cancel is None else "CANCEL({}, {})".format(*part.cancel))

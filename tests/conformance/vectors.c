@@ -8,6 +8,7 @@
 #define END { CONFORMANCE_END, 0, 0, 0 }
 #define CANCEL(frames, ms) { CONFORMANCE_CANCEL, 0, frames, ms }
 #define AGAIN(frames, ms) { CONFORMANCE_AGAIN, 0, frames, ms }
+#define ARTICULATION(frames, percent) { CONFORMANCE_ARTICULATION, 0, frames, percent }
 
 static const conformance_step_t sentence_steps[] = {
     PUSH(SPEECH, SPEECH_EN_SIL, 120), PUSH(SPEECH, SPEECH_EN_M, 70), PUSH(SPEECH, SPEECH_EN_AY, 160),
@@ -445,36 +446,90 @@ static const conformance_step_t saturated_steps[] = {
     CANCEL(60, 100)
 };
 
-const conformance_stream_t conformance_streams[] = {
-    { "sentence", sentence_steps, 17, 78, 0x252672dau },
-    { "phonemes", phonemes_steps, 41, 120, 0xe3833428u },
-    { "laugh", laugh_steps, 33, 146, 0x62cc76dbu },
-    { "one_frame", one_frame_steps, 30, 29, 0x253d82afu },
-    { "one_millisecond", one_millisecond_steps, 161, 8, 0x580d3903u },
-    { "rounding", rounding_steps, 17, 23, 0x472529b5u },
-    { "zeros", zeros_steps, 15, 25, 0x62d9807du },
-    { "silent_zeros", silent_zeros_steps, 3, 0, 0x00000000u },
-    { "nothing", nothing_steps, 1, 0, 0x00000000u },
-    { "short", short_steps, 6, 2, 0x29ebf796u },
-    { "vowels", vowels_steps, 12, 68, 0x985ed946u },
-    { "consonants", consonants_steps, 26, 127, 0x758dfbadu },
-    { "long_vowel", long_vowel_steps, 6, 148, 0xec6cceb3u },
-    { "short_stops", short_stops_steps, 29, 84, 0x2a0c570eu },
-    { "long_stop", long_stop_steps, 12, 125, 0x1db7baabu },
-    { "pauses", pauses_steps, 25, 352, 0xbb449cd2u },
-    { "minutes", minutes_steps, 7, 9027, 0x2b6d578bu },
-    { "endless", endless_steps, 7, 60, 0xaa32740bu },
-    { "queue", queue_steps, 115, 114, 0x5150d30eu },
-    { "switch", switch_steps, 19, 87, 0xd554331cu },
-    { "graded", graded_steps, 20, 91, 0xb36e7ca4u },
-    { "quick_switches", quick_switches_steps, 18, 61, 0xdb4dd896u },
-    { "second_frame", second_frame_steps, 6, 23, 0x07575e98u },
-    { "turns", turns_steps, 182, 610, 0x3713900cu },
-    { "switch_in_long", switch_in_long_steps, 6, 177, 0x05cfceefu },
-    { "restarted", restarted_steps, 13, 41, 0x339bd8c9u },
-    { "cancelled", cancelled_steps, 52, 94, 0xb426a8dau },
-    { "cancelled_twice", cancelled_twice_steps, 40, 81, 0x87fd0579u },
-    { "saturated", saturated_steps, 4, 65, 0x651ea28fu }
+static const conformance_step_t mumbled_steps[] = {
+    ARTICULATION(0, 50), PUSH(SPEECH, SPEECH_EN_SIL, 120), PUSH(SPEECH, SPEECH_EN_M, 70),
+    PUSH(SPEECH, SPEECH_EN_AY, 160), PUSH(SPEECH, SPEECH_EN_B, 60), PUSH(SPEECH, SPEECH_EN_EY, 110),
+    PUSH(SPEECH, SPEECH_EN_B, 55), PUSH(SPEECH, SPEECH_EN_IY, 90), PUSH(SPEECH, SPEECH_EN_M, 65),
+    PUSH(SPEECH, SPEECH_EN_EY, 120), PUSH(SPEECH, SPEECH_EN_F, 50), PUSH(SPEECH, SPEECH_EN_IY, 80),
+    PUSH(SPEECH, SPEECH_EN_HH, 60), PUSH(SPEECH, SPEECH_EN_AE, 110), PUSH(SPEECH, SPEECH_EN_P, 75),
+    PUSH(SPEECH, SPEECH_EN_IY, 190), PUSH(SPEECH, SPEECH_EN_SIL, 400), END
 };
 
-const unsigned conformance_stream_count = 29;
+static const conformance_step_t shouted_steps[] = {
+    ARTICULATION(0, 130), ARTICULATION(30, 999), PUSH(SPEECH, SPEECH_EN_SIL, 120), PUSH(SPEECH, SPEECH_EN_M, 70),
+    PUSH(SPEECH, SPEECH_EN_AY, 160), PUSH(SPEECH, SPEECH_EN_B, 60), PUSH(SPEECH, SPEECH_EN_EY, 110),
+    PUSH(SPEECH, SPEECH_EN_B, 55), PUSH(SPEECH, SPEECH_EN_IY, 90), PUSH(SPEECH, SPEECH_EN_M, 65),
+    PUSH(SPEECH, SPEECH_EN_EY, 120), PUSH(SPEECH, SPEECH_EN_V, 50), PUSH(SPEECH, SPEECH_EN_IY, 80),
+    PUSH(SPEECH, SPEECH_EN_HH, 60), PUSH(SPEECH, SPEECH_EN_AE, 110), PUSH(SPEECH, SPEECH_EN_P, 75),
+    PUSH(SPEECH, SPEECH_EN_IY, 190), PUSH(SPEECH, SPEECH_EN_SIL, 150), PUSH(SPEECH, SPEECH_EN_SIL, 120),
+    PUSH(SPEECH, SPEECH_EN_M, 70), PUSH(SPEECH, SPEECH_EN_AY, 160), PUSH(SPEECH, SPEECH_EN_B, 60),
+    PUSH(SPEECH, SPEECH_EN_EY, 110), PUSH(SPEECH, SPEECH_EN_B, 55), PUSH(SPEECH, SPEECH_EN_IY, 90),
+    PUSH(SPEECH, SPEECH_EN_M, 65), PUSH(SPEECH, SPEECH_EN_EY, 120), PUSH(SPEECH, SPEECH_EN_V, 50),
+    PUSH(SPEECH, SPEECH_EN_IY, 80), PUSH(SPEECH, SPEECH_EN_HH, 60), PUSH(SPEECH, SPEECH_EN_AE, 110),
+    PUSH(SPEECH, SPEECH_EN_P, 75), PUSH(SPEECH, SPEECH_EN_IY, 190), PUSH(SPEECH, SPEECH_EN_SIL, 150), END
+};
+
+static const conformance_step_t articulated_steps[] = {
+    ARTICULATION(1, 104), ARTICULATION(8, 0), ARTICULATION(20, 200), ARTICULATION(24, 60), ARTICULATION(26, 61),
+    ARTICULATION(60, 130), ARTICULATION(101, 77), PUSH(SPEECH, SPEECH_EN_HH, 60), PUSH(SPEECH, SPEECH_EN_AE, 110),
+    PUSH(SPEECH, SPEECH_EN_P, 75), PUSH(SPEECH, SPEECH_EN_IY, 190), PUSH(SPEECH, SPEECH_EN_AO, 120),
+    PUSH(SPEECH, SPEECH_EN_S, 90), PUSH(SPEECH, SPEECH_EN_OW, 210), PUSH(SPEECH, SPEECH_EN_W, 80),
+    PUSH(SPEECH, SPEECH_EN_IY, 90), PUSH(SPEECH, SPEECH_EN_M, 65), PUSH(SPEECH, SPEECH_EN_EY, 120),
+    PUSH(SPEECH, SPEECH_EN_B, 50), PUSH(SPEECH, SPEECH_EN_IY, 80), PUSH(SPEECH, SPEECH_EN_HH, 60),
+    PUSH(SPEECH, SPEECH_EN_AE, 110), PUSH(SPEECH, SPEECH_EN_P, 75), PUSH(SPEECH, SPEECH_EN_IY, 190),
+    PUSH(SPEECH, SPEECH_EN_SIL, 150), PUSH(SPEECH, SPEECH_EN_AA, 200), PUSH(SPEECH, SPEECH_EN_P, 20),
+    PUSH(SPEECH, SPEECH_EN_AA, 60), PUSH(SPEECH, SPEECH_EN_B, 40), PUSH(SPEECH, SPEECH_EN_AA, 300), END
+};
+
+static const conformance_step_t articulated_turns_steps[] = {
+    ARTICULATION(0, 60), ARTICULATION(22, 140), PUSH(SPEECH, SPEECH_EN_HH, 60), PUSH(SPEECH, SPEECH_EN_AE, 110),
+    PUSH(SPEECH, SPEECH_EN_P, 75), PUSH(SPEECH, SPEECH_EN_IY, 190), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 140),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_FRICATIVE, 60), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 120),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_FRICATIVE, 60), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 100),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_NE, 90), PUSH(SPEECH, SPEECH_EN_OW, 210), PUSH(SPEECH, SPEECH_EN_M, 65),
+    PUSH(SPEECH, SPEECH_EN_AY, 200), PUSH(SPEECH, SPEECH_EN_B, 60), PUSH(SPEECH, SPEECH_EN_AO, 1400),
+    PUSH(SPEECH, SPEECH_EN_SIL, 400), CANCEL(40, 100), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 140),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_FRICATIVE, 60), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 120),
+    PUSH(SPEECH, SPEECH_EN_OW, 210), PUSH(SPEECH, SPEECH_EN_M, 65), PUSH(SPEECH, SPEECH_EN_AY, 200), END,
+    ARTICULATION(0, 100), ARTICULATION(10, 70), PUSH(SPEECH, SPEECH_EN_OW, 210), PUSH(SPEECH, SPEECH_EN_M, 65),
+    PUSH(SPEECH, SPEECH_EN_AY, 200), PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A, 140),
+    PUSH(LAUGHTER, LAUGHTER_SYNTHETIC_A_LOUD, 200), END
+};
+
+const conformance_stream_t conformance_streams[] = {
+    { "sentence", sentence_steps, 17, 78, 0xffd4618du },
+    { "phonemes", phonemes_steps, 41, 120, 0x7e2c914bu },
+    { "laugh", laugh_steps, 33, 146, 0x8f4e63ebu },
+    { "one_frame", one_frame_steps, 30, 29, 0xf0772016u },
+    { "one_millisecond", one_millisecond_steps, 161, 8, 0x440eabd0u },
+    { "rounding", rounding_steps, 17, 23, 0x87acd2f1u },
+    { "zeros", zeros_steps, 15, 25, 0x8b9fb95bu },
+    { "silent_zeros", silent_zeros_steps, 3, 0, 0x00000000u },
+    { "nothing", nothing_steps, 1, 0, 0x00000000u },
+    { "short", short_steps, 6, 2, 0xeb60b2c5u },
+    { "vowels", vowels_steps, 12, 68, 0x89e5b3efu },
+    { "consonants", consonants_steps, 26, 127, 0x392ed332u },
+    { "long_vowel", long_vowel_steps, 6, 148, 0x97256671u },
+    { "short_stops", short_stops_steps, 29, 84, 0x5f00c8bdu },
+    { "long_stop", long_stop_steps, 12, 125, 0xed0f2d50u },
+    { "pauses", pauses_steps, 25, 352, 0xa709c2c8u },
+    { "minutes", minutes_steps, 7, 9027, 0xc12d0007u },
+    { "endless", endless_steps, 7, 60, 0xfac8339eu },
+    { "queue", queue_steps, 115, 114, 0x1f4cf844u },
+    { "switch", switch_steps, 19, 87, 0x77d790f1u },
+    { "graded", graded_steps, 20, 91, 0xa664dfd7u },
+    { "quick_switches", quick_switches_steps, 18, 61, 0xa367b248u },
+    { "second_frame", second_frame_steps, 6, 23, 0xd05c3bcbu },
+    { "turns", turns_steps, 182, 610, 0x4b1c1b0fu },
+    { "switch_in_long", switch_in_long_steps, 6, 177, 0x5fce3a87u },
+    { "restarted", restarted_steps, 13, 41, 0x2996f847u },
+    { "cancelled", cancelled_steps, 52, 94, 0x606fafdau },
+    { "cancelled_twice", cancelled_twice_steps, 40, 81, 0x3f2ed54au },
+    { "saturated", saturated_steps, 4, 65, 0x900f5c4fu },
+    { "mumbled", mumbled_steps, 18, 91, 0xe78cd1c9u },
+    { "shouted", shouted_steps, 35, 157, 0x16a7df0bu },
+    { "articulated", articulated_steps, 31, 127, 0x19de3800u },
+    { "articulated_turns", articulated_turns_steps, 34, 126, 0x13dc1f56u }
+};
+
+const unsigned conformance_stream_count = 33;

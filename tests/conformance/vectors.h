@@ -12,13 +12,15 @@ enum { CONFORMANCE_SPEECH, CONFORMANCE_LAUGHTER, CONFORMANCE_MODELS };
 /* One step of a stream. */
 typedef struct {
     uint8_t kind;
-    uint8_t model;         /* push: CONFORMANCE_SPEECH or CONFORMANCE_LAUGHTER */
-    uint16_t value;        /* push: the phoneme; cancel: the frames that come before it; again: those of the easing */
-    uint32_t milliseconds; /* push, cancel, again */
+    uint8_t model;  /* push: CONFORMANCE_SPEECH or CONFORMANCE_LAUGHTER */
+    uint16_t value; /* push: the phoneme; cancel, articulation: the frames of the part that come before it; again:
+                            * those of the easing */
+    uint32_t milliseconds; /* push, cancel, again; articulation: percent */
 } conformance_step_t;
 
-/* CONFORMANCE_AGAIN follows a cancel, which it repeats while the face eases. */
-enum { CONFORMANCE_PUSH, CONFORMANCE_END, CONFORMANCE_CANCEL, CONFORMANCE_AGAIN };
+/* CONFORMANCE_AGAIN follows a cancel, which it repeats while the face eases. CONFORMANCE_ARTICULATION comes before what
+ * else a part has, in the order of the frames. */
+enum { CONFORMANCE_PUSH, CONFORMANCE_END, CONFORMANCE_CANCEL, CONFORMANCE_AGAIN, CONFORMANCE_ARTICULATION };
 
 /* A stream: its steps, of which the last ends or cancels it (again). */
 typedef struct {

@@ -4,7 +4,10 @@
 #ifndef DEVICE_H
 #define DEVICE_H
 
+#include "board.h" /* before cmocka.h, which then writes to the board */
 #include "player.h"
+
+#include <cmocka.h>
 
 #define DEVICE_WORKSPACE CONFORMANCE_WORKSPACE
 
@@ -27,10 +30,18 @@ int device_memory_is_whole(void);
 /* The stream of vectors.c with that name; the test fails if there is none. */
 const conformance_stream_t *device_stream(const char *name);
 
-/* The suites, each in a file of its name. */
-void test_arithmetic(void);
-void test_memory(void);
-void test_ticks(void);
-void test_streams(void);
+/* Fails the test and says of what, where something does not hold. */
+void device_require(int holds, const char *what);
+
+/* The suites, each in a file of its name. Return how many tests failed. */
+int test_arithmetic(void);
+int test_memory(void);
+int test_ticks(void);
+
+/* A test, and its entry in a suite: setup and teardown see to it that it stays within its memory. */
+#define TEST(name) static void name(void **state __attribute__((unused)))
+#define DEVICE_TEST(function) cmocka_unit_test_setup_teardown(function, device_setup, device_teardown)
+int device_setup(void **state);
+int device_teardown(void **state);
 
 #endif

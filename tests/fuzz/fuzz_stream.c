@@ -5,7 +5,7 @@
  * every access beside them. Beyond that: results are those the header lists, frames are numbered without a gap, the
  * callback comes once per LABIAL_OK, errors change nothing that can be asked for, and a stream that ends lasts exactly
  * as long as its phonemes. The first byte chooses between the small models of the suites, which have every kind of
- * table, and the bundled ones; make_seeds.py writes the conformance streams as such bytes.
+ * table, and the bundled ones; make_seeds.c writes the conformance streams as such bytes.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -224,6 +224,8 @@ static void one_call(watch_t *watch, bytes_t *bytes)
             REQUIRE(labial_cancel(watch->stream, take(bytes, (call >> 4) % 8 / 2)) == LABIAL_OK);
             watch->ended = watch->cancelled = 1;
             watch->done = 0;
+        } else {
+            REQUIRE(labial_articulation(watch->stream, take(bytes, 1 + (call >> 4) % 4)) == LABIAL_OK);
         }
         break;
     default:

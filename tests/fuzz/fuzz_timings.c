@@ -1,9 +1,9 @@
 /*
  * fuzz_timings.c - any text as phoneme timings, in every format: libFuzzer's bytes are the file.
  *
- * Beyond what AddressSanitizer sees: labels are short texts, durations are within their limit and add up to the time
- * that the parser has come to, laughs have an intensity in range, an error has a message and a line, and a sink that
- * stops the parser is the last that is called. Labels are looked up in the names of the speech model.
+ * Beyond what AddressSanitizer sees: labels are short texts, times are within their limit and follow each other, laughs
+ * have an intensity in range, an error has a message and a line and is the last that happens, and the text gives the same
+ * timings whole as byte by byte. Labels are looked up in the names of the speech model.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -12,71 +12,84 @@
 
 #include "fuzz.h"
 #include "labels.h"
+#include "labial/labial.h"
+#include "labial/laugh.h"
+#include "labial/timings.h"
 #include "speech_en.h"
-#include "timings.h"
 
-#define STOPPED 7
-
-typedef struct {
-    uint64_t milliseconds;
-    unsigned long phonemes, stop_at;
-    const timings_t *timings;
-} watch_t;
-
-static int on_phoneme(void *user, const timings_phoneme_t *phoneme)
+static void check(const labial_timing_t *timing, uint64_t before, size_t size, size_t piece)
 {
-    watch_t *watch = (watch_t *)user;
     size_t i;
-    REQUIRE(watch->phonemes != watch->stop_at);
-    watch->phonemes++;
-    REQUIRE(phoneme->milliseconds <= TIMINGS_DURATION_MAX);
-    REQUIRE(phoneme->laugh >= -1 && phoneme->laugh <= TIMINGS_LAUGH_FULL);
-    REQUIRE(phoneme->sampa == 0 || phoneme->sampa == 1);
-    REQUIRE(watch->timings->line >= 1);
-    watch->milliseconds += phoneme->milliseconds;
-    if (phoneme->label) {
-        REQUIRE(phoneme->laugh == -1);
-        for (i = 0; phoneme->label[i]; i++)
-            REQUIRE((unsigned char)phoneme->label[i] >= 0x20 && phoneme->label[i] != 0x7f);
-        REQUIRE(i > 0 && i <= TIMINGS_LABEL_MAX);
-        look_up(&speech_en_names, phoneme->label, i);
+    REQUIRE(timing->start <= timing->end && timing->end <= LABIAL_TIMINGS_TIME_MAX);
+    REQUIRE(timing->start + LABIAL_TIMINGS_TOLERANCE >= before);
+    REQUIRE(timing->laugh >= -1 && timing->laugh <= (int)LABIAL_LAUGH_FULL);
+    REQUIRE(timing->xsampa <= 1 && timing->line >= 1 && timing->line <= size + 1);
+    if (timing->has_apex)
+        REQUIRE(timing->apex + LABIAL_TIMINGS_TOLERANCE >= timing->start &&
+                timing->apex <= timing->end + LABIAL_TIMINGS_TOLERANCE);
+    if (timing->word)
+        REQUIRE(timing->word[0] != '\0' && strlen(timing->word) <= LABIAL_TIMINGS_FIELD_MAX);
+    if (timing->label) {
+        for (i = 0; timing->label[i]; i++)
+            REQUIRE((unsigned char)timing->label[i] >= 0x20 && timing->label[i] != 0x7f);
+        REQUIRE(i > 0 && i <= LABIAL_TIMINGS_LABEL_MAX);
+        if (piece == 7) /* once */
+            look_up(&speech_en_names, timing->label, i);
     }
-    return watch->phonemes == watch->stop_at ? STOPPED : 0;
 }
 
-static void parse(const uint8_t *data, size_t size, timings_format_t format, const char *tier, unsigned long stop_at)
+/* Gives the text in pieces of so many bytes. Returns a sum over the timings and the error. */
+static uint64_t parse(const uint8_t *data, size_t size, labial_timings_format_t format, const char *tier,
+                      uint32_t number, size_t piece)
 {
-    timings_t *timings = (timings_t *)malloc(sizeof *timings);
-    watch_t watch;
-    int result = 0;
-    size_t i;
+    labial_timings_t *timings = (labial_timings_t *)malloc(sizeof *timings);
+    labial_timing_t timing;
+    uint64_t sum = 0, before = 0;
+    size_t at, used;
+    int result = LABIAL_STARVED, readings = 0;
     REQUIRE(timings);
-    memset(&watch, 0, sizeof watch);
-    watch.timings = timings;
-    watch.stop_at = stop_at ? stop_at : (unsigned long)-1;
-    timings_init(timings, format, tier, on_phoneme, &watch);
-    for (i = 0; i < size && result == 0; i++)
-        result = timings_put(timings, data[i]);
-    if (result == 0)
-        result = timings_end(timings);
-    REQUIRE(result == 0 || result == TIMINGS_MALFORMED || (stop_at && result == STOPPED));
-    REQUIRE(timings->line >= 1 && timings->line <= size + 1);
-    if (result == TIMINGS_MALFORMED)
-        REQUIRE(timings->message[0] != '\0' && memchr(timings->message, 0, sizeof timings->message) &&
-                !strpbrk(timings->message, "\r\n"));
-    REQUIRE(watch.milliseconds == (timings->end + 500u) / 1000u);
-    REQUIRE(timings->end <= TIMINGS_TIME_MAX);
-    timings_free(timings);
+    labial_timings_init(timings, format);
+    timings->tier = tier;
+    timings->tier_number = number;
+    while (result == LABIAL_STARVED) {
+        REQUIRE(readings++ < 2);
+        result = LABIAL_WAITING;
+        for (at = 0; result >= 0 && (at < size || result != LABIAL_DONE);) {
+            if (at < size) {
+                const size_t left = size - at < piece ? size - at : piece;
+                result = labial_timings_next(timings, (const char *)data + at, left, &used, &timing);
+                REQUIRE(used > 0 && used <= left && (result == LABIAL_OK || used == left || result < 0));
+                at += used;
+            } else if ((result = labial_timings_end(timings, &timing)) == LABIAL_STARVED) {
+                break;
+            }
+            if (result == LABIAL_OK) {
+                check(&timing, before, size, piece);
+                before = timing.end > before ? timing.end : before;
+                sum = sum * 31u + timing.end + (timing.label ? (unsigned char)timing.label[0] : 0u);
+            }
+        }
+    }
+    REQUIRE(result == LABIAL_DONE || result == LABIAL_ERROR_TIMINGS);
+    REQUIRE((timings->message[0] != '\0') == (result < 0));
+    REQUIRE(memchr(timings->message, 0, sizeof timings->message) && !strpbrk(timings->message, "\r\n"));
+    REQUIRE(timings->line >= 1 && timings->line <= size + 2);
+    sum = sum * 31u + (result < 0 ? timings->line : 0u);
+    if (result < 0)
+        REQUIRE(labial_timings_next(timings, "0", 1, &used, &timing) == result &&
+                labial_timings_end(timings, &timing) == result);
     free(timings);
+    return sum;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const timings_format_t formats[] = { TIMINGS_AUTO, TIMINGS_FLITE, TIMINGS_LAB,   TIMINGS_HTK,
-                                         TIMINGS_PHO,  TIMINGS_MARY,  TIMINGS_PHSEG, TIMINGS_TEXTGRID };
     unsigned i;
-    for (i = 0; i < sizeof formats / sizeof formats[0]; i++)
-        parse(data, size, formats[i], NULL, 0);
-    parse(data, size, TIMINGS_AUTO, "words", 3);
+    for (i = 0; labial_timings_format_name(i); i++) {
+        const labial_timings_format_t format = (labial_timings_format_t)i;
+        REQUIRE(parse(data, size, format, NULL, 0, 1) == parse(data, size, format, NULL, 0, size));
+    }
+    parse(data, size, LABIAL_TIMINGS_AUTO, "words", 0, 7);
+    parse(data, size, LABIAL_TIMINGS_AUTO, NULL, 2, 7);
     return 0;
 }

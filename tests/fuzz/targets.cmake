@@ -16,8 +16,8 @@ list(LENGTH sources count)
 if(count EQUAL 0)
   message(FATAL_ERROR "There is no fuzz target in tests/fuzz.")
 endif()
-# The longest input of each target, bytes. Inputs are that long from the start: where libFuzzer lets them grow by
-# themselves, they stay below ten bytes.
+# The longest input of each target, bytes. Inputs have this length from the start; if libFuzzer grows them, they stay
+# below ten bytes.
 set(fuzz_blob_longest 45056)
 set(fuzz_names_longest 64)
 set(fuzz_rig_longest 1024)
@@ -29,22 +29,31 @@ foreach(source IN LISTS sources)
   get_filename_component(name "${source}" NAME_WE)
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE labial_test_helpers)
-  if(name STREQUAL "fuzz_timings") # a part of labial-say
-    file(GLOB timings_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/examples/say/timings*.c")
-    target_sources(${name} PRIVATE ${timings_sources})
-    target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/examples/say")
-  endif()
   labial_target(${name})
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
 
-  # What was found in one run is where the next begins, together with the seeds (fuzz/make_seeds.py).
+  # Each run starts from the corpus of the previous one and the seeds.
   set(corpus "${CMAKE_CURRENT_BINARY_DIR}/corpus/${name}")
-  file(MAKE_DIRECTORY "${corpus}")
-  set(seeds "${CMAKE_CURRENT_SOURCE_DIR}/fuzz/seeds/${name}")
-  if(NOT EXISTS "${seeds}" OR NOT ${name}_longest)
+  set(written "${CMAKE_CURRENT_SOURCE_DIR}/fuzz/seeds/${name}")
+  set(seeds "${CMAKE_CURRENT_BINARY_DIR}/seeds/${name}")
+  file(MAKE_DIRECTORY "${corpus}" "${seeds}")
+  if(EXISTS "${written}")
+    set(seeds "${written}")
+  endif()
+  file(STRINGS fuzz/make_seeds.c made REGEX "\"${name}\"")
+  if(NOT made AND NOT EXISTS "${written}" OR NOT ${name}_longest)
     message(FATAL_ERROR "${name} has no seeds, or its longest input is not given.")
   endif()
   add_test(NAME ${name} COMMAND ${name} -max_total_time=${share} -timeout=20 -print_final_stats=1
-    -len_control=0 -max_len=${${name}_longest} "-artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/${name}-" "${corpus}" ${seeds})
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${limit})
+    -len_control=0 -max_len=${${name}_longest} "-artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/${name}-"
+    "${corpus}" "${seeds}")
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${limit} FIXTURES_REQUIRED seeds)
 endforeach()
+
+add_executable(make_seeds fuzz/make_seeds.c conformance/player.c conformance/vectors.c)
+target_include_directories(make_seeds PRIVATE conformance)
+target_link_libraries(make_seeds PRIVATE labial_test_helpers)
+labial_target(make_seeds)
+add_test(NAME make_seeds COMMAND make_seeds "${CMAKE_CURRENT_BINARY_DIR}/seeds"
+  "${CMAKE_CURRENT_SOURCE_DIR}/labels/espeak.tsv")
+set_tests_properties(make_seeds PROPERTIES FIXTURES_SETUP seeds)

@@ -1,4 +1,4 @@
-"""Small changes of C sources, each of which some test should notice."""
+"""Small changes of C sources, each of which some test should detect."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, Iterator, List, Sequence, Tuple
 
-#: What an operator becomes; the left operand of a binary one ends with a word, a number or a closing bracket.
+#: Replacements of operators; the left operand of a binary one ends with a word, a number or a closing bracket.
 BINARY: Dict[str, Tuple[str, ...]] = {
     "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",), "!=": ("==",),
     "+": ("-",), "-": ("+",), "*": ("+",), "/": ("*",), "%": ("*",), "<<": (">>",), ">>": ("<<",),
@@ -16,12 +16,11 @@ BINARY: Dict[str, Tuple[str, ...]] = {
     "+=": ("-=",), "-=": ("+=",), "*=": ("+=",), "|=": ("&=",), "&=": ("|=",), "<<=": (">>=",), ">>=": ("<<=",),
     "^=": ("&=",),
 }  # fmt: skip
-#: What a unary operator becomes, wherever it stands.
+#: Replacements of unary operators.
 UNARY: Dict[str, Tuple[str, ...]] = {"!": ("",), "-": ("",), "~": ("",), "++": ("--",), "--": ("++",)}
 
-#: Kinds of changes: one sign or number, a condition turned round, a statement left out; two neighbours among the
-#: arguments of a call swapped, a named constant or its definition off by one, one of several members that are set
-#: together left out.
+#: Kinds of changes: one sign or number, an inverted condition, a removed statement; two neighbouring arguments of a
+#: call swapped, a named constant or its definition off by one, one of several members that are set together omitted.
 KINDS = ("sign", "number", "condition", "statement", "argument", "constant", "reset")
 
 _TOKEN = re.compile(
@@ -32,7 +31,7 @@ _TOKEN = re.compile(
     r"|(?P<sign><<=|>>=|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||[-+*/%&|^]=|.)",
     re.DOTALL | re.MULTILINE,
 )
-#: Constants by name, of lib/ or of its headers; macros that take arguments are no constants.
+#: Named constants of lib/ or of its headers; macros with arguments are excluded.
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*_?(?:MAX)?$")
 _DEFINITION = re.compile(r"^#define [A-Z][A-Z0-9_]* (0[xX][0-9a-fA-F]+[uUlL]*|\d+[uUlL]*)(?=\s)", re.MULTILINE)
 #: Words behind which - or * stands alone, and those that begin no statement that could go.
@@ -49,7 +48,7 @@ class Mutant:
     old: str
     new: str
     line: int
-    key: str  #: names the change as long as its line stays as it is, wherever that moves
+    key: str  #: identifies the change by the text of its line, wherever that moves
     kind: str  #: one of KINDS
 
     def apply(self, source: str) -> str:

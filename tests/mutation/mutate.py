@@ -1,15 +1,14 @@
-"""Changes the library in small ways and says which changes no test notices.
+"""Makes small changes of the library and reports those that no test detects.
 
     python3 tests/mutation/mutate.py --build build/mutate [--count 300] [--seed 1] [--jobs 2] [--survivors] [--list]
                                      [--kinds argument constant reset] [--files units.c] [--suites test_units]
 
 Each mutant is one change in lib/, of one of the kinds that mutants.py names, chosen by a seed. It is
 compiled with sanitizers, and the C suites, the conformance streams and the device tests run on it, the file's own suite
-first and then the fastest first, until one fails or hangs: then it is killed. A mutant whose optimised
-code is that of the library is no mutant, and another takes its place. Those that survive everything, and no others of
-those that are tried, must stand in survivors.txt with a reason; of those that are not equivalent at least 95 % must be
-killed. With --survivors only those in survivors.txt are tried, after a new test for one of them. Needs gcc or clang
-with sanitizers, and cmocka.
+first and then the fastest first, until one fails or hangs: then it is killed. A mutant whose optimised code equals that
+of the library is replaced by another. survivors.txt must list exactly those that survive, each with a reason; of those
+that are not equivalent at least 95 % must be killed. With --survivors only those in survivors.txt are tried, for
+instance after a new test for one of them. Needs gcc or clang with sanitizers, and cmocka.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ LIB = ROOT / "lib"
 SURVIVORS = HERE / "survivors.txt"
 #: The mutation score, the share of killed mutants among those that are not equivalent to the library.
 REQUIRED = 0.95
-#: A test that takes this many times as much of the processor as without a change, and more, hangs.
+#: A test hangs if it takes this many times the processor time of the unchanged library.
 PATIENCE, LEAST_SECONDS = 10.0, 5.0
 #: Builds of the library that every mutant is tried in, in this order: name, definitions.
 BUILDS = {"default": [], "lag": ["-DLABIAL_LAG=40", "-DLABIAL_WINDOW=15"],
@@ -49,7 +48,7 @@ FLAGS = ["-Werror=int-conversion", "-Werror=incompatible-pointer-types",
          "-std=c99", "-O1", "-g0", "-fPIC", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
          "-DLABIAL_TEST_SHARE=10"]
 INCLUDES = [f"-I{ROOT / folder}" for folder in ("include", "lib/models", "lib", "tests/c", "tests/conformance",
-                                                "tests/device", "tests/device/stand_in/src", "boards")]
+                                                "tests/device", "boards")]
 MODELS = sorted((LIB / "models").glob("*.c"))
 
 
@@ -63,7 +62,7 @@ class Test:
     seconds: float = 0.0
 
     def is_of(self, step: str) -> bool:
-        """Whether the program is the suite of a step of the library, which is the likeliest to notice."""
+        """Whether the program is the suite of a step of the library, which is most likely to detect a change."""
         return self.name.startswith(f"test_{step}") and self.seconds < 5
 
 
@@ -124,7 +123,7 @@ class Bench:
             device = ROOT / "tests" / "device"
             programs["conformance"] = [ROOT / "tests/conformance/conformance.c", *streams, *board, *objects]
             programs["device_tests"] = [*sorted(device.glob("test_*.c")), device / "device_tests.c",
-                                        device / "stand_in/src/unity.c", *streams, *board, *objects]
+                                        f"-I{ROOT}/tests/setup/cmocka", *streams, *board, *objects]
         if self.suites:
             programs = {name: parts for name, parts in programs.items() if name in self.suites}
         for name, parts in programs.items():
@@ -147,7 +146,7 @@ class Bench:
         return done.returncode != 0
 
     def verdict(self, mutant: Mutant) -> Optional[str]:
-        """What kills a mutant: the name of a test, or `compiler`. Empty for a survivor; None where it is no change."""
+        """What kills a mutant: the name of a test, or `compiler`. Empty for a survivor; None if nothing changed."""
         source = LIB / mutant.file
         with tempfile.TemporaryDirectory(dir=self.folder) as name:
             folder = Path(name)

@@ -1,5 +1,5 @@
-# Mutation: small changes of the library that the suites must notice; beside the sanitizers' suites only two, in one file
-# and for its own suite, so that the program does not rot. Included by tests/CMakeLists.txt.
+# Mutation: small changes of the library that the suites must detect. With the sanitizers only two are tried, in one
+# file with its own suite, to test the program itself. Included by tests/CMakeLists.txt.
 
 find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter)
 labial_check_sanitizers("${LABIAL_SANITIZERS}")

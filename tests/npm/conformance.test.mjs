@@ -63,10 +63,30 @@ function take(stream, count, found) {
     return false;
 }
 
-function play(steps, feed) {
+/** A stream each of whose frames may change its articulation, by steps of `changes`: after `frames` of a part. */
+function articulated(changes) {
     const stream = mouth.stream();
+    const tick = stream.tick.bind(stream);
+    let begun = 0;
+    function change() {
+        if (changes[0]?.frames !== stream.number + 1 - begun) return;
+        stream.articulation(Math.min(changes.shift().milliseconds, 200));
+    }
+    stream.tick = () => {
+        const frame = tick();
+        if (frame) change();
+        return frame;
+    };
+    return { stream, begin: () => ((begun = stream.number + 1), change()) };
+}
+
+function play(steps, feed) {
+    const changes = [];
+    const { stream, begin } = articulated(changes);
     const frames = [];
     for (let i = 0; i < steps.length; ) {
+        while (steps[i].kind === "ARTICULATION") changes.push(steps[i++]);
+        begin();
         const phonemes = [];
         while (steps[i].kind === "PUSH") phonemes.push(steps[i++]);
         const cut = steps[i].kind === "CANCEL" ? steps[i].frames : Infinity;

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import test from "node:test";
-import { Labial, folder, source, timings } from "./setup.mjs";
+import { Labial, folder, source } from "./setup.mjs";
 
 const { CHANNELS, follow, mouthShape } = await import(pathToFileURL(`${folder}/mouth.js`));
 const { LabialMouth } = await import(pathToFileURL(`${folder}/labial-mouth.js`));
@@ -13,7 +13,7 @@ const labial = await Labial.load();
 const LINE = 1.8;
 
 test("lips are drawn closed in p, b, m and at rest, and open in vowels", () => {
-    const segments = timings.fromLab(source("examples/kiosk/welcome.lab"));
+    const segments = labial.read(source("examples/kiosk/welcome.lab"));
     const track = labial.render(segments);
     const gaps = Array.from(track, (faps) => mouthShape(faps).gap);
     assert.equal(mouthShape(new Array(13).fill(0)).gap, 0);

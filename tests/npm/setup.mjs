@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { binary as blob } from "../../packaging/npm/layout.mjs";
+import { binary as blob } from "../../web/layout.mjs";
 
 /** The folder of the package, which the build names. */
 export const folder = resolve(process.env.LABIAL_NPM_PACKAGE ?? "build/wasm/npm");
@@ -11,7 +11,7 @@ export const { Labial, LabialError, timings } = await import(pathToFileURL(`${fo
 /** The laughter model, from the package beside it. */
 export const { default: laughter } = await import(pathToFileURL(`${folder}-laughter/index.js`));
 export const { unpack } = await import(pathToFileURL(`${folder}/unpack.js`));
-export { crc32 } from "../../packaging/npm/layout.mjs";
+export { crc32 } from "../../web/layout.mjs";
 
 /** The repository's file of this path. */
 export function source(path) {
@@ -25,7 +25,7 @@ export function vectors() {
     const text = source("tests/conformance/vectors.c");
     const steps = {};
     for (const [, name, body] of text.matchAll(/conformance_step_t (\w+)_steps\[\] = \{([^;]*)\};/g)) {
-        steps[name] = [...body.matchAll(/(PUSH|CANCEL|AGAIN|END)(?:\(([^)]*)\))?/g)].map(([, kind, inner = ""]) => {
+        steps[name] = [...body.matchAll(/(PUSH|CANCEL|AGAIN|END|ARTICULATION)(?:\(([^)]*)\))?/g)].map(([, kind, inner = ""]) => {
             const [first, second, third] = inner.split(/,\s*/);
             if (kind !== "PUSH") return { kind, frames: Number(first), milliseconds: Number(second) };
             const [model, prefix] = MODELS[first];

@@ -219,7 +219,8 @@ test("what follows a free is an error in a sentence", () => {
     const stream = mouth.stream();
     stream.free();
     for (const call of [() => stream.tick(), () => stream.push("m", 1), () => stream.laugh(1), () => stream.end(),
-        () => stream.cancel(), () => stream.restart(), () => stream.use("speech"), () => [...stream], () => stream.latency]) {
+        () => stream.cancel(), () => stream.restart(), () => stream.use("speech"), () => [...stream],
+        () => stream.articulation(50), () => stream.latency]) {
         assert.throws(call, new LabialError("the stream was freed"));
     }
 });
@@ -231,6 +232,7 @@ test("hostile values are refused in a sentence, and change nothing", () => {
     const calls = [
         ...numbers.flatMap((x) => [() => stream.push("m", x), () => stream.laugh(x), () => stream.cancel(x ?? "")]),
         ...[NaN, -1, 1.1, "1", null].map((x) => () => stream.laugh(1, x)),
+        ...[...numbers, 200.1].map((x) => () => stream.articulation(x)),
         ...[1e9, 3600001].flatMap((x) => [() => stream.push("m", x), () => stream.laugh(x)]),
         ...[-1, 40, 0.5, NaN, 2 ** 40, null, {}, "", " ", "zzz", "x".repeat(1e6), "\ud800", "\0", Symbol("x"), () => 0]
             .map((x) => () => stream.push(x, 80)),

@@ -23,6 +23,7 @@ static uint16_t pair_keys[PAIRS];
 static int8_t pairs[PAIRS * 2 * LABIAL_CHANNELS];
 static int16_t floors[FLOORS * LABIAL_CHANNELS];
 static uint16_t contacts[FLOORS];
+static labial_protrusion_t protrusion;
 static labial_emission_t emissions[LABIAL_STATES_MAX];
 static labial_state_t states[LABIAL_STATES_MAX];
 static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
@@ -98,6 +99,7 @@ static void any_model(labial_model_t *object, int count)
     FILL(pairs);
     FILL(floors);
     FILL(contacts);
+    FILL(protrusion);
     /*@ loop unroll 13; */
     for (i = 0; i < LABIAL_CHANNELS; i++)
         any_channel(&channels[i]);
@@ -109,11 +111,12 @@ static void any_model(labial_model_t *object, int count)
     object->shapes = shapes;
     object->slopes = OR_NULL(const int8_t *, slopes);
     object->kernels = kernels;
-    object->last_kernels = last_kernels;
+    object->last_kernels = OR_NULL(const int8_t *, last_kernels);
     object->pair_keys = pair_keys;
     object->pairs = pairs;
     object->floors = floors;
     object->contacts = contacts;
+    object->protrusion = OR_NULL(const labial_protrusion_t *, &protrusion);
     object->channels = channels;
 }
 

@@ -28,7 +28,7 @@ int labial_model_check(const labial_model_t *model)
     sum += is_there(model->phonemes) + is_there(model->components) + is_there(model->contexts) +
            is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) +
            is_there(model->last_kernels) + is_there(model->pair_keys) + is_there(model->pairs) +
-           is_there(model->floors) + is_there(model->contacts);
+           is_there(model->floors) + is_there(model->contacts) + is_there(model->protrusion);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];
         sum += channel->centre + channel->shape_scale + channel->slope_scale + channel->kernel_scale +

@@ -1,7 +1,7 @@
 /*
  * Any marks, models, targets and contacts, any phase, with every stride and every number of frames that entered and that lie
  * beyond the last one; in a workspace that ends with that of the stride.
- * viterbi.c and trajectory.c are not part of it; their stand-ins here give any of their results, and touch the ends of
+ * viterbi.c, trajectory.c and protrusion.c are not part of it; their stand-ins here give any of their results, and touch the ends of
  * what those read and write.
  */
 #include "any_model.h"
@@ -22,9 +22,10 @@ void labial_viterbi_step(const labial_model_t *any, const labial_channel_t *chan
     search->path[0] = (uint8_t)Frama_C_interval(0, LABIAL_STATES_MAX - 1);
 }
 
-void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, labial_terms_t *terms)
+void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, int32_t gain, labial_terms_t *terms)
 {
-    terms->position = channel->states[state].mean;
+    /*@ assert 0 <= gain <= 512; */
+    terms->position = channel->states[state].mean + gain;
 }
 
 /* Writes own[0] of every frame as if it were its solution's last: that frames are marked so that what is read was written
@@ -53,6 +54,12 @@ void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsi
     motion[(places - 1u) * LABIAL_CHANNELS] = (int16_t)newest[-(int)(ahead + wanted - 1u)].q;
 }
 
+void labial_protrusion_complete(const labial_model_t *any, int16_t motion[LABIAL_CHANNELS])
+{
+    if (any->protrusion)
+        motion[0] = motion[LABIAL_CHANNELS - 1] = any_int16;
+}
+
 /* A step with this many frames that entered; with more than the delay all that entered are as many. */
 static void step_with(int stride, int entered, int beyond)
 {
@@ -63,12 +70,13 @@ static void step_with(int stride, int entered, int beyond)
     FILL(workspace);
     for (i = 0; i < LABIAL_CHANNELS; i++)
         channels.progress[i].search.path[0] = (uint8_t)Frama_C_interval(0, LABIAL_STATES_MAX - 1);
-    for (i = 0; i < stride + LABIAL_LAG; i++)
-        channels.frames[i].slot = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
+    for (i = 0; i <= LABIAL_DELAY(stride); i++)
+        channels.slots[i] = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
+    channels.full = any_uint8;
     channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
     channels.entered = (uint8_t)Frama_C_interval(entered, entered > LABIAL_DELAY(stride) ? 255 : entered);
     channels.beyond = (uint8_t)beyond;
-    labial_channels_step(&channels, models);
+    labial_channels_step(&channels, models, Frama_C_interval(0, 512));
 }
 
 /* What comes before a step and after it, with any number of frames. */
@@ -76,17 +84,21 @@ static void pass(int stride)
 {
     labial_channels_t channels;
     const int16_t *motion;
+    int i;
     labial_channels_init(&channels, (unsigned)stride, workspace);
     FILL(workspace);
     channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
     channels.entered = any_uint8;
     channels.beyond = (uint8_t)Frama_C_interval(0, LABIAL_DELAY(stride) - 1);
+    channels.full = any_uint8;
+    for (i = 0; i <= LABIAL_DELAY(stride); i++)
+        channels.slots[i] = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
     labial_channels_uses(&channels, any_unsigned);
-    motion = labial_channels_due(&channels);
+    motion = labial_channels_due(&channels, models);
     if (motion)
         channels.phase = (uint8_t)(motion[0] + motion[LABIAL_CHANNELS - 1] > 0 ? 0 : channels.phase);
     if (any_int)
-        labial_channels_enter(&channels)->marks = any_uint8;
+        labial_channels_enter(&channels, models, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1))->marks = any_uint8;
     else
         labial_channels_run_out(&channels);
 }

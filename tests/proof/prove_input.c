@@ -81,6 +81,8 @@ static void advance(int stride)
         stream.shown = (uint8_t)Frama_C_interval(0, 1);
         stream.pending = any_uint32;
         stream.units.count = any_uint8;
+        stream.wanted = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
+        stream.articulation = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
         if (any_int)
             select_halves(&stream, (unsigned)Frama_C_interval(1, 2));
         take_frame(&stream);

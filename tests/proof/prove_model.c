@@ -16,6 +16,7 @@ static labial_emission_t emissions[LABIAL_STATES_MAX];
 static labial_state_t states[LABIAL_STATES_MAX];
 static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
 static uint32_t words[1];
+static labial_protrusion_t protrusion;
 static labial_channel_t channels[LABIAL_CHANNELS];
 
 int main(void)
@@ -44,6 +45,7 @@ int main(void)
     model.kernels = OR_NULL(const uint32_t *, words);
     model.last_kernels = OR_NULL(const int8_t *, bytes);
     model.pairs = OR_NULL(const int8_t *, bytes);
+    model.protrusion = OR_NULL(const labial_protrusion_t *, &protrusion);
     model.channels = OR_NULL(const labial_channel_t *, channels);
     labial_model_check(0);
     model.pair_keys = model.contacts = 0;

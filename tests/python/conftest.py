@@ -4,9 +4,15 @@ after the other."""
 from __future__ import annotations
 
 import os
+import sys
+from pathlib import Path
 from typing import List
 
 import pytest
+
+#: Whose modules tests import, behind those of this folder.
+ROOT = Path(__file__).resolve().parents[2]
+sys.path += [str(ROOT / name) for name in ("bench", "tests/conformance", "tests/c", "examples/pi")]
 
 #: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
 TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter_corpus", "test_npm_types", "test_packages",

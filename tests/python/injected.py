@@ -26,19 +26,20 @@ import numpy as np
 from matplotlib import pyplot
 
 import labial.corpus
+import labial.evaluate.loss
 import labial.evaluate.protocol
-import labial.loss
 import labial.train
-from labial.cli import main
+from labial.__main__ import main
 from labial.corpus import read_corpus
 from labial.corpus.episode import Segment
-from labial.evaluate.protocol import Options, evaluate
-from labial.faps import FAP_COLUMNS
-from labial.loss import measure
-from labial.model import save
-from labial.phones import drawn_streams
-from labial.quantise import quantise
+from labial.evaluate.loss import measure
+from labial.evaluate.protocol import evaluate
+from labial.evaluate.splits import Options
+from labial.files.faps import FAP_COLUMNS
 from labial.see import drawing
+from labial.tables.model import save
+from labial.tables.phones import drawn_streams
+from labial.tables.quantise import quantise
 from models import random_model
 from test_record import talking
 from test_record import write as write_landmarks
@@ -66,7 +67,7 @@ def _train() -> None:
 
 
 def _export() -> None:
-    labial.loss.measure = _measured  # type: ignore[assignment]
+    labial.evaluate.loss.measure = _measured  # type: ignore[assignment]
 
 
 @functools.cache
@@ -97,16 +98,15 @@ def _outcomes() -> list:
 
 
 def _align() -> None:
-    import labial.align.progress as progress
-    from labial.align.align import Alignment
+    import labial.sound.align as align
 
-    progress.align_with_bar = lambda *_: Alignment((Segment(0.0, 1.0, "SIL"),), ())  # type: ignore[assignment]
+    align.align_with_bar = lambda *_: align.Alignment((Segment(0.0, 1.0, "SIL"),), ())  # type: ignore[assignment]
 
 
 def _track() -> None:
     for name in ("mediapipe", "av"):
         sys.modules.setdefault(name, types.ModuleType(name))
-    import labial.record.track as track
+    import labial.capture.track as track
 
     points, _ = talking()
 
@@ -124,7 +124,7 @@ def _track() -> None:
 
 def _fit() -> None:
     import labial.fit.fit as fit
-    import labial.fit.picture as picture
+    import labial.see.picture as picture
 
     fit.fit = lambda *_: fit.Fitted("made up\n", None, object(), ["made up"])  # type: ignore
     picture.draw = lambda *given: given[-1].write_bytes(bytes(20000))  # type: ignore[assignment]

@@ -7,8 +7,8 @@ from typing import Dict, List, Tuple
 
 import numpy as np
 
-from labial.faps import CHANNELS
-from labial.model import Model
+from labial.files.faps import CHANNELS
+from labial.tables.model import Model
 
 Stream = List[Tuple[int, int]]
 

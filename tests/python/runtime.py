@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import functools
 import os
-import sys
-from pathlib import Path
 from typing import Any, Dict, List
 
 import pytest
 
-CONFORMANCE = Path(__file__).resolve().parents[1] / "conformance"
-sys.path.insert(0, str(CONFORMANCE))
+from packages import SOURCE
+from regenerate import bundled_models
+from scripts import Frames, read, read_frames
 
-from regenerate import bundled_models  # noqa: E402
-from scripts import Frames, read, read_frames  # noqa: E402
+CONFORMANCE = SOURCE / "tests" / "conformance"
 
 needs_runtime = pytest.mark.skipif(
     not os.environ.get("LABIAL_RUNTIME"),
@@ -26,7 +24,8 @@ def conformance_scripts() -> List[Dict[str, Any]]:
     """``streams.txt`` as runtime_player.py takes it."""
     return [{"name": script.name,
              "parts": [{"pushes": [[push.model, push.phoneme, push.milliseconds] for push in part.pushes],
-                        "cancel": part.cancel, "again": part.again} for part in script.parts]}
+                        "cancel": part.cancel, "again": part.again, "articulation": part.articulation}
+                       for part in script.parts]}
             for script in read(CONFORMANCE / "streams.txt", bundled_models())]
 
 

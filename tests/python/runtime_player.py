@@ -3,7 +3,8 @@
     python runtime_player.py < SCRIPTS.json
 
 takes ``[{"name": ..., "parts": [{"pushes": [[model, phoneme, ms], ...], "cancel": [frames, ms] or null, "again":
-[[frames, ms], ...]}, ...]}, ...]`` and prints ``{feed: {name: [frames, crc]}}``.
+[[frames, ms], ...], "articulation": [[frames, percent], ...]}, ...]}, ...]`` and prints ``{feed: {name: [frames,
+crc]}}``.
 """
 
 from __future__ import annotations
@@ -27,15 +28,24 @@ class Player:
         self.stream = labial.Stream()
         self.rows: Rows = []
         self._feed = feed
+        self._changes: List[Tuple[int, int]] = []  # of the articulation, after so many rows
 
     def keep(self, frame: labial.Frame) -> None:
         """A frame, whose number must be its place."""
         assert frame.number == len(self.rows), f"frame {frame.number} in place {len(self.rows)}"
         self.rows.append(frame.faps)
+        self.articulate()
+
+    def articulate(self) -> None:
+        """Sets the articulation, if it is to change after as many frames as there are."""
+        if self._changes and self._changes[0][0] == len(self.rows):
+            self.stream.articulation(self._changes.pop(0)[1])
 
     def part(self, part: Dict[str, Any]) -> None:
         """Pushes and takes until the part's end."""
         limit = len(self.rows) + part["cancel"][0] if part["cancel"] else None
+        self._changes = [(len(self.rows) + frames, min(percent, 200)) for frames, percent in part["articulation"]]
+        self.articulate()
         for model, phoneme, milliseconds in part["pushes"]:
             if limit is not None and len(self.rows) == limit > 0 and self._feed != "fill":
                 break
@@ -49,7 +59,7 @@ class Player:
                 self.take(limit)
         if limit is None:
             self.stream.end()
-            if self._feed == "whole":
+            if self._feed == "whole" and not self._changes:
                 self.whole()
             else:
                 self.take(None)

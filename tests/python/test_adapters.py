@@ -18,7 +18,7 @@ import pytest
 from avatars import add_skeleton, document_of, glb, made_head
 from browser import CHROMIUM, REASON, Browser, Page
 from bundlers import MISSING, install, tools
-from labial.cli import main
+from labial.__main__ import main
 from labial.rig import description_of
 from npm import package
 from packages import SOURCE

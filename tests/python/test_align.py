@@ -18,14 +18,14 @@ pytest.importorskip("pocketsphinx")
 soundfile = pytest.importorskip("soundfile")
 pytest.importorskip("soxr")
 
-from labial.align import align as module  # noqa: E402
-from labial.align.recogniser import Recogniser  # noqa: E402
-from labial.align.silence import LONGEST_CLOSURE, with_silences  # noqa: E402
-from labial.align.sound import RATE, prepared, read_sound, silences  # noqa: E402
-from labial.align.words import phrases_of, pronunciations, spelt, words_of  # noqa: E402
-from labial.cli import main  # noqa: E402
+from labial.__main__ import main  # noqa: E402
 from labial.corpus.episode import Segment  # noqa: E402
 from labial.errors import DataError, LabialError  # noqa: E402
+from labial.sound import align as module  # noqa: E402
+from labial.sound.recogniser import Recogniser  # noqa: E402
+from labial.sound.samples import RATE, prepared, read_sound, silences  # noqa: E402
+from labial.sound.silence import LONGEST_CLOSURE, with_silences  # noqa: E402
+from labial.sound.words import phrases_of, pronunciations, spelt, words_of  # noqa: E402
 from test_speak import speak  # noqa: E402
 
 #: What is spoken here; the first in sounds that show on lips, the second with stops behind pauses and between vowels.

@@ -15,12 +15,12 @@ from typing import Dict, List, Tuple
 import numpy as np
 import pytest
 
-from labial.animation import FORMATS, LIVE_LINK, arkit, face, outputs
-from labial.cli import main
-from labial.faps import FAP_COLUMNS, FAP_NUMBERS
-from labial.model import save
+from labial.__main__ import main
+from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.rig import FACES, description_of
+from labial.rig.animation import FORMATS, LIVE_LINK, arkit, face, outputs
 from labial.rig.description import read
+from labial.tables.model import save
 from models import random_model
 
 SAY = os.environ.get("LABIAL_SAY", "")
@@ -183,3 +183,20 @@ def test_long_motion_has_good_timecodes() -> None:
     done = subprocess.run([SAY, "--to", "livelink"], input=text.encode(), capture_output=True, timeout=60, check=True)
     times, _ = read_live_link(done.stdout.decode())
     assert times[-1] > 60 and times == pytest.approx(np.arange(len(times)) / 50)
+
+
+@needs_say
+def test_programs_write_the_same_formats() -> None:
+    """Catches a format that only one of `labial synth` and labial-say has."""
+    told = subprocess.run([SAY, "--to", "?"], capture_output=True, encoding="utf-8", timeout=60, check=False).stderr
+    names = re.fullmatch(r"labial-say: --to is (.*), not '\?'; see labial-say --help\n", told)
+    assert names and set(re.split(", | or ", names[1])) == set(FORMATS), told
+
+
+def test_a_format_is_no_rig() -> None:
+    """Catches a rig that takes another format's name, and one whose values no avatar knows."""
+    for name in {"csv", "fap", "livelink", "jsonl", "faps", "frame", "time"} & set(FACES):
+        pytest.fail(f"export/labial/rig/{name}.toml: {name} is taken in what is written; name the file otherwise")
+    for name in FACES:
+        unit = face(name).unit.name
+        assert unit == "weight", f"export/labial/rig/{name}.toml: the unit of a format of output is weight, not {unit}"

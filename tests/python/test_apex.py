@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labial.apex import STEP, WINDOW, envelope, read_wave, with_apexes
+from labial.capture.landmarks import Given
+from labial.capture.record import record
 from labial.corpus import Segment, read_corpus
+from labial.corpus.apex import STEP, WINDOW, envelope, read_wave, with_apexes
 from labial.corpus.iemocap import read_iemocap
+from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError
-from labial.phonesets import SPEECH
-from labial.record.landmarks import Given
-from labial.record.record import record
 from labial.train import without_apex
 from test_iemocap import PHSEG, face
 from test_iemocap import write as write_utterance

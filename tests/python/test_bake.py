@@ -11,15 +11,16 @@ from typing import List, Sequence
 import numpy as np
 import pytest
 
+from labial.__main__ import main
 from labial.bake.source import Source, read_track
 from labial.bake.track import AVR_LARGEST, FORMAT
-from labial.cli import main
+from labial.core.library import DURATION_MAX
 from labial.corpus.formats import SOUNDS
-from labial.faps import FAP_COLUMNS
-from labial.rig.description import read
-from labial.rig.table import convert, moved, write
-from labial.runtime.library import DURATION_MAX
+from labial.files.faps import FAP_COLUMNS
 from packages import CC, CXX, SOURCE, run, warnings
+from runtime import needs_runtime
+
+pytestmark = needs_runtime
 
 TALK = SOURCE / "examples" / "talk"
 PLAYER = SOURCE / "export" / "labial" / "bake" / "labial_player.h"
@@ -204,37 +205,6 @@ int main(void)
     found = [int(line) for line in run(tmp_path / "main").split()]
     exact = [low + Fraction((high - low) * byte, 255) for low, high in limits for byte in range(256)]
     assert len(found) == len(exact) and max(abs(a - b) for a, b in zip(found, exact)) <= Fraction(1, 2)
-
-
-def test_moved_is_labial_rig_apply(tmp_path: Path) -> None:
-    """The rig in integers, slew limits included, is the C library's to the bit, from rest on."""
-    (tmp_path / "face.toml").write_text(FACE)
-    rig = read(tmp_path / "face.toml", "face")
-    table = convert(rig)
-    write(rig, tmp_path)
-    (tmp_path / "main.c").write_text("""
-#include <stdio.h>
-#include "face.h"
-int main(void)
-{
-    int16_t faps[LABIAL_CHANNELS];
-    int32_t values[FACE_OUTPUTS];
-    labial_rig_rest(&face, values);
-    while (fread(faps, sizeof faps[0], LABIAL_CHANNELS, stdin) == LABIAL_CHANNELS) {
-        labial_rig_apply(&face, faps, values);
-        printf("%ld %ld\\n", (long)values[0], (long)values[1]);
-    }
-    return 0;
-}
-""")
-    run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{tmp_path}", tmp_path / "main.c", tmp_path / "face.c",
-        SOURCE / "lib" / "rig.c", "-o", tmp_path / "main")
-    rng = np.random.default_rng(3)
-    frames = np.cumsum(rng.integers(-60, 61, (500, 13)), axis=0).clip(-32768, 32767)
-    frames = np.concatenate([frames, rng.integers(-32768, 32768, (200, 13))])
-    (tmp_path / "frames").write_bytes(frames.astype("<i2").tobytes())
-    out = run("sh", "-c", '"$0" < "$1"', tmp_path / "main", tmp_path / "frames")
-    assert (np.array([[int(x) for x in line.split()] for line in out.splitlines()]) == moved(table, frames)).all()
 
 
 def test_numbers_that_c_has_too() -> None:

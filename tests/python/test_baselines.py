@@ -7,10 +7,10 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 from threadpoolctl import threadpool_limits
 
+from labial.corpus.phonesets import SPEECH
 from labial.evaluate.baselines import blur, dominance, hmm, mean, regression, ridge, steps, window
 from labial.evaluate.baselines.alignment import align, deal, even
 from labial.evaluate.material import Timeline, timeline
-from labial.phonesets import SPEECH
 from test_evaluate_material import FPS, LABELS, shape_of_phoneme, training, unseen
 
 

@@ -4,22 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from measure import baseline, readme, sizes, table
+from measure.core import Bench, Figure
+from measure.profile import cycles
+from measure.stack import CallGraph, _machine_code, public_functions
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
-
-from measure import baseline, readme, sizes  # noqa: E402
-from measure.core import Bench, Figure  # noqa: E402
-from measure.profile import cycles  # noqa: E402
-from measure.stack import CallGraph, _machine_code, public_functions  # noqa: E402
-
-from labial.model import load  # noqa: E402
-from labial.native import compiler  # noqa: E402
-
-SOURCE = Path(__file__).resolve().parents[2]
+from labial.tables.model import load
+from packages import CC, SOURCE
 
 MEAN = Figure("m0", "speech: mean", 1000.0, "instructions/frame", "run it", "gcc 12.2.1")
 
@@ -79,6 +73,14 @@ def node(name: str, size: int, kind: str = "static") -> str:
 
 def edge(caller: str, callee: str) -> str:
     return f'edge: {{ sourcename: "{caller}" targetname: "{callee}" label: "lib/x.c:2:2" }}\n'
+
+
+def test_the_page_has_every_figure() -> None:
+    # Catches a figure that belongs to no section.
+    bench = Bench(SOURCE, SOURCE)
+    bench.figures = baseline.read(SOURCE / "bench" / "baseline.json")
+    page = table.markdown(bench, [])
+    assert bench.figures and all(f"| {figure.figure} |" in page for figure in bench.figures)
 
 
 def test_deepest_chain_of_calls() -> None:
@@ -166,7 +168,7 @@ def test_parts_are_the_members_of_the_headers(tmp_path: Path) -> None:
     source = (f'#include "labial/labial.h"\n#define STRIDE {sizes.STRIDE}\n'
               f"typedef char equal[(({parts}) + 3u) / 4u * 4u == LABIAL_WORKSPACE_SIZE(STRIDE) ? 1 : -1];\n")
     (tmp_path / "parts.c").write_text(source, encoding="ascii")
-    command = [compiler(), "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only", str(tmp_path / "parts.c")]
+    command = [CC, "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only", str(tmp_path / "parts.c")]
     assert subprocess.run(command).returncode == 0
 
 
@@ -176,7 +178,7 @@ def test_the_latest_frame_is_that_of_the_rules(tmp_path: Path) -> None:
     includes = [f"-I{SOURCE / folder}" for folder in ("include", "lib/models", "lib")]
     program = tmp_path / "delay"
     sources = [SOURCE / "bench" / "delay.c", *sorted((SOURCE / "lib").glob("*.c")), SOURCE / "lib/models/speech_en.c"]
-    subprocess.run([compiler(), "-std=c99", "-O1", *includes, *map(str, sources), "-o", str(program)], check=True)
+    subprocess.run([CC, "-std=c99", "-O1", *includes, *map(str, sources), "-o", str(program)], check=True)
 
     def latest(text: str) -> subprocess.CompletedProcess:
         return subprocess.run([str(program), "-"], input=text, capture_output=True, text=True)

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
+import closures
 import numpy as np
 import pytest
 
+import heads
+from labial.fit.sentences import Motion
+from packages import SOURCE
 from runtime import needs_runtime
 
-HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parents[1] / "bench"))
-
-import closures  # noqa: E402
-
-import heads  # noqa: E402
-from labial.fit.sentences import Motion  # noqa: E402
+TESTS = SOURCE / "tests" / "python"
 
 
 def test_shares_of_closures() -> None:
@@ -52,7 +47,7 @@ def test_rows_of_a_head() -> None:
     from labial.fit.head import read_table
     from labial.fit.sentences import read_sentences
 
-    head, motion = read_table(HERE / "heads" / "ict_lips.csv"), read_sentences(HERE / "sentences.flite")
+    head, motion = read_table(TESTS / "heads" / "ict_lips.csv"), read_sentences(TESTS / "sentences.flite")
     assert heads.built_in(head, "oculus", motion) == {}
     cells = heads.row("ict", head, heads.built_in(head, "arkit", motion), motion).split(" | ")
     assert float(cells[1]) == pytest.approx(0.94, abs=0.02) and float(cells[6]) == 1.0 and float(cells[9]) < 0.85

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from browser import CHROMIUM, REASON, Browser, Page
-from labial.cli import main
+from labial.__main__ import main
 from test_see import data_of, frames
 
 DEMO_PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
@@ -104,7 +104,7 @@ def test_demo_closes_the_lips_it_draws(demo: Page) -> None:
             assert max(gaps) > 4 * LINE, p
     closed = least["P"] + least["B"] + least["M"]
     assert len(closed) >= 25 and max(closed) < LINE
-    assert min(least["F"] + least["V"]) > LINE
+    assert min(least["F"] + least["V"]) > 0.7 * LINE
 
 
 def page_of(folder: Path, sound: str) -> str:

@@ -143,14 +143,14 @@ def test_unbundled_in_chromium(app: Path, browser: Browser, frames: List[int], t
 
 
 def test_a_page_that_only_speaks_is_small(app: Path) -> None:
-    """65 KB compressed, file by file; without what draws the mouth. Catches laughter that comes along."""
+    """70 KB compressed, file by file; without what draws the mouth. Catches laughter that comes along."""
     folder = app / "node_modules" / "labial"
     names = ["index.js"]
     for name in names:
         text = (folder / name).read_text(encoding="utf-8")
         names += [found for found in _imports(text) if found not in names]
     assert "speech.js" in names and "mouth.js" not in names
-    assert sum(len(gzip.compress((folder / name).read_bytes(), 9)) for name in names) <= 65_000
+    assert sum(len(gzip.compress((folder / name).read_bytes(), 9)) for name in names) <= 70_000
 
 
 def _imports(text: str) -> List[str]:

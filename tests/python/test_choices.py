@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from labial.corpus.phonesets import PHONE_SETS, SPEECH
 from labial.evaluate import choices
 from labial.evaluate.baselines import trained
 from labial.evaluate.choices import CHOICES, Choice
 from labial.evaluate.material import utterances
 from labial.evaluate.training import Training
-from labial.phonesets import PHONE_SETS, SPEECH
 from labial.reference import published
 from labial.reference.published import Piece, join
 from labial.reference.tables import FloatTables

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import labial.commands
-from labial.cli import main
+from labial.__main__ import main
 from labial.commands import COMMANDS
-from labial.faps import FAP_COLUMNS
-from labial.model import save
+from labial.files.faps import FAP_COLUMNS
+from labial.tables.model import save
 from models import random_model
 
 LAB = "0.00 0.20 SIL\n0.20 0.31 P1\n0.31 0.42 p1\n0.50 0.71 P4\n0.71 1.00 SIL\n"
@@ -23,7 +23,7 @@ LAB = "0.00 0.20 SIL\n0.20 0.31 P1\n0.31 0.42 p1\n0.50 0.71 P4\n0.71 1.00 SIL\n"
 WITHOUT_PACKAGES = """
 import sys
 sys.modules.update(dict.fromkeys(("numpy", "scipy", "sklearn", "tqdm", "matplotlib", "tomli", "soundfile")))
-from labial.cli import main
+from labial.__main__ import main
 for arguments in {arguments}:
     try:
         main(arguments)
@@ -74,6 +74,19 @@ def test_synth_writes_every_frame(given: Path) -> None:
         assert np.ptp(values[:, 1]) > 1
 
 
+def test_synth_articulates(given: Path, capsys: pytest.CaptureFixture) -> None:
+    """Half of each frame, and nothing of what is out of range."""
+    frames = []
+    for percent in ("100", "50"):
+        assert main(["synth", str(given / "model.npz"), str(given / "phones.lab"), "-o", str(given / "a.csv"),
+                     "--whole", "--articulation", percent]) == 0
+        frames.append(np.loadtxt(given / "a.csv", delimiter=",", skiprows=1)[:, 1:])
+    assert np.ptp(frames[0]) > 100 and np.abs(0.5 * frames[0] - frames[1]).max() <= 1
+    with pytest.raises(SystemExit):
+        main(["synth", "speech_en", str(given / "phones.lab"), "--articulation", "201"])
+    assert "'201' is not a whole number within 0 .. 200" in capsys.readouterr().err
+
+
 def test_export_prints_memory_and_loss(given: Path, capsys: pytest.CaptureFixture) -> None:
     """The files are there and the tables name what was measured."""
     assert main(["export", str(given / "model.npz"), "--name", "my_model", "-o", str(given / "out"), "--blob"]) == 0
@@ -103,7 +116,6 @@ def test_check_compares_with_both_references(given: Path, capsys: pytest.Capture
         (["export", "model.npz", "--name", "int", "-o", "out"], "no name for a model"),
         (["train", "nowhere", "-o", "x.npz"], "nowhere"),
         (["laughter-corpus", "."], "."),
-        (["check", "model.npz", "phones.lab", "--library", "."], "--library"),
     ],
 )
 def test_errors_are_one_line(

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Dict, List, Tuple
 
 import numpy as np
 import pytest
 
+import motion
 from labial.errors import LabialError
-from labial.quantise import ExportedModel
 from labial.reference import contact
-from labial.reference.stream import DURATION_MAX, synthesise
+from labial.reference.stream import ARTICULATION_MAX, DURATION_MAX, synthesise
 from labial.reference.tables import ExportedTables
+from labial.tables.quantise import ExportedModel
+from regenerate import bundled_models, deviations, library_frames
+from scripts import Frames, Part, Push, Script, as_c, digest, read, read_frames
 
 HERE = Path(__file__).resolve().parents[1] / "conformance"
 QUEUE = 32  # LABIAL_QUEUE
-sys.path.insert(0, str(HERE))
-
-import motion  # noqa: E402
-from regenerate import bundled_models, deviations, library_frames  # noqa: E402
-from scripts import Frames, Part, Push, Script, as_c, digest, read, read_frames  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -109,6 +106,8 @@ def test_streams_reach_the_edge_cases(
     for push in turns:
         counts[push.model].add(push.milliseconds // 20)
     assert all(min(found) < motion.FADE // 2 and max(found) >= motion.FADE for found in counts.values())
+    changes = [percent for script in scripts for part in script.parts for _, percent in part.articulation]
+    assert min(changes) == 0 and max(changes) > ARTICULATION_MAX and {50, 130} <= set(changes)
     again = [(script.name, at) for script in scripts for part in script.parts for at, _ in part.again]
     assert {name for name, _ in again} == {"cancelled_twice"} and {0, 6, 14} <= {at for _, at in again}
 
@@ -166,6 +165,8 @@ def test_one_run_is_the_reference(models: Dict[str, ExportedModel]) -> None:
     ("cancel 0 100\nagain 5 40", "the easing over 100 ms is done before its frame 5"),
     ("cancel 0 100\nagain 0 40\nagain 2 40", "the easing over 40 ms is done before its frame 2"),
     ("cancel 0 100\nspeech AY 20\nagain 0 40", "'again 0 40' is not understood"),
+    ("articulation 3", "'articulation 3' is not understood"),
+    ("articulation 3 50\narticulation 3 60", "the articulation changes after 3 frames already"),
     ("turns AY 20", "turns need a number and a list of phonemes for each model"),
     ("turns 3: AY 20 | AY 20", "'AY 20' is not a phoneme of laughter_synthetic"),
     ("stream sentence", "a stream needs a name of its own"),

@@ -16,7 +16,7 @@ from typing import Any, Dict, List, Optional, Tuple
 import numpy as np
 import pytest
 
-from labial.cli import main
+from labial.__main__ import main
 
 PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
 pytestmark = pytest.mark.skipif(not PAGE, reason="LABIAL_DEMO_PAGE does not name the built page")

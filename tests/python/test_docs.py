@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from labial.corpus.folder import read_frames
-from labial.faps import FAP_COLUMNS
+from labial.files.faps import FAP_COLUMNS
 from packages import CC, SOURCE, run
 from pages import EXTERNAL, LINK, Block, MissingTool, PageError, Runner, command, headings, parse
 from test_record import seen

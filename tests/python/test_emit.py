@@ -10,14 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labial import emit
-from labial.errors import LabialError, ModelError
-from labial.faps import CHANNELS
-from labial.model import load
-from labial.native import NativeModel, compiler, library_root
-from labial.quantise import quantise
-from labial.report import workspace_bytes
+from labial.errors import ModelError
+from labial.evaluate.check import device_frames
+from labial.evaluate.loss import workspace_bytes
+from labial.files.faps import CHANNELS
+from labial.tables import emit
+from labial.tables.model import load
+from labial.tables.quantise import quantise
 from models import random_model, streams, without_floors
+from packages import CC, SOURCE
+from runtime import needs_runtime
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
           "-Wshadow", "-Werror"]  # fmt: skip
@@ -25,10 +27,10 @@ STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-
 
 def build(folder: Path, *files: str, flags: list = STRICT) -> Path:
     program = folder / "program"
-    root = library_root()
+    root = SOURCE
     library = [str(path) for path in sorted((root / "lib").glob("*.c"))]
     sources = [str(folder / file) for file in files]
-    subprocess.run([compiler(), *flags, f"-I{root / 'include'}", f"-I{folder}", *sources, *library, "-o", str(program)],
+    subprocess.run([CC, *flags, f"-I{root / 'include'}", f"-I{folder}", *sources, *library, "-o", str(program)],
                    check=True)
     return program
 
@@ -44,7 +46,7 @@ def test_same_model_same_bytes(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["speech_en", "laughter_synthetic"])
 def test_bundled_tables_are_those_of_the_trained_models(tmp_path: Path, name: str) -> None:
     """Catches a model that was trained anew and not exported, and an exporter that changed under the tables."""
-    root = library_root()
+    root = SOURCE
     for path in emit.write(quantise(load(root / "export" / "models" / f"{name}.npz"), name), tmp_path):
         assert path.read_bytes() == (root / "lib" / "models" / path.name).read_bytes(), path.name
 
@@ -112,8 +114,8 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     """Tables of another version must not be linked by accident."""
     emit.write(quantise(random_model(2), "some_model"), tmp_path)
     header = tmp_path / "some_model.h"
-    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 4", "LABIAL_MODEL_FORMAT != 3"))
-    done = subprocess.run([compiler(), "-std=c99", f"-I{library_root() / 'include'}", "-fsyntax-only",
+    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 5", "LABIAL_MODEL_FORMAT != 4"))
+    done = subprocess.run([CC, "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only",
                            str(tmp_path / "some_model.c")], capture_output=True, text=True)
     assert done.returncode != 0 and "run labial export again" in done.stderr
 
@@ -129,7 +131,7 @@ def test_a_library_that_remembers_too_few_phonemes_does_not_compile(
     emit.write(quantise(replace(model, kernel=kernel, kernel_lag=lags), "some_model"), tmp_path)
 
     def compiled(reach: int) -> subprocess.CompletedProcess:
-        command = [compiler(), "-std=c99", "-fsyntax-only", f"-I{library_root() / 'include'}"]
+        command = [CC, "-std=c99", "-fsyntax-only", f"-I{SOURCE / 'include'}"]
         return subprocess.run([*command, f"-DLABIAL_REACH={reach}", str(tmp_path / "some_model.c")],
                               capture_output=True, text=True)
 
@@ -139,33 +141,27 @@ def test_a_library_that_remembers_too_few_phonemes_does_not_compile(
         assert done.returncode != 0 and f"some_model needs LABIAL_REACH of {needed} at least" in done.stderr
 
 
+@needs_runtime
 @pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "labial"])
 def test_binary_model_moves_as_the_compiled_one(tmp_path: Path, method: str) -> None:
     """A table in another order or of another width would be refused or move differently."""
     model = quantise(random_model(3, method), "some_model")
     stream = streams(9, random_model(3).boundary, 3)["ordinary"]
-    emit.write(model, tmp_path, binary=True)
+    emit.write(model, tmp_path)
     (tmp_path / "main.c").write_text("""
 #include <stdio.h>
-#include "labial/blob.h"
-#include "labial/labial.h"
+#include "some_model.h"
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     (void)user; (void)frame;
     fwrite(faps, 2, LABIAL_CHANNELS, stdout);
 }
-int main(int argc, char **argv)
+int main(void)
 {
-    static uint32_t data[65536], workspace[LABIAL_WORKSPACE_SIZE(8) / 4];
+    static uint32_t workspace[SOME_MODEL_WORKSPACE_SIZE / 4];
     static labial_t stream;
-    labial_blob_t blob;
     unsigned phoneme, ms;
-    FILE *file = argc > 1 ? fopen(argv[1], "rb") : NULL;
-    size_t size;
-    if (!file) return 2;
-    size = fread(data, 1, sizeof data, file);
-    if (labial_model_load(&blob, data, size) != LABIAL_OK) return 3;
-    if (labial_init(&stream, &blob.model, workspace, sizeof workspace, on_frame, NULL) != LABIAL_OK) return 4;
+    if (labial_init(&stream, &some_model, workspace, sizeof workspace, on_frame, NULL) != LABIAL_OK) return 4;
     while (scanf("%u %u", &phoneme, &ms) == 2) {
         while (labial_push(&stream, phoneme, ms) == LABIAL_ERROR_FULL) labial_tick(&stream);
     }
@@ -174,13 +170,10 @@ int main(int argc, char **argv)
     return 0;
 }
 """)
-    program = build(tmp_path, "main.c", flags=["-std=c99", "-O1"])
-    done = subprocess.run([str(program), str(tmp_path / "some_model.lbm")], capture_output=True,
+    program = build(tmp_path, "main.c", "some_model.c", flags=["-std=c99", "-O1"])
+    done = subprocess.run([str(program)], capture_output=True, check=True,
                           input=" ".join(f"{p} {ms}" for p, ms in stream).encode())
-    assert done.returncode == 0
-    with NativeModel(model) as native:
-        expected = native.synthesise([stream])[0]
-    assert np.array_equal(np.frombuffer(done.stdout, "<i2").reshape(-1, 13), expected)
+    assert np.array_equal(np.frombuffer(done.stdout, "<i2").reshape(-1, 13), device_frames(model, [stream])[0])
 
 
 def test_sizes_that_are_printed_are_the_librarys(tmp_path: Path) -> None:
@@ -211,9 +204,3 @@ int main(void)
 
     descriptors = CHANNELS * on_32_bits(channel_head, channel_pointers) + on_32_bits(head, pointers)
     assert emit.table_bytes(model)["descriptors"] == descriptors
-
-
-def test_compiler_errors_are_reported(tmp_path: Path) -> None:
-    """A library folder without the library is named, not traced."""
-    with pytest.raises(LabialError, match="--library"):
-        library_root(str(tmp_path))

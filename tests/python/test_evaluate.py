@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from labial.cli import main
+from labial.__main__ import main
 from labial.corpus import Episode
+from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
 from labial.evaluate import protocol
 from labial.evaluate.baselines import trained
@@ -19,8 +20,7 @@ from labial.evaluate.methods import METHODS, select
 from labial.evaluate.report import Cell, cell
 from labial.evaluate.splits import Split
 from labial.evaluate.training import Training
-from labial.frames import write_csv
-from labial.phonesets import SPEECH
+from labial.files.frames import write_csv
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
 from test_evaluate_material import planted, shape_of_phoneme

@@ -9,13 +9,13 @@ from typing import List
 import numpy as np
 import pytest
 
-from labial.cli import main
+from labial.__main__ import main
 from labial.corpus.laughter import is_synthetic
+from labial.corpus.phonesets import LAUGHTER
 from labial.evaluate.material import Utterance, timeline
 from labial.evaluate.measures import Judge, judged_frames, measure_scale
 from labial.evaluate.pulses import longest_train, rises
-from labial.faps import FAP_NAMES
-from labial.phonesets import LAUGHTER
+from labial.files.faps import FAP_NAMES
 from test_evaluate_material import planted
 
 FPS = 50

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from labial.corpus import Episode, Segment
+from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
-from labial.evaluate.bands import bands
-from labial.evaluate.material import Timeline, Utterance, timeline, utterance, utterances
+from labial.evaluate.material import Timeline, Utterance, bands, timeline, utterance, utterances
 from labial.evaluate.splits import make_splits
 from labial.evaluate.training import Training, choose, validation_error
-from labial.phonesets import SPEECH
 from labial.see.motion import Band
 from labial.train import train
 from labial.train.codebook import lbg

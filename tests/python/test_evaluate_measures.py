@@ -7,11 +7,11 @@ from typing import List, Tuple
 import numpy as np
 import pytest
 
+from labial.corpus.phonesets import LAUGHTER, SPEECH
 from labial.evaluate.material import Utterance, timeline
 from labial.evaluate.measures import Judge, judged_frames, measure_scale
 from labial.evaluate.trajectories import amplitude, correlation, differences, joins, labial_parameters
-from labial.faps import FAP_NAMES
-from labial.phonesets import LAUGHTER, SPEECH
+from labial.files.faps import FAP_NAMES
 from test_evaluate_material import planted
 
 FPS = 50

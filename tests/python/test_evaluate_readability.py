@@ -7,10 +7,10 @@ from typing import Dict, List, Optional, Sequence
 import numpy as np
 import pytest
 
+from labial.corpus.phonesets import SPEECH
 from labial.evaluate.material import Utterance, timeline
 from labial.evaluate.readability import MARGIN, POINTS, LipReader, features, spoken, word_classes
 from labial.evaluate.training import Training
-from labial.phonesets import SPEECH
 from test_evaluate_material import planted
 
 FPS = 50

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from avatars import TRUE, document_of, glb, made_head
-from labial.animation import outputs
-from labial.cli import main
+from labial.__main__ import main
 from labial.errors import DataError
 from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
@@ -21,6 +20,7 @@ from labial.fit.judge import judge, matrix
 from labial.fit.kinds import kind_of, known
 from labial.fit.landmarks import read_head
 from labial.fit.sentences import read_sentences
+from labial.rig.animation import outputs
 from labial.rig.description import read
 from runtime import needs_runtime
 

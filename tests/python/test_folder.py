@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import zipfile
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +10,9 @@ import pytest
 from labial.corpus import read_corpus
 from labial.corpus.folder import HEADER, read_frames
 from labial.errors import DataError, LabialError
+from packages import SOURCE
 
 ROW = ",1" * 13
-SOURCE = Path(__file__).resolve().parents[2]
 
 
 def frames(count=10, step=0.1):

@@ -15,9 +15,9 @@ import pytest
 
 from avatars import document_of, glb, made_head
 from browser import CHROMIUM, REASON, Browser
-from labial.animation import face, outputs
-from labial.cli import main
-from labial.faps import FAP_COLUMNS
+from labial.__main__ import main
+from labial.files.faps import FAP_COLUMNS
+from labial.rig.animation import face, outputs
 
 NPM = shutil.which("npm")
 #: Frames of which the third is wide open.

@@ -8,7 +8,7 @@ import pytest
 from labial.corpus import read_corpus
 from labial.corpus.iemocap import align_head, read_iemocap
 from labial.errors import DataError
-from labial.faps import FAP_NAMES
+from labial.files.faps import FAP_NAMES
 
 NAMES = (
     "CH1 CH2 CH3 FH1 FH2 FH3 LC1 LC2 LC3 LC4 LC5 LC6 LC7 LC8 RC1 RC2 RC3 RC4 RC5 RC6 RC7 RC8 LLID RLID MH MNOSE LNSTRL "

@@ -10,16 +10,16 @@ from typing import List, Tuple
 import numpy as np
 import pytest
 
-from labial.animation import FORMATS
-from labial.cli import main
-from labial.faps import CHANNELS
-from labial.frames import at_rate, count_at, sampled
-from labial.model import load
-from labial.phones import drawn_streams
-from labial.quantise import quantise
+from labial.__main__ import main
+from labial.files.faps import CHANNELS
+from labial.files.frames import at_rate, count_at, sampled
 from labial.reference import stream
 from labial.reference.synthesis import synthesise
 from labial.reference.tables import ExportedTables, FloatTables, Tables
+from labial.rig.animation import FORMATS
+from labial.tables.model import load
+from labial.tables.phones import drawn_streams
+from labial.tables.quantise import quantise
 
 Pairs = List[Tuple[int, int]]
 

@@ -306,9 +306,9 @@ def test_the_element_by_itself(browser: Browser, address: str) -> None:
     and a source of another output. Catches frames that are skipped or drawn twice, and promises that nobody keeps."""
     page = opened(browser, address, CLOCK)
     page.evaluate("""(async () => {
-      const {Labial, timings} = await import("labial");
+      const {Labial} = await import("labial");
       window.labial = await Labial.load();
-      window.lab = timings.fromLab(await (await fetch("welcome.lab")).text());
+      window.lab = labial.read(await (await fetch("welcome.lab")).text());
       window.face = document.getElementById("face"); // also while it is not in the page
       window.row = () => Array.from(face.faps);
       window.said = (options) => {
@@ -378,8 +378,8 @@ def test_a_source_that_is_taken_away(browser: Browser, address: str) -> None:
     """Catches a mouth that draws on without a source, and one that then never draws again; and 120 taps in a row."""
     page = opened(browser, address, CLOCK)
     drawn = page.evaluate("""(async () => {
-      const {Labial, timings} = await import("labial"), labial = await Labial.load();
-      const track = labial.render(timings.fromLab(await (await fetch("welcome.lab")).text()));
+      const {Labial} = await import("labial"), labial = await Labial.load();
+      const track = labial.render(labial.read(await (await fetch("welcome.lab")).text()));
       const face = document.getElementById("face"), found = [];
       const drawings = () => { turn(0); turn(20); turn(20); return seen.splice(0).length; };
       for (const source of ["track", "stream"]) {

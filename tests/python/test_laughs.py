@@ -1,54 +1,29 @@
-"""Laughs of a wanted length: the C generator against the exporter's, and both against the synthetic corpus."""
+"""Laughs of a wanted length: the exporter's, to which test_laugh.c holds the library, against the synthetic corpus."""
 
 from __future__ import annotations
 
-import ctypes
-import os
-import subprocess
 from collections import Counter
-from pathlib import Path
 
+import laughs
 import numpy as np
 import pytest
 
 from labial.corpus import laughter
-from labial.laughs import FULL, _Laugh, pieces, table_header
-from labial.phonesets import LAUGHTER, LAUGHTER_GRADES
-
-SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
-
-
-@pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    """lib/laugh.c."""
-    target = tmp_path_factory.mktemp("laugh") / "laugh.so"
-    subprocess.run([os.environ.get("LABIAL_CC", "cc"), "-O1", "-shared", "-fPIC", f"-I{SOURCE}/include",
-                    str(SOURCE / "lib/laugh.c"), "-o", str(target)], check=True)
-    return ctypes.CDLL(str(target))
+from labial.corpus.phonesets import LAUGHTER, LAUGHTER_GRADES
+from labial.reference.laughs import FULL, _Laugh, pieces, table_header
+from packages import SOURCE
 
 
 def test_the_table_is_the_corpus() -> None:
-    """Catches statistics that were changed in the corpus and not on the device: run python -m labial.laughs then."""
+    """Catches statistics that were changed in the corpus and not on the device: run
+    python -m labial.reference.laughs then."""
     assert (SOURCE / "lib/laugh_table.h").read_text(encoding="ascii") == table_header()
 
 
-def test_the_c_suite_knows_the_laughs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Catches laughs that changed and are not written for test_laugh.c: run tests/c/laughs.py then."""
-    monkeypatch.syspath_prepend(str(SOURCE / "tests/c"))
-    assert (SOURCE / "tests/c/laughs.h").read_text(encoding="ascii") == __import__("laughs").table()
-
-
-def test_library_and_exporter_laugh_alike(library: ctypes.CDLL) -> None:
-    """Catches a step of the grammar, a draw or a rounding that one of the two makes otherwise."""
-    state, phoneme, length = (ctypes.c_uint32 * 16)(), ctypes.c_uint(), ctypes.c_uint32()
-    for seed in range(300):
-        asked = (37 * seed) % 2500 if seed % 3 else 60000
-        intensity = seed * 57 % 257
-        assert library.labial_laugh_begin(state, ctypes.c_uint32(asked), intensity, ctypes.c_uint32(seed * 7919)) == 0
-        for label, milliseconds in pieces(asked, intensity, seed * 7919):
-            assert library.labial_laugh_next(state, ctypes.byref(phoneme), ctypes.byref(length)) == 0
-            assert (LAUGHTER.phonemes[phoneme.value], length.value) == (label, milliseconds)
-        assert library.labial_laugh_next(state, ctypes.byref(phoneme), ctypes.byref(length)) > 0
+def test_the_c_suite_knows_the_laughs() -> None:
+    """Catches laughs that changed and are not written for test_laugh.c, which holds the library to the exporter's: run
+    tests/c/laughs.py then."""
+    assert (SOURCE / "tests/c/laughs.h").read_text(encoding="ascii") == laughs.table()
 
 
 def test_statistics_are_those_of_the_corpus() -> None:

@@ -9,9 +9,9 @@ import pytest
 
 from labial.corpus import read_corpus
 from labial.corpus.laughter import generate
+from labial.corpus.phonesets import LAUGHTER, LAUGHTER_GRADES
 from labial.errors import DataError
-from labial.faps import FAP_NUMBERS
-from labial.phonesets import LAUGHTER, LAUGHTER_GRADES
+from labial.files.faps import FAP_NUMBERS
 
 CHANNEL = {number: index for index, number in enumerate(FAP_NUMBERS)}
 ONSETS = [label for label, starts in zip(LAUGHTER.phonemes, LAUGHTER.boundary) if starts]  # of every grade

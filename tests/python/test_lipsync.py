@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from labial.evaluate import lipsync
-from labial.faps import FAP_COLUMNS
+from labial.files.faps import FAP_COLUMNS
 
 #: Opening in 20 frames, mm: at rest, a vowel, a closure, at rest.
 MEANT = np.array([0, 0, 0, 0, 0, 4, 8, 10, 8, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], dtype=float)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from labial.errors import ModelError
-from labial.model import load, save
+from labial.tables.model import load, save
 from models import random_model
 
 

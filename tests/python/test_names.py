@@ -6,14 +6,13 @@ import ctypes
 import os
 import random
 import subprocess
-from pathlib import Path
 
 import pytest
 
-from labial.labels import entries, find
-from labial.phonesets import AUTO, LABEL_SETS, LAUGHTER, PHONE_SETS, SPEECH, aliases_for
+from labial.corpus.labels import entries, find
+from labial.corpus.phonesets import AUTO, LABEL_SETS, LAUGHTER, PHONE_SETS, SPEECH, aliases_for
+from packages import SOURCE
 
-SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
 MODELS = {"speech_en": SPEECH, "laughter_synthetic": LAUGHTER}
 
 #: labial_labels_t of include/labial/names.h.

@@ -12,7 +12,7 @@ from typing import Any, List
 
 import pytest
 
-from labial.phonesets import ARPABET
+from labial.corpus.phonesets import ARPABET
 from labial.rig import FACES
 from npm import MISSING, package
 
@@ -23,14 +23,14 @@ OUTPUTS = ("faps", *FACES)
 #: Reads a list of .lab texts; for each and each output the frames of `labial.render()`.
 SCRIPT = r"""
 const [, url, outputs] = process.argv;
-const { Labial, timings } = await import(url);
+const { Labial } = await import(url);
 const laughter = () => import(url.replace(/\/index\.js$/, "-laughter/index.js"));
 let input = "";
 for await (const piece of process.stdin) input += piece;
 const labial = await Labial.load({ laughter });
 await labial.laughter();
 process.stdout.write(JSON.stringify(JSON.parse(input).map((text) => outputs.split(" ").map((output) => {
-    const track = labial.render(timings.fromLab(text), { output, unknown: "nearest" });
+    const track = labial.render(labial.read(text), { output, unknown: "nearest" });
     return Array.from(track, (frame) => (output === "faps" ? Array.from(frame) : frame));
 }))));
 """

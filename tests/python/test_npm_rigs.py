@@ -12,8 +12,8 @@ from typing import Any, Dict, List
 import pytest
 
 import labial
-from labial.cli import main
-from labial.faps import CHANNELS, FAP_NAMES
+from labial.__main__ import main
+from labial.files.faps import CHANNELS, FAP_NAMES
 from labial.rig import FACES, description_of
 from npm import MISSING, package
 from runtime import needs_runtime

@@ -17,11 +17,11 @@ from typing import Dict, List
 import pytest
 
 import labial.evaluate.run  # noqa: F401, before a test patches what it imports
-from labial import outputs
-from labial.cli import main
+from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.errors import LabialError
-from labial.model import save
+from labial.files import outputs
+from labial.tables.model import save
 from models import random_model
 from packages import CC
 from test_workers import folder as corpus  # noqa: F401, a fixture
@@ -74,7 +74,7 @@ def limited(*arguments: str, size: int = 4096) -> subprocess.CompletedProcess[st
 def test_a_file_that_is_too_large(given: Path) -> None:
     """The model that was there is whole, and the line names it."""
     before = Path("model.npz").read_bytes()
-    script = "from labial.model import load, save\nsave(load('model.npz'), 'model.npz')\n"
+    script = "from labial.tables.model import load, save\nsave(load('model.npz'), 'model.npz')\n"
     done = subprocess.run(
         [sys.executable, "-c", "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
          "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n" + script],
@@ -133,8 +133,8 @@ def test_outputs_are_checked_before_the_work(given: Path, monkeypatch: pytest.Mo
         raise AssertionError("the work began")
 
     Path("folder").mkdir()
-    for name in ("labial.train.train", "labial.corpus.read_corpora", "labial.align.progress.align_with_bar",
-                 "labial.model.load", "labial.corpus.formats.as_lab", "labial.see.motion.read_bands"):
+    for name in ("labial.train.train", "labial.corpus.read_corpora", "labial.sound.align.align_with_bar",
+                 "labial.tables.model.load", "labial.corpus.formats.as_lab", "labial.see.motion.read_bands"):
         monkeypatch.setattr(name, late)
     for command in (["train", "corpus"], ["align", "a.wav"], ["synth", "model.npz", "a.lab"], ["timings", "a.lab"],
                     ["plot", "f.csv"], ["page", "f.csv"]):
@@ -150,7 +150,7 @@ def test_folders_and_options_are_checked_before_the_work(given: Path, monkeypatc
     def late(*_: object, **__: object) -> None:
         raise AssertionError("the work began")
 
-    for name in ("labial.corpus.read_corpora", "labial.evaluate.run.read_corpora", "labial.model.load"):
+    for name in ("labial.corpus.read_corpora", "labial.evaluate.run.read_corpora", "labial.tables.model.load"):
         monkeypatch.setattr(name, late)
     for arguments, complaint in (
         (["evaluate", "corpus", "-o", "a.lab"], "a.lab: not a folder"),

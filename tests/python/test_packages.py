@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 import labial
-from labial.cli import main
-from labial.model import load
-from labial.phones import read_stream
-from labial.quantise import quantise
+from labial.__main__ import main
 from labial.reference.stream import synthesise
 from labial.reference.tables import ExportedTables
 from labial.rig.description import read
 from labial.rig.table import convert, expected
+from labial.tables.model import load
+from labial.tables.phones import read_stream
+from labial.tables.quantise import quantise
 from packages import CC, CMAKE, CXX, PROGRAM, SOURCE, expected_frames, pack, run, warnings
 
 STUB = SOURCE / "tests" / "packages" / "arduino_stub"
@@ -44,8 +44,8 @@ def manifest_versions(root: Path) -> Dict[str, str]:
     return {
         "library.json": json.loads((root / "library.json").read_text(encoding="utf-8"))["version"],
         "idf_component.yml": re.findall(r'^version: "(.*)"$', component, re.MULTILINE)[0],
-        "npm": json.loads((root / "packaging" / "npm" / "package.json").read_text(encoding="utf-8"))["version"],
-        "laughter": json.loads((root / "packaging/npm/laughter/package.json").read_text(encoding="utf-8"))["version"],
+        "npm": json.loads((root / "web" / "package.json").read_text(encoding="utf-8"))["version"],
+        "laughter": json.loads((root / "web/laughter/package.json").read_text(encoding="utf-8"))["version"],
         "__init__.py": re.findall(r'^__version__ = "(.*)"$', python, re.MULTILINE)[0],
         "pack.py": pack("version", root=root).strip(),
     }
@@ -63,7 +63,7 @@ def test_every_manifest_has_the_headers_version() -> None:
 
 
 def test_version_is_set_everywhere(tmp_path: Path) -> None:
-    for name in ("include", "packaging", "export/labial/__init__.py", "library.json", "idf_component.yml"):
+    for name in ("include", "packaging", "web", "export/labial/__init__.py", "library.json", "idf_component.yml"):
         target = tmp_path / name
         target.parent.mkdir(parents=True, exist_ok=True)
         (shutil.copytree if (SOURCE / name).is_dir() else shutil.copyfile)(SOURCE / name, target)

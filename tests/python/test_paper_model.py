@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labial.animation import FORMATS
+from labial.__main__ import main
 from labial.bake.source import Source, read_track
-from labial.cli import main
 from labial.corpus.folder import read_frames
-from labial.model import load, save
-from labial.phones import read_stream
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
+from labial.rig.animation import FORMATS
 from labial.see import motion
+from labial.tables.model import load, save
+from labial.tables.phones import read_stream
 from models import random_model
 
 LAB = "0 0.2 SIL\n0.2 0.3 P1\n0.3 0.42 P2\n0.42 0.5 P3\n0.5 0.9 P4\n0.9 1.3 P1\n1.3 1.8 SIL\n"
@@ -89,8 +89,8 @@ def test_check_says_what_the_device_does_differently(given: Path, capsys: pytest
 
 def test_the_figure_of_check_is_measured_from_the_published_method(given: Path, wanted, capsys) -> None:
     """Held against the frames of the library's own reference on the exported tables, with the rounding of frames."""
-    from labial.quantise import quantise
     from labial.reference.tables import ExportedTables
+    from labial.tables.quantise import quantise
 
     model = load(given / "paper.npz")
     device = stream.synthesise(ExportedTables(quantise(model, "m")), read_stream(given / "phones.lab", model))

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from labial.phonesets import ARPABET, LAUGHTER, PHONE_SETS, SPEECH, VOWELS, candidates_for, normalise, substitute_for
+from labial.corpus.phonesets import (
+    ARPABET,
+    LAUGHTER,
+    PHONE_SETS,
+    SPEECH,
+    VOWELS,
+    candidates_for,
+    normalise,
+    substitute_for,
+)
 
 
 @pytest.mark.parametrize("phone_set", PHONE_SETS.values(), ids=PHONE_SETS)

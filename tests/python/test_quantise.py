@@ -8,10 +8,17 @@ import re
 import numpy as np
 import pytest
 
-from labial import emit, fixed
+from labial.corpus.phonesets import LABEL_SETS
 from labial.errors import ModelError
-from labial.faps import CHANNELS
-from labial.fixed import (
+from labial.evaluate.loss import loosened, measure
+from labial.files.faps import CHANNELS
+from labial.reference import contact
+from labial.reference.stream import DURATION_MAX
+from labial.reference.trajectory import WINDOW
+from labial.reference.viterbi import LAG
+from labial.rig import table
+from labial.tables import emit, fixed
+from labial.tables.fixed import (
     PULL_MAX,
     STIFFNESS_MAX,
     WEIGHT_MIN,
@@ -25,26 +32,18 @@ from labial.fixed import (
     weight_value,
     z_cost,
 )
-from labial.loss import measure
-from labial.model import Model
-from labial.native import library_root
-from labial.phonesets import LABEL_SETS
-from labial.quantise import FORMAT, LIMITS, ExportedModel, quantise
-from labial.reference import contact
-from labial.reference.stream import DURATION_MAX
-from labial.reference.trajectory import WINDOW
-from labial.reference.viterbi import LAG
-from labial.report import loosened
-from labial.rig import table
+from labial.tables.model import Model
+from labial.tables.quantise import FORMAT, LIMITS, ExportedModel, quantise
 from models import random_model, streams
+from packages import SOURCE
 
 
 def test_limits_are_the_librarys() -> None:
     """The exporter and the reference write numbers down that the headers define; one that is changed there alone makes
     models that the library refuses, or another motion."""
     headers = ("model.h", "config.h", "labial.h", "names.h", "rig.h")
-    sources = [library_root() / "include" / "labial" / name for name in headers]
-    sources += [library_root() / "lib" / name for name in ("shape.c", "viterbi.c")]
+    sources = [SOURCE / "include" / "labial" / name for name in headers]
+    sources += [SOURCE / "lib" / name for name in ("shape.c", "viterbi.c")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
     pattern = r"^(?:#define )? *(?:LABIAL_)?(\w+)(?: =)? \(?(-?(?:0x[0-9a-f]+|\d+))u?\)?[,\s]"
     defined = {name: int(value, 0) for name, value in re.findall(pattern, text, re.M)}

@@ -11,13 +11,13 @@ import warnings
 import numpy as np
 import pytest
 
-from labial.cli import main
+from labial.__main__ import main
+from labial.capture.landmarks import USED, Given, parse_size, read_landmarks
+from labial.capture.record import record
 from labial.corpus import read_corpus
+from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError, LabialError
-from labial.faps import FAP_NUMBERS
-from labial.phonesets import SPEECH
-from labial.record.landmarks import USED, Given, parse_size, read_landmarks
-from labial.record.record import record
+from labial.files.faps import FAP_NUMBERS
 
 FACE = {
     33: (-45, -60, 40), 133: (-16, -58, 36), 362: (16, -58, 36), 263: (45, -60, 40), 168: (0, -64, 24), 6: (0, -56, 20),

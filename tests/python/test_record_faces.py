@@ -7,12 +7,12 @@ from typing import List, Optional
 import numpy as np
 import pytest
 
+from labial.capture.faces import talker
+from labial.capture.head import head_angles
+from labial.capture.landmarks import USED, Given
+from labial.capture.record import record
+from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError
-from labial.phonesets import SPEECH
-from labial.record.faces import talker
-from labial.record.head import turns
-from labial.record.landmarks import USED, Given
-from labial.record.record import record
 from test_record import FACE, FRAMES, LAB, seen, talking, write
 
 TIMES = np.arange(100) / 50
@@ -97,7 +97,7 @@ def shaken(points: np.ndarray, yaw: np.ndarray, pitch: np.ndarray) -> np.ndarray
 def test_turns_are_those_of_the_head() -> None:
     """Catches axes that are exchanged: yaw turns x into z, pitch y into z; the face has no pitch of its own."""
     points = seen(np.zeros((3, 13)))
-    found = turns(shaken(points, np.array([0, 25.0, 0]), np.array([0, 0, -15.0]))[:, list(USED)])
+    found = head_angles(shaken(points, np.array([0, 25.0, 0]), np.array([0, 0, -15.0]))[:, list(USED)])
     assert np.allclose(abs(found[:, 0]), [0, 25, 0], atol=0.1) and np.allclose(abs(found[:, 1]), [0, 0, 15], atol=2)
 
 

@@ -13,8 +13,8 @@ import pytest
 from labial.evaluate.methods import METHODS
 from labial.evaluate.protocol import HUMAN
 from labial.evaluate.report import title
+from packages import SOURCE
 
-SOURCE = Path(__file__).resolve().parents[2]
 PINNED = dict(re.findall(r"^([a-z-]+)==(\S+)$", (SOURCE / "export" / "requirements-reproduce.txt").read_text(),
                          re.MULTILINE))
 
@@ -52,7 +52,7 @@ def test_the_bundled_models_are_reproduced(reproduce, tmp_path: Path, capsys: py
     same = reproduce.models(tmp_path)
     if all(version(name) == pinned for name, pinned in PINNED.items() if name in ("numpy", "scipy", "scikit-learn")):
         assert same, capsys.readouterr().out
-    from labial.model import load
+    from labial.tables.model import load
 
     for name in reproduce.MODELS:
         made, committed = load(tmp_path / f"{name}.npz"), load(SOURCE / "export" / "models" / f"{name}.npz")

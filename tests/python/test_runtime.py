@@ -209,6 +209,22 @@ def test_what_cannot_be_laughed(arguments: Tuple[Any, ...], error: type, complai
         stream.laugh(*arguments)
 
 
+@pytest.mark.parametrize(("percent", "error", "complaint"), [
+    (-0.1, LabialError, "an articulation of -0.1 is not within 0 .. 200"),
+    (200.1, LabialError, "an articulation of 200.1 is not"),
+    (float("nan"), LabialError, "an articulation of nan"),
+    ("50", TypeError, "an articulation is a number, not str"),
+    (True, TypeError, "an articulation is a number, not bool"),
+])  # fmt: skip
+def test_what_cannot_be_articulated(percent: Any, error: type, complaint: str) -> None:
+    with labial.Stream() as stream:
+        with pytest.raises(error, match=complaint):
+            stream.articulation(percent)
+        stream.push("AA", 200)
+        stream.end()
+        assert [frame.faps for frame in stream] == labial.render([("AA", 200)])
+
+
 def test_calls_in_the_wrong_order() -> None:
     """The library's own sentence for each, with its number."""
     with labial.Stream() as stream:
@@ -223,6 +239,7 @@ def test_calls_in_the_wrong_order() -> None:
                 call()
     for call in (lambda: stream.push("AA", 1), lambda: stream.laugh(1), lambda: stream.use(labial.speech_en),
                  stream.end, stream.cancel, stream.restart, stream.tick, stream.rest, lambda: next(stream),
+                 lambda: stream.articulation(50),
                  lambda: stream.latency, stream.__enter__):
         with pytest.raises(StreamError, match="the stream is closed"):
             call()

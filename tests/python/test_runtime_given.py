@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import labial
-from labial.cli import main
+from labial.__main__ import main
 from labial.errors import DataError, LabialError
-from labial.phones import read_stream
+from labial.tables.phones import read_stream
 from models import random_model
 from runtime import needs_runtime
 
@@ -87,7 +87,7 @@ def test_weights_are_from_0_to_1() -> None:
     values = face.apply(open_wide)
     assert face.unit == "weight" and values == face.values == labial.Frame(0, tuple(open_wide)).rig("arkit")
     assert 0.3 < values["jawOpen"] <= 1 and all(type(value) is float for value in values.values())
-    from labial.animation import arkit
+    from labial.rig.animation import arkit
 
     expected = arkit(np.array([open_wide], dtype=float))
     assert all(abs(values[name] - expected[name][0]) <= 0.0011 for name in expected)

@@ -10,10 +10,10 @@ from typing import Any, List, Tuple
 import pytest
 
 import labial
-from labial.emit import blob
 from labial.errors import DataError, LabialError, ModelError, StreamError
-from labial.model import load
-from labial.quantise import ExportedModel, quantise
+from labial.tables.emit import blob
+from labial.tables.model import load
+from labial.tables.quantise import ExportedModel, quantise
 from packages import SOURCE
 from runtime import needs_runtime
 

@@ -254,6 +254,14 @@ def test_fap_holds_the_same_motion() -> None:
         assert [frame[fap] for fap in range(4, 14)] == [frame[fap] for fap in range(51, 61)]
 
 
+def test_articulation_is_the_streams() -> None:
+    """Half of every frame, and nothing at 0, but for FAP 17, which follows from the corners; contact does not differ up
+    to 100 percent."""
+    plain, half, still = ([int(value) for row in motion(flite(PHRASE), "--articulation", percent)
+                           for value in [*row[1:3], *row[4:]]] for percent in ("100", "50", "0"))
+    assert max(plain) > 200 and all(abs(a - b / 2) <= 1 for a, b in zip(half, plain)) and not any(still)
+
+
 def test_fap_of_malformed_input_is_not_written() -> None:
     """A fap file that would hold a part of the motion under a header of its own is not written at all."""
     done = say("pau:0.5 m:0.6 b:x\n", "--to", "fap")
@@ -270,7 +278,8 @@ def test_laughter() -> None:
 
 @pytest.mark.parametrize(
     "options",
-    [["--from"], ["--from", "wav"], ["--to=x"], ["--model", "x"], ["--nonsense"], ["x.lab"], ["--to", "csv", "x"]],
+    [["--from"], ["--from", "wav"], ["--to=x"], ["--model", "x"], ["--nonsense"], ["x.lab"], ["--to", "csv", "x"],
+     *(["--articulation", percent] for percent in ("", "201", "-1", "50.5", "1e2", "50 ", "4294967396"))],
 )
 def test_usage_errors(options: List[str]) -> None:
     """Options that mean nothing end with status 2 before anything is read or written."""

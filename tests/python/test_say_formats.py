@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import warnings
 from pathlib import Path
@@ -10,17 +9,17 @@ from typing import List, Tuple
 
 import pytest
 
-from labial.cli import main
+from labial.__main__ import main
 from labial.corpus.formats import read_timings
+from labial.corpus.phonesets import SPEECH
 from labial.corpus.timings import phoneme_segments
 from labial.errors import DataError
-from labial.phonesets import SPEECH
 from labial.see.motion import read_bands
+from packages import SOURCE
 from test_say import motion, pytestmark, say
 
 __all__ = ["pytestmark"]
 
-SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
 SEEDS = SOURCE / "tests/fuzz/seeds/fuzz_timings"
 #: The same sentence in every format.
 SENTENCE = ["sentence.psdur", "sentence.lab", "sentence.pho", "sentence.realised_durations", "sentence.phseg",

@@ -12,10 +12,10 @@ from typing import Any, Dict, List
 import numpy as np
 import pytest
 
-from labial.cli import main
+from labial.__main__ import main
 from labial.errors import DataError
-from labial.faps import FAP_COLUMNS, FAP_NUMBERS
-from labial.frames import even
+from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS
+from labial.files.frames import even
 from labial.see.motion import read_bands, read_fap, read_motion, read_motions
 from labial.see.page import DATA_PLACE, LARGEST_SOUND, MOUTH, MOUTH_PLACE, PLAYER, page
 

@@ -11,10 +11,10 @@ from typing import Any, List, Tuple
 
 import pytest
 
-from labial.cli import main
-from labial.corpus.formats import FORMATS, as_lab, read_timings
+from labial.__main__ import main
+from labial.corpus.formats import as_lab, read_timings
 from labial.corpus.services import LAST_VISEME, LONGEST_BLANK, phonemes_of
-from labial.corpus.timings import SourceSegment, read_lab
+from labial.corpus.timings import SourceSegment, read_segments
 from labial.errors import DataError
 from labial.see.motion import read_bands
 
@@ -51,7 +51,7 @@ def test_sample_is_told_by_itself(name: str, tmp_path: Path) -> None:
     assert all(before[1] == after[0] for before, after in zip(found, found[1:])) and found[0][0] == 0
     assert found == phonemes(SAMPLES / name, source)
     assert main(["timings", str(SAMPLES / name), "--from", source, "-o", str(tmp_path / "a.lab")]) == 0
-    assert [(s.start, s.end, s.label) for s in read_lab(tmp_path / "a.lab")] == found
+    assert [(s.start, s.end, s.label) for s in read_segments(tmp_path / "a.lab", "lab")] == found
     bands = [band.label for band in read_bands(SAMPLES / name) if band.kind != "silence"]
     assert bands == [word for word in words.split() if word != "SIL"]
 
@@ -162,7 +162,7 @@ def test_malformed_files(tmp_path: Path, source: str, content: Any, line: Any, w
     """One line that names the file, the line where there is one, and what is wrong."""
     path = put(tmp_path, content)
     with pytest.raises(DataError) as caught:
-        FORMATS[source].read(path)
+        read_timings(path, source)
     text = str(caught.value)
     assert text.startswith(f"{path}:{line}: " if line else f"{path}: ") and words in text and "\n" not in text
 

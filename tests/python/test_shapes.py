@@ -7,8 +7,8 @@ import pytest
 from scipy.special import logsumexp
 from sklearn.mixture import GaussianMixture
 
+from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
-from labial.phonesets import SPEECH
 from labial.reference.shape import choose, shapes
 from labial.train.context import log_normal
 from labial.train.shapes import (

@@ -11,10 +11,10 @@ import pytest
 
 from labial.evaluate import side_by_side
 from labial.evaluate.trajectories import labial_parameters
-from labial.model import save
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
 from labial.reference.units import frame_counts
+from labial.tables.model import save
 from models import random_model
 
 TIMINGS = "0.000 0.200 SIL\n0.200 0.300 P1\n0.300 0.400 P2\n0.400 0.520 P1\n0.520 0.900 P4\n"

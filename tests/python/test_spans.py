@@ -6,7 +6,7 @@ from itertools import groupby
 
 import numpy as np
 
-from labial.spans import spans, spans_told
+from labial.files.frames import spans, spans_told
 
 
 def test_spans_are_the_stretches() -> None:

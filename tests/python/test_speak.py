@@ -17,8 +17,9 @@ from typing import List, Tuple
 import numpy as np
 import pytest
 
+from packages import SOURCE
+
 PROGRAMS = {name: os.environ.get(f"LABIAL_SAY_{name.upper()}", "") for name in ("flite", "espeak")}
-SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
 TEXT = "Mama may be home. Papa may be happy. Bob made a map, maybe. Pam bombed a baby mob."
 
 
@@ -141,10 +142,10 @@ def test_lips_are_shut_while_espeak_is_silent(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def closure(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    """examples/speak/closure.c as a library."""
+    """tools/speak/closure.c as a library."""
     target = tmp_path_factory.mktemp("closure") / "closure.so"
     subprocess.run([os.environ.get("LABIAL_CC", "cc"), "-O1", "-shared", "-fPIC",
-                    str(SOURCE / "examples/speak/closure.c"), "-o", str(target)], check=True)
+                    str(SOURCE / "tools/speak/closure.c"), "-o", str(target)], check=True)
     library = ctypes.CDLL(str(target))
     library.closure_begin.restype = ctypes.c_uint64
     return library

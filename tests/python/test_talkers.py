@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labial.cli import main
+from labial.__main__ import main
 from labial.corpus import Episode, Segment, Source, read_corpora, read_corpus, resample
 from labial.corpus.folder import HEADER
+from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError, LabialError
 from labial.evaluate import protocol
 from labial.evaluate.trajectories import lips
-from labial.model import load
-from labial.phonesets import SPEECH
+from labial.tables.model import load
 from labial.train import train
 from labial.train.recordings import recordings
 from packages import SOURCE
@@ -71,6 +71,8 @@ def test_the_file_tells_talkers_weights_and_what_is_left_out(tmp_path) -> None:
     ('"fap16"', '"fap18"', ": leave_out: no channel is called 'fap18'; did you mean fap"),
     ('"fap16"', "16", ": leave_out: no channel is called 16"),
     ('"fap16"', "[1]", ": leave_out: no channel is called [1]"),
+    ("silences = false", 'scale = "fap53"', ": scale: is not a list of channels"),
+    ("silences = false", 'scale = ["fap5"]', ": scale: no channel is called 'fap5'; did you mean fap"),
     ('["fap16", "fap17"]', str([f"fap{n}" for n in (3, 16, 17, *range(51, 61))]), ": leave_out: nothing is left"),
     ('["anna_*"]', '"anna_*"', ": talkers.anna: is not a list of names or patterns"),
     ('["anna_*"]', "[3]", ": talkers.anna: is not a list of names or patterns"),
@@ -106,6 +108,22 @@ def test_recordings_are_brought_to_the_first_corpus(tmp_path) -> None:
     np.testing.assert_allclose(np.corrcoef(moved[:, 4], still.frames[:, 4])[0, 1], 1.0)
 
 
+def test_a_corpus_gives_its_scale_to_all(tmp_path) -> None:
+    # Catches a scale that the first corpus or a talker keeps, another channel's, and a mean that is taken along.
+    first = corpus(tmp_path / "first", ["x"], scale=2.0, offset=30.0)
+    second = corpus(tmp_path / "second", scale=0.5, offset=-300.0, toml='scale = ["fap53"]\n')
+    third = corpus(tmp_path / "third", ["y"], scale=3.0)
+    (alone,) = read_corpora([first])
+    found = [item.frames[50:] for items in read_corpora([first, second, third]) for item in items]
+    plain = alone[0].frames[50:]
+    recordings_of_second = np.concatenate(found[1:-1])
+    for speech in (found[0], recordings_of_second, found[-1]):
+        np.testing.assert_allclose(speech.mean(axis=0), plain.mean(axis=0))
+        np.testing.assert_allclose(np.delete(speech.std(axis=0), 5), np.delete(plain.std(axis=0), 5))
+        np.testing.assert_allclose(speech[:, 5].std(), np.concatenate(
+            [item.frames[50:, 5] for item in read_corpus(second)]).std())
+
+
 def test_a_recording_that_does_not_move_is_only_shifted(tmp_path) -> None:
     # Catches a division by a standard deviation of 0.
     first, second = corpus(tmp_path / "a", ["x"]), corpus(tmp_path / "b", ["y"], scale=0.0, offset=7.0)
@@ -133,7 +151,7 @@ def test_what_every_corpus_leaves_out_is_learnt_with_a_warning(tmp_path) -> None
     addresses = SOURCE / "export" / "corpora" / "addresses"
     with pytest.warns(UserWarning, match="every corpus leaves out fap16, fap17, silences: learnt all the same"):
         (corpus,) = read_corpora([addresses])
-    assert all(not item.source.left_out and item.source.silences and item.source.weight == 2 for item in corpus)
+    assert all(not item.source.left_out and item.source.silences and item.source.weight == 1.25 for item in corpus)
     folder = tmp_path / "all"
     shutil.copytree(addresses, folder)
     (folder / "corpus.toml").unlink()

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from labial.corpus import Episode, Segment, resample
+from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
-from labial.model import Model, load, save
-from labial.phonesets import SPEECH
 from labial.reference import stream as carried_on
 from labial.reference.synthesis import synthesise
 from labial.reference.tables import FloatTables
+from labial.tables.model import Model, load, save
 from labial.train import backed_off, kernels, pipeline, train
 from labial.train.codebook import features, lbg
 from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
@@ -185,7 +185,7 @@ def test_training_sees_what_the_run_time_will_do(monkeypatch):
 
     monkeypatch.setattr(pipeline, "match_states", matched)
     unchanged = np.ones(13), np.zeros(13)
-    monkeypatch.setattr(pipeline, "gains", lambda model, material, workers: unchanged)  # would widen what was seen
+    monkeypatch.setattr(pipeline, "gains", lambda *_: unchanged)  # would widen what was seen
     corpus = [episode(seed, 0.3 + 0.05 * seed) for seed in range(8)]
     model = train(corpus, method="labial", jobs=1, search_stride=3, **OPTIONS)
     tables = FloatTables(replace(model, log_transition=seen["tables"].log_transition))  # those that were searched with

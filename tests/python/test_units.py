@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from labial.quantise import quantise
 from labial.reference.stream import aims, synthesise
 from labial.reference.tables import ExportedTables, FloatTables
 from labial.reference.units import Segment, frame_counts, segments, unit_ends
+from labial.tables.quantise import quantise
 from models import random_model, streams
 
 SIL, VOWEL, REST = 0, 1, 2

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from hmmlearn.hmm import GaussianHMM
 
+from labial import BUNDLED
 from labial.evaluate.search import units_path
-from labial.fixed import LEAP, SEARCHED
-from labial.model import load
-from labial.phones import drawn_streams
-from labial.quantise import ExportedModel, quantise
 from labial.reference.published import path_cost
 from labial.reference.stream import aims
 from labial.reference.tables import ExportedTables, FloatTables
 from labial.reference.viterbi import Chains, block_at, block_ends, decode, looked_at, normal_chains, window
-from labial.runtime import BUNDLED
+from labial.tables.fixed import LEAP, SEARCHED
+from labial.tables.model import load
+from labial.tables.phones import drawn_streams
+from labial.tables.quantise import ExportedModel, quantise
 from models import random_model, streams
 
 ALL = 1000  # a lag and a window that leave nothing out

@@ -23,10 +23,10 @@ from packages import CMAKE, SOURCE, run
 from runtime import conformance_frames, conformance_scripts
 from scripts import digest
 
-LIBRARY = "labial/runtime/labial_runtime.so"
+LIBRARY = "labial/core/labial_runtime.so"
 #: ELF's numbers of the processors.
 MACHINES = {"x86_64": 62, "aarch64": 183}
-#: What the library is built with (packaging/python/CMakeLists.txt).
+#: What the library is built with (flat/CMakeLists.txt).
 LIMITS = ("-DLABIAL_QUEUE=32", "-DLABIAL_MODELS=64")
 QEMU = shutil.which("qemu-aarch64")
 ROOT = Path("/usr/aarch64-linux-gnu")
@@ -75,7 +75,7 @@ def test_wheels_are_what_their_names_say(wheels: Dict[str, Path]) -> None:
         assert library[:4] == b"\x7fELF" and int.from_bytes(library[18:20], "little") == MACHINES[platform]
         needed = {tuple(map(int, version.split(b"."))) for version in re.findall(rb"GLIBC_([\d.]+)", library)}
         assert needed and max(needed) <= (2, 17)
-        assert {"labial/cli.py", "labial/models/speech_en.npz", "labial/library/lib/stream.c"} <= set(files)
+        assert {"labial/__main__.py", "labial/models/speech_en.npz"} <= set(files)
 
 
 def _contents(wheel: Path) -> Dict[str, bytes]:

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info
 
-from labial.cli import main
+from labial.__main__ import main
 from labial.corpus.folder import HEADER
 from labial.errors import LabialError
 from labial.train.workers import Workers
@@ -97,7 +97,7 @@ def test_a_cluster_evaluates_the_same_bytes(folder: Path, cluster: str, tmp_path
 WORKING = """
 import sys
 import labial.corpus, labial.train, working
-from labial.cli import main
+from labial.__main__ import main
 from labial.train.workers import Workers
 def train(*_, jobs, engine, **__):
     with Workers(jobs, False, engine) as workers:

@@ -59,6 +59,21 @@ add_test(NAME ruff WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
   COMMAND "${python}" -m ruff check --no-cache bench examples export packaging tests)
 set_tests_properties(ruff PROPERTIES FIXTURES_REQUIRED python)
 
+# What may import what, and types: pyproject.toml. Neither tool runs on the oldest Python.
+if(Python3_VERSION VERSION_GREATER_EQUAL 3.10)
+  add_test(NAME imports WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+    COMMAND "${environment}/bin/lint-imports" --no-cache)
+  add_test(NAME types WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+    COMMAND "${python}" -m mypy --cache-dir "${PROJECT_BINARY_DIR}/mypy")
+  set_tests_properties(imports types PROPERTIES FIXTURES_REQUIRED python
+    ENVIRONMENT "PYTHONPATH=${PROJECT_SOURCE_DIR}/export;PYTHONDONTWRITEBYTECODE=1")
+endif()
+
+# That the oldest Python has what the package uses.
+add_test(NAME oldest_python WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+  COMMAND "${environment}/bin/vermin" --target=3.9- --violations --no-tips export/labial)
+set_tests_properties(oldest_python PROPERTIES FIXTURES_REQUIRED python)
+
 set(variables
   "PYTHONPATH=${PROJECT_SOURCE_DIR}/export"
   PYTHONDONTWRITEBYTECODE=1
@@ -75,7 +90,7 @@ if(LABIAL_SPTK)
 endif()
 if(TARGET labial-say)
   list(APPEND variables "LABIAL_SAY=$<TARGET_FILE:labial-say>" "LABIAL_DEMO_PAGE=${LABIAL_DEMO_PAGE}"
-    "LABIAL_PROGRAMS=$<TARGET_FILE_DIR:labial-say>:$<TARGET_FILE_DIR:labial-bench>")
+    "LABIAL_PROGRAMS=$<TARGET_FILE_DIR:labial-say>:$<TARGET_FILE_DIR:labial-demo>:$<TARGET_FILE_DIR:labial-bench>")
 endif()
 if(TARGET labial-python)
   list(APPEND variables "LABIAL_RUNTIME=$<TARGET_FILE:labial-python>")

@@ -1,13 +1,14 @@
-# Checks what a static library of Labial defines and asks for:
+# Checks the symbols of a static library of Labial:
 #
 #   cmake -D NM=nm -D LIBRARY=liblabial.a -D NAMES=REGEX -P check_symbols.cmake
 #
 # - every global symbol matches NAMES, so that a program's own names are safe;
-# - nothing lies in .data, .bss or common: the library has no state, its tables stay in flash;
+# - .data, .bss and common are empty: the library has no state, its tables stay in flash;
 # - nothing is called but memcpy, memmove, memset and the compiler's own helpers.
 cmake_minimum_required(VERSION 3.22...3.31)
 
-# What compilers call by themselves: division and shifts, stack protection, checked copies, position independence.
+# Functions that compilers call implicitly: division and shifts, stack protection, checked copies, position
+# independence.
 set(helpers "memcpy|memmove|memset|__mem(cpy|move|set)_chk|__aeabi_[a-z0-9_]+|__[a-z]+[sdt]i[23]")
 string(APPEND helpers "|__stack_chk_(fail|guard)|_GLOBAL_OFFSET_TABLE_")
 

@@ -1,6 +1,6 @@
-# Coverage: no branch of the library that the suites do not take. Included by tests/CMakeLists.txt.
+# Coverage: the suites must take every branch of the library. Included by tests/CMakeLists.txt.
 
-# A line that is left out names its reason: GCOVR_EXCL_BR_LINE and its like, in a comment.
+# A comment with GCOVR_EXCL_BR_LINE or the like gives the reason for each excluded line.
 find_program(LABIAL_GCOVR gcovr)
 mark_as_advanced(LABIAL_GCOVR)
 if(NOT LABIAL_GCOVR OR NOT CMAKE_C_COMPILER_ID STREQUAL "GNU")

@@ -1,4 +1,5 @@
-# What the library is made of: its symbols, what must not compile, headers and C++11. Included by tests/CMakeLists.txt.
+# Tests of the library's sources: symbols, code that must not compile, headers and C++11. Included by
+# tests/CMakeLists.txt.
 
 if(CMAKE_EXECUTABLE_FORMAT STREQUAL "ELF" AND CMAKE_NM)
   foreach(library IN ITEMS labial ${LABIAL_BUNDLED_MODELS})
@@ -17,15 +18,15 @@ else()
   labial_disabled_test(symbols)
 endif()
 
-# What the library relies on and cannot have: it must not compile, and the compiler must say why.
+# Without its requirements the library must not compile, and the compiler must say why.
 function(labial_refused name compiler file sentence)
-  add_test(NAME refuses_${name} COMMAND "${CMAKE_COMMAND}" -D "COMPILER=${compiler}"
-    -D "OPTIONS=-std=c99;-I${PROJECT_SOURCE_DIR}/include;-I${PROJECT_SOURCE_DIR}/lib;${ARGN}"
-    -D "FILE=${PROJECT_SOURCE_DIR}/lib/${file}" -D "REASON=${sentence}" -P "${LABIAL_TEST_SETUP}/check_refused.cmake")
+  add_test(NAME refuses_${name} COMMAND "${compiler}" -fsyntax-only -std=c99 "-I${PROJECT_SOURCE_DIR}/include"
+    "-I${PROJECT_SOURCE_DIR}/lib" ${ARGN} -x c "${PROJECT_SOURCE_DIR}/lib/${file}")
+  set_tests_properties(refuses_${name} PROPERTIES PASS_REGULAR_EXPRESSION "error: .*${sentence}")
 endfunction()
 
-# labial_refused_limit(<limit> <least> <most> <other options>...): neither what is beyond the limits, nor an expression
-# that another operator would take apart, nor an unsigned number, nor none.
+# labial_refused_limit(<limit> <least> <most> <other options>...): refuses numbers beyond the limits, expressions
+# without parentheses, unsigned numbers, and empty definitions.
 function(labial_refused_limit limit least most)
   math(EXPR below "${least} - 1")
   math(EXPR above "${most} + 1")
@@ -70,10 +71,10 @@ file(GLOB public_headers CONFIGURE_DEPENDS
 file(GLOB private_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/lib/*.h")
 set(include_paths "-I${PROJECT_SOURCE_DIR}/include" "-I${PROJECT_SOURCE_DIR}/lib")
 
+# Each file by itself, without keeping the result.
 function(labial_source_check name compiler language options)
-  add_test(NAME ${name} COMMAND "${CMAKE_COMMAND}" -D "COMPILER=${compiler}" -D LANGUAGE=${language}
-    -D "OPTIONS=${options};${LABIAL_WARNINGS};${include_paths}" -D "FILES=${ARGN}"
-    -P "${LABIAL_TEST_SETUP}/check_sources.cmake")
+  add_test(NAME ${name} COMMAND "${compiler}" -fsyntax-only -Werror ${options} ${LABIAL_WARNINGS} ${include_paths}
+    -x ${language} ${ARGN})
 endfunction()
 
 labial_source_check(headers_c99 "${CMAKE_C_COMPILER}" c -std=c99 ${public_headers} ${private_headers})
@@ -87,8 +88,8 @@ else()
   labial_disabled_test(library_cxx11)
 endif()
 
-# How the C is laid out, by .clang-format; other versions of clang-format lay some lines out otherwise. What programs
-# wrote stays as they wrote it.
+# Checks the layout of the C by .clang-format; other versions of clang-format differ in some lines. Generated files are
+# excluded.
 find_program(LABIAL_CLANG_FORMAT NAMES clang-format-14 clang-format)
 mark_as_advanced(LABIAL_CLANG_FORMAT)
 set(format_version "")
@@ -97,7 +98,7 @@ if(LABIAL_CLANG_FORMAT)
 endif()
 if(format_version MATCHES "version 14\\.")
   set(laid_out "")
-  foreach(folder IN ITEMS bench boards examples include lib packaging tests)
+  foreach(folder IN ITEMS bench boards examples flat include lib tests tools)
     file(GLOB_RECURSE files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.[ch]")
     list(APPEND laid_out ${files})
   endforeach()

@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 import soundfile
 
-from labial.align.sound import RATE, read_sound
-from labial.cli import main
+from labial.__main__ import main
+from labial.capture.landmarks import INDEX, Given, read_landmarks
 from labial.corpus import read_corpus
-from labial.record.landmarks import INDEX, Given, read_landmarks
-from labial.record.video import pictures
+from labial.sound.samples import RATE, read_sound
+from labial.sound.video import pictures
 
 SECONDS = 2.4
 STILL = 0.6  # seconds with closed lips, at both ends

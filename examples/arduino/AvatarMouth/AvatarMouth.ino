@@ -29,7 +29,7 @@ static void onFrame(void *, uint32_t, const int16_t faps[LABIAL_CHANNELS])
     avatar.setMouthOpenRatio((float)thousandths / 1000.0f);
 }
 
-// Takes one frame up, and delivers the one of `delay` frames ago.
+// Accepts one frame, and delivers the one accepted `delay` frames ago.
 static void nextTick()
 {
     talking = talk_phonemes_feed(&face, &nextPhoneme) == LABIAL_OK && labial_tick(&face) != LABIAL_DONE;

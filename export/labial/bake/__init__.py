@@ -1,1 +1,1 @@
-"""Motion or phonemes as a C header to compile: ``labial bake``."""
+"""Motion or phonemes as a C header: ``labial bake``."""

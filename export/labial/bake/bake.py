@@ -8,10 +8,10 @@ from typing import List, Optional
 
 from labial.bake import phonemes, track
 from labial.bake.source import RATE, Source, read_phonemes, read_track
-from labial.emit import check_name
 from labial.errors import LabialError
-from labial.grammar import is_number
-from labial.outputs import check_folder, folder
+from labial.files.c import check_name
+from labial.files.grammar import is_number
+from labial.files.outputs import check_folder, folder
 from labial.rig.description import read
 from labial.rig.table import convert
 

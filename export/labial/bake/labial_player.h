@@ -1,7 +1,7 @@
 /*
- * labial_player.h - plays motion that `labial bake` has computed ahead: a byte per output and frame, 50 frames a second.
- * For boards that are too small to compute it, such as an Arduino Uno; the program that plays it needs nothing else of
- * Labial. `labial bake` writes this file beside each header that needs it; docs/arduino.md leads to a moving jaw.
+ * labial_player.h - plays baked motion (`labial bake`): a byte per output and frame, 50 frames a second. For boards
+ * that are too small to compute motion, such as an Arduino Uno; the program needs nothing else of Labial. `labial bake`
+ * writes this file beside each header that needs it; docs/arduino.md shows how to move a jaw.
  *
  *     #include "talk.h"                                  // labial bake talk.wav -o talk.h
  *     static labial_player_t player;
@@ -12,7 +12,7 @@
  *         servo.writeMicroseconds(talk_jaw(frame));
  *
  * C99 and C++. On an AVR the bytes stay in flash. There a player takes 4 bytes of RAM, 8 where pointers have 32 bits;
- * its code is measured in docs/arduino.md. Nothing here is checked at run time, since nothing comes from outside.
+ * docs/arduino.md has the size of its code. Nothing is checked at run time, since all input is compiled in.
  */
 #ifndef LABIAL_PLAYER_H
 #define LABIAL_PLAYER_H
@@ -29,16 +29,16 @@
 #define LABIAL_PLAYER_READ(address) (*(address))
 #endif
 
-/* Version of what `labial bake` writes. Headers of another version do not compile. */
+/* Version of the format of `labial bake`. Headers of another version do not compile. */
 #define LABIAL_PLAYER_FORMAT 1
 
-/* Where in a track a program is. The program owns it; it may be copied. */
+/* The position in a track. The program owns it; it may be copied. */
 typedef struct {
     const uint8_t *next; /* the frame that comes next, in flash */
     size_t left;         /* frames that are still to come */
 } labial_player_t;
 
-/* Goes to the beginning of `frames` frames that stand behind each other at `bytes`. */
+/* Goes to the beginning of `frames` consecutive frames at `bytes`. */
 static inline void labial_player_begin(labial_player_t *player, const uint8_t *bytes, size_t frames)
 {
     player->next = bytes;
@@ -46,7 +46,7 @@ static inline void labial_player_begin(labial_player_t *player, const uint8_t *b
 }
 
 /*
- * Takes the next frame, which has `outputs` bytes. Call it every 20 ms. Returns the frame, which
+ * Advances to the next frame, which has `outputs` bytes. Call it every 20 ms. Returns the frame, which
  * labial_player_value() reads, or NULL when there is none.
  */
 static inline const uint8_t *labial_player_next(labial_player_t *player, size_t outputs)

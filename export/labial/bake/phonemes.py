@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Sequence, Tuple
 
-from labial.bake.text import comment, rows
-from labial.emit import check_name, constants_of
+from labial.files.c import check_name, constants_of, rows, written_by
 
 #: An entry is milliseconds times this, and the phoneme's number; no phoneme lasts longer than an hour, 2^22 ms.
 _SHIFT = 8
@@ -19,7 +18,7 @@ def header(name: str, source: str, model: str, labels: Sequence[str], phonemes: 
     seconds = sum(milliseconds for _, milliseconds in phonemes) / 1000.0
     about = f"{name}.h - {len(phonemes)} phonemes, {seconds:.1f} s, of {source}, for the model {model}."
     entries = rows(f"{names[phoneme]} | {milliseconds}ul << {_SHIFT}" for phoneme, milliseconds in phonemes)
-    return f"""{comment(about)}#ifndef LABIAL_PHONEMES_{upper}_H
+    return f"""{written_by("bake", about, 118)}#ifndef LABIAL_PHONEMES_{upper}_H
 #define LABIAL_PHONEMES_{upper}_H
 
 #include "{model}.h"

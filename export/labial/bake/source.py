@@ -1,4 +1,4 @@
-"""What is baked: phoneme timings, a sound or frames, and which of these a file is."""
+"""The input of baking: phoneme timings, a sound or frames, recognised by the file."""
 
 from __future__ import annotations
 
@@ -11,41 +11,40 @@ from typing import List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
-from labial.bundled import BY_KIND
 from labial.corpus.formats import SOUNDS, read_timings
+from labial.corpus.phonesets import AUTO
 from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments
 from labial.errors import DataError, LabialError, needs
-from labial.frames import even
-from labial.model import Model, load
-from labial.phones import Stream, phone_set, stream_of
-from labial.phonesets import AUTO
+from labial.files.frames import even, spans
 from labial.see.motion import read_motion
-from labial.spans import spans
+from labial.tables.bundled import BY_KIND
+from labial.tables.model import Model, load
+from labial.tables.phones import Stream, phone_set, stream_of
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
-#: Suffixes, in small letters, of what holds frames; what is no sound either holds timings.
+#: Suffixes, in small letters, of frames; other files are sounds or timings.
 FRAMES = (".csv", ".fap")
 #: Frames per second of a track.
 RATE = 50
-#: Frames that a track has at most: five and a half hours.
+#: Most frames of a track: five and a half hours.
 _LONGEST = 1_000_000
-#: Seconds of a pause in which a track may be cut, and FAP units that frames hardly move by, one from the next.
+#: Shortest pause in which a track may be cut, seconds, and the largest change between still frames, FAP units.
 PAUSE, _STILL = 0.4, 1.0
-#: Milliseconds of silence that what is baked ends with. In a long pause a mouth comes to rest within 16 frames.
+#: Milliseconds of silence at the end of baked motion. In a long pause a mouth comes to rest within 16 frames.
 REST = 500
 
 
 @dataclass(frozen=True)
 class Source:
-    """What the command was told about its input."""
+    """The command's options about its input."""
 
     path: str
     model: Optional[str] = None  #: a model's file or name; without it the bundled one that knows the labels
-    text: Optional[str] = None  #: what is said in a sound
+    text: Optional[str] = None  #: the text of a sound
     labels: str = AUTO
     format: Optional[str] = None  #: of the timings; told by the file without it
-    progress: bool = False  #: whether a bar is shown while a sound is gone through
+    progress: bool = False  #: whether to show a progress bar for a sound
 
     @property
     def is_sound(self) -> bool:
@@ -71,7 +70,7 @@ def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
 
 
 def _rested(phonemes: Stream, model: Model) -> Stream:
-    """Phonemes that end with `REST` of silence at least: the mouth comes to rest behind a sound that is cut close."""
+    """Phonemes that end with at least `REST` of silence: the mouth comes to rest after a tightly cut sound."""
     silence = model.phonemes.index(model.silence)
     last = phonemes[-1][1] if phonemes and phonemes[-1][0] == silence else 0
     return [*(phonemes[:-1] if last else phonemes), (silence, max(last, REST))]
@@ -85,7 +84,7 @@ def _timed(source: Source) -> List[SourceSegment]:
 
 def _heard(source: Source) -> List[SourceSegment]:
     with needs("a sound", "align"):
-        from labial.align.progress import align_with_bar
+        from labial.sound.align import align_with_bar
     found = align_with_bar(source.path, source.text, source.progress)
     if source.text is None:
         warnings.warn(f"{source.path}: without its text (--text, --text-file) phonemes are less sure", stacklevel=2)
@@ -109,16 +108,16 @@ def read_track(source: Source) -> Motion:
         frames = _at_rate(source.path, motion.times, motion.frames)
         still = np.abs(np.diff(frames, axis=0)).max(axis=1, initial=0.0) < _STILL
         return Motion(frames, _long(np.append(still, False)))
-    from labial.quantise import quantise
     from labial.reference import stream, synthesis
     from labial.reference.tables import ExportedTables
+    from labial.tables.quantise import quantise
 
     model, _, phonemes = read_phonemes(source)
     seconds = sum(milliseconds for _, milliseconds in phonemes) / 1000.0
     _check_length(source.path, seconds)
     if synthesis.is_published(model):
         frames = synthesis.synthesise(model, phonemes)
-    else:  # on the tables that a board would have: a choice at a near tie is then the same as there
+    else:  # on the integer tables, so that choices at near ties are those of a board
         frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
     frames = _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
     silence = model.phonemes.index(model.silence)

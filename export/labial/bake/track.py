@@ -2,32 +2,34 @@
 
 from __future__ import annotations
 
+from array import array
 from dataclasses import dataclass
 from typing import List, Optional, Sequence
 
 import numpy as np
 
 from labial.bake.source import RATE
-from labial.bake.text import comment, rows
 from labial.errors import DataError
+from labial.files.c import rows, written_by
+from labial.files.frames import spans
 from labial.rig.description import Output, Rig
 from labial.rig.gestures import GESTURES
-from labial.rig.table import TableOutput, moved
+from labial.rig.table import TableOutput
 from labial.rig.units import make_unit
-from labial.spans import spans
+from labial.runtime.rig import Rig as Face
 
 #: LABIAL_PLAYER_FORMAT of labial_player.h.
 FORMAT = 1
 #: Largest difference of an output's limits, for which the player's sums stay below 2^31.
 SPAN_MAX = 8_000_000
-#: Bytes that an array has at most on an AVR, and those of its flash that are read by a pointer of 16 bits.
+#: Most bytes of an array on an AVR, and of its flash that a pointer of 16 bits reaches.
 AVR_LARGEST = 32767
 AVR_FLASH = 65535
 #: Frames before the end of a pause in which a part may begin: the mouth prepares for what follows.
 BEFORE = 15
 
 _OPENING = GESTURES["opening"]
-#: A jaw and nothing else, as examples/faces/jaw.toml describes it: microseconds with the lips closed and wide open.
+#: A jaw alone, as in examples/faces/jaw.toml: microseconds with the lips closed and wide open.
 JAW = Rig("jaw", make_unit("us"), (Output("jaw", _OPENING.weights, 500.0 / (_OPENING.reach or 1.0), 1400.0, 1400.0,
                                           1900.0, False, 0.0, False, 1400.0),), "jaw")
 
@@ -35,22 +37,24 @@ JAW = Rig("jaw", make_unit("us"), (Output("jaw", _OPENING.weights, 500.0 / (_OPE
 def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray) -> np.ndarray:
     """(T, N) uint8: the rig's outputs for (T, 13) FAPs, 0 for an output's minimum and 255 for its maximum.
 
-    FAPs are rounded to whole units and go through the rig as ``labial_rig_apply_ahead`` has it with all frames in
-    sight, from rest. Raises DataError for limits further apart than `SPAN_MAX`.
+    FAPs are rounded to integers and converted like ``labial_rig_apply_ahead`` with all frames in sight, from rest.
+    Raises DataError for limits further apart than `SPAN_MAX`.
     """
     for output in table:
         if output.maximum - output.minimum > SPAN_MAX:
             raise DataError(rig.path, None, f"output.{output.name}.maximum: more than {SPAN_MAX} {rig.unit.text} above "
                             "the minimum, too far apart for bytes")
-    values = moved(table, np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int64), len(frames))
+    whole = array("h", np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int16).tobytes())
+    values = np.array(Face.of(rig).play(whole, 65535), dtype=np.int64).reshape(len(frames), len(table))
     low = np.array([output.minimum for output in table])
     span = np.array([max(output.maximum - output.minimum, 1) for output in table])
-    return ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)
+    result: np.ndarray = ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)
+    return result
 
 
 @dataclass(frozen=True)
 class Part:
-    """Some of a track's frames, which have an array of their own."""
+    """A part of a track, with its own array."""
 
     begin: int  #: their first
     end: int  #: the one behind their last
@@ -87,7 +91,7 @@ def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], frame
     about = (f"{name}.h - {len(data) / RATE:.1f} s of motion from {source}, {RATE} frames a second, a byte for each of "
              f"{count} output{'s' * (count > 1)}. Values are {rig.unit.text}.")
     places = ",\n".join(f"    {upper}_{output.name.upper()} = {number}" for number, output in enumerate(table))
-    return f"""{comment(about)}#ifndef LABIAL_BAKED_{upper}_H
+    return f"""{written_by("bake", about, 118)}#ifndef LABIAL_BAKED_{upper}_H
 #define LABIAL_BAKED_{upper}_H
 
 #include "labial_player.h"

@@ -1,17 +1,16 @@
-"""The commands of ``labial``, one module each: its arguments and, beside them, what it runs.
+"""The commands of ``labial``, one module each: its arguments and the code that it runs.
 
-A command's module has two functions. ``add_arguments(command)`` gives its :class:`argparse.ArgumentParser` the
-arguments; ``run(options)`` does the work and returns the exit status. `labial.cli` loads the module of the command that
-is asked for and no other. The modules import nothing at their top that needs more than Python itself, so that help can
-be read where numpy is not installed; what a command needs it imports when it runs.
+A command's module has two functions: ``add_arguments(command)`` adds the arguments to its
+:class:`argparse.ArgumentParser`; ``run(options)`` does the work and returns the exit status. `labial.__main__` imports
+only the module of the named command. At their top the modules import only what Python contains, so that help works
+without numpy; a command imports other packages when it runs.
 """
 
 from __future__ import annotations
 
 from typing import Dict
 
-#: What the help says of each command, in its order. The module of NAME is ``labial.commands.NAME``, with ``_`` for
-#: ``-``.
+#: The help of each command, in its order. The module of NAME is ``labial.commands.NAME``, with ``_`` for ``-``.
 COMMANDS: Dict[str, str] = {
     "train": "train a model on a corpus",
     "synth": "synthesise frames with the float64 reference",

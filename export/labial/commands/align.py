@@ -10,7 +10,7 @@ from labial.errors import needs
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """A sound, and what is said in it."""
+    """A sound and its text."""
     command.add_argument("sound", metavar="SOUND", help="WAV, FLAC, Ogg, MP3; any rate and number of channels")
     add_said(command)
     command.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
@@ -20,9 +20,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     with needs("aligning", "align"):
-        from labial.align.confidence import summary
-        from labial.align.progress import align_with_bar
-    from labial.outputs import check
+        from labial.sound.align import align_with_bar
+        from labial.sound.confidence import summary
+    from labial.files.outputs import check
 
     check(options.output)
     found = align_with_bar(options.sound, said(options), shows_progress(options))

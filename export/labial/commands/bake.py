@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from labial.bundled import MODEL_HELP
 from labial.commands.common import add_labels, add_quiet, add_said, add_source, said, shows_progress
+from labial.tables.bundled import MODEL_HELP
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """What is baked, as what, and for which face."""
+    """The input, the form of the output, and the face."""
     command.add_argument("file", metavar="FILE", help="phoneme timings, as for synth; a sound, as for align; or frames "
                          "(.csv, .fap)")
     command.add_argument("-o", "--output", required=True, metavar="OUT.h")
@@ -29,7 +29,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes the header and, beside a track, its player; says where parts begin and end."""
+    """Writes the header and, for a track, its player; prints where parts begin and end."""
     from labial.bake.bake import bake
     from labial.bake.source import Source
 

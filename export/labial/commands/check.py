@@ -5,16 +5,15 @@ from __future__ import annotations
 import argparse
 import sys
 
-from labial.bundled import MODEL_HELP
 from labial.commands.common import add_labels, add_source
 from labial.commands.export import add_table_options, exported
+from labial.tables.bundled import MODEL_HELP
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """A model, timings and the library."""
+    """A model and timings."""
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
-    command.add_argument("--library", metavar="DIR", help="folder of the C library; that of this package without it")
     add_source(command)
     add_labels(command)
     add_table_options(command)
@@ -22,12 +21,12 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prints the comparison; 1 where a limit is exceeded."""
-    from labial.check import compare
-    from labial.phones import read_stream
+    from labial.evaluate.check import compare
+    from labial.tables.phones import read_stream
 
     model, tables = exported(options, "checked_model")
     streams = [read_stream(path, model, options.labels, options.source) for path in options.phones]
-    comparison = compare(model, tables, streams, options.library)
+    comparison = compare(model, tables, streams)
     print(comparison.table())
     failures = comparison.failures()
     for failure in failures:

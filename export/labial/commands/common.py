@@ -1,36 +1,15 @@
-"""What several commands have in common: types of arguments, groups of arguments, and how a command shows its work."""
+"""Shared parts of commands: groups of arguments, progress and output."""
 
 from __future__ import annotations
 
 import argparse
-import functools
-import math
 import sys
-from typing import Optional
+from typing import Optional, Tuple
 
 from labial.defaults import FPS, KINDS
-from labial.grammar import is_number, is_whole, read_text
-from labial.outputs import writing
-
-
-def whole(low: int, high: int, text: str) -> int:
-    """`text` as a whole number within `low` .. `high`; with both given, a type of :mod:`argparse`."""
-    value = int(text) if is_whole(text) else -1
-    if not low <= value <= high:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number within {low} .. {high}")
-    return value
-
-
-def number(text: str) -> float:
-    """`text` as a finite number: a type of :mod:`argparse`."""
-    if not is_number(text) or math.isinf(float(text)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
-    return float(text)
-
-
-#: Counts; more of nothing here is of use. Seeds, as NumPy and scikit-learn take them.
-positive = functools.partial(whole, 1, 1_000_000)
-seed = functools.partial(whole, 0, 2**32 - 1)
+from labial.files.arguments import number, positive
+from labial.files.grammar import read_text
+from labial.files.outputs import writing
 
 
 def add_kind(command: argparse.ArgumentParser) -> None:
@@ -51,22 +30,27 @@ def add_talker_variance(command: argparse.ArgumentParser) -> None:
 
 
 def add_engine(command: argparse.ArgumentParser) -> None:
-    """``--engine``, as :class:`labial.train.workers.Workers` takes it."""
+    """``--engine``, for :class:`labial.train.workers.Workers`."""
     command.add_argument("--engine", metavar="dask=ADDRESS", help="work on the Dask cluster whose scheduler is at "
                          "ADDRESS, in place of this machine's processes; the result is the same")
 
 
 def add_source(command: argparse.ArgumentParser) -> None:
     """``--from``, the format of timings, as `options.source`."""
-    from labial.corpus.formats import FORMATS
+    from labial.corpus.formats import names
+    from labial.errors import LabialError
 
-    command.add_argument("--from", dest="source", choices=tuple(FORMATS), metavar="FORMAT",
-                         help=f"format of the timings: {', '.join(FORMATS)} (told by the file)")
+    try:
+        known: Optional[Tuple[str, ...]] = names()
+    except LabialError:  # without the library, which whoever reads timings is told of
+        known = None
+    command.add_argument("--from", dest="source", choices=known, metavar="FORMAT",
+                         help=f"format of the timings: {', '.join(known or ())} (told by the file)")
 
 
 def add_labels(command: argparse.ArgumentParser) -> None:
-    """``--labels``, the set that the labels of timings are of."""
-    from labial.phonesets import AUTO, LABEL_SETS
+    """``--labels``, the set of the labels of timings."""
+    from labial.corpus.phonesets import AUTO, LABEL_SETS
 
     command.add_argument("--labels", choices=(AUTO, *LABEL_SETS), default=AUTO,
                          help="what set the phonemes' labels are of; auto takes any, and where they differ X-SAMPA "
@@ -74,14 +58,14 @@ def add_labels(command: argparse.ArgumentParser) -> None:
 
 
 def add_phones(command: argparse.ArgumentParser) -> None:
-    """``--phones``, timings beside a motion, with their format and labels."""
+    """``--phones``, the timings of a motion, with their format and labels."""
     command.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
     add_source(command)
     add_labels(command)
 
 
 def add_said(command: argparse.ArgumentParser) -> None:
-    """``--text`` and ``--text-file``, what is said in a sound; see :func:`said`."""
+    """``--text`` and ``--text-file``, the text of a sound; see :func:`said`."""
     group = command.add_mutually_exclusive_group()
     group.add_argument("--text", help="what is said in a sound; without it the likeliest words are looked for, which "
                        "is less sure")
@@ -89,7 +73,7 @@ def add_said(command: argparse.ArgumentParser) -> None:
 
 
 def said(options: argparse.Namespace) -> Optional[str]:
-    """What is said in the sound, None where it is not known."""
+    """The text of the sound, None if unknown."""
     return read_text(options.text_file) if options.text_file is not None else options.text
 
 
@@ -99,7 +83,7 @@ def add_quiet(command: argparse.ArgumentParser, bars: str = "bar") -> None:
 
 
 def shows_progress(options: argparse.Namespace) -> bool:
-    """Whether a progress bar is shown: on a terminal, unless the command is to be quiet."""
+    """Whether to show a progress bar: on a terminal, unless ``--quiet``."""
     return not options.quiet and sys.stderr.isatty()
 
 

@@ -4,22 +4,14 @@ from __future__ import annotations
 
 import argparse
 
-from labial.commands.common import (
-    add_engine,
-    add_fps,
-    add_kind,
-    add_quiet,
-    add_talker_variance,
-    positive,
-    seed,
-    shows_progress,
-)
+from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, shows_progress
 from labial.defaults import SPLITS
 from labial.errors import LabialError, needs
+from labial.files.arguments import positive, seed
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """Corpora, who is held out of them, and how the work is done."""
+    """Corpora, the data to hold out, and the workers."""
     command.add_argument("corpus", nargs="+", help="as for train; episodes of the first are held out, and Labial's "
                          "models are trained on all of the others too")
     command.add_argument("-o", "--output", required=True, metavar="REPORT", help="folder for tables and plots")
@@ -42,8 +34,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Evaluates, writes the report and prints its first table."""
     with needs("evaluating", "train,evaluate"):
-        from labial.evaluate.protocol import Options
         from labial.evaluate.run import run as evaluated
+        from labial.evaluate.splits import Options
 
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
     if words and options.leave_out_talkers:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Tuple
 
-from labial.bundled import MODEL_HELP
-from labial.commands.common import number, positive
 from labial.defaults import PREDECESSORS
 from labial.errors import LabialError
+from labial.files.arguments import number, positive
+from labial.tables.bundled import MODEL_HELP
 
 if TYPE_CHECKING:
-    from labial.model import Model
-    from labial.quantise import ExportedModel
+    from labial.tables.model import Model
+    from labial.tables.quantise import ExportedModel
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """A model, and what it is called in C."""
+    """A model and its name in C."""
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("--name", required=True, help="of the C symbol and the files")
     command.add_argument("-o", "--output", required=True, metavar="DIR")
@@ -25,7 +25,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def add_table_options(command: argparse.ArgumentParser) -> None:
-    """What :func:`exported` does to a model."""
+    """Options of :func:`exported`."""
     command.add_argument("--amplitude", type=number, default=1.0, metavar="FACTOR",
                          help="widen (over 1) or calm (below 1) the motion about its mean; 1 is the least error (1)")
     command.add_argument("--predecessors", type=positive, default=PREDECESSORS,
@@ -33,10 +33,10 @@ def add_table_options(command: argparse.ArgumentParser) -> None:
 
 
 def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedModel]:
-    """The float model that the options name, of the amplitude that they ask for, and its exported tables."""
-    from labial.amplitude import widened
-    from labial.model import load
-    from labial.quantise import quantise
+    """The float model that the options name, with their amplitude, and its exported tables."""
+    from labial.tables.amplitude import widened
+    from labial.tables.model import load
+    from labial.tables.quantise import quantise
 
     model, factor = load(options.model), options.amplitude
     if not 0.0 <= factor <= 4.0:
@@ -47,19 +47,20 @@ def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedMod
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes the C files, and prints what memory they take and what is lost in them."""
-    from labial import emit, report
-    from labial.loss import measure
-    from labial.outputs import check_folder
-    from labial.phones import drawn_streams
+    """Writes the C files, and prints their memory and the loss."""
+    from labial.evaluate import loss
+    from labial.files.c import check_name
+    from labial.files.outputs import check_folder
+    from labial.tables import emit
+    from labial.tables.phones import drawn_streams
 
-    emit.check_name(options.name)
+    check_name(options.name)
     check_folder(options.output)
     model, tables = exported(options, options.name)
     streams = drawn_streams(model)
-    loss = measure(model, tables, streams)
+    measured = loss.measure(model, tables, streams)
     for path in emit.write(tables, options.output, binary=options.blob):
         print(path)
-    print(report.memory(tables))
-    print(report.quantisation(loss, model, tables))
+    print(loss.memory(tables))
+    print(loss.quantisation(measured, model, tables))
     return 0

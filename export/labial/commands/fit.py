@@ -8,7 +8,7 @@ from typing import Dict
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """The avatar, and where its rig goes."""
+    """The avatar and the output file of its rig."""
     command.add_argument("avatar", nargs="+", metavar="AVATAR", help=".glb, .gltf or .vrm, or a table of lip points, "
                          ".csv; several are given one rig that suits them alike")
     command.add_argument("-o", "--output", required=True, metavar="NAME.toml", help="the rig; NAME.png is its picture")
@@ -34,9 +34,9 @@ def _points(options: argparse.Namespace) -> Dict[str, int]:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes the rig and its picture, prints what it reaches."""
+    """Writes the rig and its picture, and prints its accuracy."""
     from labial.errors import LabialError, needs
-    from labial.outputs import check_folder, folder
+    from labial.files.outputs import check_folder, folder
 
     output = Path(options.output)
     if output.suffix != ".toml":
@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     with folder(output.parent) as made:  # the rig and its picture appear together
         (made / output.name).write_text(done.text, encoding="utf-8")
         if not options.no_figure and done.found is not None:
-            from labial.fit.picture import draw
+            from labial.see.picture import draw
 
             names.append(output.with_suffix(".png").name)
             draw(done.rig, done.found, made / names[-1])

@@ -10,7 +10,7 @@ from labial.errors import needs
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """A video, and whose face in it."""
+    """A video, and the face to track."""
     command.add_argument("video", metavar="VIDEO")
     command.add_argument("-o", "--output", required=True, metavar="LANDMARKS.npz")
     command.add_argument("--face", choices=WHICH_FACE, help="which is the talker's, where there is "
@@ -22,11 +22,11 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Writes the landmarks."""
-    from labial.outputs import check
+    from labial.files.outputs import check
 
     check(options.output)
     with needs("tracking", "record"):
-        from labial.record.track import landmarks
+        from labial.capture.track import landmarks
 
     print(landmarks(options.video, options.output, options.face, options.task, progress=shows_progress(options)))
     return 0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from labial.commands.common import positive, seed
 from labial.defaults import EPISODES
+from labial.files.arguments import positive, seed
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:

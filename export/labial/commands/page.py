@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
+from labial import BUNDLED
 from labial.commands.common import add_phones, put
 from labial.errors import LabialError
-from labial.runtime import BUNDLED
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
@@ -25,7 +25,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Writes the page."""
-    from labial.outputs import check
+    from labial.files.outputs import check
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 
+from labial import BUNDLED
 from labial.commands.common import add_phones
 from labial.errors import needs
-from labial.runtime import BUNDLED
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """Motions, their phonemes, and what is drawn of them."""
+    """Motions, their phonemes, and the channels to draw."""
     command.add_argument("frames", metavar="FRAMES", nargs="+",
                          help="frames files (.csv), .fap, or models (.npz, or "
                          f"{' or '.join(BUNDLED)}), which speak the timings; several are overlaid")
@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
     """Writes the drawing."""
     with needs("plotting", "plot"):
         from labial.see.plot import DEFAULT, plot
-    from labial.outputs import check
+    from labial.files.outputs import check
     from labial.see.motion import read_bands, read_motions
 
     check(options.output)

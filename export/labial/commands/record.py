@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 
-from labial.commands.common import add_kind, number
+from labial.commands.common import add_kind
 from labial.errors import needs
+from labial.files.arguments import number
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """Landmarks, what their files do not tell, and how they are smoothed."""
+    """Landmarks, properties that their files do not state, and the smoothing."""
     command.add_argument("landmarks", metavar="LANDMARKS", nargs="+", help="one talker's .npz, .npy or .csv files, or "
                          "folders of them, each with its phoneme timings (NAME.lab, .TextGrid, ...) beside it")
     command.add_argument("-o", "--output", required=True, metavar="CORPUS", help="folder, new or empty")
@@ -26,9 +27,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the corpus."""
     with needs("recording", "train"):
-        from labial.record.record import record
-    from labial.phonesets import PHONE_SETS
-    from labial.record.landmarks import Given, parse_size
+        from labial.capture.record import record
+    from labial.capture.landmarks import Given, parse_size
+    from labial.corpus.phonesets import PHONE_SETS
 
     size = parse_size(options.size) if options.size else None
     print(record(options.landmarks, options.output, PHONE_SETS[options.kind], Given(options.fps, size), options.cutoff,

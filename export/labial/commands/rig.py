@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """The description, and where its files go."""
+    """The description, and the output files."""
     command.add_argument("description", metavar="FACE.toml")
     command.add_argument("-o", "--output", required=True, metavar="DIR")
     command.add_argument("--name", help="of the C symbol and the files; the description's file name without it")
@@ -18,11 +18,12 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes NAME.h, NAME.c and, unless told not to, NAME.svg; or another file for which it was asked."""
-    from labial.emit import check_name
-    from labial.outputs import folder
-    from labial.rig import calibrate, figure, table, web
+    """Writes NAME.h, NAME.c and, unless --no-figure, NAME.svg; or the file of --calibrate or --json."""
+    from labial.files.c import check_name
+    from labial.files.outputs import folder
+    from labial.rig import calibrate, table, web
     from labial.rig.description import read
+    from labial.see import figure
 
     name = options.name or Path(options.description).stem
     check_name(name, "rig")

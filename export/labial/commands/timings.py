@@ -8,7 +8,7 @@ from labial.commands.common import add_labels, add_source, put
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """Timings and where they go."""
+    """Timings and the output file."""
     command.add_argument("phones", metavar="FILE", help="phoneme timings, as for synth")
     add_source(command)
     add_labels(command)
@@ -18,7 +18,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     from labial.corpus.formats import as_lab
-    from labial.outputs import check
+    from labial.files.outputs import check
 
     check(options.output)
     put(as_lab(options.phones, options.labels, options.source), options.output)

@@ -8,23 +8,14 @@ import os
 import warnings
 from typing import Any, Dict
 
-from labial.commands.common import (
-    add_engine,
-    add_fps,
-    add_kind,
-    add_quiet,
-    add_talker_variance,
-    positive,
-    seed,
-    shows_progress,
-    whole,
-)
-from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE
+from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, shows_progress
+from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import needs
+from labial.files.arguments import positive, seed, whole
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
-    """Corpora, the method and its sizes, and how the work is done."""
+    """Corpora, the method and its sizes, and the workers."""
     command.add_argument("corpus", nargs="+", help="Labial corpus folder, IEMOCAP or AVLaughterCycle; of several, all "
                          "talkers are brought to the first one's mean and scale, and corpus.toml in a folder tells "
                          "more")
@@ -32,9 +23,11 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_kind(command)
     command.add_argument("--method", choices=METHODS, default=METHODS[-1])
     add_fps(command)
-    command.add_argument("--codebook", type=positive, default=CODEBOOK, help=f"states per channel ({CODEBOOK})")
-    command.add_argument("--components", type=positive, default=COMPONENTS,
-                         help=f"mixture components per phoneme ({COMPONENTS})")
+    states, components = SIZES["laughter"]
+    command.add_argument("--codebook", type=positive,
+                         help=f"states per channel ({CODEBOOK}; Labial's of laughter {states})")
+    command.add_argument("--components", type=positive, help=f"mixture components per phoneme ({COMPONENTS}; Labial's "
+                         f"of laughter {components})")
     command.add_argument("--look-ahead", type=functools.partial(whole, 0, 360), metavar="MS", help="--method labial: "
                          f"how far the kernels reach into what follows, 0 .. 360 ms ({1000 * LOOK_AHEAD:.0f}); less "
                          "is less latency")
@@ -56,12 +49,12 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Trains, writes the model, and says which apexes were not known and what its phonemes backed off to."""
+    """Trains, writes the model, and prints unknown apexes and substitutes of phonemes."""
     with needs("training", "train"):
         from labial.train import backed_off, check_options, train, without_apex
     from labial.corpus import read_corpora
-    from labial.model import save
-    from labial.outputs import check
+    from labial.files.outputs import check
+    from labial.tables.model import save
 
     check(options.output)
     if options.adapt is not None:
@@ -85,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
 def _adapt(options: argparse.Namespace) -> int:
     """``--adapt``: writes the model of one talker."""
     from labial.corpus import read_corpus
-    from labial.model import load, save
+    from labial.tables.model import load, save
     from labial.train import adapted
 
     shared = load(options.adapt)
@@ -99,7 +92,7 @@ def _adapt(options: argparse.Namespace) -> int:
 
 
 def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
-    """What only ``--method labial`` has; warns where an option has no effect with the method that it is given for."""
+    """The options of ``--method labial``; warns if an option has no effect with the chosen method."""
     own: Dict[str, Any] = {}
     if options.look_ahead is not None:
         own["look_ahead"] = options.look_ahead / 1000.0

@@ -1,4 +1,4 @@
-"""Corpora: motion with the phonemes that go with it, from whichever files, and as frames of a fixed rate."""
+"""Corpora: motion with its phonemes, from files of several kinds, and as frames of a fixed rate."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["Episode", "Segment", "Source", "Resampled", "read_corpora", "read_co
 
 
 def __getattr__(name: str) -> Any:
-    """What needs numpy is loaded when it is asked for: timings are also read where numpy is not installed."""
+    """Loads modules that need numpy on first use, so that timings can be read without numpy."""
     if name not in __all__:
         raise AttributeError(f"module 'labial.corpus' has no attribute {name!r}")
     home = "episode" if name in ("Episode", "Segment", "Source") else "corpora"

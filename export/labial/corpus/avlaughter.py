@@ -1,11 +1,11 @@
 """AVLaughterCycle: laughs with a phonetic annotation, ``[subject]_[startMs]_[endMs].TextGrid``, and their motion.
 
-The corpus is given on request, for research; this reader is for those who hold it. Tier 1 of a TextGrid has phonetic
-symbols and words such as "hum" or "vocal_fry", tier 2 the direction of the air: "e" out, "i" in.
+The corpus is available on request, for research. Tier 1 of a TextGrid has phonetic symbols and words such as "hum" or
+"vocal_fry", tier 2 the direction of the air: "e" out, "i" in.
 
-Its face tracking is not in a form that this reader knows: **convert it first**, to a frames file of the Labial corpus
-folder (``time,fap3,...``: seconds from the start of the laugh, FAP units) with the TextGrid's name and ``.csv``, beside
-the TextGrid. Laughs without such a file are left out.
+This reader does not know the format of the corpus's face tracking: **convert it first**, to a frames file of the Labial
+corpus folder (``time,fap3,...``: seconds from the start of the laugh, FAP units) with the TextGrid's name and ``.csv``,
+beside the TextGrid. Laughs without such a file are omitted.
 """
 
 from __future__ import annotations
@@ -17,12 +17,11 @@ from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import check_span, read_frames
-from labial.corpus.textgrid import read_textgrid_tiers
-from labial.corpus.timings import SourceSegment, phoneme_segments
+from labial.corpus.phonesets import LAUGHTER, PhoneSet
+from labial.corpus.timings import SourceSegment, phoneme_segments, read_segments
 from labial.errors import DataError
-from labial.phonesets import LAUGHTER, PhoneSet
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
 #: Names of the corpus's files: subject, begin and end in milliseconds.
 NAME = re.compile(r"\d+_\d+_\d+")
@@ -35,8 +34,8 @@ def read_avlaughter(
 ) -> List[Episode]:
     """Reads all laughs under `path` (sub-folders included) that have motion, sorted by name.
 
-    Malformed files raise DataError, and so does motion without annotation. Laughs without motion and those that
-    contain speech are left out, and the reasons appended to `refused` if it is given.
+    Malformed files raise DataError, and so does motion without annotation. Laughs without motion and those that contain
+    speech are omitted, with the reasons appended to `refused` if it is given.
     """
     reasons: List[DataError] = [] if refused is None else refused
     annotations: Dict[str, Path] = {}
@@ -78,17 +77,17 @@ def laugh_files(path: PathLike) -> List[Path]:
 def read_laugh(path: PathLike, phone_set: PhoneSet = LAUGHTER) -> Optional[Tuple[Segment, ...]]:
     """The laughter phonemes of one annotation, or None when tier 2 marks speech in it.
 
-    Audible breath through the nose is "ne" whichever way it goes. Where tier 1 says nothing, tier 2 decides: with an
-    airflow in half of the interval or more it is breath, "ne", otherwise silence.
+    Audible breath through the nose is "ne" in either direction. Where tier 1 is empty, tier 2 decides: with an airflow
+    in half of the interval or more it is breath, "ne", otherwise silence.
     """
-    tiers = list(read_textgrid_tiers(path).values())
-    if not tiers:
+    marks = read_segments(path, "textgrid", number=1)
+    if not marks:
         raise DataError(path, None, "no interval tier with phonetic symbols")
-    airflow = tiers[1] if len(tiers) > 1 else []
+    airflow = read_segments(path, "textgrid", number=2)
     if any(item.label.lower() == SPEECH_TAG for item in airflow):
         return None
     symbols = []
-    for item in tiers[0]:
+    for item in marks:
         breath = not item.label and _airflow(item, airflow) >= 0.5 * item.duration
         symbols.append(SourceSegment(item.start, item.end, "ne" if breath else item.label))
     return phoneme_segments(path, symbols, phone_set)

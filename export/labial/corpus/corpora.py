@@ -1,4 +1,4 @@
-"""Reads corpora, of whichever files, and brings their episodes to frames of a fixed rate."""
+"""Reads corpora of all kinds, and resamples their episodes to frames of a fixed rate."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from labial.corpus.avlaughter import laugh_files, read_avlaughter
 from labial.corpus.episode import Episode
 from labial.corpus.folder import read_folder
 from labial.corpus.iemocap import read_iemocap
+from labial.corpus.phonesets import PHONE_SETS
 from labial.corpus.talkers import brought_together, with_something_left, with_sources
 from labial.errors import DataError, LabialError
-from labial.frames import sampled
-from labial.phonesets import PHONE_SETS
+from labial.files.frames import sampled
 
 
 class Resampled(NamedTuple):
@@ -28,12 +28,12 @@ class Resampled(NamedTuple):
     apex: np.ndarray  #: (S,) int64: a segment's frame at its apex, else middle; the nearest frame if it has none
 
 
-def read_corpus(path: Union[str, os.PathLike], kind: str = "speech") -> List[Episode]:
+def read_corpus(path: Union[str, os.PathLike[str]], kind: str = "speech") -> List[Episode]:
     """Reads a corpus, whichever kind of files it has; episodes are sorted by name, labels are phonemes of `kind`.
 
     Recognised: IEMOCAP by its folders ``Session*/sentences``, AVLaughterCycle (laughter only) by its file names,
-    anything else as a Labial corpus folder; ``corpus.toml`` tells the talkers (:mod:`labial.corpus.talkers`). Raises
-    DataError for what is malformed; recordings that are well-formed but cannot be used are counted in a warning.
+    anything else as a Labial corpus folder; ``corpus.toml`` names the talkers (:mod:`labial.corpus.talkers`). Raises
+    DataError for malformed files; a warning counts recordings that are well-formed but cannot be used.
     """
     if kind not in PHONE_SETS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(PHONE_SETS)}")
@@ -53,9 +53,9 @@ def read_corpus(path: Union[str, os.PathLike], kind: str = "speech") -> List[Epi
     return with_sources(path, episodes)
 
 
-def read_corpora(paths: Sequence[Union[str, os.PathLike]], kind: str = "speech") -> List[List[Episode]]:
+def read_corpora(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech") -> List[List[Episode]]:
     """Reads several corpora as :func:`read_corpus` does, and brings every recording's mean and scale, channel by
-    channel, to those of the first. What every corpus leaves out is learnt all the same, with a warning."""
+    channel, to those of the first. Includes what every corpus excludes, with a warning."""
     corpora = with_something_left([read_corpus(path, kind) for path in paths])
     return brought_together(corpora, PHONE_SETS[kind].silence)
 
@@ -63,8 +63,8 @@ def read_corpora(paths: Sequence[Union[str, os.PathLike]], kind: str = "speech")
 def resample(episode: Episode, fps: int) -> Resampled:
     """`episode` at `fps` frames per second.
 
-    Motion is sampled by :func:`labial.frames.sampled`. Segments end at the frame nearest to their end, so that rounding
-    never adds up; at .5 the later one.
+    Motion is sampled by :func:`labial.files.frames.sampled`. Segments end at the frame nearest to their end, at .5 the
+    later one, so that rounding errors do not accumulate.
     """
     if fps <= 0:
         raise LabialError(f"{fps} frames per second")
@@ -86,5 +86,5 @@ def resample(episode: Episode, fps: int) -> Resampled:
 
 
 def _round(value: float) -> int:
-    """To the nearest whole number, halves up even where binary fractions fall just short of them."""
+    """To the nearest integer, halves up, also where binary fractions fall just short of a half."""
     return int(np.floor(value + 0.5 + 1e-6))

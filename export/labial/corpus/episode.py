@@ -1,4 +1,4 @@
-"""A recorded (or synthesised) episode: motion and the phonemes that go with it."""
+"""A recorded (or synthesised) episode: motion and its phonemes."""
 
 from __future__ import annotations
 
@@ -28,13 +28,14 @@ class Segment:
 
 @dataclass(frozen=True)
 class Source:
-    """Where an episode is from, and what of it is learnt."""
+    """The origin of an episode, and which part of it training uses."""
 
     talker: str = ""
     recording: str = ""  #: what was recorded and measured together, so that means and scales are its own
     weight: float = 1.0  #: how much each frame counts beside those of other episodes
     left_out: FrozenSet[int] = frozenset()  #: channels that are not learnt from
     silences: bool = True  #: whether silences are
+    scales: FrozenSet[int] = frozenset()  #: channels whose standard deviation all corpora take from this one
 
 
 @dataclass(frozen=True)
@@ -59,4 +60,5 @@ class Episode:
         voiced = np.array([segment.label != silence for segment in self.segments])
         at = np.searchsorted(ends, self.times, side="right")
         inside = (at < len(ends)) & (self.times >= self.segments[0].start)
-        return inside & voiced[np.minimum(at, len(ends) - 1)]
+        result: np.ndarray = inside & voiced[np.minimum(at, len(ends) - 1)]
+        return result

@@ -1,6 +1,6 @@
 """The Labial corpus folder: per episode ``NAME.csv`` (motion) and ``NAME.lab`` or ``NAME.TextGrid`` (phonemes).
 
-Files may lie in the folder, or packed in zip files in the folder, which are read as they are.
+Files may be in the folder itself or in zip files in the folder.
 """
 
 from __future__ import annotations
@@ -11,26 +11,26 @@ from typing import Dict, Iterator, List, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.arrays import ArrayError, read_zip
 from labial.corpus.episode import Episode
 from labial.corpus.formats import read_timings
+from labial.corpus.phonesets import PhoneSet
 from labial.corpus.timings import LONGEST, phoneme_segments
 from labial.errors import DataError
-from labial.faps import CHANNELS, FAP_COLUMNS
-from labial.grammar import Content, columns_of, number, read_lines, table_rows
-from labial.phonesets import PhoneSet
+from labial.files.arrays import ArrayError, read_zip
+from labial.files.faps import CHANNELS, FAP_COLUMNS
+from labial.files.grammar import Content, columns_of, number, read_lines, table_rows
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
 #: First line of a frames file.
 HEADER = ",".join(("time", *FAP_COLUMNS))
-#: Phonemes may go on for this many seconds where there is no motion; more means that two files do not go together.
+#: Phonemes may exceed the motion by this many seconds; more means that the two files do not belong together.
 SLACK = 1.0
-#: Seconds between two frames of an episode at most: nothing can be learnt from motion that is made up for longer.
+#: Most seconds between two frames of an episode: interpolated motion over longer gaps teaches nothing.
 LONGEST_GAP = 10.0
-#: Bytes that the files of a zip file have at most, unpacked: some hours of motion.
+#: Most bytes of the unpacked files of a zip file: some hours of motion.
 LARGEST_PACKED = 512_000_000
-#: No FAP is larger, FAP units: a face is some thousands wide.
+#: Largest FAP, FAP units: a face is some thousands wide.
 LARGEST = 1e6
 
 
@@ -84,8 +84,8 @@ def check_span(path: PathLike, episode: Episode) -> None:
 
 
 def _files(folder: Path) -> Iterator[PathLike]:
-    """The files of a folder, and those that its zip files hold; hidden ones and sub-folders, here and there, are not
-    looked at. Raises DataError for what is no zip file, is damaged, or has more than `LARGEST_PACKED` bytes."""
+    """The files of a folder and of its zip files, except hidden ones and sub-folders. Raises DataError for a zip file
+    that is invalid, damaged, or larger than `LARGEST_PACKED` bytes."""
     for file in sorted(folder.iterdir()):
         if file.name.startswith(".") or not file.is_file():
             continue

@@ -1,20 +1,20 @@
 """IEMOCAP: 53 facial and 2 head markers at 120 frames/s and CMU Sphinx phone segmentations, per utterance.
 
-The corpus is licensed by its makers; this reader is for those who hold it. Expected under its root::
+The corpus needs a licence from its makers. Expected under its root::
 
     SessionN/sentences/MOCAP_rotated/<dialog>/<utterance>.txt
     SessionN/sentences/ForcedAlignment/<dialog>/<utterance>.phseg
     SessionN/sentences/wav/<dialog>/<utterance>.wav
 
-The sound tells the apex of each phoneme; of an utterance without it the middle of each phoneme is taken.
+The sound shows the apex of each phoneme; without sound the middle of each phoneme is used.
 
 Axes of the markers: X lateral (the subject's right is negative), Y depth (larger is further back), Z up. From markers
 to FAPs: (1) each frame is aligned rigidly with the dialog's mean head, on markers that skin and lips do not move, since
-"rotated" data still hold some head motion; (2) the neutral mouth is the median over the dialog's silences; (3) lip and
-chin displacements from it are scaled by the neutral face's mouth-nose separation and mouth width.
-Markers are glued anew for each session, so the neutral mouth is estimated per dialog.
+"rotated" data still contain some head motion; (2) the neutral mouth is the median over the dialog's silences; (3) lip
+and chin displacements from it are scaled by the neutral face's mouth-nose separation and mouth width. Markers are
+attached again for each session, so the neutral mouth is estimated per dialog.
 
-A dialog ``Ses01F_...`` has markers on the speaker F alone: utterances ``..._M...`` show a listener and are left out.
+In a dialog ``Ses01F_...`` only speaker F has markers: utterances ``..._M...`` show a listener and are omitted.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from typing import Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
-from labial.apex import read_wave, with_apexes
+from labial.corpus.apex import read_wave, with_apexes
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import LARGEST, check_span
+from labial.corpus.phonesets import SPEECH, PhoneSet
 from labial.corpus.pose import align_head
-from labial.corpus.timings import phoneme_segments, read_phseg
+from labial.corpus.timings import phoneme_segments, read_segments
 from labial.errors import DataError
-from labial.faps import CHANNELS
-from labial.grammar import fields_of, number_or_nan, read_lines
-from labial.phonesets import SPEECH, PhoneSet
+from labial.files.faps import CHANNELS
+from labial.files.grammar import fields_of, number_or_nan, read_lines
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
 RATE = 120.0  #: frames per second of the corpus
 LONGEST_GAP = 0.2  #: seconds that a marker may be missing and is interpolated or held
@@ -153,8 +153,8 @@ def markers_to_faps(markers: np.ndarray, neutral: np.ndarray) -> np.ndarray:
         if not unit > 0:
             raise ValueError(f"the neutral face's {name} is {unit:g}; is X to the subject's left and Z up?")
     faps = np.empty((len(markers), CHANNELS))
-    for channel, (name, axis, sign, unit) in enumerate(CHANNEL_MARKERS):
-        faps[:, channel] = sign * 1024 / units[unit] * (markers[:, _INDEX[name], axis] - neutral[_INDEX[name], axis])
+    for channel, (name, axis, sign, of) in enumerate(CHANNEL_MARKERS):
+        faps[:, channel] = sign * 1024 / units[of] * (markers[:, _INDEX[name], axis] - neutral[_INDEX[name], axis])
     return faps
 
 
@@ -188,7 +188,7 @@ def read_iemocap(
     """Reads the corpus under `path`, episodes sorted by name (times from the utterance's start, 120 frames/s).
 
     Malformed files raise DataError. Utterances whose motion has too many gaps, or that have motion but no phoneme
-    timings, cannot be used: they are left out, and the reasons appended to `refused` if it is given.
+    timings, are omitted, with the reasons appended to `refused` if it is given.
     """
     reasons: List[DataError] = [] if refused is None else refused
     dialogs: Dict[str, List[Path]] = {}
@@ -211,7 +211,7 @@ def _read_dialog(files: List[Path], phone_set: PhoneSet, refused: List[DataError
         if not alignment.is_file():
             refused.append(DataError(file, None, "no .phseg in ForcedAlignment"))
             continue
-        segments = phoneme_segments(alignment, read_phseg(alignment), phone_set)
+        segments = phoneme_segments(alignment, read_segments(alignment, "phseg"), phone_set)
         sound = file.parents[2] / "wav" / file.parent.name / (file.stem + ".wav")
         if sound.is_file():
             segments = with_apexes(segments, *read_wave(sound))
@@ -222,7 +222,7 @@ def _read_dialog(files: List[Path], phone_set: PhoneSet, refused: List[DataError
         return []
     weights = np.array([HEAD.get(name, 0.0) for name in _MARKERS])
     reference = _median(np.concatenate([item.markers for item in utterances]))
-    for _ in range(3):  # the mean head sharpens as the frames come to lie on each other
+    for _ in range(3):  # the mean head becomes more accurate as the frames are aligned
         aligned = [replace(item, markers=align_head(item.markers, reference, weights)) for item in utterances]
         reference = _median(np.concatenate([item.markers for item in aligned]))
     episodes = []
@@ -245,7 +245,7 @@ def _read_dialog(files: List[Path], phone_set: PhoneSet, refused: List[DataError
 
 def _is_listener(file: Path) -> bool:
     match = re.match(r"Ses\d+([FM])_.*_([FM])[^_]*$", file.stem)
-    return bool(match) and match.group(1) != match.group(2)
+    return match is not None and match.group(1) != match.group(2)
 
 
 def _median(markers: np.ndarray) -> np.ndarray:

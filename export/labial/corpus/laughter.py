@@ -1,7 +1,6 @@
 """A synthetic corpus of laughter: phonemes with the timings that have been published, motion of our own design.
 
-No recording of laughter's lip motion with its phonemes is public, so this program stands in for one. What comes from
-where:
+No recording of laughter's lip motion with its phonemes is public, so this program generates a corpus. Its sources:
 
 * **Timings are published facts.** Laughter pulses follow each other every 210 ms (notes of some 75 ms, getting
   softer) [Provine and Yong 1991]; a train has a median of 3 pulses and up to 17; median durations of the phoneme
@@ -14,9 +13,9 @@ where:
   So are the shares of the phonemes and the durations of "o", "grunt" and of the pauses between trains.
 * **Loudness is a design choice, too.** A bout has an intensity from 0, a hum behind nearly closed lips, to 1, a mouth
   as wide open as in loud speech. A pulse's loudness is that, falling along the train and from train to train. The jaw
-  goes straight with it, the lips part over its first third, and the smile follows slowly. What a model is told of it
-  are *grades*: the phonemes that carry a bout's amplitude are labelled soft, plain or loud, between two grades by
-  chance, in the proportion that the loudness has between theirs.
+  is proportional to it, the lips part over its first third, and the smile follows slowly. A model sees it as *grades*:
+  the phonemes that carry a bout's amplitude are labelled soft, plain or loud; between two grades the label is random,
+  with the probability given by the loudness.
 
 The bottom lip follows the jaw, the top lip rises a little with the smile, and both meet when the lips are closed.
 """
@@ -31,20 +30,21 @@ from typing import List, Tuple, Union
 import numpy as np
 
 from labial.corpus.folder import HEADER
+from labial.corpus.phonesets import LAUGHTER_GRADES
 from labial.defaults import EPISODES
 from labial.errors import DataError
-from labial.faps import CHANNELS, FAP_NUMBERS
-from labial.outputs import folder
-from labial.phonesets import LAUGHTER_GRADES
+from labial.files.faps import CHANNELS, FAP_NUMBERS
+from labial.files.outputs import folder
 
 #: Frames per second of the corpus; a frame is the motion at its centre.
 FPS = 50
-#: Median duration in milliseconds of what is drawn on its own; fricatives and silences inside a pulse fill its period.
+#: Median duration in milliseconds of phonemes with a random duration; fricatives and silences in a pulse fill its
+#: period.
 MEDIANS = {"a": 98, "e": 92, "o": 92, "ic": 80, "cackle": 48, "nasal": 80, "ne": 240, "fricative": 120, "click": 40,
            "plosive": 40, "grunt": 200}  # fmt: skip
 #: Standard deviation of a duration's logarithm.
 SPREAD = 0.22
-#: A pulse's period, milliseconds from onset to onset: mean, standard deviation, and what it is held within.
+#: A pulse's period, milliseconds from onset to onset: mean, standard deviation, and limits.
 PERIOD, PERIOD_SPREAD = 210.0, 25.0
 PERIOD_SHORTEST, PERIOD_LONGEST = 140, 280
 #: Pulses of a train: median, standard deviation of the logarithm, most.
@@ -52,7 +52,7 @@ TRAIN_MEDIAN, TRAIN_SPREAD, TRAIN_LONGEST = 3.0, 0.6, 17
 #: Shortest phoneme, milliseconds: one frame.
 SHORTEST = 20
 
-#: What a phoneme asks of the mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
+#: A phoneme's mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
 GESTURES = {
     "silence": (0.16, 0.60, 0.0),
     "ne": (0.04, 0.15, 0.0),
@@ -68,7 +68,7 @@ GESTURES = {
     "a": (1.00, 1.00, 0.0),
 }
 _JAW = 600.0  # FAP 3 of the widest opening: about 18 mm of an adult's face
-#: Of the jaw's opening and of the smile: what the softest laugh, a hum, has. From which loudness the lips part freely.
+#: The jaw's opening and the smile of the softest laugh, a hum; the loudness from which the lips part freely.
 _HUMMED, _FAINT, _PARTED = 0.06, 0.12, 0.35
 _STEP = 5  # ms between samples of the motion before it is sampled at FPS
 
@@ -95,7 +95,7 @@ _UNGRADED = {graded: label for label, grades in LAUGHTER_GRADES.items() for grad
 _Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
 
 
-def generate(out_dir: Union[str, os.PathLike], episodes: int = EPISODES, seed: int = 0) -> None:
+def generate(out_dir: Union[str, os.PathLike[str]], episodes: int = EPISODES, seed: int = 0) -> None:
     """Writes a Labial corpus folder of `episodes` bouts of laughter; the same seed gives the same bytes.
 
     Raises DataError when `out_dir` exists and is not empty: another run's episodes would mix with these.
@@ -113,8 +113,8 @@ def generate(out_dir: Union[str, os.PathLike], episodes: int = EPISODES, seed: i
         _write(made / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
 
 
-def is_synthetic(path: Union[str, os.PathLike]) -> bool:
-    """Whether the folder says of itself that :func:`generate` made it."""
+def is_synthetic(path: Union[str, os.PathLike[str]]) -> bool:
+    """Whether the folder's README says that :func:`generate` made it."""
     try:
         with open(Path(path) / "README.md", encoding="utf-8", errors="replace") as readme:
             return readme.readline().strip() == _TITLE
@@ -154,7 +154,7 @@ def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
 
 
 def _graded(random: np.random.Generator, label: str, loudness: float) -> str:
-    """The phoneme of the grade that `loudness` asks for, drawn between the two nearest."""
+    """The phoneme in the grade of `loudness`, drawn between the two nearest grades."""
     if label not in LAUGHTER_GRADES:
         return label
     soft, loud = LAUGHTER_GRADES[label]
@@ -234,7 +234,7 @@ def _motion(random: np.random.Generator, phonemes: List[_Phoneme], intensity: fl
     for left, right, value in ((53, 54, corner_out), (59, 60, corner_up)):
         frames[:, channel[left]], frames[:, channel[right]] = value * (1 + lean), value * (1 - lean)
     frames = _sampled(frames, total)
-    noise = random.normal(0, 1.0, (len(frames) + 2, CHANNELS))  # as of a tracker: small, a little smoothed
+    noise = random.normal(0, 1.0, (len(frames) + 2, CHANNELS))  # like a tracker's: small, a little smoothed
     return frames + 0.5 * noise[1:-1] + 0.25 * (noise[:-2] + noise[2:])
 
 
@@ -270,7 +270,7 @@ def _csv(frames: np.ndarray) -> str:
 
 
 def _lab(random: np.random.Generator, phonemes: List[_Phoneme]) -> str:
-    """Timings with apexes: the envelope's maximum lies at two fifths of a phoneme, give or take."""
+    """Timings with apexes: the envelope's maximum lies at about two fifths of a phoneme."""
     lines, begin = [], 0
     for label, milliseconds, _ in phonemes:
         place = float(np.clip(random.normal(0.42, 0.08), 0.1, 0.9))

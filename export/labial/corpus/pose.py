@@ -1,4 +1,4 @@
-"""Head motion out of tracked faces, so that what is left is the mouth's."""
+"""Removes head motion from tracked faces."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 def align_head(markers: np.ndarray, reference: np.ndarray, weights: np.ndarray, scale: bool = False) -> np.ndarray:
     """Rotates and shifts each frame of `markers` (T, M, D) so that its head fits `reference` (M, D) best; D is 2 or 3.
 
-    Weighted least squares over the markers with `weights` (M,) above 0 (Kabsch), with a `scale` of each frame's own
-    when asked (Umeyama); frames with fewer than three of them, or with all on a line, become NaN altogether.
+    Weighted least squares over the markers with `weights` (M,) above 0 (Kabsch), with `scale` also a scale for each
+    frame (Umeyama); frames with fewer than three such markers, or with all on a line, become NaN.
     """
     present = np.isfinite(markers).all(axis=2) & np.isfinite(reference).all(axis=1)  # (T, M)
     weight = present * weights
@@ -31,4 +31,5 @@ def align_head(markers: np.ndarray, reference: np.ndarray, weights: np.ndarray, 
     turned = np.einsum("tmi,tij->tmj", markers - centre[:, None], rotation)
     aligned = factor[:, None, None] * turned + target_centre[:, None]
     aligned[~usable] = np.nan
-    return aligned
+    result: np.ndarray = aligned
+    return result

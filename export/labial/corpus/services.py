@@ -4,10 +4,10 @@ Each reader returns segments in seconds, as those of :mod:`labial.corpus.timings
 file is one JSON document, or one per line. Errors are DataErrors with the line where each line is a document of its
 own, else with the number of the entry.
 
-What comes character by character, as from Piper and Kokoro, becomes phonemes: a stress mark's time goes to the vowel
-that follows, that of a length mark or diacritic to what it follows, the two halves of a diphthong or affricate are one
-phoneme, and punctuation is silence. The blank between two words takes time, too, but lips do not rest there: up to
-`LONGEST_BLANK`, its time is added to the phoneme before it.
+Characters, as from Piper and Kokoro, become phonemes: a stress mark's time goes to the vowel after it, that of a length
+mark or diacritic to the phoneme before it, the two halves of a diphthong or affricate are one phoneme, and punctuation
+is silence. The blank between two words takes time, too, but lips do not rest there: up to `LONGEST_BLANK`, its time is
+added to the phoneme before it.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 from labial.corpus.timings import PathLike, SourceSegment, checked
 from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
 from labial.errors import DataError
-from labial.grammar import is_blank, lines_of, read_text
+from labial.files.grammar import is_blank, lines_of, read_text
 
-#: A blank between words, or what a service leaves out between two phonemes, is a pause from here on, in seconds.
+#: A blank between words, or a gap between a service's phonemes, is a pause if it is longer, in seconds.
 LONGEST_BLANK = 0.15
-#: Seconds that the last viseme lasts, of which only the beginning is told.
+#: Duration of the last viseme, seconds: services report only its beginning.
 LAST_VISEME = 0.1
 #: Kokoro's frames per second: 600 samples each, 24,000 samples per second.
 KOKORO_RATE = 40.0
@@ -33,7 +33,7 @@ KOKORO_RATE = 40.0
 AZURE_RATE = 1e7
 
 _STRESS = ("ˈ", "ˌ")
-#: What is one phoneme although it comes as two.
+#: Two characters that are one phoneme.
 _PAIRS = ("aɪ", "aʊ", "ɔɪ", "eɪ", "oʊ", "əʊ", "tʃ", "dʒ", "ɜɹ")
 #: Kokoro's letters (its grapheme-to-phoneme step Misaki's) that are not the IPA's.
 _MISAKI = {"A": "eɪ", "I": "aɪ", "O": "oʊ", "Q": "əʊ", "W": "aʊ", "Y": "ɔɪ", "T": "ɾ", "ᵊ": "ə"}
@@ -41,7 +41,7 @@ _MISAKI = {"A": "eɪ", "I": "aɪ", "O": "oʊ", "Q": "əʊ", "W": "aʊ", "Y": "ɔ
 
 @dataclass(frozen=True)
 class Entry:
-    """One object of a file: `line` where a line is a document, else its `number` in the document, from 1."""
+    """One object of a file: `line` if a line is a document, else its `number` in the document, from 1."""
 
     path: PathLike
     line: Optional[int]
@@ -49,18 +49,18 @@ class Entry:
     fields: Dict[str, Any]
 
     def error(self, problem: str) -> DataError:
-        """`problem`, with where it is."""
+        """`problem`, with its place in the file."""
         return DataError(self.path, self.line, problem if self.line else f"entry {self.number}: {problem}")
 
     def get(self, *names: str) -> Any:
-        """The first field that there is of `names`, whatever the case and the underscores of the file's keys."""
+        """The first existing field of `names`, ignoring case and underscores of the file's keys."""
         for key, value in self.fields.items():
             if _plain(key) in names:
                 return value
         raise self.error(f"no field {names[0]!r}")
 
     def has(self, *names: str) -> bool:
-        """Whether all of `names` are there."""
+        """Whether all of `names` exist."""
         return {_plain(key) for key in self.fields} >= set(names)
 
     def number_of(self, *names: str) -> float:
@@ -164,7 +164,7 @@ def read_headtts(path: PathLike) -> List[SourceSegment]:
     origin = 0.0
     for item in read_entries(path):
         if not item.has("vtimes") and isinstance(item.fields.get("data"), dict):
-            item = _entry(path, item.line, item.number, item.fields["data"])  # as the client library hands it on
+            item = _entry(path, item.line, item.number, item.fields["data"])  # as the client library returns it
         labels = item.list_of("phonemes")
         starts = [item.as_number(value, "vtimes") / 1000 for value in item.list_of("vtimes")]
         lengths = [item.as_number(value, "vdurations") / 1000 for value in item.list_of("vdurations")]
@@ -180,8 +180,8 @@ def read_headtts(path: PathLike) -> List[SourceSegment]:
 
 
 def read_azure(path: PathLike) -> List[SourceSegment]:
-    """Reads Azure's viseme events: `viseme_id` (0 .. 21) and `audio_offset`, ticks of 100 ns, under the names that any
-    of its libraries gives them."""
+    """Reads Azure's viseme events: `viseme_id` (0 .. 21) and `audio_offset`, ticks of 100 ns, under the names of any of
+    its libraries."""
     marks = []
     for item in read_entries(path):
         name = _shown(item.get("visemeid", "privvisemeid"))
@@ -201,7 +201,7 @@ def read_polly(path: PathLike) -> List[SourceSegment]:
 class Service(NamedTuple):
     """A shape of JSON."""
 
-    title: str  #: whose it is, for messages
+    title: str  #: the service's name, for messages
     read: Callable[[PathLike], List[SourceSegment]]
     told: Callable[[Entry], bool]  #: whether the first object of a file is one of it
 
@@ -220,7 +220,7 @@ def _is_plain(first: Entry) -> bool:
     return first.has("phoneme", "start", "end")
 
 
-#: Every shape by its name for --from, in the order in which they are told.
+#: Every shape by its name for --from, in the order of detection.
 SERVICES: Dict[str, Service] = {
     "kokoro": Service("Kokoro", read_kokoro, lambda first: first.has("preddur")),
     "headtts": Service("HeadTTS", read_headtts, _is_headtts),
@@ -232,13 +232,13 @@ SERVICES: Dict[str, Service] = {
 
 
 def service_of(path: PathLike) -> Optional[str]:
-    """Which of `SERVICES` a JSON file is of, by the fields of its first object; None when it is none of them."""
+    """The service in `SERVICES` that wrote a JSON file, by the fields of its first object; None for others."""
     entries = read_entries(path)
     return next((name for name, service in SERVICES.items() if entries and service.told(entries[0])), None)
 
 
 def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
-    """Phonemes, in the IPA, of characters that follow each other (see above); "" is silence, and so is every gap."""
+    """Phonemes, in the IPA, of successive characters (see above); "" is silence, and so is every gap."""
     result: List[SourceSegment] = []
     begin: Optional[float] = None  # of the stress mark before the next phoneme
     joins = False  # the next character may be the second half of the phoneme before it
@@ -272,7 +272,7 @@ def _grown(segment: SourceSegment, token: SourceSegment, label: str) -> SourceSe
 
 
 def _is_mark(label: str) -> bool:
-    """Whether `label` only changes what is before it: length, release, nasality, tone."""
+    """Whether `label` only modifies the phoneme before it: length, release, nasality, tone."""
     return bool(label) and all(unicodedata.category(c) in ("Lm", "Mn", "Sk", "Nd") for c in label)
 
 
@@ -312,7 +312,7 @@ def _from_visemes(
     path: PathLike, marks: Sequence[Tuple[float, str, Optional[int]]], table: Dict[str, str],
     pairs: Dict[Tuple[str, str], str],
 ) -> List[SourceSegment]:
-    """Segments of visemes of which only the beginnings are told."""
+    """Segments of visemes with only their beginnings."""
     for number, (_, name, line) in enumerate(marks, 1):
         if name not in table:
             raise DataError(path, line, f"{'' if line else f'entry {number}: '}no viseme is called {name!r}")

@@ -1,13 +1,15 @@
-"""Whose mouths a corpus holds: the file ``corpus.toml`` in its folder, and several talkers on one scale.
+"""The talkers of a corpus: the file ``corpus.toml`` in its folder, and several talkers on one scale.
 
-Two faces differ in where their channels rest and how far they move, and so do two recordings of one face. So every
+Faces differ in the rest position and the range of their channels, and so do recordings of one face. So every
 recording's motion is brought to the first corpus's mean and standard deviation, channel by channel, both measured
-outside silence.
+outside silence. Where a corpus says that a channel's ``scale`` is its own, the standard deviation is that corpus's.
 
 ``corpus.toml`` may contain the following, all of it optional::
 
-    weight = 3                          # how much a frame counts beside those of a corpus without this key
+    weight = 3                          # how much a frame counts beside those of a corpus without this key; where
+                                        # talkers are random effects, how much each of its talkers counts
     leave_out = ["fap16", "fap17"]      # channels that are not learnt from
+    scale = ["fap53", "fap54"]          # channels whose standard deviation all corpora are brought to
     silences = false                    # nor are the silences
 
     [talkers]                           # who speaks in which episodes: names, or patterns with * and ?;
@@ -27,22 +29,23 @@ from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple, Union
 import numpy as np
 
 from labial.corpus.episode import Episode, Source
-from labial.faps import FAP_COLUMNS
-from labial.toml import Table, meant, read_toml
+from labial.files.faps import FAP_COLUMNS
+from labial.files.toml import Table, meant, read_toml
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
 #: The name of the file.
 FILE = "corpus.toml"
 
-#: The largest weight: beyond it the other corpora count for nothing.
+#: The largest weight: beyond it the other corpora have no effect.
 LARGEST_WEIGHT = 1000.0
 
-_KEYS = ("weight", "leave_out", "silences", "talkers")
+_KEYS = ("weight", "leave_out", "scale", "silences", "talkers")
 
 
 def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]:
-    """The episodes with what ``corpus.toml`` says of them; without that file they are one talker's, in one recording.
+    """The episodes with their properties from ``corpus.toml``; without that file they are one talker's, in one
+    recording.
 
     Raises DataError, which names the file and the line or the key.
     """
@@ -53,7 +56,8 @@ def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]
     weight = table.number("weight") if "weight" in table.content else 1.0
     if not 0.0 < weight <= LARGEST_WEIGHT:
         raise table.error("weight", f"{weight:g} is not above 0 and at most {LARGEST_WEIGHT:g}")
-    common = Source(where.name, str(where), weight, _left_out(table), table.flag("silences", True))
+    common = Source(where.name, str(where), weight, _left_out(table), table.flag("silences", True),
+                    _channels(table, "scale"))
     if "talkers" not in table.content:
         return [replace(item, source=common) for item in episodes]
     told = _talkers(table, [item.name for item in episodes])
@@ -63,16 +67,21 @@ def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]
     ]
 
 
-def _left_out(table: Table) -> FrozenSet[int]:
-    given = table.content.get("leave_out", [])
+def _channels(table: Table, key: str) -> FrozenSet[int]:
+    given = table.content.get(key, [])
     if not isinstance(given, list):
-        raise table.error("leave_out", "is not a list of channels, such as [\"fap17\"]")
+        raise table.error(key, "is not a list of channels, such as [\"fap17\"]")
     for name in given:
         if name not in FAP_COLUMNS:
-            raise table.error("leave_out", f"no channel is called {name!r}{meant(str(name), FAP_COLUMNS)}")
-    if len(set(given)) == len(FAP_COLUMNS):
-        raise table.error("leave_out", "nothing is left to learn from")
+            raise table.error(key, f"no channel is called {name!r}{meant(str(name), FAP_COLUMNS)}")
     return frozenset(FAP_COLUMNS.index(name) for name in given)
+
+
+def _left_out(table: Table) -> FrozenSet[int]:
+    found = _channels(table, "leave_out")
+    if len(found) == len(FAP_COLUMNS):
+        raise table.error("leave_out", "nothing is left to learn from")
+    return found
 
 
 def _talkers(table: Table, names: Iterable[str]) -> Dict[str, Tuple[str, str]]:
@@ -100,7 +109,7 @@ def _talkers(table: Table, names: Iterable[str]) -> Dict[str, Tuple[str, str]]:
 
 
 def with_something_left(corpora: Sequence[Sequence[Episode]]) -> List[List[Episode]]:
-    """The corpora with what all of them leave out learnt after all, for there is nothing better; warns of it."""
+    """The corpora, including what all of them exclude, since there is nothing better; warns of it."""
     sources = [item.source for corpus in corpora for item in corpus]
     nowhere = frozenset.intersection(*(source.left_out for source in sources)) if sources else frozenset()
     silences = not any(source.silences for source in sources)
@@ -116,32 +125,49 @@ def with_something_left(corpora: Sequence[Sequence[Episode]]) -> List[List[Episo
 
 def brought_together(corpora: Sequence[Sequence[Episode]], silence: str) -> List[List[Episode]]:
     """The corpora with each recording's mean and standard deviation per channel, outside `silence`, brought to those of
-    the first corpus: the means over its recordings' frames. One recording alone stays as it is."""
-    values: Dict[str, List[np.ndarray]] = {}
-    for item in (item for corpus in corpora for item in corpus):
-        values.setdefault(item.source.recording, []).append(item.frames[item.sounding(silence)])
+    the first corpus: the means over its recordings' frames. In channels whose scale a further corpus says to be its
+    own, the standard deviation is that of the last such corpus. One recording alone stays as it is."""
+    values = _sounding((item for corpus in corpora for item in corpus), silence)
     if len(values) < 2:
         return [list(corpus) for corpus in corpora]
-    moments = {name: _moments(np.concatenate(frames)) for name, frames in values.items()}
-    first = dict.fromkeys(item.source.recording for item in corpora[0])
-    share = [sum(map(len, values[name])) for name in first]
-    if not sum(share):
+    moments = {name: _moments(frames) for name, frames in values.items()}
+    share = {name: len(frames) for name, frames in values.items()}
+    first = list(dict.fromkeys(item.source.recording for item in corpora[0]))
+    if not sum(share[name] for name in first):
         return [list(corpus) for corpus in corpora]
-    mean = np.average([moments[name][0] for name in first], axis=0, weights=share)
-    deviation = np.sqrt(np.average([moments[name][1] ** 2 for name in first], axis=0, weights=share))
-
-    alone = first if len(first) == 1 else {}
-    return [[item if item.source.recording in alone else _brought(item, moments[item.source.recording], mean, deviation)
+    mean = np.average([moments[name][0] for name in first], axis=0, weights=[share[name] for name in first])
+    deviation = _common_deviation(first, moments, share)
+    rescaled = False
+    for corpus in corpora[1:]:
+        channels = sorted(frozenset().union(*(item.source.scales for item in corpus)))
+        own = list(dict.fromkeys(item.source.recording for item in corpus))
+        if channels and sum(share[name] for name in own):
+            deviation[channels] = _common_deviation(own, moments, share)[channels]
+            rescaled = True
+    stays = first if len(first) == 1 and not rescaled else []
+    return [[item if item.source.recording in stays else _brought(item, moments[item.source.recording], mean, deviation)
              for item in corpus] for corpus in corpora]
+
+
+def _sounding(corpus: Iterable[Episode], silence: str) -> Dict[str, np.ndarray]:
+    """The frames (T, 13) of each recording outside `silence`."""
+    values: Dict[str, List[np.ndarray]] = {}
+    for item in corpus:
+        values.setdefault(item.source.recording, []).append(item.frames[item.sounding(silence)])
+    return {name: np.concatenate(frames) for name, frames in values.items()}
+
+
+def _common_deviation(
+    names: Sequence[str], moments: Dict[str, Tuple[np.ndarray, np.ndarray]], share: Dict[str, int]
+) -> np.ndarray:
+    """(13,) the standard deviation of several recordings, each about its own mean."""
+    return np.sqrt(np.average([moments[name][1] ** 2 for name in names], axis=0, weights=[share[n] for n in names]))
 
 
 def brought_to(corpus: Sequence[Episode], silence: str, mean: np.ndarray, deviation: np.ndarray) -> List[Episode]:
     """The corpus with each recording's mean and standard deviation per channel, outside `silence`, brought to these,
     (13,) FAP each."""
-    values: Dict[str, List[np.ndarray]] = {}
-    for item in corpus:
-        values.setdefault(item.source.recording, []).append(item.frames[item.sounding(silence)])
-    moments = {name: _moments(np.concatenate(frames)) for name, frames in values.items()}
+    moments = {name: _moments(frames) for name, frames in _sounding(corpus, silence).items()}
     return [_brought(item, moments[item.source.recording], mean, deviation) for item in corpus]
 
 

@@ -1,7 +1,8 @@
 """Phoneme timings: what aligners and synthesisers write, as lists of segments in seconds.
 
-Every reader checks that times are finite and from 0 on, that no segment ends before it begins and that segments are in
-order and do not overlap by more than `TOLERANCE`; anything else is a DataError with file and line. Labels stay as they
+Lines and TextGrids are parsed by the library. Every reader checks that times are finite and from 0 on, that no segment
+ends before it begins and that segments are in order and do not overlap by more than `TOLERANCE`; anything else is a
+DataError with file and line. Labels stay as they
 are in the file until :func:`phoneme_segments` maps them to a phone set and fills the gaps with its silence.
 """
 
@@ -11,24 +12,21 @@ import math
 import os
 import warnings
 from dataclasses import dataclass
-from typing import Iterable, Iterator, List, Optional, Sequence, Set, Tuple, Union
+from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
 
+from labial.core import lines
 from labial.corpus.episode import Segment
+from labial.corpus.phonesets import AUTO, PHONE_SETS, PhoneSet
 from labial.errors import DataError
-from labial.grammar import fields_of, is_number, is_whole, lines_of, number, read_text, shown
-from labial.phonesets import AUTO, PHONE_SETS, PhoneSet
+from labial.files.grammar import read_text
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
 #: Overlaps and gaps up to this many seconds come from rounding and are closed.
 TOLERANCE = 0.001
 #: No timing of an episode is later; beyond it the unit is not seconds (HTK writes units of 100 ns).
 LONGEST = 86400.0
-#: Frames per second of CMU Sphinx alignments.
-PHSEG_RATE = 100.0
-#: HTK's units per second.
-_HTK_RATE = 1e7
-#: No phoneme is longer, in seconds (LABIAL_DURATION_MAX): a file whose first one would be is in HTK's units.
+#: No phoneme is longer, in seconds (LABIAL_DURATION_MAX).
 _LONGEST_PHONEME = 3600
 
 
@@ -40,121 +38,20 @@ class SourceSegment(Segment):
     labels: str = AUTO  #: the set that the format's labels are of
 
 
-def read_lab(path: PathLike) -> List[SourceSegment]:
-    """Reads lines of ``start end label [apex [word]]``, seconds; or HTK's labels, which are called .lab, too. A line
-    that starts with # is a comment."""
-    segments: List[SourceSegment] = []
-    for line, fields in _rows(path):
-        if fields[0].startswith("#"):
-            continue
-        if not segments and _is_htk(fields):
-            return read_htk(path)
-        if not 3 <= len(fields) <= 5:
-            raise DataError(path, line, f"expected 'start end label [apex [word]]', found {len(fields)} columns")
-        apex = number(path, line, fields[3], "apex") if len(fields) > 3 else None
-        word = fields[4] if len(fields) > 4 else None
-        start, end = number(path, line, fields[0], "start"), number(path, line, fields[1], "end")
-        segments.append(SourceSegment(start, end, fields[2], apex, word, line))
-    return checked(path, segments)
-
-
-def read_htk(path: PathLike) -> List[SourceSegment]:
-    """Reads lines of ``start end label ...`` in whole units of 100 ns, as HTK and HTS write them.
-
-    Of a label with context, ``a^b-c+d=e@...``, the phoneme is what stands between - and +.
-    """
+def read_segments(path: PathLike, form: str = AUTO, tier: Optional[str] = None, number: int = 0) -> List[SourceSegment]:
+    """Reads timings in one of the formats of labial/timings.h, which the library parses; "auto" tells by the first line
+    which. Of a TextGrid the interval tier called `tier` or, from 1 on, the one of this `number`, which may be none;
+    without them that of phones."""
     segments = []
-    for line, fields in _rows(path):
-        if len(fields) < 3:
-            raise DataError(path, line, f"expected 'start end label', found {len(fields)} columns")
-        if not (is_whole(fields[0]) and is_whole(fields[1])):
-            raise DataError(path, line, f"times {fields[0]!r} and {fields[1]!r} are not whole numbers of 100 ns")
-        start, end = int(fields[0]) / _HTK_RATE, int(fields[1]) / _HTK_RATE
-        segments.append(SourceSegment(start, end, _centre(fields[2]), line=line))
-    return checked(path, segments)
-
-
-def read_mary(path: PathLike) -> List[SourceSegment]:
-    """Reads MaryTTS's REALISED_DURATIONS: lines of ``end number label``, seconds; lines that start with # are not
-    read."""
-    segments: List[SourceSegment] = []
-    for line, fields in _rows(path):
-        if fields[0].startswith("#"):
-            continue
-        if len(fields) != 3:
-            raise DataError(path, line, f"expected 'end number label', found {len(fields)} columns")
-        if not is_number(fields[1]):
-            raise DataError(path, line, f"second field {shown(fields[1])} is not a number")
-        start = segments[-1].end if segments else 0.0
-        end = number(path, line, fields[0], "end")
-        segments.append(SourceSegment(start, end, fields[2], line=line, labels="xsampa"))
-    return checked(path, segments)
-
-
-def read_phseg(path: PathLike) -> List[SourceSegment]:
-    """Reads a CMU Sphinx phone segmentation: a header, rows ``SFrm EFrm SegAScr Phone [context]``, a total score.
-
-    Frame k covers the 10 ms from k/100 s: EFrm is inclusive and the next row starts at EFrm + 1, so that only
-    start = SFrm/100 and end = (EFrm + 1)/100 tile the utterance without gaps and without a shift that grows or differs
-    between a segment's two ends.
-    """
-    segments: List[SourceSegment] = []
-    rows = list(_rows(path))
-    if not rows or [name.lower() for name in rows[0][1][:4]] != ["sfrm", "efrm", "segascr", "phone"]:
-        raise DataError(path, rows[0][0] if rows else None, "expected the header 'SFrm EFrm SegAScr Phone'")
-    for count, (line, fields) in enumerate(rows[1:], 2):
-        if fields[0].lower() == "total":
-            if count != len(rows):
-                raise DataError(path, line, "the total score is not the last line")
-            break
-        if len(fields) < 4:
-            raise DataError(path, line, f"expected 'SFrm EFrm SegAScr Phone', found {len(fields)} columns")
-        if not (is_whole(fields[0]) and is_whole(fields[1])):
-            raise DataError(path, line, f"frames {fields[0]!r} and {fields[1]!r} are not whole numbers")
-        first, last = int(fields[0]), int(fields[1])
-        if last < first:
-            raise DataError(path, line, f"the segment ends in frame {last}, before its first frame {first}")
-        segments.append(SourceSegment(first / PHSEG_RATE, (last + 1) / PHSEG_RATE, fields[3], line=line))
-    return checked(path, segments)
-
-
-def read_flite(path: PathLike) -> List[SourceSegment]:
-    """Reads what ``flite -psdur`` prints: ``label:end`` for every phoneme. A line is an utterance, behind the line
-    before it; `end` is in seconds from its beginning."""
-    segments: List[SourceSegment] = []
-    for line, fields in _rows(path):
-        origin = segments[-1].end if segments else 0.0
-        for item in fields:
-            label, colon, end = item.rpartition(":")
-            if not colon or not label:
-                raise DataError(path, line, f"{item!r} is not 'label:end'")
-            start = segments[-1].end if segments else 0.0
-            segments.append(SourceSegment(start, origin + number(path, line, end, "end"), label, line=line))
-    return checked(path, segments)
-
-
-def read_pho(path: PathLike) -> List[SourceSegment]:
-    """Reads an MBROLA .pho: lines of ``phoneme milliseconds [position pitch]...``; a field that starts with ``;``
-    begins a comment.
-
-    Times are summed in milliseconds, so that long files do not drift.
-    """
-    segments: List[SourceSegment] = []
-    elapsed = 0.0
-    for line, fields in _rows(path, comment=True):
-        if fields == ["#"]:  # MBROLA's flush mark
-            continue
-        if len(fields) < 2 or len(fields) % 2:
-            raise DataError(path, line, "expected 'phoneme milliseconds [position pitch]...'")
-        duration = number(path, line, fields[1], "duration")
-        for text in fields[2:]:
-            if not is_number(text):
-                raise DataError(path, line, f"{shown(text)} is not part of a pitch point, a number")
-        if duration < 0:
-            raise DataError(path, line, f"the duration {fields[1]} is negative")
-        start, elapsed = elapsed, elapsed + duration
-        segments.append(SourceSegment(start / 1000, elapsed / 1000, fields[0], line=line, labels="xsampa"))
-    return checked(path, segments)
+    try:
+        for item in lines.timings(read_text(path).encode("utf-8"), form, tier, number):
+            segments.append(SourceSegment(item.start, item.end, item.label, item.apex, item.word, item.line,
+                                          "xsampa" if item.xsampa else AUTO))
+    except lines.Malformed as error:
+        raise DataError(path, error.line, str(error)) from None
+    if not segments and not number:
+        raise DataError(path, None, "no segments")
+    return segments
 
 
 def phone_set_of(segments: Sequence[SourceSegment], labels: str = AUTO) -> PhoneSet:
@@ -227,30 +124,6 @@ def _silence(result: List[Segment], start: float, end: float, phone_set: PhoneSe
 def lab_of(segments: Iterable[Segment]) -> str:
     """Segments as lines of ``start end label``, seconds."""
     return "".join(f"{item.start:.4f} {item.end:.4f} {item.label}\n" for item in segments)
-
-
-def _rows(path: PathLike, comment: bool = False) -> Iterator[Tuple[int, List[str]]]:
-    """Line number and fields of each line that has any, where `comment` without those of a comment behind a ``;``."""
-    for line, text in enumerate(lines_of(read_text(path)), 1):
-        fields = fields_of(text)
-        if comment:
-            fields = fields[: next((n for n, field in enumerate(fields) if field.startswith(";")), len(fields))]
-        if fields:
-            yield line, fields
-
-
-def _is_htk(fields: Sequence[str]) -> bool:
-    return len(fields) >= 3 and all(map(is_whole, fields[:2])) and int(fields[1]) > _LONGEST_PHONEME
-
-
-def _centre(label: str) -> str:
-    """The phoneme of a label with context; the name of a noise starts with +."""
-    if label[0] in "+-<":
-        return label
-    begin = label.find("-", max(label.find("^"), 0))
-    if 0 <= begin < len(label) - 1:
-        label = label[begin + 1 :]
-    return label[0] + label[1:].split("+")[0]
 
 
 def checked(path: PathLike, segments: List[SourceSegment]) -> List[SourceSegment]:

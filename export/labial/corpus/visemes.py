@@ -1,4 +1,4 @@
-"""Visemes of speech services, and the phoneme that stands for each.
+"""Visemes of speech services, and the phoneme for each.
 
 A service reports fewer visemes than there are phonemes. Each viseme becomes the phoneme that is most frequent in
 English speech among those that it covers or, if two are equally frequent, the one that the viseme is named after. Two
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Dict, List, Sequence, Tuple
 
-from labial.phonesets import VOWELS
+from labial.corpus.phonesets import VOWELS
 
 #: Azure's ids (Microsoft's table of phonemes for en-US).
 AZURE: Dict[str, str] = {
@@ -18,7 +18,7 @@ AZURE: Dict[str, str] = {
     "10": "OY", "11": "AY", "12": "HH", "13": "R", "14": "L", "15": "S", "16": "SH", "17": "DH", "18": "F", "19": "N",
     "20": "K", "21": "P",
 }  # fmt: skip
-#: What Azure tells in two events.
+#: Phonemes that Azure reports in two events.
 AZURE_PAIRS: Dict[Tuple[str, str], str] = {("8", "4"): "OW", ("4", "6"): "EY", ("19", "16"): "CH"}
 
 #: Polly's symbols, X-SAMPA by look (Amazon's tables of en-US and en-GB); B, J and x are of its other languages.

@@ -4,6 +4,6 @@
     timelines     who is       fit on the training       one number     Markdown, CSV,
     and motion    judged       part, predict the test    per method     PNG
 
-Laughter is judged by its pulses (``pulses.py``) where speech is by its closures. ``side_by_side.py`` draws what models
-make of one stream of phonemes, without human motion beside it.
+Laughter is judged by its pulses (``pulses.py``), speech by its closures. ``side_by_side.py`` draws the motion of
+several models for one stream of phonemes, without human motion.
 """

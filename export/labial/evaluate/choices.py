@@ -1,9 +1,9 @@
-"""What the paper leaves open: the published method with each of its open choices made otherwise, on held-out data.
+"""Choices that the paper leaves open: the published method with each choice changed, on held-out data.
 
     python -m labial.evaluate.choices CORPUS [--kind laughter] [--splits N] [--jobs N] -o TABLE.md
 
-Each choice is a constant or a function of the training or of the published reference, and is replaced while the model
-is trained and while it speaks. docs/reproduction.md has the tables.
+Each choice is a constant or a function of the training or of the published reference, and is replaced during training
+and synthesis. docs/reproduction.md has the tables.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.commands.common import add_kind, positive, seed
 from labial.corpus import read_corpus
-from labial.defaults import FPS
+from labial.corpus.phonesets import PHONE_SETS, PhoneSet
+from labial.defaults import FPS, KINDS
 from labial.errors import LabialError
 from labial.evaluate.material import Timeline, Utterance, utterances
 from labial.evaluate.measures import Judge, judged_frames
 from labial.evaluate.splits import Split, make_splits
 from labial.evaluate.training import Training
-from labial.faps import CHANNELS
-from labial.model import Model
-from labial.outputs import check, writing
-from labial.phonesets import PHONE_SETS, PhoneSet
+from labial.files.arguments import positive, seed
+from labial.files.faps import CHANNELS
+from labial.files.outputs import check, writing
 from labial.reference import published, synthesis
-from labial.reference.shape import targets
+from labial.reference.stream import targets
 from labial.reference.tables import FloatTables
+from labial.tables.model import Model
 from labial.train import codebook, pipeline, shapes, train
 from labial.train.recordings import recordings
 from labial.train.workers import Workers
@@ -43,19 +43,19 @@ COLUMNS = (("diff", "diff/mean"), ("correlation", "correlation/mean"), ("amplitu
 
 @dataclass(frozen=True)
 class Choice:
-    """One way to read the paper: how it differs from what ``--method paper`` does."""
+    """A reading of the paper: its differences from ``--method paper``."""
 
     title: str
     replaced: Dict[Tuple[object, str], object] = field(default_factory=dict)  #: by module and name
     options: Dict[str, object] = field(default_factory=dict)  #: of :func:`labial.train.train`
-    with_apex: bool = True  #: whether the sound's apex is used where the corpus tells it
+    with_apex: bool = True  #: whether to use the sound's apex if the corpus states it
     whole: bool = False  #: utterances are searched and solved at once
     full: bool = False  #: states have full covariances
 
 
 def _cut_in_the_middle(pieces: Sequence[published.Piece], trajectories: Sequence[np.ndarray]) -> np.ndarray:
-    """:func:`labial.reference.published.join` without a cross-fade: a piece gives way in the middle of what it shares
-    with the next."""
+    """:func:`labial.reference.published.join` without a cross-fade: a piece ends in the middle of the frames that it
+    shares with the next."""
     result = np.zeros((pieces[-1].end if pieces else 0, CHANNELS))
     for piece, motion in zip(pieces, trajectories):
         begin = piece.fade_in - piece.fade_in // 2
@@ -68,7 +68,8 @@ def _every_transition(paths: Sequence[np.ndarray], size: int, stride: int = 1) -
     counts = np.full((size, size), 0.5)
     for path in paths:
         np.add.at(counts, (path[:-stride], path[stride:]), 1)
-    return np.log(counts / counts.sum(axis=1, keepdims=True))
+    result: np.ndarray = np.log(counts / counts.sum(axis=1, keepdims=True))
+    return result
 
 
 def _ending_units(phonemes: Sequence[str]) -> Dict[str, PhoneSet]:
@@ -77,7 +78,7 @@ def _ending_units(phonemes: Sequence[str]) -> Dict[str, PhoneSet]:
     return {"laughter": replace(given, boundary=tuple(label in phonemes for label in given.phonemes))}
 
 
-#: The readings that both kinds have; the first is that of ``--method paper``.
+#: The readings for both kinds; the first is that of ``--method paper``.
 COMMON = (
     Choice("as `--method paper` does"),
     Choice("another seed of the mixtures (1)", options={"seed": 1}),
@@ -107,7 +108,7 @@ CHOICES: Dict[str, Tuple[Choice, ...]] = {
 
 @contextmanager
 def _made(choice: Choice) -> Iterator[None]:
-    """Replaces what the choice replaces, for as long as it lasts."""
+    """Applies the choice's replacements within the block."""
     kept = {(module, name): getattr(module, name) for module, name in choice.replaced}
     try:
         for (module, name), value in choice.replaced.items():
@@ -203,7 +204,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     """The command line; see the module."""
     parser = argparse.ArgumentParser(prog="python -m labial.evaluate.choices", description=__doc__.split("\n")[0])
     parser.add_argument("corpus", help="a corpus, as for labial train")
-    add_kind(parser)
+    parser.add_argument("--kind", choices=KINDS, default=KINDS[0])
     parser.add_argument("--splits", type=positive, default=4, help="random 80/20 splits by episode (4)")
     parser.add_argument("--seed", type=seed, default=0)
     parser.add_argument("--jobs", type=positive, default=2, help="splits at a time (2); the result is the same")

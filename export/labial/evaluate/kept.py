@@ -1,7 +1,8 @@
-"""Splits that an evaluation has finished, kept on the disk, so that one that was interrupted goes on where it was.
+"""Finished splits of an evaluation, stored on the disk, so that an interrupted evaluation can continue.
 
-Each is a file of the folder ``.splits`` in the report's folder: the measures as JSON, and the motion that plots show as
-arrays. A file is of use for the same corpus, options and versions alone; the folder goes when the report is written.
+Each is a file of the folder ``.splits`` in the report's folder: the measures as JSON, and the motion for plots as
+arrays. A file is valid only for the same corpus, options and versions; the folder is removed when the report is
+written.
 """
 
 from __future__ import annotations
@@ -20,19 +21,18 @@ from typing import Dict, Optional, Sequence
 import numpy as np
 
 import labial
-from labial.arrays import array, read_zip
+from labial.core.library import library_path
 from labial.errors import LabialError
 from labial.evaluate.material import Utterance
 from labial.evaluate.methods import select
-from labial.evaluate.protocol import Example, Options, Outcome
-from labial.evaluate.splits import Split
-from labial.native import library_root
-from labial.outputs import writing
+from labial.evaluate.splits import Example, Options, Outcome, Split
+from labial.files.arrays import array, read_zip
+from labial.files.outputs import writing
 from labial.train.workers import versions
 
-#: Where they are in the report's folder.
+#: Their folder in the report's folder.
 FOLDER = ".splits"
-#: Bytes that a file has at most.
+#: Most bytes of a file.
 _LARGEST = 500_000_000
 
 
@@ -45,7 +45,7 @@ class Kept:
         self._of = _fingerprint(corpus, options)
 
     def find(self, split: Split) -> Optional[Outcome]:
-        """What is kept of a split, or None."""
+        """The stored split, or None."""
         try:
             members = read_zip(self._path(split), None, _LARGEST)
             about = json.loads(members["outcome.json"])
@@ -64,7 +64,7 @@ class Kept:
         return outcome
 
     def keep(self, outcome: Outcome) -> None:
-        """Keeps a split; warns where that fails, since the evaluation can go on without."""
+        """Stores a split; warns if that fails, since the evaluation can continue without."""
         example = outcome.example
         arrays: Dict[str, np.ndarray] = {}
         about: Dict[str, object] = {"of": self._of, "split": astuple(outcome.split), "frames": outcome.frames,
@@ -88,18 +88,18 @@ class Kept:
         return self._folder / f"{split.number}.zip"
 
 
-def forget(folder: Path) -> None:
-    """Forgets the splits of the report in `folder`."""
+def remove_kept(folder: Path) -> None:
+    """Removes the stored splits of the report in `folder`."""
     shutil.rmtree(folder / FOLDER, ignore_errors=True)
 
 
 def _fingerprint(corpus: Sequence[Utterance], options: Options) -> str:
-    """What outcomes depend on, as a sum of its bytes; Labial's own code, too, so that somebody who works on it gets no
-    report that mixes two states of it."""
+    """A checksum of everything that outcomes depend on, including Labial's code, so that no report mixes two versions
+    of it."""
     found = hashlib.sha256()
     sources = list(Path(labial.__file__).parent.rglob("*.py"))
-    with suppress(LabialError):  # without the library the methods that run it say so themselves
-        sources += library_root().glob("lib/*.[ch]")
+    with suppress(LabialError):  # without the library the methods that need it report an error
+        sources.append(library_path())
     for path in sorted(sources):
         found.update(path.read_bytes())
     named = replace(options, methods=",".join(method.name for method in select(options.methods)))

@@ -1,11 +1,11 @@
-"""Lip-syncs side by side on one head, in millimetres: weights that any program made, from a folder.
+"""Compares lip-sync of several programs on one head, in millimetres, from weights in a folder.
 
     python -m labial.evaluate.lipsync HEAD FOLDER
 
 HEAD is an avatar or a table of lip points, as for ``labial fit``. FOLDER has, for each utterance, its phonemes,
-``NAME.lab``, the FAPs that are compared with, ``NAME.csv``, and for each lip-sync ``NAME.LIPSYNC.jsonl``: lines as
-``labial synth --to arkit`` writes them, with ``time``, seconds, and an object of weights by the head's names of its
-shapes, or by Oculus LipSync's.
+``NAME.lab``, the FAPs for comparison, ``NAME.csv``, and for each lip-sync ``NAME.LIPSYNC.jsonl``: lines as ``labial
+synth --to arkit`` writes them, with ``time``, seconds, and an object of weights by the head's names of its shapes, or
+by Oculus LipSync's.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ import numpy as np
 
 from labial.corpus.episode import Episode
 from labial.corpus.folder import read_folder
+from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError, LabialError
+from labial.files.grammar import read_lines
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
 from labial.fit.judge import Figures, judge, matrix, opening
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import fap
-from labial.grammar import read_lines
-from labial.phonesets import SPEECH
 
 #: Oculus's names that avatars spell in another way.
 _OCULUS = {"ih": "I", "oh": "O", "ou": "U"}
@@ -38,7 +38,7 @@ COLUMNS = ("lip-sync", "opening, mm", "error, mm", "*p, b, m* closed", "gap, mm"
 
 
 class Row(NamedTuple):
-    """What a lip-sync shows on a head. Lengths are millimetres, of the gap between the inner lips."""
+    """Figures of a lip-sync on a head. Lengths are millimetres, of the gap between the inner lips."""
 
     figures: Figures
     gap: float  #: median of the smallest gaps in p, b, m; below 0 the lips pass through each other
@@ -84,7 +84,7 @@ def read_weights(path: Path, head: Head, times: np.ndarray) -> np.ndarray:
 
 
 def compare(head: Head, episodes: Sequence[Episode], weights: Sequence[np.ndarray]) -> Row:
-    """What `weights`, (T, K) of each episode, show on the head."""
+    """Figures of `weights`, (T, K) of each episode, on the head."""
     frames = np.concatenate([episode.frames for episode in episodes])
     every = np.concatenate(list(weights))
     gap = opening(head, every)
@@ -121,7 +121,7 @@ def jerk(gap: np.ndarray, episodes: Sequence[Episode]) -> float:
 
 
 def lipsyncs(folder: Path, names: Sequence[str]) -> List[str]:
-    """The lip-syncs of which a folder has the weights. Raises DataError where one lacks an utterance."""
+    """The lip-syncs in a folder. Raises DataError if one lacks an utterance."""
     found = sorted({path.name[len(name) + 1 : -len(".jsonl")] for name in names
                     for path in folder.glob(f"{name}.?*.jsonl")})
     for lipsync in found:

@@ -1,27 +1,28 @@
-"""What methods are given and what they are judged by: timelines of phonemes, and the human motion beside them."""
+"""The input and the truth of methods: timelines of phonemes, and the human motion."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Iterable, List, Optional, Tuple
+from typing import Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from labial.corpus import resample
 from labial.corpus.episode import Episode
+from labial.corpus.phonesets import PhoneSet
 from labial.errors import LabialError
-from labial.phonesets import PhoneSet
 from labial.reference.units import frame_counts
+from labial.see.motion import Band
 
 
 @dataclass(frozen=True)
 class Timeline:
-    """All that a method is told of an utterance of S segments and T frames: phonemes and whole milliseconds."""
+    """The input of a method for an utterance of S segments and T frames: phonemes and integer milliseconds."""
 
     phoneme: np.ndarray  #: (S,) int64, index into the phone set
     milliseconds: np.ndarray  #: (S,) int64
-    length: np.ndarray  #: (S,) int64 frames; sums to T; 0 for a segment too short for a frame of its own
+    length: np.ndarray  #: (S,) int64 frames; sums to T; 0 for a segment too short for a frame
 
     @property
     def frames(self) -> int:
@@ -30,18 +31,19 @@ class Timeline:
 
     @property
     def stream(self) -> List[Tuple[int, int]]:
-        """Pairs of phoneme number and milliseconds, as the library takes them."""
+        """Pairs of phoneme number and milliseconds, for the library."""
         return [(int(p), int(ms)) for p, ms in zip(self.phoneme, self.milliseconds)]
 
     @cached_property
     def held(self) -> np.ndarray:
-        """(H,) int64: the segments that have frames; the others leave no trace in any method."""
+        """(H,) int64: the segments that have frames; the others have no effect in any method."""
         return np.flatnonzero(self.length > 0)
 
     @cached_property
     def start(self) -> np.ndarray:
         """(S,) int64: first frame of each segment."""
-        return np.cumsum(self.length) - self.length
+        result: np.ndarray = np.cumsum(self.length) - self.length
+        return result
 
     @cached_property
     def segment_at(self) -> np.ndarray:
@@ -51,7 +53,8 @@ class Timeline:
     @cached_property
     def phoneme_at(self) -> np.ndarray:
         """(T,) int64: the phoneme of each frame."""
-        return self.phoneme[self.segment_at]
+        result: np.ndarray = self.phoneme[self.segment_at]
+        return result
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,8 @@ class Utterance:
     def in_words(self, words: Iterable[str]) -> np.ndarray:
         """(T,) bool: frames of segments that belong to one of `words`."""
         wanted = set(words)
-        return np.array([word in wanted for word in self.words], dtype=bool)[self.timeline.segment_at]
+        result: np.ndarray = np.array([word in wanted for word in self.words], dtype=bool)[self.timeline.segment_at]
+        return result
 
     def longest_word(self, silence: int, words: Optional[Iterable[str]] = None) -> Optional[Tuple[int, int]]:
         """First and last segment of the word with the most phonemes, the first of equals, among `words` if given."""
@@ -91,8 +95,8 @@ def timeline(phonemes: Iterable[int], milliseconds: Iterable[int], fps: int) -> 
 
 
 def utterance(episode: Episode, phone_set: PhoneSet, fps: int) -> Utterance:
-    """One episode. Boundaries are rounded to milliseconds, so that rounding never adds up; where the frames that this
-    leaves differ from those of the recording, the last frame is repeated or left out."""
+    """One episode. Boundaries are rounded to milliseconds, so that rounding errors do not accumulate; if the number of
+    frames differs from the recording's, the last frame is repeated or omitted."""
     number = {label: index for index, label in enumerate(phone_set.phonemes)}
     unknown = sorted({segment.label for segment in episode.segments} - set(number))
     if unknown:
@@ -109,3 +113,21 @@ def utterances(episodes: Iterable[Episode], phone_set: PhoneSet, fps: int) -> Li
     """All episodes of three frames or more; shorter ones have no acceleration to learn from or to judge."""
     result = [utterance(episode, phone_set, fps) for episode in episodes]
     return [item for item in result if item.timeline.frames >= 3]
+
+
+def bands(given: Timeline, phonemes: Sequence[str], kinds: Sequence[str], fps: int, begin: int = 0,
+          end: Optional[int] = None) -> List[Band]:
+    """The bands that figures draw: the phonemes within the frames from `begin` to before `end` (all), as they are
+    synthesised, cut at both ends.
+
+    `phonemes` and `kinds` (P,) are labels and kinds of bands by phoneme number.
+    """
+    end = given.frames if end is None else end
+    found = []
+    for segment in given.held:
+        first = max(int(given.start[segment]), begin)
+        last = min(int(given.start[segment] + given.length[segment]), end)
+        if first < last:
+            phoneme = given.phoneme[segment]
+            found.append(Band(first / fps, last / fps, phonemes[phoneme], kinds[phoneme]))
+    return found

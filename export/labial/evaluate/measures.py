@@ -8,6 +8,7 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
+from labial.corpus.phonesets import PhoneSet
 from labial.evaluate.material import Utterance
 from labial.evaluate.pulses import SEEN_PERCENTILE, has_pulses, rises
 from labial.evaluate.trajectories import (
@@ -22,19 +23,19 @@ from labial.evaluate.trajectories import (
     labial_parameters,
     lips,
 )
-from labial.phonesets import PhoneSet
 from labial.reference.published import pieces
 
 #: Lips count as closed below this percentile of the openness of all training frames but silence.
 CLOSED_PERCENTILE = 20.0
 
-#: And, in speech, as firmly closed below this percentile of the human's least openness in the training part's p, b, m.
+#: In speech they count as firmly closed below this percentile of the human's least openness in the training part's #:
+#: p, b, m.
 FIRM_PERCENTILE = 50.0
 
-#: A closure is looked for in its segment and this many seconds to both sides.
+#: A closure is searched in its segment and this many seconds to both sides.
 CLOSURE_REACH = 0.04
 
-#: Seams are looked for where units meet, short ones taken together until they have so many frames.
+#: Seams are searched where units meet; short units are joined until they have so many frames.
 JOINED_FRAMES = 16
 
 #: The viseme classes whose phonemes close the lips, of speech and of laughter; without them there are no closure rates.
@@ -43,12 +44,12 @@ CLOSED_CLASSES = ("bilabial", "nose")
 
 @dataclass(frozen=True)
 class Scale:
-    """What the training part says about the size of things."""
+    """Scales from the training part."""
 
     maximum: np.ndarray  #: (4,) largest absolute value of each labial parameter but in silence, FAP
     closed: float  #: openness below which lips count as closed, FAP
     firm: float  #: and as firmly closed, FAP; NaN without phonemes that close the lips
-    pulse: float = float("nan")  #: rise of openness from which a pulse is seen, FAP; NaN in speech
+    pulse: float = float("nan")  #: least rise of openness of a visible pulse, FAP; NaN in speech
 
 
 def silence_of(phone_set: PhoneSet) -> int:
@@ -62,9 +63,9 @@ def _closing(phone_set: PhoneSet) -> np.ndarray:
 
 
 def groups(phone_set: PhoneSet) -> Tuple[str, Tuple[str, ...], np.ndarray]:
-    """What errors are told apart by: its name, the groups' names, and each phoneme's group (P,).
+    """The grouping of errors: its name, the groups' names, and each phoneme's group (P,).
 
-    Viseme classes of speech; the phonemes themselves of laughter, which has few.
+    Viseme classes for speech; the phonemes themselves for laughter, which has few.
     """
     if phone_set.kind == "laughter":
         return "phoneme", phone_set.phonemes, np.arange(len(phone_set.phonemes))
@@ -104,11 +105,12 @@ def measure_scale(training: Sequence[Utterance], phone_set: PhoneSet, fps: int) 
 
 def mean_difference(scale: Scale, human: np.ndarray, motion: np.ndarray) -> np.ndarray:
     """(4,) the paper's diff, |ori - syn| / maximum, of frames (T, 13)."""
-    return np.abs(labial_parameters(human) - labial_parameters(motion)).mean(axis=0) / scale.maximum
+    result: np.ndarray = np.abs(labial_parameters(human) - labial_parameters(motion)).mean(axis=0) / scale.maximum
+    return result
 
 
 class Judge:
-    """Holds methods to the human motion of a test part."""
+    """Judges methods by the human motion of a test part."""
 
     def __init__(
         self,
@@ -132,7 +134,7 @@ class Judge:
 
     @property
     def frames(self) -> int:
-        """How many frames are judged."""
+        """The number of judged frames."""
         return len(self._human)
 
     def _pooled(self, motion: Sequence[np.ndarray]) -> np.ndarray:
@@ -182,7 +184,7 @@ class Judge:
     def _closures(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
         closed, by_human = self._closure(motion), self._closure([item.human for item in self._test])
         result: Dict[str, float] = {}
-        names = ("closure",) if self._pulsing else ("closure", "firm closure")  # laughter's closed lips rest, not press
+        names = ("closure",) if self._pulsing else ("closure", "firm closure")  # laughter does not press lips
         for name, own, reference in zip(names, closed, by_human):
             result[f"{name}/rate"] = float(own)
             result[f"{name}/of human"] = float(own / reference) if reference > 0 else float("nan")
@@ -195,7 +197,7 @@ class Judge:
         )  # fmt: skip
 
     def _pulses(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
-        """Share of the pulses that are seen, that over the human's, and the mean rise over the human's."""
+        """Share of visible pulses, its ratio to the human's, and the mean rise over the human's."""
         own, human = self._rises(motion), self._rises([item.human for item in self._test])
         if not len(own):
             return {}
@@ -232,7 +234,7 @@ def _named(what: str, names: Sequence[str], values: np.ndarray) -> Dict[str, flo
 
 
 def _mean_ratio(own: np.ndarray, other: np.ndarray) -> float:
-    """Mean over the channels of own / other; those where `other` is still are left out, NaN if all are."""
+    """Mean over the channels of own / other; channels in which `other` is still are omitted, NaN if all are."""
     moving = other > 1e-9
     return float((own[moving] / other[moving]).mean()) if moving.any() else float("nan")
 

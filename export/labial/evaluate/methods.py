@@ -49,9 +49,8 @@ def select(names: str) -> List[Method]:
 
 
 def predict_all(predictor: Predictor, timelines: Sequence[Timeline]) -> List[np.ndarray]:
-    """(T, 13) of every timeline, all at once where the predictor can. Raises LabialError for what is no motion."""
-    at_once = getattr(predictor, "predict_all", None)
-    motion = at_once(timelines) if at_once else [predictor.predict(item) for item in timelines]
+    """(T, 13) of every timeline. Raises LabialError for invalid motion."""
+    motion = [predictor.predict(item) for item in timelines]
     for frames, item in zip(motion, timelines):
         if len(frames) != item.frames or not np.isfinite(frames).all():
             raise LabialError(f"a method made {len(frames)} frames of {item.frames}, or such as are not finite")

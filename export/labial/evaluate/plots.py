@@ -1,4 +1,4 @@
-"""Plots of an evaluation, after the paper's figures 3 and 6, and of where the errors are."""
+"""Plots of an evaluation: like the paper's figures 3 and 6, and of errors by group."""
 
 from __future__ import annotations
 
@@ -6,20 +6,23 @@ from pathlib import Path
 from typing import List, Sequence, Tuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from labial.evaluate.bands import bands
-from labial.evaluate.protocol import HUMAN, Example, Options, Outcome
+from labial.corpus.phonesets import PHONE_SETS
+from labial.evaluate.material import bands
+from labial.evaluate.protocol import HUMAN
 from labial.evaluate.report import cell, grouping, methods_of, table_4, title
+from labial.evaluate.splits import Example, Options, Outcome
 from labial.evaluate.trajectories import JUDGED, JUDGED_NAMES
-from labial.phonesets import PHONE_SETS
 from labial.see import drawing
-from labial.see.drawing import COLOURS, STYLE, pyplot
+from labial.see.drawing import COLOURS, pyplot, style
 from labial.see.motion import Band, kind_of
 
 #: Seconds of an utterance that its trajectories are shown for.
 LONGEST = 5
 
-#: Methods whose curves are drawn where they were run; all of them would hide each other.
+#: Methods whose curves are drawn, if they were run; all of them would hide each other.
 DRAWN = ("hmm_synthesis", "paper", "labial")
 
 
@@ -48,7 +51,7 @@ def _name(example: Example, options: Options) -> str:
     return example.utterance.episode.name + (", synthetic data" if options.synthetic else "")
 
 
-def _curves(axes: pyplot.Axes, example: Example, frames: slice, channel: int, options: Options) -> None:
+def _curves(axes: Axes, example: Example, frames: slice, channel: int, options: Options) -> None:
     """The original and the methods, over the phonemes."""
     drawing.shade(axes, _bands(example, frames, options))
     time = (np.arange(frames.start, frames.stop) + 0.5) / options.fps
@@ -65,7 +68,7 @@ def _bands(example: Example, frames: slice, options: Options) -> List[Band]:
     return bands(example.utterance.timeline, phones.phonemes, kinds, options.fps, frames.start, frames.stop)
 
 
-def _finish(figure: pyplot.Figure, every: Sequence[pyplot.Axes], example: Example, frames: slice, options: Options,
+def _finish(figure: Figure, every: Sequence[Axes], example: Example, frames: slice, options: Options,
             path: Path) -> str:
     """Phonemes above the first axes, the legend below the last, and the file; returns its name."""
     shown = _bands(example, frames, options)
@@ -128,7 +131,7 @@ def _bars(
     return path.name
 
 
-@pyplot.rc_context(STYLE)
+@style()
 def write(outcomes: Sequence[Outcome], options: Options, folder: Path) -> List[str]:
     """Writes all plots; returns their file names."""
     names = []

@@ -4,83 +4,45 @@ judged)."""
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from labial.corpus.episode import Episode
-from labial.defaults import FPS, KINDS, SPLITS
+from labial.corpus.phonesets import PHONE_SETS, PhoneSet
 from labial.errors import LabialError
 from labial.evaluate.baselines import steps
+from labial.evaluate.kept import Kept
 from labial.evaluate.material import Utterance, utterances
 from labial.evaluate.measures import Judge, judged_frames, silence_of
 from labial.evaluate.methods import predict_all, select
 from labial.evaluate.pulses import has_pulses, longest_train
 from labial.evaluate.readability import LipReader
-from labial.evaluate.splits import Split, leave_talkers_out, make_splits
+from labial.evaluate.splits import Example, Options, Outcome, Split, leave_talkers_out, make_splits
 from labial.evaluate.training import Training
-from labial.phonesets import PHONE_SETS, PhoneSet
 from labial.train.workers import Workers
 
 #: The human's own motion goes through the same measures under this name.
 HUMAN = "human"
 
 
-@dataclass(frozen=True)
-class Options:
-    """What an evaluation is asked to do."""
-
-    kind: str = KINDS[0]
-    methods: str = "all"
-    splits: int = SPLITS
-    seed: int = 0
-    fps: int = FPS
-    held_out: Tuple[str, ...] = ()
-    leave_out_talkers: bool = False  #: in place of random splits
-    talker_variance: Optional[float] = None  #: of Labial's models: talkers as random effects
-    synthetic: bool = False  #: the motion was computed, not recorded; every table and plot says so
-
-
-@dataclass(frozen=True)
-class Example:
-    """An utterance of the test part and what every method made of it, for the plots; (T, 13) each, FAP."""
-
-    kind: str
-    index: int  #: of the utterance in the corpus
-    utterance: Utterance
-    stretch: Optional[Tuple[int, int]]  #: first and last segment that plots show: see :func:`_stretch`
-    steps: np.ndarray
-    motion: Dict[str, np.ndarray]
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """One split: measures by method and name; processor seconds by method, shared work with the first that asks."""
-
-    split: Split
-    frames: int  #: that are judged
-    measures: Dict[str, Dict[str, float]]
-    seconds: Dict[str, float] = field(compare=False)
-    example: Optional[Example] = None
-
-
 def _processor_seconds() -> float:
-    """This process's and its finished children's, the C library's and its compiler's among them."""
+    """This process's and its finished children's."""
     spent = os.times()
     return spent.user + spent.system + spent.children_user + spent.children_system
 
 
 def _stretch(item: Utterance, phone_set: PhoneSet, split: Split) -> Optional[Tuple[int, int]]:
-    """What plots show of an utterance: its longest word that is judged, or its longest train of pulses."""
+    """The part of an utterance for plots: its longest judged word, or its longest train of pulses."""
     if has_pulses(phone_set):
         return longest_train(item, phone_set)
     return item.longest_word(silence_of(phone_set), split.words)
 
 
 def _most_shown(test: Sequence[Utterance], phone_set: PhoneSet, split: Split) -> int:
-    """The utterance of which plots show most segments, the first of equals."""
+    """The utterance with the most plotted segments, the first of equals."""
     shown = [_stretch(item, phone_set, split) or (0, -1) for item in test]
     return int(np.argmax([last - first + 1 for first, last in shown]))
 
@@ -128,10 +90,10 @@ def evaluate(
     episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
     engine: Optional[str] = None, progress: bool = True, folder: Optional[Path] = None,
 ) -> List[Outcome]:
-    """All splits of `episodes` in order; Labial's models are trained on `further` ones too, of whose talkers one after
-    the other is left out and judged where the options say so. The outcomes do not depend on `jobs`, the number of
-    processes, nor on `engine` (:class:`labial.train.workers.Workers`). Each split that is finished is kept in `folder`,
-    that of the report, and taken from there if it is there already (:mod:`labial.evaluate.kept`)."""
+    """All splits of `episodes` in order; Labial's models are trained on `further` ones, too; if the options say so,
+    each of their talkers in turn is left out and judged. The outcomes do not depend on `jobs`, the number of processes,
+    nor on `engine` (:class:`labial.train.workers.Workers`). Finished splits are stored in `folder`, that of the report,
+    and reused from there (:mod:`labial.evaluate.kept`)."""
     phone_set = PHONE_SETS[options.kind]
     corpus = utterances(episodes, phone_set, options.fps)
     first = len(corpus)
@@ -144,8 +106,6 @@ def evaluate(
     if folder is None:
         with Workers(jobs, progress, engine) as workers:
             return workers.run("splits", _run, [(corpus, split, options) for split in splits])
-    from labial.evaluate.kept import Kept
-
     kept = Kept(folder, corpus, options)
     found = {split.number: outcome for split in splits for outcome in [kept.find(split)] if outcome is not None}
     if found:

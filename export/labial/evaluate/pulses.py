@@ -1,4 +1,4 @@
-"""Pulses of laughter: how far the mouth opens in each vowel-like phoneme."""
+"""Pulses of laughter: the opening of the mouth in each vowel-like phoneme."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
+from labial.corpus.phonesets import PhoneSet
 from labial.evaluate.material import Utterance
 from labial.evaluate.trajectories import labial_parameters
-from labial.phonesets import PhoneSet
 
-#: A pulse's peak is looked for in its phoneme and this many seconds to both sides.
+#: A pulse's peak is searched in its phoneme and this many seconds to both sides.
 REACH = 0.04
 
-#: A pulse is seen when it rises further than this percentile of the original's pulses in the training part.
+#: A pulse is visible if it rises further than this percentile of the original's pulses in the training part.
 SEEN_PERCENTILE = 20.0
 
 #: Vowel-like phonemes whose beginnings are further apart than this are of two trains, milliseconds.
@@ -21,7 +21,7 @@ TRAIN_GAP = 400
 
 
 def has_pulses(phone_set: PhoneSet) -> bool:
-    """Whether pulses are what this kind of motion is judged by."""
+    """Whether this kind of motion is judged by pulses."""
     return phone_set.kind == "laughter"
 
 

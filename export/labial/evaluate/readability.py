@@ -1,13 +1,13 @@
-"""Readability: how well a lip-reader who learned from people reads the words of a method's motion.
+"""Readability: how well a lip-reader trained on people reads the words of a method's motion.
 
-The reader is Fisher's linear discriminant analysis with a shrunk covariance (scikit-learn), one for each class of words
-that stand for each other. Its features of a word are the motion of all 13 channels from MARGIN before to MARGIN after
-it, sampled at POINTS moments that are spread evenly over that time, so that durations carry no information, less each
+The reader is Fisher's linear discriminant analysis with a shrunk covariance (scikit-learn), one for each class of
+interchangeable words. Its features of a word are the motion of all 13 channels from MARGIN before to MARGIN after it,
+sampled at POINTS moments that are spread evenly over that time, so that durations carry no information, less each
 channel's mean over them, so that the talker's resting position carries none either: (13 POINTS,) features.
 
-* **Known words.** Trained on human motion of the training part, it reads the test part. The words of a corpus whose
-  utterances all have the same number of words, and each word one place, as in a command grammar, are in classes by
-  place; otherwise all words are one class. Those that the training part holds less than LEAST times are left out.
+* **Known words.** Trained on human motion of the training part, it reads the test part. If all utterances of a corpus
+have the same number of words, and each word one place, as in a command grammar, classes are by place; otherwise all
+words are one class. Words that occur less than LEAST times in the training part are omitted.
 * **Unseen words**, where the words that are judged were held out of training: only these are distinguished. A reader
   cannot read a word without having seen people say it, so here it is trained on human motion of the test part, in FOLDS
   parts: the tokens of each part, in every method's motion and in the human's, are read by a reader that was trained on
@@ -16,13 +16,12 @@ channel's mean over them, so that the talker's resting position carries none eit
 Readability is the share of correctly read tokens in each class, averaged over the classes, all with the same weight. It
 is not corrected for chance.
 
-Synthetic motion is a mean, without the variation of people from one utterance to the next, so that a reader trained on
-people finds it clearer or stranger than it is. *With residual* each token therefore has the residual of a token of
-another utterance added: what the reader sees of a human token that it was trained on, less the mean of all human tokens
-of that one's word, times sqrt(n / (n - 1)) for the n of them that the mean was taken over. That is the variation within
-words which the reader itself expects. Tokens are drawn by the seed, REPEATS times each, and the same ones for every
-method. The human's motion gets a residual as well and so varies twice: methods with residual are compared with the
-human without residual.
+Synthetic motion is a mean, without people's variation between utterances, so that a reader trained on people
+overestimates or underestimates its clarity. *With residual* each token therefore gets the residual of a token of
+another utterance: the features of a human token of the reader's training, less the mean over the n human tokens of its
+word, times sqrt(n / (n - 1)). This is the variation within words that the reader expects. Tokens are drawn by the seed,
+REPEATS times each, and the same ones for every method. The human's motion with a residual varies twice, so compare
+methods with residual with the human without residual.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass
-from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
@@ -38,15 +37,15 @@ from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
 from labial.evaluate.material import Utterance
 from labial.evaluate.training import Training
 
-#: How a word is seen: moments, and seconds beyond it to both sides.
+#: Sampling of a word: moments, and seconds beyond it to both sides.
 POINTS = 20
 MARGIN = 0.1
 
-#: Tokens of a word from which on it is learned, and the parts of the test part where words are unseen.
+#: Least tokens of a word to be learned, and the number of parts of the test part for unseen words.
 LEAST = 5
 FOLDS = 10
 
-#: How often each token is read with a residual.
+#: Readings of each token with a residual.
 REPEATS = 5
 
 _VARIANT = re.compile(r"\(\d+\)$")
@@ -64,8 +63,8 @@ class Token(NamedTuple):
 def spoken(item: Utterance, silence: int) -> List[Tuple[str, int, int]]:
     """The words of an utterance in order: word, first frame and the frame after the last.
 
-    A word is a run of segments that bear its name; silence bears none. A word may have no frame. "with" and "with(2)",
-    as aligners tell pronunciations apart, are one word.
+    A word is a run of segments with its name; silence has none. A word may have no frame. "with" and "with(2)", which
+    aligners use for pronunciations, are one word.
     """
     given, found, last = item.timeline, [], None
     for index, word in enumerate(item.words):
@@ -82,7 +81,7 @@ def spoken(item: Utterance, silence: int) -> List[Tuple[str, int, int]]:
 def word_classes(sentences: Sequence[Sequence[str]]) -> List[Tuple[str, ...]]:
     """The words, ascending, in classes that stand for each other: by place in the sentence where all sentences have the
     same number of words and each word one place, else all in one class."""
-    places: Dict[str, set] = {}
+    places: Dict[str, Set[int]] = {}
     for sentence in sentences:
         for place, word in enumerate(sentence):
             places.setdefault(word, set()).add(place)
@@ -98,7 +97,8 @@ def features(frames: np.ndarray, begin: int, end: int, fps: int) -> np.ndarray:
     margin = MARGIN * fps
     moments = np.linspace(begin - margin, end - 1 + margin, POINTS)
     seen = np.stack([np.interp(moments, np.arange(len(frames)), channel) for channel in frames.T], axis=1)
-    return (seen - seen.mean(axis=0)).ravel()
+    result: np.ndarray = (seen - seen.mean(axis=0)).ravel()
+    return result
 
 
 class Reader:
@@ -114,7 +114,8 @@ class Reader:
 
     def read(self, seen: np.ndarray) -> np.ndarray:
         """(n,) the words that (n, 13 POINTS) look like."""
-        return self._analysis.predict(seen)
+        result: np.ndarray = self._analysis.predict(seen)
+        return result
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,8 @@ class _Test:
         """(n,) or (REPEATS n,) bool: which of the tokens, seen as (n, 13 POINTS), are read as what they are."""
         words = np.array([item.word for item in self.tokens])
         if not with_residual:
-            return self.reader.read(seen) == words
+            result: np.ndarray = self.reader.read(seen) == words
+            return result
         noisy = [self.reader.read(seen + self.reader.residual[rows]) == words for rows in self.borrowed]
         return np.concatenate(noisy)
 

@@ -1,4 +1,4 @@
-"""Tables of an evaluation: Markdown for people, CSV for programs. Nothing in them depends on time or place."""
+"""Tables of an evaluation: Markdown for people, CSV for programs. They do not depend on time or machine."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
+from labial.corpus.phonesets import PHONE_SETS
 from labial.evaluate.measures import groups
 from labial.evaluate.methods import METHODS
-from labial.evaluate.protocol import HUMAN, Options, Outcome
+from labial.evaluate.protocol import HUMAN
+from labial.evaluate.splits import Options, Outcome
 from labial.evaluate.trajectories import JUDGED_NAMES, LIPS, PARAMETERS
-from labial.phonesets import PHONE_SETS
 
 #: Column title and measure.
 Columns = Sequence[Tuple[str, str]]
@@ -21,7 +22,7 @@ Columns = Sequence[Tuple[str, str]]
 #: The paper's Table 1: diff per labial parameter.
 TABLE_1: Columns = [(name, f"diff/{name}") for name in (*PARAMETERS, "mean")]
 
-#: What the other measures begin and end with, whatever the kind.
+#: The first and last of the other measures, for all kinds.
 _FIRST: Columns = (("correlation", "correlation/mean"), ("amplitude", "amplitude/mean"))
 _LAST: Columns = (("jitter", "jitter"), ("seam, mean", "seam/mean"), ("seam, largest", "seam/largest"))
 
@@ -104,7 +105,7 @@ class Cell:
 
 
 def title(method: str, synthetic: bool = False) -> str:
-    """What tables call a method, or what all are compared with."""
+    """The title of a method, or of the original, in tables."""
     if method == HUMAN and synthetic:
         return "synthetic original"
     return next((item.title for item in METHODS if item.name == method), method)
@@ -130,7 +131,7 @@ def cell(outcomes: Sequence[Outcome], method: str, measure: str) -> Cell:
 
 
 def grouping(kind: str) -> str:
-    """What Table 4 tells apart: "class", viseme classes of speech, or "phoneme", those of laughter."""
+    """The groups of Table 4: "class", viseme classes of speech, or "phoneme", those of laughter."""
     return groups(PHONE_SETS[kind])[0]
 
 
@@ -250,7 +251,7 @@ def write(outcomes: Sequence[Outcome], options: Options, folder: Path, plots: Se
         rows = _table_rows(outcomes, who, columns, options)
         _write_csv(written[-1], ("method", "measure", "mean", "deviation"), rows)
     written.append(folder / f"splits{suffix}")
-    rows = [(item.split.number, _key(method, options), _key(measure, options), f"{value:.6g}") for item in outcomes
+    rows = [[item.split.number, _key(method, options), _key(measure, options), f"{value:.6g}"] for item in outcomes
             for method, measures in item.measures.items() for measure, value in measures.items()]
     _write_csv(written[-1], ("split", "method", "measure", "value"), rows)
     return written

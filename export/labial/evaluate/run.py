@@ -9,17 +9,18 @@ from typing import Dict, List, Optional, Sequence
 from labial.corpus import read_corpora
 from labial.corpus.laughter import is_synthetic
 from labial.evaluate import plots, report
-from labial.evaluate.kept import forget
+from labial.evaluate.kept import remove_kept
 from labial.evaluate.methods import select
-from labial.evaluate.protocol import Options, Outcome, evaluate
-from labial.outputs import check_folder, folder
+from labial.evaluate.protocol import evaluate
+from labial.evaluate.splits import Options, Outcome
+from labial.files.outputs import check_folder, folder
 from labial.train.pipeline import check_jobs
 from labial.train.talkers import check_variance
 from labial.train.workers import Workers
 
 
 def processor_time(outcomes: Sequence[Outcome]) -> str:
-    """Processor seconds per split, all methods and each; for the terminal, since no two runs are alike in them."""
+    """Processor seconds per split, for all methods and each; for the terminal, since they differ in each run."""
     total: Dict[str, float] = {}
     for item in outcomes:
         for method, seconds in item.seconds.items():
@@ -31,8 +32,8 @@ def processor_time(outcomes: Sequence[Outcome]) -> str:
 def run(
     corpora: Sequence[str], output: str, options: Options, *, jobs: int, engine: Optional[str], progress: bool
 ) -> List[Path]:
-    """Evaluates and writes the report into the folder `output`; returns what was written. Splits that are finished are
-    kept there until the report is written, and not worked on again."""
+    """Evaluates and writes the report into the folder `output`; returns what was written. Finished splits are stored
+    there until the report is written, and reused."""
     select(options.methods)  # before the corpora are read
     check_folder(output)
     check_jobs(jobs)
@@ -46,7 +47,7 @@ def run(
     with folder(output) as made:
         drawn = plots.write(outcomes, options, made)
         written = [path.name for path in report.write(outcomes, options, made, drawn)]
-    forget(Path(output))
+    remove_kept(Path(output))
     if options.leave_out_talkers:
         print(report.talkers_table(outcomes, report.methods_of(outcomes)))
     print(report.caption("Table 1", "diff", options))

@@ -1,9 +1,9 @@
-"""How often the run-time's search chooses other states than the Viterbi search of whole units on the same tables.
+"""Compares the states of the run-time's search with those of a Viterbi search of whole units on the same tables.
 
     python -m labial.evaluate.search MODEL CORPUS [--every N]
 
 MODEL is a model's file or the name of a bundled one, CORPUS a corpus whose phonemes are searched, of every Nth episode.
-docs/method.md, Units and search, has the figures.
+docs/method.md, What Labial adds, has the figures.
 """
 
 from __future__ import annotations
@@ -14,53 +14,52 @@ from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
-from labial.bundled import MODEL_HELP
-from labial.commands.common import positive
 from labial.corpus import read_corpus
 from labial.errors import LabialError
+from labial.evaluate.loss import channel_extent
 from labial.evaluate.material import utterances
-from labial.faps import CHANNELS
-from labial.fixed import SEARCHED
-from labial.loss import channel_extent
-from labial.model import load
-from labial.phones import Stream, phone_set
-from labial.quantise import quantise
+from labial.files.arguments import positive
 from labial.reference.published import viterbi
 from labial.reference.stream import aims, synthesise
 from labial.reference.tables import ExportedTables, Tables
 from labial.reference.viterbi import Chains, block_at, looked_at, window
+from labial.tables.bundled import MODEL_HELP
+from labial.tables.fixed import SEARCHED
+from labial.tables.model import load
+from labial.tables.phones import Stream, phone_set
+from labial.tables.quantise import quantise
 
-#: What is compared: LABIAL_LAG and LABIAL_SEARCHED.
+#: The compared limits: LABIAL_LAG and LABIAL_SEARCHED.
 LIMITS = ((0, SEARCHED), (0, 64), (9, SEARCHED), (9, 64), (40, SEARCHED), (40, 64))
 
 
 def unit_by_unit(chains: Chains, positions: np.ndarray, units: np.ndarray, width: int) -> np.ndarray:
-    """(B, 13) the states of blocks whose targets are (B, 13): the likeliest path of every unit, searched as a whole
-    from the last state of the unit before. `units` (B, 13) are the blocks that end one. Only the `width` states around
-    the one that is nearest to the target are possible; no transition costs more than a leap, the largest cost that the
-    tables hold."""
+    """(B, C) the states of blocks with targets (B, C): the most probable path of every unit, searched as a whole from
+    the last state of the previous unit. `units` (B, C) are the blocks that end a unit. Only the `width` states around
+    the one nearest to the target are possible; no transition costs more than the largest cost in the tables."""
     states = chains.mean.shape[1]
-    every = np.broadcast_to(np.arange(states), (CHANNELS, states))
+    every = np.broadcast_to(np.arange(states), chains.mean.shape)
     emission = np.asarray(chains.emission(positions, every), dtype=np.float64)
     first = window(positions, chains.mean, min(width, states))[..., None]
     emission[(every < first) | (every >= first + width)] = np.inf
     path = np.empty(positions.shape, dtype=np.int64)
-    for k in range(CHANNELS):
+    for k in range(len(chains.mean)):
         transition, begin = np.minimum(chains.transition[k], chains.leap), 0
         start = chains.initial[k].astype(np.float64)
-        for end in np.flatnonzero(units[:, k]) + 1:
+        for end in (np.flatnonzero(units[:, k]) + 1).tolist():
             path[begin:end, k] = viterbi(emission[begin:end, k], transition, start)
             begin, start = end, transition[path[end - 1, k]]
     return path
 
 
 def units_path(tables: Tables, target: np.ndarray, ends: np.ndarray, width: int) -> np.ndarray:
-    """(T, 13) the states of :func:`unit_by_unit` for the frames of targets (T, 13), of which `ends` (T,) end units."""
-    number = block_at(len(target), tables.stride)
-    units = np.zeros((int(number.max()) + 1, CHANNELS), dtype=bool)
-    for k in range(CHANNELS):
+    """(T, C) the states of :func:`unit_by_unit` for the frames of targets (T, C), of which `ends` (T,) end units."""
+    channels = target.shape[1]
+    number = block_at(len(target), tables.stride, channels=channels)
+    units = np.zeros((int(number.max()) + 1, channels), dtype=bool)
+    for k in range(channels):
         units[number[np.flatnonzero(ends), k], k] = True
-    seen = np.take_along_axis(target, looked_at(len(target), tables.stride, len(units)), axis=0)
+    seen = np.take_along_axis(target, looked_at(len(target), tables.stride, len(units), channels=channels), axis=0)
     return np.take_along_axis(unit_by_unit(tables.chains, seen, units, width), number, axis=0)
 
 

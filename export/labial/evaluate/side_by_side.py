@@ -14,16 +14,15 @@ from typing import Dict, List, Optional, Sequence
 import numpy as np
 
 from labial.errors import LabialError
-from labial.evaluate.bands import bands
-from labial.evaluate.material import timeline
+from labial.evaluate.material import bands, timeline
 from labial.evaluate.trajectories import labial_parameters
-from labial.faps import FAP_NUMBERS
-from labial.model import Model, load
-from labial.phones import read_stream
+from labial.files.faps import FAP_NUMBERS
 from labial.reference.synthesis import synthesise
 from labial.see import drawing
-from labial.see.drawing import STYLE, pyplot
+from labial.see.drawing import pyplot, style
 from labial.see.motion import Band
+from labial.tables.model import Model, load
+from labial.tables.phones import read_stream
 
 #: Titles of the panels, in the order of labial_parameters().
 PANELS = (
@@ -39,12 +38,12 @@ COLOURS = tuple(drawing.COLOURS[index] for index in (1, 0, 2, 3))
 
 @dataclass(frozen=True)
 class Drawn:
-    """What is drawn: `motion` holds (T, 4) labial parameters by the model's name, FAP units."""
+    """The data of the figure: `motion` has (T, 4) labial parameters by the model's name, FAP units."""
 
     fps: int
     phonemes: List[Band]
     motion: Dict[str, np.ndarray]
-    contact: Optional[float]  #: distance of the lips in firm contact, FAP units, where a model knows it
+    contact: Optional[float]  #: distance of the lips in contact, FAP units, if a model has it
 
     @property
     def closing(self) -> List[Band]:
@@ -53,7 +52,7 @@ class Drawn:
 
 
 def _contact(models: Sequence[Model]) -> Optional[float]:
-    """The distance of the lips at which a model holds its bilabials at most; None where no model holds them."""
+    """The largest distance of the lips in a model's bilabials; None if no model limits it."""
     for model in models:
         upper, lower = (model.floor[:, FAP_NUMBERS.index(number)] for number in (51, 52))
         held = np.isfinite(upper + lower) & (model.viseme_class == _bilabial(model))
@@ -67,7 +66,7 @@ def _bilabial(model: Model) -> int:
 
 
 def _kinds(model: Model) -> List[str]:
-    """(P,) kinds of bands, by what the model knows of its phonemes."""
+    """(P,) kinds of bands of the model's phonemes."""
     known = {"silence": "silence", "bilabial": "closed", "labiodental": "labiodental"}
     return [known.get(model.classes[number], "vowel" if boundary else "other")
             for number, boundary in zip(model.viseme_class, model.boundary)]
@@ -95,7 +94,7 @@ def least(drawn: Drawn, name: str) -> List[float]:
     return [float(opening[round(b.start * drawn.fps) : round(b.end * drawn.fps)].min()) for b in drawn.closing]
 
 
-@pyplot.rc_context(STYLE)
+@style()
 def draw(drawn: Drawn, path: Path) -> None:
     """Writes the figure, SVG or PNG."""
     ratios = {"height_ratios": (1.7, 1, 1, 1)}  # closures are seen in the first

@@ -1,16 +1,17 @@
-"""Which episodes are trained on and which are judged (docs/method.md, How it is judged)."""
+"""Splits of episodes into training and test part (docs/method.md, How it is judged)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from labial.defaults import FPS, KINDS, SPLITS
 from labial.errors import LabialError
 from labial.evaluate.material import Utterance
 
-#: Share of the episodes that are trained on.
+#: Share of the episodes in the training part.
 TRAINING_SHARE = 0.8
 
 
@@ -24,6 +25,44 @@ class Split:
     words: Optional[Tuple[str, ...]] = None
     added: Tuple[int, ...] = ()  #: of further corpora, which Labial's models are trained on too
     talker: str = ""  #: who is left out
+
+
+@dataclass(frozen=True)
+class Options:
+    """What an evaluation is asked to do."""
+
+    kind: str = KINDS[0]
+    methods: str = "all"
+    splits: int = SPLITS
+    seed: int = 0
+    fps: int = FPS
+    held_out: Tuple[str, ...] = ()
+    leave_out_talkers: bool = False  #: in place of random splits
+    talker_variance: Optional[float] = None  #: of Labial's models: talkers as random effects
+    synthetic: bool = False  #: the motion was computed, not recorded; every table and plot says so
+
+
+@dataclass(frozen=True)
+class Example:
+    """An utterance of the test part and what every method made of it, for the plots; (T, 13) each, FAP."""
+
+    kind: str
+    index: int  #: of the utterance in the corpus
+    utterance: Utterance
+    stretch: Optional[Tuple[int, int]]  #: first and last segment that plots show: see :mod:`labial.evaluate.protocol`
+    steps: np.ndarray
+    motion: Dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One split: measures by method and name; processor seconds by method, shared work with the first that asks."""
+
+    split: Split
+    frames: int  #: that are judged
+    measures: Dict[str, Dict[str, float]]
+    seconds: Dict[str, float] = field(compare=False)
+    example: Optional[Example] = None
 
 
 def _draw(candidates: np.ndarray, seed: int, number: int) -> np.ndarray:
@@ -63,8 +102,8 @@ def make_splits(
 
 
 def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:
-    """One split for each talker of the further corpora, who is judged by what the first corpus, the `first` utterances,
-    and the other talkers teach."""
+    """One split for each talker of the further corpora, with a training part of the first corpus, the `first`
+    utterances, and the other talkers."""
     talkers = list(dict.fromkeys(item.episode.source.talker for item in corpus[first:]))
     if not talkers:
         raise LabialError("a talker is left out of a second corpus, but there is only one")

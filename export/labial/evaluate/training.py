@@ -1,4 +1,4 @@
-"""The training part as every method receives it, and what several methods derive from it, made once."""
+"""The training part, as input of every method, and cached results that several methods share."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from typing import Callable, Dict, List, Optional, Protocol, Sequence, Set, Tupl
 import numpy as np
 
 from labial.corpus.episode import Episode
+from labial.corpus.phonesets import PhoneSet
 from labial.evaluate.material import Timeline, Utterance
 from labial.evaluate.measures import Scale, judged_frames, mean_difference, measure_scale, silence_of
-from labial.model import Model
-from labial.phonesets import PhoneSet
+from labial.tables.model import Model
 from labial.train import train
 from labial.train.codebook import lbg
 
 #: Share of the training part that inner validation fits on; the rest chooses the settings.
 INNER_SHARE = 0.8
 
-#: Where unseen words are judged, inner validation holds out words as well, several times, for few words say little:
-#: each time until so many episodes hold one of them. Words of more episodes than COMMON_SHARE are left alone, for they
-#: would leave too little to fit on.
+#: If unseen words are judged, inner validation holds out words, too, in several folds, since few words are not enough:
+#: in each fold until so many episodes contain one of them. It does not hold out words in more episodes than
+#: COMMON_SHARE, which would leave too little to fit on.
 WORD_FOLDS = 3
 WORD_SHARE = 0.3
 COMMON_SHARE = 0.15
@@ -38,11 +38,11 @@ class Predictor(Protocol):
 
 
 class Training:
-    """A training part: utterances, and models that are trained on them when first asked for.
+    """A training part: utterances, and models that are trained on them on first use.
 
-    `unseen_words` says that the fitted methods will be judged on words that the part does not hold, so that settings
-    are to be chosen on such words too. `added` episodes of further corpora go into Labial's models, and into nothing
-    else: other methods have no weights.
+    `unseen_words` says that the fitted methods will be judged on words that the part does not contain, so that settings
+    must be chosen on such words, too. `added` episodes of further corpora are used only for Labial's models: other
+    methods have no weights.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Training:
         return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest, words)
 
     def divide(self, points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
-        """What :func:`lbg` returns, made once for the same points: the methods' codebooks have the same cells."""
+        """The result of :func:`lbg`, cached for the same points: the methods' codebooks share their cells."""
         key = (size, hashlib.sha256(np.ascontiguousarray(points).tobytes()).digest())
         if key not in self._cells:
             self._cells[key] = lbg(points, size)
@@ -132,7 +132,7 @@ class Training:
         return self._models[key]
 
     def derived(self, key: object, make: Callable[[], Setting]) -> Setting:
-        """What `make` returns, made once for this part under `key`."""
+        """The result of `make`, cached for this part under `key`."""
         if key not in self._derived:
             self._derived[key] = make()
         return self._derived[key]  # type: ignore[return-value]

@@ -1,4 +1,4 @@
-"""Measures of one trajectory against another. T frames, K channels; `mask` (T,) says which frames are judged."""
+"""Measures of one trajectory against another. T frames, K channels; `mask` (T,) marks the judged frames."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from typing import Sequence
 
 import numpy as np
 
-from labial.faps import FAP_NAMES
+from labial.files.faps import FAP_NAMES
 
 #: Names of the labial parameters of the paper's Table 1.
 PARAMETERS = ("openness", "extension", "top", "bottom")
 
-#: The channels that correlation, amplitude, jitter and seams are taken on.
+#: The channels of correlation, amplitude, jitter and seams.
 JUDGED_NAMES = ("open_jaw", "raise_b_midlip_o", "stretch_l_cornerlip_o", "push_t_lip")
 JUDGED = tuple(FAP_NAMES.index(name) for name in JUDGED_NAMES)
 
 
-#: What connected speech is judged on, which needs no scale that talkers share: jaw, lips, a corner, and openness.
+#: The measures of connected speech, which need no common scale of talkers: jaw, lips, a corner, and openness.
 LIPS = ("open_jaw", "lower_t_midlip_o", "raise_b_midlip_o", "stretch_l_cornerlip_o", "openness")
 
 

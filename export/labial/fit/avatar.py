@@ -1,7 +1,7 @@
 """Avatars' files, .glb, .gltf and .vrm: the meshes that have shapes, as they rest in the bind pose.
 
-pygltflib reads the container; what the accessors say is decoded here. What a file says is not trusted: whatever does
-not fit together is a DataError.
+pygltflib reads the container; this module decodes the accessors. Files are not trusted: any inconsistency is a
+DataError.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ class Mesh:
     parts: Mapping[str, Sequence[Tuple[str, float]]] = field(default_factory=dict)
 
 
-def read(path: Union[str, os.PathLike]) -> List[Mesh]:
+def read(path: Union[str, os.PathLike[str]]) -> List[Mesh]:
     """The meshes of a file that have shapes. A .vrm file's expressions aa, ih, ou, ee, oh are shapes of the mesh that
-    they move, beside the mesh's own. Raises DataError for what is no such file, what is compressed, and a file without
-    shapes; LabialError where pygltflib is missing."""
+    they move, beside the mesh's own. Raises DataError for other files, compressed files, and files without shapes;
+    LabialError if pygltflib is missing."""
     with needs("reading avatars", "fit"):
         import pygltflib
 
@@ -62,7 +62,7 @@ def read(path: Union[str, os.PathLike]) -> List[Mesh]:
         meshes = _Reader(file, Path(where)).meshes()
     except DataError:
         raise
-    except Exception as error:  # whatever a broken file leads pygltflib and numpy into
+    except Exception as error:  # any error of pygltflib and numpy on a broken file
         raise DataError(where, None, f"is not a whole .glb, .gltf or .vrm file ({error or type(error).__name__})"
                         ) from None
     if not meshes:
@@ -83,7 +83,7 @@ def _check(where: str, file: Any) -> None:
 
 
 class _Reader:
-    """One file, while it is read."""
+    """A file that is being read."""
 
     def __init__(self, file: Any, path: Path) -> None:
         self.file, self.path = file, path
@@ -159,14 +159,14 @@ class _Reader:
 
     def meshes(self) -> List[Mesh]:
         extensions = self.file.extensions or {}
-        turn = np.diag([-1.0, 1.0, -1.0]) if "VRM" in extensions else np.eye(3)  # VRM 0 faces away from z
+        rotation = np.diag([-1.0, 1.0, -1.0]) if "VRM" in extensions else np.eye(3)  # VRM 0 faces away from z
         found = []
         for number, node in enumerate(self.file.nodes):
             if node.mesh is None:
                 continue
             # A skinned mesh ignores its node; it is taken to be bound in the pose in which it was modelled.
             world = np.eye(4) if node.skin is not None else self.transform(number)
-            mesh = self.mesh(node.mesh, node.name, turn @ world[:3, :3], turn @ world[:3, 3])
+            mesh = self.mesh(node.mesh, node.name, rotation @ world[:3, :3], rotation @ world[:3, 3])
             if mesh is not None:
                 whole, moves = mesh
                 names, binds = list(whole.shapes), self.mouths(number, node.mesh)
@@ -175,7 +175,7 @@ class _Reader:
                 found.append(Mesh(whole.name, whole.vertices, whole.triangles, {**whole.shapes, **mouths}, own))
         return found
 
-    def mesh(self, number: int, node_name: Any, turn: np.ndarray, move: np.ndarray) -> Any:
+    def mesh(self, number: int, node_name: Any, rotation: np.ndarray, move: np.ndarray) -> Any:
         mesh = self.file.meshes[number]
         parts = [part for part in mesh.primitives if part.targets and (part.mode is None or part.mode == 4)]
         if not parts:
@@ -184,7 +184,8 @@ class _Reader:
         count = len(parts[0].targets)
         if names is None or len(names) != count or not all(isinstance(name, str) for name in names):
             names = [f"shape_{place}" for place in range(count)]
-        vertices, triangles, moves, first = [], [], [[] for _ in range(count)], 0
+        vertices, triangles, first = [], [], 0
+        moves: List[List[np.ndarray]] = [[] for _ in range(count)]
         for part in parts:
             if len(part.targets) != count:
                 raise ValueError(f"the parts of mesh {number} differ in their shapes")
@@ -202,9 +203,9 @@ class _Reader:
                 if added.shape != own.shape:
                     raise ValueError(f"shape {names[place]!r} of mesh {number} has another size than the mesh")
                 moves[place].append(added)
-        whole = [np.concatenate(part) @ turn.T for part in moves]
+        whole = [np.concatenate(part) @ rotation.T for part in moves]
         name = str(node_name or mesh.name or f"mesh_{number}")
-        return (Mesh(name, np.concatenate(vertices) @ turn.T + move, np.concatenate(triangles),
+        return (Mesh(name, np.concatenate(vertices) @ rotation.T + move, np.concatenate(triangles),
                      dict(zip(names, whole))), whole)
 
     def mouths(self, node: int, mesh: int) -> Dict[str, List[Tuple[int, float]]]:

@@ -1,4 +1,4 @@
-"""From avatars to a description: reads them, solves, writes the text, reads it back and judges what it says."""
+"""From avatars to a description: reads avatars, solves, writes the text, reads it back and judges it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import tempfile
 from pathlib import Path
 from typing import List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from labial.animation import outputs
 from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
@@ -17,9 +16,10 @@ from labial.fit.landmarks import Found, read_head
 from labial.fit.sentences import read_sentences
 from labial.fit.solve import solve
 from labial.fit.write import describe, output_name
+from labial.rig.animation import outputs
 from labial.rig.description import Rig, read
 
-#: Intensities of the laughs that are solved for beside the sentences.
+#: Intensities of the laughs that are solved for, in addition to the sentences.
 _LAUGHS = (0.5, 1.0)
 
 
@@ -29,14 +29,14 @@ class Fitted(NamedTuple):
     text: str  #: of the description
     rig: Rig
     found: Optional[Found]  #: where the avatar's lips are; None for a table of lip points
-    report: List[str]  #: what it reaches, in lines
+    report: List[str]  #: its accuracy, as lines of text
 
 
 def fit(paths: Sequence[str], points: Mapping[str, int], shapes: Optional[str], name: str) -> Fitted:
     """The rig of one avatar, or of several alike.
 
-    `points` are vertices by point, which are not looked for; `shapes` a kind or names with commas between them; `name`
-    what the rig is called. Raises DataError for a file that cannot be used and LabialError for what cannot be solved.
+    `points` are vertices by point, which need not be found; `shapes` a kind or names separated by commas; `name` the
+    rig's name. Raises DataError for a file that cannot be used and LabialError for what cannot be solved.
     """
     heads: List[Head] = []
     founds: List[Optional[Found]] = []
@@ -67,7 +67,7 @@ def fit(paths: Sequence[str], points: Mapping[str, int], shapes: Optional[str], 
     motion = read_sentences()
     weights = outputs(rig, motion.frames)
     for head, (_, names, _) in zip(heads, prepared):
-        # What was written is judged, on the head's own shapes.
+        # Judges the written description, on the head's own shapes.
         by_shape = {names[canonical]: weights[output_name(files[canonical])] for canonical in names
                     if output_name(files.get(canonical, "")) in weights}
         report.append(f"{head.name}: {judge(head, matrix(head, by_shape), motion.frames, motion.closures).text()}")

@@ -1,4 +1,4 @@
-"""A head as its lips see it: a few points in millimetres, and what each of its shapes adds to them."""
+"""A head: a few points in millimetres, and the displacements that each of its shapes adds."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ POINTS: Tuple[str, ...] = (
     "outer_upper_left", "outer_upper_right", "outer_lower_left", "outer_lower_right",
 )  # fmt: skip
 
-#: Without these nothing can be said about a head.
+#: Required points.
 NEEDED: Tuple[str, ...] = ("nose", "corner_left", "corner_right", "inner_upper", "inner_lower")
 
 #: Columns of a table of lip points in Multi-PIE's numbering, whose 48 is the corner on the viewer's left: the face's
@@ -42,7 +42,7 @@ USUAL_MNS = 21.2
 
 @dataclass(frozen=True)
 class Head:
-    """Points of a head and what its shapes do to them, in millimetres."""
+    """Points of a head and their displacements by its shapes, in millimetres."""
 
     name: str
     shapes: Tuple[str, ...]
@@ -60,7 +60,7 @@ class Head:
         return float(self.rest["corner_left"][0] - self.rest["corner_right"][0])
 
     def only(self, shapes: Sequence[str]) -> Head:
-        """The head with these shapes in this order; one that it lacks moves nothing."""
+        """The head with these shapes in this order; a missing shape moves nothing."""
         place = {name: number for number, name in enumerate(self.shapes)}
         still = np.zeros(3)
         moves = {point: np.stack([move[place[name]] if name in place else still for name in shapes])
@@ -70,7 +70,7 @@ class Head:
 
 def from_points(where: str, shapes: Sequence[str], rest: Mapping[str, np.ndarray],
                 moves: Mapping[str, np.ndarray]) -> Head:
-    """The head of these points of the file `where`. Raises DataError for one whose mouth lies where no mouth can be."""
+    """The head of these points of the file `where`. Raises DataError for an impossible position of the mouth."""
     missing = [point for point in NEEDED if point not in rest]
     if missing:
         raise DataError(where, None, f"these points are missing: {', '.join(missing)}")
@@ -81,7 +81,7 @@ def from_points(where: str, shapes: Sequence[str], rest: Mapping[str, np.ndarray
     return head
 
 
-def read_table(path: Union[str, os.PathLike]) -> Head:
+def read_table(path: Union[str, os.PathLike[str]]) -> Head:
     """A head from a CSV table, millimetres: a row ``neutral`` and one per shape; columns ``POINT_x``, ``POINT_y``,
     ``POINT_z``, where POINT is one of `POINTS` or a point of Multi-PIE (``lip_48`` .. ``lip_67``, ``chin``,
     ``nose_base``). Raises DataError naming file and line."""

@@ -1,4 +1,4 @@
-"""Judges weights on a head in millimetres: what its lips show beside what the FAPs mean."""
+"""Judges weights on a head in millimetres: compares its lips with what the FAPs mean."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CLOSED, THROUGH = 1.0, -2.5
 
 
 class Figures(NamedTuple):
-    """What a head shows. Lengths are millimetres; errors are root mean squares over all frames."""
+    """Figures of a head's motion. Lengths are millimetres; errors are root mean squares over all frames."""
 
     ratio: float  #: 95th percentile of the opening shown, divided by that of the opening meant
     shown: float  #: 95th percentile of the opening between the inner lips
@@ -45,8 +45,9 @@ def shown(head: Head, weights: np.ndarray) -> Dict[str, np.ndarray]:
 
 def opening(head: Head, weights: np.ndarray) -> np.ndarray:
     """(T,) mm between the inner lips; below 0 they pass through each other."""
-    return (head.rest["inner_upper"] - head.rest["inner_lower"])[1] + weights @ (
+    result: np.ndarray = (head.rest["inner_upper"] - head.rest["inner_lower"])[1] + weights @ (
         head.moves["inner_upper"] - head.moves["inner_lower"])[:, 1]
+    return result
 
 
 def matrix(head: Head, weights: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -57,11 +58,11 @@ def matrix(head: Head, weights: Mapping[str, np.ndarray]) -> np.ndarray:
 
 
 def judge(head: Head, weights: np.ndarray, frames: np.ndarray, closures: Sequence[Tuple[int, int]]) -> Figures:
-    """Figures for (T, K) weights that (T, 13) frames became; `closures` are the frames, first and end, of p, b, m."""
+    """Figures for the (T, K) weights of (T, 13) frames; `closures` are the frames, first and end, of p, b, m."""
     table = rows(head, frames)
     errors = {row.name: float(np.sqrt(np.mean((weights @ row.moves + row.rest - row.target) ** 2))) for row in table}
     gap = opening(head, weights)
-    # What is seen is the lips' own opening; what is meant by the FAPs is never below 0.
+    # The shown opening may be negative, the opening that the FAPs mean is not.
     meant = np.maximum(-(fap(frames, 51) + fap(frames, 52)) * head.mns / 1024.0, 0.0)
     nearest = np.array([gap[begin:end].min() for begin, end in closures])
     high, low = (float(np.percentile(values, 95)) for values in (gap, meant))

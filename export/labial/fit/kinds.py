@@ -1,4 +1,4 @@
-"""Which of an avatar's shapes a rig uses, and what each may follow.
+"""The shapes of an avatar that a rig uses, and the features that each may follow.
 
 ARKit's, Oculus LipSync's and VRM's shapes are known by name. For them a list of sensible pairs keeps a rig readable,
 such as that mouthPucker follows the corners: solved freely, shapes come to work against each other. Shapes with other
@@ -23,7 +23,7 @@ _TONGUE = {"lower_lip": 1.5, "jaw": -0.8, "push_t_lip": -4.0, "spread": 4.0, "of
 
 
 class Kind(NamedTuple):
-    """A set of shapes that people know."""
+    """A common set of shapes."""
 
     allowed: Mapping[str, Sequence[str]]  #: features by group; the keys are all shapes that are used
     caps: Mapping[str, float]
@@ -66,7 +66,7 @@ _OCULUS = Kind(
 )  # fmt: skip
 _VRM = Kind(dict.fromkeys(("aa", "ih", "ou", "ee", "oh"), FEATURES), {}, {}, {})
 KINDS: Dict[str, Kind] = {"arkit": _ARKIT, "oculus": _OCULUS, "vrm": _VRM}
-#: Other names of the same shapes, as `plain` has them.
+#: Other names of the same shapes, as `plain` returns them.
 _ALSO = {"fclmtha": "aa", "fclmthi": "ih", "fclmthu": "ou", "fclmthe": "ee", "fclmtho": "oh", "visemeih": "I",
          "visemeoh": "O", "visemeou": "U"}
 #: Millimetres by which a shape of another name must move a lip to be used.
@@ -88,9 +88,9 @@ def known(head: Head, kind: str) -> Dict[str, str]:
             names[other] = name
     found: Dict[str, str] = {}
     for shape in head.shapes:
-        name = names.get(plain(shape))
-        if name is not None and name not in found.values():
-            found[shape] = name
+        known = names.get(plain(shape))
+        if known is not None and known not in found.values():
+            found[shape] = known
     return found
 
 

@@ -1,8 +1,8 @@
-"""Finds the points of a head's lips in an avatar's mesh, from what its shapes move.
+"""Finds the points of a head's lips in an avatar's mesh, from the motion of its shapes.
 
-The mesh's own names of shapes are used for one thing: which shape opens the mouth. Where that shape tears neighbouring
-vertices apart is the seam of the lips. Its middle, in front and on the midline, are the inner lips; its ends are the
-corners. The outer lips, the nose's base and the chin are features of the profile on the midline.
+The names of shapes serve only to find the shape that opens the mouth. The seam of the lips is where this shape
+separates neighbouring vertices. Its middle, in front and on the midline, are the inner lips; its ends are the corners.
+The outer lips, the nose's base and the chin are features of the profile on the midline.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ _TORN_MIDDLE, _TORN = 4.0, 15.0
 #: Slope of the profile with which the nose begins: that where ICT-FaceKit's landmark of its base lies, without bias in
 #: 16 of its heads.
 _NOSE = 0.5
-#: Millimetres between the inner lips at rest from which on a mouth is no closed one.
+#: Millimetres between the inner lips at rest from which on a mouth counts as open.
 _APART = 1.0
 
 
 class Found(NamedTuple):
-    """What was found in an avatar."""
+    """The points of an avatar."""
 
     head: Head
     vertices: Dict[str, int]  #: number of each point's vertex
     scale: float  #: millimetres per unit of the file
-    doubts: List[str]  #: what looks wrong, in words
+    doubts: List[str]  #: warnings
     mesh: Mesh
 
 
@@ -107,7 +107,8 @@ class _Face:
         self.starts = np.searchsorted(both[order, 0], np.arange(len(self.points) + 1))
 
     def beside(self, vertex: int) -> np.ndarray:
-        return self.neighbours[self.starts[vertex] : self.starts[vertex + 1]]
+        result: np.ndarray = self.neighbours[self.starts[vertex] : self.starts[vertex + 1]]
+        return result
 
     def strip(self, width: float) -> np.ndarray:
         """Which vertices lie on the midline, within a share of the face's size."""
@@ -265,9 +266,8 @@ def _nose_and_chin(face: _Face, found: Dict[str, int]) -> None:
 
 
 def read_head(meshes: List[Mesh], where: str, given: Mapping[str, int]) -> Found:
-    """The head of an avatar. `given` are vertices that the user names, by point. What looks wrong is left out of the
-    head, unless it was given, and told in words. Raises DataError for a number that is no vertex, and where the lips
-    are not found."""
+    """The head of an avatar. `given` are vertices that the user names, by point. Implausible points are omitted, unless
+    given, with a warning. Raises DataError for a number that is not a vertex, and if the lips are not found."""
     mesh = choose(meshes, where)
     for point, vertex in given.items():
         if point not in POINTS:

@@ -1,8 +1,8 @@
-"""What FAPs mean on a head: by how many millimetres each of its points is to move.
+"""The meaning of FAPs on a head: by how many millimetres each of its points should move.
 
-The units of FAPs are 1/1024 of the head's own mouth-nose separation and mouth width. They follow the outer lips, whose
+The units of FAPs are 1/1024 of the head's mouth-nose separation and mouth width. They follow the outer lips, whose
 middles are about a millimetre further apart than the inner ones when these meet: in p, b, m of recorded talkers the
-outer lips do not come back to where they rest, though the lips are shut. `bend` takes this millimetre off.
+outer lips do not return to their rest position, though the lips are shut. `bend` subtracts this millimetre.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import List, NamedTuple
 
 import numpy as np
 
-from labial.faps import FAP_NUMBERS
+from labial.files.faps import FAP_NUMBERS
 from labial.fit.head import Head
 
 _COLUMN = {number: place for place, number in enumerate(FAP_NUMBERS)}
@@ -31,17 +31,17 @@ def bend(opening: np.ndarray) -> np.ndarray:
 
 
 class Row(NamedTuple):
-    """One thing that is seen of a head."""
+    """One visible measure of a head."""
 
     name: str
     weight: float  #: how much a millimetre counts
     moves: np.ndarray  #: (K,) mm that weight 1 of each shape adds
-    target: np.ndarray  #: (T,) mm that is meant
+    target: np.ndarray  #: (T,) mm that the FAPs mean
     rest: float  #: mm where the head rests; targets of gaps are whole, those of other rows are changes
 
 
 def rows(head: Head, frames: np.ndarray) -> List[Row]:
-    """Everything that FAPs mean and the head's points show, for (T, 13) frames. Gaps come first."""
+    """All measures of the head's points with the FAPs' meaning, for (T, 13) frames. Gaps come first."""
     unit, wide = head.mns / 1024.0, head.mw / 1024.0
     found: List[Row] = []
 

@@ -1,4 +1,4 @@
-"""Sentences as motion: what rigs are solved for and judged on.
+"""Sentences as motion, to solve rigs for and to judge them on.
 
 ``sentences.flite`` are 24 English sentences as flite times them (``flite -voice VOICE -t SENTENCE -psdur -o none``), in
 turn by its voices kal, slt and rms: each phoneme with the second at which it ends.
@@ -15,8 +15,9 @@ import numpy as np
 
 from labial.errors import DataError
 from labial.fit.meaning import fap
+from labial.runtime.render import render
 
-#: The sentences that come with Labial.
+#: The bundled sentences.
 SENTENCES = Path(__file__).with_name("sentences.flite")
 _FPS = 50
 #: Seconds that a closure may be early or late.
@@ -45,31 +46,30 @@ class Motion:
         return found
 
 
-def read_sentences(path: Union[str, os.PathLike] = SENTENCES, laughs: Sequence[float] = ()) -> Motion:
+def read_sentences(path: Union[str, os.PathLike[str]] = SENTENCES, laughs: Sequence[float] = ()) -> Motion:
     """The motion of a file of sentences, one a line, with the bundled English model; after them laughs of these
     intensities, two seconds each. Raises DataError naming file and line."""
-    import labial
-
     parts: List[np.ndarray] = []
     phonemes: List[Tuple[str, int, int]] = []
     first = 0
     for number, line in enumerate(Path(path).read_text(encoding="ascii").splitlines(), 1):
-        timings, begin = [], 0.0
+        timings: List[Tuple[str, float, float]] = []
+        begin = 0.0
         for item in line.split():
-            label, _, end = item.partition(":")
+            label, _, last = item.partition(":")
             try:
-                timings.append((label, begin, float(end)))
+                timings.append((label, begin, float(last)))
             except ValueError:
                 raise DataError(os.fspath(path), number, f"{item!r} is not LABEL:SECONDS") from None
             begin = timings[-1][2]
         if not timings:
             continue
-        frames = np.asarray(labial.render([(label, round(1000.0 * (end - begin))) for label, begin, end in timings]))
-        for label, begin, end in timings:
-            phonemes.append((label, first + max(int((begin - _AROUND) * _FPS), 0),
+        frames = np.asarray(render([(label, round(1000.0 * (end - begin))) for label, begin, end in timings]))
+        for label, start, end in timings:
+            phonemes.append((label, first + max(int((start - _AROUND) * _FPS), 0),
                              first + min(int((end + _AROUND) * _FPS) + 1, len(frames))))
         parts.append(frames)
         first += len(frames)
     for intensity in laughs:
-        parts.append(np.asarray(labial.render([(f"<laugh:{intensity:g}>", 2000), ("SIL", 200)])))
+        parts.append(np.asarray(render([(f"<laugh:{intensity:g}>", 2000), ("SIL", 200)])))
     return Motion(np.concatenate(parts).astype(np.float64), phonemes)

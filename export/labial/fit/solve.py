@@ -1,4 +1,4 @@
-"""Solves for a rig in millimetres: of all rigs the one that makes heads show best what FAPs mean on them.
+"""Solves for the rig with which heads show best, in millimetres, what FAPs mean on them.
 
 The weight of shape k is ``clip(b_k + a_k . x, 0, cap_k)``, x being FAPs divided by 1024; b_k <= 0, so that FAP 0 is the
 neutral face. Left and right shapes share a and b on mirrored FAPs. What is minimised, over frames of speech and the
@@ -9,15 +9,16 @@ heads alike:
     + the weights and their squares, so that few shapes work against each other
     + the coefficients, so that few are needed
 
-It is not convex, and a descent from nothing stalls. So first the best weights of every frame on its own are found
-(accelerated projected gradient), then the rig that comes nearest to them, each again with a growing tie to the other;
-then the rig alone descends (L-BFGS) with a softened corner at 0; then the least useful coefficients go, one at a time.
+The problem is not convex, and a descent from zero stalls. So the solver first finds the best weights of each frame
+separately (accelerated projected gradient), then the rig nearest to them, and repeats both with a growing penalty on
+their difference. Then it optimises the rig alone (L-BFGS) with a softened corner at 0, and finally removes the least
+useful coefficients, one at a time.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -53,14 +54,14 @@ class Solution:
 
 @dataclass(frozen=True)
 class Wishes:
-    """What a solution is asked for beside small errors."""
+    """Requirements of a solution in addition to small errors."""
 
-    shut: float = 0.0  #: mm that the inner lips come to in contact
+    shut: float = 0.0  #: mm between the inner lips in contact
     deep: float = -1.5  #: mm of gap below which lips pass through each other
     coefficients: int = 24  #: at most
-    caps: Optional[Mapping[str, float]] = None  #: largest weight of a group, 1 where not said
-    costs: Optional[Mapping[str, float]] = None  #: dearer groups are used less, 1 where not said
-    allowed: Optional[Mapping[str, Sequence[str]]] = None  #: features of a group, all where not said
+    caps: Optional[Mapping[str, float]] = None  #: largest weight of a group, default 1
+    costs: Optional[Mapping[str, float]] = None  #: dearer groups are used less, default 1
+    allowed: Optional[Mapping[str, Sequence[str]]] = None  #: features of a group, default all
     #: Groups that are not solved for: weight per FAP unit / 1024 of each feature, and "offset".
     fixed: Optional[Mapping[str, Mapping[str, float]]] = None
 
@@ -68,7 +69,8 @@ class Wishes:
 def groups_of(shapes: Sequence[str]) -> List[Group]:
     """The shapes, left and right ones together."""
     place = {name: number for number, name in enumerate(shapes)}
-    found, taken = [], set()
+    found: List[Group] = []
+    taken: Set[str] = set()
     for name in shapes:
         if name in taken:
             continue
@@ -103,7 +105,7 @@ class Problem:
         assert all(head.shapes == shapes for head in heads)
         contact = motion.contact
         keep = contact.copy()
-        keep[::3] = True  # neighbouring frames say nearly the same
+        keep[::3] = True  # neighbouring frames are nearly equal
         frames = motion.frames[keep].astype(np.float64)
         self.contact, self.wishes, self.count = contact[keep], wishes, len(frames)
         self.groups = groups_of(shapes)
@@ -182,7 +184,7 @@ class Problem:
 
     def free(self, steps: int, start: Optional[np.ndarray] = None, rig: Optional[np.ndarray] = None,
              tie: float = 0.0) -> np.ndarray:
-        """The best (T, K) weights of every frame on its own, tied to those of a rig: accelerated projected gradient."""
+        """The best (T, K) weights of each frame separately, tied to those of a rig: accelerated projected gradient."""
         steepest = 0.24 * float(self.cost.max()) + 2.0 * tie
         for moves, _, importance, gaps in self.heads:
             hinge = (128.0 * self.count / (12.0 * max(int(self.contact.sum()), 1)) + 72.0)
@@ -228,7 +230,7 @@ class Problem:
 
 def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np.ndarray, steps: int,
              soft: float = 0.004) -> Tuple[np.ndarray, np.ndarray, float]:
-    """The rig from here on downhill, with the `live` (G, F) coefficients alone."""
+    """Optimises the rig from here on, with only the `live` (G, F) coefficients."""
     from scipy.optimize import minimize
 
     scaled = np.broadcast_to(_SPREAD, live.shape)[live]

@@ -11,13 +11,13 @@ from labial.fit.solve import FEATURES, Solution
 
 _CORNERS = {"left": ("stretch_l_cornerlip_o", "raise_l_cornerlip_o"),
             "right": ("stretch_r_cornerlip_o", "raise_r_cornerlip_o")}
-#: Coefficients of an output below this share of its largest are left out.
+#: Coefficients of an output below this share of its largest are omitted.
 _LEAST = 0.002
 
 
 def output_name(shape: str) -> str:
-    """What a description calls a shape: its name without what comes before the last dot, with underscores for all that
-    C would not take."""
+    """The name of a shape in a description: without the part before the last dot, with underscores for characters that
+    C does not allow."""
     name = re.sub(r"[^0-9A-Za-z_]", "_", shape.rsplit(".", 1)[-1].strip())
     return (name if re.match(r"[A-Za-z]", name) else "shape_" + name)[:32]
 

@@ -1,6 +1,6 @@
-"""The float64 reference of the run-time: the same steps, under the same names, as the C files of ``lib/``.
+"""The float64 reference of the run-time: the steps of the C files of ``lib/``, under the same names.
 
-A step works on either kind of tables (:mod:`labial.reference.tables`): the trained model's, in floating point, or the
-exported ones, on which every decision (component, state path) is taken in the library's own integers, so that what
-remains to compare is arithmetic.
+A step works on either kind of tables (:mod:`labial.reference.tables`): those of the trained model, in floating point,
+or the exported ones. On exported tables every decision (component, state path) uses the library's integers, so that
+only arithmetic remains to be compared.
 """

@@ -12,13 +12,13 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 from labial.reference import stream
-from labial.reference.shape import targets
+from labial.reference.stream import targets
 from labial.reference.tables import Equation, FloatTables
 from labial.reference.units import frame_counts
 
-#: Frames that are decoded at once at most, and that two pieces share at most.
+#: Most frames that are decoded at once, and most that two pieces share.
 PIECE_MAX = 40
 OVERLAP = 8
 
@@ -43,10 +43,10 @@ def whole_piece(frames: Sequence[int]) -> List[Piece]:
 def pieces(frames: Sequence[int], boundary: Sequence[bool], least: int = 1) -> List[Piece]:
     """Cuts phonemes of the given frames into pieces.
 
-    A unit is what lies from one boundary phoneme to the next inclusive; a piece holds as many units as it takes to
-    have `least` frames, one by itself as it is published, or as fit PIECE_MAX. Neighbours share the boundary phoneme,
-    its last OVERLAP frames if it is longer. A longer unit is cut, and the parts share OVERLAP frames. Phonemes of no
-    frames are left out. The last phoneme always ends a unit.
+    A unit lasts from one boundary phoneme to the next, inclusive; a piece has as many units as `least` frames require
+    (one in the published method) and PIECE_MAX allows. Neighbours share the boundary phoneme, its last OVERLAP frames
+    if it is longer. A longer unit is cut, and the parts share OVERLAP frames. Phonemes without frames are omitted. The
+    last phoneme always ends a unit.
     """
     spans = []
     start = 0
@@ -88,15 +88,15 @@ def synthesise(tables: FloatTables, phonemes: Sequence[Tuple[int, int]], *, whol
     for piece in cut:
         positions = target[piece.begin : piece.end]
         motion.append(solve(tables.equation(decode(tables, positions), positions)))
-    return join(cut, motion)
+    return tables.complete(join(cut, motion))
 
 
 def decode(tables: FloatTables, target: np.ndarray) -> np.ndarray:
-    """(T, 13) int64: the likeliest state path for targets (T, 13), a state for every stride's frames, of which the
-    search sees the middle one, or the later of two."""
+    """(T, C) int64: the most probable state path for targets (T, C), a state for every stride's frames; the search
+    sees the target of the middle frame, or of the later of two."""
     seen = target[looked_at(len(target), tables.stride)]
     states = np.arange(tables.chains.mean.shape[1])
-    emission = tables.chains.emission(seen, np.broadcast_to(states, (CHANNELS, len(states))))
+    emission = tables.chains.emission(seen, np.broadcast_to(states, (len(tables.solved), len(states))))
     path = viterbi(emission, tables.chains.transition, tables.chains.initial)
     return np.repeat(path, tables.stride, axis=0)[: len(target)]
 
@@ -128,7 +128,7 @@ def viterbi(emission: np.ndarray, transition: np.ndarray, initial: np.ndarray) -
 
 
 def looked_at(frames: int, stride: int) -> np.ndarray:
-    """(S,) the frames, of `frames`, whose targets the search sees."""
+    """(S,) the frames among `frames` whose targets the search sees."""
     return np.minimum(np.arange(0, frames, stride) + stride // 2, frames - 1)
 
 
@@ -139,7 +139,8 @@ def path_cost(path: np.ndarray, emission: np.ndarray, transition: np.ndarray, in
     cost = initial[index + (path[0],)] + emission[(0,) + index + (path[0],)]
     for t in range(1, frames):
         cost = cost + transition[index + (path[t - 1], path[t])] + emission[(t,) + index + (path[t],)]
-    return cost
+    result: np.ndarray = cost
+    return result
 
 
 def solve(terms: Equation) -> np.ndarray:
@@ -193,8 +194,7 @@ def _solve_pentadiagonal(diagonal: np.ndarray, first: np.ndarray, second: np.nda
 
 
 def join(pieces: Sequence[Piece], trajectories: Sequence[np.ndarray]) -> np.ndarray:
-    """(T, 13): the pieces' trajectories laid end to end, cross-faded linearly where two share
-    frames."""
+    """(T, 13): the pieces' trajectories in sequence, cross-faded linearly where two share frames."""
     total = pieces[-1].end if pieces else 0
     result = np.zeros((total, trajectories[0].shape[1] if trajectories else 0))
     for piece, motion in zip(pieces, trajectories):

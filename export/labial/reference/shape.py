@@ -1,18 +1,14 @@
-"""Phonemes to targets: each phoneme's shape and, frame by frame, what its neighbours' kernels add (``lib/shape.c``)."""
+"""The shape of each phoneme, and what its neighbours' kernels add to it frame by frame (``lib/shape.c``)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Tuple, Union
 
 import numpy as np
 
-from labial.reference.contact import raised
-from labial.reference.units import MILLISECONDS_MAX
-
 if TYPE_CHECKING:
-    from labial.model import Model
-    from labial.reference.tables import Tables
+    from labial.tables.model import Model
 
 #: Durations farther than this many standard deviations from a component's mean change its shape no more.
 SLOPE_LIMIT = 3.0
@@ -21,14 +17,14 @@ SLOPE_LIMIT = 3.0
 @dataclass(frozen=True)
 class ShapeTables:
     """The mixtures of P phonemes as the run-time reads them: N components, phoneme by phoneme. A
-    :class:`labial.model.Model` has the same members, and so is taken as well."""
+    :class:`labial.tables.model.Model` has the same members, and so is taken as well."""
 
     component_count: np.ndarray  #: (P,) int64
     log_weight: np.ndarray  #: (N,)
     duration_mean: np.ndarray  #: (N,) seconds
     duration_variance: np.ndarray  #: (N,) seconds squared
-    shape: np.ndarray  #: (N, 13) FAP
-    slope: np.ndarray  #: (N, 13) FAP per second
+    shape: np.ndarray  #: (N, C) FAP
+    slope: np.ndarray  #: (N, C) FAP per second
     log_previous: np.ndarray  #: (N, V) or (N, 0)
     log_next: np.ndarray  #: (N, V) or (N, 0)
 
@@ -71,9 +67,10 @@ def choose(
 
 
 def shapes(mixtures: Union[ShapeTables, Model], choice: Choice) -> np.ndarray:
-    """(S, 13) the selected shapes, FAP."""
+    """(S, C) the selected shapes, FAP."""
     each = mixtures.shape[choice.component] + mixtures.slope[choice.component] * choice.offset[..., None]
-    return np.einsum("sk,skj->sj", choice.share, each)
+    result: np.ndarray = np.einsum("sk,skj->sj", choice.share, each)
+    return result
 
 
 def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
@@ -85,8 +82,8 @@ def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarra
 def pairs_beside(
     key: np.ndarray, shape: np.ndarray, phoneme: np.ndarray, previous: np.ndarray, following: np.ndarray
 ) -> np.ndarray:
-    """(S, K, 13) FAP: what the neighbours of (S,) phonemes add to their shapes, from pairs `key` (R, 3), phoneme, side
-    and neighbour, with shapes (R, K, 13)."""
+    """(S, K, C) FAP: what the neighbours of (S,) phonemes add to their shapes, from pairs `key` (R, 3), phoneme, side
+    and neighbour, with shapes (R, K, C)."""
     rows = {tuple(each): row for row, each in enumerate(key.tolist())}
     added = np.zeros((len(phoneme), *shape.shape[1:]))
     for side, others in enumerate((previous, following)):
@@ -99,10 +96,11 @@ def pairs_beside(
 def add_kernels(
     shape_at: np.ndarray, phoneme_at: np.ndarray, kernel: np.ndarray, lag: np.ndarray, silence: int
 ) -> np.ndarray:
-    """(T, 13) the moving target: the frames' shapes (T, 13) plus their neighbours' kernels (P, L, 13), FAP."""
+    """(T, C) the moving target: the frames' shapes (T, C) plus their neighbours' kernels (P, L, C), FAP."""
     if not len(lag):
         return shape_at
-    return shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
+    result: np.ndarray = shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
+    return result
 
 
 def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int, here: slice = slice(None)) -> np.ndarray:
@@ -121,35 +119,3 @@ def knot_shares(length: np.ndarray, knots: int) -> np.ndarray:
     frame = np.arange(int(np.sum(length))) - np.repeat(np.cumsum(length) - length, length)
     share = (2 * frame + 1) / (2 * np.repeat(length, length))
     return np.stack([1.0 - share, share], axis=1)
-
-
-def targets(
-    tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int], frames: Sequence[int]
-) -> np.ndarray:
-    """(T, 13) the moving target of an utterance, in the tables' positions; phonemes of no frames leave no trace,
-    silence is before and after."""
-    return targets_and_contact(tables, phonemes, milliseconds, frames)[0]
-
-
-def targets_and_contact(
-    tables: Tables,
-    phonemes: Sequence[int],
-    milliseconds: Sequence[int],
-    frames: Sequence[int],
-    rest: Optional[np.ndarray] = None,
-    here: Optional[slice] = None,
-) -> Tuple[np.ndarray, np.ndarray]:
-    """The targets (T, 13) of :func:`targets`, and where they are in contact, (T, 13) bool; `rest` (T,) is how far the
-    mouth has come to rest in pauses. Of all T frames, or of those `here` alone."""
-    length = np.asarray(frames, dtype=np.int64)
-    has_frames = length > 0
-    phoneme, length = np.asarray(phonemes, dtype=np.int64)[has_frames], length[has_frames]
-    duration = np.minimum(np.asarray(milliseconds, dtype=np.int64)[has_frames], MILLISECONDS_MAX)
-    selected = tables.select(phoneme, duration, *neighbours(phoneme, tables.silence))
-    index = np.repeat(np.arange(len(phoneme)), length)
-    labels = phoneme[index]
-    here = slice(0, len(labels)) if here is None else here
-    shape_at = tables.interpolated(selected[index[here]], knot_shares(length, tables.knots)[here])
-    moving = tables.targets(shape_at, tapped(labels, tables.lags, tables.silence, here))
-    rest = np.zeros(len(labels), dtype=np.int64) if rest is None else rest
-    return raised(moving, labels, length, rest, tables.silence, tables.floor, tables.contact, here.start)

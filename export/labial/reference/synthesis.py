@@ -1,4 +1,4 @@
-"""A trained model's motion by the reference of its method."""
+"""The motion of a trained model, by the reference of its method."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import Iterator, Sequence, Tuple
 
 import numpy as np
 
-from labial.model import Model
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
 from labial.reference.units import frame_counts
+from labial.tables.model import Model
 
 
 def is_published(model: Model) -> bool:
@@ -17,26 +17,31 @@ def is_published(model: Model) -> bool:
     return model.method == "paper"
 
 
-def synthesise(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False) -> np.ndarray:
+def synthesise(
+    model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False, articulation: int = 100
+) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
 
     A model of the published method is searched and solved unit by unit (:mod:`labial.reference.published`), one of
     Labial's as the run-time does it (:mod:`labial.reference.stream`); with `whole` either is searched and solved over
-    the whole utterance at once.
+    the whole utterance at once. `articulation`, percent, is how far the mouth moves.
     """
-    if whole or is_published(model):
-        return published.synthesise(FloatTables(model), phonemes, whole=whole)
-    return stream.synthesise(FloatTables(model), phonemes)
+    if whole or is_published(model):  # without contact, so that all of the motion is in proportion
+        gain = float(stream.gains(np.array([articulation]), 1)[0, 0])
+        return gain * published.synthesise(FloatTables(model), phonemes, whole=whole)
+    return stream.synthesise(FloatTables(model), phonemes, articulation=articulation)
 
 
-def in_parts(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False) -> Iterator[np.ndarray]:
-    """The frames of :func:`synthesise` in parts (n, 13): of Labial's models as they are made, else all at once."""
+def in_parts(
+    model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False, articulation: int = 100
+) -> Iterator[np.ndarray]:
+    """The frames of :func:`synthesise` in parts (n, 13): for Labial's models as they are computed, else all at once."""
     if whole or is_published(model):
-        yield synthesise(model, phonemes, whole=whole)
+        yield synthesise(model, phonemes, whole=whole, articulation=articulation)
     else:
-        yield from stream.in_parts(FloatTables(model), phonemes)
+        yield from stream.in_parts(FloatTables(model), phonemes, articulation=articulation)
 
 
 def frames_of(model: Model, phonemes: Sequence[Tuple[int, int]]) -> int:
-    """How many frames :func:`synthesise` makes of `phonemes`."""
+    """The number of frames of :func:`synthesise` for `phonemes`."""
     return sum(frame_counts([milliseconds for _, milliseconds in phonemes], model.fps))

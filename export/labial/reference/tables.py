@@ -1,7 +1,8 @@
 """The two kinds of tables that the reference runs on, behind one interface.
 
 Positions are FAP units as float64 with :class:`FloatTables`, integers in 1/16 FAP unit relative to each channel's
-centre with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap` and `equation` leave these units.
+centre with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap`, `equation` and `complete` leave these
+units. C channels are searched and solved: the 13 of a frame, or 12 where FAP 17 is computed of the corners.
 """
 
 from __future__ import annotations
@@ -11,12 +12,16 @@ from typing import Optional, Union
 
 import numpy as np
 
-from labial.faps import CHANNELS
-from labial.fixed import (
+from labial.reference.contact import FRAMES, PARTED
+from labial.reference.protrusion import complete, in_integers, interpolated
+from labial.reference.shape import ShapeTables, choose, pairs_beside, shapes
+from labial.reference.viterbi import LAG, Chains, decode, normal_chains
+from labial.tables.fixed import (
     DURATION_Z_MAX,
     EMISSION_Z_MAX,
     LEAP,
     POSITION_MAX,
+    POSITION_SCALE,
     SEARCHED,
     rounded_shift,
     share_value,
@@ -24,19 +29,15 @@ from labial.fixed import (
     weight_value,
     z_cost,
 )
-from labial.model import Model
-from labial.quantise import ExportedModel
-from labial.reference.contact import FRAMES
-from labial.reference.shape import choose, pairs_beside, shapes
-from labial.reference.viterbi import LAG, Chains, decode, normal_chains
-
-_CHANNEL = np.arange(CHANNELS)
+from labial.tables.model import Model
+from labial.tables.protrusion import solved
+from labial.tables.quantise import ExportedModel
 
 
 @dataclass(frozen=True)
 class Equation:
-    """What equation 3 asks of each frame. Weights are precisions, all in one channel's free scale; (T, 13, 3) for
-    static, delta and delta-delta, (T, 13) for the anchor; means and targets are FAP units."""
+    """The terms of equation 3 in each frame. Weights are precisions, all in one channel's free scale; (T, C, 3) for
+    static, delta and delta-delta, (T, C) for the anchor; means and targets are FAP units."""
 
     weight: np.ndarray
     mean: np.ndarray
@@ -45,7 +46,7 @@ class Equation:
 
 
 class FloatTables:
-    """The trained model as it is."""
+    """The trained model."""
 
     dtype = np.float64  #: of positions
 
@@ -57,54 +58,69 @@ class FloatTables:
         self.boundary = np.asarray(model.boundary, dtype=bool)
         self.viseme_class = np.asarray(model.viseme_class)
         self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
-        self.floor = np.asarray(model.floor)  #: (P, 13)
-        self.contact = np.asarray(model.contact)  #: (P, 13) bool
+        self.solved = solved(len(model.protrusion) > 0)  #: (C,) the channels of a frame
+        own = self.solved
+        self.floor = np.asarray(model.floor)[:, own]  #: (P, C)
+        self.contact = np.asarray(model.contact)[:, own]  #: (P, C) bool
+        self.parted = PARTED[own]  #: (C,)
         self.ahead = _look_ahead(self.lags, bool(np.isfinite(self.floor).any()))
         self.stride = model.search_stride
         self.chains = normal_chains(
-            model.emission_mean, model.emission_variance, model.log_transition, model.log_initial
+            model.emission_mean[own], model.emission_variance[own], model.log_transition[own], model.log_initial[own]
         )
+        mixtures = {name: getattr(model, name) for name in ShapeTables.__dataclass_fields__}
+        self._mixtures = ShapeTables(**{**mixtures, "shape": model.shape[:, own], "slope": model.slope[:, own]})
+        self._kernel, self._pair_shape = model.kernel[..., own], model.pair_shape[..., own]
         self.knots = model.pair_shape.shape[1]  #: K, of the shapes of a phoneme
 
     def select(
         self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray, following: np.ndarray
     ) -> np.ndarray:
-        """(S, K, 13) shapes of phonemes (S,) of these durations between these neighbours: the one that each holds, or
-        those at its start and at its end."""
+        """(S, K, C) shapes of phonemes (S,) of these durations between these neighbours: one for the whole phoneme, or
+        one at its start and one at its end."""
         model, classes = self.model, self.viseme_class
         choice = choose(
-            model, phoneme, milliseconds / 1000.0, classes[previous], classes[following], soft=bool(model.soft)
+            self._mixtures, phoneme, milliseconds / 1000.0, classes[previous], classes[following], soft=bool(model.soft)
         )
-        selected = np.repeat(shapes(model, choice)[:, None], self.knots, axis=1)
-        return selected + pairs_beside(model.pair_key, model.pair_shape, phoneme, previous, following)
+        selected = np.repeat(shapes(self._mixtures, choice)[:, None], self.knots, axis=1)
+        result: np.ndarray = selected + pairs_beside(model.pair_key, self._pair_shape, phoneme, previous, following)
+        return result
 
     @staticmethod
     def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
-        """(T, 13) the shapes of frames between knots (T, K, 13) of `share` (T, K)."""
-        return np.einsum("tk,tkc->tc", share, knots)
+        """(T, C) the shapes of frames between knots (T, K, C) of `share` (T, K)."""
+        result: np.ndarray = np.einsum("tk,tkc->tc", share, knots)
+        return result
 
     def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
-        """(T, 13) targets before floors: `shapes` (T, 13) and what the kernels of `neighbours` (T, L), phonemes, add to
-        them."""
+        """(T, C) targets before floors: `shapes` (T, C) plus the kernels of `neighbours` (T, L), phonemes."""
         taps = np.arange(neighbours.shape[1])
-        return shapes + self.model.kernel[neighbours, taps].sum(axis=1)
+        result: np.ndarray = shapes + self._kernel[neighbours, taps].sum(axis=1)
+        return result
 
     def search(
         self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0, searched: int = SEARCHED
     ) -> np.ndarray:
-        """(T, 13) int64: the state path for targets (T, 13), given the frames (T,) that end units; the first is
-        frame `begin` of the stream. A step looks at `searched` states."""
+        """(T, C) int64: the state path for targets (T, C), given the frames (T,) that end units; the first is
+        frame `begin` of the stream. A step considers `searched` states."""
         return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
-        """Equation 3's terms for `path` (T, 13); frames in `contact` (T, 13) are held by their target alone."""
-        own = _CHANNEL, path
+        """Equation 3's terms for `path` (T, C); frames in `contact` (T, C) follow their target alone."""
+        own = self.solved, path
         return _in_contact(Equation(
             weight=self.model.state_precision[own],
             mean=self.model.state_mean[own],
             anchor=self.model.state_anchor[own],
             target=targets,
-        ), contact, self.model.firm)
+        ), contact, self.model.firm[self.solved])
+
+    def complete(self, motion: np.ndarray) -> np.ndarray:
+        """(T, 13) frames of the motion (T, C) that was solved, FAP."""
+        model = self.model
+        if not len(model.protrusion):
+            return motion
+        return complete(motion, lambda corners: interpolated(corners, model.protrusion_range, model.protrusion))
 
     @staticmethod
     def to_fap(positions: np.ndarray) -> np.ndarray:
@@ -126,8 +142,11 @@ class ExportedTables:
         self.viseme_class = exported.viseme_class
         taps = exported.kernels.shape[1]
         self.lags = (np.arange(taps) - exported.kernel_behind) * exported.kernel_stride
+        self.solved = solved(exported.protrusion is not None)
+        self._channel = np.arange(len(self.solved))
         self.floor = exported.floors[exported.floor]
-        self.contact = ((exported.contacts[exported.floor][:, None] >> _CHANNEL) & 1).astype(bool)
+        self.contact = ((exported.contacts[exported.floor][:, None] >> self._channel) & 1).astype(bool)
+        self.parted = PARTED[self.solved] * POSITION_SCALE
         self.ahead = _look_ahead(self.lags, len(exported.floors) > 1)
         self.stride = exported.search_stride
         self.chains = Chains(exported.emission_mean, exported.dense_transitions(), exported.initial, LEAP,
@@ -137,14 +156,14 @@ class ExportedTables:
     def select(
         self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray, following: np.ndarray
     ) -> np.ndarray:
-        """As :meth:`FloatTables.select`, in positions."""
-        selected = np.zeros((len(phoneme), self.knots, CHANNELS), dtype=self.dtype)
+        """Like :meth:`FloatTables.select`, in positions."""
+        selected = np.zeros((len(phoneme), self.knots, len(self.solved)), dtype=self.dtype)
         for i, one in enumerate(zip(phoneme.tolist(), milliseconds.tolist(), previous.tolist(), following.tolist())):
             selected[i] = self._select_one(*one)
         return selected
 
     def _select_one(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
-        """(K, 13) shapes of one phoneme, in the library's integer arithmetic."""
+        """(K, C) shapes of one phoneme, in the library's integer arithmetic."""
         model = self.exported
         first = int(model.first_component[phoneme])
         own = slice(first, first + int(model.component_count[phoneme]))
@@ -176,21 +195,24 @@ class ExportedTables:
     def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.interpolated`."""
         share = np.floor(share[:, -1:] * 16384.0 + 1e-9).astype(np.int64)  # of the later knot, Q14
-        return knots[:, 0] + rounded_shift((knots[:, -1] - knots[:, 0]) * share, 14)
+        result: np.ndarray = knots[:, 0] + rounded_shift((knots[:, -1] - knots[:, 0]) * share, 14)
+        return result
 
     def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
-        """As :meth:`FloatTables.targets`, in positions."""
+        """Like :meth:`FloatTables.targets`, in positions."""
         model = self.exported
         taps = np.arange(neighbours.shape[1])
         added = rounded_shift(model.kernels[neighbours, taps].sum(axis=1) * model.kernel_scale, 8)
-        return np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
+        result: np.ndarray = np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
+        return result
 
     def emission(self, targets: np.ndarray, states: np.ndarray) -> np.ndarray:
-        """(..., 13, W) costs of states (..., 13, W) for targets (..., 13), in 1/32 nat."""
-        model, own = self.exported, (_CHANNEL[:, None], states)
+        """(..., C, W) costs of states (..., C, W) for targets (..., C), in 1/32 nat."""
+        model, own = self.exported, (self._channel[:, None], states)
         distance = np.abs(targets[..., None] - model.emission_mean[own])
         z = np.minimum(short_gain_z(distance, model.emission_gain[own]), EMISSION_Z_MAX)
-        return z_cost(z) + model.emission_cost[own]
+        result: np.ndarray = z_cost(z) + model.emission_cost[own]
+        return result
 
     def search(
         self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0, searched: int = SEARCHED
@@ -199,8 +221,8 @@ class ExportedTables:
         return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
-        """As :meth:`FloatTables.equation`; weights are the integers that the tables stand for."""
-        model, own = self.exported, (_CHANNEL, path)
+        """Like :meth:`FloatTables.equation`; weights are the integers of the tables."""
+        model, own = self.exported, (self._channel, path)
         hold, share = weight_value(model.state_hold[own]), share_value(model.state_share[own]) / 256.0
         moving = weight_value(model.state_weight[own]) * np.array([4, 1])  # the tables hold a quarter of delta's
         return _in_contact(Equation(
@@ -210,24 +232,38 @@ class ExportedTables:
             target=self.to_fap(targets),
         ), contact, weight_value(model.firm))
 
+    def complete(self, motion: np.ndarray) -> np.ndarray:
+        """As :meth:`FloatTables.complete`; FAP 17 is the library's integers."""
+        table = self.exported.protrusion
+        if table is None:
+            return motion
+
+        def computed(corners: np.ndarray) -> np.ndarray:
+            rounded = np.floor(16.0 * corners + 0.5).astype(np.int64)
+            return in_integers(rounded, int(table[0]), int(table[1]), table[2:]) / 16.0
+
+        return complete(motion, computed)
+
     def to_fap(self, positions: np.ndarray) -> np.ndarray:
         """Positions in FAP units."""
-        return (positions + self.exported.centre) / 16.0
+        result: np.ndarray = (positions + self.exported.centre) / 16.0
+        return result
 
 
 def _look_ahead(lags: np.ndarray, has_floors: bool) -> int:
-    """Frames that targets look ahead, with kernels of these lags (L,) and for short contacts."""
+    """The look-ahead of targets in frames, for kernels of these lags (L,) and for short contacts."""
     return max(int(lags[-1]) if len(lags) else 0, FRAMES if has_floors else 0, 0)
 
 
-def _in_contact(terms: Equation, contact: Optional[np.ndarray], firm: np.ndarray) -> Equation:
-    """The terms with the frames in `contact` (T, 13) held by their targets, by weights `firm` (13,) at least."""
+def _in_contact(terms: Equation, contact: Optional[np.ndarray], contact_weight: np.ndarray) -> Equation:
+    """The terms with the frames in `contact` (T, C) tied to their targets, with weights of at least `contact_weight`
+    (C,)."""
     if contact is None:
         return terms
     hold = terms.weight[..., 0] + terms.anchor
     weight = terms.weight.copy()
     weight[..., 0] = np.where(contact, 0.0, weight[..., 0])
-    return replace(terms, weight=weight, anchor=np.where(contact, np.maximum(hold, firm), terms.anchor))
+    return replace(terms, weight=weight, anchor=np.where(contact, np.maximum(hold, contact_weight), terms.anchor))
 
 
 def _likelihood(cost: np.ndarray) -> np.ndarray:

@@ -1,9 +1,9 @@
-"""States to motion: equation 3 of the paper, with anchors, as a factorisation that runs on (``lib/trajectory.c``).
+"""States to motion: equation 3 of the paper, with anchors, factored frame by frame (``lib/trajectory.c``).
 
 The matrix W' U^-1 W + A is pentadiagonal. Each of its rows sums to the hold of its frame, the weight of the static
 feature plus that of the anchor, since constants have neither delta nor delta-delta. So the matrix is factored as L D L'
-by means of its row sums. On the way back each frame continues the motion of the frames after it, drawn by a fraction of
-its own (rho) towards the position that it would have if all frames after it were equal to it.
+by means of its row sums. In the backward pass each frame continues the motion of the frames after it, drawn by a
+fraction (rho) towards the position that it would have if all frames after it were equal to it.
 """
 
 from __future__ import annotations
@@ -13,34 +13,42 @@ from typing import Callable, Optional, Tuple
 
 import numpy as np
 
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 from labial.reference.tables import Equation
 
-#: The library's default of LABIAL_WINDOW: frames that are known beyond those that are delivered.
+#: The library's default of LABIAL_WINDOW: frames that are known beyond the delivered ones.
 WINDOW = 3
 
 
 def _next(values: np.ndarray) -> np.ndarray:
-    """Each frame's successor, 0 behind the last."""
+    """Each frame's successor, 0 after the last."""
     return np.concatenate([values[1:], np.zeros_like(values[:1])])
 
 
 def _rows(pick: Callable[..., np.ndarray], *terms: Equation) -> Equation:
-    """An equation each of whose members is made by `pick` of the members of `terms`."""
+    """An equation whose members are `pick` of the members of `terms`."""
     return Equation(*(pick(*(getattr(item, field.name) for item in terms)) for field in fields(Equation)))
+
+
+def articulated(terms: Equation, contact: np.ndarray, gain: np.ndarray) -> Equation:
+    """The terms of the same motion `gain` (T, C) times as far from the neutral face: means and targets are, counted
+    from FAP 0, and so is the solution. Frames in `contact` (T, C) are held where they are with a gain of 1, or nearer
+    to the neutral face."""
+    return replace(terms, mean=terms.mean * gain[..., None],
+                   target=terms.target * np.where(contact, np.minimum(gain, 1.0), gain))
 
 
 class Forward:
     """The forward pass over a stream whose terms come in parts."""
 
     def __init__(self) -> None:
-        self._kept: Optional[Equation] = None  # the frame before those to come, if any, and the one that waits
+        self._kept: Optional[Equation] = None  # the last factored frame, if any, and the waiting one
         self._done = 0  # of the frames in `_kept`
         self._state: Tuple[np.ndarray, ...] = ()
 
     def take(self, terms: Equation, last: bool) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(n, 13) each: as :func:`forward`, for the frames whose successor is known, or for all that are left when
-        `terms`, of a frame or more, are the `last` ones."""
+        """(n, C) each: like :func:`forward`, for the frames whose successor is known, or for all remaining frames if
+        `terms`, of at least one frame, are the `last` ones."""
         first = self._kept is None
         terms = terms if self._kept is None else _rows(lambda a, b: np.concatenate([a, b]), self._kept, terms)
         weight = terms.weight.copy()
@@ -77,7 +85,7 @@ class Forward:
 
 
 def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(T, 13) each: `settled`, rho and kappa of the frames.
+    """(T, C) each: `settled`, rho and kappa of the frames.
 
     `settled` is the frame's value if all beyond it equalled it. With those beyond given it is
     m[t] = m[t+1] + rho[t] (settled[t] - m[t+1]) + kappa[t] (m[t+1] - m[t+2]).
@@ -85,8 +93,10 @@ def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     return Forward().take(terms, True)
 
 
-def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0) -> np.ndarray:
-    """(T, 13) int64: the frame from which the way back to each frame starts, where the first is the stream's `begin`.
+def starts(
+    frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0, channels: int = CHANNELS
+) -> np.ndarray:
+    """(T, C) int64: the frame from which the way back to each frame starts, where the first is the stream's `begin`.
 
     A channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends `lag` frames after
     frame k, when the states up to k are decided. Then the frame before k has all that it is tied to, and k itself where
@@ -94,13 +104,13 @@ def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: 
     """
     frame = np.arange(frames)[:, None]
     earliest = frame + window + 1
-    end = earliest + (np.arange(CHANNELS) - lag - begin - earliest) % stride
+    end = earliest + (np.arange(channels) - lag - begin - earliest) % stride
     return np.where(end == frames - 1, end, np.minimum(end - 1, frames - 1))
 
 
 def solve(terms: Equation, start: np.ndarray) -> np.ndarray:
-    """(T, 13) trajectories m of equation 3, (W' U^-1 W + A) m = W' U^-1 mu + A x, each frame by a way back of its own,
-    which takes the frames beyond its `start` (T, 13) to equal that one. It is exact where that is the last frame.
+    """(T, C) trajectories m of equation 3, (W' U^-1 W + A) m = W' U^-1 mu + A x, each frame by a way back of its own,
+    which takes the frames beyond its `start` (T, C) to equal that one. It is exact where that is the last frame.
 
     W stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame;
     those whose window would leave the stream are dropped.
@@ -109,8 +119,8 @@ def solve(terms: Equation, start: np.ndarray) -> np.ndarray:
 
 
 def _back(settled: np.ndarray, rho: np.ndarray, kappa: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """(N, 13) the first N of the frames of a forward pass (T, 13), each by a way back of its own from `start`
-    (N, 13)."""
+    """(N, C) the first N of the frames of a forward pass (T, C), each by a way back of its own from `start`
+    (N, C)."""
     frame = np.arange(len(start))[:, None]
     channel = np.arange(settled.shape[1])
     m = np.take_along_axis(settled, start, axis=0)
@@ -133,20 +143,22 @@ class Solve:
         self._begin = 0  # that frame
 
     def take(self, terms: Equation, last: bool) -> np.ndarray:
-        """(n, 13) the next frames whose way back has a start, or all that are left."""
+        """(n, C) the next frames whose way back has a start, or all that are left."""
         passed = self._forward.take(terms, last)
-        joined = tuple(map(np.concatenate, zip(self._passed, passed))) if self._passed else passed
+        joined = tuple(np.concatenate(pair) for pair in zip(self._passed, passed)) if self._passed else passed
         known = len(joined[0])
         # The way back to a frame starts before the last one that is known, unless the stream ends there.
         ready = known if last else max(known - 1 - self._window - self._stride, 0)
-        motion = _back(*joined, starts(known, self._stride, self._window, 0, self._begin)[:ready])
+        settled, rho, kappa = joined
+        start = starts(known, self._stride, self._window, 0, self._begin, settled.shape[1])
+        motion = _back(settled, rho, kappa, start[:ready])
         self._passed = tuple(item[ready:].copy() for item in joined)
         self._begin += ready
         return motion
 
 
 def solve_whole(terms: Equation) -> np.ndarray:
-    """(T, 13) trajectories of equation 3 by one way back over all frames, exactly."""
+    """(T, C) trajectories of equation 3 by one way back over all frames, exactly."""
     settled, rho, kappa = forward(terms)
     m = settled.copy()
     for t in range(len(m) - 2, -1, -1):

@@ -1,8 +1,8 @@
-"""Rigs: readable descriptions of what moves a face, as C tables for ``labial/rig.h`` and as drawings.
+"""Rigs: readable descriptions of faces, as C tables for ``labial/rig.h`` and as drawings.
 
-The descriptions in this folder, NAME.toml, are the rigs that Labial comes with. Each is a format of output of the same
-name wherever motion is written: ``labial synth --to``, ``labial-say --to``, ``render()`` in JavaScript. The C programs
-take them from this folder, too (examples/faces/CMakeLists.txt).
+The descriptions in this folder, NAME.toml, are the built-in rigs. Each is an output format of the same name in ``labial
+synth --to``, ``labial-say --to``, and ``render()`` in JavaScript. The C programs read them from this folder, too
+(examples/faces/CMakeLists.txt).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Tuple
 
 _FOLDER = Path(__file__).resolve().parent
 
-#: Names of the rigs that Labial comes with.
+#: Names of the built-in rigs.
 FACES: Tuple[str, ...] = tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
 
 

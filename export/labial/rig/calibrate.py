@@ -8,10 +8,10 @@ from typing import Union
 
 from labial import __version__
 from labial.errors import DataError
-from labial.outputs import writing
+from labial.files.outputs import writing
 from labial.rig.description import CURVE_POINTS, PULSE_MAX, PULSE_MIN, Rig
 
-#: Outputs that the sketch can tell apart by a digit.
+#: Most outputs: the sketch selects them by a digit.
 OUTPUTS_MAX = 10
 
 
@@ -194,8 +194,8 @@ void loop()
 """
 
 
-def write(rig: Rig, directory: Union[str, os.PathLike]) -> Path:
-    """Writes NAME_calibrate/NAME_calibrate.ino, as the IDE wants it, into `directory`; returns its path."""
+def write(rig: Rig, directory: Union[str, os.PathLike[str]]) -> Path:
+    """Writes NAME_calibrate/NAME_calibrate.ino, as the IDE requires, into `directory`; returns its path."""
     text = sketch(rig)
     folder = Path(directory) / f"{rig.name}_calibrate"
     folder.mkdir(parents=True, exist_ok=True)

@@ -8,16 +8,15 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.errors import LabialError
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
+from labial.files.toml import Table, meant, read_toml
 from labial.rig.gestures import SOURCES, Row
 from labial.rig.units import UNITS, Unit, make_unit
-from labial.toml import Table, meant, read_toml
 
-#: Pulses that a description may ask of a servo, microseconds: wider than any common servo's range, narrow enough for a
-#: slip of the finger to be noticed.
+#: Range of a servo's pulses, microseconds: wider than that of any common servo, narrow enough to detect typing errors.
 PULSE_MIN, PULSE_MAX = 400.0, 2600.0
 
-#: Pulses at 0 and 180 degrees where a description in degrees does not say: those of Arduino's library Servo.
+#: Default pulses at 0 and 180 degrees: those of Arduino's library Servo.
 DEGREES = (544.0, 2400.0)
 _PLACES, _STEPS = ("neutral", "full", "minimum", "maximum", "closed"), ("gain", "slew", "acceleration", "deadband")
 
@@ -41,16 +40,16 @@ class Output:
     invert: bool
     slew: float  #: units per frame; 0 for no limit
     given_gain: bool  #: whether the description has a gain, not a value at full extent
-    closed: Optional[float] = None  #: the value where lips touch; None where the description does not say
-    deadband: float = 0.0  #: units; the value stays where it would change by less
+    closed: Optional[float] = None  #: the value where lips touch; None without it
+    deadband: float = 0.0  #: units; smaller changes are skipped
     acceleration: float = 0.0  #: units per frame, per frame; 0 for no limit
-    #: What a linkage makes of even steps: values without it, and the values that do what they were to do.
+    #: Curve of a linkage: values for an even linkage, and the values that have the same effect.
     curve: Tuple[Tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
 class Rig:
-    """A description that was read and holds together."""
+    """A valid description."""
 
     name: str
     unit: Unit
@@ -58,8 +57,8 @@ class Rig:
     path: str
 
 
-def read(path: Union[str, os.PathLike], name: str) -> Rig:
-    """The rig that the file describes, to be called `name`. Raises DataError naming the file and the line or key."""
+def read(path: Union[str, os.PathLike[str]], name: str) -> Rig:
+    """The rig that the file describes, called `name`. Raises DataError naming the file and the line or key."""
     where = os.fspath(path)
     content = read_toml(path)
     top = Table(where, "", content, _TOP_KEYS)
@@ -89,7 +88,7 @@ def _degrees(top: Table) -> Optional[Tuple[float, float]]:
 
 
 def in_microseconds(output: Mapping[str, Any], ends: Optional[Tuple[float, float]]) -> Mapping[str, Any]:
-    """An output's table with its degrees as microseconds; what is no number stays as it is, for its own message."""
+    """An output's table with degrees as microseconds; other values stay, and cause errors later."""
     if ends is None:
         return output
     each = (ends[1] - ends[0]) / 180.0
@@ -109,7 +108,7 @@ def _unit(top: Table) -> Unit:
     name = top.content.get("unit", "us")
     if name not in (*UNITS, "degrees"):
         raise top.error("unit", f"{name!r} is none of {', '.join(UNITS)}, degrees")
-    if name == "degrees":  # for people: the tables hold microseconds, which are finer
+    if name == "degrees":  # for readers: the tables contain microseconds, which are finer
         name = "us"
     wanted = {"pca9685": "frequency", "counts": "clock"}.get(str(name))
     for key in ("frequency", "clock"):
@@ -211,8 +210,8 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
 
 
 def _curve(table: Table, unit: Unit, neutral: float) -> Tuple[Tuple[float, float], ...]:
-    """The curve that makes a linkage open evenly, of points [VALUE, OPENING] that were measured on it: values as they
-    would be if equal steps opened it equally far, from neutral to full, and the values that do."""
+    """The curve that makes a linkage open evenly, from measured points [VALUE, OPENING]: the values of an even linkage,
+    from neutral to full, and the values that open this linkage equally far."""
     if "curve" not in table.content:
         return ()
     given, (least, most) = table.content["curve"], CURVE_POINTS

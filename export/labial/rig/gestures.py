@@ -1,12 +1,12 @@
-"""What an output can follow: the 13 FAPs by name, and a few gestures that people name."""
+"""Inputs of outputs: the 13 FAPs by name, and a few named gestures."""
 
 from __future__ import annotations
 
 from typing import Dict, Mapping, NamedTuple, Optional, Tuple
 
-from labial.faps import CHANNELS, FAP_COLUMNS, FAP_NAMES
+from labial.files.faps import CHANNELS, FAP_COLUMNS, FAP_NAMES
 
-#: A weight or a value for each of the 13 channels. No arrays: the run-time reads rigs where numpy is not installed.
+#: A weight or a value for each of the 13 channels. Not an array, since the run-time reads rigs without numpy.
 Row = Tuple[float, ...]
 
 
@@ -14,7 +14,7 @@ class Gesture(NamedTuple):
     """A weighted sum of FAPs, and how far it goes in ordinary speech and laughter."""
 
     weights: Row
-    reach: Optional[float]  #: FAP units of the sum at its full extent; None where nothing is usual
+    reach: Optional[float]  #: FAP units of the sum at its full extent; None without a usual one
 
 
 def _weights(**named: float) -> Row:
@@ -25,8 +25,8 @@ def _alone(channel: int) -> Row:
     return tuple(float(k == channel) for k in range(CHANNELS))
 
 
-#: Sums with a name. The reaches are round numbers near the extremes of a spoken sentence and a laugh; the corners of
-#: a mouth sink as its jaw opens, which `smile` makes up for, so that open vowels do not look sad.
+#: Named sums. The reaches are round numbers near the extremes of a spoken sentence and a laugh. The corners of a mouth
+#: sink as its jaw opens; `smile` compensates for this, so that open vowels do not look sad.
 GESTURES: Dict[str, Gesture] = {
     "opening": Gesture(_weights(fap51=-1, fap52=-1), 600.0),
     "jaw": Gesture(_weights(fap3=1), 400.0),
@@ -37,7 +37,7 @@ GESTURES: Dict[str, Gesture] = {
     "rounding": Gesture(_weights(fap17=1, fap53=-0.5, fap54=-0.5), 200.0),
 }
 
-#: Everything that a description may name: gestures, FAPs as MPEG-4 calls them, FAPs as columns of a frames file.
+#: All names for ``from``: gestures, MPEG-4's names of FAPs, columns of a frames file.
 SOURCES: Mapping[str, Gesture] = {
     **{name: Gesture(_alone(k), None) for names in (FAP_NAMES, FAP_COLUMNS) for k, name in enumerate(names)},
     **GESTURES,

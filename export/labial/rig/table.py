@@ -8,12 +8,12 @@ import os
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Callable, List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Callable, List, Optional, Tuple, Union
 
-from labial import __version__
 from labial.errors import DataError
-from labial.faps import FAP_NAMES
-from labial.outputs import folder
+from labial.files.c import check_name, written_by
+from labial.files.faps import FAP_NAMES
+from labial.files.outputs import folder
 from labial.rig.description import Output, Rig
 from labial.rig.gestures import Row
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 FORMAT = 2
 TOUCHING, APART = 72, 136
 WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 65535, 268435455, 16777215
-SLOPE_MAX, SEGMENTS, SIGHT = 1 << 25, 8, 32
+SLOPE_MAX, SEGMENTS = 1 << 25, 8
 _SLOPE_ONE = 1 << 20
 
-#: FAPs up to which a table is kept within one unit of the description; faces stay well within.
+#: FAPs up to which a table is within one unit of the description; faces stay well below.
 FAP_MAX = 1000.0
 
 
@@ -55,7 +55,7 @@ class TableOutput:
 
 
 def convert(rig: Rig) -> List[TableOutput]:
-    """The rig's outputs as integers. Raises DataError naming the key of what the table cannot hold."""
+    """The rig's outputs as integers. Raises DataError naming the key of a value that the table cannot hold."""
     return [_convert(rig, output) for output in rig.outputs]
 
 
@@ -64,7 +64,7 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
         return DataError(rig.path, None, f"output.{output.name}.{key}: {message}")
 
     scale = rig.unit.scale
-    # Limits are rounded inwards: no servo goes beyond what its owner wrote.
+    # Limits are rounded inwards: no servo exceeds the limits of the description.
     values = {"neutral": math.floor(output.neutral * scale + 0.5), "minimum": math.ceil(output.minimum * scale - 1e-9),
               "maximum": math.floor(output.maximum * scale + 1e-9),
               "slew": max(math.floor(output.slew * scale + 0.5), 1) if output.slew else 0,
@@ -94,8 +94,8 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
 
 
 def _segments(output: Output, scale: float, fail: Callable[[str, str], DataError]) -> Tuple[Tuple[int, int, int], ...]:
-    """An output's curve as the table has it. Each segment lies on the line that it is part of, so that rounding where
-    it begins costs nothing but at its end."""
+    """An output's curve in the table. Each segment lies on its original line, so that rounding its beginning has no
+    effect except at its end."""
     segments: List[Tuple[int, int, int]] = []
     for (linear, value), (following, reached) in zip(output.curve, output.curve[1:]):
         slope = (reached - value) / (following - linear)
@@ -113,10 +113,10 @@ def _segments(output: Output, scale: float, fail: Callable[[str, str], DataError
 
 
 def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]]:
-    """Q12 weights and Q16 gain whose product is nearest to what is asked, or None when nothing comes near.
+    """Q12 weights and Q16 gain whose product is nearest to the given one, or None if none is near enough.
 
-    Weights times a power of two and the gain divided by it are the same output. Of the pairs that fit, the plainest is
-    taken that errs by less than a twentieth unit for FAPs up to FAP_MAX, else the one that errs least.
+    Weights times a power of two and the gain divided by it give the same output. The result is the simplest pair with
+    an error below a twentieth unit for FAPs up to FAP_MAX, else the pair with the least error.
     """
     best: Optional[Tuple[float, Tuple[int, ...], int]] = None
     for power in sorted(range(-12, 20), key=abs):
@@ -155,137 +155,25 @@ def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray) -> np.ndarr
 
 
 def _bent(curve: np.ndarray, linear: np.ndarray) -> np.ndarray:
-    """(T,) values of a curve through (K, 2) points; beyond its ends the first and the last part go on."""
+    """(T,) values of a curve through (K, 2) points; the first and the last part extend beyond its ends."""
     import numpy as np
 
     slopes = np.diff(curve[:, 1]) / np.diff(curve[:, 0])
     place = np.clip(np.searchsorted(curve[:, 0], linear, side="right") - 1, 0, len(slopes) - 1)
-    return curve[place, 1] + slopes[place] * (linear - curve[place, 0])
+    result: np.ndarray = curve[place, 1] + slopes[place] * (linear - curve[place, 0])
+    return result
 
 
 def touching(frames: np.ndarray) -> np.ndarray:
-    """(T,) how much the lips touch in (T, 13) frames, Q12: 0 apart, 4096 where they do (include/labial/rig.h)."""
+    """(T,) contact of the lips in (T, 13) frames, Q12: 0 apart, 4096 touching (include/labial/rig.h)."""
     import numpy as np
 
-    return np.clip((APART + frames[:, 3] + frames[:, 4]) * (4096 // (APART - TOUCHING)), 0, 4096)
-
-
-def wanted(output: TableOutput, frames: np.ndarray) -> np.ndarray:
-    """(T,) int64 values for (T, 13) whole FAPs, neither limited in speed nor kept by a deadband."""
-    import numpy as np
-
-    product = (frames @ np.array(output.weights, dtype=np.int64)) * output.gain
-    move = np.clip((product + (1 << 27)) >> 28, -(1 << 30), 1 << 30)
-    values = output.neutral + (-move if output.invert else move)
-    if output.curve:
-        first, to, slope = np.array(output.curve, dtype=np.int64).T
-        linear = np.clip(values, -VALUE_MAX, VALUE_MAX)
-        place = np.clip(np.searchsorted(first, linear, side="right") - 1, 0, None)
-        values = to[place] + (((linear - first[place]) * slope[place] + _SLOPE_ONE // 2) // _SLOPE_ONE)
-    values = np.clip(values, output.minimum, output.maximum)
-    if output.closed is not None:
-        values = values + (((output.closed - values) * touching(frames) + (1 << 11)) >> 12)
-    return values
-
-
-def moved(table: Sequence[TableOutput], frames: np.ndarray, ahead: int = 1) -> np.ndarray:
-    """(T, N) int64 values for (T, 13) whole FAPs of 16 bits, from rest on, to the bit as labial_rig_apply_ahead has
-    them with `ahead` frames in sight, this one included; with 1 and without accelerations as labial_rig_apply has
-    them."""
-    import numpy as np
-
-    columns = []
-    for output in table:
-        values = wanted(output, frames)
-        if output.acceleration:
-            values = steered(output, values, ahead)
-        elif output.slew or output.deadband:
-            values = _slewed(output, values, touching(frames), ahead)
-        columns.append(values)
-    return np.stack(columns, axis=1)
-
-
-def _slewed(output: TableOutput, values: np.ndarray, touch: np.ndarray, ahead: int) -> np.ndarray:
-    import numpy as np
-
-    until = np.full(len(values), len(values))  # frames to the next one in which the lips touch
-    closed = np.flatnonzero(touch >= 4096)
-    place = np.searchsorted(closed, np.arange(len(values)))
-    seen = place < len(closed)
-    until[seen] = closed[place[seen]] - np.flatnonzero(seen)
-    last, out = output.rest, values.copy()
-    for frame, value in enumerate(values):
-        if output.closed is not None and output.slew and seen[frame] and until[frame] < ahead:
-            room = until[frame] * output.slew
-            value = min(max(value, output.closed - room), output.closed + room)
-        if abs(value - last) < output.deadband:
-            value = last
-        elif output.slew:
-            value = min(max(value, last - output.slew), last + output.slew)
-        last = out[frame] = value
-    return out
-
-
-def steered(output: TableOutput, values: np.ndarray, ahead: int) -> np.ndarray:
-    """(T,) int64 values that come as near to (T,) wanted ones as the output's limits of speed and acceleration let
-    them, with `ahead` frames in sight.
-
-    Seen from where the output rests, no value is further out than one from which it can still come to rest at each of
-    those that are wanted in the frames in sight: the room above a target k frames ahead is that of a start from it,
-    sum of min(speed, i * acceleration) for i = 1 .. k. Of the changes that leave it so, the one is taken that comes
-    nearest to the value wanted now.
-    """
-    import numpy as np
-
-    limit = output.acceleration
-    speed = min(output.slew or VALUE_MAX, SIGHT * limit)
-    count = min(ahead, SIGHT)
-    room = np.concatenate([[0], np.cumsum(np.minimum(speed, limit * np.arange(1, count)))])
-    length = count + speed // limit + 2
-    slower = limit * np.arange(length)
-    # (T, count) values of the frames in sight; where fewer follow, the last one stays.
-    sight = np.lib.stride_tricks.sliding_window_view(np.pad(values, (0, count - 1), mode="edge"), count)
-
-    def bounds(sight: np.ndarray, rest: int) -> np.ndarray:
-        outer = np.maximum(sight, rest)
-        found = np.repeat(outer[:, -1:], length, axis=1)
-        for place in range(count):
-            found[:, place] = (outer[:, place:] + room[: count - place]).min(axis=1)
-        return found
-
-    rest = output.rest
-    highest = np.stack([bounds(sight, rest), bounds(-sight, -rest)])  # of the values, and of the mirrored ones
-
-    def not_above(bound: np.ndarray, last: int, change: int, least: int) -> int:
-        def stays(change: int) -> bool:
-            return bool((last + np.cumsum(np.maximum(change - slower, -speed)) <= bound).all())
-
-        if stays(change):
-            return change
-        low, high = least, change
-        while high - low > 1 and stays(least):
-            middle = (low + high) // 2
-            low, high = (middle, high) if stays(middle) else (low, middle)
-        return low
-
-    last, change, out = rest, 0, values.copy()
-    for frame in range(len(values)):
-        flip = last < rest  # what keeps it from crossing the place of rest has the last word
-        sign = -1 if flip else 1
-        change *= sign
-        least, most = max(change - limit, -speed), min(change + limit, speed)
-        step = sign * (int(values[frame]) - last)
-        step = min(max(0 if abs(step) < output.deadband else step, least), most)
-        step = not_above(highest[int(flip), frame], sign * last, step, least)
-        step = -not_above(highest[int(not flip), frame], -sign * last, -step, -most)
-        before, last = last, min(max(last + sign * step, output.minimum), output.maximum)
-        out[frame], change = last, last - before
-    return out
+    result: np.ndarray = np.clip((APART + frames[:, 3] + frames[:, 4]) * (4096 // (APART - TOUCHING)), 0, 4096)
+    return result
 
 
 def _comment(rig: Rig, what: str) -> str:
-    text = f"{what}. Values are {rig.unit.text}. Written by labial rig {__version__}; do not edit."
-    return "/*\n" + textwrap.fill(text, width=114, initial_indent=" * ", subsequent_indent=" * ") + "\n */\n"
+    return written_by("rig", f"{what}. Values are {rig.unit.text}.")
 
 
 def header(rig: Rig) -> str:
@@ -369,10 +257,8 @@ const labial_rig_t {rig.name} = {{ outputs, {len(table)} }};
 """
 
 
-def write(rig: Rig, directory: Union[str, os.PathLike]) -> List[Path]:
+def write(rig: Rig, directory: Union[str, os.PathLike[str]]) -> List[Path]:
     """Writes NAME.h and NAME.c into `directory`; returns their paths. Nothing is written when the rig has errors."""
-    from labial.emit import check_name
-
     check_name(rig.name, "rig")
     table = convert(rig)
     files = {f"{rig.name}.h": header(rig), f"{rig.name}.c": source(rig, table)}

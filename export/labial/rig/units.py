@@ -1,4 +1,4 @@
-"""Units of a rig's outputs. Servos are always described in microseconds; the tables hold what the hardware takes."""
+"""Units of a rig's outputs. Servos are described in microseconds; the tables contain the units of the hardware."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _PCA9685_PRESCALE = (3, 255)
 
 @dataclass(frozen=True)
 class Unit:
-    """What one microsecond (or one weight, or one plain unit) of the description is in the tables."""
+    """The conversion of one microsecond (or weight, or plain unit) of the description to the tables."""
 
     name: str
     scale: float  #: table units per unit of the description
     servo: bool  #: whether values are pulses
     text: str  #: for comments
-    limit: Optional[int] = None  #: largest value that the hardware takes
-    prescale: Optional[int] = None  #: what the PCA9685's prescale register is set to
+    limit: Optional[int] = None  #: largest value of the hardware
+    prescale: Optional[int] = None  #: value of the PCA9685's prescale register
 
 
 UNITS = ("us", "quarter_us", "pca9685", "counts", "weight", "plain")
@@ -37,7 +37,7 @@ def make_unit(name: str, parameter: float = 50.0) -> Unit:
         low, high = (_PCA9685_OSCILLATOR / _PCA9685_TICKS / (prescale + 1) for prescale in reversed(_PCA9685_PRESCALE))
         if not low <= parameter <= high:
             raise LabialError(f"{parameter:g} is not within {low:.4g} .. {high:.4g} Hz")
-        # What counts is the period that the register can make, not the one asked for.
+        # Uses the period that the register produces, not the requested one.
         prescale = round(_PCA9685_OSCILLATOR / (_PCA9685_TICKS * parameter)) - 1
         tick = (prescale + 1) / _PCA9685_OSCILLATOR * 1e6
         return Unit(name, 1.0 / tick, True, f"ticks of {tick:.2f} us (PCA9685 with prescale register {prescale}, "

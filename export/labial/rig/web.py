@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Union
 
 from labial.errors import DataError
-from labial.outputs import writing
+from labial.files.outputs import writing
 from labial.rig.description import Rig
 from labial.rig.table import convert
 
 
 def text(rig: Rig) -> str:
-    """The file's text. Raises DataError for a rig of servos, whose limits of speed have no place on a page."""
+    """The file's text. Raises DataError for a rig of servos, whose limits of speed a page does not apply."""
     if rig.unit.name != "weight":
         raise DataError(rig.path, None, f'unit: --json is for faces of weights, "weight", not {rig.unit.name!r}')
     outputs = {}
@@ -30,7 +30,7 @@ def text(rig: Rig) -> str:
     return f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n'
 
 
-def write(rig: Rig, directory: Union[str, os.PathLike]) -> Path:
+def write(rig: Rig, directory: Union[str, os.PathLike[str]]) -> Path:
     """Writes NAME.json into `directory`; its path."""
     content = text(rig)
     path = Path(directory) / f"{rig.name}.json"

@@ -6,24 +6,21 @@ import ctypes
 import os
 import unicodedata
 from functools import cache
-from typing import Any, Optional, Tuple, Union
+from typing import Any, List, Optional, Tuple, Union
 
-from labial.aliases import LABEL_SETS
-from labial.errors import LabialError, ModelError, StreamError
-from labial.runtime import BUNDLED
-from labial.runtime.library import (
+from labial.core.library import (
     ERROR_NAME,
     ERROR_PHONEME,
     OK,
-    About,
-    address_of,
     checked,
     failure,
     library,
     memory,
     sentence,
 )
-from labial.runtime.numbers import whole
+from labial.core.numbers import whole
+from labial.corpus.aliases import LABEL_SETS
+from labial.errors import LabialError, ModelError, StreamError
 
 #: Sets of labels, labial_labels_t (labial/names.h).
 LABELS = {"auto": sum(LABEL_SETS.values()), **LABEL_SETS}
@@ -33,17 +30,15 @@ class Model:
     """A model of speech or of laughter, constant: it may serve any number of streams and threads at once.
 
     ``Model("voice.lbm")`` reads one that ``labial export --blob`` wrote; ``labial.speech_en`` and
-    ``labial.laughter_synthetic`` are the bundled ones. Raises ModelError, with the file's name, for a file that is
-    damaged or no model, and OSError for one that cannot be read.
+    ``labial.laughter_synthetic`` are the bundled ones. Raises ModelError, with the file's name, for a damaged file or
+    one that is not a model, and OSError for one that cannot be read.
 
     Attributes:
         name: the bundled model's name, else the file's.
         fps: frames per second.
-        phonemes: the label of each phoneme, in the order of their numbers; empty where a model has other phonemes than
-            the bundled ones, which are then known by number alone.
-        silence: the number of its silence.
-        stride: frames that share a step of the search; all models of a stream have the same.
-        address: where the tables lie.
+        phonemes: the label of each phoneme, in the order of their numbers; empty for a model with other phonemes than
+        the bundled ones, which are known only by number. silence: the number of its silence. stride: frames that share
+        a step of the search; all models of a stream have the same. address: the address of its tables.
     """
 
     name: str
@@ -53,54 +48,53 @@ class Model:
     stride: int
     address: int
 
-    def __init__(self, path: Union[str, os.PathLike]) -> None:
+    def __init__(self, path: Union[str, os.PathLike[str]]) -> None:
         self.name = os.fspath(path) if isinstance(path, (str, os.PathLike)) else ""
         if not isinstance(self.name, str) or not self.name:
             raise TypeError(f"a model is named by a path, not by {type(path).__name__}")
         with open(self.name, "rb") as file:
             content = file.read()
-        # The tables are used where they lie: both blocks belong to this object.
+        # The library uses the tables in place: this object keeps both blocks alive.
         self._content = memory(len(content))
         ctypes.memmove(self._content, content, len(content))
-        self._blob = memory(library().labial_python_blob_size())
-        result = library().labial_model_load(self._blob, self._content, len(content))
+        self._blob = memory(library().blob_size())
+        result = library().model_load(self._blob, self._content, len(content))
         if result != OK:
             raise ModelError(f"{self.name}: {sentence(result)}")
         self._describe(ctypes.addressof(self._blob))
 
     def _describe(self, address: int) -> None:
-        about = About()
-        checked(library().labial_python_model(address, ctypes.byref(about)), self.name)
-        self.address, self.stride = address, about.stride
-        self.fps, self._count, self.silence = about.fps, about.phonemes, about.silence
+        core = library()
+        self.address, self.stride, self.fps = address, core.model_stride(address), core.model_rate(address)
+        self._count, self.silence = core.model_phonemes(address), core.model_silence(address)
         self._names: Optional[int] = None
         self.phonemes = ()
-        for name in BUNDLED:
-            labels = _labels(name)
+        for number in range(len(_names())):
+            labels = _labels(number)
             if len(labels) == self._count:
-                self._names, self.phonemes = address_of(f"{name}_names"), labels
+                self._names, self.phonemes = core.bundled_names(number), labels
 
     @property
     def is_laughter(self) -> bool:
-        """Whether its phonemes are those of laughter, so that it can be asked for laughs."""
-        return self.phonemes == _labels(BUNDLED[1])
+        """Whether its phonemes are those of laughter."""
+        return self.phonemes == _labels(_names().index("laughter_synthetic"))
 
     def find(self, label: str, labels: str = "auto") -> int:
         """The number of the phoneme that `label` means in the set `labels`: auto, arpabet, ipa or xsampa. Raises
-        StreamError where it means none."""
+        StreamError if it means none."""
         text = self._text(label)
-        found = library().labial_find_in(self._names, _set(labels), text, len(text))
+        found = library().find(self._names, _set(labels), text, len(text))
         if found < 0:
             raise failure(ERROR_NAME, f"{label!r} in {self.name}")
         return int(found)
 
     def nearest(self, label: str, labels: str = "auto") -> int:
-        """The number of a phoneme for any label: the one that it means or looks most like, silence for noises."""
+        """The number of a phoneme for any label: its meaning or the most similar phoneme; silence for noises."""
         text = self._text(label)
-        return checked(library().labial_find_nearest(self._names, _set(labels), text, len(text), self.silence))
+        return checked(library().find_nearest(self._names, _set(labels), text, len(text), self.silence))
 
     def number(self, phoneme: Union[str, int], labels: str = "auto", nearest: bool = False) -> int:
-        """The number of a phoneme that is given by its label or its number, which is checked. Punctuation that is no
+        """The number of a phoneme that is given by its label or its number, which is checked. Punctuation that is not a
         label, such as Piper's ``^``, is silence."""
         if isinstance(phoneme, str):
             if nearest:
@@ -109,7 +103,7 @@ class Model:
                 return self.find(phoneme, labels)
             except StreamError:
                 if phoneme and all(unicodedata.category(c)[0] in "PSZ" for c in phoneme):
-                    return self.silence  # punctuation, as synthesisers have it among their phonemes
+                    return self.silence  # punctuation, which synthesisers report among their phonemes
                 raise
         found = whole(phoneme, "a phoneme that is no label")
         if not 0 <= found < self._count:
@@ -128,20 +122,29 @@ class Model:
 
 
 @cache
-def _labels(name: str) -> Tuple[str, ...]:
+def _names() -> Tuple[str, ...]:
+    """The models that the library comes with."""
+    core = library()
+    found: List[str] = []
+    while name := core.bundled_name(len(found)):
+        found.append(name.decode("ascii"))
+    return tuple(found)
+
+
+@cache
+def _labels(number: int) -> Tuple[str, ...]:
     """The labels of a bundled model's phonemes."""
-    about = About()
-    checked(library().labial_python_model(address_of(name), ctypes.byref(about)), name)
-    names = address_of(f"{name}_names")
-    return tuple(library().labial_python_label(names, number).decode("utf-8") for number in range(about.phonemes))
+    core = library()
+    names, count = core.bundled_names(number), core.model_phonemes(core.bundled_model(number))
+    return tuple(core.label_at(names, phoneme).decode("utf-8") for phoneme in range(count))
 
 
 @cache
 def bundled(name: str) -> Model:
-    """One of `BUNDLED`, which is compiled in."""
+    """One of ``labial.BUNDLED``, which is compiled in."""
     model = Model.__new__(Model)
     model.name = name
-    model._describe(address_of(name))
+    model._describe(library().bundled_model(_names().index(name)))
     return model
 
 

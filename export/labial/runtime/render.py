@@ -6,12 +6,12 @@ import json
 import operator
 import os
 import re
-from typing import Any, Iterable, List, Optional, TextIO, Tuple, Union
+from typing import Any, Dict, Iterable, List, Optional, TextIO, Tuple, Union
 
+from labial.core.numbers import duration
 from labial.errors import LabialError
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 from labial.runtime.models import Model
-from labial.runtime.numbers import duration
 from labial.runtime.stream import Stream
 
 #: A phoneme, by label or number, or a laugh (``<laugh:0.7>``), and how many milliseconds it lasts.
@@ -24,10 +24,10 @@ def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter
            labels: str = "auto", nearest: bool = False) -> List[Tuple[int, ...]]:
     """All frames of an utterance at once: T tuples of 13 ints, FAP units, ``model.fps`` frames per second.
 
-    `timings` are pairs of a phoneme, by label or number, and its milliseconds; ``<laugh>`` or ``<laugh:0.7>`` in a
-    label's place is a laugh of that intensity. The other arguments are those of :class:`labial.Stream`, whose frames
-    these are. ``numpy.array(frames, "int16")`` makes an array (T, 13) of them. Raises LabialError, with the number of
-    the timing from 1, and TypeError for what is no timing.
+    `timings` are pairs of a phoneme, by label or number, and its milliseconds; the label ``<laugh>`` or ``<laugh:0.7>``
+    is a laugh of that intensity. The other arguments, and the frames, are those of :class:`labial.Stream`.
+    ``numpy.array(frames, "int16")`` makes an array (T, 13) of them. Raises LabialError, with the number of the timing
+    from 1, and TypeError for anything but timings.
     """
     with Stream(model, laughter=laughter, labels=labels, nearest=nearest) as stream:
         for place, timing in enumerate(timings, 1):
@@ -59,18 +59,17 @@ def _intensity(text: Optional[str]) -> float:
         raise LabialError(f"a laugh's intensity is a number, not {text!r}") from None
 
 
-def read_timings(given: Union[str, os.PathLike, TextIO, list, dict], *, labels: str = "auto",
+def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str, Any]], *, labels: str = "auto",
                  source: Optional[str] = None) -> List[Tuple[str, float]]:
-    """What :func:`render` takes, from timings of any format that ``labial timings`` reads (docs/timings.md): phonemes
+    """The input of :func:`render` from timings in any format that ``labial timings`` reads (docs/timings.md): phonemes
     with their milliseconds, from time 0 on and without gaps.
 
-    `given` is the path of a file, a file that is open, such as :class:`io.StringIO`, or what a service answers in JSON
-    when it has been parsed, a list or a dict; Piper's chunks may be in the list as they are. `labels` is the set that
-    the labels are of, `source` the format where it is not to be told by the file.
-    Raises DataError with the file and, where there is one, the line.
+    `given` is the path of a file, an open file, such as :class:`io.StringIO`, or the parsed JSON of a service, a list
+    or a dict; the list may contain Piper's chunks unchanged. `labels` is the set of the labels, `source` the format if
+    it should not be detected. Raises DataError with the file and, if known, the line.
     """
-    from labial.corpus.formats import phone_set_of, phoneme_segments
     from labial.corpus.formats import read_timings as read
+    from labial.corpus.timings import phone_set_of, phoneme_segments
 
     path = given if isinstance(given, (str, os.PathLike)) else _content(given)
     segments = read(path, source)
@@ -79,9 +78,9 @@ def read_timings(given: Union[str, os.PathLike, TextIO, list, dict], *, labels: 
     return [(segment.label, end - begin) for segment, begin, end in zip(found, [0, *ends], ends)]
 
 
-def _content(given: Any) -> os.PathLike:
-    """What stands in for the file of timings that are given in another way."""
-    from labial.grammar import Content
+def _content(given: Any) -> os.PathLike[str]:
+    """The bytes of timings that are not in a file."""
+    from labial.files.grammar import Content
 
     if isinstance(given, (list, dict)):
         return Content(json.dumps(given, default=_plain).encode("utf-8"), "timings")
@@ -94,7 +93,7 @@ def _content(given: Any) -> os.PathLike:
 
 
 def _plain(item: Any) -> Any:
-    """What JSON has in place of a number of another package, or of one of Piper's chunks or phonemes."""
+    """The JSON equivalent of another package's number, or of one of Piper's chunks or phonemes."""
     for names in (("sample_rate", "phoneme_alignments"), ("phoneme", "num_samples")):
         if all(hasattr(item, name) for name in names):
             return {name: getattr(item, name) for name in names}

@@ -1,4 +1,4 @@
-"""Rigs for the run-time: a description (docs/servos.md) as a table of the C library, applied frame by frame."""
+"""Rigs of the run-time: a description (docs/servos.md) as a table of the C library, applied frame by frame."""
 
 from __future__ import annotations
 
@@ -9,73 +9,82 @@ from collections import deque
 from functools import cache
 from itertools import chain
 from pathlib import Path
-from typing import Deque, Dict, Iterable, Iterator, List, Tuple, Union
+from typing import TYPE_CHECKING, Deque, Dict, Iterable, Iterator, List, Tuple, Union
 
+from labial.core.guard import Guard, alone
+from labial.core.library import checked, library, memory
 from labial.errors import LabialError
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 from labial.rig import FACES, description_of
-from labial.runtime.guard import Guard, alone
-from labial.runtime.library import RigCurve, RigOutput, RigTable, checked, library
+
+if TYPE_CHECKING:
+    from labial.rig.description import Rig as Description
 
 #: Value of each output by name: an int, or a float where the unit is weight.
 Values = Dict[str, Union[int, float]]
 
 
 class Rig:
-    """What moves one face: servos, blendshapes, features of a drawn mouth.
+    """A rig of one face: servos, blendshapes, or features of a drawn mouth.
 
-    ``Rig("face.toml")`` reads a description, ``Rig("arkit")`` takes a built-in one; ``Rig.BUILTIN`` names those. The
-    values are those of ``labial_rig_apply_ahead()``, bit for bit, weights divided by 1,000. A rig remembers the last
-    frame's values and how they changed, from which outputs with limits of speed and acceleration go on: each face has a
-    rig of its own. Raises DataError, which names the file and the key, for what is wrong in a description.
+    ``Rig("face.toml")`` reads a description, ``Rig("arkit")`` uses a built-in one; ``Rig.BUILTIN`` lists their names.
+    The values are those of ``labial_rig_apply_ahead()``, bit for bit, with weights divided by 1,000. A rig stores the
+    last frame's values and their changes, from which outputs with limits of speed and acceleration continue: use a
+    separate rig for each face. Raises DataError, which names the file and the key, for errors in a description.
 
     Attributes:
         name: the description's name without its suffix.
         outputs: names of the outputs.
-        unit: what the values count: us, quarter_us, pca9685, counts or plain, all of them whole numbers, or weight,
-            whose values are floats from 0 to 1 in steps of a thousandth.
-        prescale: what the PCA9685's prescale register must hold, where the unit is its ticks; else None.
-        values: value of each output now, by name; the face at rest before the first frame.
+        unit: the unit of the values: us, quarter_us, pca9685, counts or plain, all integers, or weight, whose values
+        are floats from 0 to 1 in steps of a thousandth. prescale: the value for the PCA9685's prescale register, if the
+        unit is its ticks; else None. values: current value of each output, by name; the face at rest before the first
+        frame.
     """
 
     BUILTIN: Tuple[str, ...] = FACES
 
-    def __init__(self, description: Union[str, os.PathLike]) -> None:
+    def __init__(self, description: Union[str, os.PathLike[str]]) -> None:
         from labial.rig.description import read  # with a TOML parser, which older Pythons lack
-        from labial.rig.table import convert
 
         path = Path(description)
         if isinstance(description, str) and description in self.BUILTIN:
             path = description_of(description)
-        rig = read(path, path.stem)
+        self._lay_out(read(path, path.stem))
+
+    @classmethod
+    def of(cls, description: Description) -> Rig:
+        """The rig of a description that was read."""
+        rig = cls.__new__(cls)
+        rig._lay_out(description)
+        return rig
+
+    def _lay_out(self, rig: Description) -> None:
+        from labial.rig.table import SEGMENTS, convert
+
         rows = convert(rig)
         self.name, self.unit, self.prescale = rig.name, rig.unit.name, rig.unit.prescale
         self.outputs = tuple(row.name for row in rows)
-        if ctypes.sizeof(RigOutput) != library().labial_python_output_size():
-            raise LabialError("the library's rigs are laid out in another way than this package knows")
-        self._rows = (RigOutput * len(rows))()
-        for place, row in zip(self._rows, rows):
-            place.weights[:] = row.weights
-            place.invert, place.gain, place.neutral = row.invert, row.gain, row.neutral
-            place.minimum, place.maximum, place.slew = row.minimum, row.maximum, row.slew
-            place.contact, place.closed, place.deadband = row.closed is not None, row.closed or 0, row.deadband
-            place.acceleration = row.acceleration
-            if row.curve:
-                curve = RigCurve(len(row.curve))
-                for segment, numbers in zip(curve.segments, row.curve):
-                    segment.first, segment.to, segment.slope = numbers
-                place.curve = ctypes.pointer(curve)  # which keeps it alive
-        self._table = RigTable(self._rows, len(rows))
-        checked(library().labial_rig_check(self._table), os.fspath(path))
+        core = library()
+        size, curve = core.rig_output_size(), core.rig_curve_size()
+        self._rows = memory((size + curve) * len(rows))  # the outputs, then their curves
+        self._table = ctypes.addressof(self._rows), len(rows)
+        at, most = self._table[0], CHANNELS + 11 + 3 * SEGMENTS  # numbers of an output, FLAT_OUTPUT
+        for place, row in enumerate(rows):
+            numbers = [*row.weights, row.gain, row.neutral, row.minimum, row.maximum, row.invert,
+                       row.closed is not None, row.closed or 0, row.slew, row.deadband, row.acceleration,
+                       len(row.curve or ()), *chain.from_iterable(row.curve or ())]
+            core.rig_output(at + size * place, at + size * len(rows) + curve * place,
+                            (ctypes.c_int32 * most)(*map(int, numbers)))
+        checked(core.rig_check(*self._table), os.fspath(rig.path))
         self._values, self._changes = (ctypes.c_int32 * len(rows))(), (ctypes.c_int32 * len(rows))()
-        self._apply = library().labial_rig_apply_ahead
-        self._guard = Guard(whole=True)  # from moving the values until they are read
+        self._apply = core.rig_apply
+        self._guard = Guard(whole=True)  # held from updating the values until they are read
         self.rest()
 
     @classmethod
     @cache
     def builtin(cls, name: str) -> Rig:
-        """A built-in rig that is kept: right for rigs without limits of speed, which have no memory."""
+        """A cached built-in rig: these have no limits of speed, and so no state."""
         if name not in cls.BUILTIN:
             raise LabialError(f"no built-in rig is called {name!r}, there are {', '.join(cls.BUILTIN)}; "
                               f'labial.Rig("FACE.toml") reads a description')
@@ -83,22 +92,22 @@ class Rig:
 
     @property
     def values(self) -> Values:
-        """Value of each output now, by name."""
+        """Current value of each output, by name."""
         if self.unit == "weight":
             return {name: value / 1000 for name, value in zip(self.outputs, self._values)}
         return dict(zip(self.outputs, self._values))
 
     @alone
     def rest(self) -> Values:
-        """Puts the face at rest; its values."""
-        checked(library().labial_rig_rest(self._table, self._values))
+        """Resets the face to rest; returns its values."""
+        checked(library().rig_rest(*self._table, self._values))
         ctypes.memset(self._changes, 0, ctypes.sizeof(self._changes))
         return self.values
 
     def apply(self, faps: Iterable[int], following: Iterable[int] = ()) -> Values:
-        """Moves the face on by one frame of 13 FAPs, whole numbers of 16 bits; its values. `following` are the FAPs of
-        frames that come after it, one frame after the other: with them a servo that says where it is closed sets out
-        early enough to be closed in p, b, m (``labial_rig_apply_ahead``); `ahead()` keeps them for a stream."""
+        """Applies one frame of 13 FAPs, integers of 16 bits; returns the values. `following` are the FAPs of the frames
+        after it, one frame after the other: with them a servo with a `closed` position starts early enough to be closed
+        in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream."""
         try:
             numbers = array("h", faps)
             ahead = array("h", following)
@@ -114,8 +123,8 @@ class Rig:
         return self._moved(numbers + ahead)
 
     def ahead(self, frames: Iterable[Iterable[int]], count: int) -> Iterator[Values]:
-        """Moves the face by the frames of a stream, each when the `count` that follow it are there: so it is late by as
-        many. Gives the values of each frame; those of the last ones when the frames end."""
+        """Applies the frames of a stream, each when the `count` frames after it are known: the face is late by as many.
+        Yields the values of each frame; those of the last ones when the frames end."""
         if not 0 <= count < 65535:
             raise LabialError(f"a face looks 0 to 65,534 frames ahead, not {count}")
         waiting: Deque[List[int]] = deque()
@@ -127,8 +136,21 @@ class Rig:
             yield self.apply(waiting.popleft(), chain.from_iterable(waiting))
 
     @alone
-    def _moved(self, numbers: array) -> Values:
-        checked(self._apply(self._table, numbers.buffer_info()[0], len(numbers) // CHANNELS, self._values,
+    def play(self, faps: array[int], sight: int) -> array[int]:
+        """Moves the face by T frames of 13 FAPs, 16 bits each, one after the other, each with up to `sight` frames in
+        sight, itself included, 1 .. 65535: T times N numbers of 32 bits, all outputs of each frame in the unit's whole
+        numbers."""
+        first, count = faps.buffer_info()[0], len(faps) // CHANNELS
+        found = array("i")
+        for frame in range(count):
+            place = first + frame * CHANNELS * faps.itemsize
+            checked(self._apply(*self._table, place, min(sight, count - frame), self._values, self._changes))
+            found.extend(self._values)
+        return found
+
+    @alone
+    def _moved(self, numbers: array[int]) -> Values:
+        checked(self._apply(*self._table, numbers.buffer_info()[0], len(numbers) // CHANNELS, self._values,
                             self._changes))
         return self.values
 

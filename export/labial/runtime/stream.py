@@ -7,34 +7,35 @@ import math
 from array import array
 from typing import Any, List, Optional, Union
 
-from labial.errors import LabialError, StreamError
-from labial.runtime.frame import Frame, Latency
-from labial.runtime.guard import Guard, alone
-from labial.runtime.library import (
+from labial.core.guard import Guard, alone
+from labial.core.library import (
+    ARTICULATION_MAX,
     DONE,
     DURATION_MAX,
     ERROR_RATE,
     ERROR_STATE,
     LAUGH_FULL,
     OK,
-    Control,
-    LatencyStruct,
     checked,
     failure,
     library,
     memory,
 )
+from labial.core.numbers import duration, number, whole
+from labial.errors import LabialError, StreamError
+from labial.runtime.frame import Frame, Latency
 from labial.runtime.models import LABELS, Model, bundled
-from labial.runtime.numbers import duration, number, whole
 
-#: Numbers of an item, labial_python_item_t.
+#: Numbers in an item: its model's place among the stream's, phoneme, milliseconds.
 _ITEM = 3
-#: Items that were pushed are forgotten when there are so many of them.
+#: Frames that are requested at a time.
+_PIECE = 1024
+#: Processed items are dropped when there are so many of them.
 _FORGET = 1024
 
 
 class Stream:
-    """A mouth that speaks and laughs: what is pushed comes out as frames.
+    """A mouth that speaks and laughs: converts pushed phonemes to frames.
 
         with labial.Stream() as stream:
             stream.push("HH", 70)
@@ -43,20 +44,19 @@ class Stream:
             for frame in stream:
                 show(frame)
 
-    Any number of phonemes can be pushed ahead: those that the C library's queue has no room for wait here. Iterating
-    yields frames as far as the phonemes go, and may be taken up again after more were pushed; :meth:`tick` is for
-    programs that follow a clock. Closing frees the memory, as leaving the ``with`` block does; every call after it
-    raises StreamError.
+    Any number of phonemes can be pushed ahead: those that do not fit into the C library's queue wait here. Iterating
+    yields frames as far as the phonemes go; iterate again after pushing more. :meth:`tick` is for programs that follow
+    a clock. Closing frees the memory, as leaving the ``with`` block does; every later call raises StreamError.
 
-    Calls from several threads wait for each other. A call from within a call of the same stream, as from a signal
-    handler that interrupts one, raises StreamError and changes nothing. After a fork the child has a copy of the
-    stream, but for one that another thread was in a call of: all but :meth:`close` then raises StreamError.
+    Calls from several threads wait for each other. A call within a call of the same stream, such as by a signal handler
+    that interrupts one, raises StreamError and changes nothing. After a fork the child has a copy of the stream; if
+    another thread was in a call on it, all calls of the copy but :meth:`close` raise StreamError.
 
     Args:
         model: the model of the first pushes; ``labial.speech_en`` without it.
         laughter: the model of :meth:`laugh`; ``labial.laughter_synthetic`` without it.
-        labels: the set that labels of phonemes are of: "auto", "arpabet", "ipa" or "xsampa".
-        nearest: labels that are not known move as the nearest ones, instead of raising StreamError.
+        labels: the set of phoneme labels: "auto", "arpabet", "ipa" or "xsampa". nearest: unknown labels move like the
+        nearest known ones, instead of raising StreamError.
     """
 
     def __init__(self, model: Optional[Model] = None, *, laughter: Optional[Model] = None, labels: str = "auto",
@@ -69,26 +69,28 @@ class Stream:
         self._guard = Guard()
         self._models: List[Model] = []
         self._items = array("I")
-        self._owed = 0.0  # milliseconds that rounding has left over, -.5 to .5
+        self._owed = 0.0  # remainder of rounding, milliseconds, -.5 to .5
         self._laughs = 0
         self._ended = self._done = False
+        self._used = self._fed = 0  # items that the library has, and the place of the last one's model
+        self._told = False  # whether the library knows that no more phonemes will come
+        self._number = -1  # of the frame that was delivered last
         self._faps = (ctypes.c_int16 * 13)()
-        self._memory: Any = memory(library().labial_python_size())
+        self._place_of_faps = ctypes.addressof(self._faps)
+        self._library = library()
+        self._memory: Any = memory(self._library.mouth_size())
         self._address = ctypes.addressof(self._memory)
-        self._control = Control.from_buffer(self._memory)
-        self._control.capacity, self._control.frames = 1, ctypes.addressof(self._faps)
-        self._run = library().labial_python_run
         self._current = self._place(first)
-        checked(library().labial_python_open(self._address), first.name)
+        checked(self._library.mouth_init(self._address, first.address), first.name)
 
-    # ---- What goes in
+    # ---- Input
 
     @alone
     def push(self, phoneme: Union[str, int], milliseconds: float) -> None:
         """Appends a phoneme, by its label or its number in the current model, that lasts 0 to 3,600,000 ms.
 
-        Fractions of a millisecond are carried on to the next phoneme. Raises StreamError for a label that is not known,
-        a number or a duration out of range, and after :meth:`end` or :meth:`cancel`; TypeError for other types.
+        Fractions of a millisecond carry over to the next phoneme. Raises StreamError for an unknown label, a number or
+        a duration out of range, and after :meth:`end` or :meth:`cancel`; TypeError for other types.
         """
         self._open(pushing=True)
         found = self._models[self._current].number(phoneme, self._labels, self._nearest)
@@ -97,7 +99,8 @@ class Stream:
     @alone
     def laugh(self, seconds: float, intensity: float = 0.5, seed: Optional[int] = None) -> None:
         """Appends a laugh of 0 to 3600 seconds, from a hum (`intensity` 0) to a wide open mouth (1). The current model
-        stays. The same `seed`, 0 to 2**32 - 1, makes the same laugh; without one every laugh of a stream is another."""
+        stays. The same `seed`, 0 to 2**32 - 1, gives the same laugh; without one every laugh of a stream is
+        different."""
         self._open(pushing=True)
         length = round(duration(number(seconds, "a laugh's length") * 1000.0))
         loudness = number(intensity, "an intensity")
@@ -109,17 +112,18 @@ class Stream:
         if not self._laughter.is_laughter:
             raise LabialError(f"{self._laughter.name} is no model of laughter")
         place = self._place(self._laughter)
-        most = length // 20 + 8
-        items = array("I", bytes(4 * _ITEM * most))
-        count = checked(library().labial_python_laugh(
-            length, math.floor(loudness * LAUGH_FULL + 0.5), chosen, place, items.buffer_info()[0], most))
-        self._items += items[: _ITEM * count]
+        laugh, found = memory(self._library.laugh_size()), (ctypes.c_uint32 * 2)()
+        checked(self._library.laugh_begin(laugh, length, math.floor(loudness * LAUGH_FULL + 0.5), chosen))
+        items = array("I")
+        while self._library.laugh_next(laugh, found) == OK:
+            items.extend((place, *found))
+        self._items += items
         self._laughs += 1
 
     @alone
     def use(self, model: Model) -> None:
-        """Makes the next pushes phonemes of `model`, speech or laughter; the motion passes over in 8 frames. Raises
-        StreamError where its frame rate or search stride is not the stream's."""
+        """Selects `model`, speech or laughter, for the next pushes; the motion fades over 8 frames. Raises StreamError
+        if its frame rate or search stride is not the stream's."""
         self._open()
         self._current = self._place(_a_model(model))
 
@@ -131,27 +135,39 @@ class Stream:
 
     @alone
     def cancel(self, milliseconds: float = 200) -> None:
-        """Drops all that was pushed and not yet delivered, and eases back to the neutral face; then the stream is done.
-        Times over 1,000 frames count as that."""
+        """Drops everything that is not yet delivered, and eases back to the neutral face, in at most 1,000 frames; then
+        the stream is done."""
         self._open()
         length = math.ceil(duration(milliseconds))
-        checked(library().labial_python_cancel(self._address, length))
+        checked(self._library.mouth_cancel(self._address, length))
         self._forget_items()
-        self._ended, self._done = True, False
+        self._ended, self._done, self._told = True, False, True
 
     @alone
     def restart(self) -> None:
-        """Takes up a stream that is done or was cancelled: frames are numbered on and fade in from the last one. Raises
-        StreamError while frames are still to come."""
+        """Continues a stream that is done or was cancelled: frame numbers continue, and frames fade in from the last
+        one. Raises StreamError while frames are still to come."""
         self._open()
         if self._waiting():
             raise failure(ERROR_STATE, "restart")
         self._feed()
-        checked(library().labial_python_restart(self._address), "restart")
+        checked(self._library.mouth_restart(self._address), "restart")
         self._forget_items()
-        self._ended = self._done = False
+        self._ended = self._done = self._told = False
 
-    # ---- What comes out
+    @alone
+    def articulation(self, percent: float) -> None:
+        """How far the mouth moves, 0 to 200 percent of what the models learned, rounded to whole ones: 100 at first,
+        50 a mumble, 130 a shout. Lips still meet in p, b, m. It may change at any time: frames that are taken in from
+        now on come nearer to it by up to 10 percent each. A cancel or a restart keeps it. Raises LabialError for a
+        number out of range."""
+        self._open()
+        wanted = number(percent, "an articulation")
+        if not 0.0 <= wanted <= ARTICULATION_MAX:
+            raise LabialError(f"an articulation of {wanted:g} is not within 0 .. {ARTICULATION_MAX}")
+        checked(self._library.mouth_articulation(self._address, math.floor(wanted + 0.5)))
+
+    # ---- Output
 
     def __iter__(self) -> Stream:
         return self
@@ -159,49 +175,42 @@ class Stream:
     @alone
     def __next__(self) -> Frame:
         self._open()
-        if self._advance(0) == OK:
-            return Frame(self._control.number, tuple(self._faps))
+        if self._run(self._place_of_faps, 1):
+            return Frame(self._number, tuple(self._faps))
         raise StopIteration
 
     @alone
     def tick(self) -> Optional[Frame]:
-        """The next frame or None, once per frame period: None while the first one is on its way (``latency.delay``
-        ticks), where the stream waits for phonemes, and when it is done. Frames that came too late are made up for by
-        as many further calls."""
+        """The next frame or None, once per frame period: None before the first frame (``latency.delay`` ticks), while
+        the stream waits for phonemes, and when it is done. After a wait, catch up by as many extra calls."""
         self._open()
-        if self._advance(1) == OK:
-            return Frame(self._control.number, tuple(self._faps))
-        return None
+        self._feed()
+        result = checked(self._library.mouth_tick(self._address))
+        self._done = result == DONE
+        if result != OK:
+            return None
+        self._number += 1
+        return Frame(self._number, tuple(self._library.mouth_faps(self._address)[:13]))
 
     @alone
-    def rest(self) -> array:
+    def rest(self) -> array[int]:
         """All frames that can be computed now, in one call of C: T times 13 int16, FAP units. ``labial.render`` makes
         arrays of them."""
         self._open()
-        control = self._control
-        pieces = array("h")
-        while True:
-            frames = max(min(self._measure().frames, 1 << 20), 1024)
-            piece = array("h", bytes(2 * 13 * frames))
-            try:
-                control.frames, control.capacity = piece.buffer_info()[0], frames
-                result = self._advance(0)
-            finally:
-                control.frames, control.capacity = ctypes.addressof(self._faps), 1
-            del piece[13 * control.delivered:]
-            pieces += piece
-            if result != OK:
-                return pieces
+        pieces, piece = array("h"), array("h", bytes(2 * 13 * _PIECE))
+        while count := self._run(piece.buffer_info()[0], _PIECE):
+            pieces += piece[: 13 * count]
+        return pieces
 
     @property
     def done(self) -> bool:
-        """Whether the last call for a frame found that the stream has ended and every frame was delivered."""
+        """Whether the stream has ended and every frame was delivered, as of the last call for a frame."""
         return self._done
 
     @property
     @alone
     def latency(self) -> Latency:
-        """What the stream holds at this moment."""
+        """The stream's current latency."""
         self._open()
         return self._measure()
 
@@ -210,13 +219,13 @@ class Stream:
         """Frames per second."""
         return self._models[0].fps
 
-    # ---- Life
+    # ---- Closing
 
     @alone
     def close(self) -> None:
         """Frees the stream's memory; may be called again."""
         self._address = 0
-        self._control = self._memory = None
+        self._memory = None
         self._forget_items()
 
     @alone
@@ -227,7 +236,7 @@ class Stream:
     def __exit__(self, *exception: object) -> None:
         self.close()
 
-    # ---- Within the lock
+    # ---- With the lock held
 
     def _open(self, pushing: bool = False) -> None:
         if not self._address:
@@ -236,14 +245,12 @@ class Stream:
             raise failure(ERROR_STATE)
 
     def _place(self, model: Model) -> int:
-        """The place of `model` among the stream's, at its end where it is a new one."""
+        """The index of `model` among the stream's models; appends a new one."""
         if model in self._models:
             return self._models.index(model)
         if self._models and (model.fps, model.stride) != (self._models[0].fps, self._models[0].stride):
             raise failure(ERROR_RATE, model.name)
         self._models.append(model)
-        self._pointers = (ctypes.c_void_p * len(self._models))(*(held.address for held in self._models))
-        self._control.models = ctypes.addressof(self._pointers)
         return len(self._models) - 1
 
     def _append(self, phoneme: int, length: float) -> None:
@@ -253,44 +260,50 @@ class Stream:
         self._items.extend((self._current, phoneme, milliseconds))
 
     def _waiting(self) -> int:
-        """Phonemes that were not handed to the library yet."""
-        return len(self._items) // _ITEM - self._control.used
+        """Phonemes that have not been passed to the library yet."""
+        return len(self._items) // _ITEM - self._used
 
     def _forget_items(self) -> None:
         self._items = array("I")
         self._owed = 0.0
-        if self._control is not None:
-            self._control.used = 0
+        self._used = 0
 
-    def _set(self) -> None:
-        """Hands the items to the library, whose memory may have moved since."""
-        control = self._control
-        if control.used >= _FORGET:
-            del self._items[: _ITEM * control.used]
-            control.used = 0
-        control.items, control.count = self._items.buffer_info()[0], len(self._items) // _ITEM
-        control.ends = self._ended
+    def _feed(self) -> bool:
+        """Pushes items while there is room for them; returns whether any was pushed."""
+        core, items = self._library, self._items
+        before, count = self._used, len(items) // _ITEM
+        while self._used < count and core.mouth_room(self._address) > 0:
+            place, phoneme, milliseconds = items[_ITEM * self._used : _ITEM * self._used + _ITEM]
+            if place != self._fed:
+                checked(core.mouth_use(self._address, self._models[place].address))
+                self._fed = place
+            checked(core.mouth_push(self._address, phoneme, milliseconds))
+            self._used += 1
+        fed = self._used > before
+        if self._ended and self._used == count and not self._told:
+            checked(core.mouth_end(self._address))
+            self._told = True
+        if self._used >= _FORGET:
+            del items[: _ITEM * self._used]
+            self._used = 0
+        return fed
 
-    def _advance(self, ticks: int) -> int:
-        """Runs the stream into `frames`, for so many ticks or, with 0, as far as it goes; what the last tick did."""
-        self._set()
-        result = self._run(self._address, ticks)
-        if result < 0:
-            raise failure(result)
-        self._done = result == DONE
-        return int(result)
-
-    def _feed(self) -> None:
-        self._set()
-        checked(library().labial_python_feed(self._address))
+    def _run(self, frames: int, most: int) -> int:
+        """Writes the next frames, at most so many, to an address; returns their number, 0 if the stream waits."""
+        while True:
+            fed = self._feed()
+            count = checked(self._library.mouth_run(self._address, frames, most))
+            if count or not fed:
+                self._number += count
+                self._done = not count and self._library.mouth_state(self._address) == DONE
+                return count
 
     def _measure(self) -> Latency:
         self._feed()
-        found = LatencyStruct()
-        library().labial_python_latency(self._address, ctypes.byref(found))
-        later = sum(self._items[_ITEM * self._control.used + 2::_ITEM])
-        return Latency(found.frames + (later * self.fps + 500) // 1000, found.milliseconds + later,
-                       found.phonemes + self._waiting(), found.delay)
+        core, at = self._library, self._address
+        later = sum(self._items[_ITEM * self._used + 2::_ITEM])
+        return Latency(core.mouth_held(at) + (later * self.fps + 500) // 1000, core.mouth_milliseconds(at) + later,
+                       core.mouth_waiting(at) + self._waiting(), core.mouth_delay(at))
 
 
 def _a_model(model: Any) -> Model:

@@ -1,1 +1,1 @@
-"""Looking at motion: plots of trajectories and a page that plays a mouth."""
+"""Plots of trajectories, and a page that plays a mouth."""

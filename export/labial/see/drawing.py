@@ -1,24 +1,27 @@
-"""How Labial's plots look: colours, phonemes over and behind the curves, and how figures are written."""
+"""The style of Labial's plots: colours, phonemes over and behind the curves, output of figures."""
 
 from __future__ import annotations
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Iterable, List, Sequence, Union
+from typing import Any, Iterable, Iterator, List, Sequence, Union
 
 import matplotlib
 
-from labial.outputs import writing
+from labial.files.outputs import writing
 from labial.see.motion import KINDS, Band
 
 matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from matplotlib import pyplot as pyplot  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
 
-#: Colours of curves, told apart by people who see no difference of red and green too (Okabe and Ito).
+#: Colours of curves that red-green blind people can distinguish (Okabe and Ito).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-#: Background, and what a legend calls it, of each kind of band. Plain consonants have none.
+#: Background and legend of each kind of band. Plain consonants have none.
 BANDS = {
     "vowel": ("#fdf0d2", "vowel"),
     "closed": ("#f6c9c9", "p b m: lips closed"),
@@ -29,8 +32,7 @@ BANDS = {
 LABELS = {"closed": "#b3202c", "labiodental": "#5b3f99", "silence": "0.55"}
 assert set(BANDS) | set(LABELS) <= set(KINDS)
 
-#: Settings of a whole figure, for `pyplot.rc_context`.
-STYLE = {
+_STYLE: Any = {
     "font.size": 8.5,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -44,7 +46,14 @@ STYLE = {
 }
 
 
-def shade(axes: pyplot.Axes, bands: Iterable[Band]) -> None:
+@contextmanager
+def style() -> Iterator[None]:
+    """Figures are drawn and written within this, which sets how all of them look."""
+    with pyplot.rc_context(_STYLE):
+        yield
+
+
+def shade(axes: Axes, bands: Iterable[Band]) -> None:
     """Draws the bands behind the curves: a colour by kind, a thin line where each begins and ends."""
     for band in bands:
         if band.kind in BANDS:
@@ -53,10 +62,10 @@ def shade(axes: pyplot.Axes, bands: Iterable[Band]) -> None:
             axes.axvline(edge, color="0.82", linewidth=0.5, zorder=0.5)
 
 
-def label(axes: pyplot.Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = False) -> List[Text]:
-    """Writes the bands' labels above the axes and returns them; short bands in a row climb in steps so that labels stay
-    apart, and a label for which there is no room is left out. `upright` suits names that are longer than their phonemes
-    last, as those of laughter.
+def label(axes: Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = False) -> List[Text]:
+    """Writes the bands' labels above the axes and returns them; labels of successive short bands are stepped upwards to
+    stay apart, and a label without room is omitted. `upright` suits names that are wider than their bands, such as
+    those of laughter.
 
     The axes must have their limits and their place in the figure; what changes their width afterwards changes it
     little.
@@ -93,10 +102,10 @@ def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
             for kind, (colour, name) in BANDS.items() if kind in present]
 
 
-def write(figure: pyplot.Figure, path: Union[str, os.PathLike], dpi: int = 110) -> None:
+def write(figure: Figure, path: Union[str, os.PathLike[str]], dpi: int = 110) -> None:
     """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it.
 
-    Figures are drawn and written within `pyplot.rc_context(STYLE)`.
+    Figures are drawn and written within :func:`style`.
     """
     unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None}}
     suffix = Path(path).suffix.lower()

@@ -11,26 +11,25 @@ from typing import Any, Dict, Optional, Tuple, Union
 
 import numpy as np
 
-from labial.animation import face, outputs
 from labial.errors import DataError, LabialError
+from labial.files.frames import even
 from labial.fit.avatar import read as read_avatar
 from labial.fit.judge import matrix, opening
 from labial.fit.kinds import KINDS, kind_of, known
 from labial.fit.landmarks import Found, read_head
 from labial.fit.meaning import fap
 from labial.fit.write import output_name
-from labial.frames import even
+from labial.rig.animation import face, outputs
 from labial.rig.description import Rig, read
 from labial.see.motion import Motion
 from labial.see.page import LARGEST_SOUND, script_data
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
-#: Share of the opening that is meant within which a head shows it well enough, and millimetres of it from which on that
-#: can be told.
+#: Acceptable range of the opening shown by the opening meant, and the millimetres of opening needed to judge it.
 _RIGHT, _LEAST = (0.8, 1.25), 2.0
 PLAYER = Path(__file__).with_name("head.html")
-#: Modules of the npm package three, what a page imports them as, and what stands in them for each other.
+#: Modules of the npm package three, their names on a page, and their names for each other.
 _THREE: Dict[str, str] = {
     "labial-core": "build/three.core.js",
     "three": "build/three.module.js",
@@ -43,8 +42,8 @@ _IMPORTS = {"./three.core.js": "labial-core", "../utils/BufferGeometryUtils.js":
 
 
 def find_three(given: Optional[PathLike]) -> Path:
-    """The folder of the npm package three: the one that is given, or node_modules/three here or further up. Raises
-    LabialError that says how to get it."""
+    """The folder of the npm package three: the given one, or node_modules/three in this folder or above. Raises a
+    LabialError that says how to install it."""
     places = [Path(given)] if given is not None else [folder / "node_modules" / "three"
                                                       for folder in (Path.cwd(), *Path.cwd().parents)]
     for place in places:
@@ -68,7 +67,7 @@ def _imports(three: Path) -> str:
 
 
 def _shapes(found: Found, rig: Optional[PathLike]) -> Tuple[Rig, Dict[str, str]]:
-    """The rig, and the avatar's shape for each of its outputs that it has."""
+    """The rig, and the avatar's shape for each of its outputs."""
     head = found.head
     if rig is not None:
         chosen = read(rig, Path(rig).stem)
@@ -88,7 +87,7 @@ def _shapes(found: Found, rig: Optional[PathLike]) -> Tuple[Rig, Dict[str, str]]
 
 
 def _warn(where: str, found: Found, weights: Dict[str, np.ndarray], frames: np.ndarray) -> None:
-    """Says so where the built-in weights open this head much less or more than the frames mean."""
+    """Warns if the built-in weights open this head much less or more than the frames mean."""
     head = found.head
     meant = float(np.percentile(-(fap(frames, 51) + fap(frames, 52)), 95)) * head.mns / 1024.0
     ratio = float(np.percentile(opening(head, matrix(head, weights)), 95)) / max(meant, _LEAST)
@@ -126,16 +125,16 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
         for own, share in found.mesh.parts.get(shape, [(shape, 1.0)]):
             columns[own] = np.round(columns.get(own, 0.0) + share * weights[name], 3)
     away = b'"VRM"' in content[:65536] and b"VRMC_vrm" not in content  # VRM 0 faces the other way
-    turn = -1.0 if away else 1.0
+    facing = -1.0 if away else 1.0
     data: Dict[str, Any] = {
         "title": title or motion.name,
         "fps": fps,
         "start": round(float(motion.times[0]), 6),
         "shapes": list(columns),
         "weights": np.stack(list(columns.values()), axis=1).tolist(),
-        "corners": [(found.head.rest[corner] / found.scale * (turn, 1.0, turn)).tolist()
+        "corners": [(found.head.rest[corner] / found.scale * (facing, 1.0, facing)).tolist()
                     for corner in ("corner_left", "corner_right")],
-        "facing": turn,
+        "facing": facing,
         "head": base64.b64encode(content).decode("ascii"),
     }
     page = PLAYER.read_text(encoding="utf-8").replace("@LABIAL_DATA@", script_data(data, audio))

@@ -1,4 +1,4 @@
-"""What is looked at: frames of any kind of motion file, and the phonemes that go with them as bands."""
+"""Input of plots and pages: frames of any kind of motion file, and their phonemes as bands."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.bundled import is_model
 from labial.corpus.folder import check_range, read_frames
 from labial.corpus.formats import read_timings
+from labial.corpus.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
 from labial.corpus.timings import SourceSegment, meaning, phone_set_of
 from labial.errors import DataError, LabialError
-from labial.faps import CHANNELS, FAP_NUMBERS
-from labial.grammar import fields_of, is_blank, is_number, is_whole, read_lines, shown
-from labial.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
+from labial.files.faps import CHANNELS, FAP_NUMBERS
+from labial.files.grammar import fields_of, is_blank, is_number, is_whole, read_lines, shown
+from labial.tables.bundled import is_model
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
-#: Kinds of bands: what a band's phoneme asks of the mouth, as far as the eye looks for it.
+#: Kinds of bands: visible features of a phoneme.
 KINDS = ("vowel", "closed", "labiodental", "silence", "other")
 #: FAPs that MPEG-4 defines, each with an entry in the mask of a .fap file.
 _MASK = 68
@@ -37,7 +37,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Band:
-    """A phoneme from `start` to `end` (seconds), labelled as a phone set calls it, of one of `KINDS`."""
+    """A phoneme from `start` to `end` (seconds), with its label in a phone set and one of `KINDS`."""
 
     start: float
     end: float
@@ -63,9 +63,9 @@ def read_motion(
 def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[str]) -> Motion:
     """The motion of a model (a file, or a bundled one's name) that speaks phoneme timings of any format. Raises
     DataError."""
-    from labial.model import load
-    from labial.phones import read_stream
     from labial.reference.synthesis import synthesise
+    from labial.tables.model import load
+    from labial.tables.phones import read_stream
 
     read = load(model)
     frames = synthesise(read, read_stream(timings, read, labels, source))
@@ -125,8 +125,8 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
 def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
-    Labels are of the set `labels`, and those of speech or of laughter, whichever knows more of them. A label that it
-    does not know is no error, for nothing but its band's colour depends on it: it stays as it is, of kind "other".
+    Labels are of the set `labels`, and of speech or laughter, whichever knows more of them. An unknown label is not an
+    error, since only the band's colour depends on it: it stays unchanged, of kind "other".
     """
     if path is None:
         return []

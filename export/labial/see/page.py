@@ -13,20 +13,20 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 import numpy as np
 
 from labial.errors import DataError, LabialError
-from labial.faps import FAP_COLUMNS
-from labial.frames import even
+from labial.files.faps import FAP_COLUMNS
+from labial.files.frames import even
 from labial.see.motion import Band, Motion, laughs
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
-#: The player and its drawing, also those of the C demo; motion and drawing take the places of the words below.
+#: The template of the player and its drawing, shared with the C demo; motion and drawing replace the words below.
 PLAYER = Path(__file__).with_name("player.html")
 MOUTH = Path(__file__).with_name("mouth.js")
 DATA_PLACE, MOUTH_PLACE = "@LABIAL_DATA@", "@LABIAL_MOUTH@"
 
-#: Bytes of a sound that a page takes. In the page it is a third longer, and Firefox stops at 32 MB.
+#: Most bytes of a page's sound. In the page it is a third longer, and Firefox stops at 32 MB.
 LARGEST_SOUND = 24_000_000
-#: How files begin that browsers play, where in the file, and what they are.
+#: First bytes of sounds that browsers play, their place, and the media type.
 _SOUNDS = (
     (0, rb"RIFF....WAVE", "audio/wav"),
     (0, rb"ID3|\xff[\xe2-\xe7\xf2-\xf7\xfa-\xff]", "audio/mpeg"),
@@ -74,7 +74,7 @@ def script_data(data: Dict[str, Any], audio: Optional[PathLike]) -> str:
 
 
 def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> List[Dict[str, Any]]:
-    """The bands in frames of the page, cut to the motion; what is shorter than a frame is left out."""
+    """The bands in frames of the page, cut to the motion; bands shorter than a frame are omitted."""
     def frame(seconds: float) -> int:
         return min(max(math.floor((seconds - start) * fps + 0.5 + 1e-6), 0), count)  # halves up, as the library does
 
@@ -89,7 +89,7 @@ def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> Li
 
 
 def sound(path: PathLike) -> str:
-    """A sound file as the address that stands for it in the page."""
+    """A sound file as a data URL."""
     try:
         size = os.path.getsize(path)
         content = b"" if size > LARGEST_SOUND else Path(path).read_bytes()

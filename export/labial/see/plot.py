@@ -9,11 +9,11 @@ from typing import Callable, List, NamedTuple, Sequence, Tuple, Union
 import numpy as np
 
 from labial.errors import LabialError
-from labial.faps import FAP_COLUMNS, FAP_NAMES
-from labial.see.drawing import COLOURS, STYLE, label, legend_patches, pyplot, shade, write
+from labial.files.faps import FAP_COLUMNS, FAP_NAMES
+from labial.see.drawing import COLOURS, label, legend_patches, pyplot, shade, style, write
 from labial.see.motion import Band, Motion, laughs
 
-#: Channels that are plotted unless others are asked for.
+#: Default channels.
 DEFAULT = "fap3,opening,stretch,fap17"
 _WIDTH_FAPS = ("fap53", "fap54")
 _SUFFIXES = (".png", ".svg", ".pdf")
@@ -21,7 +21,7 @@ _LONGEST_AXIS = 40.0  # inches; longer motion is drawn closer together
 
 
 class _Panel(NamedTuple):
-    """One panel: its two-line label and how its curve comes from (T, 13) frames."""
+    """One panel: its two-line label and the function that computes its curve from (T, 13) frames."""
 
     title: str
     unit: str
@@ -40,7 +40,7 @@ def _sum(title: str, unit: str, factor: int, *columns: str) -> _Panel:
     return _Panel(title, unit, lambda frames: factor * frames[:, indices].sum(axis=1))
 
 
-#: What can be plotted beside single FAPs.
+#: Sums that can be plotted, in addition to single FAPs.
 SUMS = {
     "opening": _sum("lip opening\n\u2212(FAP 51 + 52)", "MNS", -1, "fap51", "fap52"),
     "stretch": _sum("corner stretch\nFAP 53 + 54", "MW", 1, "fap53", "fap54"),
@@ -74,7 +74,7 @@ def _span(motions: Sequence[Motion], bands: Sequence[Band]) -> Tuple[float, floa
     return first, last if last > first else first + 0.04
 
 
-def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.PathLike],
+def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.PathLike[str]],
          channels: str = DEFAULT) -> None:
     """Writes the plot of one motion or more to `path` (.png, .svg or .pdf).
 
@@ -88,7 +88,7 @@ def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.P
     upright = laughs(bands)
     top = 0.75 if upright else 0.45
     height = 0.7 + top + (1.45 if len(rows) <= 6 else 1.05) * len(rows)
-    with pyplot.rc_context(STYLE):
+    with style():
         figure, every = pyplot.subplots(len(rows), 1, figsize=(width, height), sharex=True, squeeze=False)
         # Margins in inches, whatever the size: labels at the left, phonemes above, legend and time below.
         figure.subplots_adjust(left=1.95 / width, right=1 - 0.2 / width, top=1 - top / height, bottom=0.75 / height,

@@ -1,4 +1,4 @@
-"""A talker's own voice: what talkers share, from a model, and his own deviation, from half a minute of him.
+"""Adapts a voice to a talker: what talkers share, from a model, plus his deviation, from half a minute of his speech.
 
 The model is one that was trained with talkers as random effects (:mod:`labial.train.talkers`). Its kernels, shapes,
 slopes and pairs are b; those of the talker are b + u, with u by its posterior mean given his motion and the variance of
@@ -13,15 +13,15 @@ from typing import Dict, List, Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from labial.amplitude import mean_pose, widened
 from labial.corpus.episode import Episode
+from labial.corpus.phonesets import PHONE_SETS
 from labial.corpus.talkers import brought_to
 from labial.errors import LabialError
-from labial.faps import CHANNELS
-from labial.model import Model
-from labial.phonesets import PHONE_SETS
+from labial.files.faps import CHANNELS
 from labial.reference.contact import FRAMES
 from labial.reference.shape import ShapeTables, choose
+from labial.tables.amplitude import mean_pose, widened
+from labial.tables.model import Model
 from labial.train.kernels import Kernels, Regression, code_of, columns_alike, targets_without_floors
 from labial.train.recordings import Recording, occurrences, recordings, with_pauses_cut
 from labial.train.talkers import (
@@ -33,7 +33,7 @@ from labial.train.talkers import (
     penalties_of,
 )
 
-#: What a model says of the talkers it was trained on; (13,) each but the variance.
+#: A model's statistics of its training talkers; (13,) each but the variance.
 KEYS = ("variance", "deviation", "gain", "middle")
 
 
@@ -46,7 +46,7 @@ def about_talkers(
 
 
 def _known(model: Model) -> Dict[str, np.ndarray]:
-    """What the model says of its talkers; raises LabialError where it says nothing, or nothing that can be."""
+    """The model's statistics of its talkers; raises LabialError if they are missing or invalid."""
     told = model.training.get("talkers")
     if model.method != "labial" or not isinstance(told, dict):
         raise LabialError("the model was not trained with --talker-variance, so that it does not tell what talkers "
@@ -64,7 +64,7 @@ def _known(model: Model) -> Dict[str, np.ndarray]:
 
 
 def _material(model: Model, corpus: Sequence[Episode], about: Dict[str, np.ndarray]) -> List[Recording]:
-    """The talker's recordings, with the mean and the scale that the model's talkers have."""
+    """The talker's recordings, with the mean and the scale of the model's talkers."""
     phone_set = PHONE_SETS[model.kind]
     if model.phonemes != phone_set.phonemes:
         raise LabialError(f"the model's phonemes are not those of {model.kind}")
@@ -80,7 +80,7 @@ def _material(model: Model, corpus: Sequence[Episode], about: Dict[str, np.ndarr
 def _deviation(
     model: Model, material: List[Recording], about: Dict[str, np.ndarray], order: np.ndarray
 ) -> Kernels:
-    """What is added to the model's own, with its pairs in ascending `order` (R,)."""
+    """The deviation to add to the model, with pairs in ascending `order` (R,)."""
     plain = widened(model, 1.0 / about["gain"], about["middle"])
     silence = model.phonemes.index(model.silence)
     key = model.pair_key[order]
@@ -90,7 +90,8 @@ def _deviation(
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
     asked = Regression(
         tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps, model.kernel_lag,
-        code_of(*key.T, len(model.phonemes)), penalties_of(float(about["variance"])), model.pair_shape.shape[1],
+        code_of(key[:, 0], key[:, 1], key[:, 2], len(model.phonemes)),
+        penalties_of(float(about["variance"])), model.pair_shape.shape[1],
     )
     made = targets_without_floors(choice, [shared] * len(material), material, silence)
     left = [replace(item, frames=item.frames - motion) for item, motion in zip(material, made)]
@@ -111,8 +112,8 @@ def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> M
     """
     about = _known(model)
     material = _material(model, corpus, about)
-    order = np.argsort(code_of(*model.pair_key.T, len(model.phonemes)))
-    with threadpool_limits(1):  # the same bits on any number of cores
+    order = np.argsort(code_of(model.pair_key[:, 0], model.pair_key[:, 1], model.pair_key[:, 2], len(model.phonemes)))
+    with threadpool_limits(1):  # the same bits for any number of cores
         own = _deviation(model, material, about, order)
     back = np.argsort(order)
     frames = sum(len(item.frames) for item in material)

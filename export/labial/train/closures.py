@@ -1,8 +1,8 @@
 """Closures: how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v.
 
 A sum of learned curves does not guarantee contact: an open vowel on either side pulls the lips of a /b/ apart. So the
-target in such a phoneme does not fall below a *floor*, the mean of what speakers do. In no phoneme does the target fall
-below what people hardly ever do: protrusion ends at lips at rest, which a sum of curves does not respect.
+target in such a phoneme does not fall below a *floor*, the mean pose of people. In no phoneme does the target fall
+below a value that people hardly ever reach: protrusion ends at lips at rest, which a sum of curves does not respect.
 """
 
 from __future__ import annotations
@@ -11,37 +11,40 @@ from typing import Sequence, Tuple
 
 import numpy as np
 
-from labial.faps import CHANNELS, FAP_NUMBERS
-from labial.phonesets import PhoneSet
+from labial.corpus.phonesets import PhoneSet
+from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.train.recordings import Recording, taught
 
-#: Viseme classes that make contact, and the FAPs that do: those of the upper lip, which lower it, and of the lower lip,
-#: which raise it.
+#: Viseme classes that make contact, and their FAPs: those that lower the upper lip, and those that raise the lower lip.
 CONTACTS = {"bilabial": (51, 52, 55, 56, 57, 58), "labiodental": (52, 57, 58)}
 
-#: Contact is looked for this far outside the segment too, seconds: alignments err by about so much.
+#: The same of laughter, where air goes through the nose. These lips rest on each other without pressure: they have no
+#: floor, but follow their target alone, so that the memory of the states does not open them.
+HELD = {"nose": (51, 52, 55, 56, 57, 58)}
+
+#: Seconds around the segment in which contact is searched, the usual error of alignments.
 MARGIN = 0.04
 
-#: The percentile of all human frames that no target falls below.
+#: The percentile of all human frames that is the lowest target of any phoneme.
 LEAST = 1.0
 
 #: FAPs that come to rest in a pause, jaw and lips, where a phone set makes contacts.
 RESTING = (3, 51, 52, 55, 56, 57, 58)
 
-#: Frames of pauses this far from speech say where, seconds.
+#: The rest position comes from frames of pauses at least this far from speech, seconds.
 AWAY = 0.2
 
-#: How firmly a frame in contact is held: times the median over a channel's states.
-FIRMNESS = 1.5
+#: The weight of a frame in contact: times the median over a channel's states.
+FIRMNESS = 2.0
 
-#: The share of a class's occurrences, those that close most, whose mean pose is the floor: people's mean, but for the
-#: tenth whose lips the timings hardly meet.
+#: The share of a class's occurrences, those that close most, whose mean pose is the floor: all but the tenth with the
+#: largest error of timing.
 FIRMEST = 0.9
 
 
 def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tuple[np.ndarray, np.ndarray]:
     """(P, 13) FAP: the pose of contact in the phonemes and channels that make it, elsewhere the LEAST percentile; and
-    (P, 13) bool: where it is contact.
+    (P, 13) bool: where it is contact, or lips are HELD.
 
     The pose is the mean, by weight, over the FIRMEST occurrences of the phoneme's class, each at its frame of closest
     contact.
@@ -78,6 +81,11 @@ def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tupl
         channels = [FAP_NUMBERS.index(number) for number in RESTING]
         result[silence, channels] = _rest(material, silence, round(AWAY * fps), least)[channels]
         contacts[silence, channels] = True
+    for name, faps in HELD.items():
+        if name in phone_set.classes:
+            number = phone_set.classes.index(name)
+            place = np.ix_(classes == number, [FAP_NUMBERS.index(fap) for fap in faps])
+            result[place], contacts[place] = -np.inf, True
     return result, contacts
 
 

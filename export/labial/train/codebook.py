@@ -1,10 +1,10 @@
 """The hidden Markov model of a channel (docs/method.md, States): an LBG codebook of human motion and its counts.
 
 A frame's features are m, delta m = (m[t+1] - m[t-1]) / 2 and delta-delta m = m[t+1] - 2 m[t] + m[t-1]. The published
-method clusters them as they are; Labial's divides each by its standard deviation over the corpus first. The codebook is
-grown by binary splitting (Linde, Buzo and Gray 1980): each cell is split in two along its widest feature and all are
-refined by Lloyd's iteration; where the size asked for is not a power of two, the last round splits the cells of largest
-distortion alone.
+method clusters them unscaled; Labial's method divides each by its standard deviation over the corpus first. The
+codebook is grown by binary splitting (Linde, Buzo and Gray 1980): each cell is split in two along its widest feature
+and all are refined by Lloyd's iteration; if the size is not a power of two, the last round splits only the cells of
+largest distortion.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ TOLERANCE = 1e-4
 ROUGH_TOLERANCE = 1e-2
 MAXIMUM_ITERATIONS = 60
 
-#: Far more, as a share, than rounding does to a distance.
+#: A relative bound far above the rounding error of a distance.
 _ROUNDING = 1e-9
 
-#: Points whose distances to all centres are worked out at once.
+#: Points whose distances to all centres are computed at once.
 _BLOCK = 1024
 
-#: Centres near a point's own that count for themselves; all others are as far as the next one.
+#: Centres near a point's own that are tracked separately; all others count as far as the next one.
 _NEAR = 4
 
 #: Least variance of a state, as a share of the feature's variance over the corpus.
 VARIANCE_FLOOR = 1e-3
 
-#: Transitions and starts that were never counted have probability 0, but for those that keep every state within
-#: reach: to itself and to its neighbours in static mean, which get this count on top of what was seen.
+#: Transitions and starts that were never counted have probability 0, except those that keep every state reachable: to
+#: itself and to its neighbours in static mean, which get this count in addition.
 NEIGHBOUR_COUNT = 0.5
 
-#: Added to the starts of every state, spread in proportion to how often the state occurs.
+#: Added to the starts of every state, in proportion to the state's frequency.
 INITIAL_COUNT = 5.0
 
 
@@ -57,12 +57,12 @@ def assign(points: np.ndarray, centres: np.ndarray) -> Tuple[np.ndarray, np.ndar
 
 
 class _Nearest:
-    """:func:`assign` for centres that move a little from call to call: Lloyd's iteration. The results are the same to
-    the last bit; what is saved is the search for points whose nearest centre no move can have changed.
+    """:func:`assign` for centres that move a little from call to call (Lloyd's iteration), with the same results bit
+    for bit. It skips points whose nearest centre cannot have changed.
 
-    A point whose own centre is nearer than every other one could have come keeps it (Hamerly 2010): each knows how far
-    its second nearest centre was at least. From this is taken what the centres moved since: of those near its own
-    centre the most, while all further ones cannot be nearer than their distance from its own centre allows.
+    A point keeps its centre if that is nearer than any other centre can be (Hamerly 2010). Each point has a lower bound
+    of the distance to its second nearest centre. Each call reduces it by the largest move of the centres near its own;
+    farther centres are bounded by their distance from its own centre.
     """
 
     def __init__(self, points: np.ndarray) -> None:
@@ -89,8 +89,8 @@ class _Nearest:
         return self._cell.copy(), np.square(distance, out=distance)
 
     def _let_move(self, centres: np.ndarray, distance: np.ndarray) -> None:
-        """Brings the least distances of other centres to the new places of the centres; `distance` (n,) is that of each
-        point's own one."""
+        """Updates the lower bounds of distances to other centres; `distance` (n,) is that of each point's own
+        centre."""
         moved = np.sqrt(np.square(centres - self._before).sum(axis=1)) * (1 + _ROUNDING)
         apart = np.sqrt(np.square(centres[:, None] - centres).sum(axis=2))
         np.fill_diagonal(apart, -1.0)  # first, also where two centres are one
@@ -102,11 +102,10 @@ class _Nearest:
         self._others = np.maximum(self._others - moved.max(), close)
 
     def _search(self, centres: np.ndarray, rows: np.ndarray) -> None:
-        """Finds the nearest centres of the points `rows`. Squared distances are products of matrices, block by block,
-        and carry the number of their centre in their last bits; what lies closer together than these tell is left to
-        :func:`assign`."""
+        """Finds the nearest centres of the points `rows`. Squared distances are matrix products, block by block, with
+        the number of the centre in their last bits; nearer ties are left to :func:`assign`."""
         length = np.square(centres).sum(axis=1)[:, None]
-        slack = 1e-3 * _ROUNDING * max(self._longest, float(length.max()))  # still far more than rounding does
+        slack = 1e-3 * _ROUNDING * max(self._longest, float(length.max()))  # still far above the rounding error
         number = np.arange(len(centres), dtype=np.int64)[:, None]
         mask = (1 << len(centres).bit_length()) - 1
         factors = np.concatenate([-2.0 * centres, length + slack, np.ones((len(centres), 1))], axis=1)
@@ -114,7 +113,7 @@ class _Nearest:
             columns = self._columns[:, block]
             one, own = np.ones((1, len(block))), np.square(columns).sum(axis=0)[None]
             squares = factors @ np.concatenate([columns, one, own])
-            packed = squares.view(np.int64)  # positive numbers are in the order of their bits
+            packed = squares.view(np.int64)  # positive floats are ordered like their bits
             packed &= ~mask
             packed |= number
             nearest = squares.min(axis=0)
@@ -157,7 +156,7 @@ def lloyd(
 ) -> Tuple[np.ndarray, np.ndarray, float]:
     """Refines (Q, D) centres on (n, D) points. Returns centres, cells (n,) and the mean squared distance.
 
-    A centre that loses all its points is put beside the centre of the cell with the largest distortion, splitting it.
+    A centre that loses all its points moves beside the centre of the cell with the largest distortion, which it splits.
     """
     before, nearest = np.inf, _Nearest(points)
     for _ in range(MAXIMUM_ITERATIONS):
@@ -176,7 +175,7 @@ def lloyd(
             widest = int(load.argmax())
             axis = int(variance[widest].argmax())
             if load[widest] <= 0:
-                break  # fewer different points than centres: the rest stay empty
+                break  # fewer different points than centres: the other cells stay empty
             centres[lost] = centres[widest]
             centres[lost, axis] += SPLIT * np.sqrt(variance[widest, axis])
             load[widest] = 0
@@ -201,7 +200,7 @@ def lbg(points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
     return centres, cell, distortion
 
 
-#: What divides points into cells as :func:`lbg` does. Who trains on the same motion twice may give one that remembers.
+#: A function that divides points into cells like :func:`lbg`; a caching one saves time if the same motion recurs.
 Division = Callable[[np.ndarray, int], Tuple[np.ndarray, np.ndarray, float]]
 
 
@@ -224,16 +223,18 @@ def transitions(paths: Sequence[np.ndarray], size: int, stride: int = 1) -> np.n
         np.add.at(counts, (path[:-stride], path[stride:]), 1)
     counts += NEIGHBOUR_COUNT * (np.abs(np.subtract.outer(np.arange(size), np.arange(size))) <= 1)
     with np.errstate(divide="ignore"):
-        return np.log(counts / counts.sum(axis=1, keepdims=True))
+        result: np.ndarray = np.log(counts / counts.sum(axis=1, keepdims=True))
+        return result
 
 
 def initials(paths: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: int) -> np.ndarray:
     """(Q,) log-probabilities of the states at the frames `starts` of each path, where units begin."""
-    occurring = sum(np.bincount(path, minlength=size) for path in paths) + 1.0
+    occurring = np.sum([np.bincount(path, minlength=size) for path in paths], axis=0) + 1.0
     counts = INITIAL_COUNT * occurring / occurring.sum()
     for path, start in zip(paths, starts):
         counts = counts + np.bincount(path[start], minlength=size)
-    return np.log(counts / counts.sum())
+    result: np.ndarray = np.log(counts / counts.sum())
+    return result
 
 
 def train_channel(
@@ -255,7 +256,7 @@ def train_channel(
     scale = np.where(normalised & (overall > 1e-12), np.sqrt(overall), 1.0)
     _, cell, _ = divide(points / scale, size)
     count, mean, variance = _moments(points, cell, size)
-    largest = int(count.argmax())  # stands in for cells that stay empty, where motion has fewer values than there are
+    largest = int(count.argmax())  # for cells that stay empty because motion has fewer different values
     mean = np.where(count[:, None] > 0, mean, mean[largest])
     variance = np.where(count[:, None] > 0, variance, variance[largest])
     variance = np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6))

@@ -54,26 +54,28 @@ def log_normal(vectors: np.ndarray, mean: np.ndarray, covariance: np.ndarray) ->
         factor = np.linalg.cholesky(spread)
         z = solve_triangular(factor, (vectors - centre).T, lower=True)
         result[:, c] = -0.5 * (z**2).sum(axis=0) - np.log(np.diag(factor)).sum()
-    return result - 0.5 * vectors.shape[1] * np.log(2 * np.pi)
+    found: np.ndarray = result - 0.5 * vectors.shape[1] * np.log(2 * np.pi)
+    return found
 
 
 def log_joint(samples: Samples, mixture: Mixture) -> np.ndarray:
     """(n, C) log of the weight times the probability of shape, duration and both neighbours."""
-    return (
+    result: np.ndarray = (
         np.log(mixture.weight)
         + log_normal(samples.vectors, mixture.mean, mixture.covariance)
         + mixture.log_previous.T[samples.previous]
         + mixture.log_next.T[samples.next]
     )
+    return result
 
 
 def prior_covariance(samples: Samples) -> np.ndarray:
-    """(14, 14) what a covariance is taken to be before any sample is seen."""
+    """(14, 14) the prior covariance."""
     return np.diag(COVARIANCE_SHRINK * samples.vectors.var(axis=0) + REGULARISATION)
 
 
 def log_posterior(samples: Samples, mixture: Mixture) -> float:
-    """Log-likelihood of the samples plus log-density of the priors, up to a constant: what EM climbs."""
+    """Log-likelihood of the samples plus log-density of the priors, up to a constant: the objective of EM."""
     prior = prior_covariance(samples)
     value = float(logsumexp(log_joint(samples, mixture), axis=1).sum())
     value += WEIGHT_PRIOR * float(np.log(mixture.weight).sum())
@@ -86,9 +88,10 @@ def log_posterior(samples: Samples, mixture: Mixture) -> float:
 
 def _class_table(responsibility: np.ndarray, of: np.ndarray, classes: int) -> np.ndarray:
     """(C, V) smoothed log-probabilities of the classes (n,) under responsibilities (n, C)."""
-    counts = np.stack([np.bincount(of, weights=column, minlength=classes) for column in responsibility.T])
-    counts += CLASS_PRIOR
-    return np.log(counts / counts.sum(axis=1, keepdims=True))
+    counts: np.ndarray = np.stack([np.bincount(of, weights=column, minlength=classes) for column in responsibility.T])
+    counts = counts + CLASS_PRIOR
+    result: np.ndarray = np.log(counts / counts.sum(axis=1, keepdims=True))
+    return result
 
 
 def maximise(samples: Samples, responsibility: np.ndarray) -> Mixture:
@@ -114,7 +117,8 @@ def maximise(samples: Samples, responsibility: np.ndarray) -> Mixture:
 def expect(samples: Samples, mixture: Mixture) -> np.ndarray:
     """The E step: responsibilities (n, C)."""
     joint = log_joint(samples, mixture)
-    return np.exp(joint - logsumexp(joint, axis=1, keepdims=True))
+    result: np.ndarray = np.exp(joint - logsumexp(joint, axis=1, keepdims=True))
+    return result
 
 
 def climb(samples: Samples, responsibility: np.ndarray) -> Tuple[Mixture, List[float]]:
@@ -132,7 +136,8 @@ def climb(samples: Samples, responsibility: np.ndarray) -> Tuple[Mixture, List[f
 def _floored(log_table: np.ndarray) -> np.ndarray:
     """The distributions (C, V) mixed with a uniform one so that none of their values is below LOG_FLOOR."""
     least = np.exp(LOG_FLOOR)
-    return np.log(least + (1 - log_table.shape[1] * least) * np.exp(log_table))
+    result: np.ndarray = np.log(least + (1 - log_table.shape[1] * least) * np.exp(log_table))
+    return result
 
 
 def fit_context(

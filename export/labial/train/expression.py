@@ -6,15 +6,15 @@ goes far in a few phonemes, in which widening about the mean would exceed human 
 
 from __future__ import annotations
 
-from typing import Sequence, Tuple
+from typing import List, Sequence, Tuple
 
 import numpy as np
 
-from labial.amplitude import widened
-from labial.faps import FAP_NUMBERS
-from labial.model import Model
+from labial.files.faps import FAP_NUMBERS
 from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
+from labial.tables.amplitude import widened
+from labial.tables.model import Model
 from labial.train.recordings import Recording
 from labial.train.workers import Workers
 
@@ -24,34 +24,38 @@ from labial.train.workers import Workers
 AMPLITUDE = 0.84
 CORNERS = 0.86
 
-#: Episodes that it is measured on.
+#: The same where talkers are random effects: what they share rounds and spreads the lips less than each of them does.
+SHARED_CORNERS = 0.95
+
+#: Episodes for measuring it.
 EPISODES = 160
 
 #: The percentiles that the middle of a channel's range lies between.
 RANGE = (5.0, 95.0)
 
-#: Gains are not taken beyond this, nor below 1.
+#: Largest gain; the least is 1.
 LARGEST_GAIN = 3.0
 
 
-def gains(model: Model, material: Sequence[Recording], workers: Workers) -> Tuple[np.ndarray, np.ndarray]:
-    """The gain of each channel (13,), with which the model's motion outside silence reaches AMPLITUDE or CORNERS, and
-    the pose (13,), FAP, about which it is to be widened."""
-    goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS, AMPLITUDE)
-    count = min(len(material), EPISODES)
-    chosen = [material[index] for index in np.linspace(0, len(material) - 1, count).round().astype(int)]
+def gains(
+    model: Model, material: Sequence[Recording], workers: Workers, corners: float = CORNERS
+) -> Tuple[np.ndarray, np.ndarray]:
+    """The gain of each channel (13,), with which the model's motion outside silence reaches AMPLITUDE, in the corners
+    `corners`, and the pose (13,), FAP, about which it is to be widened."""
+    goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), corners, AMPLITUDE)
+    items = chosen(material)
     silence = model.phonemes.index(model.silence)
-    sounding = np.concatenate([item.phoneme_at() != silence for item in chosen])
-    learnt = sounding[:, None] & (np.concatenate([item.weights for item in chosen]) > 0)
-    frames = np.concatenate([item.frames for item in chosen])
+    sounding = np.concatenate([item.phoneme_at() != silence for item in items])
+    learnt = sounding[:, None] & (np.concatenate([item.weights for item in items]) > 0)
+    frames = np.concatenate([item.frames for item in items])
     human = deviation_of(frames, learnt)
     taught = learnt.any(axis=0)  # by the episodes chosen
     middle = np.array([np.mean(np.percentile(values[of], RANGE)) if of.any() else 0.0
                        for values, of in zip(frames.T, learnt.T)])
     gain = np.ones(human.shape)
-    for _ in range(3):  # the state tables and the floors resist the gain, so that one step falls short
+    for _ in range(3):  # states and floors reduce the effect of a gain, so that one step is not enough
         current = widened(model, gain, middle)
-        motion = np.concatenate(workers.run("amplitude", _motion, [(current, item) for item in chosen]))
+        motion = np.concatenate(workers.run("amplitude", motion_of, [(current, item) for item in items]))
         reached = deviation_of(motion, learnt) / np.maximum(human, 1e-9)
         wanted = np.clip(gain * goal / np.maximum(reached, 1e-9), 1.0, LARGEST_GAIN)
         gain = np.where(taught, wanted, 1.0)
@@ -59,11 +63,18 @@ def gains(model: Model, material: Sequence[Recording], workers: Workers) -> Tupl
 
 
 def deviation_of(frames: np.ndarray, learnt: np.ndarray) -> np.ndarray:
-    """(13,) standard deviations of those values of frames (T, 13) that `learnt` (T, 13) says; 0 where it says none."""
+    """(13,) standard deviations of the values of frames (T, 13) that `learnt` (T, 13) selects; 0 if it selects none."""
     return np.array([values[of].std() if of.any() else 0.0 for values, of in zip(frames.T, learnt.T)])
 
 
-def _motion(task: tuple[Model, Recording]) -> np.ndarray:
+def chosen(material: Sequence[Recording]) -> List[Recording]:
+    """Those of the material, evenly spread, that amplitudes are measured on."""
+    count = min(len(material), EPISODES)
+    return [material[index] for index in np.linspace(0, len(material) - 1, count).round().astype(int)]
+
+
+def motion_of(task: Tuple[Model, Recording]) -> np.ndarray:
+    """(T, 13) FAP: what a model makes of a recording's phonemes."""
     model, item = task
     bounds = np.rint(np.cumsum(item.length) * 1000 / model.fps).astype(int)
     durations = np.diff(bounds, prepend=0)

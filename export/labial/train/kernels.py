@@ -1,5 +1,5 @@
-"""Temporal kernels: what each phoneme adds to every channel before, during and after itself (docs/method.md, Temporal
-kernels).
+"""Temporal kernels: the effect of each phoneme on every channel before, during and after itself (docs/method.md,
+Temporal kernels).
 
 The target of a frame is the shape of its phoneme plus one tap of the kernel of the phoneme at each of L lags:
 
@@ -32,36 +32,44 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csc_matrix, csr_matrix, diags, hstack, identity, vstack
 
 from labial.defaults import LOOK_AHEAD
-from labial.faps import CHANNELS
-from labial.quantise import LIMITS
-from labial.reference.shape import Choice, add_kernels, knot_shares, neighbours, pairs_beside, shapes, tapped
+from labial.files.faps import CHANNELS
+from labial.reference.shape import (
+    Choice,
+    ShapeTables,
+    add_kernels,
+    knot_shares,
+    neighbours,
+    pairs_beside,
+    shapes,
+    tapped,
+)
+from labial.tables.quantise import LIMITS
 from labial.train.recordings import Recording
-from labial.train.shapes import ShapeTables
 
 #: The taps reach this far to each side and are this far apart, in seconds.
 REACH = 0.36
 SPACING = 0.04
 
-#: But never farther than the device's memory of phonemes, in frames.
+#: Limit of the reach, in frames: the device's LABIAL_REACH.
 REACH_FRAMES = LIMITS["reach"]
 
-#: Frames that the regression takes in at a time, some 2.5 KB each.
+#: Frames that the regression reads at once, some 2.5 KB each.
 BLOCK = 65536
 
-#: Occurrences from which on a phoneme beside a certain neighbour has a shape of its own, whatever they weigh.
+#: Least occurrences of a pair with its own correction, regardless of their weights.
 PAIR_COUNT = 20
 
-#: Knots of a pair: one for a shape that stands still, two for one that moves from the phoneme's start to its end.
+#: Knots of a pair: one for a constant shape, two for one that changes from the phoneme's start to its end.
 PAIR_KNOTS = 2
 
 
 @dataclass(frozen=True)
 class Penalties:
-    """Strength of the priors, in frames at 50 frames per second: what has this many frames is believed by half. Chosen
-    on held-out words."""
+    """Strength of the priors, in frames at 50 frames per second: with this many frames the estimate is halfway between
+    prior and data. Chosen on held-out words."""
 
     kernel: float = 50.0  #: of the class kernels
-    residual: float = 6.0  #: how many times more a phoneme's own residual costs
+    residual: float = 6.0  #: factor of the penalty of a phoneme's own residual
     smoothness: float = 0.5  #: correlation of neighbouring taps
     shape: float = 30.0  #: of a component's shape
     slope: float = 30.0  #: of a component's slope per standard deviation of its duration
@@ -88,7 +96,8 @@ def kernel_prior(viseme_class: np.ndarray, taps: int, penalties: Penalties) -> n
 
 def code_of(phoneme: np.ndarray, side: Union[int, np.ndarray], neighbour: np.ndarray, phonemes: int) -> np.ndarray:
     """A phoneme with its previous (`side` 0) or next neighbour (1) as one number, (2 phoneme + side) P + neighbour."""
-    return (2 * phoneme + side) * phonemes + neighbour
+    result: np.ndarray = (2 * phoneme + side) * phonemes + neighbour
+    return result
 
 
 def pair_codes(material: Sequence[Recording], phonemes: int, silence: int) -> np.ndarray:
@@ -148,7 +157,7 @@ class _Block:
 
     material: Sequence[Recording]
     choice: Choice  #: of their occurrences
-    weight: np.ndarray  #: (T, 13) how much their values count
+    weight: np.ndarray  #: (T, 13) weights of their values
 
     @property
     def motion(self) -> np.ndarray:
@@ -159,7 +168,7 @@ class _Block:
 def _blocks(
     material: Sequence[Recording], choice: Choice, silence: int, penalties: Penalties, fps: int
 ) -> Iterator[_Block]:
-    """The material in blocks of `BLOCK` frames, so that what is computed for each frame is never there for all."""
+    """The material in blocks of `BLOCK` frames, which limits memory."""
     first = occurrence = frames = 0
     for last, item in enumerate(material, 1):
         frames += len(item.frames)
@@ -176,7 +185,7 @@ def _blocks(
 
 
 def columns_alike(material: Sequence[Recording]) -> List[np.ndarray]:
-    """The channels whose values count alike in every frame, in groups."""
+    """Groups of channels with equal weights in every frame."""
     alike = np.ones((CHANNELS, CHANNELS), dtype=bool)
     for item in material:
         if item.weight is not None:
@@ -185,8 +194,8 @@ def columns_alike(material: Sequence[Recording]) -> List[np.ndarray]:
 
 
 class _Sums:
-    """What a ridge regression needs of its frames, of weights that are the same for all channels it is for. Blocks are
-    added so that each sum goes over the frames in their order: its last bit does not depend on the blocks."""
+    """The sums of a ridge regression over frames, for channels with the same weights. Each sum goes over the frames in
+    their order, so that its last bit does not depend on the blocks."""
 
     def __init__(self, columns: int, channels: np.ndarray) -> None:
         self.channels = channels
@@ -198,7 +207,7 @@ class _Sums:
         """Adds frames: `design` (T, D), `motion` (T, C) of the channels, their weights (T,) and the numbers (T,) of
         their utterances, from 0 on."""
         weighted = (diags(weight) @ design).tocsr()
-        # What there is goes before the frames, as rows whose product is itself.
+        # The previous sum precedes the frames, as rows whose product is that sum.
         one = identity(design.shape[1], format="csr")
         before = vstack([one, weighted]).tocsr()
         self._normal = before.T @ vstack([self._normal.tocsr(), design]).tocsr()
@@ -234,16 +243,17 @@ class Kernels:
     pair_shape: np.ndarray  #: (R, K, 13) FAP
 
     def pairs_at(self, item: Recording, silence: int) -> np.ndarray:
-        """(T, 13) FAP: what the neighbours of each phoneme of an utterance add to its shape, frame by frame."""
+        """(T, 13) FAP: the corrections of each phoneme of an utterance by its neighbours, frame by frame."""
         around = neighbours(item.phoneme, silence)
         added = pairs_beside(self.pair_key, self.pair_shape, item.phoneme, *around)
         shares = knot_shares(item.length, self.pair_shape.shape[1])
-        return np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
+        result: np.ndarray = np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
+        return result
 
 
 @dataclass(frozen=True)
 class Regression:
-    """What is regressed: the columns of the design (D), kernels, shapes, slopes and pairs, and what they mean."""
+    """The regression: the columns of the design (D) - kernels, shapes, slopes and pairs - and their meaning."""
 
     tables: ShapeTables  #: their shapes and slopes are not used
     viseme_class: np.ndarray  #: (P,)
@@ -258,11 +268,12 @@ class Regression:
     @property
     def deviation(self) -> np.ndarray:
         """(N,) seconds: the standard deviation of each component's durations."""
-        return np.sqrt(self.tables.duration_variance)
+        result: np.ndarray = np.sqrt(self.tables.duration_variance)
+        return result
 
     @property
     def sizes(self) -> Tuple[int, int, int]:
-        """How many columns are taps of kernels, components (shapes, and as many slopes), and knots of pairs."""
+        """The numbers of columns for taps of kernels, components (shapes, and as many slopes), and knots of pairs."""
         return len(self.viseme_class) * len(self.lag), len(self.tables.shape), self.knots * len(self.pairs)
 
     def prior(self) -> np.ndarray:
@@ -278,7 +289,7 @@ class Regression:
         return prior
 
     def sums(self, material: Sequence[Recording], choice: Choice, base: np.ndarray) -> List[_Sums]:
-        """What the regression needs of `material`, whose motion is taken from `base` (13,) FAP; `choice` are its
+        """The sums of the regression over `material`, whose motion is relative to `base` (13,) FAP; `choice` are its
         occurrences' components."""
         taps, components, knots = self.sizes
         groups = [_Sums(taps + 2 * components + knots, channels) for channels in columns_alike(material)]
@@ -298,10 +309,11 @@ class Regression:
         for block in _blocks(material, choice, self.silence, self.penalties, self.fps):  # row by row, as a sum of all
             total = np.concatenate([total, block.motion * block.weight]).sum(axis=0, keepdims=True)
             weight = np.concatenate([weight, block.weight]).sum(axis=0, keepdims=True)
-        return total[0] / weight[0]
+        result: np.ndarray = total[0] / weight[0]
+        return result
 
     def kernels(self, solution: np.ndarray, base: np.ndarray) -> Kernels:
-        """What the coefficients (D, 13), of motion taken from `base` (13,) FAP, mean."""
+        """The result of coefficients (D, 13), for motion relative to `base` (13,) FAP."""
         phonemes = len(self.viseme_class)
         taps, components, _ = self.sizes
         shape, slope, pair = np.split(solution[taps:], [components, 2 * components])
@@ -341,7 +353,7 @@ def fit_kernels(asked: Regression, material: Sequence[Recording], choice: Choice
     solution = np.empty((len(prior), CHANNELS))
     for sums in asked.sums(material, choice, base):
         strength = max(float(item.weights[:, sums.channels[0]].max()) for item in material)
-        weighed = prior if strength == 1.0 else strength * prior  # which is as large as the matrix itself
+        weighed = prior if strength == 1.0 else strength * prior  # as large as the matrix itself
         normal, right = sums.equations(strength * asked.penalties.intercept, weighed)
         solution[:, sums.channels] = cho_solve(cho_factor(normal), right)
     return asked.kernels(solution, base)
@@ -363,7 +375,7 @@ def targets_without_floors(
 
 
 def substitute(fitted: Kernels, stand_in: Sequence[int]) -> Kernels:
-    """Gives phonemes that are substituted, (P,) by `stand_in`, all that the phoneme that stands in for them has."""
+    """Gives substituted phonemes all parameters of their substitutes `stand_in` (P,)."""
     owner = np.asarray(stand_in, dtype=np.int64)
     first = np.concatenate([[0], np.cumsum(fitted.tables.component_count)])
     own = np.concatenate([np.arange(first[other], first[other + 1]) for other in owner])

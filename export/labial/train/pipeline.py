@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from labial.amplitude import widened
-from labial.apex import told
+from labial.corpus.apex import told
 from labial.corpus.episode import Episode
-from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE
+from labial.corpus.phonesets import PHONE_SETS, PhoneSet
+from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError
-from labial.faps import CHANNELS, FAP_COLUMNS
-from labial.model import Model
-from labial.phonesets import PHONE_SETS, PhoneSet
-from labial.quantise import LIMITS
+from labial.files.faps import CHANNELS, FAP_COLUMNS
 from labial.reference.contact import FRAMES, raised
-from labial.reference.shape import choose
+from labial.reference.shape import ShapeTables, choose
+from labial.tables.amplitude import widened
+from labial.tables.model import Model
+from labial.tables.quantise import LIMITS
 from labial.train.adapt import about_talkers
 from labial.train.closures import FIRMNESS, floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
-from labial.train.expression import deviation_of, gains
+from labial.train.expression import CORNERS, SHARED_CORNERS, deviation_of, gains
 from labial.train.kernels import (
     PAIR_KNOTS,
     REACH,
@@ -34,22 +34,24 @@ from labial.train.kernels import (
     regression,
     targets_without_floors,
 )
+from labial.train.protrusion import with_protrusion
 from labial.train.recordings import Occurrences, Recording, occurrences, recordings, taught, with_pauses_cut
-from labial.train.shapes import Mixture, Plan, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
+from labial.train.shapes import Mixture, Plan, back_off, corpus_scale, fit_mixture, shape_tables
 from labial.train.states import Scales, StateTables, codebook_tables, decode, match_states
-from labial.train.talkers import check_variance, counted_once, fit_talkers, penalties_of
+from labial.train.talkers import check_variance, counted_once, fit_talkers, penalties_of, weights_of
+from labial.train.tracking import SCALES, ChannelTask, balance_states, chain, chain_tables
 from labial.train.workers import Workers
 
-#: Utterances whose paths are decoded at once.
+#: Utterances that are decoded at once.
 BATCH = 40
 
 
 @dataclass(frozen=True)
 class _Setting:
-    """What is asked for."""
+    """The options of a training."""
 
     phone_set: PhoneSet
-    extended: bool  #: what goes beyond the published method
+    extended: bool  #: whether to add to the published method
     fps: int
     codebook: int  #: Q
     components: int  #: C
@@ -60,7 +62,12 @@ class _Setting:
     normalised: bool  #: features are divided by their standard deviations before they are clustered
     penalties: Penalties
     scales: Scales
-    talker_variance: Optional[float]  #: of talkers as random effects; None: talkers are not told apart
+    talker_variance: Optional[float]  #: variance of talkers as random effects; None: talkers are not distinguished
+
+    @property
+    def tracking(self) -> bool:
+        """Whether states track the motion: in laughter, whose smile is slower than kernels reach."""
+        return self.extended and self.phone_set.kind == "laughter"
 
     @property
     def silence(self) -> int:
@@ -80,7 +87,7 @@ class _Setting:
 
 @dataclass(frozen=True)
 class _Shapes:
-    """All that makes targets, and the targets of the training material where states are matched to them."""
+    """The parameters of targets, and the targets of the training material if states are matched to them."""
 
     kernels: Kernels
     floor: np.ndarray  #: (P, 13) FAP
@@ -109,8 +116,8 @@ def _mixture(task: _MixtureTask) -> Mixture:
 def _mixture_tasks(
     items: Occurrences, plan: Plan, classes: int, components: int, seed: int
 ) -> List[_MixtureTask]:
-    """The mixtures to fit. Their samples count once each, whatever they weigh: what they say, and the regression that
-    follows does not, is how durations and neighbours go together, which weights did not better."""
+    """The mixtures to fit. All samples count alike, since weights did not improve the relation of durations and
+    neighbours, which only the mixtures determine."""
     vectors, learnt = items.vectors(), items.learnt
     scale = corpus_scale(vectors[learnt])
     tasks = []
@@ -124,7 +131,7 @@ def _mixture_tasks(
 
 
 def _tables(plan: Plan, fitted: List[Mixture], conditional: bool) -> ShapeTables:
-    """The tables of all phonemes from the mixtures of those that have one of their own."""
+    """The tables of all phonemes, from the fitted mixtures."""
     own = iter(fitted)
     mixtures: Dict[int, Mixture] = {p: next(own) for p, members in enumerate(plan.members) if members is not None}
     return shape_tables([mixtures[other] for other in plan.stand_in], conditional=conditional)
@@ -151,13 +158,14 @@ def _unit_starts(item: Recording, boundary: np.ndarray) -> np.ndarray:
     starts = np.cumsum(item.length) - item.length
     begins = boundary[item.phoneme].copy()
     begins[[0, -1]] = True
-    return starts[begins & (item.length > 0)]
+    result: np.ndarray = starts[begins & (item.length > 0)]
+    return result
 
 
 def _stretches(
     material: Sequence[Recording], starts: Sequence[np.ndarray], channel: int
 ) -> Tuple[List[np.ndarray], List[np.ndarray]]:
-    """The stretches of one channel's motion (T,) that are learnt from, and the frames at which units begin in each."""
+    """The stretches of one channel's motion (T,) for training, and the frames at which units begin in each."""
     motion, begins = [], []
     for item, start in zip(material, starts):
         learnt = np.concatenate([[False], item.weights[:, channel] > 0, [False]])
@@ -169,13 +177,15 @@ def _stretches(
 
 
 def _setting(
-    kind: str, method: str, fps: int, codebook: int, components: int, seed: int, look_ahead: float,
+    kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], seed: int, look_ahead: float,
     search_stride: int, divide: Division, normalise: bool, talker_variance: Optional[float] = None,
 ) -> _Setting:
     if kind not in KINDS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
     if method not in METHODS:
         raise LabialError(f"method is {method!r}, not one of {', '.join(METHODS)}")
+    usual = SIZES[kind] if method == "labial" else (CODEBOOK, COMPONENTS)
+    codebook, components = (own if given is None else given for given, own in zip((codebook, components), usual))
     for name, value, most in (
         ("fps", fps, 250),
         ("codebook", codebook, LIMITS["states"]),
@@ -191,27 +201,27 @@ def _setting(
     talker_variance = talker_variance if extended else None
     return _Setting(PHONE_SETS[kind], extended, fps, codebook, components, seed, look_ahead,
                     search_stride if extended else 1, divide, extended or normalise, penalties_of(talker_variance),
-                    Scales(), talker_variance)
+                    SCALES if kind == "laughter" else Scales(), talker_variance)
 
 
-def check_options(*, kind: str, method: str, fps: int, codebook: int, components: int, jobs: int,
+def check_options(*, kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], jobs: int,
                   engine: Optional[str] = None, look_ahead: float = LOOK_AHEAD, search_stride: int = SEARCH_STRIDE,
                   talker_variance: Optional[float] = None) -> None:
-    """Raises LabialError for what :func:`train` would refuse: to be called before a corpus is read."""
+    """Raises LabialError for options that :func:`train` would refuse; call it before reading a corpus."""
     _setting(kind, method, fps, codebook, components, 0, look_ahead, search_stride, lbg, False, talker_variance)
     check_jobs(jobs)
     Workers(jobs, False, engine)
 
 
 def check_jobs(jobs: int) -> None:
-    """Raises LabialError unless there can be so many processes."""
+    """Raises LabialError for an invalid number of processes."""
     if not 1 <= jobs <= 1024:
         raise LabialError(f"jobs is {jobs}, not within 1 .. 1024")
 
 
 def _own(penalties: Penalties, kind: str) -> Penalties:
-    """The penalties of a kind. Where the mouth rests in an utterance is the talker's in speech; in laughter it is how
-    hard somebody laughs, which the phonemes' grades tell, and no intercept must take that from them."""
+    """The penalties of a kind. In speech the rest position in an utterance depends on the talker. In laughter it
+    depends on the intensity, which the phonemes' grades express, so that intercepts must not absorb it."""
     return penalties if kind == "speech" else replace(penalties, intercept=np.inf)
 
 
@@ -223,7 +233,7 @@ def _check_taught(material: Sequence[Recording]) -> None:
 
 
 def _extent(material: Sequence[Recording], silence: int) -> Dict[str, object]:
-    """How far the channels reach, from their 1st to their 99th percentile, and their mean pose outside silence."""
+    """The channels' range, from their 1st to their 99th percentile, and their mean pose outside silence."""
     reach = [np.ptp(np.percentile(taught(material, channel), [1, 99])) for channel in range(CHANNELS)]
     sounding = [item.phoneme_at() != silence for item in material]
     if not any(of.any() for of in sounding):
@@ -243,19 +253,22 @@ def _deviation(material: Sequence[Recording], silence: int) -> np.ndarray:
     return deviation_of(np.concatenate([item.frames for item in material]), learnt)
 
 
-def _material(corpus: Sequence[Episode], setting: _Setting) -> List[Recording]:
+def _material(corpus: Sequence[Episode], setting: _Setting) -> Tuple[List[Recording], Dict[str, float]]:
+    """The recordings, and the weights of talkers if they are random effects."""
     material = recordings(corpus, setting.phone_set, setting.fps)
     if setting.extended:
         ahead = max(int(lags(setting.fps, setting.look_ahead)[-1]), FRAMES)
         material = [with_pauses_cut(item, setting.silence, ahead, setting.fps) for item in material]
+    counts = weights_of(material)
     if setting.talker_variance is not None:
         material = [counted_once(item) for item in material]
     _check_taught(material)
-    return material
+    return material, counts
 
 
 def _fit_shapes(
-    setting: _Setting, material: Sequence[Recording], items: Occurrences, plan: Plan, workers: Workers
+    setting: _Setting, material: Sequence[Recording], talkers: Dict[str, float], items: Occurrences, plan: Plan,
+    workers: Workers,
 ) -> _Shapes:
     """Mixtures, and beyond the published method kernels, pairs, floors and contact."""
     phonemes, classes = len(setting.phone_set.phonemes), len(setting.phone_set.classes)
@@ -275,7 +288,7 @@ def _fit_shapes(
         kernels = fit_kernels(asked, material, choice)
         own = [kernels] * len(material)
     else:
-        kernels, of = fit_talkers(asked, material, choice, setting.talker_variance)
+        kernels, of = fit_talkers(asked, material, choice, setting.talker_variance, talkers)
         own = [of[item.talker] for item in material]
     moving = targets_without_floors(choice, own, material, setting.silence)
     targets = [raised(target, item.phoneme_at(), item.length, item.rest, setting.silence, floor, contact)[0]
@@ -288,10 +301,17 @@ def _fit_states(
 ) -> StateTables:
     """Codebooks, and beyond the published method states matched to what is decoded from the targets."""
     starts = [_unit_starts(item, setting.boundary) for item in material]
-    motion = [(*_stretches(material, starts, c), setting.codebook, setting.stride, setting.divide, setting.normalised)
-              for c in range(CHANNELS)]
-    states = codebook_tables(workers.run("codebooks", _channel, motion), setting.stride)
     targets = shaped.targets
+    if targets is not None and setting.tracking:
+        aimed = [replace(item, frames=target) for item, target in zip(material, targets)]
+        chains = [ChannelTask(motion, _stretches(aimed, starts, c)[0], begins, setting.codebook, setting.stride,
+                              setting.divide)
+                  for c in range(CHANNELS) for motion, begins in [_stretches(material, starts, c)]]
+        states = chain_tables(workers.run("codebooks", chain, chains), setting.stride)
+    else:
+        motion = [(*_stretches(material, starts, c), setting.codebook, setting.stride, setting.divide,
+                   setting.normalised) for c in range(CHANNELS)]
+        states = codebook_tables(workers.run("codebooks", _channel, motion), setting.stride)
     if targets is None:
         return states
     ends = [_unit_ends(item, setting.boundary) for item in material]
@@ -302,13 +322,14 @@ def _fit_states(
     weights = [np.broadcast_to(1.0 * of[:, None], item.frames.shape) if item.weight is None  # without memory for each
                else item.weight * of[:, None] for of, item in zip(counts, material)]
     paths = [path for batch in decoded for path in batch]
-    return match_states(states, paths, targets, [item.frames for item in material], weights, setting.scales)
+    match = balance_states if setting.tracking else match_states
+    return match(states, paths, targets, [item.frames for item in material], weights, setting.scales)
 
 
 def _training(
     setting: _Setting, material: Sequence[Recording], counts: np.ndarray, plan: Plan
 ) -> Dict[str, object]:
-    """What the model says of its training."""
+    """The model's record of its training."""
     training: Dict[str, object] = {
         **_extent(material, setting.silence),
         "codebook": setting.codebook,
@@ -377,8 +398,8 @@ def train(
     kind: str,
     method: str,
     fps: int = FPS,
-    codebook: int = CODEBOOK,
-    components: int = COMPONENTS,
+    codebook: Optional[int] = None,
+    components: Optional[int] = None,
     seed: int = 0,
     jobs: int = 2,
     engine: Optional[str] = None,
@@ -393,40 +414,42 @@ def train(
     """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
 
     `method` is "paper", the published one, or "labial" with all additions. `codebook` is Q, the states of each channel,
-    `components` C of each phoneme's mixture. `look_ahead` is how far the temporal kernels reach into what follows,
-    seconds; less makes a stream's frames earlier. `search_stride` is how many frames share a state of the decoded path.
-    The published method has neither; its features are clustered as they are, unless `normalise` divides each by its
-    standard deviation, as Labial's always are. `talker_variance` makes talkers random effects
-    (:mod:`labial.train.talkers`), in place of their corpora's weights. `divide` makes the codebooks' cells; with more
-    than one job it must be a module's own function. `attribution` is kept in the model: redistribution requires it. The
-    same arguments give the same model, whatever `jobs`, the number of processes, and `engine` are
-    (:class:`labial.train.workers.Workers`). The model keeps what each phoneme backed off to (:func:`backed_off`), the
-    corpus's counts and all options.
+    `components` C of each phoneme's mixture; None is what the method takes for the kind. `look_ahead` is how far the
+    temporal kernels reach into what follows, seconds; less makes a stream's frames earlier. `search_stride` is how many
+    frames share a state of the decoded path. The published method has neither; its features are clustered as they are,
+    unless `normalise` divides each by its standard deviation, as Labial's always are. `talker_variance` makes talkers
+    random effects (:mod:`labial.train.talkers`), in place of their corpora's weights. `divide` computes the codebooks'
+    cells; with more than one job it must be a module-level function. `attribution` is stored in the model:
+    redistribution requires it. The same arguments give the same model, whatever `jobs`, the number of processes, and
+    `engine` are (:class:`labial.train.workers.Workers`). The model records the substitutes of phonemes
+    (:func:`backed_off`), the corpus's counts and all options.
     """
     setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide, normalise,
                        talker_variance)
     check_jobs(jobs)
     if not corpus:
         raise LabialError("the corpus is empty")
-    material = _material(corpus, setting)
+    material, talkers = _material(corpus, setting)
     items = occurrences(material, setting.phone_set)
     counts = np.bincount(items.phoneme[items.learnt], minlength=len(setting.phone_set.phonemes))
     plan = back_off(counts, setting.phone_set)
     with Workers(jobs, progress, engine) as workers, threadpool_limits(1):
-        shaped = _fit_shapes(setting, material, items, plan, workers)
+        shaped = _fit_shapes(setting, material, talkers, items, plan, workers)
         states = _fit_states(setting, material, shaped, workers)
         model = _model(setting, shaped, states, plan, attribution, _training(setting, material, counts, plan))
         if not setting.extended:
             return model
-        gain, middle = gains(model, material, workers)
+        corners = CORNERS if setting.talker_variance is None else SHARED_CORNERS
+        gain, middle = gains(model, material, workers, corners)
         if setting.talker_variance is not None:
-            talkers = about_talkers(setting.talker_variance, _deviation(material, setting.silence), gain, middle)
-            model = replace(model, training={**model.training, "talkers": talkers})
-        return widened(model, gain, middle)
+            about = about_talkers(setting.talker_variance, _deviation(material, setting.silence), gain, middle)
+            model = replace(model, training={**model.training, "talkers": about})
+        model = widened(model, gain, middle)
+        return model if setting.talker_variance is None else with_protrusion(model, material, workers)
 
 
 def without_apex(corpus: Sequence[Episode]) -> List[str]:
-    """A line where the corpus does not tell the apex of every phoneme, which is then taken to be its middle."""
+    """A message if the apex of some phonemes is unknown; training then uses their middle."""
     segments = [segment for episode in corpus for segment in episode.segments]
     unknown = len(segments) - told(segments)
     if not unknown:
@@ -435,8 +458,8 @@ def without_apex(corpus: Sequence[Episode]) -> List[str]:
 
 
 def backed_off(model: Model) -> List[str]:
-    """A line for each phoneme that had too few samples: how many, and what it uses instead."""
-    training = model.training
+    """A line for each phoneme with too few samples: their number, and its substitute."""
+    training: Dict[str, Any] = model.training
     counts = training["occurrences"]
     pooled = [f"{label}: {counts[label]} samples, uses those of its viseme class {name}"
               for label, name in training["pooled"].items()]

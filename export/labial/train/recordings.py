@@ -9,9 +9,9 @@ import numpy as np
 
 from labial.corpus import resample
 from labial.corpus.episode import Episode, Source
+from labial.corpus.phonesets import PhoneSet
 from labial.errors import LabialError
-from labial.faps import CHANNELS
-from labial.phonesets import PhoneSet
+from labial.files.faps import CHANNELS
 from labial.reference.contact import REST
 from labial.reference.shape import neighbours
 from labial.reference.units import pause_cut
@@ -28,18 +28,18 @@ class Recording:
     length: np.ndarray  #: (S,) int64, frames of each phoneme; sums to T
     apex: np.ndarray  #: (S,) int64, the frame of the audio envelope's maximum, or of the middle
     frames: np.ndarray  #: (T, 13) human motion, FAP
-    weight: Optional[np.ndarray] = None  #: (T, 13) how much each value counts, 0 for not at all; None: 1 everywhere
-    resting: Optional[np.ndarray] = None  #: (T,) int64, how far the mouth rests in pauses; None: not at all
+    weight: Optional[np.ndarray] = None  #: (T, 13) weight of each value; None: 1 everywhere
+    resting: Optional[np.ndarray] = None  #: (T,) int64, progress to rest in pauses; None: 0 everywhere
     talker: str = ""
 
     @property
     def rest(self) -> np.ndarray:
-        """(T,) int64: how far the mouth has come to rest in pauses that were cut, of :data:`REST`."""
+        """(T,) int64: progress to rest in divided pauses, of :data:`REST`."""
         return np.zeros(len(self.frames), dtype=np.int64) if self.resting is None else self.resting
 
     @property
     def weights(self) -> np.ndarray:
-        """(T, 13): how much each value counts."""
+        """(T, 13): the weight of each value."""
         return np.ones(self.frames.shape) if self.weight is None else self.weight
 
     def learnt(self) -> np.ndarray:
@@ -58,7 +58,7 @@ def taught(material: Sequence[Recording], channel: int) -> np.ndarray:
 
 
 def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Recording]:
-    """Brings every episode to `fps` frames per second and its labels to numbers."""
+    """Resamples every episode to `fps` frames per second and converts its labels to numbers."""
     number = {label: index for index, label in enumerate(phone_set.phonemes)}
     silence = number[phone_set.silence]
     result = []
@@ -70,7 +70,7 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
         unknown = sorted(set(labels) - set(number))
         if unknown:
             raise LabialError(f"{episode.name}: labels {', '.join(unknown)} are not in the {phone_set.kind} phone set")
-        seen = np.flatnonzero(resampled.length > 0)  # the run-time skips phonemes of no frame
+        seen = np.flatnonzero(resampled.length > 0)  # the run-time skips phonemes without frames
         phoneme = np.array([number[labels[index]] for index in seen], dtype=np.int64)
         length = resampled.length[seen]
         result.append(
@@ -91,9 +91,9 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
 
 
 def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Recording:
-    """The recording with its pauses cut as the run-time does with kernels that reach `ahead` frames into what follows.
+    """The recording with its pauses divided like in the run-time with kernels that look `ahead` frames ahead.
 
-    The apex stays with the part that it lies in; that of the other part is its middle.
+    The apex stays with its part; that of the other part is its middle.
     """
     rows: List[Tuple[int, float, int, int]] = []
     resting = np.zeros(len(item.frames), dtype=np.int64)
@@ -120,7 +120,7 @@ def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Reco
 
 
 def _weights(source: Source, silent: np.ndarray) -> Optional[np.ndarray]:
-    """(T, 13) how much the values of an episode count, of which `silent` (T,) are silence; None where all count 1."""
+    """(T, 13) weights of the values of an episode, of which `silent` (T,) are silence; None if all are 1."""
     if source == replace(source, weight=1.0, left_out=frozenset(), silences=True):
         return None
     weight = np.full((len(silent), CHANNELS), source.weight)

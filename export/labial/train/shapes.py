@@ -18,15 +18,15 @@ import numpy as np
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.mixture import GaussianMixture
 
+from labial.corpus.phonesets import PhoneSet, substitute_for
 from labial.errors import LabialError
-from labial.faps import CHANNELS
-from labial.phonesets import PhoneSet, substitute_for
+from labial.files.faps import CHANNELS
 from labial.reference.shape import ShapeTables
 
-#: A component is worth having for this many samples. A full covariance of 14 dimensions takes about as many.
+#: Samples per component: a full covariance of 14 dimensions needs about as many.
 SAMPLES_PER_COMPONENT = 15
 
-#: Fewer samples than this do not make a mixture of a phoneme's own.
+#: Least samples of a phoneme's own mixture.
 MINIMUM_SAMPLES = 10
 
 #: Added to the diagonal of every covariance of scaled vectors, whose variances over the corpus are 1.
@@ -48,7 +48,7 @@ class Mixture:
 
 
 def component_limit(samples: int, components: int) -> int:
-    """How many components `samples` vectors can carry."""
+    """The number of components for `samples` vectors."""
     return max(1, min(components, samples // SAMPLES_PER_COMPONENT))
 
 
@@ -78,12 +78,12 @@ def fit_mixture(vectors: np.ndarray, scale: np.ndarray, components: int, seed: i
 
 @dataclass(frozen=True)
 class Plan:
-    """Whose samples each phoneme's mixture is made of."""
+    """The sources of each phoneme's mixture."""
 
     members: Tuple[Optional[Tuple[int, ...]], ...]  #: per phoneme the phonemes whose samples it uses; None: substituted
     stand_in: Tuple[int, ...]  #: per phoneme the phoneme whose mixture it uses; itself unless substituted
     pooled: Dict[str, str]  #: phoneme with too few samples -> viseme class whose samples it uses
-    substitutes: Dict[str, str]  #: phoneme whose class has too few samples -> phoneme that stands in
+    substitutes: Dict[str, str]  #: phoneme whose class has too few samples -> its substitute
 
 
 def back_off(counts: np.ndarray, phone_set: PhoneSet) -> Plan:

@@ -1,10 +1,10 @@
-"""Matched states (docs/method.md, Matched states): what a state of the decoded path says about human motion.
+"""Matched states (docs/method.md, Matched states): statistics of human motion for the states of decoded paths.
 
 The codebook's variances describe human motion inside a cell. But the run-time decodes a state path for a target, which
-rests and jumps where the mouth glides. So the training set is decoded from its own targets, and each state's three
-means and variances are estimated from the human frames that were decoded as this state. The same frames show how far
-human motion strays from the target: the inverse of that variance is the anchor. Transitions are counted on the decoded
-paths, too: smooth targets use far fewer of them than people do, so that the exporter can keep few.
+stands still and jumps where the mouth glides. So the training set is decoded from its own targets, and each state's
+three means and variances are estimated from the human frames that were decoded as this state. The same frames give the
+variance of human motion about the target; its inverse is the anchor. Transitions are counted on the decoded paths, too:
+smooth targets use far fewer of them than people do, so that the exporter can keep few.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 from labial.reference import viterbi
 from labial.train.codebook import VARIANCE_FLOOR, Codebook, features, transitions
 
@@ -29,18 +29,19 @@ DYNAMIC_RANGE = 2000.0
 
 @dataclass(frozen=True)
 class Scales:
-    """What the inverse variances are multiplied by to become precisions. Static, delta and delta-delta features repeat
-    each other and the anchor, so that their evidence must not be counted in full; chosen on held-out episodes."""
+    """What the inverse variances are multiplied by to become precisions. Static, delta and delta-delta features are
+    correlated with each other and with the anchor, so that their precisions must be reduced; chosen on held-out
+    episodes, the anchor's for motion as even as people's."""
 
     static: float = 0.2
     delta: float = 0.01
     acceleration: float = 0.04
-    anchor: float = 1.0
+    anchor: float = 0.75
 
 
 @dataclass(frozen=True)
 class StateTables:
-    """The tables of all channels for decoding and for equation 3; see labial.model."""
+    """The tables of all channels for decoding and for equation 3; see labial.tables.model."""
 
     emission_mean: np.ndarray  #: (13, Q) FAP
     emission_variance: np.ndarray  #: (13, Q) FAP^2
@@ -53,7 +54,7 @@ class StateTables:
 
 
 def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
-    """The paper's tables: every state as its codebook cell is, no anchors."""
+    """The paper's tables: the codebook's cells, without anchors."""
     mean = np.stack([book.mean for book in codebooks])
     variance = np.stack([book.variance for book in codebooks])
     return StateTables(
@@ -69,13 +70,13 @@ def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
 
 
 def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: StateTables) -> List[np.ndarray]:
-    """(T, 13) int64 each: the state paths of utterances as the run-time decides on them, for targets (T, 13) and the
-    frames (T,) that end units."""
+    """(T, 13) int64 each: the state paths of utterances as in the run-time, for targets (T, 13) and the frames (T,)
+    that end units."""
     hidden = tables.emission_mean, tables.emission_variance, tables.log_transition, tables.log_initial
     return viterbi.decode(viterbi.normal_chains(*hidden), targets, ends, tables.stride)
 
 
-def _state_moments(
+def state_moments(
     values: np.ndarray, weight: np.ndarray, path: np.ndarray, prior_mean: np.ndarray
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Means and variances (Q,) of the values (n,), counting by weight (n,), under each state of the path (n,), with
@@ -89,6 +90,38 @@ def _state_moments(
     return mean, (squares + PRIOR_FRAMES * pooled) / (count + PRIOR_FRAMES)
 
 
+@dataclass(frozen=True)
+class DecodedChannel:
+    """The frames of all utterances in one channel, and what they say of each state's three features."""
+
+    states: np.ndarray  #: (n,) int64, decoded
+    target: np.ndarray  #: (n,) FAP
+    motion: np.ndarray  #: (n,) FAP, human
+    weight: np.ndarray  #: (n,)
+    mean: np.ndarray  #: (Q, 3)
+    variance: np.ndarray  #: (Q, 3)
+    floor: np.ndarray  #: (3,) the least variance
+
+
+def decoded_channel(
+    tables: StateTables,
+    channel: int,
+    paths: Sequence[np.ndarray],
+    targets: Sequence[np.ndarray],
+    human: Sequence[np.ndarray],
+    weights: Sequence[np.ndarray],
+) -> DecodedChannel:
+    """One channel of decoded paths, targets, human motion and its weights (T, 13); copies are made of this one only."""
+    states, target, motion, weight = (np.concatenate([item[:, channel] for item in items])
+                                      for items in (paths, targets, human, weights))
+    rows = np.concatenate([features(item[:, channel]) for item in human])
+    floor = np.maximum(VARIANCE_FLOOR * rows[weight > 0].var(axis=0), 1e-6)
+    moments = [state_moments(rows[:, feature], weight, states, tables.state_mean[channel, :, feature])
+               for feature in range(3)]
+    mean, variance = (np.stack(items, axis=1) for items in zip(*moments))
+    return DecodedChannel(states, target, motion, weight, mean, variance, floor)
+
+
 def match_states(
     tables: StateTables,
     paths: Sequence[np.ndarray],
@@ -98,23 +131,16 @@ def match_states(
     scales: Scales,
 ) -> StateTables:
     """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, 13) of targets and
-    human motion (T, 13) in FAP, whose values count by `weights` (T, 13). What the search sees of a target stays as it
-    is."""
+    human motion (T, 13) in FAP, whose values count by `weights` (T, 13). The emissions of the search are unchanged."""
     size = tables.emission_mean.shape[1]
     mean = np.empty((CHANNELS, size, 3))
     variance = np.empty((CHANNELS, size, 3))
     anchor = np.empty((CHANNELS, size))
-    for channel in range(CHANNELS):  # of one at a time there are copies
-        states, target, motion, weight = (np.concatenate([item[:, channel] for item in items])
-                                          for items in (paths, targets, human, weights))
-        rows = np.concatenate([features(item[:, channel]) for item in human])
-        floor = np.maximum(VARIANCE_FLOOR * rows[weight > 0].var(axis=0), 1e-6)
-        for feature in range(3):
-            prior = tables.state_mean[channel, :, feature]
-            mean[channel, :, feature], spread = _state_moments(rows[:, feature], weight, states, prior)
-            variance[channel, :, feature] = np.maximum(spread, floor[feature])
-        _, residual = _state_moments(motion - target, weight, states, np.zeros(size))
-        anchor[channel] = scales.anchor / np.maximum(residual, floor[0])
+    for channel in range(CHANNELS):
+        own = decoded_channel(tables, channel, paths, targets, human, weights)
+        mean[channel], variance[channel] = own.mean, np.maximum(own.variance, own.floor)
+        _, residual = state_moments(own.motion - own.target, own.weight, own.states, np.zeros(size))
+        anchor[channel] = scales.anchor / np.maximum(residual, own.floor[0])
     scale = np.array([scales.static, scales.delta, scales.acceleration])
     precision, anchor = limit_range(scale / variance, anchor)
     return StateTables(

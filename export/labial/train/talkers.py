@@ -1,29 +1,30 @@
-"""Talkers as random effects: what they share, and how each of them strays from it (docs/method.md, Several talkers).
+"""Talkers as random effects: what they share, and the deviation of each (docs/method.md, Talkers).
 
 The coefficients of talker t's regression, kernels, shapes, slopes and pairs, are b + u_t. With P the inverse prior
 covariance that one talker alone would have, and v the variance of talkers,
 
     b ~ N(0, C),    u_t ~ N(0, V),    C = (SHARED P)^-1,    V = v C
 
-and what all talkers' normal equations A_t, B_t say of b, with u_t marginalised, is
+and all talkers' normal equations A_t, B_t, with u_t marginalised, give
 
     (sum over t of (I + A_t V)^-1 A_t  +  C^-1) b = sum over t of (I + A_t V)^-1 B_t
     u_t = V (I + A_t V)^-1 (B_t - A_t b)
 
 However much there is of a talker, (I + A_t V)^-1 A_t stays below V^-1: forty minutes of one say no more about people
-than one person can. A channel that one talker alone teaches is fitted as without talkers, with prior P.
+than one person can. Both sums count a talker by the weight of his corpus. A channel that one talker alone teaches is
+fitted as without talkers, with prior P.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Dict, Optional, Sequence, Tuple
+from typing import Dict, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from labial.errors import LabialError
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 from labial.reference.shape import Choice
 from labial.train.kernels import Kernels, Penalties, Regression, columns_alike
 from labial.train.recordings import Recording
@@ -32,7 +33,7 @@ from labial.train.recordings import Recording
 #: out, where 1 was the best v.
 SHARED = 3.0
 
-#: The largest v: beyond it nothing is shared.
+#: The largest v: beyond it talkers share nothing.
 LARGEST_VARIANCE = 1000.0
 
 #: The penalty of slopes: how one talker's slow phonemes differ from his fast ones does not carry over to others.
@@ -40,7 +41,7 @@ SLOPE = 150.0
 
 
 def check_variance(variance: Optional[float]) -> None:
-    """Raises LabialError unless talkers may have this variance."""
+    """Raises LabialError for an invalid variance of talkers."""
     if variance is not None and not 0.0 < variance <= LARGEST_VARIANCE:
         raise LabialError(f"talker variance is {variance:g}, not above 0 and at most {LARGEST_VARIANCE:g}")
 
@@ -51,7 +52,7 @@ def penalties_of(variance: Optional[float]) -> Penalties:
 
 
 def counted_once(item: Recording) -> Recording:
-    """The recording with every value that is learnt from counting alike, whatever its corpus weighs."""
+    """The recording with equal weights of all values for training, regardless of its corpus's weight."""
     return item if item.weight is None else replace(item, weight=(item.weight > 0).astype(np.float64))
 
 
@@ -62,9 +63,9 @@ def covariance_of(prior: np.ndarray, variance: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Equations:
-    """Normal equations of some channels, without the columns (D,) of which the talker has nothing."""
+    """Normal equations of some channels, without the columns (D,) that the talker does not use."""
 
-    columns: np.ndarray  #: (K,) those that there is something of
+    columns: np.ndarray  #: (K,) the used columns
     normal: np.ndarray  #: (K, K)
     right: np.ndarray  #: (K, C)
 
@@ -110,17 +111,27 @@ def deviation_of(
 
 
 def _rows(material: Sequence[Recording], choice: Choice, chosen: Sequence[int]) -> Choice:
-    """What `choice` says of the occurrences of the chosen recordings."""
+    """The part of `choice` for the occurrences of the chosen recordings."""
     ends = np.cumsum([len(item.phoneme) for item in material])
     rows = np.concatenate([np.arange(ends[i] - len(material[i].phoneme), ends[i]) for i in chosen])
     return Choice(choice.component[rows], choice.share[rows], choice.offset[rows])
 
 
+def weights_of(material: Sequence[Recording]) -> Dict[str, float]:
+    """The weight of each talker: the largest weight of his recordings, which is their corpora's."""
+    counts: Dict[str, float] = {}
+    for item in material:
+        most = 1.0 if item.weight is None else float(item.weight.max(initial=0.0))
+        counts[item.talker] = max(counts.get(item.talker, 0.0), most)
+    return counts
+
+
 def fit_talkers(
-    asked: Regression, material: Sequence[Recording], choice: Choice, variance: float
+    asked: Regression, material: Sequence[Recording], choice: Choice, variance: float,
+    counts: Optional[Mapping[str, float]] = None,
 ) -> Tuple[Kernels, Dict[str, Kernels]]:
     """What all talkers of `material` share, and each talker's own, by name; `choice` are the components of the
-    material's occurrences, `variance` is v."""
+    material's occurrences, `variance` is v, `counts` says how much each talker counts for what they share."""
     base, prior = asked.base(material, choice), asked.prior()
     covariance = covariance_of(prior, variance)
     each: Dict[str, Dict[int, Tuple[Equations, int]]] = {}
@@ -138,8 +149,9 @@ def fit_talkers(
             equations = each[talker][first][0]
             places = [each[talker][int(channel)][1] for channel in channels]
             a, b = (equations.normal, equations.right) if alone else equations.marginal(covariance)
-            normal[np.ix_(equations.columns, equations.columns)] += a
-            right[equations.columns] += b[:, places]
+            count = 1.0 if alone or counts is None else counts[talker]
+            normal[np.ix_(equations.columns, equations.columns)] += count * a
+            right[equations.columns] += count * b[:, places]
         shared[:, channels] = cho_solve(cho_factor(normal), right)
         for talker in [] if alone else teachers:
             own[talker][:, channels] = deviation_of(each[talker], channels, covariance, shared)

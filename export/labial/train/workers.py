@@ -1,4 +1,4 @@
-"""Work on several processor cores, or on a cluster's machines, with results that do not depend on how many."""
+"""Parallel work on processor cores or on a cluster, with results that do not depend on their number."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from labial.errors import LabialError, needs
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
-#: Seconds that a cluster has to answer.
+#: Seconds to wait for a cluster's answer.
 _PATIENCE = 20
 
 
 def _alone(function: Callable[[Task], Result], place: int, task: Task) -> Tuple[int, Result]:
-    """Runs the task, which is the one at `place`, with numerical libraries held to one thread: sums in parallel depend
-    on the number of cores. They stay so in this process, for a cluster's may run other tasks in other threads."""
+    """Runs the task with index `place`, with numerical libraries limited to one thread, since parallel sums depend on
+    the number of cores. The limit stays in this process, which may run other tasks in other threads."""
     threadpool_limits(1)
     return place, function(task)
 
@@ -47,24 +47,24 @@ class Workers:
         self._open = ExitStack()
 
     def __enter__(self) -> Workers:
-        """The workers themselves. Raises LabialError when there is no cluster or its packages are others."""
+        """The workers themselves. Raises LabialError if there is no cluster or its package versions differ."""
         if self._address:
             self._client = self._open.enter_context(_client(self._address))
         elif self._jobs > 1:
-            # Arrays are copied: as files, joblib's way for large ones, they could not be written to.
+            # Copies arrays: joblib would map large ones as read-only files.
             self._open.enter_context(parallel_config("loky", n_jobs=self._jobs, max_nbytes=None))
         return self
 
     def __exit__(self, kind: Optional[Type[BaseException]], *_: Optional[object]) -> None:
-        """Leaves the cluster or the processes, which end at once, whatever they do, where work was broken off."""
+        """Leaves the cluster or ends the processes, at once if the work was interrupted."""
         if kind is not None and not self._address and self._jobs > 1:
             get_reusable_executor(reuse=True).shutdown(wait=True, kill_workers=True)
         self._open.close()
 
     def run(self, what: str, function: Callable[[Task], Result], tasks: Sequence[Task],
             done: Optional[Callable[[Result], None]] = None) -> List[Result]:
-        """Results of `function`, which must be a module's own, for all tasks, in their order. `done` is told each as
-        soon as it is there. Raises LabialError when a process is killed or the cluster fails."""
+        """Results of `function`, a module-level function, for all tasks, in their order. `done` receives each result as
+        soon as it is ready. Raises LabialError if a process is killed or the cluster fails."""
         if self._address:
             with self._failing(what):
                 return self._listed(what, self._of_cluster(function, tasks), len(tasks), done)
@@ -86,7 +86,7 @@ class Workers:
         return [found[place] for place in range(count)]
 
     def _of_cluster(self, function: Callable[[Task], Result], tasks: Sequence[Task]) -> Iterator[Tuple[int, Result]]:
-        """Without joblib, whose Dask backend waits for ever when the worker of a task dies."""
+        """Without joblib, whose Dask backend waits forever if the worker of a task dies."""
         from distributed import as_completed
 
         with warnings.catch_warnings():
@@ -98,7 +98,7 @@ class Workers:
 
     @contextmanager
     def _failing(self, what: str) -> Iterator[None]:
-        """Says in a sentence what happens to the workers, not to their work."""
+        """Reports failures of the workers, not of their work, in one line."""
         try:
             yield
         except TerminatedWorkerError as error:
@@ -120,7 +120,7 @@ class Workers:
                            + (f", {text}" if text else ""))
 
 
-def _client(address: str):  # type: ignore[no-untyped-def]
+def _client(address: str) -> Any:
     """A client of the Dask scheduler at `address`, as a context."""
     with needs("a Dask cluster", "cluster"):
         from distributed import Client
@@ -143,7 +143,7 @@ def _client(address: str):  # type: ignore[no-untyped-def]
 
 
 def versions() -> Dict[str, str]:
-    """Versions of what results depend on."""
+    """Versions of the packages that results depend on."""
     import numpy
     import scipy
     import sklearn

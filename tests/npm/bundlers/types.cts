@@ -4,7 +4,7 @@ import laughter = require("labial-laughter");
 
 async function word(): Promise<number> {
     const mouth = await labial.Labial.load({ laughter });
-    const track = mouth.render(labial.timings.fromLab("0 1 AA"), { output: "arkit" });
+    const track = mouth.render(mouth.read("0 1 AA"), { output: "arkit" });
     // @ts-expect-error no weight has this name
     track.at(0).jawOppen;
     return track.at(0).jawOpen;

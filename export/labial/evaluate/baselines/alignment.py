@@ -1,4 +1,4 @@
-"""Which state of its phoneme each frame belongs to, for HMM synthesis."""
+"""The states of frames within their phonemes, for HMM synthesis."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ def even(frames: int, states: int) -> np.ndarray:
 
 
 def deal(frames: int, mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """(frames,) int64: a segment's frames dealt out to states as mean + rho * variance, (S,) frames each.
+    """(frames,) int64: a segment's frames distributed to states as mean + rho * variance, (S,) frames each.
 
-    rho makes the states fill the segment; a state that would get less than nothing gets none. Where the segment is
-    shorter than its states are many, it is divided evenly, as such segments are in training.
+    rho makes the states fill the segment; a negative number of frames becomes 0. A segment with fewer frames than
+    states is divided evenly, as in training.
     """
     if frames < len(mean):
         return even(frames, len(mean))
@@ -31,7 +31,8 @@ def log_likelihoods(values: np.ndarray, row: np.ndarray, mean: np.ndarray, varia
     result = -0.5 * np.log(variance).sum(axis=2)[row]
     for k in range(values.shape[1]):
         result -= 0.5 * (values[:, k, None] - mean[row, :, k]) ** 2 / variance[row, :, k]
-    return result
+    found: np.ndarray = result
+    return found
 
 
 def align(

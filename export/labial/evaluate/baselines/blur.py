@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -25,7 +25,7 @@ class Blur:
     fps: int
 
     def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13); the first and the last shape go on beyond the ends."""
+        """(T, 13); the first and the last shape extend beyond the ends."""
         return _smooth(self.steps.predict(timeline), self.width * self.fps)
 
 
@@ -36,7 +36,7 @@ def _smooth(frames: np.ndarray, deviation: float) -> np.ndarray:
 def fit(training: Training) -> Blur:
     """Chooses the width on the inner validation part, with shapes from the rest."""
 
-    def prepare(part: Training) -> Callable:
+    def prepare(part: Training) -> Callable[..., Any]:
         rough = steps.fit(part)
         return lambda width: Blur(rough, width, training.fps).predict
 

@@ -13,16 +13,16 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Callable, List, Sequence, Tuple
+from typing import Any, Callable, List, Sequence, Tuple
 
 import numpy as np
 from scipy.optimize import minimize
 
 from labial.evaluate.material import Timeline, Utterance
 from labial.evaluate.training import Training, choose
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 
-#: Segments to each side of a frame's own that are heard.
+#: Segments to each side of a frame's own that have an effect.
 NEIGHBOURS = 4
 
 #: Exponents p, and priors in frames, that are tried.
@@ -69,7 +69,8 @@ class Parameters:
     rate: np.ndarray
 
 
-def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np.ndarray) -> Tuple:
+def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np.ndarray
+            ) -> Tuple[np.ndarray, ...]:
     """Shares of the segments (T, W), that sum to 1, and theta |distance|^p, (T, W)."""
     decay = np.exp(parameters.rate.ravel()[rate_at]) * power
     log = np.where(around.present, parameters.strength[around.phoneme] - decay, -np.inf)
@@ -78,7 +79,8 @@ def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np
 
 
 def _rate_index(around: Near, viseme_class: np.ndarray) -> np.ndarray:
-    return 2 * viseme_class[around.phoneme] + (around.distance > 0)
+    result: np.ndarray = 2 * viseme_class[around.phoneme] + (around.distance > 0)
+    return result
 
 
 def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
@@ -88,7 +90,7 @@ def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
 def objective(
     around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class: np.ndarray, exponent: float, prior: float
 ) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
-    """The function to be minimised, which returns its value and gradient at a vector of parameters, and where to begin.
+    """The objective, which returns its value and gradient at a vector of parameters, and the starting point.
 
     `wanted` (T,) is one channel's motion, `centre` (P,) the phonemes' means, where the targets begin.
     """
@@ -156,7 +158,8 @@ def _phoneme_means(utterances: Sequence[Utterance], phonemes: int) -> np.ndarray
     motion = np.concatenate([item.human for item in utterances])
     count = np.bincount(phoneme_at, minlength=phonemes)[:, None]
     total = np.stack([np.bincount(phoneme_at, column, phonemes) for column in motion.T], axis=1)
-    return (total + motion.mean(axis=0)) / (count + 1)
+    result: np.ndarray = (total + motion.mean(axis=0)) / (count + 1)
+    return result
 
 
 def _fit(
@@ -185,9 +188,9 @@ def _fit(
 def fit(training: Training) -> Dominance:
     """Chooses exponent and priors on the inner validation part, then fits all channels on the whole."""
 
-    def prepare(part: Training) -> Callable:
+    def prepare(part: Training) -> Callable[..., Any]:
         few = part.utterances[:TUNING_UTTERANCES]
-        return lambda setting: _fit(few, training, *setting, TUNING_CHANNELS).predict
+        return lambda setting: _fit(few, training, setting[0], setting[1], TUNING_CHANNELS).predict
 
     exponent, prior = choose(training, list(itertools.product(EXPONENTS, PRIORS)), prepare)
     return _fit(training.utterances, training, exponent, prior, range(CHANNELS))

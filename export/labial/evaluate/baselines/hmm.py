@@ -4,10 +4,10 @@ Left-to-right phoneme HMMs over m, delta m and delta-delta m of all channels, wi
 phonemes' context; the whole utterance's trajectory by maximum likelihood (equation 3, without anchors).
 
 - Alignment: the segments' states begin evenly divided and are re-aligned by Viterbi inside each segment.
-- Context: a state's statistics are those of its triphone, drawn to those of the phoneme between its neighbours'
-  viseme classes, these to the phoneme's, and these to its own class's (maximum a posteriori, level by level), so that
-  the back-off is gradual and an unseen triphone is its class context's.
-- Durations: a segment's frames are dealt out as mean + rho * variance, rho such that they fill it.
+- Context: a state's statistics are those of its triphone, shrunk towards those of the phoneme between its neighbours'
+viseme classes, these towards the phoneme's, and these towards its own class's (maximum a posteriori, level by level),
+so that the back-off is gradual and an unseen triphone uses its class context.
+- Durations: a segment's frames are distributed as mean + rho * variance, with rho such that they fill it.
 
 Number of states and strength of the back-off are chosen by inner validation.
 """
@@ -16,15 +16,15 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
 
+from labial.corpus.phonesets import PhoneSet
 from labial.evaluate.baselines.alignment import align, deal, even
 from labial.evaluate.material import Timeline, Utterance
 from labial.evaluate.training import Training, choose
-from labial.faps import CHANNELS
-from labial.phonesets import PhoneSet
+from labial.files.faps import CHANNELS
 from labial.reference.published import solve
 from labial.reference.tables import Equation
 
@@ -150,7 +150,7 @@ def _fit(utterances: Sequence[Utterance], training: Training, states: int, stren
         state = align(values, row, model.mean, model.variance, length)
     motion = pool(segment_keys[segment], state, values, states, strength, floor)
     spent = np.bincount(segment * states + state, minlength=len(length) * states).astype(np.float64)
-    long_enough = np.repeat(length >= states, states)  # shorter ones skip states, which says nothing about durations
+    long_enough = np.repeat(length >= states, states)  # shorter ones skip states, and so do not show durations
     each = np.tile(np.arange(states), len(length))[long_enough]
     durations = pool(np.repeat(segment_keys, states, axis=0)[long_enough], each, spent[long_enough, None], states,
                      strength, np.array([0.1]))
@@ -160,7 +160,7 @@ def _fit(utterances: Sequence[Utterance], training: Training, states: int, stren
 def fit(training: Training) -> Synthesis:
     """Chooses the settings on the inner validation part, then fits on the whole."""
 
-    def prepare(part: Training) -> Callable:
+    def prepare(part: Training) -> Callable[..., Any]:
         return lambda setting: _fit(part.utterances, training, *setting).predict
 
     return _fit(training.utterances, training, *choose(training, list(itertools.product(STATES, STRENGTHS)), prepare))

@@ -17,7 +17,7 @@ class Mean:
     shape: np.ndarray  #: (13,) FAP
 
     def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13) the shape, over and over."""
+        """(T, 13) the shape, repeated."""
         return np.tile(self.shape, (timeline.frames, 1))
 
 

@@ -1,6 +1,6 @@
 """Baseline: linear regression from the phoneme, its neighbours' classes and its duration.
 
-Each feature may also change along the phoneme: it is offered once as it is and once times the frame's relative
+Each feature may also change along the phoneme: the design has it once unchanged and once times the frame's relative
 position, so that motion need not be a step.
 """
 

@@ -1,9 +1,9 @@
-"""Ridge regression of motion on features of the timeline; what the regression baselines share."""
+"""Ridge regression of motion on features of the timeline, shared by the regression baselines."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Sequence
+from typing import Any, Callable, Dict, Sequence
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -26,7 +26,8 @@ class Rows:
     def __matmul__(self, weights: np.ndarray) -> np.ndarray:
         """(T, 13) for weights (K1 + K2, 13)."""
         count = self.sparse.shape[1]
-        return self.sparse @ weights[:count] + self.dense @ weights[count:]
+        result: np.ndarray = self.sparse @ weights[:count] + self.dense @ weights[count:]
+        return result
 
 
 Design = Callable[[Timeline], Rows]
@@ -56,7 +57,8 @@ def normal(design: Design, utterances: Sequence[Utterance], base: np.ndarray, si
 
 def solve(equations: Normal, penalty: np.ndarray) -> np.ndarray:
     """(K, 13) weights of least squared error plus penalty (K,) times their squares."""
-    return cho_solve(cho_factor(equations.gram + np.diag(penalty)), equations.cross)
+    result: np.ndarray = cho_solve(cho_factor(equations.gram + np.diag(penalty)), equations.cross)
+    return result
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,8 @@ class Linear:
 
     def predict(self, timeline: Timeline) -> np.ndarray:
         """(T, 13)."""
-        return self.base + self.design(timeline) @ self.weights
+        result: np.ndarray = self.base + self.design(timeline) @ self.weights
+        return result
 
 
 def fit(
@@ -77,12 +80,12 @@ def fit(
 ) -> Linear:
     """Chooses among `penalties`, each (K,), on the inner validation part, then fits on the whole training part.
 
-    `make_design` makes the features of a part, for they may themselves be trained.
+    `make_design` computes the features of a part, since they may be trained, too.
     """
     frames = [item.human[item.timeline.phoneme_at != training.silence] for item in training.utterances]
     base = np.concatenate(frames).mean(axis=0)
 
-    def prepare(part: Training) -> Callable:
+    def prepare(part: Training) -> Callable[..., Any]:
         rough = make_design(part)
         equations = normal(rough, part.utterances, base, training.silence)
         known: Dict[int, Rows] = {}  # features of the utterances that every penalty is tried on
@@ -92,7 +95,7 @@ def fit(
                 known[id(timeline)] = rough(timeline)
             return known[id(timeline)]
 
-        def predict_with(penalty: np.ndarray) -> Callable:
+        def predict_with(penalty: np.ndarray) -> Callable[..., Any]:
             weights = solve(equations, penalty)
             return lambda timeline: base + rows(timeline) @ weights
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
-from labial.reference.shape import choose, shapes
+from labial.reference.shape import ShapeTables, choose, shapes
 from labial.train.context import fit_context
 from labial.train.recordings import neighbour_classes, occurrences, recordings
-from labial.train.shapes import Mixture, ShapeTables, back_off, corpus_scale, fit_mixture, shape_tables
+from labial.train.shapes import Mixture, back_off, corpus_scale, fit_mixture, shape_tables
 
 #: Components of each phoneme's mixture (C of equation 1).
 COMPONENTS = 5
@@ -23,7 +23,8 @@ COMPONENTS = 5
 
 @dataclass(frozen=True)
 class Steps:
-    """Selected shapes; hard and without context as the paper has it, or soft and with it."""
+    """Selected shapes: the best component without context, as in the paper, or the mean over components with
+    context."""
 
     tables: ShapeTables
     viseme_class: np.ndarray  #: (P,)

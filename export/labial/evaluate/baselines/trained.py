@@ -1,18 +1,17 @@
-"""The trained models: the published method and Labial in float64, and Labial as the C library runs it."""
+"""The trained models: the published method and Labial in float64, and Labial in the C library."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Sequence
 
 import numpy as np
 
+from labial.evaluate.check import device_frames
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
-from labial.model import Model
-from labial.native import NativeModel
-from labial.quantise import ExportedModel, quantise
 from labial.reference.synthesis import synthesise
+from labial.tables.model import Model
+from labial.tables.quantise import ExportedModel, quantise
 
 
 @dataclass(frozen=True)
@@ -32,14 +31,9 @@ class Device:
 
     exported: ExportedModel
 
-    def predict_all(self, timelines: Sequence[Timeline]) -> List[np.ndarray]:
-        """(T, 13) of every timeline, from one run of one compiled program."""
-        with NativeModel(self.exported) as native:
-            return [frames.astype(np.float64) for frames in native.synthesise([item.stream for item in timelines])]
-
     def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13) of one timeline."""
-        return self.predict_all([timeline])[0]
+        """(T, 13)."""
+        return device_frames(self.exported, [timeline.stream])[0].astype(np.float64)
 
 
 def fit_paper(training: Training) -> Float:
@@ -48,7 +42,7 @@ def fit_paper(training: Training) -> Float:
 
 
 def fit_paper_normalised(training: Training) -> Float:
-    """The published method with features that are normalised before they are clustered."""
+    """The published method with features normalised before clustering."""
     return Float(training.model("paper", normalise=True))
 
 

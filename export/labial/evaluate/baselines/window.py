@@ -1,13 +1,13 @@
 """Baselines: ridge regression on the labels in a window around each frame.
 
-On phoneme labels; or on viseme-class labels together with the context-aware step stream of all channels. No pipeline
-of shapes, states and trajectories follows: they show what additive temporal kernels reach by themselves.
+On phoneme labels; or on viseme-class labels together with the context-aware step stream of all channels. Without
+shapes, states and trajectories, they show what additive temporal kernels achieve alone.
 """
 
 from __future__ import annotations
 
 import itertools
-from typing import Callable, Optional
+from typing import Callable, List, Optional
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -15,7 +15,7 @@ from scipy.sparse import csr_matrix
 from labial.evaluate.baselines import ridge, steps
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
-from labial.faps import CHANNELS
+from labial.files.faps import CHANNELS
 
 #: The window reaches this far to both sides; labels are read every frame, the step stream every SPACING. Seconds.
 REACH = 0.3
@@ -46,7 +46,8 @@ def labels(label_at: np.ndarray, lag: np.ndarray, count: int, outside: int) -> c
 def shifted(stream: np.ndarray, lag: np.ndarray) -> np.ndarray:
     """(T, L * K) the stream (T, K) at every lag, held beyond its ends."""
     at = np.clip(np.arange(len(stream))[:, None] + lag[None, :], 0, len(stream) - 1)
-    return stream[at].reshape(len(stream), -1)
+    result: np.ndarray = stream[at].reshape(len(stream), -1)
+    return result
 
 
 def _design(training: Training, of_class: bool, stream: Optional[steps.Steps]) -> ridge.Design:
@@ -68,7 +69,7 @@ def _design(training: Training, of_class: bool, stream: Optional[steps.Steps]) -
     return rows
 
 
-def _penalties(training: Training, of_class: bool, with_stream: bool) -> list:
+def _penalties(training: Training, of_class: bool, with_stream: bool) -> List[np.ndarray]:
     phone_set = training.phone_set
     labels_wide = len(window(training.fps)) * (len(phone_set.classes) if of_class else len(phone_set.phonemes))
     stream_wide = len(window(training.fps, max(1, round(SPACING * training.fps)))) * CHANNELS if with_stream else 0

@@ -1,1 +1,0 @@
-"""Forced alignment: which phoneme of a recording is spoken when (``labial align``)."""

@@ -1,0 +1,1 @@
+"""Captures a corpus: from faces tracked in video to FAPs."""

@@ -1,0 +1,123 @@
+"""Finds the talker's face among the faces of a video, and follows it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from labial.defaults import WHICH_FACE
+from labial.errors import DataError
+
+PathLike = Union[str, os.PathLike[str]]
+
+#: A face that is lost for longer, in seconds, starts a new track, which is joined to the old one if both are in one
+#: place.
+_LINK = 0.5
+#: Two faces are one where their middles are less than this share of the height apart, from frame to frame and at all.
+_STEP, _PLACE = 0.5, 1.0
+#: Faces of less than this share of the talker's height are background.
+_BACKGROUND = 0.5
+#: Seconds that another face may be seen: a tracker may mistake something for a face this long.
+_GLIMPSE = 0.2
+#: Share of the frames in which a face is seen that may be asked for.
+_LASTING = 0.2
+_TOP, _CHIN = 10, 152  # landmarks
+
+
+@dataclass
+class Track:
+    """A face, followed over the frames."""
+
+    frames: List[int] = field(default_factory=list)  #: numbers of the frames in which it is seen
+    points: List[np.ndarray] = field(default_factory=list)  #: (478, 3) landmarks in each, pixels
+
+    @property
+    def middle(self) -> np.ndarray:
+        """(2,) median of the face's middle, pixels."""
+        result: np.ndarray = np.median([_middle(points) for points in self.points], axis=0)
+        return result
+
+    @property
+    def height(self) -> float:
+        """Median from forehead to chin, pixels."""
+        return float(np.median([_height(points) for points in self.points]))
+
+
+def talker(path: PathLike, times: np.ndarray, seen: Sequence[Sequence[np.ndarray]], face: Optional[str]) -> np.ndarray:
+    """(T, 478, 3) landmarks of the talker's face, NaN where it is not seen.
+
+    `seen` has the landmarks (478, 3), pixels, of every face in each of the frames at `times` (T,), seconds. `face` is
+    one of `WHICH_FACE`; without, there must be one face only, smaller ones in the background aside. Raises DataError
+    where there is none or more than one.
+    """
+    tracks = _tracks(times, seen)
+    if not tracks:
+        raise DataError(path, None, "no face is found in any frame")
+    main = _chosen(tracks, len(times), face)
+    step = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+    result = np.full((len(times), *main.points[0].shape), np.nan, np.float32)
+    taken = set(main.frames)
+    same = [main]
+    for track in tracks:
+        if track is main:
+            continue
+        apart = float(np.hypot(*(track.middle - main.middle)))
+        if apart < _PLACE * main.height and not taken & set(track.frames):
+            same.append(track)
+            taken |= set(track.frames)
+        elif face is None and track.height >= _BACKGROUND * main.height and len(track.frames) * step > _GLIMPSE:
+            first, last = times[track.frames[0]], times[track.frames[-1]]
+            raise DataError(path, None, f"two faces, the second from {first:.2f} to {last:.2f} s: say with --face "
+                            f"{', '.join(WHICH_FACE[:-1])} or {WHICH_FACE[-1]} which is the talker's")
+    for track in same:
+        result[track.frames] = track.points
+    return result
+
+
+def _tracks(times: np.ndarray, seen: Sequence[Sequence[np.ndarray]]) -> List[Track]:
+    """Faces linked over the frames: each is the one that was nearest to its place a moment ago."""
+    tracks: List[Track] = []
+    for number, faces in enumerate(seen):
+        live = [track for track in tracks if times[number] - times[track.frames[-1]] <= _LINK]
+        pairs: List[Tuple[float, int, int]] = []
+        for i, points in enumerate(faces):
+            for j, track in enumerate(live):
+                apart = float(np.hypot(*(_middle(points) - _middle(track.points[-1])))) / _height(track.points[-1])
+                if apart < _STEP:
+                    pairs.append((apart, i, j))
+        free = set(range(len(faces)))
+        for _, i, j in sorted(pairs):
+            if i in free and live[j].frames[-1] != number:
+                live[j].frames.append(number)
+                live[j].points.append(faces[i])
+                free.remove(i)
+        new = [faces[i] for i in sorted(free)]
+        here = [track.points[-1] for track in live if track.frames[-1] == number]
+        for points in new:  # a tracker may find one face twice
+            if all(np.hypot(*(_middle(points) - _middle(other))) >= _STEP * _height(other) for other in here):
+                tracks.append(Track([number], [points]))
+                here.append(points)
+    return tracks
+
+
+def _chosen(tracks: Sequence[Track], count: int, face: Optional[str]) -> Track:
+    """The talker's longest track."""
+    if face is None:
+        return max(tracks, key=lambda track: track.height * len(track.frames))
+    lasting = [track for track in tracks if len(track.frames) >= _LASTING * count] or list(tracks)
+    tallest = max(lasting, key=lambda track: track.height)
+    if face == "largest":
+        return tallest
+    near = [track for track in lasting if track.height >= _BACKGROUND * tallest.height]
+    return (min if face == "left" else max)(near, key=lambda track: float(track.middle[0]))
+
+
+def _middle(points: np.ndarray) -> np.ndarray:
+    return np.asarray(points[:, :2].mean(axis=0))
+
+
+def _height(points: np.ndarray) -> float:
+    return float(np.hypot(*(points[_CHIN, :2] - points[_TOP, :2])))

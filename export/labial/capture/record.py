@@ -1,0 +1,189 @@
+"""``labial record``: landmark files and phoneme timings to a corpus folder."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from dataclasses import replace
+from pathlib import Path
+from typing import Dict, List, Sequence, Tuple, Union
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from labial.capture.head import facing
+from labial.capture.landmarks import Given, Landmarks, read_landmarks
+from labial.capture.mouth import Recording, faps, fill
+from labial.capture.sync import advice, estimate
+from labial.corpus.apex import told, with_apexes
+from labial.corpus.episode import Episode, Segment
+from labial.corpus.folder import check_span
+from labial.corpus.formats import SOUNDS, VIDEOS, read_timings, suffixes
+from labial.corpus.phonesets import PhoneSet
+from labial.corpus.timings import phoneme_segments
+from labial.errors import DataError, LabialError, SilentError, needs
+from labial.files.frames import even, write_csv
+from labial.files.outputs import check_folder
+from labial.files.outputs import folder as whole_folder
+
+PathLike = Union[str, os.PathLike[str]]
+
+_LANDMARKS = (".npz", ".npy", ".csv")
+#: Slower recordings lose closures: half of GRID's /b/ last 70 ms or less, and the lips touch for a part of that.
+_SLOW = 24.0
+_MOST_OFFSET = 5.0  # seconds
+
+
+def record(
+    sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float, offset: float = 0.0
+) -> str:
+    """Writes the corpus folder `output` from one talker's landmark files or folders of them; returns a summary.
+
+    The picture is assumed to be `offset` seconds later than its sound; the summary of speech reports the remaining
+    offset. Recordings in which the face is lost or turned away for too long are omitted with a warning. Raises
+    DataError for malformed files, before anything is written.
+    """
+    if not -_MOST_OFFSET <= offset <= _MOST_OFFSET:
+        raise LabialError(f"an offset of {1000 * offset:g} ms is not within {-1000 * _MOST_OFFSET:g} .. "
+                          f"{1000 * _MOST_OFFSET:g}")
+    if not 0.0 <= cutoff <= 1000.0:
+        raise LabialError(f"a cutoff of {cutoff:g} Hz is not within 0 .. 1000")
+    folder = Path(output)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise DataError(folder, None, "not a folder that is new or empty")
+    check_folder(folder)
+    recordings = [_read(path, phone_set, given, offset) for path in _files(sources)]
+    kinds = {item.landmarks.points.shape[2] for item in recordings}
+    if len(kinds) > 1:
+        flat = next(item for item in recordings if item.landmarks.points.shape[2] == 2)
+        raise DataError(flat.landmarks.path, None, "no depth (z), which other recordings have")
+    finished: List[Tuple[Recording, np.ndarray, float]] = []
+    for item, values in zip(recordings, faps(recordings, phone_set.silence)):
+        try:
+            fps, frames = even(item.landmarks.times, fill(item.landmarks.times, values))
+        except ValueError as error:
+            warnings.warn(f"{item.landmarks.path}: left out: {error}", stacklevel=1)
+            continue
+        finished.append((item, _smooth(frames, fps, cutoff), fps))
+    if not finished:
+        raise LabialError("no recording can be used")
+    with whole_folder(folder) as made:
+        for item, frames, fps in finished:
+            name = item.landmarks.path.stem
+            with open(made / f"{name}.csv", "w", encoding="ascii", newline="\n") as out:
+                write_csv(out, frames, fps, start=float(item.landmarks.times[0]))
+            with open(made / f"{name}.lab", "w", encoding="utf-8", newline="\n") as out:
+                out.writelines(map(_line, item.segments))
+    seconds = sum(len(frames) / fps for _, frames, fps in finished)
+    left_out = len(recordings) - len(finished)
+    lines = [f"{folder}: {len(finished)} recordings, {int(seconds // 60)} min {seconds % 60:.0f} s"
+             + (f"; {left_out} left out" if left_out else "")]
+    phonemes = [segment for item, _, _ in finished for segment in item.segments]
+    lines.append(f"apex: the loudest moment of {told(phonemes)} of {len(phonemes)} phonemes"
+                 + ("" if told(phonemes) == len(phonemes) else "; of the others, whose sound is not known, the middle"))
+    if phone_set.kind == "speech":
+        lines += advice(estimate([_episode(*what) for what in finished]), offset)
+    return "\n".join(lines)
+
+
+def _episode(item: Recording, frames: np.ndarray, fps: float) -> Episode:
+    return Episode(item.landmarks.path.stem, item.landmarks.times[0] + np.arange(len(frames)) / fps, frames,
+                   item.segments)
+
+
+def _files(sources: Sequence[PathLike]) -> List[Path]:
+    """The landmark files, sorted by name; names are what episodes are called, so each may occur once."""
+    files: List[Path] = []
+    for source in map(Path, sources):
+        if source.is_dir():
+            found = [file for file in sorted(source.iterdir())
+                     if file.suffix.lower() in _LANDMARKS and file.is_file() and not file.name.startswith(".")]
+            if not found:
+                raise DataError(source, None, "no landmarks (.npz, .npy or .csv)")
+            files += found
+        else:
+            files.append(source)
+    seen: Dict[str, Path] = {}
+    for file in files:
+        if file.stem in seen:
+            raise DataError(file, None, f"there is also {seen[file.stem]}, and episodes are called by these names")
+        seen[file.stem] = file
+    return sorted(files, key=lambda file: file.stem)
+
+
+def _read(path: Path, phone_set: PhoneSet, given: Given, offset: float) -> Recording:
+    landmarks = _earlier(read_landmarks(path, given), offset)
+    landmarks, turned = facing(landmarks)
+    if turned:
+        warnings.warn(f"{path}: {turned}", stacklevel=1)
+    timings = _timings(path)
+    segments = _with_sound(path, phoneme_segments(timings, read_timings(timings), phone_set))
+    if not segments:
+        raise DataError(timings, None, "no phonemes")
+    check_span(timings, Episode(path.stem, landmarks.times, np.empty((len(landmarks.times), 0)), segments))
+    rate = 1.0 / float(np.median(np.diff(landmarks.times)))
+    if rate < _SLOW:
+        warnings.warn(f"{path}: {rate:.3g} frames per second are too few to see lips close", stacklevel=1)
+    return Recording(landmarks, segments)
+
+
+def _earlier(landmarks: Landmarks, offset: float) -> Landmarks:
+    """The landmarks `offset` seconds earlier, without those before the sound begins."""
+    if not offset:
+        return landmarks
+    times = landmarks.times - offset
+    kept = times >= 0 if landmarks.times[0] >= 0 else np.ones(len(times), bool)
+    if kept.sum() < 2:
+        raise DataError(landmarks.path, None, f"shorter than the offset of {1000 * offset:g} ms")
+    pucker = landmarks.pucker
+    return replace(landmarks, times=times[kept], points=landmarks.points[kept],
+                   pucker=None if pucker is None else pucker[kept])
+
+
+def _timings(path: Path) -> Path:
+    """The timings beside a landmark file."""
+    found = [file for file in sorted(path.parent.iterdir())
+             if file.stem == path.stem and file.suffix.lower() in suffixes() and file.is_file()]
+    if not found:
+        others = ", ".join(suffixes())
+        raise DataError(path, None, f"no phoneme timings beside it: {path.stem}.lab or another of {others}")
+    if len(found) > 1:
+        raise DataError(found[1], None, f"there is also {found[0].name}; which of them to use is not clear")
+    return found[0]
+
+
+def _with_sound(path: Path, segments: Sequence[Segment]) -> Tuple[Segment, ...]:
+    """The segments of a landmark file with their apexes in its sound: a sound file beside it, else the video. Unchanged
+    without sound, or without the packages that read it."""
+    beside = [file for file in sorted(path.parent.iterdir()) if file.stem == path.stem and file.is_file()]
+    found = [file for suffixes in (SOUNDS, VIDEOS) for file in beside if file.suffix.lower() in suffixes]
+    if not found or told(segments) == len(segments):
+        return tuple(segments)
+    try:
+        with needs(f"the sound of {found[0]}", "record"):
+            from labial.sound.samples import RATE, read_sound
+        return with_apexes(segments, read_sound(found[0]), RATE)
+    except SilentError:
+        return tuple(segments)
+    except DataError:
+        raise
+    except LabialError as error:
+        warnings.warn(f"{error}; the middle of each phoneme is taken for its apex", stacklevel=1)
+        return tuple(segments)
+
+
+def _smooth(frames: np.ndarray, fps: float, cutoff: float) -> np.ndarray:
+    """Gaussian smoothing, without delay, that halves the power at `cutoff` Hz; 0 smooths nothing."""
+    if cutoff == 0.0 or len(frames) < 2:
+        return frames
+    sigma = np.sqrt(np.log(2.0)) / (2.0 * np.pi * cutoff)  # seconds
+    result: np.ndarray = gaussian_filter1d(frames, sigma * fps, axis=0, mode="nearest")
+    return result
+
+
+def _line(segment: Segment) -> str:
+    text = f"{segment.start:.4f} {segment.end:.4f} {segment.label}"
+    if segment.apex is not None or segment.word is not None:
+        apex = (segment.start + segment.end) / 2 if segment.apex is None else segment.apex
+        text += f" {apex:.4f}" + (f" {segment.word}" if segment.word is not None else "")
+    return text + "\n"

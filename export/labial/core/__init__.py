@@ -1,0 +1,1 @@
+"""The C library through ctypes. Needs only Python."""

@@ -1,0 +1,91 @@
+"""Labels of phonemes, stripped of marks that do not change the mouth's shape.
+
+The C library does exactly the same (lib/names.c): every rule compares sequences of characters, and none needs a Unicode
+table.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Dict, List, Mapping, Optional, Tuple
+
+#: Combining marks (ties, nasalisation, syllabicity, releases), except the cedilla, which makes another consonant.
+_COMBINING = re.compile("[\u0300-\u0326\u0328-\u036f]")
+#: Length, half length; aspirated, palatalised, labialised, velarised, pharyngealised, released nasally or laterally.
+_MODIFIER = re.compile("[\u02d0\u02d1\u02b0\u02b2\u02b7\u02e0\u02e4\u207f\u02e1]")
+#: Marks before a symbol: primary and secondary stress in IPA, X-SAMPA and espeak; a glottal stop, which lips do not
+#: show.
+_LEADING = "\u02c8\u02cc'\",%?\u0294"
+#: Marks after a symbol: X-SAMPA's length, syllabicity, nasalisation and palatalisation, its diacritics (``_h``),
+#: Kaldi's places in a word (``_B``), and the signs that espeak's names of variants end in.
+_TRAILING = re.compile(r"(?<=[^ ])(?:[:=~;.^\"-]|_[A-Za-z0-9=~^])$")
+_STRESS_DIGIT = re.compile(r"(?<=[A-Za-z]{2})[012]$")
+#: Diacritics, length and stress as Praat's backslash sequences. ``\h^`` is not one: it is a consonant.
+_PRAAT_MARK = re.compile(r"\\[|0OT\-+:~NUDn3cv'`^][v^()]|\\[:.]f|\\'[12]")
+_BLANKS = " \t\r\n"
+
+#: Sets of labels: one set, or "auto", any of them, ARPABET before the IPA before X-SAMPA.
+AUTO = "auto"
+
+
+def without_marks(label: str) -> str:
+    """`label` without stress digits (0-2 after two letters or more), stress and length signs, ties and diacritics; ""
+    when it consists of marks alone."""
+    text = _PRAAT_MARK.sub("", label.strip(_BLANKS))
+    text = _MODIFIER.sub("", _COMBINING.sub("", text)).lstrip(_LEADING)
+    while _TRAILING.search(text):
+        text = _TRAILING.sub("", text)
+    return _STRESS_DIGIT.sub("", text)
+
+
+def normalise(label: str) -> str:
+    """`label` without its marks; unchanged if it consists only of marks."""
+    return without_marks(label) or label.strip(_BLANKS)
+
+
+def find(names: Mapping[str, str], label: str) -> Optional[str]:
+    """The meaning of `label` in `names` (label or alias -> phoneme), or None: first without blanks around it, then also
+    without its marks."""
+    label = label.strip(_BLANKS)
+    return names.get(label, names.get(normalise(label)))
+
+
+def nearest(names: Mapping[str, str], label: str, silence: str, neutral: str) -> str:
+    """A phoneme for any label: its meaning; silence for text in brackets, and for labels of nothing but marks, digits
+    and punctuation; else the first known substring, scanning from the left, and the longest there; else `neutral`."""
+    known = find(names, label)
+    if known is not None:
+        return known
+    label = label.strip(_BLANKS)
+    if len(label) > 1 and label[0] + label[-1] in ("<>", "[]", "()", "{}", "++", "**", "##"):
+        return silence
+    text = without_marks(label)
+    if not re.search(r"[A-Za-z\u0080-\U0010ffff]", text):
+        return silence
+    for start in range(len(text)):
+        for end in range(len(text), start, -1):
+            if text[start:end] in names:
+                return names[text[start:end]]
+    return neutral
+
+
+def entries(names: Mapping[str, Mapping[str, str]]) -> List[Tuple[str, str, Tuple[str, ...]]]:
+    """The names of each set of labels as one table: name, phoneme, and the sets in which that name means it.
+
+    The table leaves out names that mean the same when their marks are dropped. It is sorted by the names' bytes; a name
+    of several meanings occurs once for each, in the order of `names`' sets, so that the first one applies if no set is
+    named.
+    """
+    table = []
+    for name in sorted({name for known in names.values() for name in known}, key=str.encode):
+        meanings = _meanings(names, name)
+        plain = _meanings(names, normalise(name)) if normalise(name) != name else {}
+        if meanings.items() <= plain.items() and next(iter(meanings.values())) == next(iter(plain.values())):
+            continue
+        table += [(name, phoneme, tuple(labels for labels, meaning in meanings.items() if meaning == phoneme))
+                  for phoneme in dict.fromkeys(meanings.values())]
+    return table
+
+
+def _meanings(names: Mapping[str, Mapping[str, str]], name: str) -> Dict[str, str]:
+    return {labels: known[name] for labels, known in names.items() if name in known}

@@ -1,0 +1,84 @@
+"""Arrays of untrusted NumPy files (.npy, and .npz, a zip of them): sizes are checked before reading.
+
+The format is that of https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html; objects are not read.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+import zipfile
+from typing import BinaryIO, Dict, Iterable, Optional, Set, Union
+
+import numpy as np
+
+from labial.errors import LabialError
+
+PathLike = Union[str, os.PathLike[str]]
+
+#: Most bytes of an array's header, and most axes.
+_LONGEST_HEADER = 10_000
+_MOST_AXES = 8
+
+
+class ArrayError(LabialError):
+    """A file's content is damaged, encrypted or too large; the message names the array, not the file."""
+
+
+def read_zip(path: PathLike, names: Optional[Iterable[str]], most: int) -> Dict[str, bytes]:
+    """Members of a zip file by name: those of `names` that exist, or all of them.
+
+    Raises OSError for a file that cannot be opened; ArrayError for a file that is not a zip, is encrypted or damaged,
+    or whose members, unpacked, exceed `most` bytes together.
+    """
+    with open(path, "rb") as file:
+        return _members(file, None if names is None else set(names), most)
+
+
+def _members(file: BinaryIO, wanted: Optional[Set[str]], most: int) -> Dict[str, bytes]:
+    found: Dict[str, bytes] = {}
+    name = ""
+    try:
+        with zipfile.ZipFile(file) as archive:
+            members = [item for item in archive.infolist() if wanted is None or item.filename in wanted]
+            if sum(item.file_size for item in members) > most:
+                raise ArrayError(f"what it holds has more than {most} bytes")
+            for item in members:
+                name = item.filename
+                if item.flag_bits & 1:
+                    raise ArrayError(f"{name} is encrypted")
+                if name in found:
+                    raise ArrayError(f"{name} is there twice")
+                with archive.open(item) as member:  # reads no more than file_size, and checks it by its CRC-32
+                    found[name] = member.read()
+    except ArrayError:
+        raise
+    except Exception as error:  # any error of zipfile, zlib and others in a damaged file
+        raise ArrayError(f"{name or 'the zip file'} is damaged ({' '.join(str(error).split())[:80]})") from None
+    return found
+
+
+def array(name: str, data: bytes) -> np.ndarray:
+    """The array of a .npy file with the bytes `data`; raises ArrayError, which calls it `name`, for other data or a
+    number of bytes that does not match the shape."""
+    try:
+        header = io.BytesIO(data[: _LONGEST_HEADER + 12])
+        version = np.lib.format.read_magic(header)
+        if version not in ((1, 0), (2, 0)):
+            raise ArrayError(f"{name} has version {version} of the format, which is not read")
+        length = int.from_bytes(data[8 : 10 if version == (1, 0) else 12], "little")
+        if length > _LONGEST_HEADER:
+            raise ArrayError(f"{name} has a description of {length} bytes")
+        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, fortran, kind = read(header)
+    except ArrayError:
+        raise
+    except Exception as error:  # the header is text that Python parses
+        raise ArrayError(f"{name} is no array ({type(error).__name__})") from None
+    if kind.kind not in "biuf" or len(shape) > _MOST_AXES or any(size < 0 for size in shape):
+        raise ArrayError(f"{name} has the type {kind} and the shape {shape}, not real numbers")
+    content = memoryview(data)[header.tell() :]
+    if math.prod(shape) * kind.itemsize != len(content):
+        raise ArrayError(f"{name} has {len(content)} bytes, not those of its shape {shape}")
+    return np.frombuffer(content, dtype=kind).reshape(shape, order="F" if fortran else "C")

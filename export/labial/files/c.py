@@ -1,0 +1,63 @@
+"""Text of C: names, comments and lines of numbers."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from typing import Dict, Iterable, List, Sequence
+
+from labial import __version__
+from labial.errors import ModelError
+
+_C_KEYWORDS = frozenset(
+    """alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const constexpr
+    const_cast continue decltype default delete do double dynamic_cast else enum explicit export extern false float for
+    friend goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
+    public register reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch
+    template this thread_local throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t
+    while xor xor_eq main errno""".split()
+)
+
+
+def check_name(name: str, what: str = "model") -> None:
+    """Raises ModelError, which says `what` it names, unless `name` can be a global name in C and C++."""
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,47}", name) or "__" in name:
+        raise ModelError(
+            f"{name!r} is no name for a {what}: letters, digits and single underscores, a letter first, at most 48"
+        )
+    if name in _C_KEYWORDS or name.startswith("labial"):
+        raise ModelError(f"{name!r} is no name for a {what}: C, C++ or the library already uses it")
+
+
+def constants_of(name: str, labels: Sequence[str]) -> List[str]:
+    """The C constant of each label, ``NAME_LABEL``; labels that C cannot spell are numbered."""
+    used: Dict[str, int] = {}
+    names = []
+    for number, label in enumerate(labels):
+        spelled = re.sub(r"[^A-Za-z0-9_]", "_", label).upper()
+        if not spelled or spelled in used:
+            spelled = f"PHONEME_{number}"
+        used[spelled] = number
+        names.append(f"{name.upper()}_{spelled}")
+    return names
+
+
+def block_comment(text: str, width: int = 114) -> str:
+    """`text` for a C comment, in lines of at most `width` columns, without the beginning or end of a comment;
+    unprintable characters become question marks."""
+    shown = "".join(c if c.isprintable() else " " if c.isspace() else "?" for c in text)
+    apart = shown.replace("*/", "* /").replace("/*", "/ *")
+    body = textwrap.fill(apart, width=width, initial_indent=" * ", subsequent_indent=" * ")
+    return f"/*\n{body}\n */\n"
+
+
+def written_by(command: str, text: str, width: int = 114) -> str:
+    """The first comment of a file that `labial COMMAND` writes: `text`, and where the file is from."""
+    return block_comment(f"{text} Written by labial {command} {__version__}; do not edit.", width)
+
+
+def rows(values: Iterable[object]) -> str:
+    """Values of an array, comma-separated, in lines of at most 120 columns."""
+    return textwrap.fill(", ".join(str(value).replace(" ", "\u00a0") for value in values), width=118,
+                         initial_indent="    ", subsequent_indent="    ",
+                         break_on_hyphens=False).replace("\u00a0", " ")

@@ -1,0 +1,309 @@
+"""Writes output files atomically: a file is complete, or the old one remains.
+
+:func:`writing` is for one file, :func:`folder` for several that belong together. Output goes to a temporary file beside
+the target, whose name begins with a dot and ends with ``.part``. It is synced to the disk before it is renamed to the
+target, and removed after any failure: a full disk, an exception, Ctrl-C, SIGTERM. Only a killed process leaves one
+behind. Errors name the target.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+import stat
+from contextlib import contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from typing import IO, Any, Callable, Iterator, List, Optional, Union
+
+from labial.errors import LabialError
+
+PathLike = Union[str, os.PathLike[str]]
+
+#: Names of temporary files and folders: a dot, the target's name, random letters, this suffix.
+SUFFIX = ".part"
+#: Bytes of a target's name in its temporary file's name, which must not become too long.
+_NAMED = 200
+
+
+@contextmanager
+def writing(path: PathLike, encoding: Optional[str] = None) -> Iterator[IO[Any]]:
+    """A file object for the content of `path`: text in `encoding` with LF line ends, or bytes without an encoding.
+
+    The file replaces what is at `path` when the block ends, and never if the block raises. It keeps the permissions of
+    the replaced file; links are followed. Devices, pipes and files of ``/dev/fd`` are written directly. Raises
+    LabialError, which names `path`, if the file cannot be written.
+    """
+    with _named(path):
+        target = _resolved(path)
+    temporary = _part(target) if target is not None else ""  # named before it is created: a signal may come at any time
+    try:
+        with _named(path):
+            file = _opened(_create(temporary, target) if target is not None else _direct(path), encoding)
+        with _unnamed_of(path), file:
+            with _unnamed_of(path):
+                yield file
+                file.flush()
+                if target is not None:
+                    os.fsync(file.fileno())
+        if target is not None:
+            with _named(path):
+                os.replace(temporary, target)
+            _sync(os.path.dirname(target))
+    finally:
+        if target is not None:
+            with suppress(OSError):
+                os.unlink(temporary)
+
+
+@contextmanager
+def folder(path: PathLike) -> Iterator[Path]:
+    """A temporary folder for the files of the folder `path`, which is created if missing.
+
+    A new or empty folder appears with all of its files at once. In a folder with other files, the files are renamed one
+    after the other when the block ends, each as :func:`writing` does; if that fails, the LabialError says which are
+    new. No file is changed if the block raises.
+    """
+    target = Path(path)
+    with _named(path):
+        if target.exists() and not target.is_dir():
+            raise LabialError(f"{path}: not a folder")
+        made = [item for item in (target, *target.parents) if not item.exists()]
+        place = Path(os.path.realpath(target))
+        whole = _replaceable(place)
+        staging = Path(_part(os.path.join(place if not whole else place.parent, place.name)))
+    try:
+        with _named(path):
+            place.mkdir(parents=True, exist_ok=True)
+            staging.mkdir()
+        try:
+            yield staging
+        except OSError as error:
+            raise _translated(error, staging, target) from None
+        except LabialError as error:
+            if str(staging) not in str(error):
+                raise
+            raise LabialError(str(error).replace(str(staging), str(target))) from None
+        with _named(path):
+            files = sorted(item for item in staging.rglob("*") if not item.is_dir())
+            for file in files:
+                _sync(file)
+            if whole:
+                shutil.copymode(place, staging)
+                if os.name == "nt":  # Windows does not rename onto an existing folder
+                    os.rmdir(place)
+                os.rename(staging, place)
+            else:
+                _move(files, staging, target)
+        _sync(place.parent if whole else place)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+        for item in made:
+            with suppress(OSError):  # not empty after success
+                item.rmdir()
+
+
+def check(path: Optional[PathLike]) -> None:
+    """Raises LabialError unless a file can be written at `path`; call it before the work. None is standard output."""
+    if path is None:
+        return
+    with _named(path):
+        target = _resolved(path)
+        if target is None:
+            return
+        temporary = _part(target)
+        try:
+            os.close(_create(temporary, target))
+        finally:
+            with suppress(FileNotFoundError):
+                os.unlink(temporary)
+
+
+def check_folder(path: PathLike) -> None:
+    """Raises LabialError unless :func:`folder` can write to `path`; call it before the work."""
+    place = Path(path)
+    with _named(path):
+        if place.exists() and not place.is_dir():
+            raise LabialError(f"{path}: not a folder")
+        while not place.exists() and place != place.parent:
+            place = place.parent
+        staging = _part(os.path.join(place, "check"))
+        try:
+            os.mkdir(staging)
+        finally:
+            with suppress(FileNotFoundError):
+                os.rmdir(staging)
+
+
+# ---- Targets
+
+
+def _followed(path: PathLike) -> str:
+    """The absolute path of `path`, with links followed except those of /proc, which refer to open files (/dev/stdout,
+    /dev/fd/3)."""
+    target = os.fsdecode(path)
+    if not os.path.basename(target):
+        raise LabialError(f"{target}: not the name of a file")
+    for _ in range(40):  # as many as Linux follows
+        parent = os.path.realpath(os.path.dirname(target) or ".")
+        target = os.path.join(parent, os.path.basename(target))
+        if target.startswith("/proc/") or not os.path.islink(target):
+            break
+        target = os.path.join(parent, os.readlink(target))
+    return target
+
+
+def _resolved(path: PathLike) -> Optional[str]:
+    """The path to replace; None for a target that can only be written directly. Raises LabialError for a folder, and
+    PermissionError for a read-only file."""
+    target = _followed(path)
+    if target.startswith("/proc/"):
+        return None
+    try:
+        mode = os.stat(target).st_mode
+    except FileNotFoundError:
+        return target
+    if stat.S_ISDIR(mode):
+        raise LabialError(f"{os.fspath(path)}: a folder, not a file")
+    if not stat.S_ISREG(mode):
+        return None
+    if not os.access(target, os.W_OK):
+        raise PermissionError(13, "Permission denied")
+    return target
+
+
+def _part(target: str) -> str:
+    """The path of a temporary file or folder beside `target`."""
+    directory, name = os.path.split(target)
+    cut = os.fsencode(name)[:_NAMED].decode("utf-8", "ignore")
+    return os.path.join(directory, f".{cut}.{secrets.token_hex(4)}{SUFFIX}")
+
+
+def _create(temporary: str, target: str) -> int:
+    """The descriptor of a new file `temporary`, with the owner and permissions of `target`, or those of a new file."""
+    descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_CLOEXEC", 0), 0o666)
+    with suppress(OSError):
+        found, own = os.stat(target), os.stat(temporary)
+        if (found.st_uid, found.st_gid) != (own.st_uid, own.st_gid):
+            with suppress(OSError):
+                os.chown(temporary, found.st_uid, found.st_gid)
+        os.chmod(temporary, stat.S_IMODE(found.st_mode))
+    return descriptor
+
+
+def _direct(path: PathLike) -> int:
+    """A descriptor of a target that cannot be replaced; for an open file of this process, a duplicate descriptor."""
+    directory, name = os.path.split(_followed(path))
+    if directory == f"/proc/{os.getpid()}/fd" and name.isdigit():
+        return os.dup(int(name))
+    return os.open(path, os.O_WRONLY | os.O_TRUNC)
+
+
+def _opened(descriptor: int, encoding: Optional[str]) -> IO[Any]:
+    if encoding is None:
+        return os.fdopen(descriptor, "wb")
+    return os.fdopen(descriptor, "w", encoding=encoding, newline="\n")
+
+
+def _replaceable(place: Path) -> bool:
+    """Whether a folder can replace this one, which is empty or missing."""
+    if not place.exists():
+        return True
+    return not os.listdir(place) and not os.path.ismount(place) and os.access(place.parent, os.W_OK)
+
+
+# ---- Renaming
+
+
+def _move(files: List[Path], staging: Path, folder: Path) -> None:
+    """Renames all files. After the first one, interruptions wait for the others."""
+    ready: List[Callable[[], None]] = []
+    names = [str(file.relative_to(staging)) for file in files]
+    for file, name in zip(files, names):
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        resolved = _resolved(target)
+        if resolved is None or os.path.dirname(resolved) != os.path.realpath(target.parent):
+            ready.append(partial(_copied, file, target))
+            continue
+        with suppress(FileNotFoundError):
+            shutil.copymode(resolved, file)
+        ready.append(partial(_renamed, file, resolved))
+    interruption: Optional[BaseException] = None
+    at = 0
+    while at < len(ready):
+        try:
+            ready[at]()
+            at += 1
+        except Exception as error:
+            problem = (error.strerror if isinstance(error, OSError) else None) or str(error)
+            done = f"{', '.join(names[:at])} new, {', '.join(names[at:])} as before" if at else "no file was changed"
+            raise LabialError(f"{folder / names[at]}: {problem}; {done}") from None
+        except BaseException as error:
+            interruption = error
+    if interruption is not None:
+        raise interruption
+
+
+def _renamed(file: Path, target: str) -> None:
+    if file.exists():  # otherwise an interruption came right after the renaming
+        os.replace(file, target)
+
+
+def _copied(file: Path, target: Path) -> None:
+    with writing(target) as out, open(file, "rb") as content:
+        shutil.copyfileobj(content, out)
+
+
+def _sync(path: PathLike) -> None:
+    """Syncs a file or a folder to the disk; not every system supports that for folders."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+    except OSError:
+        if not os.path.isdir(path):
+            raise
+
+
+# ---- Errors
+
+
+@contextmanager
+def _named(path: PathLike) -> Iterator[None]:
+    """Reports any system error within the block as one of `path`."""
+    try:
+        yield
+    except OSError as error:
+        raise _failure(path, error) from None
+
+
+@contextmanager
+def _unnamed_of(path: PathLike) -> Iterator[None]:
+    """Reports system errors without a file name, within the block, as errors of writing `path`."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None or isinstance(error, BrokenPipeError):
+            raise
+        raise _failure(path, error) from None
+
+
+def _failure(path: PathLike, error: OSError) -> LabialError:
+    name = os.fsdecode(path)
+    if isinstance(error, FileNotFoundError):
+        return LabialError(f"{name}: there is no folder {os.path.dirname(name) or '.'}")
+    return LabialError(f"{name}: {error.strerror or error}")
+
+
+def _translated(error: OSError, staging: Path, target: Path) -> Exception:
+    """Replaces the name of a temporary file in an error by its target."""
+    if error.filename is None:
+        return _failure(target, error)
+    name = os.fsdecode(error.filename)
+    if not name.startswith(str(staging)):
+        return error
+    return _failure(Path(str(target) + name[len(str(staging)):]), error)

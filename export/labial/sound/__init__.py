@@ -1,0 +1,1 @@
+"""Sound: reading sound and video, and forced alignment of phonemes (``labial align``)."""

@@ -1,0 +1,179 @@
+"""PocketSphinx with its English models: phonemes of a piece of sound, with or without its words."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+from pocketsphinx import Decoder
+
+from labial.corpus.episode import Segment
+from labial.corpus.phonesets import ARPABET
+from labial.sound.confidence import UNTOLD, Heard
+from labial.sound.samples import RATE
+
+#: Frames per second, and how far a frame's middle lies behind its number: its window is longer than its step.
+FRAME_RATE = 100
+_OFFSET = (0.025625 - 1 / FRAME_RATE) / 2
+#: Beam width that follows even a text that fits badly.
+_BEAM = 1e-200
+_WIDE = {"beam": _BEAM, "wbeam": _BEAM, "pbeam": _BEAM, "bestpath": False}
+#: Beam width that suffices for the second pass.
+_NARROW = {"beam": 1e-64, "wbeam": 1e-48, "pbeam": 1e-64, "bestpath": False}
+#: Words of one phoneme, which stand for what the text lacks, are called by this and the phoneme.
+_PHONE = "_"
+#: Probabilities of such a word between two phrases, and of a phrase that is not said. They are weighed by the decoder's
+#: language weight, 6.5.
+_BETWEEN, _LEFT_OUT = 1e-5, 1e-6
+#: A second pass on 30 ms of sound at least: a phoneme has three states.
+_SHORTEST = int(0.1 * RATE)
+
+
+class Found(NamedTuple):
+    """Phonemes in seconds of a piece of sound."""
+
+    segments: List[Segment]
+    score: float  #: of the mean frame
+    heard: List[Heard]  #: the same, each with its score
+
+
+class Recogniser:
+    """Three decoders, each created on first use: one follows words, one follows phrases with any phonemes between them,
+    one finds words."""
+
+    def __init__(self) -> None:
+        self._follower: Optional[Decoder] = None
+        self._finder: Optional[Decoder] = None
+        self._loose: Optional[Decoder] = None
+        self._learnt: Dict[str, str] = {}
+
+    @property
+    def follower(self) -> Decoder:
+        """The decoder that follows words; its dictionary can be extended."""
+        if self._follower is None:
+            self._follower = Decoder(lm=None, loglevel="FATAL", **_WIDE)
+        return self._follower
+
+    def lookup(self, word: str) -> Optional[str]:
+        """The dictionary's phonemes of a word, or None."""
+        found = self.follower.lookup_word(word)
+        return str(found) if found else None
+
+    def learn(self, pronunciations: Dict[str, str]) -> None:
+        """Adds words to the dictionary."""
+        self._learnt.update(pronunciations)
+        for decoder in (self.follower, self._loose):
+            if decoder is not None:
+                _learn(decoder, pronunciations)
+
+    def follow(self, samples: np.ndarray, words: Sequence[str]) -> Optional[List[Tuple[str, float, float]]]:
+        """`words` and the silences between them with begin and end in seconds; None where they do not fit at all.
+
+        `samples` is (N,) int16 at `RATE`. All of the words are in it.
+        """
+        if len(samples) < _SHORTEST or not words:
+            return None
+        self.follower.set_align_text(" ".join(words))
+        return _words(self.follower, samples)
+
+    def follow_part(self, samples: np.ndarray, words: Sequence[str]) -> List[Tuple[str, float, float]]:
+        """Like :meth:`follow`, but `words` may continue after the end of `samples`; [] if they do not fit at all."""
+        states = len(words)
+        steps = [(state, state + 1, 1.0, word) for state, word in enumerate(words)]
+        ways_out = [(state, states + 1, 1.0) for state in range(states + 1)]
+        self.follower.add_fsg("part", self.follower.create_fsg("part", 0, states + 1, [*steps, *ways_out]))
+        self.follower.activate_search("part")
+        return _words(self.follower, samples)
+
+    def loosely(self, samples: np.ndarray, phrases: Sequence[Sequence[str]]) -> Optional[Tuple[Found, int]]:
+        """Phonemes where any of `phrases`, which may be none, may be missing and anything may be said between them, and
+        how many words of them are behind when the sound ends; None where no phoneme is found."""
+        if len(samples) < _SHORTEST:
+            return None
+        if self._loose is None:
+            self._loose = Decoder(lm=None, loglevel="FATAL", **_NARROW)
+            phones = {_PHONE + phone: phone for phone in ARPABET}
+            _learn(self._loose, {**self._learnt, **phones})
+            _learn(self.follower, phones)
+        words = [word for phrase in phrases for word in phrase]
+        bounds = [0, *itertools.accumulate(map(len, phrases))]
+        end = len(words) + 1
+        steps = [(state, state + 1, 1.0, word) for state, word in enumerate(words)]
+        steps += [(bound, bound, _BETWEEN, _PHONE + phone) for bound in bounds for phone in ARPABET]
+        left_out = [(bound, after, _LEFT_OUT) for bound, after in zip(bounds, bounds[1:])]
+        ways_out = [(state, end, 1.0) for state in range(end)]
+        self._loose.add_fsg("loose", self._loose.create_fsg("loose", 0, end, [*steps, *left_out, *ways_out]))
+        self._loose.activate_search("loose")
+        told = [word.split("(")[0] for word, _, _ in _words(self._loose, samples)
+                if word[0] not in "<[("]  # neither silence nor a step without a word
+        found = self.phonemes(samples, told)
+        return None if found is None else (found, _behind(phrases, told))
+
+    def phonemes(self, samples: np.ndarray, words: Sequence[str]) -> Optional[Found]:
+        """Phonemes of `words` in seconds of `samples`, as of :func:`_phonemes`; None as above."""
+        return _phonemes(self.follower, samples) if self.follow(samples, words) else None
+
+    def find(self, samples: np.ndarray) -> Optional[Found]:
+        """Phonemes of the most probable words of `samples`; None without any."""
+        if len(samples) < _SHORTEST:
+            return None
+        if self._finder is None:
+            self._finder = Decoder(loglevel="FATAL", fwdflat=False, maxhmmpf=5000)
+        self._finder.activate_search()
+        return _phonemes(self._finder, samples) if _words(self._finder, samples) else None
+
+
+def _behind(phrases: Sequence[Sequence[str]], told: Sequence[str]) -> int:
+    """How many words of `phrases` are behind when `told`, words of some of them in order, end."""
+    told = [word for word in told if not word.startswith(_PHONE)]
+    at = count = behind = 0
+    for phrase in phrases:
+        count += len(phrase)
+        rest = told[at : at + len(phrase)]
+        if rest and list(phrase[: len(rest)]) == rest:
+            at += len(rest)
+            behind = count - len(phrase) + len(rest)
+    return behind
+
+
+def _learn(decoder: Decoder, pronunciations: Dict[str, str]) -> None:
+    for number, (word, phonemes) in enumerate(pronunciations.items(), 1):
+        decoder.add_word(word, phonemes, number == len(pronunciations))
+
+
+def _decode(decoder: Decoder, samples: np.ndarray) -> None:
+    decoder.start_utt()
+    decoder.process_raw(samples.tobytes(), full_utt=True)
+    decoder.end_utt()
+
+
+def _words(decoder: Decoder, samples: np.ndarray) -> List[Tuple[str, float, float]]:
+    _decode(decoder, samples)
+    if decoder.hyp() is None:
+        return []
+    return [(segment.word, segment.start_frame / FRAME_RATE, (segment.end_frame + 1) / FRAME_RATE)
+            for segment in decoder.seg()]
+
+
+def _phonemes(decoder: Decoder, samples: np.ndarray) -> Optional[Found]:
+    """The second pass, behind :func:`_words`: phonemes, each with the mean score of its frames, and that of all of
+    them, which is 0 where each frame is what the models expect and falls where they do not know the sound."""
+    try:
+        decoder.set_alignment()
+        _decode(decoder, samples)  # no hyp() from here on: it crashes in this search
+        found = [(word.name, phone) for word in decoder.get_alignment() for phone in word]
+    except RuntimeError:
+        return None
+    segments, heard = [], []
+    for word, phone in found:
+        start = phone.start / FRAME_RATE + (_OFFSET if phone.start else 0.0)
+        label = phone.name if phone.name.isalpha() else "SIL"
+        segments.append(Segment(start, (phone.start + phone.duration) / FRAME_RATE + _OFFSET, label))
+        score = UNTOLD if word.startswith(_PHONE) else phone.score / max(phone.duration, 1)
+        heard.append(Heard(start, segments[-1].end, label, score))
+    sounding = [item for item in heard if item.label != "SIL"]
+    if not sounding:
+        return None
+    length = np.array([item.end - item.start for item in sounding])
+    return Found(segments, float(np.average([item.score for item in sounding], weights=length)), heard)

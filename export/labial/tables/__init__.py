@@ -1,0 +1,1 @@
+"""A trained model, and its integer tables, which the C library reads."""

@@ -1,0 +1,400 @@
+/*
+ * flat.c - the library without structures (flat.h).
+ */
+#include "flat.h"
+
+#include <string.h>
+
+#include "models.h"
+
+#ifdef FLAT_FACES
+#include "attribution.h"
+#include "faces.h"
+#endif
+
+#define TEXT(x) #x
+#define NUMBER(x) TEXT(x)
+
+uint32_t flat_interface(void)
+{
+    return FLAT_INTERFACE;
+}
+
+const char *flat_version(void)
+{
+    return NUMBER(LABIAL_VERSION_MAJOR) "." NUMBER(LABIAL_VERSION_MINOR) "." NUMBER(LABIAL_VERSION_PATCH);
+}
+
+const char *result_text(int result)
+{
+    return labial_result_text(result);
+}
+
+/* ---- Sizes ------------------------------------------------------------------------------------------------------- */
+
+uint32_t mouth_size(void)
+{
+    return sizeof(mouth_t);
+}
+
+uint32_t blob_size(void)
+{
+    return sizeof(labial_blob_t);
+}
+
+uint32_t laugh_size(void)
+{
+    return sizeof(labial_laugh_t);
+}
+
+uint32_t timings_size(void)
+{
+    return sizeof(labial_timings_t);
+}
+
+uint32_t rig_output_size(void)
+{
+    return sizeof(labial_rig_output_t);
+}
+
+uint32_t rig_curve_size(void)
+{
+    return sizeof(labial_rig_curve_t);
+}
+
+/* ---- Models and names -------------------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *name;
+    const labial_model_t *model;
+    const labial_names_t *names;
+} bundled[] = { LABIAL_BUNDLED };
+#define BUNDLED (sizeof bundled / sizeof bundled[0])
+
+const char *bundled_name(unsigned number)
+{
+    return number < BUNDLED ? bundled[number].name : NULL;
+}
+
+const labial_model_t *bundled_model(unsigned number)
+{
+    return number < BUNDLED ? bundled[number].model : NULL;
+}
+
+const labial_names_t *bundled_names(unsigned number)
+{
+    return number < BUNDLED ? bundled[number].names : NULL;
+}
+
+unsigned model_phonemes(const labial_model_t *model)
+{
+    return model->phoneme_count;
+}
+
+unsigned model_silence(const labial_model_t *model)
+{
+    return model->silence;
+}
+
+unsigned model_rate(const labial_model_t *model)
+{
+    return model->frames_per_second;
+}
+
+unsigned model_stride(const labial_model_t *model)
+{
+    return model->search_stride;
+}
+
+int model_load(labial_blob_t *blob, const void *data, uint32_t size)
+{
+    return labial_model_load(blob, data, size);
+}
+
+unsigned names_phonemes(const labial_names_t *names)
+{
+    return names->phoneme_count;
+}
+
+const char *label_at(const labial_names_t *names, unsigned phoneme)
+{
+    return phoneme < names->phoneme_count ? names->labels[phoneme] : "";
+}
+
+int find(const labial_names_t *names, unsigned labels, const char *name, uint32_t length)
+{
+    return labial_find_in(names, (labial_labels_t)labels, name, length);
+}
+
+int find_nearest(const labial_names_t *names, unsigned labels, const char *name, uint32_t length, unsigned silence)
+{
+    return labial_find_nearest(names, (labial_labels_t)labels, name, length, silence);
+}
+
+/* ---- Streams ----------------------------------------------------------------------------------------------------- */
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    mouth_t *mouth = (mouth_t *)user;
+    memcpy(mouth->faps, faps, sizeof mouth->faps);
+    (void)frame;
+}
+
+int mouth_init(mouth_t *mouth, const labial_model_t *model)
+{
+    memset(mouth, 0, sizeof *mouth);
+    return labial_init(&mouth->stream, model, mouth->workspace, sizeof mouth->workspace, on_frame, mouth);
+}
+
+int mouth_use(mouth_t *mouth, const labial_model_t *model)
+{
+    return labial_use(&mouth->stream, model);
+}
+
+int mouth_push(mouth_t *mouth, unsigned phoneme, uint32_t milliseconds)
+{
+    return labial_push(&mouth->stream, phoneme, milliseconds);
+}
+
+unsigned mouth_room(const mouth_t *mouth)
+{
+    return labial_room(&mouth->stream);
+}
+
+int mouth_end(mouth_t *mouth)
+{
+    return labial_end(&mouth->stream);
+}
+
+int mouth_cancel(mouth_t *mouth, uint32_t milliseconds)
+{
+    return labial_cancel(&mouth->stream, milliseconds);
+}
+
+int mouth_restart(mouth_t *mouth)
+{
+    return labial_restart(&mouth->stream);
+}
+
+int mouth_articulation(mouth_t *mouth, unsigned percent)
+{
+    return labial_articulation(&mouth->stream, percent);
+}
+
+int mouth_tick(mouth_t *mouth)
+{
+    mouth->state = labial_tick(&mouth->stream);
+    return mouth->state;
+}
+
+const int16_t *mouth_faps(const mouth_t *mouth)
+{
+    return mouth->faps;
+}
+
+int mouth_state(const mouth_t *mouth)
+{
+    return mouth->state;
+}
+
+uint32_t mouth_held(const mouth_t *mouth)
+{
+    return labial_latency(&mouth->stream).frames;
+}
+
+uint32_t mouth_milliseconds(const mouth_t *mouth)
+{
+    return labial_latency(&mouth->stream).milliseconds;
+}
+
+unsigned mouth_waiting(const mouth_t *mouth)
+{
+    return labial_latency(&mouth->stream).phonemes;
+}
+
+unsigned mouth_delay(const mouth_t *mouth)
+{
+    return labial_latency(&mouth->stream).delay;
+}
+
+int mouth_run(mouth_t *mouth, int16_t *out, unsigned count)
+{
+    unsigned underway = labial_latency(&mouth->stream).delay, frames = 0;
+    while (frames < count) {
+        const int result = mouth_tick(mouth);
+        if (result < 0)
+            return result;
+        if (result == LABIAL_OK)
+            memcpy(&out[LABIAL_CHANNELS * frames++], mouth->faps, sizeof mouth->faps);
+        else if (result != LABIAL_WAITING || underway-- == 0)
+            break;
+    }
+    return (int)frames;
+}
+
+/* ---- Laughs ------------------------------------------------------------------------------------------------------ */
+
+int laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
+{
+    return labial_laugh_begin(laugh, milliseconds, intensity, seed);
+}
+
+int laugh_next(labial_laugh_t *laugh, uint32_t *out)
+{
+    unsigned phoneme = 0;
+    const int result = labial_laugh_next(laugh, &phoneme, &out[1]);
+    out[0] = phoneme;
+    return result;
+}
+
+int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out)
+{
+    return labial_blend(&labial_blend_default, intensity, words, speech, laugh, out);
+}
+
+/* ---- Rigs -------------------------------------------------------------------------------------------------------- */
+
+void rig_output(labial_rig_output_t *output, labial_rig_curve_t *curve, const int32_t *numbers)
+{
+    const int32_t *const rest = &numbers[LABIAL_CHANNELS];
+    memset(output, 0, sizeof *output);
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
+        output->weights[i] = (int16_t)numbers[i];
+    output->gain = rest[0];
+    output->neutral = rest[1];
+    output->minimum = rest[2];
+    output->maximum = rest[3];
+    output->invert = (uint8_t)rest[4];
+    output->contact = (uint8_t)rest[5];
+    output->closed = rest[6];
+    output->slew = rest[7];
+    output->deadband = rest[8];
+    output->acceleration = rest[9];
+    if (rest[10] == 0)
+        return;
+    memset(curve, 0, sizeof *curve);
+    curve->count = (uint16_t)rest[10];
+    memcpy(curve->segments, &rest[11], sizeof curve->segments);
+    output->curve = curve;
+}
+
+int rig_check(const labial_rig_output_t *outputs, unsigned count)
+{
+    const labial_rig_t rig = { outputs, (uint16_t)count };
+    return labial_rig_check(&rig);
+}
+
+int rig_rest(const labial_rig_output_t *outputs, unsigned count, int32_t *values)
+{
+    const labial_rig_t rig = { outputs, (uint16_t)count };
+    return labial_rig_rest(&rig, values);
+}
+
+int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, unsigned frames, int32_t *values,
+              int32_t *changes)
+{
+    const labial_rig_t rig = { outputs, (uint16_t)count };
+    return labial_rig_apply_ahead(&rig, faps, (uint16_t)frames, values, changes);
+}
+
+void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, int32_t *values)
+{
+    const labial_rig_t rig = { outputs, (uint16_t)count };
+    labial_rig_rest(&rig, values);
+    labial_rig_apply(&rig, faps, values);
+}
+
+/* ---- Timings ----------------------------------------------------------------------------------------------------- */
+
+const char *timings_name(unsigned format)
+{
+    return labial_timings_format_name(format);
+}
+
+const char *timings_suffix(unsigned format)
+{
+    return labial_timings_format_suffix(format);
+}
+
+int timings_init(labial_timings_t *timings, unsigned format, const char *tier, unsigned tier_number)
+{
+    const int result = labial_timings_init(timings, (labial_timings_format_t)format);
+    timings->tier = tier;
+    timings->tier_number = tier_number;
+    return result;
+}
+
+static int told(const labial_timing_t *timing, int result, double *times, int32_t *numbers)
+{
+    if (result == LABIAL_OK) {
+        times[0] = (double)timing->start / 1e9;
+        times[1] = (double)timing->end / 1e9;
+        times[2] = timing->has_apex ? (double)timing->apex / 1e9 : -1.0;
+        numbers[1] = (int32_t)timing->line;
+        numbers[2] = timing->laugh;
+        numbers[3] = timing->xsampa;
+    }
+    return result;
+}
+
+int timings_next(labial_timings_t *timings, const char *text, uint32_t size, double *times, int32_t *numbers)
+{
+    labial_timing_t timing;
+    size_t used = 0;
+    const int result = labial_timings_next(timings, text, size, &used, &timing);
+    numbers[0] = (int32_t)used;
+    return told(&timing, result, times, numbers);
+}
+
+int timings_end(labial_timings_t *timings, double *times, int32_t *numbers)
+{
+    labial_timing_t timing;
+    return told(&timing, labial_timings_end(timings, &timing), times, numbers);
+}
+
+const char *timings_label(const labial_timings_t *timings)
+{
+    return timings->found.label;
+}
+
+const char *timings_word(const labial_timings_t *timings)
+{
+    return timings->found.word;
+}
+
+const char *timings_message(const labial_timings_t *timings)
+{
+    return timings->message;
+}
+
+uint32_t timings_line(const labial_timings_t *timings)
+{
+    return timings->line;
+}
+
+/* ---- Faces ------------------------------------------------------------------------------------------------------- */
+
+#ifdef FLAT_FACES
+
+const char *face_name(unsigned face)
+{
+    return face < faces_count ? faces[face].name : NULL;
+}
+
+const char *weight_name(unsigned face, unsigned weight)
+{
+    return weight < faces[face].rig->count ? faces[face].outputs[weight] : NULL;
+}
+
+void weigh(unsigned face, const int16_t *faps, int32_t *out)
+{
+    labial_rig_rest(faces[face].rig, out);
+    labial_rig_apply(faces[face].rig, faps, out);
+}
+
+const char *attribution(void)
+{
+    return LABIAL_ATTRIBUTION;
+}
+
+#endif

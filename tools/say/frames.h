@@ -1,0 +1,65 @@
+/*
+ * frames.h - frames written as text.
+ *
+ *   csv       a header `time,fap3,fap16,...`, then a line per frame, written as it comes: seconds with three decimals
+ *             and the 13 channels in FAP units.
+ *   fap       MPEG-4 text: a header `2.1 NAME FPS NFRAMES`, then two lines per frame: a mask of 68 zeros and ones, and
+ *             the frame's number followed by the value of each FAP whose mask is one, here the 23 of inner and outer
+ *             lips. The header needs the number of frames, so they are kept in memory and written by frames_finish().
+ *   livelink  what Epic's Live Link Face records: `Timecode,BlendShapeCount,` and 61 columns, ARKit's blendshapes from
+ *             0 to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
+ *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
+ *             lips and jaw move, from 0 to 1.
+ *   A face's name, one of those of faces.h
+ *             a JSON object per line: `frame`, `time` in seconds, and one with the face's name that holds its weights
+ *             from 0 to 1, such as those of ARKit's blendshapes, VRM's five mouths or the 15 visemes of Oculus LipSync.
+ *
+ * The formats are one list, in frames.c, to which the faces are added.
+ */
+#ifndef LABIAL_EXAMPLE_FRAMES_H
+#define LABIAL_EXAMPLE_FRAMES_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "faces.h"
+#include "labial/faps.h"
+#include "labial/labial.h"
+
+typedef struct frames_format frames_format_t; /* of frames.c */
+
+/* A writer. Private. */
+typedef struct {
+    FILE *out;
+    const frames_format_t *format;
+    const char *name;
+    unsigned frames_per_second;
+    uint32_t count;
+    int failed;
+    const face_t *face;                 /* null where a format has no weights */
+    int32_t weights[FACES_OUTPUTS_MAX]; /* of the latest frame */
+    int16_t (*kept)[LABIAL_CHANNELS];   /* fap: `count` frames in room for `room`, owned */
+    size_t room;
+} frames_t;
+
+/* The name of a format, numbered from 0, which is csv; null beyond the last. */
+const char *frames_format_name(unsigned format);
+
+/* Writes what --help says of every format. */
+void frames_help(FILE *out);
+
+/* Prepares a writer and writes what precedes the first frame. `name` is the animation's in a fap file and must stay
+ * valid. frames_finish() releases what the writer owns. */
+void frames_init(frames_t *frames, FILE *out, unsigned format, const char *name, unsigned frames_per_second);
+
+/* Appends a frame. Failures are remembered and returned by frames_flush() and frames_finish(). */
+void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS]);
+
+/* Sends what is written so far on its way. Returns 0, or -1 when writing failed or memory was short. */
+int frames_flush(frames_t *frames);
+
+/* Writes what is still kept and flushes, or drops it when `complete` is 0. Returns as frames_flush() does. */
+int frames_finish(frames_t *frames, int complete);
+
+#endif

@@ -1,0 +1,32 @@
+import type { Faps, Stream, Track } from "./index.js";
+
+/** The element <labial-mouth>: a drawn mouth, 430 wide by 412 high unless CSS says otherwise. The colours behind the
+ * face are the CSS variables --labial-backdrop-top and --labial-backdrop-bottom.
+ *
+ * A source is a track or a stream with the output "faps"; setting one starts it. With an audio element, the drawn frame
+ * is within half a frame period of the sound, at any speed and, for a track, through jumps. After the sound's end the
+ * source continues by the clock, and so does a source without a sound. */
+export class LabialMouth extends HTMLElement {
+    /** The sound to follow: the one that was set, else the element whose id the attribute `for` names. */
+    get audio(): HTMLMediaElement | null;
+    set audio(audio: HTMLMediaElement | null);
+    /** The track that is drawn; its time 0 is that of the sound. */
+    get track(): Track<"faps"> | null;
+    set track(track: Track<"faps"> | null);
+    /** The stream that is drawn: the element ticks it. Its first frame is due at time 0 of the sound. */
+    get stream(): Stream<"faps"> | null;
+    set stream(stream: Stream<"faps"> | null);
+    /** The drawn frame: 13 FAPs, interpolated for a track. The same object each time. */
+    readonly faps: Float32Array;
+    /** Draws the given frame. Throws a TypeError unless there are 13 FAPs. */
+    show(faps: Faps | ArrayLike<number>): void;
+    /** Interrupts: pauses the sound and eases to the neutral face within so many milliseconds, by default 200. Resolves
+     * when the face is at rest, or when another source is set. */
+    cancel(milliseconds?: number): Promise<void>;
+}
+
+declare global {
+    interface HTMLElementTagNameMap {
+        "labial-mouth": LabialMouth;
+    }
+}

@@ -1,0 +1,213 @@
+// <labial-mouth>: draws a mouth from a track or a stream and follows a sound. labial-mouth.d.ts documents it.
+import { CHANNELS, createMouth, follow } from "./mouth.js";
+
+/** Plays a track: any moment of it, interpolated between frames. */
+class TrackPlayer {
+    #track;
+
+    constructor(track) {
+        this.#track = track;
+        this.period = 1 / track.rate;
+    }
+
+    at(seconds) {
+        return this.#track.at(seconds);
+    }
+
+    over(seconds) {
+        return seconds >= this.#track.duration;
+    }
+}
+
+/** Eases from a frame to the neutral face. */
+class Easing {
+    #from;
+    #seconds;
+
+    constructor(faps, milliseconds) {
+        this.#from = Array.from(faps);
+        this.#seconds = milliseconds / 1000;
+    }
+
+    at(seconds) {
+        return this.#from.map((value) => (this.over(seconds) ? 0 : value * (1 - seconds / this.#seconds)));
+    }
+
+    over(seconds) {
+        return seconds >= this.#seconds;
+    }
+}
+
+/** Plays a stream: one frame after the other. */
+class StreamPlayer {
+    #stream;
+    #frame = new Array(CHANNELS.length).fill(0);
+    #shown = 0; // frames since time 0
+
+    constructor(stream) {
+        this.#stream = stream;
+        this.period = 1 / stream.rate;
+    }
+
+    /** Ticks until the due frame is ready, or until none comes; then the last one stays. */
+    at(seconds) {
+        const due = Math.floor(seconds / this.period + 1e-6) + 1;
+        let underway = this.#stream.latency.delay;
+        while (this.#shown < due) {
+            const frame = this.#stream.tick();
+            if (frame) {
+                this.#frame = Array.from(frame);
+                this.#shown++;
+            } else if (this.#stream.done || this.#stream.starved || underway-- <= 0) {
+                break;
+            }
+        }
+        return this.#frame;
+    }
+
+    over() {
+        return this.#stream.done;
+    }
+
+    /** From now on, from time 0, the stream itself eases to the neutral face. */
+    cancel(milliseconds) {
+        this.#stream.cancel(milliseconds);
+        this.#shown = 0;
+    }
+}
+
+const STYLE = ":host, div, svg { display: block } div, svg { width: 100%; height: 100% }";
+
+/** Node has no elements, but the module may be imported there. */
+const Base = globalThis.HTMLElement ?? class {};
+
+export class LabialMouth extends Base {
+    #draw;
+    #faps = new Float32Array(CHANNELS.length);
+    #source = null;
+    #player = null;
+    #audio = null;
+    #position = 0; // seconds
+    #before = null; // when the last animation frame was, milliseconds
+    #asked = 0; // the next animation frame
+    #rest = null; // of a source that is cancelled: the promise of cancel() and what resolves it
+
+    constructor() {
+        super();
+        const root = this.attachShadow({ mode: "open" });
+        root.innerHTML = `<style>${STYLE}</style><div></div>`;
+        this.#draw = createMouth(root.querySelector("div"));
+        this.show(this.#faps);
+    }
+
+    connectedCallback() {
+        this.#ask();
+    }
+
+    disconnectedCallback() {
+        this.#halt();
+        this.#before = null;
+        if (this.#rest) this.#take(null, null);
+    }
+
+    get audio() {
+        return this.#audio ?? this.getRootNode().getElementById?.(this.getAttribute("for")) ?? null;
+    }
+
+    set audio(audio) {
+        this.#audio = audio;
+    }
+
+    get track() {
+        return this.#player instanceof TrackPlayer ? this.#source : null;
+    }
+
+    set track(track) {
+        this.#take(track, track && new TrackPlayer(track));
+    }
+
+    get stream() {
+        return this.#player instanceof StreamPlayer ? this.#source : null;
+    }
+
+    set stream(stream) {
+        this.#take(stream, stream && new StreamPlayer(stream));
+    }
+
+    get faps() {
+        return this.#faps;
+    }
+
+    show(faps) {
+        if (faps.length !== CHANNELS.length) {
+            throw new TypeError(`a frame has ${CHANNELS.length} FAPs; what is drawn has the output "faps"`);
+        }
+        this.#faps.set(faps);
+        this.#draw(this.#faps);
+    }
+
+    cancel(milliseconds = 200) {
+        if (this.#rest) return this.#rest.promise;
+        this.audio?.pause();
+        const streams = this.#player instanceof StreamPlayer && !this.#player.over();
+        if (streams) this.#player.cancel(milliseconds);
+        if (!this.isConnected || (!streams && !this.#faps.some(Boolean))) {
+            this.#take(null, null);
+            return Promise.resolve();
+        }
+        this.#take(this.#source, streams ? this.#player : new Easing(this.#faps, milliseconds));
+        this.#rest = {};
+        this.#rest.promise = new Promise((resolve) => { this.#rest.resolve = resolve; });
+        return this.#rest.promise;
+    }
+
+    #take(source, player) {
+        this.#rested();
+        this.#source = source || null;
+        this.#player = player || null;
+        this.#position = 0;
+        this.#before = null;
+        if (!player) this.#halt();
+        this.#ask();
+    }
+
+    #halt() {
+        cancelAnimationFrame(this.#asked);
+        this.#asked = 0;
+    }
+
+    #rested() {
+        this.#rest?.resolve();
+        this.#rest = null;
+    }
+
+    #ask() {
+        if (this.#asked || !this.#player || !this.isConnected) return;
+        this.#asked = requestAnimationFrame((now) => this.#step(now));
+    }
+
+    /** One animation frame. */
+    #step(now) {
+        this.#asked = 0;
+        const player = this.#player;
+        const audio = this.#rest ? null : this.audio;
+        this.#position = this.#moment(audio, (now - (this.#before ?? now)) / 1000);
+        this.#before = now;
+        this.show(player.at(this.#position));
+        if (player.over(this.#position)) {
+            if (this.#rest) this.#take(null, null);
+            if (!audio) return;
+        }
+        this.#ask();
+    }
+
+    /** The time to show now, seconds: the time of the sound; without a sound, or after it, that of the clock. */
+    #moment(audio, passed) {
+        if (!audio || audio.ended) return this.#position + passed;
+        const waits = audio.paused || audio.seeking || audio.readyState < HTMLMediaElement.HAVE_FUTURE_DATA;
+        if (waits) return audio.currentTime;
+        return follow(this.#position + passed * audio.playbackRate, audio.currentTime, this.#player.period);
+    }
+}
+
+globalThis.customElements?.define("labial-mouth", LabialMouth);
