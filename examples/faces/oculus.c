@@ -33,9 +33,9 @@ static const labial_rig_output_t outputs[10] = {
     /* aa: 1.12989 per FAP unit of (-0.122 open_jaw -0.472 lower_t_midlip_o -1 raise_b_midlip_o) */
     { { -1999, 0, 0, -7733, -16384, 0, 0, 0, 0, 0, 0, 0, 0 },
       0, 0, 18512, -86, 0, 1000, 0, 0, 0, 0, 0 },
-    /* oh: 1.51332 per FAP unit of (-0.274 push_t_lip -0.5 stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
+    /* oh: 1.60412 per FAP unit of (-0.274 push_t_lip -0.5 stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
     { { 0, 0, -4489, 0, 0, -8192, -8192, 0, 0, 0, 0, 0, 0 },
-      0, 0, 24794, 0, 0, 1000, 0, 0, 0, 0, 0 },
+      0, 0, 26282, -60, 0, 1000, 0, 0, 0, 0, 0 },
     /* ou: 2.44115 per FAP unit of (+1 push_t_lip +0.2 raise_b_midlip_o -0.4 stretch_l_cornerlip_o -0.4
      * stretch_r_cornerlip_o) */
     { { 0, 0, 16384, 0, 3277, -6554, -6554, 0, 0, 0, 0, 0, 0 },

@@ -126,7 +126,8 @@ def with_something_left(corpora: Sequence[Sequence[Episode]]) -> List[List[Episo
 def brought_together(corpora: Sequence[Sequence[Episode]], silence: str) -> List[List[Episode]]:
     """The corpora with each recording's mean and standard deviation per channel, outside `silence`, brought to those of
     the first corpus: the means over its recordings' frames. In channels whose scale a further corpus says to be its
-    own, the standard deviation is that of the last such corpus. One recording alone stays as it is."""
+    own, the standard deviation is that of the last such corpus, and the mean is as far from the first corpus's rest
+    position as that scale makes it. One recording alone stays as it is."""
     values = _sounding((item for corpus in corpora for item in corpus), silence)
     if len(values) < 2:
         return [list(corpus) for corpus in corpora]
@@ -142,7 +143,10 @@ def brought_together(corpora: Sequence[Sequence[Episode]], silence: str) -> List
         channels = sorted(frozenset().union(*(item.source.scales for item in corpus)))
         own = list(dict.fromkeys(item.source.recording for item in corpus))
         if channels and sum(share[name] for name in own):
-            deviation[channels] = _common_deviation(own, moments, share)[channels]
+            factor = _common_deviation(own, moments, share)[channels] / np.maximum(deviation[channels], 1e-9)
+            rest = _rest(corpora[0], silence, mean)[channels]
+            mean[channels] = rest + (mean[channels] - rest) * factor
+            deviation[channels] *= factor
             rescaled = True
     stays = first if len(first) == 1 and not rescaled else []
     return [[item if item.source.recording in stays else _brought(item, moments[item.source.recording], mean, deviation)
@@ -155,6 +159,12 @@ def _sounding(corpus: Iterable[Episode], silence: str) -> Dict[str, np.ndarray]:
     for item in corpus:
         values.setdefault(item.source.recording, []).append(item.frames[item.sounding(silence)])
     return {name: np.concatenate(frames) for name, frames in values.items()}
+
+
+def _rest(corpus: Sequence[Episode], silence: str, default: np.ndarray) -> np.ndarray:
+    """(13,) FAP: the median pose of the corpus's silences that are learnt from, or `default` if it has none."""
+    frames = [item.frames[~item.sounding(silence)] for item in corpus if item.source.silences]
+    return np.median(np.concatenate(frames), axis=0) if sum(map(len, frames)) else default
 
 
 def _common_deviation(

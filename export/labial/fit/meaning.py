@@ -58,7 +58,7 @@ def rows(head: Head, frames: np.ndarray) -> List[Row]:
     gap("opening", 3.0, "inner_upper", "inner_lower", 51, 52)
     gap("opening left", 1.5, "inner_upper_left", "inner_lower_left", 55, 57)
     gap("opening right", 1.5, "inner_upper_right", "inner_lower_right", 56, 58)
-    found.append(Row("width", 1.0, head.moves["corner_left"][:, 0] - head.moves["corner_right"][:, 0],
+    found.append(Row("width", 1.5, head.moves["corner_left"][:, 0] - head.moves["corner_right"][:, 0],
                      (fap(frames, 53) + fap(frames, 54)) * wide, 0.0))
     outer = "outer" if "outer_upper" in head.rest and "outer_lower" in head.rest else "inner"
     point("upper lip", 1.5, f"{outer}_upper", 1, 51, -1.0)
@@ -67,7 +67,7 @@ def rows(head: Head, frames: np.ndarray) -> List[Row]:
         point(f"upper lip {side}", 0.5, f"outer_upper_{side}", 1, numbers[0], -1.0)
         point(f"lower lip {side}", 0.5, f"outer_lower_{side}", 1, numbers[1], 1.0)
         point(f"corner {side}", 0.7, f"corner_{side}", 1, numbers[2], 1.0)
-    point("upper lip forward", 0.7, f"{outer}_upper", 2, 17, 1.0)
-    point("lower lip forward", 0.5, f"{outer}_lower", 2, 16, 1.0)
+    point("upper lip forward", 0.35, f"{outer}_upper", 2, 17, 1.0)
+    point("lower lip forward", 0.15, f"{outer}_lower", 2, 16, 1.0)
     point("jaw", 0.35, "chin", 1, 3, -1.0)
     return found

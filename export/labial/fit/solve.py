@@ -171,8 +171,8 @@ class Problem:
             for place, rest, share in gaps:
                 gap = error[:, place] + target[:, place] + rest
                 wide = np.where(self.contact, np.maximum(gap - self.wishes.shut, 0.0), 0.0)
-                total += 64.0 * share * float(wide @ wide) / touching
-                slope[:, place] += 128.0 * share * wide / touching
+                total += 192.0 * share * float(wide @ wide) / touching
+                slope[:, place] += 384.0 * share * wide / touching
                 through = np.maximum(self.wishes.deep - gap, 0.0)
                 total += 36.0 * float(through @ through) / self.count
                 slope[:, place] -= 72.0 * through / self.count
@@ -187,7 +187,7 @@ class Problem:
         """The best (T, K) weights of each frame separately, tied to those of a rig: accelerated projected gradient."""
         steepest = 0.24 * float(self.cost.max()) + 2.0 * tie
         for moves, _, importance, gaps in self.heads:
-            hinge = (128.0 * self.count / (12.0 * max(int(self.contact.sum()), 1)) + 72.0)
+            hinge = (384.0 * self.count / (12.0 * max(int(self.contact.sum()), 1)) + 72.0)
             steepest += (2.0 * np.linalg.norm(moves * np.sqrt(importance)[:, None], 2) ** 2
                          + hinge * sum(share * np.sum(moves[place] ** 2) for place, _, share in gaps)) / len(self.heads)
         found = self.low if start is None else start

@@ -28,8 +28,8 @@ MARGIN = 0.04
 #: The percentile of all human frames that is the lowest target of any phoneme.
 LEAST = 1.0
 
-#: FAPs that come to rest in a pause, jaw and lips, where a phone set makes contacts.
-RESTING = (3, 51, 52, 55, 56, 57, 58)
+#: FAPs that come to rest in a pause, where a phone set makes contacts: all but protrusion.
+RESTING = (3, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60)
 
 #: The rest position comes from frames of pauses at least this far from speech, seconds.
 AWAY = 0.2
