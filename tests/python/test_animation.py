@@ -154,7 +154,7 @@ def test_blendshapes_of_a_face() -> None:
     rest = dict.fromkeys(FAP_NUMBERS, 0.0)
     gestures = {
         "jaw": ({3: 400, 52: -400, 57: -400, 58: -400}, {"jawOpen"}, {"mouthPucker", "mouthRollLower"}),
-        "closed": ({3: 200, 51: 90}, {"mouthClose"}, {"mouthUpperUpLeft", "mouthPucker"}),
+        "closed": ({3: 400, 51: 200}, {"mouthClose"}, {"mouthUpperUpLeft", "mouthPucker"}),
         "lip to teeth": ({3: 260, 51: -35, 52: -100, 55: -35, 56: -35}, {"mouthRollLower"}, {"mouthPucker"}),
         "round": ({17: 150, 16: 150, 53: -150, 54: -150}, {"mouthPucker"}, {"jawOpen", "mouthSmileLeft", "mouthClose"}),
         "smile": ({53: 150, 54: 150, 59: 150, 60: 150}, {"mouthSmileLeft", "mouthSmileRight"},
@@ -166,7 +166,7 @@ def test_blendshapes_of_a_face() -> None:
     for name, (faps, moved, still) in gestures.items():
         weights = {name: column[0] for name, column in arkit(np.array([list({**rest, **faps}.values())])).items()}
         assert all(weights[shape] > 0.1 for shape in moved), (name, weights)
-        assert all(weights[shape] == 0.0 for shape in still), (name, weights)
+        assert all(weights[shape] <= 0.02 for shape in still), (name, weights)
 
 
 def test_columns_are_apples() -> None:
