@@ -160,7 +160,7 @@ def test_blendshapes_of_a_face() -> None:
         "smile": ({53: 150, 54: 150, 59: 150, 60: 150}, {"mouthSmileLeft", "mouthSmileRight"},
                   {"mouthPucker", "jawOpen"}),
         "left": ({53: 150, 59: 150}, {"mouthSmileLeft"}, {"mouthSmileRight", "mouthStretchRight"}),
-        "teeth": ({51: -100, 55: -100, 56: -100}, {"mouthUpperUpLeft", "mouthUpperUpRight"}, {"jawOpen"}),
+        "teeth": ({51: -150, 52: 50, 55: -150, 56: -150}, {"mouthUpperUpLeft", "mouthUpperUpRight"}, {"jawOpen"}),
     }  # fmt: skip
     assert not np.any(list(arkit(np.array([list(rest.values())])).values()))
     for name, (faps, moved, still) in gestures.items():
