@@ -79,7 +79,7 @@ class Player:
 
     def whole(self) -> None:
         """All frames in one call."""
-        frames = self.stream.rest()
+        frames = self.stream.drain()
         self.rows += [tuple(frames[k : k + 13]) for k in range(0, len(frames), 13)]
 
     def ease(self, milliseconds: int, again: List[List[int]]) -> None:

@@ -95,7 +95,7 @@ def test_any_number_of_phonemes_is_held() -> None:
         stream.end()
         first = [next(stream).faps for _ in range(3000)]
         assert stream.latency.frames == 2000
-        rest = np.frombuffer(stream.rest(), dtype=np.int16).reshape(-1, 13)
+        rest = np.frombuffer(stream.drain(), dtype=np.int16).reshape(-1, 13)
     assert len(rest) == 2000
     whole = labial.render([(1 + number % 39, 20) for number in range(5000)])
     assert (np.concatenate([first, rest]) == whole).all()
@@ -146,7 +146,7 @@ def test_laughs_differ_unless_the_seed_is_the_same() -> None:
             for seed in seeds:
                 stream.laugh(1.0, 1, seed)
                 stream.end()
-                found.append(stream.rest().tobytes())
+                found.append(stream.drain().tobytes())
                 stream.restart()
         return found
 
@@ -238,7 +238,7 @@ def test_calls_in_the_wrong_order() -> None:
             with pytest.raises(StreamError, match="the call is not allowed now"):
                 call()
     for call in (lambda: stream.push("AA", 1), lambda: stream.laugh(1), lambda: stream.use(labial.speech_en),
-                 stream.end, stream.cancel, stream.restart, stream.tick, stream.rest, lambda: next(stream),
+                 stream.end, stream.cancel, stream.restart, stream.tick, stream.drain, lambda: next(stream),
                  lambda: stream.articulation(50),
                  lambda: stream.latency, stream.__enter__):
         with pytest.raises(StreamError, match="the stream is closed"):
@@ -307,7 +307,7 @@ def test_rendering_lets_other_threads_run() -> None:
             stream.end()
             counter.start()
             before = counted[0]
-            frames = stream.rest()
+            frames = stream.drain()
             after = counted[0]
     finally:
         done.set()

@@ -52,7 +52,7 @@ class Calling:
 
 @pytest.mark.parametrize("call", [
     lambda stream: stream.cancel(), lambda stream: stream.push("AA", 50), lambda stream: stream.tick(),
-    lambda stream: next(stream), lambda stream: stream.rest(), lambda stream: stream.latency,
+    lambda stream: next(stream), lambda stream: stream.drain(), lambda stream: stream.latency,
     lambda stream: stream.close(), lambda stream: stream.end(), lambda stream: stream.restart(),
 ])  # fmt: skip
 def test_an_argument_that_calls_the_stream_is_refused(call: Callable[[labial.Stream], object]) -> None:
@@ -170,7 +170,7 @@ def test_a_fork_while_another_thread_is_in_a_call() -> None:
             time.sleep(0)
 
         def work() -> None:
-            for call in (busy.tick, busy.cancel, busy.rest):
+            for call in (busy.tick, busy.cancel, busy.drain):
                 with pytest.raises(StreamError, match="another thread was in a call"):
                     call()
             busy.close()
@@ -183,7 +183,7 @@ def test_a_fork_while_another_thread_is_in_a_call() -> None:
         thread.join()
         assert statuses == [0] * 12
         busy.end()
-        assert len(busy.rest()) > 0 and list(idle) == expected
+        assert len(busy.drain()) > 0 and list(idle) == expected
 
 
 def test_a_fork_within_a_call() -> None:

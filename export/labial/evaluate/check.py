@@ -97,7 +97,7 @@ def device_frames(exported: ExportedModel, streams: Sequence[Sequence[Tuple[int,
             for number, milliseconds in phonemes:
                 stream.push(number, milliseconds)
             stream.end()
-            frames.append(np.array(stream.rest(), dtype=np.int64).reshape(-1, CHANNELS))
+            frames.append(np.array(stream.drain(), dtype=np.int64).reshape(-1, CHANNELS))
     return frames
 
 

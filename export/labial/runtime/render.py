@@ -33,7 +33,7 @@ def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter
         for place, timing in enumerate(timings, 1):
             _push(stream, place, timing)
         stream.end()
-        frames = stream.rest()
+        frames = stream.drain()
     return list(zip(*[iter(frames)] * CHANNELS))
 
 

@@ -193,7 +193,7 @@ class Stream:
         return Frame(self._number, tuple(self._library.mouth_faps(self._address)[:13]))
 
     @alone
-    def rest(self) -> array[int]:
+    def drain(self) -> array[int]:
         """All frames that can be computed now, in one call of C: T times 13 int16, FAP units. ``labial.render`` makes
         arrays of them."""
         self._open()
