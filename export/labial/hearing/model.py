@@ -1,0 +1,208 @@
+"""The trained model of hearing: its contents, and the .npz file in which it is stored.
+
+Shapes use H units, B blocks, K taps of a block's memory, C lip classes, and the 13 channels of
+:mod:`labial.files.faps`. The network (:mod:`labial.hearing.network`) hears 48 features in each frame.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import zipfile
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+from typing import Any, BinaryIO, ContextManager, Dict, List, Tuple, Union
+
+import numpy as np
+
+from labial.errors import ModelError
+from labial.files.arrays import ArrayError, array, read_zip
+from labial.files.faps import CHANNELS
+from labial.files.outputs import writing
+from labial.hearing.features import BANDS, HOPS
+from labial.hearing.plans import Memory, Plan
+
+PathLike = Union[str, os.PathLike[str]]
+
+#: Version of the .npz layout, and what tells such a file from a model of speech or laughter.
+FORMAT = 1
+KIND = "hearing"
+#: Features of a frame.
+INPUTS = HOPS * BANDS
+#: Most bytes of a file's members together.
+LARGEST = 4_000_000
+
+#: Limits of `lib/hear_network.c`: units, a multiple of four; blocks; frames that a memory reaches back and ahead, times
+#: its dilation; classes.
+UNITS_MAX, BLOCKS_MAX, REACH_MAX, CLASSES_MAX = 128, 8, 64, 64
+#: Most frames that a network may look ahead.
+AHEAD_MAX = 25
+#: The largest weight, bias, score; the largest FAP.
+_WEIGHT, _FAP = 64.0, 2000.0
+
+
+@dataclass(frozen=True)
+class HearingModel:
+    """A network and what its outputs mean. All arrays are float32 and finite."""
+
+    memories: Tuple[Memory, ...]  #: of the B blocks
+    dense: Tuple[np.ndarray, ...]  #: (H, 48), then (H, H): what a block makes of its input
+    bias: Tuple[np.ndarray, ...]  #: (H,) for each block
+    memory: Tuple[np.ndarray, ...]  #: (H, K) of each block, the oldest tap first, as in a torch Conv1d (H, 1, K)
+    last: np.ndarray  #: (H, H) the dense layer after the blocks
+    last_bias: np.ndarray  #: (H,)
+    class_weight: np.ndarray  #: (C, H)
+    class_bias: np.ndarray  #: (C,)
+    fap_weight: np.ndarray  #: (13, H)
+    fap_bias: np.ndarray  #: (13,)
+    classes: Tuple[str, ...]  #: C names
+    closure: str  #: the class that closes the lips
+    fap_mean: np.ndarray  #: (13,) FAP units: a frame is fap_mean + fap_scale * head
+    fap_scale: np.ndarray  #: (13,) FAP units, positive
+    closed: np.ndarray  #: (13,) FAP units, the pose of closed lips
+    close_from: float  #: the lead of the closure's score over all other classes' at which lips begin to follow `closed`
+    close_to: float  #: and at which they follow it alone
+    attribution: str = ""  #: attribution that redistribution requires
+    training: Dict[str, object] = field(default_factory=dict)  #: options and counts of the training, JSON values
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def plan(self) -> Plan:
+        """The sizes of the network."""
+        return Plan(len(self.last_bias), self.memories)
+
+
+_TEXT = ("memories", "classes", "closure", "close_from", "close_to", "attribution", "training")
+#: Arrays, and those of which each block has one: ``dense_0`` and so on.
+_ARRAYS = ("last", "last_bias", "class_weight", "class_bias", "fap_weight", "fap_bias", "fap_mean", "fap_scale",
+           "closed")  # fmt: skip
+_OF_BLOCKS = ("dense", "bias", "memory")
+
+
+def _expect(condition: bool, message: str) -> None:
+    if not condition:
+        raise ModelError(message)
+
+
+def check(model: HearingModel) -> None:
+    """Raises ModelError unless every array has its shape and is finite, and every size is within the library's."""
+    blocks, units, classes = len(model.memories), len(np.atleast_1d(model.last_bias)), len(model.classes)
+    _expect(1 <= blocks <= BLOCKS_MAX, f"there are {blocks} blocks, not 1 to {BLOCKS_MAX}")
+    _expect(units % 4 == 0 and 4 <= units <= UNITS_MAX,
+            f"there are {units} units, not a multiple of 4 up to {UNITS_MAX}")
+    _expect(2 <= classes <= CLASSES_MAX and len(set(model.classes)) == classes,
+            f"there are not 2 to {CLASSES_MAX} classes with different names")
+    _expect(all(name and name.isprintable() for name in model.classes), "a class has a name that is not printable")
+    _expect(model.closure in model.classes, f"the class of closed lips {model.closure!r:.40} is not a class")
+    for past, ahead, dilation in model.memories:
+        _expect(past >= 0 and ahead >= 0 and dilation >= 1 and (past + ahead) * dilation <= REACH_MAX,
+                f"a memory reaches {past} back and {ahead} ahead, times {dilation}")
+    _expect(model.plan.ahead <= AHEAD_MAX, f"the network looks {model.plan.ahead} frames ahead, not up to {AHEAD_MAX}")
+    for name in _OF_BLOCKS:
+        count = len(getattr(model, name))
+        _expect(count == blocks, f"{name} has {count} arrays, not one for each of {blocks} blocks")
+    for name, value, shape in _shapes(model, units, classes):
+        _expect(value.shape == shape, f"{name} has shape {value.shape}, not {shape}")
+        _expect(value.dtype.kind == "f", f"{name} has the type {value.dtype}, not that of real numbers")
+        most = _FAP if name in ("fap_mean", "fap_scale", "closed") else _WEIGHT
+        _expect(bool((np.abs(value) <= most).all()), f"{name} has a value that is not within {-most:g} .. {most:g}")
+    _expect(bool((model.fap_scale > 0).all()), "fap_scale has a value that is not positive")
+    low, high = model.close_from, model.close_to
+    _expect(-_WEIGHT <= low < high <= _WEIGHT, f"close_from {low:g} and close_to {high:g} are not in order")
+
+
+def _shapes(model: HearingModel, units: int, classes: int) -> List[Tuple[str, np.ndarray, Tuple[int, ...]]]:
+    """Name, value and shape of each array."""
+    result: List[Tuple[str, Any, Tuple[int, ...]]] = []
+    for k, memory in enumerate(model.memories):
+        result += [(f"dense_{k}", model.dense[k], (units, units if k else INPUTS)),
+                   (f"bias_{k}", model.bias[k], (units,)), (f"memory_{k}", model.memory[k], (units, memory.taps))]
+    shapes = {"last": (units, units), "last_bias": (units,), "class_weight": (classes, units),
+              "class_bias": (classes,), "fap_weight": (CHANNELS, units), "fap_bias": (CHANNELS,),
+              "fap_mean": (CHANNELS,), "fap_scale": (CHANNELS,), "closed": (CHANNELS,)}
+    result += [(name, getattr(model, name), shape) for name, shape in shapes.items()]
+    return [(name, np.asarray(value), shape) for name, value, shape in result]
+
+
+def save(model: HearingModel, path: Union[PathLike, BinaryIO]) -> None:
+    """Writes the model, to a path or to a file that is open. The same model gives the same bytes."""
+    text = {name: getattr(model, name) for name in _TEXT}
+    opened: ContextManager[Any] = writing(path) if isinstance(path, (str, os.PathLike)) else nullcontext(path)
+    with opened as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+
+        def add(name: str, data: bytes) -> None:
+            info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            info.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(info, data, compresslevel=9)
+
+        text.update(kind=KIND, format=FORMAT)
+        add("model.json", json.dumps(text, indent=1, sort_keys=True, ensure_ascii=False).encode())
+        for name, value, _ in _shapes(model, model.plan.units, len(model.classes)):
+            buffer = io.BytesIO()
+            np.lib.format.write_array(buffer, np.ascontiguousarray(value, dtype=np.float32), allow_pickle=False)
+            add(name + ".npy", buffer.getvalue())
+
+
+def is_hearing(path: PathLike) -> bool:
+    """Whether a file says that it holds a model of hearing; false for all other files, also those that are missing."""
+    try:
+        members = read_zip(path, ["model.json"], LARGEST)
+        text = json.loads(members["model.json"].decode("utf-8"))
+    except (OSError, ArrayError, KeyError, ValueError, RecursionError):
+        return False
+    return isinstance(text, dict) and text.get("kind") == KIND
+
+
+def load(path: PathLike) -> HearingModel:
+    """Reads and checks a model of hearing. Raises ModelError, which names the file, for anything else."""
+    try:
+        members = read_zip(path, None, LARGEST)
+        _expect("model.json" in members, "it holds no model.json")
+        text = _texts(members["model.json"])
+
+        def member(name: str) -> np.ndarray:
+            _expect(f"{name}.npy" in members, f"it holds no {name}.npy")
+            value = array(name, members[f"{name}.npy"])
+            _expect(value.dtype.kind == "f", f"{name} has the type {value.dtype}, not that of real numbers")
+            return value.astype(np.float32)
+
+        blocks = range(len(text["memories"]))
+        values: Dict[str, Any] = {name: tuple(member(f"{name}_{k}") for k in blocks) for name in _OF_BLOCKS}
+        values.update({name: member(name) for name in _ARRAYS})
+        return HearingModel(**text, **values)
+    except OSError as error:
+        raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
+    except (ArrayError, ModelError) as error:
+        raise ModelError(f"{os.fspath(path)}: not a model of hearing: {error}") from None
+
+
+def _is_memory(row: object) -> bool:
+    return isinstance(row, list) and len(row) == 3 and all(type(item) is int for item in row)
+
+
+def _texts(data: bytes) -> Dict[str, Any]:
+    """The content of model.json, with its types checked."""
+    try:
+        text = json.loads(data.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise ModelError(f"model.json: not JSON ({str(error)[:80]})") from None
+    _expect(isinstance(text, dict) and text.get("kind") == KIND, f"model.json: its kind is not {KIND}")
+    version = text["format"] if "format" in text else None
+    _expect(version == FORMAT, f"format {version!r:.40}, but this version of labial reads format {FORMAT}")
+    for name in _TEXT:
+        _expect(name in text, f"model.json: no {name}")
+    for name in ("closure", "attribution"):
+        _expect(isinstance(text[name], str), f"model.json: {name} is not text")
+    for name in ("close_from", "close_to"):
+        _expect(type(text[name]) in (int, float), f"model.json: {name} is not a number")
+    classes, memories = text["classes"], text["memories"]
+    _expect(isinstance(classes, list) and all(isinstance(name, str) for name in classes),
+            "model.json: classes is not a list of texts")
+    _expect(isinstance(memories, list) and len(memories) <= BLOCKS_MAX and all(map(_is_memory, memories)),
+            f"model.json: memories is not a list of up to {BLOCKS_MAX} rows of three whole numbers")
+    _expect(isinstance(text["training"], dict), "model.json: training is not an object")
+    values = {name: text[name] for name in _TEXT}
+    return {**values, "classes": tuple(classes), "memories": tuple(Memory(*row) for row in memories)}

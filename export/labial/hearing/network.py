@@ -1,0 +1,73 @@
+"""The network of hearing in floating point, over a whole sound: what ``lib/hear_network.c`` computes frame by frame.
+
+A block is ``y = relu(W x + b)``, then ``z = memory(y)``, weighted frames of y around the present, for each unit its
+own; all but the first block add their input x. A dense layer follows, then two heads: scores of lip classes, and FAPs.
+Before the sound and a block's first input, y is zero.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from labial.hearing.features import FRAME, features, frames_of
+from labial.hearing.model import HearingModel
+
+
+class Heard(NamedTuple):
+    """What a network makes of T frames."""
+
+    scores: np.ndarray  #: (T, C) float32
+    faps: np.ndarray  #: (T, 13) float32, FAP units
+
+
+def relu(value: np.ndarray) -> np.ndarray:
+    """Positive values; zero for the others."""
+    result: np.ndarray = np.maximum(value, 0.0)
+    return result
+
+
+def remembered(y: np.ndarray, weight: np.ndarray, past: int, ahead: int, dilation: int) -> np.ndarray:
+    """(T, H) a memory with weights (H, taps) over y (T, H), zeros before and after it."""
+    padded = np.pad(y, ((past * dilation, ahead * dilation), (0, 0)))
+    parts = [padded[k * dilation : k * dilation + len(y)] * weight[:, k] for k in range(past + ahead + 1)]
+    result: np.ndarray = np.sum(parts, axis=0)
+    return result
+
+
+def run(model: HearingModel, heard: np.ndarray) -> Heard:
+    """The two heads for the features (T, 48) of all frames, without closures."""
+    x = np.asarray(heard, dtype=np.float32)
+    for k, memory in enumerate(model.memories):
+        y = relu(x @ model.dense[k].T + model.bias[k])
+        z = remembered(y, model.memory[k], *memory)
+        x = z + x if k else z
+    x = relu(x @ model.last.T + model.last_bias)
+    head = x @ model.fap_weight.T + model.fap_bias
+    return Heard(x @ model.class_weight.T + model.class_bias, model.fap_mean + model.fap_scale * head)
+
+
+def closing(model: HearingModel, scores: np.ndarray) -> np.ndarray:
+    """(T,) 0 .. 1, how far the lips follow the closed pose, by the scores (T, C)."""
+    own = model.classes.index(model.closure)
+    lead = scores[:, own] - np.delete(scores, own, axis=1).max(axis=1)
+    result: np.ndarray = np.clip((lead - model.close_from) / (model.close_to - model.close_from), 0.0, 1.0)
+    return result
+
+
+def closed(model: HearingModel, heard: Heard) -> Heard:
+    """The same with closed lips where the closure leads."""
+    share = closing(model, heard.scores)[:, None]
+    return Heard(heard.scores, heard.faps + (model.closed - heard.faps) * share)
+
+
+def hear(model: HearingModel, sound: np.ndarray) -> Heard:
+    """Scores and frames of a sound: (N,) samples at 16 kHz, int16 or floats of the same scale; `frames_of(N)` frames,
+    of which frame k shows the 20 ms from sample 320 k on. Digital silence follows the sound, for as many frames as the
+    network looks ahead."""
+    sound = np.asarray(sound)
+    count, ahead = frames_of(len(sound)), model.plan.ahead
+    padded = np.concatenate([sound, np.zeros((count + ahead) * FRAME - len(sound), dtype=sound.dtype)])
+    result = closed(model, run(model, features(padded)))
+    return Heard(result.scores[:count], result.faps[:count])
