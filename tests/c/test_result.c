@@ -14,7 +14,7 @@ static const int codes[] = { LABIAL_OK,           LABIAL_WAITING,       LABIAL_S
                              LABIAL_ERROR_NULL,   LABIAL_ERROR_VERSION, LABIAL_ERROR_MODEL,    LABIAL_ERROR_WORKSPACE,
                              LABIAL_ERROR_STATE,  LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION, LABIAL_ERROR_FULL,
                              LABIAL_ERROR_RATE,   LABIAL_ERROR_MODELS,  LABIAL_ERROR_NAME,     LABIAL_ERROR_RIG,
-                             LABIAL_ERROR_TIMINGS };
+                             LABIAL_ERROR_TIMINGS, LABIAL_ERROR_SOUND };
 
 #define CODES (sizeof codes / sizeof codes[0])
 

@@ -1,0 +1,204 @@
+"""Writes a model of hearing as C, and the tables of the front end, which are the same for all models."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Iterable, List, Sequence, Union
+
+import numpy as np
+
+from labial import __version__
+from labial.errors import ModelError
+from labial.files.c import block_comment, check_name, constants_of, rows
+from labial.files.outputs import folder, writing
+from labial.hearing import integer
+from labial.hearing.convert import RATES
+from labial.hearing.quantise import FORMAT, Dense, HearingTables
+
+#: Bytes that the descriptors take on a 32-bit target: of the model, and of a block.
+_MODEL, _BLOCK = 56, 24
+_BYTES = {"int8_t": 1, "uint8_t": 1, "int16_t": 2, "uint16_t": 2}
+
+
+def _array(kind: str, name: str, values: Iterable[int]) -> str:
+    values = [int(value) for value in values]
+    return f"static const {kind} {name}[{len(values)}] = {{\n{rows(values)}\n}};\n"
+
+
+# ---- The tables of the front end -------------------------------------------------------------------------------------
+
+
+def _table_header(name: str, what: str, body: str) -> str:
+    guard = f"LABIAL_{name.upper()}_H"
+    comment = block_comment(f"{name}.h - {what} Written by export/labial/hearing/emit.py; do not edit.")
+    return f"{comment}#ifndef {guard}\n#define {guard}\n\n#include <stdint.h>\n\n{body}\n#endif\n"
+
+
+def features_table() -> str:
+    """lib/hear_features_table.h."""
+    bins = slice(integer.FIRST_BIN, integer.LAST_BIN + 1)
+    return _table_header("hear_features_table", "what turns samples into energies of bands.", "\n".join([
+        "/* A turn in 256 steps, Q15. */\n" + _array("int16_t", "sine", integer.sine_table()),
+        f"/* Where bins {integer.FIRST_BIN} to {integer.LAST_BIN} lie between the bands' edges, in 1/256. */\n"
+        + _array("uint16_t", "bin_places", integer.place_table()[bins]),
+        "/* log2 of 1 to 2, Q8. */\n" + _array("int16_t", "logarithms", integer.log_table()),
+    ]))
+
+
+def convert_table() -> str:
+    """lib/hear_convert_table.h."""
+    ways = ",\n".join(f"    {{ {rate}u, {0 if way.stride == way.step else way.reach}, {way.stride // 10}, {way.step} }}"
+                      for rate, way in RATES.items())
+    return _table_header("hear_convert_table", "the rates of sound, and the filter that converts them.", "\n".join([
+        "/* Samples on each side that the filter takes; grid points between them; tenths between converted ones. */\n"
+        "static const struct {\n    uint32_t rate;\n    uint8_t reach, spacing;\n    uint16_t step;\n"
+        f"}} conversions[{len(RATES)}] = {{\n{ways}\n}};\n",
+        "/* The filter from its middle on, Q15, and zeros after it. */\n"
+        + _array("int16_t", "filter", integer.tap_table()),
+    ]))
+
+
+def write_tables(directory: Union[str, os.PathLike[str]]) -> None:
+    """Writes both headers into `directory`, which is lib."""
+    for name, text in (("hear_features_table.h", features_table()), ("hear_convert_table.h", convert_table())):
+        with writing(Path(directory) / name, "ascii") as out:
+            out.write(text)
+
+
+# ---- A model ---------------------------------------------------------------------------------------------------------
+
+
+def check_limits(tables: HearingTables) -> None:
+    """Raises ModelError for a model whose memory is longer than the library's."""
+    for block in tables.blocks:
+        if not 2 <= block.memory.taps <= 16:
+            raise ModelError(f"a memory has {block.memory.taps} taps, not 2 to 16")
+    if tables.rows > 255:
+        raise ModelError(f"the memories have {tables.rows} rows together, not up to 255")
+
+
+def grouped(dense: Dense) -> Dense:
+    """The layer with its rows filled up to fours, and its weights as a row for each group: column by column, four."""
+    count, columns = dense.weight.shape
+    extra = -count % 4
+    weight = np.pad(dense.weight, ((0, extra), (0, 0))).reshape(-1, 4, columns).transpose(0, 2, 1)
+    return Dense(weight.reshape(-1, 4 * columns), np.pad(dense.bias, (0, extra)), np.pad(dense.shift, (0, extra)))
+
+
+def _layer(name: str, dense: Dense) -> List[str]:
+    table = grouped(dense)
+    return [_array("int8_t", f"{name}_weights", table.weight.ravel()),
+            _array("int16_t", f"{name}_biases", table.bias), _array("uint8_t", f"{name}_shifts", table.shift)]
+
+
+def _layer_member(name: str) -> str:
+    return f"{{ {name}_weights, {name}_biases, {name}_shifts }}"
+
+
+def flash_bytes(tables: HearingTables) -> int:
+    """Bytes of the model on a 32-bit target, without the names of its classes."""
+    total = _MODEL + _BLOCK * len(tables.blocks) + 3 * 2 * len(tables.mean)
+    for dense in (*(block.dense for block in tables.blocks), tables.last, tables.heads):
+        table = grouped(dense)
+        total += table.weight.size + 3 * table.bias.size
+    return total + sum(block.taps.size + block.shift.size for block in tables.blocks)
+
+
+def _comment(tables: HearingTables, what: str) -> str:
+    text = (f"{what} model of hearing, {tables.units} units in {len(tables.blocks)} blocks, "
+            f"{20 * (tables.ahead + 1)} ms from a frame's begin until it is known. "
+            f"Written by labial export {__version__}; do not edit.")
+    return block_comment(f"{text} {tables.attribution}" if tables.attribution else text)
+
+
+def header(tables: HearingTables) -> str:
+    """NAME.h: the model's symbol, its workspace and its classes."""
+    upper = tables.name.upper()
+    constants = ",\n".join(f"    {name} = {number}"
+                           for number, name in enumerate(constants_of(tables.name, tables.classes)))
+    return f"""{_comment(tables, f"{tables.name}.h - the")}#ifndef LABIAL_MODEL_{upper}_H
+#define LABIAL_MODEL_{upper}_H
+
+#include "labial/hear.h"
+
+#if LABIAL_HEAR_MODEL_FORMAT != {FORMAT}
+#error "{tables.name} was exported for another version of Labial: run labial export again."
+#endif
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+#define {upper}_WORKSPACE_SIZE LABIAL_HEAR_WORKSPACE_SIZE({tables.units}, {tables.rows})
+#define {upper}_CLASSES {len(tables.classes)}
+
+/* Lip classes, each named by a phoneme that stands for it. */
+enum {{
+{constants}
+}};
+
+/* The model, {flash_bytes(tables)} bytes on a 32-bit target. */
+extern const labial_hear_model_t {tables.name};
+
+/* The names of the classes; linked only when used. */
+extern const char *const {tables.name}_classes[{upper}_CLASSES];
+
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+"""
+
+
+def source(tables: HearingTables) -> str:
+    """NAME.c: the tables."""
+    parts = [_comment(tables, f"{tables.name}.c - the"), f'#include "{tables.name}.h"\n']
+    blocks = []
+    for k, block in enumerate(tables.blocks):
+        name = f"block_{k}"
+        arrays = [*_layer(name, block.dense), _array("int8_t", f"{name}_taps", block.taps.ravel()),
+                  _array("uint8_t", f"{name}_tap_shifts", block.shift)]
+        parts.append(f"\n/* Block {k}. */\n" + "".join(arrays))
+        blocks.append(f"    {{ {_layer_member(name)}, {name}_taps, {name}_tap_shifts, "
+                      f"{', '.join(map(str, block.memory))} }}")
+    parts.append("\nstatic const labial_hear_block_t blocks[] = {\n" + ",\n".join(blocks) + "\n};\n")
+    parts.append("\n/* The last layer, and the heads. */\n" + "".join(_layer("last", tables.last)))
+    parts.append("".join(_layer("heads", tables.heads)))
+    parts.append("\n/* Frames: mean, scale and closed lips, Q4. */\n")
+    parts += [_array("int16_t", name, value)
+              for name, value in (("mean", tables.mean), ("scale", tables.scale), ("closed", tables.closed))]
+    numbers = (("LABIAL_HEAR_MODEL_FORMAT", "format"), (tables.units, "units"), (len(tables.blocks), "blocks"),
+               (len(tables.classes), "classes"), (tables.closure, "closure"), (tables.ahead, "ahead"),
+               (tables.rows, "rows"), (tables.close_from, "close_from"), (tables.close_width, "close_width"))
+    members = [f"    {value}, /* {name} */" for value, name in numbers]
+    members += ["    mean,", "    scale,", "    closed,", "    blocks,", f"    {_layer_member('last')},",
+                f"    {_layer_member('heads')}"]
+    parts.append(f"\nconst labial_hear_model_t {tables.name} = {{\n" + "\n".join(members) + "\n};\n")
+    parts.append(f"\nconst char *const {tables.name}_classes[] = {{\n{rows(_quoted(tables.classes))}\n}};\n")
+    return "".join(parts)
+
+
+def _quoted(names: Sequence[str]) -> List[str]:
+    """Names as C strings. Raises ModelError for one with other characters than ASCII's letters, digits and _."""
+    for name in names:
+        if not name.isascii() or not name.replace("_", "").isalnum():
+            raise ModelError(f"the class {name!r:.40} has other characters than letters, digits and underscores")
+    return [f'"{name}"' for name in names]
+
+
+def write(tables: HearingTables, directory: Union[str, os.PathLike[str]]) -> List[Path]:
+    """Writes NAME.h and NAME.c into `directory`; returns their paths."""
+    check_name(tables.name)
+    check_limits(tables)
+    files = {f"{tables.name}.h": header(tables), f"{tables.name}.c": source(tables)}
+    with folder(directory) as made:
+        for file, text in files.items():
+            (made / file).write_bytes(text.encode())
+    return [Path(directory) / file for file in files]
+
+
+if __name__ == "__main__":
+    write_tables(sys.argv[1])

@@ -1,0 +1,230 @@
+"""What ``lib/hear*.c`` computes, bit by bit, over a whole sound: the oracle of its tests.
+
+The steps are those of :mod:`labial.hearing.convert`, :mod:`labial.hearing.features` and
+:mod:`labial.hearing.network`; here they are in the library's integers.
+"""
+
+from __future__ import annotations
+
+from typing import Tuple
+
+import numpy as np
+
+from labial.hearing.convert import RATES, converted_count, mixed, taps
+from labial.hearing.features import (
+    BANDS,
+    DECAY,
+    FLOOR,
+    FRAME,
+    HOP,
+    HOPS,
+    LEVEL_LEAST,
+    OFFSET,
+    RANGE,
+    WINDOW,
+    frames_of,
+    places,
+)  # fmt: skip
+from labial.hearing.network import Heard
+from labial.hearing.quantise import Dense, HearingTables
+
+#: log2 is in 1/256; the level in 1/64 of the sum of the bands' log2.
+LOG = 256
+LEVEL_ONE = 64 * BANDS * LOG
+#: The first and the last bin that belong to a band.
+FIRST_BIN, LAST_BIN = 2, 121
+#: Points of the transform: pairs of samples.
+COUNT = WINDOW // 2
+
+
+def sine_table() -> np.ndarray:
+    """(256,) Q15, the sine of 256 points of a turn; the cosine is 64 points further on."""
+    result: np.ndarray = np.rint(32767 * np.sin(2 * np.pi * np.arange(WINDOW) / WINDOW)).astype(np.int64)
+    return result
+
+
+def place_table() -> np.ndarray:
+    """(129,) where each bin lies between the bands' edges, in 1/256; 0 for bins that belong to none."""
+    at = np.arange(WINDOW // 2 + 1)
+    return np.where((at >= FIRST_BIN) & (at <= LAST_BIN), np.rint(places() * 256), 0).astype(np.int64)
+
+
+def log_table() -> np.ndarray:
+    """(33,) log2 of 1 to 2, in 1/256."""
+    result: np.ndarray = np.rint(np.log2(1 + np.arange(33) / 32) * LOG).astype(np.int64)
+    return result
+
+
+def tap_table() -> np.ndarray:
+    """(289,) Q15, the filter of the conversion."""
+    result: np.ndarray = np.rint(taps() * 32768).astype(np.int64)
+    return result
+
+
+def held(value: np.ndarray) -> np.ndarray:
+    """Values held to int16."""
+    result: np.ndarray = np.clip(value, -32768, 32767)
+    return result
+
+
+# ---- The conversion --------------------------------------------------------------------------------------------------
+
+
+def convert(sound: np.ndarray, rate: int) -> np.ndarray:
+    """(M,) int64, a sound (N,) or (N, 2) of int16 at `rate` as one at 16 kHz."""
+    samples = mixed(sound)
+    way = RATES[rate]
+    if way.stride == way.step:
+        return samples
+    left, rest = np.divmod(np.arange(converted_count(len(samples), rate)) * way.step, way.stride)
+    distance, spacing, table = (rest + 5) // 10, way.stride // 10, tap_table()
+    padded = np.pad(samples, way.reach)
+    total = np.zeros(len(left), dtype=np.int64)
+    for k in range(way.reach):
+        total += padded[left + way.reach - k] * table[distance + k * spacing]
+        total += padded[left + way.reach + 1 + k] * table[spacing - distance + k * spacing]
+    return held(((total >> 10) * spacing + 256) >> 9)
+
+
+# ---- The features ----------------------------------------------------------------------------------------------------
+
+
+def _transform(re: np.ndarray, im: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """The spectra / 128 of (n, 128) complex samples, in their own order (:func:`_order`)."""
+    sine = sine_table()
+    quarter, turn = COUNT // 4, 2
+    while quarter:
+        shape = (len(re), -1, 4, quarter)
+        (ar, br, cr, dr), (ai, bi, ci, di) = (np.moveaxis(part.reshape(shape), 2, 0) for part in (re, im))
+        er, ei, fr, fi = ar + cr, ai + ci, ar - cr, ai - ci
+        gr, gi, hr, hi = br + dr, bi + di, bi - di, dr - br  # h is -j (b - d)
+        parts = ((er + gr, ei + gi), (fr + hr, fi + hi), (er - gr, ei - gi), (fr - hr, fi - hi))
+        out_re, out_im = [], []
+        for k, (xr, xi) in enumerate(parts):
+            xr, xi = (xr + 2) >> 2, (xi + 2) >> 2
+            at = k * turn * np.arange(quarter)
+            c, s = sine[(at + 64) & 255], sine[at & 255]
+            if k:
+                turned = np.where(at > 0, (xr * c + xi * s + 16384) >> 15, xr)
+                xi = np.where(at > 0, (xi * c - xr * s + 16384) >> 15, xi)
+                xr = turned
+            out_re.append(xr)
+            out_im.append(xi)
+        re, im = (np.stack(part, axis=2).reshape(len(re), COUNT) for part in (out_re, out_im))
+        quarter, turn = quarter // 4, turn * 4
+    pairs = (part.reshape(len(re), -1, 2) for part in (re, im))
+    done = [np.stack([(p[..., 0] + p[..., 1] + 1) >> 1, (p[..., 0] - p[..., 1] + 1) >> 1], axis=-1) for p in pairs]
+    return done[0].reshape(len(re), COUNT), done[1].reshape(len(re), COUNT)
+
+
+def _order(k: np.ndarray) -> np.ndarray:
+    """Where point k of a spectrum lies."""
+    return (k & 3) << 5 | (k >> 2 & 3) << 3 | (k >> 4 & 3) << 1 | k >> 6
+
+
+def _bits(value: np.ndarray) -> np.ndarray:
+    """How many bits non-negative numbers have."""
+    return np.ceil(np.log2(value.astype(np.float64) + 1)).astype(np.int64)
+
+
+def _log2(value: np.ndarray) -> np.ndarray:
+    """log2 of positive numbers below 2^32, in 1/256."""
+    bits = _bits(value)
+    top = np.where(bits > 16, value >> np.maximum(bits - 16, 0), value << np.maximum(16 - bits, 0))
+    table, at, rest = log_table(), top >> 10 & 31, top & 1023
+    result: np.ndarray = (bits - 1) * LOG + table[at] + (((table[at + 1] - table[at]) * rest) >> 10)
+    return result
+
+
+def log_energies(sound: np.ndarray) -> np.ndarray:
+    """(2 T, 24) int64 log2 energies in 1/256 of a sound (N,) of int16 at 16 kHz."""
+    count, before = HOPS * frames_of(len(sound)), WINDOW - HOP
+    padded = np.zeros(before + count * HOP, dtype=np.int64)
+    padded[before : before + len(sound)] = sound
+    x = padded[np.arange(count)[:, None] * HOP + np.arange(WINDOW)]
+    low, high = x.min(axis=1), x.max(axis=1)
+    middle = (low + high) >> 1
+    up = 14 - _bits(high - middle)  # high - middle is middle - low or one more
+    sine = sine_table()
+    window = (32768 - sine[(np.arange(WINDOW) + 64) & 255]) >> 1
+    centred = x - middle[:, None]
+    scaled = np.where(up[:, None] >= 0, centred << np.maximum(up, 0)[:, None], centred >> 1)
+    shaped = (scaled * window + 16384) >> 15
+    re, im = _transform(shaped[:, 0::2], shaped[:, 1::2])
+    acc = np.zeros((count, BANDS + 2), dtype=np.int64)
+    place = place_table()
+
+    def share(k: int, power: np.ndarray) -> None:
+        band, part = place[k] >> 8, place[k] & 255
+        above = (power >> 8) * part + (((power & 255) * part) >> 8)
+        acc[:, band] += power - above
+        acc[:, band + 1] += above
+
+    for k in range(FIRST_BIN, COUNT // 2 + 1):
+        p, q = (int(_order(np.array(i))) for i in (k, COUNT - k))
+        ar, ai, br, bi = re[:, p] + re[:, q], im[:, p] - im[:, q], im[:, p] + im[:, q], re[:, q] - re[:, p]
+        c, s = sine[k + 64], sine[k]
+        tr, ti = (br * c + bi * s + 16384) >> 15, (bi * c - br * s + 16384) >> 15
+        share(k, (ar + tr) ** 2 + (ai + ti) ** 2)
+        if COUNT // 2 > k >= COUNT - LAST_BIN:
+            share(COUNT - k, (ar - tr) ** 2 + (ai - ti) ** 2)
+    energy = acc[:, 1:-1]
+    logs = _log2(np.maximum(energy, 1)) + (12 - 2 * up[:, None]) * LOG
+    logs = np.where((energy > 0) & (high > low)[:, None], logs, 0)
+    return np.maximum(logs, int(FLOOR * LOG))
+
+
+def normalise(energies: np.ndarray) -> np.ndarray:
+    """(n, 24) int64, features in Q9 of log2 energies (n, 24) in 1/256."""
+    level, levels = round(LEVEL_LEAST * LEVEL_ONE), np.zeros(len(energies), dtype=np.int64)
+    for k, total in enumerate(energies.sum(axis=1).tolist()):
+        level = max(level - round(DECAY * LEVEL_ONE), round(LEVEL_LEAST * LEVEL_ONE), total * 64)
+        levels[k] = level // (64 * BANDS)
+    low, high = (round(end * LOG) for end in RANGE)
+    return (np.clip(energies - levels[:, None], low, high) + round(OFFSET * LOG)) >> 1
+
+
+# ---- The network -----------------------------------------------------------------------------------------------------
+
+
+def _dense(table: Dense, x: np.ndarray) -> np.ndarray:
+    """(T, rows) of (T, columns), held to int16."""
+    half = (1 << table.shift) >> 1
+    return held((x @ table.weight.T + table.bias * (1 << table.shift) + half) >> table.shift)
+
+
+def heads(tables: HearingTables, heard: np.ndarray) -> np.ndarray:
+    """(T, C + 13) Q9, the two heads for features (T, 48) in Q9."""
+    x = np.asarray(heard, dtype=np.int64)
+    for k, block in enumerate(tables.blocks):
+        past, ahead, dilation = block.memory
+        y = np.maximum(_dense(block.dense, x), 0)
+        padded = np.pad(y, ((past * dilation, ahead * dilation), (0, 0)))
+        total = np.zeros_like(y) + ((1 << block.shift) >> 1)
+        for tap in range(past + ahead + 1):
+            total += padded[tap * dilation : tap * dilation + len(y)] * block.taps[:, tap]
+        x = held((total >> block.shift) + (x if k else 0))
+    return _dense(tables.heads, np.maximum(_dense(tables.last, x), 0))
+
+
+def poses(tables: HearingTables, head: np.ndarray) -> np.ndarray:
+    """(T, 13) poses in Q4 of heads (T, C + 13)."""
+    classes = len(tables.classes)
+    scores = head[:, :classes]
+    lead = scores[:, tables.closure] - np.delete(scores, tables.closure, axis=1).max(axis=1)
+    over = np.clip(lead - tables.close_from, 0, tables.close_width)
+    share = (over << 8) // tables.close_width
+    pose = tables.mean + ((head[:, classes:] * tables.scale) >> 9)
+    pose += ((tables.closed - pose) * share[:, None]) >> 8
+    result: np.ndarray = np.clip(pose, -32767, 32767)
+    return result
+
+
+def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
+    """Scores (T, C) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end."""
+    samples = convert(np.asarray(sound), rate)
+    count = frames_of(len(samples))
+    padded = np.concatenate([samples, np.zeros((count + tables.ahead) * FRAME - len(samples), dtype=np.int64)])
+    heard = normalise(log_energies(padded)).reshape(-1, HOPS * BANDS)
+    head = heads(tables, heard)[:count]
+    return Heard(head[:, : len(tables.classes)], (poses(tables, head) + 8) >> 4)

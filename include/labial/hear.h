@@ -1,0 +1,165 @@
+/*
+ * labial/hear.h - lip motion from sound alone: samples of speech in, a stream of frames out.
+ *
+ *     static labial_hear_t hear;
+ *     static uint32_t workspace[HEAR_SMALL_WORKSPACE_SIZE / 4];
+ *
+ *     labial_hear_init(&hear, &hear_small, 24000, 1, workspace, sizeof workspace, on_frame, NULL);
+ *     while ((count = read_sound(samples)) > 0)         // blocks of any length, as they are sent to the loudspeaker
+ *         labial_hear_push(&hear, samples, count);      // calls on_frame for each 20 ms
+ *     labial_hear_end(&hear);                           // and for the last ones
+ *
+ * Frames are those of labial.h: 13 FAPs, 50 frames per second, so that rigs, blends and formats take them. Frame k
+ * shows the lips in the sound of 20 ms that begins at 20 k ms. It is known once the sound that follows it is known, too:
+ * labial_hear_latency() tells how much that is, 120 ms from a frame's begin with the bundled models. A program that has
+ * its sound 120 ms before it is heard, as from a network, keeps frames until their time and has lips without delay.
+ *
+ * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. The mouth
+ * is closed in silence.
+ *
+ * Like the stream of phonemes (labial/labial.h) it never allocates, keeps no state outside `hear` and `workspace`,
+ * computes in integers only and gives the same bits on every target and for blocks of any length. Calls on one stream
+ * must not overlap; calls on different streams may. The structure may be moved or copied between calls as long as the
+ * workspace stays where it is and only one copy is used from then on. Nothing needs to be released. Models are trusted;
+ * samples and the order of calls are not.
+ */
+#ifndef LABIAL_HEAR_H
+#define LABIAL_HEAR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "labial/hear_model.h"
+#include "labial/labial.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Frames per second. */
+#define LABIAL_HEAR_RATE 50
+
+/*
+ * Receives a stretch of speech of one lip class: `shown` numbers the model's classes (NAME_CLASSES of its header),
+ * `frame` is the first frame, `frames` how many have it, at least one. Without gaps: the next stretch begins where this
+ * one ends. It is called after the last of these frames.
+ */
+typedef void (*labial_hear_class_fn)(void *user, unsigned shown, uint32_t frame, uint32_t frames);
+
+/* ---- Private: the parts of a stream. ----------------------------------------------------------------------------- */
+
+#define LABIAL_HEAR_WINDOW_ 256 /* samples of a window */
+#define LABIAL_HEAR_HOP_ 160    /* from one window to the next */
+#define LABIAL_HEAR_TAPS_ 32    /* samples that the conversion of rates looks at */
+
+/* The conversion of rates. Times are in tenths of a point of the grid on which the filter lies. */
+typedef struct {
+    uint8_t reach;   /* samples that the filter takes on each side; 0 for 16 kHz, which is not converted */
+    uint8_t spacing; /* points from one sample to the next */
+    uint8_t at;      /* where the next sample goes */
+    uint16_t step;   /* from one converted sample to the next */
+    uint16_t phase;  /* from the latest sample of the filter's left half to the next converted sample */
+    int16_t past[2 * LABIAL_HEAR_TAPS_]; /* every sample twice, so that the latest are always in one piece */
+} labial_hear_convert_t;
+
+/* A stream. Its members are private. */
+typedef struct {
+    uint8_t channels, hop;
+    uint8_t ended, busy;                  /* no more sound is heard; a callback runs */
+    uint8_t fade;                         /* the step of the fade after a restart, 0 without */
+    uint8_t shown;                        /* the class of the last frame */
+    uint8_t at[LABIAL_HEAR_BLOCKS_MAX];   /* the oldest row of each block's memory */
+    uint8_t skip[LABIAL_HEAR_BLOCKS_MAX]; /* and of its former inputs */
+    uint16_t filled;                      /* samples of the window */
+    uint32_t magic;
+    uint32_t taken;    /* frames that the network has heard, at most those that it needs ahead */
+    uint32_t sounding; /* frames with sound, also in part, that are not yet delivered */
+    uint32_t frame;    /* the next frame */
+    uint32_t first;    /* of the class that is shown; the next frame if none is */
+    int32_t level;
+    const labial_hear_model_t *model;
+    int16_t *rows;
+    labial_frame_fn callback;
+    labial_hear_class_fn class_callback;
+    void *user;
+    int16_t pose[LABIAL_CHANNELS];  /* the last frame, Q4 */
+    int16_t faded[LABIAL_CHANNELS]; /* and the last one before a restart */
+    int16_t features[LABIAL_HEAR_INPUTS];
+    int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_];
+    labial_hear_convert_t convert;
+    int16_t window[LABIAL_HEAR_WINDOW_]; /* samples, then their spectrum, then what layers put out */
+} labial_hear_t;
+
+/* ---- The calls ------------------------------------------------------------------------------------------------- */
+
+/* Bytes of workspace for a model of so many units and rows, a multiple of four; a constant expression if both are.
+ * NAME_WORKSPACE_SIZE of a model's header is this. */
+#define LABIAL_HEAR_WORKSPACE_SIZE(units, rows) ((uint32_t)((units) * (rows)*2u))
+
+/* The same for a given model; 0 for a null pointer. */
+uint32_t labial_hear_workspace_size(const labial_hear_model_t *model);
+
+/*
+ * Prepares a stream and discards what it contained. `rate` is that of the sound in samples per second: 8000, 12000,
+ * 16000, 22050, 24000, 32000, 44100 or 48000; `channels` is 1 or 2, of which the mean is heard.
+ *
+ * `workspace` must be aligned to four bytes and have labial_hear_workspace_size() bytes. It belongs to the stream, and
+ * the model must stay where it is, until the stream is initialised again or no longer used. `callback` receives the
+ * frames, with `user` as its first argument.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION, LABIAL_ERROR_SOUND (rate or channels) or
+ * LABIAL_ERROR_WORKSPACE. After an error the stream is unusable until it is initialised successfully.
+ */
+int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint32_t rate, unsigned channels,
+                     void *workspace, size_t workspace_size, labial_frame_fn callback, void *user);
+
+/*
+ * Also tells the lip classes to `callback`, with the same `user`; null for no longer. Their names are phonemes, so that
+ * a program can push them to a stream of phonemes (labial/labial.h), whose lips then move half a second later.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_hear_classes(labial_hear_t *hear, labial_hear_class_fn callback);
+
+/*
+ * Hears `count` samples, of two channels as many pairs, left first, and calls the callbacks for all frames that these
+ * complete. A callback must not call functions that change the same stream; they return LABIAL_ERROR_STATE there.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (after labial_hear_end() or labial_hear_cancel()).
+ */
+int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count);
+
+/*
+ * No more sound will come: delivers all frames that are still to come, as if silence followed. A frame that the sound
+ * fills in part is the last one.
+ *
+ * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_hear_end(labial_hear_t *hear);
+
+/*
+ * Drops everything that is not yet delivered, and eases the last delivered frame back to the neutral face (all FAPs 0)
+ * over `milliseconds`, rounded up to whole frames, at most 1,000. The callback receives these frames during the call; a
+ * program shows one every 20 ms. With 0 one neutral frame follows.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_hear_cancel(labial_hear_t *hear, uint32_t milliseconds);
+
+/*
+ * Continues after labial_hear_end() or labial_hear_cancel(): frame numbers continue, the new sound begins with the next
+ * frame, and the first frames are cross-faded from the last delivered one.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (unless the stream has ended).
+ */
+int labial_hear_restart(labial_hear_t *hear);
+
+/* Samples that must be pushed, from a frame's first sample on, until it is delivered; for two channels, pairs. 0 for a
+ * null or uninitialised stream. */
+uint32_t labial_hear_latency(const labial_hear_t *hear);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

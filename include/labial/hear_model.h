@@ -1,0 +1,84 @@
+/*
+ * labial/hear_model.h - the tables of a model of hearing, as the exporter writes them and the run-time reads them.
+ *
+ * A model is a network that hears the features of 20 ms of sound and knows the frame of the lips that belongs to some
+ * frames before. It is constant: it stays in flash and may serve any number of streams at once. Programs do not fill
+ * these structures by hand: `labial export` writes a C file that does.
+ *
+ * A block is y = relu(W x + b), then z = memory(y): for each unit its own weighted sum of frames of y around the
+ * present one. All blocks but the first add their input x to z. A dense layer follows, and two heads: a score for each
+ * lip class, and 13 FAPs.
+ *
+ * Number formats, the same in every table:
+ *
+ *   activation int16, Q9, held to +-64: features, what layers put out, scores, biases
+ *   weight     int8; each row of weights has its own power of two: the weight is the number / 2^shift, shift 0 .. 15
+ *   position   int16, Q4: 1/16 FAP unit
+ */
+#ifndef LABIAL_HEAR_MODEL_H
+#define LABIAL_HEAR_MODEL_H
+
+#include <stdint.h>
+
+#include "labial/model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Version of this format. A generated model of another version does not compile. */
+#define LABIAL_HEAR_MODEL_FORMAT 1
+
+/* What a frame of 20 ms hears: this many bands in each of its two hops. */
+#define LABIAL_HEAR_BANDS 24
+#define LABIAL_HEAR_INPUTS (2 * LABIAL_HEAR_BANDS)
+
+/* Limits, to which the exporter keeps. */
+#define LABIAL_HEAR_UNITS_MAX 128  /* units of a layer, a multiple of four */
+#define LABIAL_HEAR_BLOCKS_MAX 8   /* blocks */
+#define LABIAL_HEAR_CLASSES_MAX 64 /* lip classes */
+#define LABIAL_HEAR_TAPS_MAX 16    /* taps of a block's memory */
+#define LABIAL_HEAR_ROWS_MAX 64    /* frames that a block's memory holds */
+
+/* W and b. Rows go in groups of four: of each column there are the group's four weights. The last group is filled up
+ * with zeros. */
+typedef struct {
+    const int8_t *weights;
+    const int16_t *biases; /* of each row, also of those that fill up */
+    const uint8_t *shifts; /* likewise */
+} labial_hear_dense_t;
+
+/* A block. Its memory holds (past + ahead) * dilation frames. */
+typedef struct {
+    labial_hear_dense_t dense;
+    const int8_t *taps;    /* past + ahead + 1 weights of each unit, the oldest first */
+    const uint8_t *shifts; /* of each unit */
+    uint8_t past;          /* how often the memory reaches back */
+    uint8_t ahead;         /* and ahead; past + ahead is 1 .. LABIAL_HEAR_TAPS_MAX - 1 */
+    uint8_t dilation;      /* by so many frames each, 1 and more */
+} labial_hear_block_t;
+
+/* A model. */
+typedef struct {
+    uint16_t format; /* LABIAL_HEAR_MODEL_FORMAT */
+    uint8_t units;   /* of every layer */
+    uint8_t blocks;  /* 1 and more */
+    uint8_t classes; /* 2 and more */
+    uint8_t closure; /* the class of closed lips: p, b, m */
+    uint8_t ahead;   /* frames that must follow a frame before it is known: the sum of ahead * dilation */
+    uint8_t rows;    /* of the workspace: the sum of (past + ahead) * dilation, and of ahead * dilation but the first */
+    int32_t close_from;    /* lead of the closure's score over all others at which lips begin to close, Q9 */
+    int32_t close_width;   /* how much more of it closes them, Q9, 1 .. 65536 */
+    const int16_t *mean;   /* 13 positions; a frame is mean + scale * head */
+    const int16_t *scale;  /* 13 positions */
+    const int16_t *closed; /* 13 positions, the pose of closed lips */
+    const labial_hear_block_t *block;
+    labial_hear_dense_t last;
+    labial_hear_dense_t heads; /* rows of the classes, then of the 13 FAPs */
+} labial_hear_model_t;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

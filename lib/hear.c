@@ -1,0 +1,258 @@
+/*
+ * hear.c - the calls of labial/hear.h: samples in, frames out.
+ *
+ *     samples --convert--> 16 kHz --features--> two hops --network--> heads --pose--> fade --> callback
+ *     any rate             window               a frame   the frame `ahead` frames ago
+ *
+ * The window's samples, its spectrum and what layers put out share their memory, since each is done with before the
+ * next one begins; only the samples that the next window needs are kept aside.
+ */
+#include "labial/hear.h"
+
+#include <string.h>
+
+#include "fixed.h"
+#include "hear_convert.h"
+#include "hear_features.h"
+#include "hear_network.h"
+
+#define HEARING 0x48454152u /* "HEAR" */
+
+/* Samples that a window shares with the next one. */
+#define SHARED (LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_)
+
+/* Frames over which the first ones after a restart fade in. */
+#define FADING 8u
+
+/* The largest number of frames over which a cancel eases: a second. */
+#define EASING LABIAL_HEAR_RATE
+
+uint32_t labial_hear_workspace_size(const labial_hear_model_t *model)
+{
+    return model ? LABIAL_HEAR_WORKSPACE_SIZE((uint32_t)model->units, model->rows) : 0;
+}
+
+/* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
+static int usable(const labial_hear_t *hear)
+{
+    return !hear ? LABIAL_ERROR_NULL : hear->magic != HEARING || hear->busy ? LABIAL_ERROR_STATE : LABIAL_OK;
+}
+
+/* ---- Frames out --------------------------------------------------------------------------------------------------- */
+
+/* Delivers a pose, Q4. */
+static void tell_frame(labial_hear_t *hear, const int16_t pose[LABIAL_CHANNELS])
+{
+    int16_t faps[LABIAL_CHANNELS];
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        faps[k] = (int16_t)((pose[k] + 8) >> 4);
+    hear->busy = 1;
+    hear->callback(hear->user, hear->frame++, faps);
+    hear->busy = 0;
+}
+
+/* Tells the class of the frames before the next one, if there are any. */
+static void tell_class(labial_hear_t *hear)
+{
+    const uint32_t first = hear->first;
+    hear->first = hear->frame;
+    if (hear->class_callback && hear->frame != first) {
+        hear->busy = 1;
+        hear->class_callback(hear->user, hear->shown, first, hear->frame - first);
+        hear->busy = 0;
+    }
+}
+
+/* Delivers the frame of these heads. */
+static void deliver_heads(labial_hear_t *hear, const int16_t *heads)
+{
+    const unsigned leader = labial_hear_leader(hear->model, heads);
+    unsigned k;
+    if (leader != hear->shown)
+        tell_class(hear);
+    hear->shown = (uint8_t)leader;
+    labial_hear_pose(hear->model, heads, hear->pose);
+    if (hear->fade > 0) {
+        const int32_t share = labial_ease(hear->fade, FADING + 1u);
+        for (k = 0; k < LABIAL_CHANNELS; k++)
+            hear->pose[k] = (int16_t)(hear->faded[k] + (((hear->pose[k] - hear->faded[k]) * share + 8192) >> 14));
+        hear->fade = (uint8_t)(hear->fade < FADING ? hear->fade + 1u : 0u);
+    }
+    tell_frame(hear, hear->pose);
+}
+
+/* ---- Sound in ---------------------------------------------------------------------------------------------------- */
+
+/* Hears a window that is complete. */
+static void hear_window(labial_hear_t *hear)
+{
+    const int16_t *heads = NULL;
+    memcpy(hear->tail, hear->window + LABIAL_HEAR_HOP_, sizeof hear->tail);
+    labial_hear_features(hear->window, &hear->level, hear->features + hear->hop * LABIAL_HEAR_BANDS);
+    hear->hop ^= 1u;
+    if (hear->hop == 0)
+        heads = labial_hear_network(hear);
+    if (heads) {
+        hear->sounding--;
+        deliver_heads(hear, heads);
+    }
+    memcpy(hear->window, hear->tail, sizeof hear->tail);
+    hear->filled = SHARED;
+}
+
+/* Hears a sample at 16 kHz. */
+static void hear_sample(labial_hear_t *hear, int16_t sample)
+{
+    if (hear->filled == SHARED && hear->hop == 0)
+        hear->sounding++;
+    hear->window[hear->filled++] = sample;
+    if (hear->filled == LABIAL_HEAR_WINDOW_)
+        hear_window(hear);
+}
+
+/* Hears a sample at the stream's rate. */
+static void hear_at_rate(labial_hear_t *hear, int32_t sample)
+{
+    int16_t out[LABIAL_HEAR_CONVERTED_MAX];
+    unsigned i, count;
+    if (hear->convert.reach == 0) {
+        hear_sample(hear, (int16_t)sample);
+        return;
+    }
+    count = labial_hear_convert(&hear->convert, sample, out);
+    for (i = 0; i < count; i++)
+        hear_sample(hear, out[i]);
+}
+
+/* Forgets the sound. */
+static void reset_sound(labial_hear_t *hear)
+{
+    hear->hop = hear->fade = 0;
+    hear->filled = SHARED;
+    hear->sounding = 0;
+    hear->first = hear->frame;
+    hear->level = LABIAL_HEAR_LEVEL_LEAST;
+    memset(hear->window, 0, sizeof hear->window);
+    labial_hear_convert_reset(&hear->convert);
+    labial_hear_network_reset(hear);
+}
+
+/* ---- The calls --------------------------------------------------------------------------------------------------- */
+
+int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint32_t rate, unsigned channels,
+                     void *workspace, size_t workspace_size, labial_frame_fn callback, void *user)
+{
+    if (!hear)
+        return LABIAL_ERROR_NULL;
+    memset(hear, 0, sizeof *hear);
+    if (!model || !workspace || !callback)
+        return LABIAL_ERROR_NULL;
+    if (model->format != LABIAL_HEAR_MODEL_FORMAT)
+        return LABIAL_ERROR_VERSION;
+    if (channels < 1u || channels > 2u || labial_hear_convert_init(&hear->convert, rate) != LABIAL_OK)
+        return LABIAL_ERROR_SOUND;
+    if (((uintptr_t)workspace & 3u) || workspace_size < labial_hear_workspace_size(model))
+        return LABIAL_ERROR_WORKSPACE;
+    hear->channels = (uint8_t)channels;
+    hear->model = model;
+    hear->rows = (int16_t *)workspace;
+    hear->callback = callback;
+    hear->user = user;
+    reset_sound(hear);
+    hear->magic = HEARING;
+    return LABIAL_OK;
+}
+
+int labial_hear_classes(labial_hear_t *hear, labial_hear_class_fn callback)
+{
+    const int result = usable(hear);
+    if (result == LABIAL_OK)
+        hear->class_callback = callback;
+    return result;
+}
+
+int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count)
+{
+    const int result = usable(hear);
+    if (result != LABIAL_OK)
+        return result;
+    if (!samples)
+        return LABIAL_ERROR_NULL;
+    if (hear->ended)
+        return LABIAL_ERROR_STATE;
+    if (hear->channels == 1u)
+        for (; count > 0; count--, samples++)
+            hear_at_rate(hear, samples[0]);
+    else
+        for (; count > 0; count--, samples += 2)
+            hear_at_rate(hear, (samples[0] + samples[1]) >> 1);
+    return LABIAL_OK;
+}
+
+int labial_hear_end(labial_hear_t *hear)
+{
+    const int result = usable(hear);
+    unsigned i;
+    if (result != LABIAL_OK || hear->ended)
+        return result;
+    for (i = hear->convert.reach; i > 0; i--)
+        hear_at_rate(hear, 0);
+    while (hear->filled > SHARED || hear->hop > 0) /* silence fills a frame that has begun */
+        hear_sample(hear, 0);
+    while (hear->sounding > 0) {
+        memset(hear->window + SHARED, 0, LABIAL_HEAR_HOP_ * sizeof *hear->window);
+        hear_window(hear);
+    }
+    tell_class(hear);
+    hear->ended = 1;
+    return LABIAL_OK;
+}
+
+int labial_hear_cancel(labial_hear_t *hear, uint32_t milliseconds)
+{
+    const int result = usable(hear);
+    int16_t pose[LABIAL_CHANNELS];
+    unsigned step, steps, k;
+    if (result != LABIAL_OK)
+        return result;
+    tell_class(hear);
+    steps = milliseconds < 1000u ? (unsigned)labial_quotient(milliseconds + 19u, 20u) : EASING;
+    for (step = 1, steps += steps == 0; step <= steps; step++) {
+        const int32_t left = 16384 - labial_ease(step, steps);
+        for (k = 0; k < LABIAL_CHANNELS; k++)
+            pose[k] = (int16_t)((hear->pose[k] * left + 8192) >> 14);
+        tell_frame(hear, pose);
+    }
+    memset(hear->pose, 0, sizeof hear->pose);
+    reset_sound(hear);
+    hear->ended = 1;
+    return LABIAL_OK;
+}
+
+int labial_hear_restart(labial_hear_t *hear)
+{
+    const int result = usable(hear);
+    if (result != LABIAL_OK)
+        return result;
+    if (!hear->ended)
+        return LABIAL_ERROR_STATE;
+    reset_sound(hear);
+    memcpy(hear->faded, hear->pose, sizeof hear->faded);
+    hear->fade = 1;
+    hear->ended = 0;
+    return LABIAL_OK;
+}
+
+uint32_t labial_hear_latency(const labial_hear_t *hear)
+{
+    uint32_t stride, step, frame;
+    if (!hear || hear->magic != HEARING)
+        return 0;
+    stride = hear->convert.spacing * 10u;
+    step = hear->convert.step;
+    frame = labial_quotient(2u * LABIAL_HEAR_HOP_ * step, stride);
+    /* The last converted sample comes one step before the frames' end, and needs `reach` samples after the one on its
+     * left. */
+    return (hear->model->ahead + 1u) * frame + hear->convert.reach + 1u - labial_quotient(step + stride - 1u, stride);
+}

@@ -1,0 +1,21 @@
+/*
+ * hear_convert.h - the conversion of a sound to 16 kHz, sample by sample.
+ */
+#ifndef LABIAL_HEAR_CONVERT_H
+#define LABIAL_HEAR_CONVERT_H
+
+#include "labial/hear.h"
+
+/* Samples at 16 kHz that a sample of the sound can complete, at most. */
+#define LABIAL_HEAR_CONVERTED_MAX 2
+
+/* Prepares the conversion from `rate`, with zeros as the samples before. Returns LABIAL_OK or LABIAL_ERROR_SOUND. */
+int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t rate);
+
+/* Begins again with zeros as the samples before. */
+void labial_hear_convert_reset(labial_hear_convert_t *convert);
+
+/* For rates other than 16 kHz: takes a sample, and writes those at 16 kHz that it completes to `out`; returns how many. */
+unsigned labial_hear_convert(labial_hear_convert_t *convert, int32_t sample, int16_t out[LABIAL_HEAR_CONVERTED_MAX]);
+
+#endif
