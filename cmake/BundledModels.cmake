@@ -10,6 +10,14 @@ function(labial_bundled_models variable)
   set(${variable} ${speech} ${models} PARENT_SCOPE)
 endfunction()
 
+# labial_hearing_models(<variable>): the names of the models of hearing in lib/models, which begin with hear_.
+function(labial_hearing_models variable)
+  set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../lib/models")
+  file(GLOB models RELATIVE "${folder}" CONFIGURE_DEPENDS "${folder}/hear_*.h")
+  list(TRANSFORM models REPLACE "\\.h$" "")
+  set(${variable} ${models} PARENT_SCOPE)
+endfunction()
+
 # labial_models_header(<file> [<model> ...]): writes a header with LABIAL_BUNDLED, the rows of all models as { name, model,
 # names }. A program that is given models links the tables of those alone; of the others there are only the names.
 function(labial_models_header file)

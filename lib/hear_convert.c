@@ -43,7 +43,8 @@ static int16_t interpolated(const labial_hear_convert_t *convert, const int16_t 
     unsigned k;
     for (k = convert->reach; k > 0;
          k--) { /* below 2^31 in all, since the filter's magnitudes add up to less than 2^16 */
-        total += *left-- * *near_left + *right++ * *near_right;
+        total += *left-- * *near_left;
+        total += *right++ * *near_right;
         near_left += spacing;
         near_right += spacing;
     }

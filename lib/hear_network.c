@@ -30,11 +30,16 @@ static void multiply(const labial_hear_dense_t *layer, unsigned rows, unsigned c
         int32_t sums[4] = { 0, 0, 0, 0 };
         int32_t a = 0, b = 0, c = 0, d = 0;
         for (p = x; p < x + columns; p += 2, w += 8) { /* columns come in fours */
-            const int32_t u = p[0], v = p[1];
-            a += w[0] * u + w[4] * v;
-            b += w[1] * u + w[5] * v;
-            c += w[2] * u + w[6] * v;
-            d += w[3] * u + w[7] * v;
+            int32_t value = p[0];
+            a += w[0] * value;
+            b += w[1] * value;
+            c += w[2] * value;
+            d += w[3] * value;
+            value = p[1];
+            a += w[4] * value;
+            b += w[5] * value;
+            c += w[6] * value;
+            d += w[7] * value;
         }
         sums[0] = a;
         sums[1] = b;

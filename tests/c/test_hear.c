@@ -1,0 +1,395 @@
+/*
+ * test_hear.c - sound in, frames out (labial/hear.h): the frames of the exporter's integers for sounds of every rate, in
+ * blocks of any length; their times; the end, a cancel and a restart; wrong calls.
+ */
+#include "suite.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixture.h"
+#include "hear_fixture.h"
+#include "hears.h"
+#include "labial/hear.h"
+
+#define HEARS (sizeof hears / sizeof hears[0])
+#define LONGEST 60000u
+#define FRAMES 200u
+
+static labial_hear_t hear;
+static uint32_t workspace[HEAR_FIXTURE_WORKSPACE_SIZE / 4];
+static int16_t samples[2 * LONGEST];
+
+/* What the callbacks received since begin(). */
+static int16_t told[FRAMES][LABIAL_CHANNELS];
+static uint32_t stretches[FRAMES][3];
+static unsigned frame_count, stretch_count;
+static uint32_t first_frame;
+static int user;
+
+static void on_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    assert_true(given == &user);
+    assert_true(frame_count < FRAMES);
+    assert_int_equal(frame, first_frame + frame_count);
+    memcpy(told[frame_count++], faps, sizeof told[0]);
+}
+
+static void on_class(void *given, unsigned shown, uint32_t frame, uint32_t frames)
+{
+    assert_true(given == &user);
+    assert_true(stretch_count < FRAMES);
+    stretches[stretch_count][0] = shown;
+    stretches[stretch_count][1] = frame;
+    stretches[stretch_count++][2] = frames;
+}
+
+static void begin(uint32_t rate, unsigned channels)
+{
+    frame_count = stretch_count = 0;
+    first_frame = 0;
+    assert_int_equal(
+        labial_hear_init(&hear, &hear_fixture, rate, channels, workspace, sizeof workspace, on_frame, &user),
+        LABIAL_OK);
+    assert_int_equal(labial_hear_classes(&hear, on_class), LABIAL_OK);
+}
+
+/* The sounds of hears.py. */
+static void make_sound(uint32_t number, uint32_t count, unsigned channels)
+{
+    uint32_t i, state = 1;
+    for (i = 0; i < count; i++) {
+        const int32_t at = (int32_t)i;
+        int32_t value = 0, noise;
+        state = state * 1664525u + 1013904223u;
+        noise = (int32_t)(state >> 16) - 32768;
+        if (number == 1u)
+            value = 8520;
+        else if (number == 2u)
+            value = i / 40u % 2u == 0u ? 32767 : -32768;
+        else if (number == 3u)
+            value = noise >> (i / 2500u % 4u * 4u);
+        else if (number == 4u)
+            value = 8000 + (noise >> 12);
+        else if (number == 5u) {
+            value = (int32_t)((int64_t)(at * 420 % 65536 - 32768) * (at * 77 % 16384) >> 15);
+            value = value * (at / 3000 % 3);
+            value = (value >> 1) + (noise >> 7);
+        }
+        samples[i * channels] = (int16_t)value;
+        if (channels == 2u)
+            samples[2u * i + 1u] = (int16_t) - (value >> 1);
+    }
+}
+
+static uint32_t crc_of(const void *data, size_t size)
+{
+    return fixture_crc32((const uint8_t *)data, size);
+}
+
+static void push_in_blocks(uint32_t count, unsigned channels, uint32_t block)
+{
+    const int16_t *at = samples;
+    while (count > 0) {
+        const uint32_t part = count < block ? count : block;
+        assert_int_equal(labial_hear_push(&hear, at, part), LABIAL_OK);
+        at += part * channels;
+        count -= part;
+    }
+}
+
+/* ---- Frames -------------------------------------------------------------------------------------------------------- */
+
+/* Would catch any step that is not what the exporter computes and judges a model by, at any rate. */
+TEST(frames_and_classes_are_the_exporters)
+{
+    unsigned i;
+    for (i = 0; i < HEARS; i++) {
+        begin(hears[i].rate, hears[i].channels);
+        make_sound(hears[i].sound, hears[i].samples, hears[i].channels);
+        push_in_blocks(hears[i].samples, hears[i].channels, LONGEST);
+        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_int_equal(frame_count, hears[i].frames);
+        assert_int_equal(crc_of(told, sizeof told[0] * frame_count), hears[i].faps_crc);
+        assert_int_equal(stretch_count, hears[i].stretches);
+        assert_int_equal(crc_of(stretches, sizeof stretches[0] * stretch_count), hears[i].classes_crc);
+    }
+}
+
+/* Would catch a sample that is lost or heard twice at the border of blocks. */
+TEST(blocks_of_any_length_give_the_same_frames)
+{
+    static const uint32_t blocks[] = { 1, 2, 7, 159, 160, 161, 320, 1024, 4801 };
+    unsigned i, b;
+    for (i = 5; i < HEARS; i += 6)
+        for (b = 0; b < sizeof blocks / sizeof blocks[0]; b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
+            begin(hears[i].rate, hears[i].channels);
+            make_sound(hears[i].sound, hears[i].samples, hears[i].channels);
+            push_in_blocks(hears[i].samples, hears[i].channels, blocks[b]);
+            assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+            assert_int_equal(crc_of(told, sizeof told[0] * frame_count), hears[i].faps_crc);
+            assert_int_equal(crc_of(stretches, sizeof stretches[0] * stretch_count), hears[i].classes_crc);
+        }
+}
+
+/* Would catch a latency that is not what a program must wait for. */
+TEST(a_frame_is_known_when_latency_says)
+{
+    static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
+    unsigned i;
+    for (i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+        const uint32_t frame = rates[i] / LABIAL_HEAR_RATE;
+        uint32_t pushed, latency;
+        begin(rates[i], 1);
+        latency = labial_hear_latency(&hear);
+        /* Three frames ahead, the frame itself, and the filter, less than a millisecond of which is ahead. */
+        assert_true(latency > 4u * frame - 4u && latency < 4u * frame + rates[i] / 1000u);
+        for (pushed = 1; pushed < latency + 3u * frame; pushed++) {
+            assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_OK);
+            assert_int_equal(frame_count, pushed < latency ? 0 : 1u + (pushed - latency) / frame);
+        }
+    }
+    memset(&hear, 0, sizeof hear);
+    assert_int_equal(labial_hear_latency(&hear), 0);
+    assert_int_equal(labial_hear_latency(NULL), 0);
+}
+
+/* Would catch a sound whose two channels do not count alike. */
+TEST(two_channels_are_heard_as_their_mean)
+{
+    int16_t mean[FRAMES][LABIAL_CHANNELS];
+    unsigned i, count;
+    make_sound(3, 8000, 1);
+    begin(24000, 1);
+    push_in_blocks(8000, 1, 100);
+    labial_hear_end(&hear);
+    count = frame_count;
+    memcpy(mean, told, sizeof mean);
+    for (i = 8000; i-- > 0;) {
+        const int32_t value = samples[i], apart = value >= 0 ? 32767 - value : 32768 + value;
+        samples[2u * i] = (int16_t)(value - apart);
+        samples[2u * i + 1u] = (int16_t)(value + apart);
+    }
+    begin(24000, 2);
+    push_in_blocks(8000, 2, 100);
+    labial_hear_end(&hear);
+    assert_int_equal(frame_count, count);
+    assert_memory_equal(told, mean, sizeof told[0] * count);
+}
+
+/* Would catch a pointer into the structure itself. */
+TEST(a_stream_may_be_moved)
+{
+    labial_hear_t other;
+    assert_int_equal(hears[47].rate, 48000);
+    assert_int_equal(hears[47].sound, 5);
+    begin(48000, 2);
+    make_sound(5, hears[47].samples, 2);
+    assert_int_equal(labial_hear_push(&hear, samples, 1000), LABIAL_OK);
+    memcpy(&other, &hear, sizeof other);
+    memset(&hear, 0xa5, sizeof hear);
+    assert_int_equal(labial_hear_push(&other, samples + 2000, hears[47].samples - 1000u), LABIAL_OK);
+    assert_int_equal(labial_hear_end(&other), LABIAL_OK);
+    assert_int_equal(crc_of(told, sizeof told[0] * frame_count), hears[47].faps_crc);
+}
+
+/* ---- The end, a cancel, a restart ----------------------------------------------------------------------------------- */
+
+/* Would catch frames without sound, and a stream that takes sound after its end. */
+TEST(nothing_follows_the_end)
+{
+    begin(16000, 1);
+    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_int_equal(frame_count, 0);
+    assert_int_equal(stretch_count, 0);
+    begin(16000, 1);
+    assert_int_equal(labial_hear_push(&hear, samples, 0), LABIAL_OK);
+    assert_int_equal(labial_hear_push(&hear, samples, 321), LABIAL_OK);
+    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_int_equal(frame_count, 2);
+    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_int_equal(frame_count, 2);
+    assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
+}
+
+/* Would catch a jump of the lips, or frames after the neutral one. */
+TEST(a_cancel_eases_to_the_neutral_face)
+{
+    static const struct {
+        uint32_t milliseconds;
+        unsigned frames;
+    } eases[] = {
+        { 0, 1 }, { 1, 1 }, { 20, 1 }, { 21, 2 }, { 200, 10 }, { 1000, 50 }, { 5000, 50 }, { UINT32_MAX, 50 }
+    };
+    unsigned i, f, k;
+    make_sound(3, 8000, 1);
+    for (i = 0; i < sizeof eases / sizeof eases[0]; i++) {
+        unsigned before;
+        begin(16000, 1);
+        push_in_blocks(8000, 1, 333);
+        before = frame_count;
+        assert_true(before > 10u);
+        assert_int_equal(labial_hear_cancel(&hear, eases[i].milliseconds), LABIAL_OK);
+        assert_int_equal(frame_count, before + eases[i].frames);
+        for (f = before; f < frame_count; f++)
+            for (k = 0; k < LABIAL_CHANNELS; k++) {
+                const int from = told[f - 1u][k], to = told[f][k];
+                assert_true(from < 0 ? to >= from && to <= 0 : to <= from && to >= 0);
+            }
+        for (k = 0; k < LABIAL_CHANNELS; k++)
+            assert_int_equal(told[frame_count - 1u][k], 0);
+        assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], before);
+        assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
+        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_int_equal(frame_count, before + eases[i].frames);
+    }
+}
+
+/* Would catch sound from before the restart that is still heard, and a jump from the last frame. */
+TEST(a_restart_fades_and_then_hears_afresh)
+{
+    int16_t fresh[FRAMES][LABIAL_CHANNELS];
+    unsigned f, k, count, before;
+    make_sound(5, 9000, 1);
+    begin(44100, 1);
+    push_in_blocks(9000, 1, 500);
+    labial_hear_end(&hear);
+    memcpy(fresh, told, sizeof fresh);
+    count = frame_count;
+    assert_true(count > 9u);
+    begin(44100, 1);
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
+    make_sound(3, 9001, 1);
+    push_in_blocks(9001, 1, 500);
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
+    labial_hear_end(&hear);
+    before = frame_count;
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    make_sound(5, 9000, 1);
+    push_in_blocks(9000, 1, 500);
+    labial_hear_end(&hear);
+    assert_int_equal(frame_count, before + count);
+    for (f = 0; f < count; f++)
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const double step = f < 8u ? (f + 1.0) / 9.0 : 1.0, share = step * step * (3 - 2 * step);
+            const double last = told[before - 1u][k], wanted = last + (fresh[f][k] - last) * share;
+            const double error = told[before + f][k] - wanted;
+            assert_true(error > -1.6 && error < 1.6);
+        }
+    assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], before + count);
+}
+
+/* Would catch a class that is told when nobody asks. */
+TEST(classes_are_told_only_where_they_are_asked_for)
+{
+    make_sound(3, 8000, 1);
+    begin(16000, 1);
+    assert_int_equal(labial_hear_classes(&hear, NULL), LABIAL_OK);
+    push_in_blocks(8000, 1, 8000);
+    labial_hear_end(&hear);
+    assert_int_equal(stretch_count, 0);
+    assert_true(frame_count > 0u);
+    assert_string_equal(hear_fixture_classes[HEAR_FIXTURE_M], "M");
+    assert_int_equal(hear_fixture.closure, HEAR_FIXTURE_M);
+}
+
+/* ---- Memory and wrong calls ----------------------------------------------------------------------------------------- */
+
+/* Would catch a macro and a function that disagree, and a byte that is written beyond the workspace. */
+TEST(the_workspace_has_the_size_that_both_formulas_give)
+{
+    uint8_t *exact = (uint8_t *)malloc(HEAR_FIXTURE_WORKSPACE_SIZE + 8u);
+    unsigned i;
+    assert_non_null(exact);
+    assert_int_equal(labial_hear_workspace_size(&hear_fixture), HEAR_FIXTURE_WORKSPACE_SIZE);
+    assert_int_equal(labial_hear_workspace_size(NULL), 0);
+    memset(exact, 0x5a, HEAR_FIXTURE_WORKSPACE_SIZE + 8u);
+    begin(16000, 1);
+    assert_int_equal(
+        labial_hear_init(&hear, &hear_fixture, 16000, 1, exact, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &user),
+        LABIAL_OK);
+    make_sound(5, 16000, 1);
+    push_in_blocks(16000, 1, 1000);
+    labial_hear_end(&hear);
+    for (i = 0; i < 8u; i++)
+        assert_int_equal(exact[HEAR_FIXTURE_WORKSPACE_SIZE + i], 0x5a);
+    free(exact);
+}
+
+TEST(wrong_arguments_are_refused)
+{
+    static const uint32_t rates[] = { 0, 1, 7999, 11025, 15999, 44000, 96000, UINT32_MAX };
+    labial_hear_model_t other = hear_fixture;
+    uint8_t *odd = (uint8_t *)workspace + 2;
+    unsigned i;
+    const size_t size = sizeof workspace;
+    assert_int_equal(labial_hear_init(NULL, &hear_fixture, 16000, 1, workspace, size, on_frame, NULL),
+                     LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_init(&hear, NULL, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, NULL, size, on_frame, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, size, NULL, NULL), LABIAL_ERROR_NULL);
+    for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
+        assert_int_equal(labial_hear_init(&hear, &hear_fixture, rates[i], 1, workspace, size, on_frame, NULL),
+                         LABIAL_ERROR_SOUND);
+    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 0, workspace, size, on_frame, NULL),
+                     LABIAL_ERROR_SOUND);
+    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 3, workspace, size, on_frame, NULL),
+                     LABIAL_ERROR_SOUND);
+    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, size - 1u, on_frame, NULL),
+                     LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, odd, size, on_frame, NULL),
+                     LABIAL_ERROR_WORKSPACE);
+    other.format++;
+    assert_int_equal(labial_hear_init(&hear, &other, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_VERSION);
+    /* After an error the stream is unusable. */
+    assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_hear_end(&hear), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_hear_cancel(&hear, 0), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_hear_classes(&hear, NULL), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_hear_push(NULL, samples, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_end(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_cancel(NULL, 0), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_restart(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_classes(NULL, NULL), LABIAL_ERROR_NULL);
+    begin(16000, 1);
+    assert_int_equal(labial_hear_push(&hear, NULL, 1), LABIAL_ERROR_NULL);
+}
+
+static unsigned refused;
+
+/* Calls all that a callback must not call. */
+static void call_again(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)given;
+    (void)frame;
+    (void)faps;
+    refused += labial_hear_push(&hear, samples, 1) == LABIAL_ERROR_STATE;
+    refused += labial_hear_end(&hear) == LABIAL_ERROR_STATE;
+    refused += labial_hear_cancel(&hear, 0) == LABIAL_ERROR_STATE;
+    refused += labial_hear_restart(&hear) == LABIAL_ERROR_STATE;
+    refused += labial_hear_classes(&hear, NULL) == LABIAL_ERROR_STATE;
+    refused += labial_hear_latency(&hear) == 4u * 320u;
+}
+
+static void call_again_for_class(void *given, unsigned shown, uint32_t frame, uint32_t frames)
+{
+    (void)shown;
+    call_again(given, frame + frames, NULL);
+}
+
+/* Would catch a callback that changes the stream under a call. */
+TEST(callbacks_cannot_change_their_stream)
+{
+    refused = 0;
+    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace, call_again, NULL),
+                     LABIAL_OK);
+    assert_int_equal(labial_hear_classes(&hear, call_again_for_class), LABIAL_OK);
+    make_sound(0, 960, 1);
+    push_in_blocks(960, 1, 960);
+    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_true(refused >= 6u * 4u);
+    assert_int_equal(refused % 6u, 0);
+}
+
+SUITE(NULL, NULL)
