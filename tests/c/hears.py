@@ -76,8 +76,8 @@ def sound(number: int, count: int, seed: int = 1) -> np.ndarray:
     return (saw * (at // 3000 % 3) >> 1) + (noise >> 7)
 
 
-HEAD = """/* Written by hears.py from export/labial/hearing/integer.py; do not edit: rate, channels, number of the sound, samples;
- * number of frames and of stretches of one class, CRC-32 of the FAPs and of classes with their frames. */
+HEAD = """/* Written by hears.py from export/labial/hearing/integer.py; do not edit: rate, channels, number of a sound,
+ * samples; number of frames and of stretches of one class, CRC-32 of the FAPs and of classes with their frames. */
 static const struct {
     uint32_t rate, channels, sound, samples, frames, stretches, faps_crc, classes_crc;
 } hears[] = {

@@ -51,11 +51,14 @@ def run(options: argparse.Namespace) -> int:
     from labial.evaluate import loss
     from labial.files.c import check_name
     from labial.files.outputs import check_folder
+    from labial.hearing.model import is_hearing
     from labial.tables import emit
     from labial.tables.phones import drawn_streams
 
     check_name(options.name)
     check_folder(options.output)
+    if is_hearing(options.model):
+        return _export_hearing(options)
     model, tables = exported(options, options.name)
     streams = drawn_streams(model)
     measured = loss.measure(model, tables, streams)
@@ -63,4 +66,20 @@ def run(options: argparse.Namespace) -> int:
         print(path)
     print(loss.memory(tables))
     print(loss.quantisation(measured, model, tables))
+    return 0
+
+
+def _export_hearing(options: argparse.Namespace) -> int:
+    """Writes the C files of a model of hearing, and prints their memory."""
+    from labial.hearing import emit
+    from labial.hearing.model import load
+    from labial.hearing.quantise import quantise
+
+    if options.blob or options.amplitude != 1.0 or options.predecessors != PREDECESSORS:
+        raise LabialError(f"{options.model}: --blob, --amplitude and --predecessors are not for a model of hearing")
+    tables = quantise(load(options.model), options.name)
+    for path in emit.write(tables, options.output):
+        print(path)
+    print(f"flash {emit.flash_bytes(tables)} B, workspace {emit.workspace_bytes(tables)} B, "
+          f"a frame is known {20 * (tables.ahead + 1)} ms after its begin")
     return 0

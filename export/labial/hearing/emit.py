@@ -106,6 +106,11 @@ def flash_bytes(tables: HearingTables) -> int:
     return total + sum(block.taps.size + block.shift.size for block in tables.blocks)
 
 
+def workspace_bytes(tables: HearingTables) -> int:
+    """LABIAL_HEAR_WORKSPACE_SIZE of the model."""
+    return 2 * tables.units * tables.rows
+
+
 def _comment(tables: HearingTables, what: str) -> str:
     text = (f"{what} model of hearing, {tables.units} units in {len(tables.blocks)} blocks, "
             f"{20 * (tables.ahead + 1)} ms from a frame's begin until it is known. "

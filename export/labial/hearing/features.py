@@ -110,4 +110,4 @@ def normalise(energies: np.ndarray) -> np.ndarray:
 
 def features(sound: np.ndarray) -> np.ndarray:
     """(T, 48) float32, what the network hears of a sound: a row for each frame, the features of its two hops."""
-    return normalise(log_energies(sound)).reshape(-1, HOPS * BANDS)
+    return normalise(log_energies(sound)).reshape(frames_of(len(sound)), HOPS * BANDS)

@@ -94,7 +94,7 @@ def _transform(re: np.ndarray, im: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     sine = sine_table()
     quarter, turn = COUNT // 4, 2
     while quarter:
-        shape = (len(re), -1, 4, quarter)
+        shape = (len(re), COUNT // 4 // quarter, 4, quarter)
         (ar, br, cr, dr), (ai, bi, ci, di) = (np.moveaxis(part.reshape(shape), 2, 0) for part in (re, im))
         er, ei, fr, fi = ar + cr, ai + ci, ar - cr, ai - ci
         gr, gi, hr, hi = br + dr, bi + di, bi - di, dr - br  # h is -j (b - d)
@@ -112,7 +112,7 @@ def _transform(re: np.ndarray, im: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
             out_im.append(xi)
         re, im = (np.stack(part, axis=2).reshape(len(re), COUNT) for part in (out_re, out_im))
         quarter, turn = quarter // 4, turn * 4
-    pairs = (part.reshape(len(re), -1, 2) for part in (re, im))
+    pairs = (part.reshape(len(re), COUNT // 2, 2) for part in (re, im))
     done = [np.stack([(p[..., 0] + p[..., 1] + 1) >> 1, (p[..., 0] - p[..., 1] + 1) >> 1], axis=-1) for p in pairs]
     return done[0].reshape(len(re), COUNT), done[1].reshape(len(re), COUNT)
 
@@ -225,6 +225,6 @@ def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
     samples = convert(np.asarray(sound), rate)
     count = frames_of(len(samples))
     padded = np.concatenate([samples, np.zeros((count + tables.ahead) * FRAME - len(samples), dtype=np.int64)])
-    heard = normalise(log_energies(padded)).reshape(-1, HOPS * BANDS)
+    heard = normalise(log_energies(padded)).reshape(count + tables.ahead, HOPS * BANDS)
     head = heads(tables, heard)[:count]
     return Heard(head[:, : len(tables.classes)], (poses(tables, head) + 8) >> 4)
