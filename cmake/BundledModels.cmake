@@ -34,3 +34,16 @@ function(labial_models_header file)
   endforeach()
   file(CONFIGURE OUTPUT "${file}" CONTENT "${text}#define LABIAL_BUNDLED${rows}\n" @ONLY)
 endfunction()
+
+# labial_hearing_header(<file>): writes a header with LABIAL_BUNDLED_HEARING, the rows of the models of hearing as
+# { name, model, names of its classes }.
+function(labial_hearing_header file)
+  labial_hearing_models(models)
+  set(text "/* The bundled models of hearing; written by cmake/BundledModels.cmake. */\n")
+  set(rows "")
+  foreach(model IN LISTS models)
+    string(APPEND text "#include \"${model}.h\"\n")
+    string(APPEND rows " \\\n    { \"${model}\", &${model}, ${model}_classes },")
+  endforeach()
+  file(CONFIGURE OUTPUT "${file}" CONTENT "${text}#define LABIAL_BUNDLED_HEARING${rows}\n" @ONLY)
+endfunction()

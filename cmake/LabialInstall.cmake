@@ -8,14 +8,15 @@ set(labial_cmake "${CMAKE_INSTALL_LIBDIR}/cmake/labial")
 
 # ---- Libraries and headers -----------------------------------------------------------------------------------------
 
-list(TRANSFORM LABIAL_BUNDLED_MODELS PREPEND labial_ OUTPUT_VARIABLE labial_model_targets)
+set(labial_installed_models ${LABIAL_BUNDLED_MODELS} ${LABIAL_HEARING_MODELS})
+list(TRANSFORM labial_installed_models PREPEND labial_ OUTPUT_VARIABLE labial_model_targets)
 install(TARGETS labial EXPORT labial-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(TARGETS ${labial_model_targets} EXPORT labial-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" INCLUDES DESTINATION "${labial_models_include}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/labial" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.h")
-foreach(model IN LISTS LABIAL_BUNDLED_MODELS)
+foreach(model IN LISTS labial_installed_models)
   install(FILES "${PROJECT_SOURCE_DIR}/lib/models/${model}.h" DESTINATION "${labial_models_include}")
 endforeach()
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
@@ -67,7 +68,7 @@ endfunction()
 
 labial_pkg_config(labial "Lip motion from phonemes, on a fixed amount of memory" "" labial
   "-I\${includedir}${labial_pc_definitions}")
-foreach(model IN LISTS LABIAL_BUNDLED_MODELS)
+foreach(model IN LISTS labial_installed_models)
   labial_pkg_config(labial_${model} "Labial's model ${model}" "labial = ${PROJECT_VERSION}" labial_${model}
     "-I\${includedir}/labial/models")
 endforeach()

@@ -78,12 +78,18 @@ def set_version(number: str) -> List[Path]:
     return [ROOT / name for name in (_HEADER, *VERSIONS)]
 
 
+#: What the headers of models declare: those of phonemes, and those that hear.
+_PHONEMES, _HEARING = "extern const labial_model_t", "extern const labial_hear_model_t"
+
+
 class Model:
-    """One model as ``labial export`` writes it: NAME.h, NAME.c and NAME_names.c."""
+    """One model as ``labial export`` writes it: NAME.h and NAME.c, and NAME_names.c for one of phonemes."""
 
     def __init__(self, header: Path) -> None:
         self.name = header.stem
-        self.files = [header, header.with_suffix(".c"), header.with_name(f"{header.stem}_names.c")]
+        self.files = [header, header.with_suffix(".c")]
+        if _PHONEMES in header.read_text(encoding="utf-8"):
+            self.files.append(header.with_name(f"{header.stem}_names.c"))
         for path in self.files:
             if not path.is_file():
                 raise PackError(f"{path}: no such file, beside {header.name}; export the model again")
@@ -105,8 +111,8 @@ class Source:
         self.public = sorted((ROOT / "include" / "labial").glob("*.h"))
         self.private = sorted((ROOT / "lib").glob("*.h"))
         self.sources = sorted((ROOT / "lib").glob("*.c"))
-        mark = "extern const labial_model_t"
-        headers = [path for path in sorted(folder.glob("*.h")) if mark in path.read_text(encoding="utf-8")]
+        headers = [path for path in sorted(folder.glob("*.h"))
+                   if any(mark in path.read_text(encoding="utf-8") for mark in (_PHONEMES, _HEARING))]
         if not headers:
             raise PackError(f"{folder}: holds no exported model")
         self.models = [Model(path) for path in headers]

@@ -9,6 +9,8 @@
         for frame in stream:
             print(frame.number, frame.faps)
     motion = labial.render([("HH", 70), ("AY", 230)])
+    with labial.Hearing(16000) as hearing:
+        print(hearing.push(bytes(9600)))
 
 This is the run-time (``labial.runtime``), the C library called from Python, which needs only Python; docs/python.md is
 its manual. The other modules are the exporter, which trains models, writes them as tables for C, and needs numpy.
@@ -25,6 +27,7 @@ __version__ = "0.3.0"
 
 if TYPE_CHECKING:
     from labial.runtime.frame import Frame, Latency
+    from labial.runtime.hearing import Hearing
     from labial.runtime.models import Model
     from labial.runtime.render import read_timings, render
     from labial.runtime.rig import Rig
@@ -33,10 +36,10 @@ if TYPE_CHECKING:
     speech_en: Model
     laughter_synthetic: Model
 
-__all__ = ["Frame", "Latency", "Model", "Rig", "Stream", "read_timings", "render", *BUNDLED]
+__all__ = ["Frame", "Hearing", "Latency", "Model", "Rig", "Stream", "read_timings", "render", *BUNDLED]
 
-_HOMES = {"Frame": "frame", "Latency": "frame", "Model": "models", "Rig": "rig", "Stream": "stream",
-          "read_timings": "render", "render": "render"}  # fmt: skip
+_HOMES = {"Frame": "frame", "Hearing": "hearing", "Latency": "frame", "Model": "models", "Rig": "rig",
+          "Stream": "stream", "read_timings": "render", "render": "render"}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

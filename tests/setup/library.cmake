@@ -2,13 +2,13 @@
 # tests/CMakeLists.txt.
 
 if(CMAKE_EXECUTABLE_FORMAT STREQUAL "ELF" AND CMAKE_NM)
-  foreach(library IN ITEMS labial ${LABIAL_BUNDLED_MODELS})
+  foreach(library IN ITEMS labial ${LABIAL_BUNDLED_MODELS} ${LABIAL_HEARING_MODELS})
     if(library STREQUAL "labial")
       set(target labial)
       set(names "labial_[a-z0-9_]+")
     else()
       set(target labial_${library})
-      set(names "${library}(_names)?")
+      set(names "${library}(_names|_classes)?")
     endif()
     add_test(NAME symbols_${library} COMMAND "${CMAKE_COMMAND}" -D "NM=${CMAKE_NM}"
       -D "LIBRARY=$<TARGET_FILE:${target}>" -D "NAMES=${names}" -P "${LABIAL_TEST_SETUP}/check_symbols.cmake")

@@ -14,6 +14,7 @@ from typing import Dict
 COMMANDS: Dict[str, str] = {
     "train": "train a model on a corpus",
     "synth": "synthesise frames with the float64 reference",
+    "hear": "make frames of speech from its sound alone",
     "timings": "turn phoneme timings of any format into a .lab",
     "align": "find the phonemes of a recording (English)",
     "bake": "turn timings, a sound or frames into a C header that a board plays",

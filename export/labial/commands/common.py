@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import Optional, Tuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
 
 from labial.defaults import FPS, KINDS
+from labial.errors import LabialError
 from labial.files.arguments import number, positive
 from labial.files.grammar import read_text
 from labial.files.outputs import writing
+
+if TYPE_CHECKING:
+    from labial.rig.animation import Format
 
 
 def add_kind(command: argparse.ArgumentParser) -> None:
@@ -38,7 +43,6 @@ def add_engine(command: argparse.ArgumentParser) -> None:
 def add_source(command: argparse.ArgumentParser) -> None:
     """``--from``, the format of timings, as `options.source`."""
     from labial.corpus.formats import names
-    from labial.errors import LabialError
 
     try:
         known: Optional[Tuple[str, ...]] = names()
@@ -46,6 +50,34 @@ def add_source(command: argparse.ArgumentParser) -> None:
         known = None
     command.add_argument("--from", dest="source", choices=known, metavar="FORMAT",
                          help=f"format of the timings: {', '.join(known or ())} (told by the file)")
+
+
+def add_format(command: argparse.ArgumentParser) -> None:
+    """``--to`` and ``--rig``, the format of frames, for :func:`format_of`."""
+    from labial.rig.animation import FORMATS
+
+    names: Dict[str, List[str]] = {}
+    for name, item in FORMATS.items():
+        names.setdefault(item.about, []).append(name)
+    about = "; ".join(f"{', '.join(same)}: {text}" for text, same in names.items())
+    command.add_argument("--to", choices=tuple(FORMATS), metavar="FORMAT", default="csv", help=f"{about} (csv)")
+    command.add_argument("--rig", metavar="FACE.toml", help="with --to jsonl: a face of your own in place of ARKit's, "
+                         "as labial rig reads it")
+
+
+def format_of(options: argparse.Namespace) -> Format:
+    """The format of frames that the options of :func:`add_format` name."""
+    from labial.rig.animation import FORMATS
+    from labial.rig.description import read
+
+    if not options.rig:
+        return FORMATS[options.to]
+    if options.to != "jsonl":
+        raise LabialError("--rig goes with --to jsonl")
+    name = Path(options.rig).stem
+    if name in ("frame", "time", "faps"):
+        raise LabialError(f"{options.rig}: {name!r} is taken in a line of JSON: name the file otherwise")
+    return FORMATS[options.to].of_rig(read(options.rig, name))
 
 
 def add_labels(command: argparse.ArgumentParser) -> None:

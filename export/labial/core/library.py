@@ -64,6 +64,13 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "timings_end": (c_int, (_POINTER, _POINTER, _POINTER)),
     "timings_label": (_TEXT, (_POINTER,)), "timings_word": (_TEXT, (_POINTER,)),
     "timings_message": (_TEXT, (_POINTER,)), "timings_line": (_NUMBER, (_POINTER,)),
+    "ears_size": (_NUMBER, ()), "hearing_name": (_TEXT, (_NUMBER,)), "hearing_model": (_POINTER, (_NUMBER,)),
+    "hearing_classes": (_NUMBER, (_NUMBER,)), "hearing_class": (_TEXT, (_NUMBER, _NUMBER)),
+    "ears_init": (c_int, (_POINTER, _POINTER, _NUMBER, _NUMBER)), "ears_latency": (_NUMBER, (_POINTER,)),
+    "ears_push": (c_int, (_POINTER, _POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
+    "ears_end": (c_int, (_POINTER, _POINTER, _POINTER, _NUMBER)),
+    "ears_cancel": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
+    "ears_stretches": (_NUMBER, (_POINTER,)), "ears_restart": (c_int, (_POINTER,)),
 }  # fmt: skip
 
 

@@ -1,0 +1,231 @@
+"""Hearing: sound in, in blocks of any length; frames out."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import sys
+from array import array
+from functools import cache
+from typing import Any, AsyncIterable, AsyncIterator, Iterable, Iterator, List, NamedTuple, Tuple, Union
+
+from labial.core.guard import Guard, alone
+from labial.core.library import ERROR_STATE, checked, library, memory
+from labial.core.numbers import duration, whole
+from labial.errors import LabialError, StreamError
+from labial.files.faps import CHANNELS
+from labial.runtime.frame import Frame
+
+#: Frames per second, LABIAL_HEAR_RATE.
+FPS = 50
+#: Bytes of a sample.
+_SAMPLE = 2
+#: Most frames that the end, or a cancel, delivers.
+_LAST = 64
+#: Samples that are heard in one call of C.
+_PIECE = 1 << 16
+
+#: A block of sound: bytes of int16, low byte first; or an object with a buffer of int16, such as array("h") or a numpy
+#: array, of shape (N,) or (N, channels).
+Sound = Union[bytes, bytearray, memoryview, "array[int]", Any]
+
+
+class Shown(NamedTuple):
+    """A stretch of frames in which one lip class leads."""
+
+    name: str  #: an ARPABET phoneme that stands for the class: "M" for p, b, m
+    frame: int  #: the first frame
+    frames: int  #: how many
+
+
+@cache
+def models() -> Tuple[str, ...]:
+    """The names of the models of hearing that the library has, the first of which is used where none is named."""
+    names: List[str] = []
+    while name := library().hearing_name(len(names)):
+        names.append(name.decode("ascii"))
+    return tuple(sorted(names, key=lambda item: item != "hear_small"))
+
+
+class Hearing:
+    """Ears: hears speech, and makes frames of it.
+
+        with labial.Hearing(24000) as hearing:
+            for block in microphone:
+                for frame in hearing.push(block):
+                    show(frame)
+            for frame in hearing.end():
+                show(frame)
+
+    Frame k shows the lips in the 20 ms of sound that begin at 20 k ms, and is known :attr:`latency` later. The sound
+    should be speech alone; its level does not matter down to peaks of 1/100 of full scale.
+
+    Calls from several threads wait for each other, as those of :class:`labial.Stream`. Closing frees the memory.
+
+    Args:
+        rate: samples per second: 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. channels: 1 or 2, of which
+        the mean is heard. model: the name of a model, "hear_small" or "hear_large".
+    """
+
+    def __init__(self, rate: int = 16000, channels: int = 1, *, model: str = "hear_small") -> None:
+        core, names = library(), models()
+        if model not in names:
+            raise LabialError(f"{model!r} is no model of hearing: {', '.join(names) or 'there is none'}")
+        self._rate, self._channels = whole(rate, "a rate"), whole(channels, "a number of channels")
+        number = next(k for k in range(len(names)) if core.hearing_name(k).decode("ascii") == model)
+        self._names = [core.hearing_class(number, k).decode("ascii") for k in range(core.hearing_classes(number))]
+        self._library, self._guard = core, Guard()
+        self._memory: Any = memory(core.ears_size())
+        self._address = ctypes.addressof(self._memory)
+        if not (0 <= self._rate < 2**32 and 0 <= self._channels < 2**32):
+            raise LabialError(f"a rate of {rate} and {channels} channels are not supported")
+        checked(core.ears_init(self._address, core.hearing_model(number), self._rate, self._channels),
+                f"{rate} samples per second, channels: {channels}")
+        self._number = 0  # of the next frame
+        self._part = b""  # the beginning of a sample whose end has not come
+        self._shown: List[Shown] = []
+
+    # ---- Sound in, frames out
+
+    @alone
+    def push(self, sound: Sound) -> List[Frame]:
+        """Hears a block of any length, and returns the frames that are known by now. Bytes may end within a sample.
+
+        Raises StreamError after :meth:`end` or :meth:`cancel`; TypeError for anything but int16 or bytes; LabialError
+        for an array whose shape does not fit the channels.
+        """
+        self._open()
+        samples = self._samples(sound)
+        frames: List[Frame] = []
+        step = _PIECE * self._channels
+        for first in range(0, len(samples), step):
+            piece = samples[first : first + step]
+            count = len(piece) // self._channels
+            room = count * FPS // self._rate + 2
+            frames += self._called(self._library.ears_push, room, piece.buffer_info()[0], count)
+        return frames
+
+    @alone
+    def end(self) -> List[Frame]:
+        """No more sound will come: returns the frames that are still to come."""
+        self._open()
+        self._part = b""
+        return self._called(self._library.ears_end, _LAST)
+
+    @alone
+    def cancel(self, milliseconds: float = 200) -> List[Frame]:
+        """Drops what is not yet delivered, and returns the frames of the way back to the neutral face, at most a
+        second."""
+        self._open()
+        self._part = b""
+        return self._called(self._library.ears_cancel, _LAST, math.ceil(duration(milliseconds)))
+
+    @alone
+    def restart(self) -> None:
+        """Continues after :meth:`end` or :meth:`cancel`: frame numbers continue, and the first frames fade in from the
+        last one. Raises StreamError before the end."""
+        self._open()
+        checked(self._library.ears_restart(self._address), "restart")
+
+    def frames(self, blocks: Iterable[Sound]) -> Iterator[Frame]:
+        """The frames of all blocks, to their end."""
+        for block in blocks:
+            yield from self.push(block)
+        yield from self.end()
+
+    async def follow(self, blocks: AsyncIterable[Sound]) -> AsyncIterator[Frame]:
+        """The same for blocks that come from an asynchronous iterator, such as a cloud's voice."""
+        async for block in blocks:
+            for frame in self.push(block):
+                yield frame
+        for frame in self.end():
+            yield frame
+
+    @alone
+    def shown(self) -> List[Shown]:
+        """The stretches of lip classes that ended since the last call."""
+        self._open()
+        found, self._shown = self._shown, []
+        return found
+
+    @property
+    @alone
+    def latency(self) -> float:
+        """Seconds from a frame's begin until it is known."""
+        self._open()
+        return float(self._library.ears_latency(self._address)) / self._rate
+
+    @property
+    def fps(self) -> int:
+        """Frames per second."""
+        return FPS
+
+    # ---- Closing
+
+    @alone
+    def close(self) -> None:
+        """Frees the memory; may be called again."""
+        self._address = 0
+        self._memory = None
+
+    @alone
+    def __enter__(self) -> Hearing:
+        self._open()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    # ---- With the lock held
+
+    def _open(self) -> None:
+        if not self._address:
+            raise StreamError(ERROR_STATE, "the hearing is closed")
+
+    def _samples(self, sound: Sound) -> array[int]:
+        """The whole samples of a block, with what was left of the one before."""
+        if not isinstance(sound, (bytes, bytearray)):
+            view = _view(sound)
+            if view.itemsize == _SAMPLE and view.format in ("h", "<h", "=h", "@h"):
+                shape = view.shape or ()
+                if len(shape) != 1 and (len(shape) != 2 or shape[1] != self._channels):
+                    raise LabialError(f"a block of shape {shape} does not have {self._channels} channels")
+                sound = view.tobytes()
+                if sys.byteorder == "big" and view.format != "<h":
+                    sound = _swapped(sound)
+            elif view.format in ("B", "b", "c"):
+                sound = view.tobytes()
+            else:
+                raise TypeError(f"sound is bytes or int16, not items of the format {view.format!r}")
+        data = self._part + bytes(sound)
+        cut = len(data) - len(data) % (_SAMPLE * self._channels)
+        self._part = data[cut:]
+        samples = array("h", data[:cut])
+        if sys.byteorder == "big":
+            samples.byteswap()
+        return samples
+
+    def _called(self, function: Any, room: int, *arguments: int) -> List[Frame]:
+        """The frames of a call."""
+        faps, shown = array("h", bytes(_SAMPLE * CHANNELS * room)), (ctypes.c_uint32 * (3 * room))()
+        count = checked(function(self._address, *arguments, faps.buffer_info()[0], ctypes.addressof(shown), room))
+        rows = zip(*[iter(faps[: CHANNELS * count])] * CHANNELS)
+        frames = [Frame(self._number + k, row) for k, row in enumerate(rows)]
+        self._number += count
+        for k in range(min(self._library.ears_stretches(self._address), room)):
+            name, first, length = shown[3 * k : 3 * k + 3]
+            self._shown.append(Shown(self._names[name], first, length))
+        return frames
+
+
+def _view(sound: Any) -> memoryview:
+    try:
+        return memoryview(sound)
+    except TypeError:
+        raise TypeError(f"sound is bytes or int16, not {type(sound).__name__}") from None
+
+
+def _swapped(data: bytes) -> bytes:
+    samples = array("h", data)
+    samples.byteswap()
+    return samples.tobytes()

@@ -1,0 +1,118 @@
+/*
+ * ears.c - hearing without structures (ears.h).
+ */
+#include "ears.h"
+
+#include <string.h>
+
+#include "hearing.h"
+
+typedef struct {
+    const char *name;
+    const labial_hear_model_t *model;
+    const char *const *classes;
+} hearing_t;
+
+static const hearing_t bundled[] = { LABIAL_BUNDLED_HEARING{ 0, 0, 0 } };
+
+#define BUNDLED (sizeof bundled / sizeof bundled[0] - 1u)
+
+uint32_t ears_size(void)
+{
+    return sizeof(ears_t);
+}
+
+const char *hearing_name(unsigned number)
+{
+    return number < BUNDLED ? bundled[number].name : NULL;
+}
+
+const labial_hear_model_t *hearing_model(unsigned number)
+{
+    return number < BUNDLED ? bundled[number].model : NULL;
+}
+
+unsigned hearing_classes(unsigned number)
+{
+    return number < BUNDLED ? bundled[number].model->classes : 0;
+}
+
+const char *hearing_class(unsigned number, unsigned shown)
+{
+    return shown < hearing_classes(number) ? bundled[number].classes[shown] : NULL;
+}
+
+static void take_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    ears_t *ears = (ears_t *)user;
+    (void)frame;
+    if (ears->faps && ears->frame_count < ears->room)
+        memcpy(ears->faps + ears->frame_count * LABIAL_CHANNELS, faps, LABIAL_CHANNELS * sizeof *faps);
+    ears->frame_count++;
+}
+
+static void take_stretch(void *user, unsigned shown, uint32_t frame, uint32_t frames)
+{
+    ears_t *ears = (ears_t *)user;
+    if (ears->stretches && ears->stretch_count < ears->room) {
+        uint32_t *to = ears->stretches + 3u * ears->stretch_count;
+        to[0] = shown;
+        to[1] = frame;
+        to[2] = frames;
+    }
+    ears->stretch_count++;
+}
+
+static void take_to(ears_t *ears, int16_t *faps, uint32_t *stretches, uint32_t room)
+{
+    ears->faps = faps;
+    ears->stretches = stretches;
+    ears->room = room;
+    ears->frame_count = ears->stretch_count = 0;
+}
+
+static int taken(const ears_t *ears, int result)
+{
+    return result == LABIAL_OK ? (int)ears->frame_count : result;
+}
+
+int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t rate, unsigned channels)
+{
+    const int result =
+        labial_hear_init(&ears->hear, model, rate, channels, ears->workspace, sizeof ears->workspace, take_frame, ears);
+    take_to(ears, NULL, NULL, 0);
+    return result == LABIAL_OK ? labial_hear_classes(&ears->hear, take_stretch) : result;
+}
+
+uint32_t ears_latency(const ears_t *ears)
+{
+    return labial_hear_latency(&ears->hear);
+}
+
+int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint32_t *stretches, uint32_t room)
+{
+    take_to(ears, faps, stretches, room);
+    return taken(ears, labial_hear_push(&ears->hear, samples, count));
+}
+
+int ears_end(ears_t *ears, int16_t *faps, uint32_t *stretches, uint32_t room)
+{
+    take_to(ears, faps, stretches, room);
+    return taken(ears, labial_hear_end(&ears->hear));
+}
+
+int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint32_t *stretches, uint32_t room)
+{
+    take_to(ears, faps, stretches, room);
+    return taken(ears, labial_hear_cancel(&ears->hear, milliseconds));
+}
+
+uint32_t ears_stretches(const ears_t *ears)
+{
+    return ears->stretch_count;
+}
+
+int ears_restart(ears_t *ears)
+{
+    return labial_hear_restart(&ears->hear);
+}

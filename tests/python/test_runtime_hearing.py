@@ -1,0 +1,224 @@
+"""Hearing from Python and from the command line: the frames of the exporter's integers, for sound in any pieces."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import struct
+import sys
+import wave
+from array import array
+from pathlib import Path
+from typing import Any, AsyncIterator, List
+
+import hears
+import numpy as np
+import pytest
+
+import labial
+from labial.__main__ import main
+from labial.errors import LabialError, StreamError
+from labial.hearing import integer
+from labial.hearing.model import load
+from labial.hearing.quantise import quantise
+from labial.runtime.hearing import models
+from packages import SOURCE
+from runtime import needs_runtime
+from test_hearing import voice
+
+pytestmark = [needs_runtime, pytest.mark.skipif(not list((SOURCE / "export/models").glob("hear_*.npz")),
+                                                reason="no model of hearing is bundled")]
+
+
+def wanted(sound: np.ndarray, rate: int = 16000, name: str = "hear_small") -> integer.Heard:
+    """What the exporter's integers make of a sound."""
+    return integer.hear(quantise(load(SOURCE / "export" / "models" / f"{name}.npz"), name), sound, rate)
+
+
+def numbers(frames: List[labial.Frame]) -> List[List[int]]:
+    """The FAPs of frames."""
+    return [list(frame.faps) for frame in frames]
+
+
+@pytest.mark.parametrize("name", ["hear_small", "hear_large"])
+@pytest.mark.parametrize("rate", [8000, 16000, 44100])
+def test_frames_are_the_exporters(name: str, rate: int) -> None:
+    """Catches a model in the library that is another than the trained one, and frames that are lost between calls."""
+    sound = voice(2.0, rate=rate)
+    with labial.Hearing(rate, model=name) as hearing:
+        frames = list(hearing.frames(np.array_split(sound, 17)))
+        shown = hearing.shown()
+        assert hearing.fps == 50 and hearing.latency == pytest.approx(0.12, abs=0.002)
+    heard = wanted(sound, rate, name)
+    assert numbers(frames) == heard.faps.tolist()
+    assert [frame.number for frame in frames] == list(range(100))
+    classes = load(SOURCE / "export" / "models" / f"{name}.npz").classes
+    assert [[*item] for item in shown] == [[classes[k], first, length]
+                                           for k, first, length in hears.stretches(heard.scores)]
+
+
+def test_sound_comes_in_many_forms() -> None:
+    """Catches bytes that are cut within a sample, and buffers whose items are taken for bytes."""
+    sound = voice(0.5)
+    data = sound.astype("<i2").tobytes()
+    whole = wanted(sound).faps.tolist()
+    for blocks in ([data], [bytearray(data)], [data[:1], data[1:4], data[4:777], data[777:]], [memoryview(data)],
+                   [sound], [sound[:100].reshape(-1, 1), memoryview(sound[100:])], [array("h", sound.tolist())],
+                   [np.repeat(sound, 2)[::2]]):
+        with labial.Hearing() as hearing:
+            assert numbers(list(hearing.frames(blocks))) == whole
+    stereo = np.stack([sound, sound // 2], axis=1)
+    for block in (stereo, stereo.astype("<i2").tobytes(), stereo.ravel()):
+        with labial.Hearing(channels=2) as hearing:
+            assert numbers(list(hearing.frames([block]))) == wanted(stereo).faps.tolist()
+
+
+def test_sound_may_come_from_an_asynchronous_source() -> None:
+    """Catches frames that are kept back until the end."""
+    sound = voice(0.6)
+    told: List[int] = []
+
+    async def blocks() -> AsyncIterator[bytes]:
+        for piece in np.array_split(sound, 6):
+            told.append(-len(piece))
+            yield piece.astype("<i2").tobytes()
+
+    async def follow() -> List[List[int]]:
+        found = []
+        with labial.Hearing() as hearing:
+            async for frame in hearing.follow(blocks()):
+                told.append(frame.number)
+                found.append(list(frame.faps))
+        return found
+
+    assert asyncio.run(follow()) == wanted(sound).faps.tolist()
+    assert 0 <= told.index(0) < len(told) - 1 - told[::-1].index(-1600)
+
+
+def test_a_long_block_is_heard_in_pieces() -> None:
+    """Catches frames beyond the room that one call has."""
+    sound = np.tile(voice(3.0), 4)
+    with labial.Hearing() as hearing:
+        frames = hearing.push(sound) + hearing.end()
+    assert numbers(frames) == wanted(sound).faps.tolist()
+
+
+def test_cancel_and_restart() -> None:
+    """Catches numbers that begin again, and sound from before a restart."""
+    sound = voice(0.5)
+    with labial.Hearing() as hearing:
+        with pytest.raises(StreamError, match="restart"):
+            hearing.restart()
+        before = hearing.push(sound.tobytes() + b"x")
+        eased = hearing.cancel(100)
+        assert [frame.number for frame in eased] == list(range(len(before), len(before) + 5))
+        assert eased[-1].faps == (0,) * 13
+        with pytest.raises(StreamError, match="not allowed now"):
+            hearing.push(sound)
+        assert hearing.end() == []
+        hearing.restart()
+        again = hearing.push(sound) + hearing.end()
+        assert again[0].number == len(before) + 5
+        assert numbers(again)[8:] == wanted(sound).faps.tolist()[8:]
+    for call in (hearing.end, hearing.restart, hearing.shown, hearing.cancel, hearing.__enter__):
+        with pytest.raises(StreamError, match="closed"):
+            call()
+    with pytest.raises(StreamError, match="closed"):
+        hearing.push(b"")
+
+
+@pytest.mark.parametrize("given, error, message", [
+    ({"rate": 11025}, StreamError, "11025 samples per second, channels: 1: the sound's rate"),
+    ({"channels": 3}, StreamError, "channels: 3"),
+    ({"rate": -1}, LabialError, "not supported"),
+    ({"rate": "x"}, TypeError, "a rate"),
+    ({"model": "speech_en"}, LabialError, "'speech_en' is no model of hearing: hear_small"),
+])
+def test_wrong_arguments_are_refused(given: Any, error: type, message: str) -> None:
+    """Catches a number that is passed to C as it is."""
+    with pytest.raises(error, match=message):
+        labial.Hearing(**given)
+
+
+@pytest.mark.parametrize("sound, error", [
+    (np.zeros(4), TypeError), (np.zeros(4, np.int32), TypeError), ("text", TypeError), (None, TypeError),
+    (np.zeros((4, 2), np.int16), LabialError), (np.zeros((2, 1, 1), np.int16), LabialError),
+    (np.array(3, np.int16), LabialError),
+])
+def test_other_sounds_are_refused(sound: Any, error: type) -> None:
+    """Catches floats that are heard as noise."""
+    with labial.Hearing() as hearing, pytest.raises(error):
+        hearing.push(sound)
+
+
+def test_models_are_those_of_the_exporter() -> None:
+    """Catches a model that is in one place and not in the other."""
+    assert set(models()) == {path.stem for path in (SOURCE / "export/models").glob("hear_*.npz")}
+    assert models()[0] == "hear_small"
+
+
+# ---- The command -----------------------------------------------------------------------------------------------------
+
+
+def write_wav(path: Path, sound: np.ndarray, rate: int = 16000, width: int = 2) -> Path:
+    """A WAV file of samples (N,) or (N, channels)."""
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1 if sound.ndim == 1 else sound.shape[1])
+        file.setsampwidth(width)
+        file.setframerate(rate)
+        file.writeframes(sound.astype({1: "u1", 2: "<i2"}[width]).tobytes())
+    return path
+
+
+def rows(text: str) -> np.ndarray:
+    """(T, 13) of a frames file."""
+    return np.array([line.split(",")[1:] for line in text.splitlines()[1:]], dtype=float)
+
+
+def test_the_command_writes_frames(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """Catches a file that is heard at another rate, or one channel of two."""
+    sound = voice(0.7, rate=24000)
+    stereo = np.stack([sound, -(sound // 3)], axis=1)
+    for name, samples in (("one.wav", sound), ("two.wav", stereo)):
+        assert main(["hear", str(write_wav(tmp_path / name, samples, 24000))]) == 0
+        assert rows(capsys.readouterr().out).tolist() == wanted(samples, 24000).faps.tolist()
+    assert main(["hear", str(tmp_path / "one.wav"), "--model", "large", "-o", str(tmp_path / "out.csv")]) == 0
+    assert rows((tmp_path / "out.csv").read_text()).tolist() == wanted(sound, 24000, "hear_large").faps.tolist()
+    assert main(["hear", str(tmp_path / "one.wav"), "--to", "fap"]) == 0
+    assert capsys.readouterr().out.splitlines()[0].split()[-1] == "35"
+    assert main(["hear", str(tmp_path / "one.wav"), "--to", "jsonl"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 35
+
+
+def test_the_command_reads_standard_input(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+    """Catches raw samples that are heard as a file."""
+    sound = voice(0.5, rate=48000)
+    stereo = np.stack([sound, sound], axis=1)
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(stereo.astype("<i2").tobytes())))
+    assert main(["hear", "-", "--rate", "48000", "--channels", "2"]) == 0
+    assert rows(capsys.readouterr().out).tolist() == wanted(sound, 48000).faps.tolist()
+
+
+def test_other_files_are_converted(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """Catches a rate that is taken for another: 11025 Hz, 8 bits."""
+    pytest.importorskip("soundfile")
+    pytest.importorskip("soxr")
+    sound = voice(1.0, rate=11025)
+    write_wav(tmp_path / "low.wav", (sound >> 8) + 128, 11025, 1)
+    assert main(["hear", str(tmp_path / "low.wav")]) == 0
+    assert len(rows(capsys.readouterr().out)) == 50
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["none.wav"], "none.wav: No such file"),
+    (["text.wav"], "text.wav"),
+    (["a.wav", "--rate", "16000"], "--rate and --channels go with -"),
+    (["-", "--rate", "11025"], "11025 samples per second"),
+])
+def test_the_command_says_what_is_wrong(arguments: List[str], message: str, tmp_path: Path,
+                                        monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+    """Catches a traceback."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "text.wav").write_bytes(b"RIFF" + struct.pack("<I", 4) + b"text")
+    assert main(["hear", *arguments]) == 1
+    assert message in capsys.readouterr().err
