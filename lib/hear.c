@@ -4,6 +4,9 @@
  *     samples --convert--> 16 kHz --features--> two hops --network--> heads --pose--> fade --> callback
  *     any rate             window               a frame   the frame `ahead` frames ago
  *
+ * What the network tells of single frames moves faster than lips, so a pose is delivered with a quarter of the one
+ * before and of the one after it, which it waits for.
+ *
  * The window's samples, its spectrum and what layers put out share their memory, since each is done with before the
  * next one begins; only the samples that the next window needs are kept aside.
  */
@@ -64,15 +67,29 @@ static void tell_class(labial_hear_t *hear)
     }
 }
 
-/* Delivers the frame of these heads. */
+/* Delivers the frame before that of these heads, if there is one: it is smoothed with its neighbours. */
 static void deliver_heads(labial_hear_t *hear, const int16_t *heads)
 {
-    const unsigned leader = labial_hear_leader(hear->model, heads);
+    const uint8_t leader = hear->leader;
+    int16_t next[LABIAL_CHANNELS];
     unsigned k;
+    hear->leader = (uint8_t)labial_hear_leader(hear->model, heads);
+    labial_hear_pose(hear->model, heads, next);
+    if (!hear->held) {
+        hear->held = 1;
+        memcpy(hear->before, next, sizeof hear->before);
+        memcpy(hear->now, next, sizeof hear->now);
+        return;
+    }
+    hear->sounding--;
     if (leader != hear->shown)
         tell_class(hear);
-    hear->shown = (uint8_t)leader;
-    labial_hear_pose(hear->model, heads, hear->pose);
+    hear->shown = leader;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        hear->pose[k] = (int16_t)((hear->before[k] + 2 * (int32_t)hear->now[k] + next[k] + 2) >> 2);
+        hear->before[k] = hear->now[k];
+        hear->now[k] = next[k];
+    }
     if (hear->fade > 0) {
         const int32_t share = labial_ease(hear->fade, FADING + 1u);
         for (k = 0; k < LABIAL_CHANNELS; k++)
@@ -93,10 +110,8 @@ static void hear_window(labial_hear_t *hear)
     hear->hop ^= 1u;
     if (hear->hop == 0)
         heads = labial_hear_network(hear);
-    if (heads) {
-        hear->sounding--;
+    if (heads)
         deliver_heads(hear, heads);
-    }
     memcpy(hear->window, hear->tail, sizeof hear->tail);
     hear->filled = SHARED;
 }
@@ -128,7 +143,7 @@ static void hear_at_rate(labial_hear_t *hear, int32_t sample)
 /* Forgets the sound. */
 static void reset_sound(labial_hear_t *hear)
 {
-    hear->hop = hear->fade = 0;
+    hear->hop = hear->fade = hear->held = 0;
     hear->filled = SHARED;
     hear->sounding = 0;
     hear->first = hear->frame;
@@ -254,5 +269,5 @@ uint32_t labial_hear_latency(const labial_hear_t *hear)
     frame = labial_quotient(2u * LABIAL_HEAR_HOP_ * step, stride);
     /* The last converted sample comes one step before the frames' end, and needs `reach` samples after the one on its
      * left. */
-    return (hear->model->ahead + 1u) * frame + hear->convert.reach + 1u - labial_quotient(step + stride - 1u, stride);
+    return (hear->model->ahead + 2u) * frame + hear->convert.reach + 1u - labial_quotient(step + stride - 1u, stride);
 }

@@ -11,8 +11,8 @@
  *
  * Frames are those of labial.h: 13 FAPs, 50 frames per second, so that rigs, blends and formats take them. Frame k
  * shows the lips in the sound of 20 ms that begins at 20 k ms. It is known once the sound that follows it is known, too:
- * labial_hear_latency() tells how much that is, 120 ms from a frame's begin with the bundled models. A program that has
- * its sound 120 ms before it is heard, as from a network, keeps frames until their time and has lips without delay.
+ * labial_hear_latency() tells how much that is, 140 ms from a frame's begin with the bundled models. A program that has
+ * its sound 140 ms before it is heard, as from a network, keeps frames until their time and has lips without delay.
  *
  * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. The mouth
  * is closed in silence.
@@ -68,6 +68,7 @@ typedef struct {
     uint8_t ended, busy;                  /* no more sound is heard; a callback runs */
     uint8_t fade;                         /* the step of the fade after a restart, 0 without */
     uint8_t shown;                        /* the class of the last frame */
+    uint8_t held, leader;                 /* `now` is a pose; its class */
     uint8_t at[LABIAL_HEAR_BLOCKS_MAX];   /* the oldest row of each block's memory */
     uint8_t skip[LABIAL_HEAR_BLOCKS_MAX]; /* and of its former inputs */
     uint16_t filled;                      /* samples of the window */
@@ -82,8 +83,10 @@ typedef struct {
     labial_frame_fn callback;
     labial_hear_class_fn class_callback;
     void *user;
-    int16_t pose[LABIAL_CHANNELS];  /* the last frame, Q4 */
-    int16_t faded[LABIAL_CHANNELS]; /* and the last one before a restart */
+    int16_t before[LABIAL_CHANNELS]; /* the pose before `now`, Q4 */
+    int16_t now[LABIAL_CHANNELS];    /* the pose that is delivered next, before it is smoothed */
+    int16_t pose[LABIAL_CHANNELS];   /* the last frame, Q4 */
+    int16_t faded[LABIAL_CHANNELS];  /* and the last one before a restart */
     int16_t features[LABIAL_HEAR_INPUTS];
     int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_];
     labial_hear_convert_t convert;

@@ -152,6 +152,18 @@ def test_lips_close_as_far_as_the_closure_leads() -> None:
     assert np.allclose(found[1], (model.closed + 40) / 2, atol=1e-4)
 
 
+def test_frames_are_smoothed() -> None:
+    """By hand: the weights 1, 2, 1, and the first and last frame's neighbours are themselves. At a sound's end the
+    network's next frame counts, not the last one again."""
+    steps = np.array([[0.0], [4.0], [4.0], [8.0]])
+    assert network.smoothed(steps).ravel().tolist() == [1.0, 3.0, 5.0, 7.0]
+    model = random_model(8, (Memory(2, 1, 1),), seed=3)
+    sound = voice(0.5)
+    found = network.hear(model, sound).faps
+    longer = network.hear(model, np.concatenate([sound, np.zeros(3200, np.int16)])).faps
+    assert np.allclose(found, longer[: len(found)], atol=1e-3)
+
+
 @pytest.mark.parametrize("name", sorted(PLANS))
 def test_integers_are_near_the_float_network(name: str) -> None:
     """Catches a shift too many: with the weights that the tables hold, features differ by .01, scores by .04 and FAPs

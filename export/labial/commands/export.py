@@ -73,6 +73,7 @@ def _export_hearing(options: argparse.Namespace) -> int:
     """Writes the C files of a model of hearing, and prints their memory."""
     from labial.hearing import emit
     from labial.hearing.model import load
+    from labial.hearing.network import SMOOTHING
     from labial.hearing.quantise import quantise
 
     if options.blob or options.amplitude != 1.0 or options.predecessors != PREDECESSORS:
@@ -81,5 +82,5 @@ def _export_hearing(options: argparse.Namespace) -> int:
     for path in emit.write(tables, options.output):
         print(path)
     print(f"flash {emit.flash_bytes(tables)} B, workspace {emit.workspace_bytes(tables)} B, "
-          f"a frame is known {20 * (tables.ahead + 1)} ms after its begin")
+          f"a frame is known {20 * (tables.ahead + SMOOTHING + 1)} ms after its begin")
     return 0

@@ -15,6 +15,7 @@ from labial.files.c import block_comment, check_name, constants_of, rows
 from labial.files.outputs import folder, writing
 from labial.hearing import integer
 from labial.hearing.convert import RATES
+from labial.hearing.network import SMOOTHING
 from labial.hearing.quantise import FORMAT, Dense, HearingTables
 
 #: Bytes that the descriptors take on a 32-bit target: of the model, and of a block.
@@ -113,7 +114,7 @@ def workspace_bytes(tables: HearingTables) -> int:
 
 def _comment(tables: HearingTables, what: str) -> str:
     text = (f"{what} model of hearing, {tables.units} units in {len(tables.blocks)} blocks, "
-            f"{20 * (tables.ahead + 1)} ms from a frame's begin until it is known. "
+            f"{20 * (tables.ahead + SMOOTHING + 1)} ms from a frame's begin until it is known. "
             f"Written by labial export {__version__}; do not edit.")
     return block_comment(f"{text} {tables.attribution}" if tables.attribution else text)
 

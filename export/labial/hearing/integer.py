@@ -25,7 +25,7 @@ from labial.hearing.features import (
     frames_of,
     places,
 )  # fmt: skip
-from labial.hearing.network import Heard
+from labial.hearing.network import SMOOTHING, Heard
 from labial.hearing.quantise import Dense, HearingTables
 
 #: log2 is in 1/256; the level in 1/64 of the sum of the bands' log2.
@@ -224,7 +224,11 @@ def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
     """Scores (T, C) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end."""
     samples = convert(np.asarray(sound), rate)
     count = frames_of(len(samples))
-    padded = np.concatenate([samples, np.zeros((count + tables.ahead) * FRAME - len(samples), dtype=np.int64)])
-    heard = normalise(log_energies(padded)).reshape(count + tables.ahead, HOPS * BANDS)
-    head = heads(tables, heard)[:count]
-    return Heard(head[:, : len(tables.classes)], (poses(tables, head) + 8) >> 4)
+    known = count + SMOOTHING
+    padded = np.concatenate([samples, np.zeros((known + tables.ahead) * FRAME - len(samples), dtype=np.int64)])
+    heard = normalise(log_energies(padded)).reshape(known + tables.ahead, HOPS * BANDS)
+    head = heads(tables, heard)[:known]
+    pose = poses(tables, head)
+    before = np.concatenate([pose[:1], pose])[:count]
+    smooth = (before + 2 * pose[:count] + pose[1:known] + 2) >> 2
+    return Heard(head[:count, : len(tables.classes)], (smooth + 8) >> 4)

@@ -62,12 +62,24 @@ def closed(model: HearingModel, heard: Heard) -> Heard:
     return Heard(heard.scores, heard.faps + (model.closed - heard.faps) * share)
 
 
+#: Frames that a frame waits for after the network has told it.
+SMOOTHING = 1
+
+
+def smoothed(frames: np.ndarray) -> np.ndarray:
+    """Frames (T, 13), each with a quarter of the one before and of the one after it; before the first and after the
+    last they stay. What the network tells of single frames moves faster than lips."""
+    padded = np.concatenate([frames[:1], frames, frames[-1:]])
+    result: np.ndarray = (padded[:-2] + 2 * padded[1:-1] + padded[2:]) / 4
+    return result
+
+
 def hear(model: HearingModel, sound: np.ndarray) -> Heard:
     """Scores and frames of a sound: (N,) samples at 16 kHz, int16 or floats of the same scale; `frames_of(N)` frames,
     of which frame k shows the 20 ms from sample 320 k on. Digital silence follows the sound, for as many frames as the
-    network looks ahead."""
+    network looks ahead and smoothing waits for."""
     sound = np.asarray(sound)
-    count, ahead = frames_of(len(sound)), model.plan.ahead
+    count, ahead = frames_of(len(sound)), model.plan.ahead + SMOOTHING
     padded = np.concatenate([sound, np.zeros((count + ahead) * FRAME - len(sound), dtype=sound.dtype)])
     result = closed(model, run(model, features(padded)))
-    return Heard(result.scores[:count], result.faps[:count])
+    return Heard(result.scores[:count], smoothed(result.faps[: count + SMOOTHING])[:count])

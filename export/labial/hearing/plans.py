@@ -30,7 +30,7 @@ class Plan(NamedTuple):
         return sum(memory.ahead * memory.dilation for memory in self.memories)
 
 
-#: Both know a frame 100 ms after its end, 120 ms after its begin.
+#: Both know a frame 100 ms after its end, and have smoothed it 20 ms later, 140 ms after its begin.
 PLANS: Dict[str, Plan] = {
     "small": Plan(64, (Memory(4, 1, 1), Memory(4, 1, 2), Memory(4, 1, 2))),
     "large": Plan(76, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(4, 1, 1), Memory(5, 1, 2))),
