@@ -22,6 +22,7 @@ COMMANDS: Dict[str, str] = {
     "check": "compare the C library with the float64 reference",
     "evaluate": "compare all methods with the human's motion on held-out episodes",
     "laughter-corpus": "generate the synthetic laughter corpus",
+    "speech-corpus": "speak sentences with free synthesisers, for train-hear",
     "rig": "write a description of servos or blendshapes as a C table",
     "fit": "solve for a rig that shows on an avatar what the FAPs mean",
     "plot": "draw trajectories with their phonemes",
