@@ -1,0 +1,141 @@
+"""Distortions of sounds, each with a seed: what voices, rooms and channels do to speech before it is heard.
+
+Sounds are (N,) float32 at 16 kHz in which full scale is 1, results are of the same length unless a function says
+otherwise. What can be done to energies of bands is done there, anew in each batch (:mod:`labial.hearing.augment`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Optional, Tuple
+
+import numpy as np
+
+from labial.hearing.features import RATE
+
+#: Peaks of a sound in dB of full scale, from the quietest to the loudest.
+PEAKS = (-45.0, 0.0)
+#: How many times as fast a sound is.
+SPEEDS = (0.85, 1.2)
+
+
+class Distortion(NamedTuple):
+    """What is done to a sound, in this order."""
+
+    speed: float = 1.0  #: times as fast, and as high
+    decay: float = 0.0  #: seconds until the reverberation has fallen by 60 dB; 0 without
+    dry: float = 1.0  #: amplitude of the direct sound relative to that of the reverberation
+    band: Optional[Tuple[float, float]] = None  #: Hz that a channel passes
+    rumble: float = 0.0  #: amplitude of hum and rumble relative to the sound's RMS
+    clip: float = 0.0  #: share of the samples that are cut off
+    companded: bool = False  #: 8 bits by mu-law
+    peak: float = -6.0  #: dB of full scale
+    offset: float = 0.0  #: of all samples, relative to the peak
+
+
+def drawn(random: np.random.Generator) -> Distortion:
+    """A random distortion: half of the sounds lose nothing but level and speed."""
+    speed = float(np.exp(random.uniform(*np.log(SPEEDS)))) if random.random() < 0.7 else 1.0
+    peak = float(random.uniform(*PEAKS))
+    if random.random() < 0.5:
+        return Distortion(speed=speed, peak=peak)
+    kind = random.random(6)
+    return Distortion(
+        speed=speed, peak=peak,
+        decay=float(random.uniform(0.1, 0.6)) if kind[0] < 0.45 else 0.0,
+        dry=float(random.uniform(0.7, 2.5)),
+        band=(float(random.uniform(50, 350)), float(random.uniform(3300, 7000))) if kind[1] < 0.4 else None,
+        rumble=float(np.exp(random.uniform(*np.log((0.02, 1.5))))) if kind[2] < 0.25 else 0.0,
+        clip=float(random.uniform(0.005, 0.08)) if kind[3] < 0.2 else 0.0,
+        companded=bool(kind[4] < 0.25),
+        offset=float(random.uniform(-0.3, 0.3)) if kind[5] < 0.2 else 0.0,
+    )  # fmt: skip
+
+
+def distorted(samples: np.ndarray, distortion: Distortion, random: np.random.Generator) -> np.ndarray:
+    """(M,) int16: `samples` after all of a distortion; M is N / speed, rounded."""
+    sound: np.ndarray = np.asarray(samples, dtype=np.float32)
+    if distortion.speed != 1.0:
+        sound = resampled(sound, distortion.speed)
+    if distortion.decay > 0:
+        sound = reverberated(sound, distortion.decay, distortion.dry, random)
+    if distortion.band is not None:
+        sound = limited(sound, *distortion.band)
+    if distortion.rumble > 0:
+        sound = sound + distortion.rumble * rms(sound) * rumbling(len(sound), random)
+    if distortion.clip > 0:
+        sound = clipped(sound, distortion.clip)
+    if distortion.companded:
+        sound = companded(sound / max(float(np.abs(sound).max(initial=0.0)), 1e-9))
+    return as_integers(sound, distortion.peak, distortion.offset)
+
+
+def rms(sound: np.ndarray) -> float:
+    """The root of the mean square; 0 for no samples."""
+    return float(np.sqrt(np.mean(np.square(sound)))) if len(sound) else 0.0
+
+
+def as_integers(sound: np.ndarray, peak: float, offset: float = 0.0) -> np.ndarray:
+    """int16 of a sound whose peak becomes `peak` dB of full scale, with `offset`, relative to the peak, added."""
+    most = float(np.abs(sound).max(initial=0.0))
+    gain = 32767.0 * 10 ** (peak / 20) / most if most > 0 else 0.0
+    scaled = sound * gain + 32767.0 * 10 ** (peak / 20) * offset
+    result: np.ndarray = np.clip(np.round(scaled), -32768, 32767).astype(np.int16)
+    return result
+
+
+def resampled(sound: np.ndarray, speed: float) -> np.ndarray:
+    """(N / speed,) the sound at another speed, and so at another pitch."""
+    import soxr
+
+    count = max(round(len(sound) / speed), 1)
+    found = soxr.resample(sound, RATE * speed, RATE)[:count]
+    result: np.ndarray = np.pad(found, (0, count - len(found))).astype(np.float32)
+    return result
+
+
+def reverberated(sound: np.ndarray, decay: float, dry: float, random: np.random.Generator) -> np.ndarray:
+    """A sound in a room whose reverberation falls by 60 dB in `decay` seconds: noise that decays, of the energy of the
+    direct sound divided by `dry` squared."""
+    count = max(round(decay * RATE), 2)
+    tail = random.normal(size=count) * 10 ** (-3 * np.arange(count) / count)
+    tail[: RATE // 400] = 0.0
+    tail /= np.sqrt(np.sum(np.square(tail))) * dry
+    tail[0] = 1.0
+    size = 1 << (len(sound) + count - 1).bit_length()
+    mixed = np.fft.irfft(np.fft.rfft(sound, size) * np.fft.rfft(tail, size), size)
+    result: np.ndarray = mixed[: len(sound)].astype(np.float32)
+    return result
+
+
+def limited(sound: np.ndarray, low: float, high: float) -> np.ndarray:
+    """A sound through a channel that passes `low` to `high` Hz and falls by 24 dB an octave outside."""
+    spectrum = np.fft.rfft(sound)
+    frequency = np.maximum(np.arange(len(spectrum)) * RATE / max(len(sound), 1), 1e-3)
+    gain = 1 / np.sqrt((1 + (low / frequency) ** 8) * (1 + (frequency / high) ** 8))
+    result: np.ndarray = np.fft.irfft(spectrum * gain, len(sound)).astype(np.float32)
+    return result
+
+
+def rumbling(count: int, random: np.random.Generator) -> np.ndarray:
+    """(`count`,) hum of the mains with its harmonics and noise below 250 Hz, RMS 1."""
+    time = np.arange(count) / RATE
+    mains = 50.0 if random.random() < 0.5 else 60.0
+    hum = sum(random.uniform(0, 1) / k * np.sin(2 * np.pi * (k * mains * time + random.random())) for k in range(1, 7))
+    noise = limited(random.normal(size=count).astype(np.float32), 20.0, 200.0)
+    mixed = hum * random.random() + noise * (random.random() + 0.1) / max(rms(noise), 1e-9)
+    result: np.ndarray = (mixed / max(rms(mixed), 1e-9)).astype(np.float32)
+    return result
+
+
+def clipped(sound: np.ndarray, share: float) -> np.ndarray:
+    """A sound of which the loudest `share` of the samples are cut off."""
+    limit = float(np.quantile(np.abs(sound), 1 - share)) if len(sound) else 0.0
+    result: np.ndarray = np.clip(sound, -limit, limit)
+    return result
+
+
+def companded(sound: np.ndarray) -> np.ndarray:
+    """A sound within -1 .. 1 in 8 bits by mu-law (ITU-T G.711), and back."""
+    code = np.round(np.sign(sound) * np.log1p(255.0 * np.minimum(np.abs(sound), 1.0)) / np.log(256.0) * 127.0)
+    result: np.ndarray = (np.sign(code) * np.expm1(np.abs(code) / 127.0 * np.log(256.0)) / 255.0).astype(np.float32)
+    return result

@@ -1,0 +1,76 @@
+"""What the network learns: Labial's own frames and the lip classes, from the true times of phonemes."""
+
+from __future__ import annotations
+
+from typing import List, Sequence, Tuple
+
+import numpy as np
+
+from labial.corpus.episode import Segment
+from labial.corpus.phonesets import SPEECH
+from labial.files.faps import CHANNELS, FAP_NUMBERS
+from labial.hearing.features import FRAME, RATE
+from labial.hearing.plans import CLASSES, CLOSED, class_of
+from labial.runtime.render import render
+
+#: Milliseconds of a frame.
+FRAME_MS = 1000 * FRAME // RATE
+#: Columns of a frame: how far the upper lip is lowered, and the lower one raised.
+_UPPER, _LOWER = FAP_NUMBERS.index(51), FAP_NUMBERS.index(52)
+#: Up to this opening, in FAP units, a rig shows closed lips (LABIAL_RIG's touching lips, DESIGN.md).
+TOUCHING = 72.0
+
+_CLASS = {phoneme: CLASSES.index(class_of(phoneme)) for phoneme in SPEECH.phonemes}
+
+
+def opening(frames: np.ndarray) -> np.ndarray:
+    """(..., T) the distance of the outer lips' middles in frames (..., T, 13), FAP units."""
+    result: np.ndarray = -(frames[..., _UPPER] + frames[..., _LOWER])
+    return result
+
+
+def durations(segments: Sequence[Segment], speed: float = 1.0) -> List[Tuple[str, int]]:
+    """Phonemes with their milliseconds, without gaps from time 0 on, of `segments` that are said `speed` times as fast.
+    Rounding does not add up."""
+    found: List[Tuple[str, int]] = []
+    last = 0
+    for item in segments:
+        for end, label in ((item.start, SPEECH.silence), (item.end, item.label)):
+            stop = round(1000.0 * end / speed)
+            if stop > last:
+                found.append((label, stop - last))
+                last = stop
+    return found
+
+
+def frames(timings: Sequence[Tuple[str, int]], count: int) -> np.ndarray:
+    """(`count`, 13) float32 FAP units: Labial's frames of the bundled model. Silence follows the last phoneme."""
+    rendered = np.array(render([*timings, (SPEECH.silence, FRAME_MS * (count + 1))]), dtype=np.float32)
+    return rendered.reshape(-1, CHANNELS)[:count]
+
+
+def phonemes_at(timings: Sequence[Tuple[str, int]], count: int) -> List[str]:
+    """The phoneme in the middle of each of `count` frames."""
+    ends = np.cumsum([length for _, length in timings] or [0])
+    at = np.searchsorted(ends, np.arange(count) * FRAME_MS + FRAME_MS // 2, side="right")
+    labels = [*(label for label, _ in timings), SPEECH.silence]
+    return [labels[min(int(k), len(timings))] for k in at]
+
+
+def classes(timings: Sequence[Tuple[str, int]], count: int) -> np.ndarray:
+    """(`count`,) uint8: the number of each frame's lip class."""
+    return np.array([_CLASS[label] for label in phonemes_at(timings, count)], dtype=np.uint8)
+
+
+def closed_pose() -> np.ndarray:
+    """(13,) float32 FAP units: the pose of closed lips, the median of Labial's frames at the least opening of p, b and
+    m between all vowels."""
+    vowels = [label for label, edge in zip(SPEECH.phonemes, SPEECH.boundary) if edge and class_of(label) != CLOSED]
+    poses = []
+    for stop in ("P", "B", "M"):
+        for vowel in vowels:
+            shown = frames([(SPEECH.silence, 200), (vowel, 140), (stop, 100), (vowel, 140)], 30)
+            within = shown[340 // FRAME_MS : 440 // FRAME_MS]
+            poses.append(within[int(np.argmin(opening(within)))])
+    result: np.ndarray = np.median(np.array(poses), axis=0).astype(np.float32)
+    return result

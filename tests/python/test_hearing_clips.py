@@ -1,0 +1,203 @@
+"""Folders of speech for hearing, and clips as the network learns them."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from typing import List, Optional
+
+import numpy as np
+import pytest
+
+soundfile = pytest.importorskip("soundfile")
+pytest.importorskip("soxr")
+
+from labial.corpus.episode import Segment  # noqa: E402
+from labial.errors import DataError, LabialError  # noqa: E402
+from labial.files.faps import CHANNELS  # noqa: E402
+from labial.hearing import clips, prepared, targets  # noqa: E402
+from labial.hearing.features import log_energies  # noqa: E402
+from labial.hearing.plans import CLASSES  # noqa: E402
+from runtime import needs_runtime  # noqa: E402
+
+LAB = "0.00 0.10 SIL\n0.10 0.20 M\n0.20 0.50 AA1\n"
+
+
+def sound(path: Path, seconds: float = 0.5) -> Path:
+    """A tone that swells, as a file."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    time = np.arange(round(seconds * 16000)) / 16000
+    soundfile.write(str(path), 0.3 * np.sin(2 * np.pi * 200 * time) * time / seconds, 16000)
+    return path
+
+
+def test_what_tells_the_phonemes(tmp_path: Path) -> None:
+    """Timings come before a table, a table before a text; a table counts in its folder and the one below."""
+    for name in ("wavs/a.wav", "wavs/b.flac", "c.wav", "deep/er/d.wav", "e.wav"):
+        sound(tmp_path / name)
+    (tmp_path / "metadata.csv").write_text("a|10|ten\nb|two\n\nc|three|three\nmissing|x|x\n")
+    (tmp_path / "wavs" / "b.lab").write_text(LAB)
+    (tmp_path / "c.txt").write_text("not this")
+    (tmp_path / "deep" / "er" / "d.txt").write_text("four\n five \n")
+    (tmp_path / "e.TextGrid").write_text("")
+    found = {Path(path).stem: told for path, told in clips.find(tmp_path)}
+    assert [found[name].text for name in "abcde"] == ["ten", None, "three", "four five", None]
+    assert (found["a"].line, found["c"].line, Path(found["e"].path).name) == (1, 4, "e.TextGrid")
+
+
+@pytest.mark.parametrize(("table", "message"), [
+    ("a|one\nb\n", r"metadata.csv:2: not NAME\|TEXT"), ("a|one|one|one\n", "metadata.csv:1: not"),
+    ("a| \n", "metadata.csv:1: not"), ("a|one\n\na|two\n", "metadata.csv:3: a is already in line 1"),
+])  # fmt: skip
+def test_wrong_tables_are_named(table: str, message: str, tmp_path: Path) -> None:
+    """With file and line."""
+    sound(tmp_path / "a.wav")
+    (tmp_path / "metadata.csv").write_text(table)
+    with pytest.raises(DataError, match=message):
+        clips.find(tmp_path)
+
+
+def test_folders_without_what_is_needed(tmp_path: Path) -> None:
+    """No folder, no sounds, a sound without anything that tells what it says, an empty text, wrong timings."""
+    with pytest.raises(DataError, match="none: not a folder"):
+        clips.find(tmp_path / "none")
+    with pytest.raises(DataError, match="no sounds"):
+        clips.find(tmp_path)
+    sound(tmp_path / "a.wav")
+    with pytest.raises(DataError, match="a.wav: neither timings nor a text"):
+        clips.find(tmp_path)
+    (tmp_path / "a.txt").write_text(" \n")
+    with pytest.raises(DataError, match="a.txt: no text"):
+        clips.find(tmp_path)
+    (tmp_path / "a.lab").write_text("0 1 AA\n1 2 XYZ\n")
+    with pytest.raises(DataError, match="a.lab:2: no speech phoneme is called 'XYZ'"):
+        clips.read(tmp_path, tmp_path / "cache")
+
+
+class Found:
+    """What alignment is taken for in the tests below."""
+
+    def __init__(self, confidence: float) -> None:
+        from labial.sound.confidence import Stretch
+
+        self.stretches = [Stretch(0.0, 0.3, confidence), Stretch(0.3, 0.4, 1.0)]
+
+    def lab(self) -> str:
+        """The segments."""
+        return LAB
+
+
+@pytest.mark.skipif(importlib.util.find_spec("pocketsphinx") is None, reason="pocketsphinx is not installed")
+def test_alignments_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each sound is aligned once; what fits badly is left out with a warning, also the next time, but not where one
+    stretch of several is unsure; another text is aligned anew."""
+    asked: List[str] = []
+
+    def aligned(path: str, text: Optional[str]) -> Found:
+        asked.append(str(text))
+        if text == "wrong":
+            raise LabialError("the text has no words")
+        return Found({"good": 0.9, "bad": 0.1, "unsure": 0.5}.get(str(text), 1.0))
+
+    monkeypatch.setattr("labial.sound.align.aligned", aligned)
+    folder, cache = tmp_path / "in", tmp_path / "cache"
+    for name, text in (("a", "good"), ("b", "bad"), ("c", "unsure"), ("d", "wrong")):
+        sound(folder / f"{name}.wav")
+        (folder / f"{name}.txt").write_text(text)
+    told: List[tuple] = []
+    with pytest.warns(UserWarning) as warned:
+        first = clips.read(folder, cache, told=lambda done, total: told.append((done, total)))
+    messages = sorted(str(item.message) for item in warned)
+    assert len(messages) == 2 and "b.txt: the text hardly fits" in messages[0] and "d.txt: the text has" in messages[1]
+    assert told == [(1, 4), (2, 4), (3, 4), (4, 4)] and asked == ["good", "bad", "unsure", "wrong"]
+    again = clips.read(folder, cache)
+    assert again == first and [Path(item.sound).stem for item in first] == ["a", "c"] and len(asked) == 4
+    assert [item.label for item in first[0].segments] == ["SIL", "M", "AA"]
+    (folder / "a.txt").write_text("another")
+    clips.read(folder, cache)
+    assert asked[4:] == ["another"]
+    for name in "ac":
+        (folder / f"{name}.txt").write_text("bad")
+    with pytest.warns(UserWarning), pytest.raises(DataError, match="no sound fits its text"):
+        clips.read(folder, cache)
+
+
+def test_durations_follow_the_clock() -> None:
+    """Rounding does not add up, gaps are silence, and a speed shortens all."""
+    segments = [Segment(k * 0.0334, (k + 1) * 0.0334, "AA") for k in range(30)]
+    assert sum(length for _, length in targets.durations(segments)) == round(30 * 33.4)
+    given = [Segment(0.1, 0.2, "M"), Segment(0.3, 0.5, "AA")]
+    assert targets.durations(given) == [("SIL", 100), ("M", 100), ("SIL", 100), ("AA", 200)]
+    assert targets.durations(given, 2.0) == [("SIL", 50), ("M", 50), ("SIL", 50), ("AA", 100)]
+
+
+@needs_runtime
+def test_targets_are_those_of_the_stream() -> None:
+    """Frames of labial.render, as many as asked for; the class in a frame's middle; closed lips touch, open ones do
+    not."""
+    from labial import render
+
+    timings = [("SIL", 100), ("M", 90), ("AA", 310)]
+    frames = targets.frames(timings, 30)
+    assert frames.shape == (30, CHANNELS)
+    assert np.array_equal(frames[:20], np.array(render([*timings, ("SIL", 400)]))[:20])
+    assert [CLASSES[k] for k in targets.classes(timings, 26)] == ["SIL"] * 5 + ["M"] * 4 + ["AA"] * 16 + ["SIL"]
+    assert targets.opening(targets.closed_pose()) <= targets.TOUCHING < targets.opening(frames[15])
+    assert targets.frames([], 4).shape == (4, CHANNELS)
+
+
+@needs_runtime
+def test_takes_of_a_clip(tmp_path: Path) -> None:
+    """The first is undistorted, so that its closure is where it was, after the pause before it; all are as long in
+    energies as in frames; the same seed gives the same takes, another seed others."""
+    clip = clips.Clip(str(sound(tmp_path / "a.wav")), tuple(clips.read_timings(_lab(tmp_path))))
+    clip = clips.Clip(clip.sound, clips.phoneme_segments("a", clip.segments, clips.SPEECH))
+    takes = prepared.prepare_clip(clip, 3, 0)
+    for energies, frames, classes in takes:
+        assert len(energies) == 2 * len(frames) == 2 * len(classes)
+        assert (classes == CLASSES.index("M")).sum() in range(3, 8)
+    energies, _, classes = takes[0]
+    loud = np.flatnonzero(energies.max(axis=1) > energies.max() - 1)
+    spoken = np.flatnonzero(classes == CLASSES.index("AA"))
+    assert 2 * spoken[0] < loud[0] and loud[-1] <= 2 * spoken[-1] + 3
+    again, other = prepared.prepare_clip(clip, 3, 0), prepared.prepare_clip(clip, 3, 1)
+    assert all(np.array_equal(a, b) for one, two in zip(takes, again) for a, b in zip(one, two))
+    assert any(len(one[0]) != len(two[0]) for one, two in zip(takes, other))
+
+
+def _lab(folder: Path) -> Path:
+    (folder / "a.lab").write_text(LAB)
+    return folder / "a.lab"
+
+
+@needs_runtime
+def test_what_was_prepared_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a cache that knows other options and other timings apart; about one clip in twenty is held out."""
+    for k in range(3):
+        sound(tmp_path / "in" / f"{k}.wav")
+        (tmp_path / "in" / f"{k}.lab").write_text(LAB)
+    given = clips.read(tmp_path / "in", tmp_path / "cache")
+    first = prepared.prepare(given, 2, 0, tmp_path / "cache")
+    assert len(first.lengths) == 6 and first.lengths.sum() == len(first.classes) == len(first.frames)
+    counted: List[int] = []
+    monkeypatch.setattr(prepared, "prepare_clip", lambda *a, **b: counted.append(1) or [
+        (log_energies(np.zeros(640)).astype(np.float16), np.zeros((2, 13), np.int16), np.zeros(2, np.uint8))])
+    again = prepared.prepare(given, 2, 0, tmp_path / "cache")
+    assert not counted and np.array_equal(again.energies, first.energies)
+    prepared.prepare(given, 2, 1, tmp_path / "cache")
+    assert len(counted) == 3
+    (tmp_path / "in" / "0.lab").write_text(LAB.replace("M", "B"))
+    prepared.prepare(clips.read(tmp_path / "in", tmp_path / "cache"), 2, 0, tmp_path / "cache")
+    assert len(counted) == 6
+    share = np.mean([prepared.is_held(f"/some/where/{k}.wav") for k in range(4000)])
+    assert 0.04 < share < 0.06
+
+
+def test_parts_are_the_takes_that_are_held_out() -> None:
+    """And their frames and hops alone."""
+    lengths, held = np.array([2, 3, 1]), np.array([False, True, False])
+    every = prepared.Prepared(np.arange(12)[:, None] * np.ones((12, 24)), np.arange(6)[:, None] * np.ones((6, 13)),
+                              np.arange(6), lengths, held)
+    kept, learned = every.part(True), every.part(False)
+    assert kept.classes.tolist() == [2, 3, 4] and kept.energies[:, 0].tolist() == [4, 5, 6, 7, 8, 9]
+    assert learned.classes.tolist() == [0, 1, 5] and learned.lengths.tolist() == [2, 1]
