@@ -117,6 +117,17 @@ else()
   message(STATUS "Python tests marked `slow` are left to .ci/run: -DLABIAL_REQUIRE_ALL=ON runs them, too.")
 endif()
 
+# Training a network of hearing needs PyTorch, which is too large to fetch for it.
+set(LABIAL_TORCH "" CACHE FILEPATH "Python with PyTorch, soundfile, soxr and pytest, to test the training of hearing")
+if(LABIAL_TORCH)
+  add_test(NAME hearing_training WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
+    COMMAND "${LABIAL_TORCH}" -m pytest -p no:cacheprovider
+      --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/hearing")
+  set_tests_properties(hearing_training PROPERTIES TIMEOUT 600 ENVIRONMENT "${variables}")
+else()
+  message(STATUS "The tests of training a network of hearing are left out: -DLABIAL_TORCH=PYTHON names one with PyTorch.")
+endif()
+
 # Face tracking has an environment of its own, see tracking/requirements.txt.
 if(NOT LABIAL_TRACKING)
   message(STATUS "The tests of face tracking are left out, they fetch 300 MB: -DLABIAL_TRACKING=ON runs them.")

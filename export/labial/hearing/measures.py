@@ -1,0 +1,126 @@
+"""How near the lips that a network hears are to those that Labial makes of the true times of phonemes.
+
+- **opening**: the correlation of the outer lips' distance, the mean over clips; **channels**: that of all 13 channels.
+- **closed**: the share of the runs of p, b, m in which the lips touch (`TOUCHING`) within `REACH` frames of the run.
+- **false**: how often a second of speech the lips touch where neither p, b, m nor touching lips of Labial's are within
+  `REACH` frames.
+- **jerk**: the RMS third difference over that of Labial's frames, the mean of the channels.
+"""
+
+from __future__ import annotations
+
+from typing import List, NamedTuple, Sequence, Tuple
+
+import numpy as np
+
+from labial.files.frames import spans
+from labial.hearing.plans import CLASSES, CLOSED
+from labial.hearing.targets import TOUCHING, opening
+
+#: Frames that a closure may be early or late: 40 ms.
+REACH = 2
+#: Frames per second.
+RATE = 50
+
+_SILENCE, _CLOSED = CLASSES.index("SIL"), CLASSES.index(CLOSED)
+
+
+class Figures(NamedTuple):
+    """See the top of this module; NaN where a clip has nothing to judge by."""
+
+    opening: float
+    channels: float
+    closed: float
+    false: float
+    jerk: float
+
+    def __str__(self) -> str:
+        return (f"opening {self.opening:.3f}, channels {self.channels:.3f}, p b m closed {self.closed:.2f}, "
+                f"falsely {self.false:.2f} a second, jerk {self.jerk:.2f}")
+
+
+#: True frames (T, 13), heard ones (T, 13), and the true lip class of each frame (T,).
+Judged = Tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def correlation(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(C,) Pearson's of the columns of two (T, C); NaN where one does not move."""
+    first, second = (item - item.mean(axis=0) for item in (np.asarray(one, float), np.asarray(other, float)))
+    scale = np.sqrt((first**2).sum(axis=0) * (second**2).sum(axis=0))
+    result: np.ndarray = np.where(scale > 1e-9, (first * second).sum(axis=0) / np.maximum(scale, 1e-9), np.nan)
+    return result
+
+
+def near(where: np.ndarray) -> np.ndarray:
+    """(T,) bool: within `REACH` frames of a true frame of `where`."""
+    found = where.copy()
+    for step in range(1, REACH + 1):
+        found[step:] |= where[:-step]
+        found[:-step] |= where[step:]
+    return found
+
+
+def closures(heard: np.ndarray, classes: np.ndarray) -> List[bool]:
+    """For each run of p, b, m whether the lips of `heard` (T, 13) touch in it or nearby."""
+    gap = opening(heard)
+    return [bool(gap[max(begin - REACH, 0) : end + REACH].min() <= TOUCHING)
+            for begin, end in spans(classes == _CLOSED)]
+
+
+def false_closures(true: np.ndarray, heard: np.ndarray, classes: np.ndarray) -> int:
+    """How many times the lips of `heard` touch in speech without a reason."""
+    reason = near((classes == _CLOSED) | (opening(true) <= TOUCHING))
+    touching = (opening(heard) <= TOUCHING) & ~reason & (classes != _SILENCE)
+    return len(list(spans(touching)))
+
+
+def measured(clips: Sequence[Judged]) -> Figures:
+    """The figures of several clips together."""
+    every: List[np.ndarray] = []
+    seen: List[bool] = []
+    false, speech = 0, 0
+    third = np.zeros((2, clips[0][0].shape[1])) if clips else np.zeros((2, 1))
+    for true, heard, classes in clips:
+        every.append(np.concatenate([correlation(opening(true)[:, None], opening(heard)[:, None]),
+                                     correlation(true, heard)]))
+        seen += closures(heard, classes)
+        false += false_closures(true, heard, classes)
+        speech += int((classes != _SILENCE).sum())
+        for row, frames in enumerate((true, heard)):
+            third[row] += (np.diff(np.asarray(frames, float), n=3, axis=0) ** 2).sum(axis=0)
+    if not clips:
+        return Figures(*[float("nan")] * len(Figures._fields))
+    found = np.array(every)
+    each = [float(column[np.isfinite(column)].mean()) if np.isfinite(column).any() else float("nan")
+            for column in found.T]
+    moving = third[0] > 1e-9
+    return Figures(
+        each[0], float(np.nanmean(each[1:])) if np.isfinite(each[1:]).any() else float("nan"),
+        float(np.mean(seen)) if seen else float("nan"), false * RATE / speech if speech else float("nan"),
+        float(np.sqrt(third[1][moving] / third[0][moving]).mean()) if moving.any() else float("nan"))
+
+
+def pooled(figures: Sequence[Figures], shares: Sequence[float]) -> Figures:
+    """The mean of several, weighed by `shares`; what is NaN does not count."""
+    values, weights = np.array(figures, dtype=float), np.array(shares, dtype=float)[:, None]
+    known = np.isfinite(values) * weights
+    total = known.sum(axis=0)
+    mean = (np.where(np.isfinite(values), values, 0.0) * known).sum(axis=0) / np.where(total > 0, total, 1.0)
+    return Figures(*(float(item) for item in np.where(total > 0, mean, np.nan)))
+
+
+def delay(clips: Sequence[Judged], most: int = 6) -> int:
+    """By how many frames, `most` at most, the heard opening lags behind the true one: where the mean correlation is
+    largest."""
+    def shifted(true: np.ndarray, heard: np.ndarray, lag: int) -> float:
+        count = len(true) - abs(lag)
+        one = opening(true)[max(-lag, 0) :][:count]
+        other = opening(heard)[max(lag, 0) :][:count]
+        return float(correlation(one[:, None], other[:, None])[0])
+
+    means = []
+    for lag in range(-most, most + 1):
+        values = [shifted(true, heard, lag) for true, heard, _ in clips if len(true) > 2 * most]
+        finite = [value for value in values if np.isfinite(value)]
+        means.append(float(np.mean(finite)) if finite else -2.0)
+    return int(np.argmax(means)) - most

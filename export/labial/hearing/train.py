@@ -1,0 +1,228 @@
+"""``labial train-hear``: from folders of speech to a model of hearing. Needs PyTorch.
+
+Each batch has random crops of the folders' takes, in the folders' shares. The loss is the cross-entropy of the lip
+classes, and the squared error of the frames and of their differences, so that lips move as smoothly as Labial's. In the
+last tenth of the steps the weights are rounded as in the library.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+import torch
+
+from labial.errors import LabialError
+from labial.files.faps import CHANNELS, FAP_NUMBERS
+from labial.hearing import targets
+from labial.hearing.augment import augmented, noises, white
+from labial.hearing.choose import Choice, choose
+from labial.hearing.features import BANDS, FLOOR, HOPS, normalise
+from labial.hearing.learner import Learner, model_of, restore
+from labial.hearing.model import HearingModel, save
+from labial.hearing.plans import CLASSES, CLOSED, PLANS
+from labial.hearing.prepared import Prepared
+
+#: Frames of a crop, and crops of a batch.
+LENGTH, BATCH = 200, 24
+#: Frames at a crop's begin and end that are not learned: they lack history, or what the network looks ahead to.
+_BEGIN, _END = 12, 6
+#: The steps over which the learning rate rises, and its least share at the end.
+_WARM, _LEAST = 200, 0.006
+#: Weights of the squared error and of the activations' excess.
+_FRAMES, _EXCESS = 2.5, 0.01
+#: Channels that count twice: the jaw and the lips' middles. Frames of closures count so many times.
+_IMPORTANT, _CLOSURE = (3, 51, 52), 3.0
+#: Rare classes count more, by this power of their rarity.
+_RARITY = 0.4
+#: Share of the steps with rounded weights.
+_ROUNDED = 0.1
+#: Share of the crops that are noise alone, where lips rest, and its level, log2 energy.
+_ALONE, _LEVELS = 0.05, (3.0, 21.0)
+#: Seconds of white noise that all noise is made of.
+_NOISE = 600.0
+#: Steps between two reports, and between two checkpoints.
+REPORT, CHECKPOINT = 100, 2000
+
+
+@dataclass(frozen=True)
+class Options:
+    """What decides a training besides its data. The same options, data and version of PyTorch give the same model."""
+
+    model: str = "small"  #: of `PLANS`
+    steps: int = 20000
+    rate: float = 3e-3  #: of learning, its highest
+    smoothness: float = 6.0  #: the weight of the squared error of the frames' second differences
+    seed: int = 0
+    shares: Tuple[float, ...] = ()  #: of each folder in a batch; without them the square roots of the lengths
+    attribution: str = ""
+    start: str = ""  #: SHA-256 of the model that it begins with, if it does not begin anew
+
+
+class _Data:
+    """The takes that are learned, and how crops are drawn from them."""
+
+    def __init__(self, folders: Sequence[Prepared], options: Options) -> None:
+        parts = [item.part(held=False) for item in folders]
+        for number, part in enumerate(parts, 1):
+            if len(part.classes) <= LENGTH:
+                raise LabialError(f"folder {number} has no more than {LENGTH} frames to learn from")
+        shares = options.shares or tuple(float(np.sqrt(len(part.classes))) for part in parts)
+        if len(shares) != len(parts) or min(shares) < 0 or sum(shares) <= 0:
+            raise LabialError(f"{len(shares)} shares are given for {len(parts)} folders")
+        self.shares = np.array(shares) / sum(shares)
+        self.parts = parts
+        every = np.concatenate([part.frames for part in parts]).astype(np.float64)
+        self.rest = targets.frames([], 50)[-1]
+        self.mean, self.scale = every.mean(axis=0), np.maximum(every.std(axis=0), 1.0)
+        count = np.zeros(len(CLASSES))
+        for part, share in zip(parts, self.shares):
+            count += share * np.bincount(part.classes, minlength=len(CLASSES)) / len(part.classes)
+        self.weight = (1 / len(CLASSES) / np.maximum(count, 1e-4)) ** _RARITY
+
+    def batch(self, random: np.random.Generator, pool: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Features (B, T, 48), frames (B, T, 13) of mean 0 and scale 1, classes (B, T)."""
+        energies, frames, classes = [], [], []
+        for k in random.choice(len(self.parts), size=BATCH, p=self.shares):
+            part = self.parts[k]
+            at = int(random.integers(len(part.classes) - LENGTH))
+            energies.append(part.energies[HOPS * at : HOPS * (at + LENGTH)])
+            frames.append(part.frames[at : at + LENGTH])
+            classes.append(part.classes[at : at + LENGTH])
+        mixed = augmented(np.stack(energies).astype(np.float32), pool, random)
+        for k in np.flatnonzero(random.random(BATCH) < _ALONE):
+            mixed[k] = np.maximum(noises(1, HOPS * LENGTH, pool, random)[0] + random.uniform(*_LEVELS), FLOOR)
+            frames[k], classes[k] = np.tile(self.rest, (LENGTH, 1)), np.full(LENGTH, CLASSES.index("SIL"), np.uint8)
+        heard = normalise(mixed)
+        wanted = ((np.stack(frames) - self.mean) / self.scale).astype(np.float32)
+        return heard.reshape(BATCH, LENGTH, HOPS * BANDS), wanted, np.stack(classes).astype(np.int64)
+
+
+class _State:
+    """A training that goes on: everything that changes with its steps."""
+
+    def __init__(self, options: Options) -> None:
+        torch.manual_seed(options.seed)
+        self.learner = Learner(PLANS[options.model])
+        self.optimiser = torch.optim.AdamW(self.learner.parameters(), lr=options.rate, weight_decay=1e-3)
+        self.random = np.random.default_rng([options.seed, 1])
+        self.step = 0
+
+    def store(self, path: str, options: Options) -> None:
+        """Writes a checkpoint, atomically."""
+        content = {"options": asdict(options), "step": self.step, "learner": self.learner.state_dict(),
+                   "optimiser": self.optimiser.state_dict(), "random": self.random.bit_generator.state}
+        torch.save(content, f"{path}.part")
+        os.replace(f"{path}.part", path)
+
+    def restore(self, path: str, options: Options) -> None:
+        """Reads a checkpoint. Raises LabialError if it is none, or one of other options."""
+        try:
+            content: Dict[str, Any] = torch.load(path, weights_only=True)
+            if content["options"] != asdict(options):
+                raise LabialError(f"{path}: a checkpoint of other options; remove it to begin anew")
+            self.learner.load_state_dict(content["learner"])
+            self.optimiser.load_state_dict(content["optimiser"])
+            self.random.bit_generator.state = content["random"]
+            self.step = int(content["step"])
+        except LabialError:
+            raise
+        except Exception as error:  # torch raises many
+            raise LabialError(f"{path}: not a checkpoint of train-hear ({type(error).__name__})") from None
+
+
+def train(
+    folders: Sequence[Prepared], options: Options, checkpoint: str, told: Optional[Callable[[str], None]] = None,
+    early: Optional[Path] = None, start: Optional[HearingModel] = None,
+) -> HearingModel:
+    """Trains, in one thread, and chooses how lips close by the takes that are held out.
+
+    The training continues from the file `checkpoint` if there is one; it is written every `CHECKPOINT` steps. `told`
+    receives a line of figures every `REPORT` steps. The unfinished model is written to `early` with each checkpoint.
+    With `start` it begins with the weights of that model. Raises LabialError for a folder with next to nothing to learn
+    from, for shares of other folders, and for a `start` of another plan.
+    """
+    torch.set_num_threads(1)
+    torch.use_deterministic_algorithms(True)
+    data = _Data(folders, options)
+    pool = white(_NOISE, np.random.default_rng([options.seed, 2]))
+    state = _State(options)
+    if start is not None:
+        if start.plan != PLANS[options.model] or start.classes != CLASSES:
+            raise LabialError(f"the model to begin with is not of the size {options.model!r}")
+        restore(state.learner, start, data.mean, data.scale)
+    if os.path.exists(checkpoint):
+        state.restore(checkpoint, options)
+    figures: List[np.ndarray] = []
+    begun, first = time.monotonic(), state.step
+    while state.step < options.steps:
+        figures.append(_step(state, data, pool, options))
+        if told and (state.step % REPORT == 0 or state.step == options.steps):
+            loss, right, error = np.mean(figures, axis=0)
+            left = (time.monotonic() - begun) / (state.step - first) * (options.steps - state.step)
+            told(f"step {state.step} of {options.steps}: loss {loss:.3f}, classes {right:.3f}, frames {error:.3f}, "
+                 f"{left / 60:.0f} minutes left")
+            figures = []
+        if state.step % CHECKPOINT == 0 or state.step == options.steps:
+            state.store(checkpoint, options)
+            if early is not None and state.step < options.steps:
+                save(finished(state, data, folders, options)[0], early)
+    model, choice = finished(state, data, folders, options)
+    if told:
+        told(f"held out: {choice}")
+    return model
+
+
+def finished(
+    state: _State, data: _Data, folders: Sequence[Prepared], options: Options
+) -> Tuple[HearingModel, Choice]:
+    """The model as it is, and what was chosen for it."""
+    about: Dict[str, object] = {**asdict(options), "step": state.step, "torch": str(torch.__version__),
+                                "seconds": [round(len(part.classes) * targets.FRAME_MS / 1000) for part in data.parts]}
+    del about["attribution"]
+
+    def made(edges: Tuple[float, float]) -> HearingModel:
+        return model_of(state.learner, data.mean, data.scale, targets.closed_pose(), edges, options.attribution, about)
+
+    choice = choose(made((-1.0, 1.0)), [item.part(held=True) for item in folders], data.shares)
+    about["held_out"] = choice.figures()
+    return made(choice.edges), choice
+
+
+def _rate(step: int, steps: int) -> float:
+    """The learning rate relative to its highest: it rises at the beginning and falls along a cosine."""
+    part = step / steps
+    return min(1.0, (step + 1) / _WARM) * 0.5 * (1 + float(np.cos(np.pi * part))) + _LEAST
+
+
+def _step(state: _State, data: _Data, pool: np.ndarray, options: Options) -> np.ndarray:
+    """One step; its loss, the share of right classes and the mean squared error of frames."""
+    heard, wanted, classes = (torch.from_numpy(item) for item in data.batch(state.random, pool))
+    for group in state.optimiser.param_groups:
+        group["lr"] = options.rate * _rate(state.step, options.steps)
+    scores, faps, excess = state.learner(heard, state.step >= (1 - _ROUNDED) * options.steps)
+    scores, faps = scores[:, _BEGIN:-_END], faps[:, _BEGIN:-_END]
+    wanted, classes = wanted[:, _BEGIN:-_END], classes[:, _BEGIN:-_END]
+    closed = classes == CLASSES.index(CLOSED)
+    entropy = torch.nn.functional.cross_entropy(
+        scores.reshape(-1, len(CLASSES)), classes.reshape(-1), label_smoothing=0.03,
+        weight=torch.from_numpy(data.weight.astype(np.float32)))
+    channels = torch.tensor([2.0 if number in _IMPORTANT else 1.0 for number in FAP_NUMBERS])
+    difference = faps - wanted
+    error = difference.square() * channels
+    frames = (error * (1 + (_CLOSURE - 1) * closed[..., None])).mean()
+    jumps = (torch.diff(difference, n=2, dim=1).square() * channels).mean()
+    loss = entropy + _FRAMES * frames + options.smoothness * jumps + _EXCESS * excess
+    state.optimiser.zero_grad()
+    loss.backward()  # type: ignore[no-untyped-call, unused-ignore]
+    torch.nn.utils.clip_grad_norm_(state.learner.parameters(), 1.0)
+    state.optimiser.step()
+    state.step += 1
+    with torch.no_grad():
+        right = (scores.argmax(dim=2) == classes).float().mean()
+        squared = error.sum() / (channels.sum() * error.numel() / CHANNELS)
+        return np.array([float(loss), float(right), float(squared)])
