@@ -24,6 +24,7 @@ COMMANDS: Dict[str, str] = {
     "laughter-corpus": "generate the synthetic laughter corpus",
     "speech-corpus": "speak sentences with free synthesisers, for train-hear",
     "train-hear": "train a model of hearing on folders of speech (English)",
+    "evaluate-hear": "compare lips from sound with those from true timings",
     "rig": "write a description of servos or blendshapes as a C table",
     "fit": "solve for a rig that shows on an avatar what the FAPs mean",
     "plot": "draw trajectories with their phonemes",

@@ -1,0 +1,60 @@
+"""``labial evaluate-hear``: lips from sound against lips from true timings."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+from typing import List, Optional
+
+from labial.commands.common import put
+from labial.errors import LabialError, needs
+from labial.files.arguments import positive
+
+
+def add_arguments(command: argparse.ArgumentParser) -> None:
+    """A model, and the sounds, conditions and methods to judge."""
+    command.add_argument("model", metavar="HEAR.npz")
+    command.add_argument("folder", nargs="*", metavar="FOLDER", help="speech, as for train-hear")
+    command.add_argument("-o", "--output", metavar="TABLE.md", help="standard output without it")
+    command.add_argument("--voices", nargs="*", metavar="VOICE", help="synthesisers' voices that say the bundled "
+                         "sentences, as for speech-corpus (four that no bundled network was trained on)")
+    command.add_argument("--conditions", metavar="A,B,...", help="of clean, -40 dBFS, white noise 20 dB and so on; all "
+                         "of them by default")
+    command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness and so on (all)")
+    command.add_argument("--most", type=positive, help="clips of each folder (all)")
+    command.add_argument("--cache", metavar="FOLDER", help="for alignments")
+    command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="processes that align")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Prints a table."""
+    with needs("evaluating", "hear"):
+        from labial.evaluate import hearing
+    from labial.files.outputs import check
+    from labial.hearing.model import load
+
+    check(options.output)
+    model = load(options.model)
+    methods = hearing.methods(model)
+    chosen = {name: methods[name] for name in _chosen(options.methods, "--methods", list(methods))}
+    conditions = _chosen(options.conditions, "--conditions", list(hearing.CONDITIONS))
+    with tempfile.TemporaryDirectory() as temporary:
+        sets = [hearing.of_folder(folder, options.cache or temporary, options.jobs, options.most or 0)
+                for folder in options.folder]
+        voices = hearing.VOICES if options.voices is None else options.voices
+        sets += [hearing.of_voice(voice, hearing.default_sentences()) for voice in voices]
+    if not sets:
+        raise LabialError("there is nothing to judge by: neither a folder nor a voice")
+    put(hearing.table(list(hearing.evaluated(sets, chosen, conditions))), options.output)
+    return 0
+
+
+def _chosen(text: Optional[str], option: str, known: List[str]) -> List[str]:
+    if text is None:
+        return known
+    names = [name.strip() for name in text.split(",")]
+    for name in names:
+        if name not in known:
+            raise LabialError(f"{option}: {name!r} is not one of {'; '.join(known)}")
+    return names

@@ -1,0 +1,191 @@
+"""``labial evaluate-hear``: lips from sound, compared with those that Labial makes of the true times of phonemes.
+
+The figures are those of :mod:`labial.hearing.measures`. Sounds are folders of speech, as for ``labial train-hear``, and
+sentences spoken by synthesisers. Each is also judged in conditions that degrade it, and beside methods that follow
+loudness alone (:mod:`labial.evaluate.loudness`).
+"""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+from typing import Callable, Dict, Iterator, List, NamedTuple, Sequence, Tuple
+
+import numpy as np
+
+from labial.corpus.timings import PathLike
+from labial.evaluate.loudness import loudness, loudness_and_crossings
+from labial.hearing import clips, distort, targets
+from labial.hearing.features import RATE, frames_of
+from labial.hearing.integer import hear as hear_in_integers
+from labial.hearing.measures import Figures, Judged, delay, measured
+from labial.hearing.model import HearingModel
+from labial.hearing.network import hear
+from labial.hearing.quantise import quantise
+from labial.hearing.speech_corpus import read_sentences
+from labial.hearing.voices import speak
+
+#: Sentences that no bundled network was trained on, which voices say here.
+SENTENCES = Path(clips.__file__).with_name("sentences.txt")
+#: Voices that no bundled network was trained on.
+VOICES = ("flite:awb", "espeak:en-us+klatt4", "espeak:en-us+f5", "espeak:en-us+Jacky")
+#: dB of full scale that sounds peak at where a condition does not say otherwise.
+PEAK = -6.0
+
+#: (N,) int16 at 16 kHz -> (T, 13) frames, T of `frames_of(N)`.
+Method = Callable[[np.ndarray], np.ndarray]
+_Phonemes = List[Tuple[str, int]]
+
+
+class Sounds(NamedTuple):
+    """A set of sounds with the true times of their phonemes."""
+
+    name: str
+    sounds: List[Tuple[np.ndarray, _Phonemes]]  #: (N,) float32 at 16 kHz, phonemes with their milliseconds
+
+
+class Row(NamedTuple):
+    """What a method reaches on a set in a condition."""
+
+    sounds: str
+    condition: str
+    method: str
+    delay: int  #: milliseconds behind the true motion, taken out before anything else is measured
+    figures: Figures
+    tenth: float  #: correlation of the opening that nine clips in ten exceed
+
+
+# ---- Sounds
+
+
+def of_folder(folder: PathLike, cache: PathLike, jobs: int, most: int) -> Sounds:
+    """The first clips of a folder, `most` of them, spread evenly; 0: all. Raises DataError as :func:`clips.read`."""
+    from labial.sound.samples import read_sound
+
+    found = clips.read(folder, cache, jobs)
+    if 0 < most < len(found):
+        found = [found[len(found) * k // most] for k in range(most)]
+    place = Path(folder).resolve()
+    return Sounds(f"{place.parent.name}/{place.name}",
+                  [(read_sound(clip.sound), targets.durations(clip.segments)) for clip in found])
+
+
+def of_voice(voice: str, sentences: Sequence[str]) -> Sounds:
+    """What a voice says (:mod:`labial.hearing.voices`)."""
+    found = []
+    for spoken in speak(voice, sentences):
+        sound = spoken.samples.astype(np.float32) / 32768.0
+        if spoken.rate != RATE:
+            sound = distort.resampled(sound, spoken.rate / RATE)
+        found.append((sound, targets.durations(spoken.segments)))
+    return Sounds(voice, found)
+
+
+# ---- Conditions
+
+
+def _noisy(sound: np.ndarray, noise: np.ndarray, ratio: float) -> np.ndarray:
+    scale = distort.rms(sound) / max(distort.rms(noise), 1e-9) * 10 ** (-ratio / 20)
+    return distort.as_integers(sound + noise * scale, PEAK)
+
+
+def pink(count: int, random: np.random.Generator) -> np.ndarray:
+    """(`count`,) noise whose energy falls by 3 dB an octave, above 20 Hz."""
+    spectrum = np.fft.rfft(random.normal(size=count))
+    frequency = np.arange(len(spectrum)) * RATE / max(count, 1)
+    result: np.ndarray = np.fft.irfft(spectrum / np.sqrt(np.maximum(frequency, 20.0)), count)
+    return result
+
+
+def _white(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return _noisy(sound, random.normal(size=len(sound)), 20.0)
+
+
+def _pink(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return _noisy(sound, pink(len(sound), random), 10.0)
+
+
+def _telephone(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    limited = distort.limited(sound, 300.0, 3400.0)
+    return distort.as_integers(distort.companded(limited / max(float(np.abs(limited).max(initial=0)), 1e-9)), PEAK)
+
+
+def _room(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return distort.as_integers(distort.reverberated(sound, 0.25, 1.0, random), PEAK)
+
+
+#: What is done to a sound, by name.
+CONDITIONS: Dict[str, Callable[[np.ndarray, np.random.Generator], np.ndarray]] = {
+    "clean": lambda sound, _: distort.as_integers(sound, PEAK),
+    "-40 dBFS": lambda sound, _: distort.as_integers(sound, -40.0),
+    "white noise 20 dB": _white,
+    "pink noise 10 dB": _pink,
+    "telephone": _telephone,
+    "reverberation .25 s": _room,
+    "clipped 5 %": lambda sound, _: distort.as_integers(distort.clipped(sound, 0.05), PEAK),
+}
+
+
+# ---- Methods
+
+
+def methods(model: HearingModel, in_integers: bool = True) -> Dict[str, Method]:
+    """The network in floating point and in the library's integers, and what follows loudness."""
+    found: Dict[str, Method] = {"network": lambda sound: hear(model, sound).faps}
+    if in_integers:
+        tables = quantise(model, "hear")
+        found["integers"] = lambda sound: hear_in_integers(tables, sound).faps
+    return {**found, "loudness": loudness, "loudness and crossings": loudness_and_crossings}
+
+
+# ---- Figures
+
+
+def evaluated(
+    sets: Sequence[Sounds], judged: Dict[str, Method], conditions: Sequence[str]
+) -> Iterator[Row]:
+    """A row for each set, condition and method. The distortions of a sound are the same for all methods."""
+    for item in sets:
+        true = [(targets.frames(timings, frames_of(len(sound))), targets.classes(timings, frames_of(len(sound))))
+                for sound, timings in item.sounds]
+        for condition in conditions:
+            heard = [CONDITIONS[condition](sound, np.random.default_rng([zlib.crc32(condition.encode()), number]))
+                     for number, (sound, _) in enumerate(item.sounds)]
+            for name, method in judged.items():
+                motion = [method(sound) for sound in heard]
+                rows = [(frames, shown, classes) for (frames, classes), shown in zip(true, motion)]
+                yield _row(item.name, condition, name, rows)
+
+
+def _row(sounds: str, condition: str, method: str, rows: Sequence[Judged]) -> Row:
+    lag = delay(rows)
+    rows = [_without(lag, *row) for row in rows]
+    each = np.array([measured([row]).opening for row in rows])
+    each = each[np.isfinite(each)]
+    tenth = float(np.percentile(each, 10)) if len(each) else float("nan")
+    return Row(sounds, condition, method, lag * targets.FRAME_MS, measured(rows), tenth)
+
+
+def _without(lag: int, true: np.ndarray, heard: np.ndarray, classes: np.ndarray) -> Judged:
+    """Frames with the delay of the heard ones taken out; the last, or first, one is held."""
+    at = np.clip(np.arange(len(heard)) + lag, 0, max(len(heard) - 1, 0))
+    return true, heard[at], classes
+
+
+COLUMNS = ("sounds", "condition", "method", "opening", "10th percentile", "channels", "p, b, m closed",
+           "false closures per second", "jerk", "delay, ms")
+
+
+def table(rows: Sequence[Row]) -> str:
+    """A table in Markdown."""
+    lines = [f"| {' | '.join(COLUMNS)} |", f"|{'---|' * 3}{'---:|' * (len(COLUMNS) - 3)}"]
+    for row in rows:
+        f = row.figures
+        lines.append(f"| {row.sounds} | {row.condition} | {row.method} | {f.opening:.3f} | {row.tenth:.2f} | "
+                     f"{f.channels:.3f} | {f.closed:.2f} | {f.false:.2f} | {f.jerk:.2f} | {row.delay} |")
+    return "\n".join(lines) + "\n"
+
+
+def default_sentences() -> List[str]:
+    """The sentences of `SENTENCES`."""
+    return read_sentences(SENTENCES)
