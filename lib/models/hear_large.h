@@ -5,11 +5,11 @@
  * and others, Google, CC BY 4.0, https://www.openslr.org/60; the CSTR VCTK Corpus 0.92 (c) 2019 Junichi
  * Yamagishi, Christophe Veaux and Kirsten MacDonald, University of Edinburgh, CC BY 4.0,
  * https://datashare.ed.ac.uk/handle/10283/3443; CMU ARCTIC (c) 2003 Carnegie Mellon University, John Kominek and
- * Alan W Black, http://festvox.org/cmu_arctic; Common Voice (CC0 1.0); Kathleen, of the Rhasspy project (CC0
- * 1.0); LJ Speech (public domain); and of the synthesisers flite, Festival and espeak-ng. The sound was
- * resampled, mixed and distorted. The lips are those of Labial's model speech_en, trained on the GRID audio-
- * visual speech corpus (Cooke, Barker, Cunningham and Shao, 2006), CC BY 4.0, and on measurements of addresses by
- * presidents of the United States (public domain).
+ * Alan W Black, http://festvox.org/cmu_arctic; Kathleen, of the Rhasspy project (CC0 1.0); LJ Speech (public
+ * domain); and of the synthesisers flite, Festival and espeak-ng. The sound was resampled, mixed and distorted.
+ * The lips are those of Labial's model speech_en, trained on the GRID audio-visual speech corpus (Cooke, Barker,
+ * Cunningham and Shao, 2006), CC BY 4.0, and on measurements of addresses by presidents of the United States
+ * (public domain).
  */
 #ifndef LABIAL_MODEL_HEAR_LARGE_H
 #define LABIAL_MODEL_HEAR_LARGE_H
