@@ -37,6 +37,12 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         'tools/bin/pip install "$LABIAL[align]"': "fetches; test_wheel.py installs the package without",
         "avrdude -c arduino -p m328p -P /dev/ttyACM0 -U flash:w:jaw.elf": "needs a board; the page simulates one",
     },
+    "hearing.md": {
+        "labial train-hear speech/ -o hear.npz": "needs PyTorch and speech; tests/hearing trains on less",
+        "labial evaluate-hear hear.npz judge/ -o table.md": "needs the model above; another test judges one",
+        "labial export hear.npz --name hear_mine -o .": "likewise",
+        'sh "$LABIAL/export/hearing/train.sh" talkers/ lj/ kathleen/ out/': "takes hours and needs speech",
+    },
     "method.md": {
         'labial train "$LABIAL/export/corpora/grid_s1" --method paper -o paper.npz': "takes a minute",
         'python -m labial.evaluate.side_by_side "$LABIAL/examples/demo/sentence.flite" published=paper.npz '

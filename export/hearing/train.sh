@@ -1,0 +1,26 @@
+#!/bin/sh
+# train.sh - trains the bundled networks of hearing, as docs/hearing.md tells, which says what the folders have.
+#
+#     sh export/hearing/train.sh TALKERS LJ KATHLEEN OUT
+#
+# TALKERS has sounds with a .txt beside each, LJ a metadata.csv and its wavs, KATHLEEN the repository's data folder. OUT
+# is a new folder. Needs labial[hear], flite, festival with festvox-kallpc16k and festvox-us-slt-hts, and espeak-ng.
+set -eu
+talkers=$1 lj=$2 kathleen=$3 out=$4
+here=$(dirname "$0")
+mkdir "$out"
+
+labial speech-corpus "$out/espeak" --minutes 50 --sentences "$lj/metadata.csv" "$talkers"/*.txt --voices \
+    espeak:en-us espeak:en-us+f2 espeak:en-us+klatt espeak:en-us+m3 espeak:en+f4 espeak:en-us+Andy espeak:en-us+m5 \
+    espeak:en-029+f1 espeak:en-us+klatt2 espeak:en-gb-scotland+m2 espeak:en-us+anika espeak:en-us-nyc+m7 \
+    espeak:en-us+klatt3 espeak:en-gb-x-rp+f3 espeak:en-us+linda espeak:en-us+adam espeak:en-us+belinda \
+    espeak:en-us+m1 espeak:en-us+whisper espeak:en-us+steph espeak:en-us+grandpa
+labial speech-corpus "$out/flite" --minutes 55 --sentences "$lj/metadata.csv" "$talkers"/*.txt --voices \
+    flite:slt flite:rms flite:kal16 festival:kal_diphone festival:cmu_us_slt_arctic_hts
+
+train() {
+    labial train-hear "$talkers" "$out/espeak" "$out/flite" "$lj" "$kathleen" --cache "$out/cache" \
+        --takes 4,2,2,2,2 --shares .33,.25,.22,.08,.12 --attribution-file "$here/attribution.txt" "$@"
+}
+train --model small --steps 16000 -o "$out/hear_small.npz"
+train --model large --steps 12000 --smoothness 2 -o "$out/hear_large.npz"
