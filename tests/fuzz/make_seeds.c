@@ -191,6 +191,34 @@ static void add_label(FILE **file, const char *label, size_t length)
     size += length + 1u;
 }
 
+/* A sound at each rate of fuzz_hear.c: a wave with noise, pushed in blocks, some of them again, ended and restarted. */
+static void make_sounds(void)
+{
+    char name[16];
+    unsigned rate, block, i;
+    for (rate = 0; rate < 8u; rate++) {
+        uint32_t state = rate;
+        FILE *file;
+        snprintf(name, sizeof name, "sound_%u", rate);
+        file = create("fuzz_hear", name);
+        put(file, rate | (rate & 1u) << 3, 1);
+        for (block = 0; block < 12u; block++) {
+            put(file, block << 3, 1);
+            put(file, 160, 1);
+            for (i = 0; i < 80u; i++) {
+                state = state * 1664525u + 1013904223u;
+                put(file, (i * (block + 1u) * 900u + (state >> 20)) & 0xffffu, 2);
+            }
+            if (block % 4u == 3u) {
+                put(file, block == 7u ? 6 : 5, 1);
+                put(file, 20, 1);
+                put(file, 7, 2);
+            }
+        }
+        finish(file);
+    }
+}
+
 /* The labels of espeak-ng's voices, which are the first column of a table, and all that the bundled models know. */
 static void make_labels(const char *table)
 {
@@ -215,6 +243,7 @@ int main(int argc, char **argv)
     make_streams();
     make_blobs();
     make_rig();
+    make_sounds();
     make_labels(argv[2]);
     return 0;
 }

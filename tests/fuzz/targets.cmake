@@ -19,6 +19,7 @@ endif()
 # The longest input of each target, bytes. Inputs have this length from the start; if libFuzzer grows them, they stay
 # below ten bytes.
 set(fuzz_blob_longest 45056)
+set(fuzz_hear_longest 2048)
 set(fuzz_names_longest 64)
 set(fuzz_rig_longest 1024)
 set(fuzz_stream_longest 1024)

@@ -1,0 +1,92 @@
+/*
+ * fuzz_hear.c - any bytes as sound at any rate, and as calls between blocks in any order: nothing may be written beside
+ * the stream or the workspace, frames are numbered without gaps, and as many as the sound has, whatever its blocks.
+ */
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fuzz.h"
+#include "hear_fixture.h"
+#include "labial/hear.h"
+
+/* Numbers of frames, and where the next stretch of a class begins. */
+typedef struct {
+    uint32_t frames, stretch;
+} told_t;
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    told_t *told = (told_t *)user;
+    (void)faps;
+    REQUIRE(frame == told->frames++);
+}
+
+static void on_class(void *user, unsigned shown, uint32_t frame, uint32_t frames)
+{
+    told_t *told = (told_t *)user;
+    REQUIRE(shown < HEAR_FIXTURE_CLASSES && frames > 0 && frame >= told->stretch && frame + frames <= told->frames);
+    told->stretch = frame + frames;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
+    told_t told = { 0, 0 };
+    labial_hear_t *hear = (labial_hear_t *)malloc(sizeof *hear); /* so that the sanitizer sees their ends */
+    void *workspace = malloc(HEAR_FIXTURE_WORKSPACE_SIZE);
+    uint32_t rate, channels, heard = 0, before = 0;
+    int result, ended = 0;
+    REQUIRE(hear != NULL && workspace != NULL);
+    memset(hear, 0xa5, sizeof *hear);
+    memset(workspace, 0x5a, HEAR_FIXTURE_WORKSPACE_SIZE);
+    if (size < 2)
+        size = 0;
+    rate = size ? rates[data[0] & 7u] : 16000;
+    channels = size ? 1u + (data[0] >> 3 & 1u) : 1;
+    result =
+        labial_hear_init(hear, &hear_fixture, rate, channels, workspace, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &told);
+    REQUIRE(result == LABIAL_OK && labial_hear_classes(hear, on_class) == LABIAL_OK);
+    if (size)
+        data++, size--;
+    while (size >= 2) {
+        /* A call, and for a push how many bytes: they are heard as often as the call's upper bits say. */
+        const unsigned call = data[0] & 7u, again = data[0] >> 3;
+        size_t bytes = data[1];
+        unsigned i;
+        data += 2;
+        size -= 2;
+        if (call == 5u) {
+            REQUIRE(labial_hear_end(hear) == LABIAL_OK);
+            /* Frames of 20 ms, also in part, none lost. */
+            REQUIRE(ended || told.frames - before == (uint32_t)(((uint64_t)heard * 50u + rate - 1u) / rate));
+            ended = 1;
+        } else if (call == 6u) {
+            REQUIRE(labial_hear_cancel(hear, (uint32_t)bytes * 5u) == LABIAL_OK);
+            ended = 1;
+        } else if (call == 7u) {
+            REQUIRE(labial_hear_restart(hear) == (ended ? LABIAL_OK : LABIAL_ERROR_STATE));
+            heard = ended ? 0 : heard;
+            before = ended ? told.frames : before;
+            ended = 0;
+        } else {
+            int16_t *samples;
+            const size_t pair = 2u * channels;
+            bytes = (bytes < size ? bytes : size) / pair * pair;
+            samples = (int16_t *)malloc(bytes + 1u);
+            REQUIRE(samples != NULL);
+            memcpy(samples, data, bytes);
+            for (i = 0; i <= again; i++) {
+                REQUIRE(labial_hear_push(hear, samples, bytes / pair) == (ended ? LABIAL_ERROR_STATE : LABIAL_OK));
+                heard += ended ? 0 : (uint32_t)(bytes / pair);
+            }
+            free(samples);
+            data += bytes;
+            size -= bytes;
+        }
+    }
+    free(workspace);
+    free(hear);
+    return 0;
+}
