@@ -9,6 +9,7 @@
 
 #include "fixture.h"
 #include "hear_fixture.h"
+#include "hear_sound.h"
 #include "hears.h"
 #include "labial/hear.h"
 
@@ -54,28 +55,12 @@ static void begin(uint32_t rate, unsigned channels)
     assert_int_equal(labial_hear_classes(&hear, on_class), LABIAL_OK);
 }
 
-/* The sounds of hears.py. */
+/* A sound of hears.py, in the second channel upside down and half as loud. */
 static void make_sound(uint32_t number, uint32_t count, unsigned channels)
 {
     uint32_t i, state = 1;
     for (i = 0; i < count; i++) {
-        const int32_t at = (int32_t)i;
-        int32_t value = 0, noise;
-        state = state * 1664525u + 1013904223u;
-        noise = (int32_t)(state >> 16) - 32768;
-        if (number == 1u)
-            value = 8520;
-        else if (number == 2u)
-            value = i / 40u % 2u == 0u ? 32767 : -32768;
-        else if (number == 3u)
-            value = noise >> (i / 2500u % 4u * 4u);
-        else if (number == 4u)
-            value = 8000 + (noise >> 12);
-        else if (number == 5u) {
-            value = (int32_t)((int64_t)(at * 420 % 65536 - 32768) * (at * 77 % 16384) >> 15);
-            value = value * (at / 3000 % 3);
-            value = (value >> 1) + (noise >> 7);
-        }
+        const int32_t value = hear_sound(number, i, &state);
         samples[i * channels] = (int16_t)value;
         if (channels == 2u)
             samples[2u * i + 1u] = (int16_t) - (value >> 1);

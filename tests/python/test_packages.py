@@ -28,8 +28,9 @@ SKETCHES = sorted(path.parent.name for path in (SOURCE / "examples" / "arduino")
 
 
 def bundled() -> List[str]:
-    """The models that every build bundles."""
-    return sorted(path.name[: -len("_names.c")] for path in (SOURCE / "lib" / "models").glob("*_names.c"))
+    """The models that every build bundles: those of phonemes, and those of hearing, which have no names."""
+    found = {path.name[: -len("_names.c")] for path in (SOURCE / "lib" / "models").glob("*_names.c")}
+    return sorted(found | {path.stem for path in (SOURCE / "lib" / "models").glob("hear_*.h")})
 
 
 def header_version(root: Path) -> str:

@@ -1,0 +1,38 @@
+/*
+ * hear_sound.h - the sounds of hears.py, sample by sample.
+ */
+#ifndef LABIAL_TEST_HEAR_SOUND_H
+#define LABIAL_TEST_HEAR_SOUND_H
+
+#include <stdint.h>
+
+/* Sample `at` of the sound with this number, one after the other; `state` is 1 at first. */
+static inline int16_t hear_sound(uint32_t number, uint32_t at, uint32_t *state)
+{
+    int32_t noise, value = 0;
+    *state = *state * 1664525u + 1013904223u;
+    noise = (int32_t)(*state >> 16) - 32768;
+    switch (number) {
+    case 1:
+        value = 8520;
+        break;
+    case 2:
+        value = at / 40u % 2u == 0u ? 32767 : -32768;
+        break;
+    case 3:
+        value = noise >> (at / 2500u % 4u * 4u);
+        break;
+    case 4:
+        value = 8000 + (noise >> 12);
+        break;
+    case 5:
+        value = (int32_t)((((int64_t)(at * 420u % 65536u) - 32768) * (int32_t)(at * 77u % 16384u)) >> 15);
+        value = ((value * (int32_t)(at / 3000u % 3u)) >> 1) + (noise >> 7);
+        break;
+    default:
+        break;
+    }
+    return (int16_t)value;
+}
+
+#endif

@@ -1,0 +1,70 @@
+/*
+ * hearing_works.c - what a board hears: the frames of the exporter's integers for sounds of every rate and kind, by
+ * their CRC-32. Passes if each has them.
+ */
+#include "board.h"
+
+#include "hear_fixture.h"
+#include "hear_sound.h"
+#include "hears.h"
+#include "labial/hear.h"
+
+#define BLOCK 48u
+
+static labial_hear_t hear;
+static uint32_t workspace[HEAR_FIXTURE_WORKSPACE_SIZE / 4];
+static uint32_t frames, crc;
+
+static void add(uint8_t byte)
+{
+    unsigned bit;
+    for (crc ^= byte, bit = 0; bit < 8; bit++)
+        crc = crc >> 1 ^ (crc & 1u ? 0xedb88320u : 0u);
+}
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    unsigned k;
+    (void)user;
+    frames = frame + 1u;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        add((uint8_t)((uint16_t)faps[k] & 255u));
+        add((uint8_t)((uint16_t)faps[k] >> 8));
+    }
+}
+
+/* Whether the sound in this row of the table gives its frames. */
+static int is_heard(unsigned row)
+{
+    int16_t block[2u * BLOCK];
+    uint32_t state = 1, at, used = 0;
+    frames = 0;
+    crc = 0xffffffffu;
+    if (labial_hear_init(&hear, &hear_fixture, hears[row].rate, hears[row].channels, workspace, sizeof workspace,
+                         on_frame, NULL) != LABIAL_OK)
+        return 0;
+    for (at = 0; at < hears[row].samples; at++) {
+        const int32_t value = hear_sound(hears[row].sound, at, &state);
+        block[used * hears[row].channels] = (int16_t)value;
+        if (hears[row].channels == 2u)
+            block[2u * used + 1u] = (int16_t) - (value >> 1);
+        if (++used == BLOCK || at + 1u == hears[row].samples) {
+            labial_hear_push(&hear, block, used);
+            used = 0;
+        }
+    }
+    return labial_hear_end(&hear) == LABIAL_OK && frames == hears[row].frames && ~crc == hears[row].faps_crc;
+}
+
+int main(void)
+{
+    unsigned row, wrong = 0;
+    for (row = 0; row < sizeof hears / sizeof hears[0]; row++)
+        if (!is_heard(row)) {
+            board_print("sound ");
+            board_print_unsigned(row);
+            board_print(": FAILED\n");
+            wrong++;
+        }
+    return wrong > 0;
+}
