@@ -14,9 +14,9 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import Callable, List
+from typing import Callable, Dict, List
 
-from measure import baseline, boards, host, loss, mlpg, profile, readme, sizes, stack, table
+from measure import baseline, boards, hearing, host, loss, mlpg, profile, readme, sizes, stack, table
 from measure.core import Bench, LeftOut
 
 
@@ -46,11 +46,13 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
                 bench.left_out.append(str(reason))
 
     checksums = host.checksums(bench)
+    heard: Dict[str, int] = {}
     for board in boards.BOARDS:
         print(f"{board.core}: code, stack, instructions", flush=True)
         attempt(sizes.measure, board)
         attempt(stack.measure, board)
         attempt(boards.measure, board, checksums)
+        attempt(hearing.measure, board, heard)
     print("Host: speed, instructions, equation 3, loss", flush=True)
     attempt(host.measure, compiler)
     attempt(host.python, compiler)

@@ -1,0 +1,64 @@
+"""What hearing costs on the boards: instructions for each rate of sound, flash and RAM of each model."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Dict, List, Tuple
+
+from measure.boards import RATE, SECONDS, Board, build, printed
+from measure.core import Bench, run, version
+from measure.sizes import compile_command, sections
+
+#: The files of lib/ that hear; a program links the others only if it calls them.
+PARTS = ("hear", "hear_convert", "hear_features", "hear_network", "fixed")
+
+#: Rates of sound that the images hear, samples per second.
+RATES = (16000, 24000, 44100, 48000)
+
+
+def models(bench: Bench) -> List[str]:
+    """The bundled models of hearing."""
+    return sorted(path.stem for path in (bench.source / "lib" / "models").glob("hear_*.c"))
+
+
+def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
+    """Adds the figures of `board`. `checksums` are those of the boards before, by image; raises RuntimeError if its
+    frames differ from theirs."""
+    tool_version = version(f"{board.prefix}gcc")
+    flash = _flash(bench, board, tool_version)
+    images = build(bench, board)
+    for model in models(bench):
+        for rate in RATES:
+            command = images[f"bench_{model}_{rate}"]
+            found = printed(command)
+            if found["frames"] != SECONDS * RATE:
+                raise RuntimeError(f"{bench.shown(command)}: {found['frames']} frames, not {SECONDS * RATE}")
+            if checksums.setdefault(f"{model}_{rate}", found["checksum"]) != found["checksum"]:
+                raise RuntimeError(f"{bench.shown(command)}: its frames are not those of the other boards")
+            for figure, value in ((f"{model}, {rate} Hz: mean", round(found["push_instructions"] / found["frames"])),
+                                  (f"{model}, {rate} Hz: worst frame", found["push_worst"])):
+                bench.add(board.preset, figure, value, "instructions/frame", command, tool_version)
+        bench.add(board.preset, f"{model}: RAM", found["ram"], "bytes", command, tool_version)
+        bench.add(board.preset, f"{model}: stack, painted", found["stack"], "bytes", command, tool_version)
+        size, sized = flash[model]
+        bench.add(board.preset, f"{model}: flash", size, "bytes", sized, tool_version)
+
+
+def _flash(bench: Bench, board: Board, tool_version: str) -> Dict[str, Tuple[int, List[str]]]:
+    """Bytes of each model with the code that hears, compiled for size, and the command."""
+    found: Dict[str, Tuple[int, List[str]]] = {}
+    size, command = f"{board.prefix}size", compile_command(bench, board, "-Os")
+    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
+        out = Path(scratch) / "out.o"
+
+        def text(path: Path) -> int:
+            run([*command, path, "-o", out])
+            return sections(size, out)["text"]
+
+        code = sum(text(bench.source / "lib" / f"{part}.c") for part in PARTS)
+        for model in models(bench):
+            tables = text(bench.source / "lib" / "models" / f"{model}.c")
+            shown = [*command, *(f"lib/{part}.c" for part in PARTS), f"lib/models/{model}.c", "&&", size, "*.o"]
+            found[model] = (code + tables, [str(item) for item in shown])
+    return found
