@@ -118,7 +118,7 @@ int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint
 
 /*
  * Also tells the lip classes to `callback`, with the same `user`; null for no longer. Their names are phonemes, so that
- * a program can push them to a stream of phonemes (labial/labial.h), whose lips then move half a second later.
+ * a program can show them, or push them to a stream of phonemes (labial/labial.h).
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
