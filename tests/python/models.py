@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, List, Tuple
+from typing import Dict, Iterable, List, Tuple
 
 import numpy as np
 
@@ -101,3 +101,12 @@ def streams(phonemes: int, boundary: np.ndarray, seed: int) -> Dict[str, Stream]
         "with zeros": [(p, ms if rng.random() < 0.6 else 0) for p, ms in draw(every, 60, 10, 150)],
         "one phoneme": draw(every, 1, 20, 500),
     }
+
+
+def lab(phonemes: Iterable[Tuple[str, int]]) -> str:
+    """Lines of start, end and label: phonemes of these lengths, milliseconds, one after the other."""
+    lines, begin = [], 0
+    for label, length in phonemes:
+        lines.append(f"{begin / 1000:.3f} {(begin + length) / 1000:.3f} {label}\n")
+        begin += length
+    return "".join(lines)

@@ -26,9 +26,9 @@ from labial.tables.layout import check_fits
 from labial.tables.model import load, save
 from labial.tables.quantise import quantise
 from models import random_model
-from test_fuzz import damaged
 from test_record import LAB as TALK
 from test_record import talking, turned
+from test_timings import damaged
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory and time are those of Linux")
 

@@ -1,4 +1,7 @@
-"""labial-say from outside: text in, frames out. The environment variable LABIAL_SAY holds the program's path."""
+"""labial-say from outside: text in, frames out. The environment variable LABIAL_SAY holds the program's path.
+
+What lines of timings mean and which are refused is the library's; test_grammar.py and tests/c/test_timings.c have it.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +10,24 @@ import queue
 import random
 import subprocess
 import threading
-from typing import Dict, List, Tuple
+from itertools import accumulate
+from pathlib import Path
+from typing import List
 
 import pytest
+
+from labial.__main__ import main
+from labial.see.motion import read_bands
+from models import lab
+from packages import SOURCE
+from test_timings import FILES, PHRASE, SEEDS, SENTENCE, damaged
 
 SAY = os.environ.get("LABIAL_SAY", "")
 pytestmark = pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")
 
-#: (label, duration in ms); the same phrase in each of the three formats must give the same motion.
-PHRASE = [("pau", 220), ("m", 71), ("ay", 152), ("b", 90), ("ey", 197), ("b", 85), ("iy", 89), ("pau", 220)]
 HEADER = "time,fap3,fap16,fap17,fap51,fap52,fap53,fap54,fap55,fap56,fap57,fap58,fap59,fap60"
-EXPANDED = [*range(3, 14), 16, 17, *range(51, 61)]
+FORMATS = {".psdur": "flite", ".pho": "pho", ".realised_durations": "mary", ".phseg": "phseg", ".TextGrid": "textgrid"}
+TEXT = lab(PHRASE)
 
 
 def say(text: str | bytes, *options: str) -> subprocess.CompletedProcess:
@@ -41,64 +51,40 @@ def frames_per_second(rows: List[List[str]]) -> float:
     return (len(rows) - 1) / float(rows[-1][0])
 
 
-def flite(phrase: List[Tuple[str, int]]) -> str:
-    """`phrase` as `flite -psdur` writes it."""
-    ends = [sum(duration for _, duration in phrase[: i + 1]) for i in range(len(phrase))]
-    return " ".join(f"{label}:{end / 1000:.3f}" for (label, _), end in zip(phrase, ends)) + " \n"
+@pytest.mark.parametrize("name", SENTENCE)
+def test_one_sentence_in_every_format(name: str) -> None:
+    """Catches a unit, an inclusive end, a tier or a phone set that is misread, and a format taken for another."""
+    data = (SEEDS / name).read_bytes()
+    expected = motion(TEXT)
+    assert len({tuple(row[1:]) for row in expected}) > 20, "a mouth that does not move proves nothing"
+    assert motion(data) == expected
+    named = "htk" if name in ("htk.lab", "hts.lab") else FORMATS.get(Path(name).suffix, "lab")
+    assert motion(data, "--from", named) == expected
 
 
-def lab(phrase: List[Tuple[str, int]]) -> str:
-    """`phrase` as three-column lines, its silences left out as gaps."""
-    lines, at = [], 0
-    for i, (label, duration) in enumerate(phrase):
-        if label != "pau" or i == len(phrase) - 1:
-            lines.append(f"{at / 1000:.3f} {(at + duration) / 1000:.3f} {label}\n")
-        at += duration
-    return "".join(lines)
-
-
-def pho(phrase: List[Tuple[str, int]]) -> str:
-    """`phrase` as MBROLA writes it, with comments and pitch points."""
-    text = "; a comment: with 0.5 numbers\n\n"
-    for i, (label, duration) in enumerate(phrase):
-        text += f"{'_' if label == 'pau' else label}\t{duration} 0 110 {i} 120.5\n"
-    return text + "#\n"
-
-
-def test_formats_are_told_apart() -> None:
-    """Each format alone, and asked for by name, gives the same motion: none is taken for another."""
-    expected = motion(flite(PHRASE), "--from", "flite")
-    assert len({tuple(row[1:]) for row in expected}) > 3, "a mouth that does not move proves nothing"
-    assert motion(flite(PHRASE)) == expected
-    for name, text in (("lab", lab(PHRASE)), ("pho", pho(PHRASE))):
-        assert motion(text) == expected, name
-        assert motion(text, f"--from={name}") == expected, name
-
-
-@pytest.mark.parametrize("lines", ["{a} {b} {l} {m}\n", "{a} {b} {l} {m} word\n", "\n  {a}\t{b}  {l}\n\n"])
-def test_lab_variants(lines: str) -> None:
-    """Apex, word, blank lines and other blanks change nothing."""
-    text, at = "", 0
-    for label, duration in PHRASE:
-        text += lines.format(a=at / 1000, b=(at + duration) / 1000, l=label, m=(at + duration / 2) / 1000)
-        at += duration
-    assert motion(text) == motion(flite(PHRASE))
-
-
-@pytest.mark.parametrize("write", [flite, lab, pho])
-def test_carriage_returns_and_missing_line_feed(write) -> None:  # noqa: ANN001
-    """CRLF lines, and a last line without an end, read as plain lines do."""
-    text = write(PHRASE)
+@pytest.mark.parametrize("name", SENTENCE)
+def test_line_ends_and_byte_order_marks(name: str) -> None:
+    """Catches carriage returns, a missing last line feed or a mark of the encoding that change the motion."""
+    data = (SEEDS / name).read_bytes()
+    if name.startswith("utf16"):
+        text = data.decode("utf-16")
+        assert motion(text) == motion(text.encode("utf-16-le").join([b"\xff\xfe", b""])) == motion(data)
+        return
+    text = data.decode()
     assert motion(text.replace("\n", "\r\n")) == motion(text)
     assert motion(text.rstrip()) == motion(text)
+    assert motion(b"\xef\xbb\xbf" + data) == motion(text)
+    assert motion(text.encode("utf-16")) == motion(text)
 
 
-def test_lines_of_flite_are_utterances() -> None:
-    """Times of flite start from 0 with every line; a line that restarts is no error and follows the one before."""
-    one, two = motion(flite(PHRASE)), motion(flite(PHRASE) * 2)
-    total = 2 * sum(duration for _, duration in PHRASE)
-    assert len(two) > len(one)
-    assert len(two) == int(total * frames_per_second(two) / 1000 + 0.5)
+def test_a_tier_is_taken_by_name() -> None:
+    """Catches a tier that is not the one asked for, and a wish that is passed over in silence."""
+    grid = (SEEDS / "aligned.TextGrid").read_text(encoding="utf-8")
+    assert motion(grid, "--tier", "phones") == motion(grid)
+    done = say(grid, "--tier", "words")
+    assert done.returncode == 0 and b"no phoneme '\"baby\"'" in done.stderr
+    done = say(grid, "--tier", "letters")
+    assert done.returncode == 1 and done.stderr == b"labial-say: line 69: there is no interval tier 'letters'\n"
 
 
 def test_totals_are_exact() -> None:
@@ -116,7 +102,7 @@ def test_totals_are_exact() -> None:
 
 def test_times_of_frames() -> None:
     """The time column is the frame's number over the rate, with three decimals, and FAPs are integers."""
-    rows = motion(flite(PHRASE))
+    rows = motion(TEXT)
     rate = round(frames_per_second(rows))
     for i, row in enumerate(rows):
         assert row[0] == f"{i / rate:.3f}"
@@ -126,7 +112,8 @@ def test_times_of_frames() -> None:
 def test_frames_leave_while_input_arrives() -> None:
     """Frames come out before the input has ended, within one long line, and in the end all of them."""
     phrase = PHRASE * 6
-    text = flite(phrase)
+    ends = accumulate(length for _, length in phrase)
+    text = " ".join(f"{label}:{end / 1000:.3f}" for (label, _), end in zip(phrase, ends)) + "\n"
     half = text[: len(text) // 2].encode()
     lines: queue.Queue[bytes] = queue.Queue()
     child = subprocess.Popen([SAY], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
@@ -157,35 +144,11 @@ def test_frames_leave_while_input_arrives() -> None:
     assert b"".join(early) == say(text).stdout
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "told"),
-    [
-        ("pau:0.2 m:x\n", 1, "m:x"),
-        ("pau:0.2\nm:0.1 b:nan\n", 2, "b:nan"),
-        ("pau:0.2 m:-0.3\n", 1, "m:-0.3"),
-        ("pau:0.2 m:1e-1\n", 1, "m:1e-1"),
-        ("pau:0.2 m\n", 1, "'m'"),
-        ("pau:0.2 m:0.1\n", 1, "m:0.1"),
-        ("pau:0.2 m:5000.0\n", 1, "hour"),
-        ("pau:0.2 m:99999999999999999999999999\n", 1, "m:9999"),
-        ("0.0 0.2 sil\n0.1 0.3 b\n", 2, "0.1"),
-        ("0.0 0.2 sil\n\n0.4 0.3 b\n", 3, "0.4"),
-        ("0.0 0.2 sil\n0.2 0.3\n", 2, "2 fields"),
-        ("0.0 0.2 sil\n0.2 inf b\n", 2, "inf"),
-        ("0.0 0.2 sil 0.1 word more\n", 1, "five"),
-        ("0.0 0.2 sil when\n", 1, "when"),
-        ("0.0 2900000 sil\n", 1, "2900000"),
-        ("_ 100\nb\n", 2, "'b'"),
-        ("_ 100\nb -5\n", 2, "-5"),
-        ("_ 100\n; fine\nb 50 0\n", 3, "pitch"),
-        ("_ 100\nb 50 0 high\n", 2, "high"),
-        ("_ 100\nb 3600001\n", 2, "hour"),
-        ("hello world\n", 1, "flite"),
-        ("hello\n", 1, "flite"),
-        ("pau:0.2 " + "m" * 70 + ":0.3\n", 1, "63"),
-        ("_ 100\nb\x1b[31m 20\n", 2, "0x1b"),
-    ],
-)
+@pytest.mark.parametrize(("text", "line", "told"), [
+    ("pau:0.2 m:x\n", 1, "m:x"), ("0.0 0.2 sil\n\n0.4 0.3 b\n", 3, "0.4"), ("0.0 0.2 sil\n0.2 0.3\n", 2, "2 fields"),
+    ("pau:0.2 m:5000.0\n", 1, "hour"), ("_ 100\nb 3600001\n", 2, "hour"), ("pau:0.1 <laugh 4000>\n", 1, "hour"),
+    ("hello world\n", 1, "flite"), ("_ 100\nb\x1b[31m 20\n", 2, "0x1b"),
+])  # fmt: skip
 def test_malformed_lines_are_named(text: str, line: int, told: str) -> None:
     """An error says the line and what is wrong with it, and the exit status is 1."""
     done = say(text)
@@ -208,13 +171,14 @@ def test_unknown_labels_are_named_once(text: str, line: int) -> None:
     assert done.stdout == say((text + text).replace("xyzzy", "k")).stdout
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_garbage_is_refused(seed: int) -> None:
-    """Bytes that are no text end in an error, not in a crash or in motion."""
-    data = bytes(random.Random(seed).randrange(256) for _ in range(4096))
-    done = say(data)
-    assert done.returncode == 1
-    assert done.stderr.startswith(b"labial-say: line ")
+@pytest.mark.parametrize("path", FILES, ids=[path.name for path in FILES])
+def test_damaged_files_are_motion_or_an_error(path: Path) -> None:
+    """Bytes that are no text, or hardly any, end in motion or an error with its line, not in a crash."""
+    chance = random.Random(path.name)
+    for number in range(8):
+        done = say(damaged(path.read_bytes(), chance) if number else bytes(chance.choices(range(256), k=4096)))
+        assert done.returncode in ((0, 1) if number else (1,))
+        assert not done.returncode or done.stderr.splitlines()[-1].startswith(b"labial-say: line ")
 
 
 @pytest.mark.parametrize("text", ["", "\n", " \r\n\n", "; nothing\n"])
@@ -224,40 +188,10 @@ def test_empty_input_is_no_motion(text: str) -> None:
     assert say(text, "--to", "fap").stdout.split()[3:] == [b"0"]
 
 
-def parse_fap(text: str) -> Tuple[List[str], List[Dict[int, int]]]:
-    """A reader of MPEG-4 text of its own: the header's fields, and each frame as FAP number to value."""
-    header, *lines = text.splitlines()
-    assert len(lines) % 2 == 0
-    frames = []
-    for number, (mask, values) in enumerate(zip(lines[0::2], lines[1::2])):
-        bits = mask.split(" ")
-        assert len(bits) == 68 and set(bits) <= {"0", "1"}
-        first, *rest = (int(value) for value in values.split(" "))
-        assert first == number
-        present = [i + 1 for i, bit in enumerate(bits) if bit == "1"]
-        assert len(present) == len(rest)
-        frames.append(dict(zip(present, rest)))
-    return header.split(" "), frames
-
-
-def test_fap_holds_the_same_motion() -> None:
-    """The fap file has the CSV's frames, the count in its header, and inner lips that move as the outer ones."""
-    rows = motion(flite(PHRASE))
-    done = say(flite(PHRASE), "--to", "fap")
-    assert done.returncode == 0
-    header, frames = parse_fap(done.stdout.decode())
-    assert header == ["2.1", "speech_en", str(round(frames_per_second(rows))), str(len(rows))]
-    names = [int(name[3:]) for name in HEADER.split(",")[1:]]
-    for row, frame in zip(rows, frames):
-        assert sorted(frame) == EXPANDED
-        assert [frame[fap] for fap in names] == [int(value) for value in row[1:]]
-        assert [frame[fap] for fap in range(4, 14)] == [frame[fap] for fap in range(51, 61)]
-
-
 def test_articulation_is_the_streams() -> None:
     """Half of every frame, and nothing at 0, but for FAP 17, which follows from the corners; contact does not differ up
     to 100 percent."""
-    plain, half, still = ([int(value) for row in motion(flite(PHRASE), "--articulation", percent)
+    plain, half, still = ([int(value) for row in motion(TEXT, "--articulation", percent)
                            for value in [*row[1:3], *row[4:]]] for percent in ("100", "50", "0"))
     assert max(plain) > 200 and all(abs(a - b / 2) <= 1 for a, b in zip(half, plain)) and not any(still)
 
@@ -298,7 +232,91 @@ def test_help_and_version() -> None:
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
 def test_a_full_disk_is_an_error() -> None:
     """Motion that could not be written is not success."""
-    data = flite(PHRASE).encode()
+    data = TEXT.encode()
     with open("/dev/full", "wb") as full:
         done = subprocess.run([SAY], input=data, stdout=full, stderr=subprocess.PIPE, timeout=60, check=False)
     assert done.returncode == 1 and b"cannot write" in done.stderr
+
+
+@pytest.mark.parametrize("data", [b"\xff\xfea", b"\xfe\xff\xd8\x00\x00a", b"\xff\xfe\x00\xdc", b"\xff\xfe\x3d\xd8",
+                                  b"\xff\xfe\x00\x00", b"\xef\xbb"])  # fmt: skip
+def test_broken_encodings_are_errors(data: bytes) -> None:
+    """Catches half characters of UTF-16 that become labels."""
+    done = say(data)
+    assert done.returncode == 1 and done.stderr.startswith(b"labial-say: line 1: ")
+
+
+def test_labels_are_read_as_the_format_means_them() -> None:
+    """Catches X-SAMPA's S and N read as ARPABET's in a format of X-SAMPA, or the other way round."""
+    phrase = [("a", 100), ("S", 90), ("N", 100), ("i", 100)]
+    sampa = motion("a 100\nS 90\nN 100\ni 100\n")
+    assert sampa == motion(lab([("AE", 100), ("SH", 90), ("NG", 100), ("IY", 100)]))
+    assert motion(lab(phrase), "--labels=xsampa") == sampa != motion(lab(phrase))
+    assert motion("pau 100\nay 90\n") == motion(lab([("pau", 100), ("ay", 90)])), "what is no X-SAMPA is any set's"
+
+
+def jaw(rows: List[List[str]], start: float, end: float) -> List[int]:
+    """FAP 3 between two times."""
+    return [int(row[1]) for row in rows if start <= float(row[0]) < end]
+
+
+def openings(values: List[int]) -> int:
+    """How often the jaw opens past the middle of its range, which is 0 when it hardly moves."""
+    middle = (min(values) + max(values)) / 2
+    return sum(a < middle <= b for a, b in zip(values, values[1:])) if max(values) - min(values) > 40 else 0
+
+
+@pytest.mark.parametrize(("text", "start"), [
+    ("pau:0.200 <laugh 2.0 0.7> m:0.300 ay:0.500\n", 0.2), ("pau:0.200 <laugh:0.7>:2.200 m:2.300 ay:2.500\n", 0.2),
+    ("<laugh 2.0>\npau:0.200 m:0.300 ay:0.500\n", 0.0), ("_ 200\n<laugh:0.7> 2000\nm 100\nAI 200\n", 0.2),
+    ("0.0 0.2 sil\n<laugh 2.0 0.7>\n0.2 0.3 m\n0.3 0.5 ay\n", 0.2),
+    ("0.0 0.2 sil\n0.2 2.2 <laugh:0.7>\n2.2 2.3 m\n2.3 2.5 ay\n", 0.2),
+])  # fmt: skip
+def test_laughs_in_every_stream(text: str, start: float) -> None:
+    """Catches a laugh that is not one, takes another time than its two seconds, or does not shift what follows."""
+    rows = motion(text)
+    assert len(rows) == 50 * 2.5
+    assert openings(jaw(rows, start, start + 2)) >= 3, "pulses every 210 ms open the jaw"
+    silent = motion(lab([("SIL", 2500)]))
+    assert openings(jaw(silent, start + 0.4, start + 2)) == 0, "once the mouth has come to rest"
+    assert motion(text) == rows
+
+
+def test_intensity_of_laughs() -> None:
+    """Catches an intensity that is not passed on, and a default that is not the middle."""
+    texts = {name: motion(f"pau:0.1 {name} pau:0.2\n") for name in
+             ("<laugh 4>", "<laugh 4 0.5>", "<laugh 4 1>", "<laugh 4 0>", "<laugh 4.0 0.500>")}
+    assert texts["<laugh 4>"] == texts["<laugh 4 0.5>"] == texts["<laugh 4.0 0.500>"]
+    assert texts["<laugh 4 0>"] != texts["<laugh 4 0.5>"] != texts["<laugh 4 1>"]
+    assert sum(jaw(texts["<laugh 4 0>"], 0, 9)) < sum(jaw(texts["<laugh 4 1>"], 0, 9))
+
+
+def test_laughs_of_one_stream_differ() -> None:
+    """Catches a toy that always laughs the same laugh."""
+    rows = motion("<laugh:0.5> 2000\n_ 1000\n<laugh:0.5> 2000\n_ 1000\n")
+    assert jaw(rows, 0.5, 1.5) != jaw(rows, 3.5, 4.5)
+
+
+def test_a_label_means_what_its_set_means() -> None:
+    """Catches an option that changes nothing, and a set that takes another one's labels without a word."""
+    rows = lab([("sil", 100), ("y", 150), ("th", 90), ("sil", 100)])
+    assert motion(rows, "--labels", "ipa") == motion(rows.replace("y", "uw").replace("th", "t"))
+    assert motion(rows, "--labels", "arpabet") == motion(rows, "--labels", "auto") == motion(rows)
+    for labels, label in (("ipa", "hh"), ("ipa", "2"), ("ipa", "ʲ"), ("ipa", "@"), ("arpabet", "ə"), ("xsampa", "ʃ"),
+                          ("auto", "2"), ("auto", "ː")):
+        done = say(lab([("sil", 100), (label, 100), ("sil", 100)]), "--labels", labels)
+        assert done.returncode == 0 and f"no phoneme '{label}'" in done.stderr.decode(), (labels, label)
+    assert say(rows, "--labels", "sampa").returncode == 2
+
+
+def test_the_exporter_reads_labels_as_labial_say_does(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Catches a set of labels that only one of the two knows, and an option of `labial` that is not handed on."""
+    model, phones = SOURCE / "export/models/speech_en.npz", tmp_path / "a.lab"
+    phones.write_text("0 0.1 sil\n0.1 0.3 y\n0.3 0.4 sil\n", encoding="utf-8")
+    moved = {}
+    for labels in ("auto", "arpabet", "ipa", "xsampa"):
+        assert main(["synth", str(model), str(phones), "--labels", labels]) == 0
+        moved[labels] = capsys.readouterr().out
+    assert moved["auto"] == moved["arpabet"] != moved["ipa"] == moved["xsampa"]
+    assert [band.label for band in read_bands(phones, "ipa")] == ["SIL", "UW", "SIL"]
+    assert [band.label for band in read_bands(phones)] == ["SIL", "Y", "SIL"]
