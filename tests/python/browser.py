@@ -6,15 +6,19 @@ opened.
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import os
 import select
 import shutil
 import subprocess
+import threading
 import time
+from contextlib import contextmanager
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, Iterator, List, Optional, Sequence
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), "")
 REASON = "needs chromium: install the Debian package chromium"
@@ -26,7 +30,26 @@ _OPTIONS = (
     "--autoplay-policy=no-user-gesture-required", "--disable-dev-shm-usage", "--disable-background-networking",
     "--disable-renderer-backgrounding", "--hide-scrollbars", "--window-size=1200,900",
 )  # fmt: skip
+#: More of them, for pages that draw in three dimensions: without a graphics card.
+THREE_D = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 _PATIENCE = 60.0  # seconds for an answer; a machine may be busy otherwise
+
+
+class _Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, *_: Any) -> None:
+        pass
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """Serves a folder; its address."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}"
+    finally:
+        server.shutdown()
+        server.server_close()
 
 
 class PageFailed(AssertionError):

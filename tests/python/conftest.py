@@ -1,14 +1,16 @@
-"""What the Python tests share with pytest: which of them are left to .ci/run, since they take long, and which run one
-after the other."""
+"""What the Python tests share with pytest: which of them are left to .ci/run, since they take long, which run one after
+the other, and a browser."""
 
 from __future__ import annotations
 
 import os
 import sys
 from pathlib import Path
-from typing import List
+from typing import Iterator, List
 
 import pytest
+
+from browser import CHROMIUM, REASON, Browser
 
 #: Whose modules tests import, behind those of this folder.
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,3 +38,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item
     slow = [item for item in items if item.get_closest_marker("slow")]
     config.hook.pytest_deselected(items=slow)
     items[:] = [item for item in items if not item.get_closest_marker("slow")]
+
+
+@pytest.fixture(scope="module")
+def browser(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A browser for the tests of a module, with the options that it names `BROWSER`."""
+    if not CHROMIUM:
+        pytest.skip(REASON)
+    with Browser(tmp_path_factory.mktemp("browser") / "profile", getattr(request.module, "BROWSER", ())) as started:
+        yield started

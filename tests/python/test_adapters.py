@@ -3,12 +3,9 @@ that are made here, and what reaches the meshes is compared with what labial-say
 
 from __future__ import annotations
 
-import functools
 import json
 import shutil
-import threading
 import wave
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List
 
@@ -16,16 +13,19 @@ import numpy as np
 import pytest
 
 from avatars import add_skeleton, document_of, glb, made_head
-from browser import CHROMIUM, REASON, Browser, Page
+from browser import CHROMIUM, REASON, THREE_D, Browser, Page, served
 from bundlers import MISSING, install, tools
 from labial.__main__ import main
 from labial.rig import description_of
+from models import lab
 from npm import package
 from packages import SOURCE
 from pages import parse
+from test_animation import APPLE
 from test_mouths import SAY, say
 
 PAGE = SOURCE / "docs" / "adapters.md"
+BROWSER = THREE_D
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING),
               pytest.mark.skipif(not CHROMIUM, reason=REASON),
               pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")]  # fmt: skip
@@ -33,23 +33,11 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING
 #: Rounded, spread and closed lips for five seconds, in which TalkingHead's mouth would move by itself.
 PHONEMES = [("sil", 300), *(("m", 90), ("AA", 160), ("b", 90), ("UW", 180), ("f", 90), ("IY", 140)) * 6, ("sil", 200)]
 SECONDS = sum(milliseconds for _, milliseconds in PHONEMES) / 1000
-ARKIT = """browDownLeft browDownRight browInnerUp browOuterUpLeft browOuterUpRight cheekPuff cheekSquintLeft
-    cheekSquintRight eyeBlinkLeft eyeBlinkRight eyeLookDownLeft eyeLookDownRight eyeLookInLeft eyeLookInRight
-    eyeLookOutLeft eyeLookOutRight eyeLookUpLeft eyeLookUpRight eyeSquintLeft eyeSquintRight eyeWideLeft eyeWideRight
-    jawForward jawLeft jawRight mouthDimpleLeft mouthDimpleRight mouthFrownLeft mouthFrownRight mouthFunnel mouthLeft
-    mouthLowerDownLeft mouthLowerDownRight mouthPressLeft mouthPressRight mouthRight mouthRollLower mouthRollUpper
-    mouthShrugLower mouthShrugUpper noseSneerLeft noseSneerRight tongueOut""".split()
 VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E I O U".split()
 
 #: The weights of a frame that is drawn, by name, from the first mesh that has shapes.
 READ = """(meshes) => Object.fromEntries(Object.entries(meshes[0].morphTargetDictionary)
     .map(([name, place]) => [name, meshes[0].morphTargetInfluences[place]]))"""
-
-
-def lab(phonemes: List[Any]) -> str:
-    """The phonemes one after the other."""
-    ends = np.cumsum([0, *(milliseconds for _, milliseconds in phonemes)]) / 1000
-    return "".join(f"{a:.3f} {b:.3f} {label}\n" for (label, _), a, b in zip(phonemes, ends, ends[1:]))
 
 
 def avatar() -> bytes:
@@ -58,7 +46,7 @@ def avatar() -> bytes:
     zero = np.zeros_like(vertices)
     visemes = {"viseme_" + name: zero for name in VISEMES}
     visemes["viseme_aa"] = 0.6 * shapes["jawOpen"]
-    document, binary = document_of(vertices, triangles, {**shapes, **dict.fromkeys(ARKIT, zero), **visemes})
+    document, binary = document_of(vertices, triangles, {**dict.fromkeys(APPLE, zero), **shapes, **visemes})
     document["meshes"].append({**document["meshes"][0], "name": "teeth"})
     document["nodes"][0]["children"] = [1]
     document["nodes"].append({"mesh": 1, "name": "teeth"})
@@ -109,13 +97,6 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], s
                "@met4citizen/talkinghead": "@met4citizen/talkinghead/modules/talkinghead.mjs"}
     numbers = iter(range(1000))
 
-    class Handler(SimpleHTTPRequestHandler):
-        def log_message(self, *_: Any) -> None:
-            pass
-
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(folder)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-
     def address(script: str) -> str:
         name = f"page-{next(numbers)}.html"
         table = json.dumps({"imports": {key: f"./node_modules/{path}" for key, path in imports.items()}})
@@ -123,20 +104,11 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], s
             f'<!doctype html><link rel="icon" href="data:,"><script type="importmap">{table}</script>'
             f'<div id="avatar" style="width: 200px; height: 200px"></div><script type="module">\n'
             f"const read = {READ};\n{script}</script>")
-        return f"http://127.0.0.1:{server.server_port}/{name}"
+        return f"{served_at}/{name}"
 
     address.folder = folder  # type: ignore[attr-defined]
-    yield address
-    server.shutdown()
-    server.server_close()
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser that draws in three dimensions without a graphics card."""
-    options = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-    with Browser(tmp_path_factory.mktemp("browser") / "profile", options) as opened:
-        yield opened
+    with served(folder) as served_at:
+        yield address
 
 
 def expected(folder: Path, face: str) -> Dict[str, np.ndarray]:

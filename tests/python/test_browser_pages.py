@@ -42,13 +42,6 @@ GAP = """(() => {
 })()"""
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser for the tests of this file."""
-    with Browser(tmp_path_factory.mktemp("browser") / "profile") as started:
-        yield started
-
-
 @pytest.fixture
 def demo(browser: Browser) -> Iterator[Page]:
     """The demo page."""

@@ -3,7 +3,6 @@ pages, workers and AudioWorklets of Chromium and in two versions of node. Everyw
 
 from __future__ import annotations
 
-import functools
 import gzip
 import json
 import os
@@ -11,14 +10,12 @@ import re
 import shutil
 import subprocess
 import sys
-import threading
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any, Iterator, List
+from typing import Any, List
 
 import pytest
 
-from browser import CHROMIUM, REASON, Browser
+from browser import Browser, served
 from bundlers import FOLDER, MISSING, install, node, tools
 from npm import package
 from packages import run
@@ -48,15 +45,6 @@ def frames() -> List[int]:
     return [value for row in said(WORD, "faps") for value in row]
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser for the tests of this file."""
-    if not CHROMIUM:
-        pytest.skip(REASON)
-    with Browser(tmp_path_factory.mktemp("browser") / "profile") as started:
-        yield started
-
-
 @pytest.fixture(scope="module", params=BUNDLERS)
 def bundle(request: pytest.FixtureRequest, app: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The app as a bundler bundles it."""
@@ -65,23 +53,13 @@ def bundle(request: pytest.FixtureRequest, app: Path, tmp_path_factory: pytest.T
     return out
 
 
-class _Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, *_: Any) -> None:
-        pass
-
-
 def results(browser: Browser, folder: Path) -> Any:
     """What the page of `folder` finds in each place."""
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    try:
-        page = browser.page(f"http://127.0.0.1:{server.server_port}/index.html")
+    with served(folder) as site:
+        page = browser.page(f"{site}/index.html")
         page.wait_for("Object.keys(window.results ?? {}).length === 4")
         assert page.errors() == []
         return page.evaluate("results")
-    finally:
-        server.shutdown()
-        server.server_close()
 
 
 def printed(program: Path, script: Path) -> Any:

@@ -5,21 +5,19 @@ from __future__ import annotations
 import base64
 import json
 import re
-import shutil
-import subprocess
 from pathlib import Path
-from typing import Iterator
 
 import numpy as np
 import pytest
 
 from avatars import document_of, glb, made_head
-from browser import CHROMIUM, REASON, Browser
+from browser import CHROMIUM, REASON, THREE_D, Browser
+from bundlers import NPM, tools
 from labial.__main__ import main
 from labial.files.faps import FAP_COLUMNS
 from labial.rig.animation import face, outputs
 
-NPM = shutil.which("npm")
+BROWSER = THREE_D
 #: Frames of which the third is wide open.
 OPENING = (0, 200, 600, 200, 0)
 
@@ -139,30 +137,13 @@ def test_errors_say_what_to_do(tmp_path: Path, frames: Path, avatar: Path, stand
     assert not Path(out).exists()
 
 
-@pytest.fixture(scope="module")
-def three(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The real package."""
-    folder = tmp_path_factory.mktemp("npm")
-    subprocess.run([str(NPM), "install", "--no-audit", "--no-fund", "three@0.187"], cwd=folder, check=True, timeout=300,
-                   capture_output=True)
-    return folder / "node_modules" / "three"
-
-
-@pytest.fixture
-def browser(tmp_path: Path) -> Iterator[Browser]:
-    """A browser that draws in three dimensions without a graphics card."""
-    options = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-    with Browser(tmp_path / "profile", options) as opened:
-        yield opened
-
-
 @pytest.mark.slow
 @pytest.mark.skipif(not NPM, reason="needs npm: install the Debian package npm")
 @pytest.mark.skipif(not CHROMIUM, reason=REASON)
-def test_the_head_moves_in_a_browser(tmp_path: Path, frames: Path, avatar: Path, three: Path, browser: Browser) -> None:
+def test_the_head_moves_in_a_browser(tmp_path: Path, frames: Path, avatar: Path, browser: Browser) -> None:
     """With the real three.js: no error, the camera looks at the mouth, weights reach the mesh, and what is drawn
     changes where the mouth opens and is the same again where it closes."""
-    out = tmp_path / "page.html"
+    out, three = tmp_path / "page.html", tools() / "node_modules" / "three"
     assert main(["page", str(frames), "--head", str(avatar), "--three", str(three), "-o", str(out)]) == 0
     page = browser.page(out.as_uri())
     page.wait_for("!!window.labialHead", 60)

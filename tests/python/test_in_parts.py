@@ -20,6 +20,7 @@ from labial.rig.animation import FORMATS
 from labial.tables.model import load
 from labial.tables.phones import drawn_streams
 from labial.tables.quantise import quantise
+from models import lab
 
 Pairs = List[Tuple[int, int]]
 
@@ -88,11 +89,7 @@ def test_files_do_not_show_the_parts(tmp_path: Path) -> None:
     model = load("speech_en")
     phonemes = drawn_streams(model, 1, 800, 3)[0]
     assert sum(length for _, length in phonemes) * 50 > 1000 * stream.PART  # two parts
-    moment, lines = 0, []
-    for phoneme, length in phonemes:
-        lines.append(f"{moment / 1000:.3f} {(moment + length) / 1000:.3f} {model.phonemes[phoneme]}\n")
-        moment += length
-    (tmp_path / "a.lab").write_text("".join(lines))
+    (tmp_path / "a.lab").write_text(lab((model.phonemes[phoneme], length) for phoneme, length in phonemes))
     frames = synthesise(model, phonemes)
     for name in ("csv", "fap", "livelink", "vrm"):
         given = [str(tmp_path / "a.lab"), "-o", str(tmp_path / name), "--to", name]

@@ -4,20 +4,17 @@ frames of the C library."""
 from __future__ import annotations
 
 import csv
-import functools
 import io
 import json
 import os
 import shutil
 import subprocess
-import threading
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, Dict, Iterator, List, Tuple
 
 import numpy as np
 import pytest
 
-from browser import CHROMIUM, REASON, Browser, Page, PageFailed
+from browser import CHROMIUM, REASON, Browser, Page, PageFailed, served
 from npm import MISSING, package
 from packages import SOURCE
 
@@ -93,11 +90,6 @@ window.until = async reached => {
 """
 
 
-class _Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, *_: Any) -> None:
-        pass
-
-
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Where the kiosk is served, with the package beside it as `npm install` lays it down."""
@@ -106,18 +98,8 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     built = package(tmp_path_factory.mktemp("npm"))
     for name in ("labial", "labial-laughter"):
         shutil.copytree(built.with_name(built.name + name[6:]), folder / "node_modules" / name)
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}/index.html"
-    server.shutdown()
-    server.server_close()
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser for the tests of this file."""
-    with Browser(tmp_path_factory.mktemp("browser") / "profile") as started:
-        yield started
+    with served(folder) as site:
+        yield f"{site}/index.html"
 
 
 def opened(browser: Browser, address: str, before: str = "") -> Page:

@@ -11,7 +11,7 @@ import json
 import os
 import subprocess
 from pathlib import Path
-from typing import Dict, Iterable, Iterator, List, NamedTuple, Tuple
+from typing import Dict, Iterator, List, NamedTuple, Tuple
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ from labial.corpus.phonesets import ARPABET
 from labial.rig import FACES
 from labial.rig.animation import face, outputs
 from labial.tables.model import save
-from models import random_model
+from models import lab, random_model
 from scripts import read_frames
 
 HERE = Path(__file__).parent
@@ -80,15 +80,6 @@ def moments(spoken: Tuple[Motion, List[Tuple[str, slice]]], labels: str, score: 
 def share(condition: np.ndarray) -> float:
     """How much of an array of truths is true."""
     return float(np.mean(condition))
-
-
-def lab(phonemes: Iterable[Tuple[str, int]]) -> str:
-    """Phonemes of these lengths, milliseconds, one after the other."""
-    lines, begin = [], 0
-    for label, length in phonemes:
-        lines.append(f"{begin / 1000:.3f} {(begin + length) / 1000:.3f} {label}\n")
-        begin += length
-    return "".join(lines)
 
 
 def random_speech(seed: int) -> str:
