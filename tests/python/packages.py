@@ -61,7 +61,7 @@ def warnings(language: str) -> List[str]:
 def run(*command: object, cwd: Optional[Path] = None, env: Optional[Dict[str, str]] = None, status: int = 0,
         text: str = "") -> str:
     """Runs a command that must end with `status`; its standard output."""
-    done = subprocess.run([str(part) for part in command], cwd=cwd, capture_output=True, text=True, input=text,
+    done = subprocess.run([str(part) for part in command], cwd=cwd, capture_output=True, encoding="utf-8", input=text,
                           timeout=300, check=False, env={**os.environ, **(env or {})})
     assert done.returncode == status, f"{command}: {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout if status == 0 else done.stdout + done.stderr

@@ -19,7 +19,7 @@ from browser import Browser, served
 from bundlers import FOLDER, MISSING, install, node, tools
 from npm import package
 from packages import run
-from test_npm_render import SAY, said
+from test_npm import SAY, said
 
 BUNDLERS = ("esbuild", "rollup", "vite", "webpack")
 WORD = "0 .1 sil\n.1 .2 m\n.2 .5 AA\n.5 .6 p\n.6 1.4 <laugh:0.7>\n1.4 1.5 sil\n"

@@ -16,7 +16,7 @@ from labial.errors import DataError
 from labial.files.grammar import is_number, is_whole, lines_of, number, number_or_nan, read_bytes, read_text
 from packages import SOURCE
 from runtime import needs_runtime
-from test_npm_timings import read_by_node
+from test_npm import read_by_node
 
 CASES = SOURCE / "tests" / "grammar" / "cases.tsv"
 GRID = '"ooTextFile"\n"TextGrid"\n0\n{0}\n<exists>\n1\n"IntervalTier"\n"phones"\n0\n{0}\n1\n0\n{0}\n"m"\n'
