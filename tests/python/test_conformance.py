@@ -1,4 +1,5 @@
-"""The committed vectors of ``tests/conformance`` against ``streams.txt`` and the float64 reference."""
+"""The committed vectors of ``tests/conformance`` against ``streams.txt`` and the float64 reference, and the C library
+against that on phoneme streams of all kinds."""
 
 from __future__ import annotations
 
@@ -10,11 +11,14 @@ import pytest
 
 import motion
 from labial.errors import LabialError
+from labial.evaluate.check import device_frames
 from labial.reference import contact
 from labial.reference.stream import ARTICULATION_MAX, DURATION_MAX, synthesise
 from labial.reference.tables import ExportedTables
-from labial.tables.quantise import ExportedModel
+from labial.tables.quantise import ExportedModel, quantise
+from models import random_model, streams
 from regenerate import bundled_models, deviations, library_frames
+from runtime import needs_runtime
 from scripts import Frames, Part, Push, Script, as_c, digest, read, read_frames
 
 HERE = Path(__file__).resolve().parents[1] / "conformance"
@@ -200,3 +204,26 @@ def test_other_limits_follow_the_reference(
     assert len(deviations(models, short, frames, **limits).splitlines()) == len(short) + 1
     with pytest.raises(LabialError):
         deviations(models, short, frames)
+
+
+@needs_runtime
+@pytest.mark.parametrize("method", ["paper", "labial"])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 6))])
+def test_library_follows_the_reference(method: str, seed: int) -> None:
+    """At most one FAP unit anywhere and RMS 0.25: any wrong decision or overflow is far beyond."""
+    model = random_model(seed, method, states=50 if seed % 2 else 12)
+    exported = quantise(model, "tested_model")
+    asked = list(streams(len(model.phonemes), model.boundary, seed).values())
+    if seed == 0:
+        rng = np.random.default_rng(0)
+        asked.append([(int(rng.integers(9)), int(rng.integers(20, 150))) for _ in range(2000)])
+    tables = ExportedTables(exported)
+    differences = []
+    for stream, found in zip(asked, device_frames(exported, asked)):
+        expected = synthesise(tables, stream)
+        assert found.shape == expected.shape
+        difference = found - np.floor(expected + 0.5)
+        assert np.abs(difference).max(initial=0) <= 1
+        assert np.abs(found - expected).max(initial=0) <= 0.6
+        differences.append(difference)
+    assert np.sqrt(np.mean(np.concatenate(differences) ** 2)) <= 0.25  # over all: a held pose may lie on a half

@@ -1,9 +1,11 @@
-"""Motion that is made, resampled and written part by part: the same frames as all at once, in bounded memory."""
+"""Motion that is made, resampled and written part by part: the same frames as all at once, in bounded memory; and
+stretches of frames in which something holds."""
 
 from __future__ import annotations
 
 import io
 import tracemalloc
+from itertools import groupby
 from pathlib import Path
 from typing import List, Tuple
 
@@ -12,7 +14,7 @@ import pytest
 
 from labial.__main__ import main
 from labial.files.faps import CHANNELS
-from labial.files.frames import at_rate, count_at, sampled
+from labial.files.frames import at_rate, count_at, sampled, spans, spans_told
 from labial.reference import stream
 from labial.reference.synthesis import synthesise
 from labial.reference.tables import ExportedTables, FloatTables, Tables
@@ -97,3 +99,20 @@ def test_files_do_not_show_the_parts(tmp_path: Path) -> None:
         text = io.StringIO()
         FORMATS[name].write(text, [frames], 50, "speech_en", len(frames))
         assert (tmp_path / name).read_text() == text.getvalue(), name
+
+
+def test_spans_are_the_stretches() -> None:
+    """Would catch a stretch at either end that is lost, and one that is a frame too long: against itertools."""
+    rng = np.random.default_rng(1)
+    for _ in range(300):
+        holds = rng.random(rng.integers(0, 12)) < rng.random()
+        expected = [list(group) for held, group in groupby(range(len(holds)), key=lambda t: bool(holds[t])) if held]
+        assert spans(holds) == [(group[0], group[-1] + 1) for group in expected]
+
+
+def test_spans_are_told_by_the_times_of_their_frames() -> None:
+    """Would catch a stretch that is told until the frame after it, and stretches that are left out without a word."""
+    times = np.arange(8) / 10
+    holds = np.array([1, 1, 0, 1, 0, 0, 1, 1], dtype=bool)
+    assert spans_told(times, holds, 3) == "0.00 to 0.10, 0.30 to 0.30, 0.60 to 0.70 s"
+    assert spans_told(times, holds, 1) == "0.00 to 0.10 s and 2 times more"

@@ -1,5 +1,5 @@
-"""The Python run-time beside its frames, which test_runtime_conformance.py holds to C's: the order of calls, what it
-refuses, memory, threads."""
+"""The Python run-time: the order of calls, what it refuses, memory, threads; it answers every conformance stream with
+the same bytes as C."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ import threading
 import time
 import tracemalloc
 from decimal import Decimal
-from typing import Any, List, Tuple
+from typing import Any, Dict, List, Tuple
 
 import numpy as np
 import pytest
 
 import labial
 from labial.errors import LabialError, StreamError
-from runtime import needs_runtime
+from runtime import conformance_frames, conformance_scripts, needs_runtime
+from runtime_player import FEEDS, play
 
 pytestmark = needs_runtime
 
@@ -332,3 +333,35 @@ def test_threads_share_a_stream_without_harm() -> None:
     frames = sorted(frame for kept in found for frame in kept)
     assert [frame.number for frame in frames] == list(range(2000))
     assert (np.array([frame.faps for frame in frames]) == labial.render([("AA", 60), ("M", 40)] * 400)).all()
+
+
+# ---- Frames: the same bytes as C's, however it is fed
+
+
+@pytest.mark.parametrize("feed", FEEDS)
+@pytest.mark.parametrize("script", conformance_scripts(), ids=lambda script: script["name"])
+def test_stream_has_the_same_frames(script: Dict[str, Any], feed: str) -> None:
+    """A push that is lost in the run-time's own queue, a cancel that keeps one, a model that is named too late, a frame
+    that is skipped or delivered twice: all of it moves a frame."""
+    rows = play(script, feed)
+    wanted = conformance_frames()[script["name"]]
+    assert len(rows) == len(wanted)
+    assert rows == [tuple(row) for row in wanted.tolist()]
+
+
+def test_render_has_the_same_frames() -> None:
+    """Whole utterances of one part: numbers or labels, a list of tuples."""
+    played = 0
+    for script in conformance_scripts():
+        part = script["parts"][0]
+        pushes = part["pushes"]
+        if len(script["parts"]) > 1 or part["cancel"] or part["articulation"]:
+            continue
+        if any(push[0] != "speech" for push in pushes):
+            continue
+        for name in (lambda phoneme: phoneme, lambda phoneme: labial.speech_en.phonemes[phoneme]):
+            motion = labial.render([(name(phoneme), milliseconds) for _, phoneme, milliseconds in pushes])
+            assert isinstance(motion, list) and all(type(row) is tuple and len(row) == 13 for row in motion)
+            assert (np.array(motion).reshape(-1, 13) == conformance_frames()[script["name"]]).all()
+        played += 1
+    assert played > 10
