@@ -17,8 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / name) for name in ("bench", "tests/conformance", "tests/c", "examples/pi")]
 
 #: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
-TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter_corpus", "test_npm_types", "test_packages",
-            "test_packages_cmake", "test_train", "test_wheel", "test_wheels")  # fmt: skip
+TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter_corpus", "test_packages",
+            "test_packages_cmake", "test_train", "test_wheel")  # fmt: skip
 
 
 def pytest_configure(config: pytest.Config) -> None:

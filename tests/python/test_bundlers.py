@@ -1,5 +1,6 @@
 """The npm packages as projects use them: bundled by vite, esbuild, webpack and rollup as these come, or not at all; in
-pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are labial-say's."""
+pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are labial-say's.
+And their types."""
 
 from __future__ import annotations
 
@@ -11,21 +12,21 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any, List
+from typing import Any, Dict, List
 
 import pytest
 
 from browser import Browser, served
 from bundlers import FOLDER, MISSING, install, node, tools
 from npm import package
-from packages import run
+from packages import SOURCE, run
+from pages import parse
 from test_npm import SAY, said
 
 BUNDLERS = ("esbuild", "rollup", "vite", "webpack")
 WORD = "0 .1 sil\n.1 .2 m\n.2 .5 AA\n.5 .6 p\n.6 1.4 <laugh:0.7>\n1.4 1.5 sil\n"
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING),
-              pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say"),
               pytest.mark.skipif(sys.platform != "linux" or os.uname().machine != "x86_64",
                                  reason="needs x86-64 Linux: npm has node as a package of each platform")]  # fmt: skip
 
@@ -42,6 +43,8 @@ def app(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def frames() -> List[int]:
     """What labial-say makes of the word and the laugh, 13 FAPs after 13 FAPs."""
+    if not SAY:
+        pytest.skip("LABIAL_SAY does not name the built labial-say")
     return [value for row in said(WORD, "faps") for value in row]
 
 
@@ -133,3 +136,78 @@ def test_a_page_that_only_speaks_is_small(app: Path) -> None:
 
 def _imports(text: str) -> List[str]:
     return re.findall(r'^import .* from "\./(.*)";$', text, re.MULTILINE)
+
+
+# ---- Types, under TypeScript's `strict`: what they allow and refuse, and the code of the pages and the kiosk
+
+#: The pages whose JavaScript is compiled.
+PAGES = ("browser.md", "adapters.md", "kiosk.md", "timings.md")
+#: What the code of pages takes from elsewhere: the elements that scripts find by their ids, and what the reader has.
+AROUND = """\
+declare const mouth: SVGElement;
+declare const face: import("labial/labial-mouth.js").LabialMouth;
+declare module "*/labial/index.js" { export * from "labial"; }
+declare module "*/labial/labial-mouth.js" { export * from "labial/labial-mouth.js"; }
+declare module "three/*";
+declare module "@pixiv/three-vrm";
+declare module "@met4citizen/talkinghead";
+"""
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the packages installed and node's types."""
+    folder = tmp_path_factory.mktemp("types") / "project"
+    install(package(tmp_path_factory.mktemp("npm") / "build"), folder)
+    (folder / "node_modules" / "@types").symlink_to(tools() / "node_modules" / "@types")
+    (folder / "node_modules" / "undici-types").symlink_to(tools() / "node_modules" / "undici-types")
+    (folder / "package.json").write_text('{ "type": "module" }')
+    return folder
+
+
+def compiled(project: Path, files: List[str], module: str = "nodenext", **options: object) -> str:
+    """What the compiler complains of."""
+    settings: Dict[str, object] = {
+        "strict": True, "noEmit": True, "target": "es2022", "module": module, "types": ["node"],
+        "lib": ["es2023", "dom", "dom.iterable"], **options}  # fmt: skip
+    (project / "tsconfig.json").write_text(json.dumps({"compilerOptions": settings, "files": files}))
+    program = tools() / "node_modules" / "typescript" / "bin" / "tsc"
+    done = subprocess.run([str(node(22)), str(program), "-p", str(project)], capture_output=True, encoding="utf-8",
+                          timeout=120, check=False)  # fmt: skip
+    assert done.returncode in (0, 1, 2), done.stderr
+    return done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("module", ["nodenext", "node16", "esnext", "preserve"])
+def test_types_allow_and_refuse(project: Path, module: str) -> None:
+    """Catches weights that any name fits, and packages whose types some setting of the compiler does not find."""
+    names = ["types.ts"] + (["types.cts"] if module.startswith("node") else [])
+    for name in names:
+        shutil.copyfile(FOLDER / name, project / name)
+    resolution = {} if module.startswith("node") else {"moduleResolution": "bundler"}
+    assert compiled(project, names, module, **resolution) == ""
+
+
+def test_code_of_pages_compiles(project: Path) -> None:
+    """Catches examples that only JavaScript lets pass."""
+    files = ["around.d.ts"]
+    (project / files[0]).write_text(AROUND)
+    for name in PAGES:
+        page = SOURCE / "docs" / name
+        (project / page.stem).mkdir()
+        for block in parse(page):
+            if block.label == "js":
+                codes = [block.text]
+            elif block.label == "html":
+                codes = re.findall(r'<script type="module">\n(.*?)</script>', block.text, re.DOTALL)
+            else:
+                continue
+            named = block.name if block.name and block.name.endswith(".js") else f"{block.line}.js"
+            for code in codes:
+                files.append(f"{page.stem}/{named}")
+                (project / files[-1]).write_text(code + "\nexport {};\n")
+    assert len(files) > 5
+    files.append("kiosk.js")
+    shutil.copyfile(SOURCE / "examples" / "kiosk" / "kiosk.js", project / "kiosk.js")
+    # Parameters of JavaScript have no types; all else is strict.
+    assert compiled(project, files, allowJs=True, checkJs=True, noImplicitAny=False) == ""

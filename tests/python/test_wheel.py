@@ -1,9 +1,13 @@
-"""The Python package as a user gets it: a wheel built in a bare environment, installed where there is nothing else."""
+"""The Python package as a user gets it: a wheel built in a bare environment, installed where there is nothing else; and
+the wheels of a release."""
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -15,7 +19,7 @@ from typing import Dict, List
 import pytest
 
 import labial
-from packages import CC, CMAKE, SOURCE
+from packages import CC, CMAKE, SOURCE, run
 from runtime import conformance_frames, conformance_scripts
 from scripts import digest
 
@@ -38,6 +42,15 @@ def call(command: List[object], env: Dict[str, str], cwd: Path, text: str = "") 
     """Runs a command with this environment and no other variable."""
     return subprocess.run([str(part) for part in command], env=env, cwd=cwd, input=text, capture_output=True,
                           encoding="utf-8", timeout=300, check=False)
+
+
+def plays(python: List[object], env: Dict[str, str], cwd: Path) -> None:
+    """Asserts that an interpreter has the package, which plays the conformance streams in every way."""
+    player = SOURCE / "tests" / "python" / "runtime_player.py"
+    done = call([*python, player], env, cwd, json.dumps(conformance_scripts()))
+    assert done.returncode == 0, done.stderr
+    wanted = {name: [len(frames), digest(frames)] for name, frames in conformance_frames().items()}
+    assert json.loads(done.stdout) == dict.fromkeys(("fill", "single", "hungry", "whole"), wanted)
 
 
 def venv(folder: Path, *sites: str) -> Path:
@@ -106,15 +119,7 @@ def test_wheel_serves_every_python(wheel: Path) -> None:
 
 def test_installed_wheel_plays_the_conformance_streams(installed: Path, tmp_path: Path) -> None:
     """The same bytes as everywhere, without numpy."""
-    env = {"PATH": str(tmp_path)}
-    done = call([installed, SOURCE / "tests" / "python" / "runtime_player.py"], env, tmp_path,
-                json.dumps(conformance_scripts()))
-    assert done.returncode == 0, done.stderr
-    wanted = {name: [len(frames), digest(frames)] for name, frames in conformance_frames().items()}
-    found = json.loads(done.stdout)
-    assert set(found) == {"fill", "single", "hungry", "whole"}
-    for feed in found:
-        assert found[feed] == wanted, feed
+    plays([installed], {"PATH": str(tmp_path)}, tmp_path)
 
 
 def test_installed_wheel_needs_nothing(installed: Path, tmp_path: Path) -> None:
@@ -158,3 +163,101 @@ def test_without_a_compiler_the_build_says_so(tmp_path: Path) -> None:
     lines = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
     assert ("The run-time is C and there is no C compiler: install one (Debian, Raspberry Pi OS: apt-get install "
             "build-essential) or name it in the variable CC.") in lines
+
+
+LIBRARY = "labial/core/labial_runtime.so"
+#: ELF's numbers of the processors.
+MACHINES = {"x86_64": 62, "aarch64": 183}
+#: What the library is built with (flat/CMakeLists.txt).
+LIMITS = ("-DLABIAL_QUEUE=32", "-DLABIAL_MODELS=64")
+QEMU = shutil.which("qemu-aarch64")
+ROOT = Path("/usr/aarch64-linux-gnu")
+
+
+# ---- packaging/wheels.py: for two processors, the same bytes wherever they are built; for aarch64 under qemu
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where zig keeps what it made of its C library."""
+    return tmp_path_factory.mktemp("zig")
+
+
+def build(folder: Path, cache: Path, *platforms: str) -> Dict[str, Path]:
+    """The wheels by platform, built in a temporary folder below `folder`."""
+    (folder / "temporary").mkdir(parents=True)
+    env = {"ZIG_GLOBAL_CACHE_DIR": str(cache), "TMPDIR": str(folder / "temporary"), "SOURCE_DATE_EPOCH": "1700000001"}
+    command = [sys.executable, SOURCE / "packaging" / "wheels.py", "-o", folder / "dist", "--platform", *platforms]
+    done = subprocess.run(command, env={**os.environ, **env, "PYTHONDONTWRITEBYTECODE": "1"}, capture_output=True,
+                          encoding="utf-8", timeout=1500, check=False)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return dict(zip(platforms, map(Path, done.stdout.splitlines())))
+
+
+@pytest.fixture(scope="module")
+def wheels(tmp_path_factory: pytest.TempPathFactory, cache: Path) -> Dict[str, Path]:
+    """The wheel of each platform."""
+    if sys.platform != "linux":
+        pytest.skip("needs Linux")
+    return build(tmp_path_factory.mktemp("wheels"), cache, *MACHINES)
+
+
+def test_wheels_are_what_their_names_say(wheels: Dict[str, Path]) -> None:
+    """Catches a library of another processor or a newer system, a damaged list of files, and files that are missing."""
+    for platform, wheel in wheels.items():
+        assert wheel.name == f"labial-{labial.__version__}-py3-none-manylinux_2_17_{platform}.whl"
+        files = _contents(wheel)
+        info = f"labial-{labial.__version__}.dist-info"
+        assert re.findall(r"^Tag: (.*)$", files[f"{info}/WHEEL"].decode(), re.M) == [
+            f"py3-none-manylinux_2_17_{platform}"]  # fmt: skip
+        rows = dict(line.split(",", 1) for line in files[f"{info}/RECORD"].decode().splitlines())
+        assert set(rows) == set(files)
+        for name, row in rows.items():
+            own = base64.urlsafe_b64encode(hashlib.sha256(files[name]).digest()).rstrip(b"=").decode()
+            assert row == ("," if name.endswith("/RECORD") else f"sha256={own},{len(files[name])}"), name
+        library = files[LIBRARY]
+        assert library[:4] == b"\x7fELF" and int.from_bytes(library[18:20], "little") == MACHINES[platform]
+        needed = {tuple(map(int, version.split(b"."))) for version in re.findall(rb"GLIBC_([\d.]+)", library)}
+        assert needed and max(needed) <= (2, 17)
+        assert {"labial/__main__.py", "labial/models/speech_en.npz"} <= set(files)
+
+
+def _contents(wheel: Path) -> Dict[str, bytes]:
+    with zipfile.ZipFile(wheel) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def test_the_same_sources_give_the_same_bytes(wheels: Dict[str, Path], cache: Path, tmp_path: Path) -> None:
+    """Catches times, paths and orders of files that come from the machine."""
+    again = build(tmp_path / "elsewhere", cache, "aarch64")
+    assert again["aarch64"].read_bytes() == wheels["aarch64"].read_bytes()
+
+
+@pytest.mark.skipif(os.uname().machine != "x86_64", reason="the machine is none that the wheel is for")
+def test_the_wheel_for_this_machine_plays_the_conformance_streams(wheels: Dict[str, Path], tmp_path: Path) -> None:
+    """As an installed package, without numpy."""
+    own = tmp_path / "own"
+    run(sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-index", "--target", own, wheels["x86_64"])
+    plays([sys.executable, "-S"], {"PYTHONPATH": str(own), "PATH": ""}, tmp_path)
+
+
+@pytest.mark.skipif(not QEMU or not ROOT.is_dir(), reason="needs an emulator: install qemu-user and libc6-arm64-cross")
+def test_the_wheel_for_aarch64_plays_the_conformance_streams(wheels: Dict[str, Path], cache: Path,
+                                                             tmp_path: Path) -> None:
+    """The wheel's own library under qemu, called by the program that every board runs."""
+    (tmp_path / "labial_runtime.so").write_bytes(_contents(wheels["aarch64"])[LIBRARY])
+    run(sys.executable, "-m", "venv", "--without-pip", tmp_path / "zig")
+    site = tmp_path / "zig" / "lib" / Path(sysconfig.get_path("purelib")).parent.name / "site-packages"
+    wanted = re.findall(r"^ziglang==.*$", (SOURCE / "packaging" / "wheels.txt").read_text(), re.M)
+    run(sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", site, *wanted)
+    conformance = SOURCE / "tests" / "conformance"
+    includes = [f"-I{SOURCE / name}" for name in ("include", "lib", "lib/models", "boards", "tests/conformance",
+                                                  "tests/c")]  # fmt: skip
+    run(tmp_path / "zig" / "bin" / "python", "-m", "ziglang", "cc", "-target", "aarch64-linux-gnu.2.17", "-O1", *LIMITS,
+        '-DBOARD_NAME="aarch64"', *includes,
+        *(conformance / f"{name}.c" for name in ("conformance", "player", "vectors")),
+        SOURCE / "boards" / "text.c", SOURCE / "boards" / "host" / "host.c", "labial_runtime.so", "-Wl,-rpath,$ORIGIN",
+        "-o", "conformance", cwd=tmp_path, env={"ZIG_GLOBAL_CACHE_DIR": str(cache),
+                                                "ZIG_LOCAL_CACHE_DIR": str(tmp_path / "local")})  # fmt: skip
+    said = run(QEMU, "-L", ROOT, tmp_path / "conformance")
+    assert re.search(r"^\d\d streams, 0 failures$", said, re.M)
