@@ -38,35 +38,6 @@ def bump(scale: float, phase: float = 0.0) -> np.ndarray:
     return wave
 
 
-def talking():
-    """(FRAMES, 478, 3) landmarks of a head that is still, and their (FRAMES, 13) FAPs."""
-    points = np.zeros((FRAMES, 478, 3))
-    for number, place in FACE.items():
-        points[:, number] = place
-    rng = np.random.default_rng(7)
-    others = [number for number in range(478) if number not in FACE]
-    points[:, others] = rng.uniform(-80, 80, (len(others), 3))
-    moves = [bump(1 + 0.3 * k, 0.4 * k) for k in range(12)]
-    chin, low, push, top, left, right, tl, tr, bl, br, lup, rup = moves
-    left, right = bump(-3.0, 2.0), bump(3.5, 2.5)  # narrow enough for the top lip to come forward
-    points[:, 152, 1] += chin
-    points[:, 17, 1] += low
-    points[:, 17, 2] += push
-    points[:, 0, 1] += top
-    points[:, 291, 0] += left
-    points[:, 61, 0] += right
-    points[:, 269, 1] += tl
-    points[:, 39, 1] += tr
-    points[:, 405, 1] += bl
-    points[:, 181, 1] += br
-    points[:, 291, 1] += lup
-    points[:, 61, 1] += rup
-    faps = {3: UP * chin, 16: -UP * push, 51: UP * top, 52: -UP * low, 53: SIDE * left, 54: -SIDE * right,
-            55: UP * tl, 56: UP * tr, 57: -UP * bl, 58: -UP * br, 59: -UP * lup, 60: -UP * rup}  # fmt: skip
-    faps[17] = 2.6 * np.maximum(-(faps[53] + faps[54]) - 55, 0)
-    return points, np.stack([faps[number] for number in FAP_NUMBERS], axis=1)
-
-
 def seen(frames):
     """(T, 478, 3) landmarks of a still head with these (T, 13) FAPs; FAP 17 goes into the depth of the upper lip."""
     fap = dict(zip(FAP_NUMBERS, frames.T))
@@ -81,6 +52,21 @@ def seen(frames):
     ):  # fmt: skip
         points[:, landmark, axis] += moved
     return points
+
+
+def talking():
+    """(FRAMES, 478, 3) landmarks of a head that is still, and their (FRAMES, 13) FAPs. Of FAP 17 they hold
+    nothing; it follows from the corners."""
+    order = (3, 52, 16, 51, 53, 54, 55, 56, 57, 58, 59, 60)
+    fap = {number: (UP if number in (3, 51, 55, 56) else -UP) * bump(1 + 0.3 * k, 0.4 * k)
+           for k, number in enumerate(order)}
+    fap[17] = np.zeros(FRAMES)
+    fap[53], fap[54] = SIDE * bump(-3.0, 2.0), -SIDE * bump(3.5, 2.5)  # narrow enough for the top lip to come forward
+    points = seen(np.stack([fap[number] for number in FAP_NUMBERS], axis=1))
+    others = [number for number in range(478) if number not in FACE]
+    points[:, others] = np.random.default_rng(7).uniform(-80, 80, (len(others), 3))
+    fap[17] = 2.6 * np.maximum(-(fap[53] + fap[54]) - 55, 0)
+    return points, np.stack([fap[number] for number in FAP_NUMBERS], axis=1)
 
 
 def turned(points: np.ndarray, flat: bool = False) -> np.ndarray:
