@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from dataclasses import replace
-from typing import Dict, Iterable, List, Tuple
+from pathlib import Path
+from typing import Dict, Iterable, List, Mapping, Tuple
 
 import numpy as np
 
@@ -110,3 +113,18 @@ def lab(phonemes: Iterable[Tuple[str, int]]) -> str:
         lines.append(f"{begin / 1000:.3f} {(begin + length) / 1000:.3f} {label}\n")
         begin += length
     return "".join(lines)
+
+
+def archive(members: Mapping[str, bytes]) -> bytes:
+    """A model's file, or what looks like one."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as target:
+        for name, content in members.items():
+            target.writestr(name, content)
+    return out.getvalue()
+
+
+def members_of(path: Path) -> Dict[str, bytes]:
+    """What a model's file holds, by the names within."""
+    with zipfile.ZipFile(path) as source:
+        return {name: source.read(name) for name in source.namelist()}

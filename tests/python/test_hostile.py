@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import random
 import resource
 import signal
 import struct
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
-from typing import Any, Callable, Iterator, List
+from typing import Callable, Iterator, List
 
 import numpy as np
 import pytest
@@ -25,7 +23,7 @@ from labial.tables import emit
 from labial.tables.layout import check_fits
 from labial.tables.model import load, save
 from labial.tables.quantise import quantise
-from models import random_model
+from models import archive, members_of, random_model
 from test_record import LAB as TALK
 from test_record import talking, turned
 from test_timings import damaged
@@ -83,19 +81,6 @@ def told(capsys: pytest.CaptureFixture) -> Told:
 
 
 # ---- Models ----------------------------------------------------------------------------------------------------------
-
-
-def archive(members: dict, **options: Any) -> bytes:
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as target:
-        for name, content in members.items():
-            target.writestr(name, content)
-    return out.getvalue()
-
-
-def members_of(path: Path) -> dict:
-    with zipfile.ZipFile(path) as source:
-        return {name: source.read(name) for name in source.namelist()}
 
 
 def npy(shape: str, kind: str = "<f8", content: bytes = b"") -> bytes:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import io
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +10,7 @@ import pytest
 
 from labial.errors import ModelError
 from labial.tables.model import load, save
-from models import random_model
+from models import archive, members_of, random_model
 
 
 def test_round_trip_and_same_bytes(tmp_path: Path) -> None:
@@ -63,9 +61,9 @@ def test_names_the_file_that_is_no_model(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="model.npz: No such file"):
         load(path)
     save(random_model(1), path)
-    data = path.read_bytes()
-    half = data[: len(data) // 2]
-    for damaged in (b"", b"junk", half, _without(data, "kernel.npy"), _with(data, "model.json", b"{}")):
+    data, members = path.read_bytes(), members_of(path)
+    lacking = archive({name: content for name, content in members.items() if name != "kernel.npy"})
+    for damaged in (b"", b"junk", data[: len(data) // 2], lacking, archive({**members, "model.json": b"{}"})):
         path.write_bytes(damaged)
         with pytest.raises(ModelError, match="model.npz"):
             load(path)
@@ -75,7 +73,9 @@ def test_says_that_a_model_is_of_another_format(tmp_path: Path) -> None:
     """Whoever has a file of another version is told so, and not that an array is missing in it."""
     path = tmp_path / "model.npz"
     save(random_model(1), path)
-    path.write_bytes(_with(_without(path.read_bytes(), "emission_mean.npy"), "model.json", b'{"format": 5}'))
+    members = {**members_of(path), "model.json": b'{"format": 5}'}
+    del members["emission_mean.npy"]
+    path.write_bytes(archive(members))
     with pytest.raises(ModelError, match="format 5, but this version of labial reads formats 3 and 4"):
         load(path)
 
@@ -86,34 +86,9 @@ def test_a_model_of_format_3_is_read(tmp_path: Path) -> None:
     model = random_model(1)
     save(model, path)
     names = {"viseme_class": "phoneme_class", "emission_mean": "decode_mean", "emission_variance": "decode_variance"}
-    with zipfile.ZipFile(path) as source, zipfile.ZipFile(former, "w") as target:
-        for name in source.namelist():
-            stem = name[: -len(".npy")]
-            content = source.read(name).replace(b'"format": 4', b'"format": 3')
-            target.writestr(f"{names[stem]}.npy" if stem in names else name, content)
-    assert set(names.values()) < {name[: -len(".npy")] for name in zipfile.ZipFile(former).namelist()}
+    members = {name[: -len(".npy")]: content for name, content in members_of(path).items() if name.endswith(".npy")}
+    former.write_bytes(archive({
+        "model.json": members_of(path)["model.json"].replace(b'"format": 4', b'"format": 3'),
+        **{f"{names.get(name, name)}.npy": content for name, content in members.items()}}))
     save(load(former), former)
     assert former.read_bytes() == path.read_bytes()
-
-
-def _rewritten(data: bytes, skip: str) -> tuple[io.BytesIO, zipfile.ZipFile]:
-    out = io.BytesIO()
-    target = zipfile.ZipFile(out, "w")
-    with zipfile.ZipFile(io.BytesIO(data)) as source:
-        for name in source.namelist():
-            if name != skip:
-                target.writestr(name, source.read(name))
-    return out, target
-
-
-def _without(data: bytes, name: str) -> bytes:
-    out, archive = _rewritten(data, name)
-    archive.close()
-    return out.getvalue()
-
-
-def _with(data: bytes, name: str, content: bytes) -> bytes:
-    out, archive = _rewritten(data, name)
-    archive.writestr(name, content)
-    archive.close()
-    return out.getvalue()
