@@ -105,31 +105,6 @@ def test_check_compares_with_both_references(given: Path, capsys: pytest.Capture
     assert status == (1 if captured.err else 0)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["synth", "missing.npz", "phones.lab"], "missing.npz: No such file"),
-        (["synth", "phones.lab", "phones.lab"], "phones.lab: not a labial model"),
-        (["synth", "model.npz", "missing.lab"], "missing.lab"),
-        (["synth", "model.npz", "overlap.lab"], "overlap.lab:2:"),
-        (["synth", "model.npz", "backwards.lab"], "backwards.lab:1:"),
-        (["export", "model.npz", "--name", "int", "-o", "out"], "no name for a model"),
-        (["train", "nowhere", "-o", "x.npz"], "nowhere"),
-        (["laughter-corpus", "."], "."),
-    ],
-)
-def test_errors_are_one_line(
-    given: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, arguments: list, message: str
-) -> None:
-    """Files and lines are named; no traceback."""
-    monkeypatch.chdir(given)
-    (given / "overlap.lab").write_text("0 0.1 SIL\n0.05 0.2 SIL\n")
-    (given / "backwards.lab").write_text("0.3 0.1 SIL\n")
-    assert main(arguments) == 1
-    error = capsys.readouterr().err
-    assert error.startswith("labial: ") and message in error and error.count("\n") == 1
-
-
 def test_options_of_one_method_are_not_silently_ignored(
     given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,20 +18,14 @@ from labial.tables import emit
 from labial.tables.model import load
 from labial.tables.quantise import quantise
 from models import random_model, streams, without_floors
-from packages import CC, SOURCE
+from packages import CC, SOURCE, run, warnings
 from runtime import needs_runtime
 
-STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
-          "-Wshadow", "-Werror"]  # fmt: skip
 
-
-def build(folder: Path, *files: str, flags: list = STRICT) -> Path:
-    program = folder / "program"
-    root = SOURCE
-    library = [str(path) for path in sorted((root / "lib").glob("*.c"))]
-    sources = [str(folder / file) for file in files]
-    subprocess.run([CC, *flags, f"-I{root / 'include'}", f"-I{folder}", *sources, *library, "-o", str(program)],
-                   check=True)
+def build(folder: Path, *files: str) -> Path:
+    program, library = folder / "program", sorted((SOURCE / "lib").glob("*.c"))
+    run(CC, "-std=c99", *warnings("c"), f"-I{SOURCE / 'include'}", f"-I{folder}", *(folder / file for file in files),
+        *library, "-o", program)
     return program
 
 
@@ -46,9 +40,8 @@ def test_same_model_same_bytes(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["speech_en", "laughter_synthetic"])
 def test_bundled_tables_are_those_of_the_trained_models(tmp_path: Path, name: str) -> None:
     """Catches a model that was trained anew and not exported, and an exporter that changed under the tables."""
-    root = SOURCE
-    for path in emit.write(quantise(load(root / "export" / "models" / f"{name}.npz"), name), tmp_path):
-        assert path.read_bytes() == (root / "lib" / "models" / path.name).read_bytes(), path.name
+    for path in emit.write(quantise(load(SOURCE / "export" / "models" / f"{name}.npz"), name), tmp_path):
+        assert path.read_bytes() == (SOURCE / "lib" / "models" / path.name).read_bytes(), path.name
 
 
 @pytest.mark.parametrize(
@@ -106,8 +99,7 @@ int main(void)
     return 0;
 }
 """)
-    program = build(tmp_path, "main.c", "some_model.c", "some_model_names.c")
-    assert subprocess.run([str(program)]).returncode == 0
+    run(build(tmp_path, "main.c", "some_model.c", "some_model_names.c"))
 
 
 def test_another_format_does_not_compile(tmp_path: Path) -> None:
@@ -115,9 +107,8 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     emit.write(quantise(random_model(2), "some_model"), tmp_path)
     header = tmp_path / "some_model.h"
     header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 5", "LABIAL_MODEL_FORMAT != 4"))
-    done = subprocess.run([CC, "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only",
-                           str(tmp_path / "some_model.c")], capture_output=True, text=True)
-    assert done.returncode != 0 and "run labial export again" in done.stderr
+    said = run(CC, "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only", tmp_path / "some_model.c", status=1)
+    assert "run labial export again" in said
 
 
 @pytest.mark.parametrize(("behind", "ahead", "apart", "needed"), [(6, 2, 3, 18), (1, 3, 5, 15), (0, 0, 1, 0)])
@@ -130,15 +121,11 @@ def test_a_library_that_remembers_too_few_phonemes_does_not_compile(
     model = without_floors(random_model(2))  # contacts reach three frames by themselves
     emit.write(quantise(replace(model, kernel=kernel, kernel_lag=lags), "some_model"), tmp_path)
 
-    def compiled(reach: int) -> subprocess.CompletedProcess:
-        command = [CC, "-std=c99", "-fsyntax-only", f"-I{SOURCE / 'include'}"]
-        return subprocess.run([*command, f"-DLABIAL_REACH={reach}", str(tmp_path / "some_model.c")],
-                              capture_output=True, text=True)
-
-    assert compiled(needed).returncode == 0
+    command = [CC, "-std=c99", "-fsyntax-only", f"-I{SOURCE / 'include'}", tmp_path / "some_model.c"]
+    run(*command, f"-DLABIAL_REACH={needed}")
     if needed:
-        done = compiled(needed - 1)
-        assert done.returncode != 0 and f"some_model needs LABIAL_REACH of {needed} at least" in done.stderr
+        said = run(*command, f"-DLABIAL_REACH={needed - 1}", status=1)
+        assert f"some_model needs LABIAL_REACH of {needed} at least" in said
 
 
 @needs_runtime
@@ -170,7 +157,7 @@ int main(void)
     return 0;
 }
 """)
-    program = build(tmp_path, "main.c", "some_model.c", flags=["-std=c99", "-O1"])
+    program = build(tmp_path, "main.c", "some_model.c")
     done = subprocess.run([str(program)], capture_output=True, check=True,
                           input=" ".join(f"{p} {ms}" for p, ms in stream).encode())
     assert np.array_equal(np.frombuffer(done.stdout, "<i2").reshape(-1, 13), device_frames(model, [stream])[0])
@@ -195,8 +182,8 @@ int main(void)
     return 0;
 }
 """)
-    done = subprocess.run([str(build(tmp_path, "main.c", "some_model.c"))], capture_output=True, text=True, check=True)
-    *sizes, head, pointers, channel_head, channel_pointers = map(int, done.stdout.split())
+    said = run(build(tmp_path, "main.c", "some_model.c"))
+    *sizes, head, pointers, channel_head, channel_pointers = map(int, said.split())
     assert sizes == [workspace_bytes(model.search_stride)] * 2 + [12, 6, 6]
 
     def on_32_bits(head: int, pointers: int) -> int:
