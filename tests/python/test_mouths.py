@@ -102,7 +102,7 @@ def test_weights_are_weights(spoken: Tuple[Motion, List[Tuple[str, slice]]]) -> 
 
 def test_lips_close(spoken: Tuple[Motion, List[Tuple[str, slice]]]) -> None:
     """In every p, b, m of 32 sentences, where it is most closed: mouthClose makes up for the jaw, VRM's mouths are
-    shut, PP is up and no vowel shows. test_heads.py has it in millimetres."""
+    shut, PP is up and no vowel shows. test_fit.py has it in millimetres."""
     faps, weights = spoken[0]
     at = moments(spoken, "p b m", faps[:, 3] + faps[:, 4])
     assert len(at) > 100
