@@ -35,12 +35,11 @@ from labial.corpus.episode import Segment
 from labial.evaluate.loss import measure
 from labial.evaluate.protocol import evaluate
 from labial.evaluate.splits import Options
-from labial.files.faps import FAP_COLUMNS
 from labial.see import drawing
 from labial.tables.model import save
 from labial.tables.phones import drawn_streams
 from labial.tables.quantise import quantise
-from models import random_model
+from models import random_model, write_motion
 from test_record import talking
 from test_record import write as write_landmarks
 
@@ -163,8 +162,7 @@ def given() -> None:
     save(random_model(1), "model.npz")
     Path("a.lab").write_text(LAB)
     Path("face.toml").write_text(FACE)
-    rows = (",".join([f"{t / 50:.2f}", *(f"{20 * np.sin(t + c):.0f}" for c in range(13))]) for t in range(40))
-    Path("f.csv").write_text("\n".join([",".join(("time", *FAP_COLUMNS)), *rows]) + "\n")
+    write_motion(Path("f.csv"), np.arange(40) / 50, 20 * np.sin(np.add.outer(np.arange(40), np.arange(13))))
     write_landmarks(Path(), "seen", landmarks=talking()[0])
 
 

@@ -1,4 +1,4 @@
-"""Models and phoneme streams made up for the tests."""
+"""Models, phoneme streams and corpora made up for the tests."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from typing import Dict, Iterable, List, Mapping, Tuple
 
 import numpy as np
 
+from labial.corpus import Episode
+from labial.corpus.folder import HEADER
 from labial.files.faps import CHANNELS
 from labial.tables.model import Model
 
@@ -128,3 +130,18 @@ def members_of(path: Path) -> Dict[str, bytes]:
     """What a model's file holds, by the names within."""
     with zipfile.ZipFile(path) as source:
         return {name: source.read(name) for name in source.namelist()}
+
+
+def write_motion(path: Path, times: Iterable[float], frames: np.ndarray) -> Path:
+    """Writes (T, 13) FAPs at these seconds as a file of frames."""
+    rows = (",".join([f"{time:.3f}", *(f"{value:.12g}" for value in row)]) for time, row in zip(times, frames))
+    path.write_text("\n".join([HEADER, *rows]) + "\n")
+    return path
+
+
+def write_episode(folder: Path, item: Episode) -> None:
+    """Writes an episode as corpora have it, each apex in the middle of its phoneme."""
+    write_motion(folder / f"{item.name}.csv", item.times, item.frames)
+    (folder / f"{item.name}.lab").write_text("".join(
+        f"{s.start:.4f} {s.end:.4f} {s.label} {(s.start + s.end) / 2:.4f} {s.word or '<sil>'}\n"
+        for s in item.segments))

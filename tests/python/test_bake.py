@@ -17,6 +17,7 @@ from labial.bake.track import AVR_LARGEST, FORMAT
 from labial.core.library import DURATION_MAX
 from labial.corpus.formats import SOUNDS
 from labial.files.faps import FAP_COLUMNS
+from models import write_motion
 from packages import CC, CXX, SOURCE, run, warnings
 from runtime import needs_runtime
 
@@ -41,11 +42,9 @@ slew = 20
 
 def frames_file(path: Path, times: Sequence[float], openings: Sequence[float]) -> Path:
     """A frames file in which the lower lip alone moves, so that the opening is what is given."""
-    lip = FAP_COLUMNS.index("fap52")
-    rows = [",".join([f"{t:.3f}", *(f"{-x if k == lip else 0:.2f}" for k in range(len(FAP_COLUMNS)))])
-            for t, x in zip(times, openings)]
-    path.write_text("\n".join([",".join(("time", *FAP_COLUMNS)), *rows]) + "\n")
-    return path
+    frames = np.zeros((len(openings), len(FAP_COLUMNS)))
+    frames[:, FAP_COLUMNS.index("fap52")] = -np.array(openings)
+    return write_motion(path, times, frames)
 
 
 def data(header: Path) -> List[int]:

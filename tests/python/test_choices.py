@@ -17,7 +17,8 @@ from labial.reference import published
 from labial.reference.published import Piece, join
 from labial.reference.tables import FloatTables
 from labial.train import codebook, pipeline, shapes
-from test_evaluate import law, write_episode
+from models import write_episode
+from test_evaluate import law
 from test_evaluate_material import planted
 
 

@@ -13,6 +13,7 @@ import pytest
 
 from labial.corpus.folder import read_frames
 from labial.files.faps import FAP_COLUMNS
+from models import write_motion
 from packages import CC, SOURCE, run
 from pages import EXTERNAL, LINK, Block, MissingTool, PageError, Runner, command, headings, parse
 from test_record import seen
@@ -151,9 +152,7 @@ def write_corpus(folder: Path) -> None:
         window = np.hanning(9)[1:-1] / np.hanning(9).sum()
         motion = np.stack([np.convolve(np.pad(x, 3, "edge"), window, "valid") for x in motion.T], axis=1)
         motion += rng.normal(0.0, 4.0, motion.shape)
-        lines = [",".join(("time", *FAP_COLUMNS))]
-        lines += [",".join([f"{t / 50:.2f}", *(f"{x:.1f}" for x in row)]) for t, row in enumerate(motion)]
-        (folder / f"a{utterance}.csv").write_text("\n".join(lines) + "\n")
+        write_motion(folder / f"a{utterance}.csv", np.arange(len(motion)) / 50, motion)
 
 
 def write_recordings(folder: Path) -> None:

@@ -10,7 +10,6 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from labial.__main__ import main
-from labial.corpus import Episode
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
 from labial.evaluate import protocol
@@ -20,9 +19,9 @@ from labial.evaluate.methods import METHODS, select
 from labial.evaluate.report import Cell, cell
 from labial.evaluate.splits import Split
 from labial.evaluate.training import Training
-from labial.files.frames import write_csv
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
+from models import write_episode
 from test_evaluate_material import planted, shape_of_phoneme
 
 QUICK = "mean,steps,blur,regression,hmm_synthesis"
@@ -43,14 +42,6 @@ def folder(corpus, tmp_path_factory) -> Path:
     for item in corpus:
         write_episode(where, item)
     return where
-
-
-def write_episode(where: Path, item: Episode) -> None:
-    with open(where / f"{item.name}.csv", "w", encoding="ascii", newline="\n") as out:
-        write_csv(out, item.frames, 50)
-    lines = [f"{s.start:.3f} {s.end:.3f} {s.label} {(s.start + s.end) / 2:.3f} {s.word or '<sil>'}\n"
-             for s in item.segments]
-    (where / f"{item.name}.lab").write_text("".join(lines))
 
 
 def test_every_method_end_to_end(corpus) -> None:

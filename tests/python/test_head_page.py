@@ -14,24 +14,20 @@ from avatars import document_of, glb, made_head
 from browser import CHROMIUM, REASON, THREE_D, Browser
 from bundlers import NPM, tools
 from labial.__main__ import main
-from labial.files.faps import FAP_COLUMNS
 from labial.rig.animation import face, outputs
+from models import write_motion
 
 BROWSER = THREE_D
 #: Frames of which the third is wide open.
 OPENING = (0, 200, 600, 200, 0)
+FAPS = np.zeros((5, 13))
+FAPS[:, 0], FAPS[:, 4] = [x // 2 for x in OPENING], [-x for x in OPENING]
 
 
 @pytest.fixture
 def frames(tmp_path: Path) -> Path:
     """A mouth that opens and closes."""
-    lines = ["time," + ",".join(FAP_COLUMNS)]
-    for number, opening in enumerate(OPENING):
-        faps = dict.fromkeys(FAP_COLUMNS, 0) | {"fap3": opening // 2, "fap52": -opening}
-        lines.append(f"{number / 50:.2f}," + ",".join(map(str, faps.values())))
-    path = tmp_path / "opens.csv"
-    path.write_text("\n".join(lines) + "\n")
-    return path
+    return write_motion(tmp_path / "opens.csv", np.arange(5) / 50, FAPS)
 
 
 @pytest.fixture
@@ -65,9 +61,7 @@ def test_everything_is_in_the_page(tmp_path: Path, frames: Path, avatar: Path, s
     text = out.read_text(encoding="utf-8")
     data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
     assert base64.b64decode(data["head"]) == avatar.read_bytes()
-    faps = np.zeros((5, 13))
-    faps[:, 0], faps[:, 4] = [x // 2 for x in OPENING], [-x for x in OPENING]
-    expected = outputs(face("arkit"), faps)
+    expected = outputs(face("arkit"), FAPS)
     weights = np.array(data["weights"])
     assert "jawOpen" in data["shapes"] and set(data["shapes"]) <= set(made_head()[2])
     for name, column in zip(data["shapes"], weights.T):
@@ -110,11 +104,9 @@ def test_expressions_of_vrm_move_their_shapes(tmp_path: Path, frames: Path, stan
     assert main(["page", str(frames), "--head", str(tmp_path / "a.vrm"), "--three", str(stand_in), "-o", str(out)]) == 0
     text = out.read_text(encoding="utf-8")
     data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
-    faps = np.zeros((5, 13))
-    faps[:, 0], faps[:, 4] = [x // 2 for x in OPENING], [-x for x in OPENING]
     assert set(data["shapes"]) == {"M_A", "M_U", "M_I"} and data["facing"] == 1.0
     opened = np.array(data["weights"])[:, data["shapes"].index("M_A")]
-    assert opened == pytest.approx(0.5 * outputs(face("vrm"), faps)["aa"], abs=0.001) and opened.max() > 0.2
+    assert opened == pytest.approx(0.5 * outputs(face("vrm"), FAPS)["aa"], abs=0.001) and opened.max() > 0.2
 
 
 def test_errors_say_what_to_do(tmp_path: Path, frames: Path, avatar: Path, stand_in: Path,

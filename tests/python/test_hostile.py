@@ -23,7 +23,7 @@ from labial.tables import emit
 from labial.tables.layout import check_fits
 from labial.tables.model import load, save
 from labial.tables.quantise import quantise
-from models import archive, members_of, random_model
+from models import archive, members_of, random_model, write_motion
 from test_record import LAB as TALK
 from test_record import talking, turned
 from test_timings import damaged
@@ -201,8 +201,7 @@ def test_attributions_stay_within_their_comment(text: str) -> None:
 def corpus(folder: Path, frames: Callable[[int], List[float]], lab: str, count: int) -> Path:
     folder.mkdir()
     for number in range(count):
-        rows = (",".join(f"{value:.12g}" for value in (t / 50, *frames(t))) + "\n" for t in range(100))
-        (folder / f"u{number}.csv").write_text(CSV[: CSV.index("\n") + 1] + "".join(rows))
+        write_motion(folder / f"u{number}.csv", np.arange(100) / 50, np.array([frames(t) for t in range(100)]))
         (folder / f"u{number}.lab").write_text(lab)
     return folder
 

@@ -11,6 +11,7 @@ import pytest
 
 from labial.evaluate import lipsync
 from labial.files.faps import FAP_COLUMNS
+from models import write_motion
 
 #: Opening in 20 frames, mm: at rest, a vowel, a closure, at rest.
 MEANT = np.array([0, 0, 0, 0, 0, 4, 8, 10, 8, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], dtype=float)
@@ -35,12 +36,9 @@ def folder(tmp_path: Path) -> Path:
     out = tmp_path / "folder"
     out.mkdir()
     (out / "a.lab").write_text("0 0.1 sil\n0.1 0.2 AA\n0.2 0.3 B\n0.3 0.4 sil\n")
-    lines = ["time," + ",".join(FAP_COLUMNS)]
-    for frame, opening in enumerate(MEANT):
-        faps = dict.fromkeys(FAP_COLUMNS, 0.0) | {"fap52": -opening / 0.02}  # a unit is 20.48 / 1024 mm
-        lines.append(f"{frame / 50:.2f}," + ",".join(f"{value:g}" for value in faps.values()))
-    (out / "a.csv").write_text("\n".join(lines) + "\n")
-    times = np.arange(20) / 50
+    times, faps = np.arange(20) / 50, np.zeros((20, 13))
+    faps[:, FAP_COLUMNS.index("fap52")] = -MEANT / 0.02  # a unit is 20.48 / 1024 mm
+    write_motion(out / "a.csv", times, faps)
     weights(out / "a.right.jsonl", times, {"jawOpen": MEANT / 20, "tongueOut": MEANT})
     weights(out / "a.still.jsonl", times[:2] * 30, {"aa": np.full(2, 0.5)})
     weights(out / "a.late.jsonl", times + 0.04, {"jawOpen": MEANT / 20})

@@ -11,7 +11,6 @@ import pytest
 
 from labial.__main__ import main
 from labial.corpus import Episode, Segment, Source, read_corpora, read_corpus, resample
-from labial.corpus.folder import HEADER
 from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError, LabialError
 from labial.evaluate import protocol
@@ -19,6 +18,7 @@ from labial.evaluate.trajectories import lips
 from labial.tables.model import load
 from labial.train import train
 from labial.train.recordings import recordings
+from models import write_episode, write_motion
 from packages import SOURCE
 from test_train import OPTIONS, episode
 
@@ -38,8 +38,7 @@ def corpus(folder: Path, names=NAMES, toml: str = "", scale: float = 1.0, offset
     for number, name in enumerate(names):
         values = np.random.default_rng([len(names), number]).normal(0, 10, (100, 13)) * scale + offset
         values[:50] += 1000.0
-        rows = [f"{0.01 + 0.02 * t:.2f}," + ",".join(f"{v:.4f}" for v in row) for t, row in enumerate(values)]
-        (folder / f"{name}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
+        write_motion(folder / f"{name}.csv", 0.01 + 0.02 * np.arange(100), values)
         (folder / f"{name}.lab").write_text("0 1 SIL\n1 2 AA\n")
     if toml:
         (folder / "corpus.toml").write_text(toml)
@@ -191,11 +190,7 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     def write(folder: Path, seeds) -> Path:
         folder.mkdir()
         for seed in seeds:
-            item = episode(seed)
-            rows = [f"{t:.3f}," + ",".join(f"{v:.2f}" for v in row) for t, row in zip(item.times, item.frames)]
-            (folder / f"e{seed:02}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
-            (folder / f"e{seed:02}.lab").write_text(
-                "".join(f"{s.start:.4f} {s.end:.4f} {s.label}\n" for s in item.segments))
+            write_episode(folder, replace(episode(seed), name=f"e{seed:02}"))
         return folder
 
     first, second = write(tmp_path / "one", range(12)), write(tmp_path / "two", range(12, 16))

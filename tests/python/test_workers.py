@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Iterator, List, Tuple
 
@@ -16,9 +15,9 @@ import pytest
 from threadpoolctl import threadpool_info
 
 from labial.__main__ import main
-from labial.corpus.folder import HEADER
 from labial.errors import LabialError
 from labial.train.workers import Workers
+from models import write_episode
 from packages import SOURCE
 from test_train import OPTIONS, episode
 
@@ -30,11 +29,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small corpus."""
     made = tmp_path_factory.mktemp("corpus")
     for seed in range(8):
-        item = replace(episode(seed), name=f"e{seed}")
-        rows = [",".join([f"{time:.3f}", *(f"{value:.2f}" for value in frame)])
-                for time, frame in zip(item.times, item.frames)]
-        (made / f"{item.name}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
-        (made / f"{item.name}.lab").write_text("".join(f"{s.start} {s.end} {s.label}\n" for s in item.segments))
+        write_episode(made, episode(seed))
     return made
 
 
