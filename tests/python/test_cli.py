@@ -12,7 +12,6 @@ import pytest
 import labial.commands
 from labial.__main__ import main
 from labial.commands import COMMANDS
-from labial.files.faps import FAP_COLUMNS
 from labial.tables.model import save
 from models import random_model
 
@@ -60,18 +59,6 @@ def given(tmp_path: Path) -> Path:
     save(random_model(1), tmp_path / "model.npz")
     (tmp_path / "phones.lab").write_text(LAB)
     return tmp_path
-
-
-def test_synth_writes_every_frame(given: Path) -> None:
-    """1 s is 50 frames, the gap from 0.42 to 0.50 is silence, times and columns are those of a frames file."""
-    for option in ([], ["--whole"]):
-        out = given / "frames.csv"
-        assert main(["synth", str(given / "model.npz"), str(given / "phones.lab"), "-o", str(out), *option]) == 0
-        lines = out.read_text().splitlines()
-        assert lines[0] == ",".join(("time", *FAP_COLUMNS))
-        values = np.array([[float(x) for x in line.split(",")] for line in lines[1:]])
-        assert values.shape == (50, 14) and np.allclose(values[:, 0], np.arange(50) / 50)
-        assert np.ptp(values[:, 1]) > 1
 
 
 def test_synth_articulates(given: Path, capsys: pytest.CaptureFixture) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import copy
 import json
 from pathlib import Path
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, Dict
 
 import numpy as np
 import pytest
@@ -40,15 +40,15 @@ def write(path: Path, **options: object) -> Path:
 
 
 @needs_runtime
-def test_a_fitted_head_shows_what_is_meant(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_fitted_head_shows_what_is_meant(tmp_path: Path, capsys: pytest.CaptureFixture[str], head: Head,
+                                           spoken: Motion) -> None:
     """ICT's head in sentences that were not solved for; catches a solver that stalls, and a rig that the text of the
     description does not hold."""
     assert main(["fit", str(HERE / "heads" / "ict_lips.csv"), "-o", str(tmp_path / "ict.toml")]) == 0
     printed = capsys.readouterr().out
     assert "21.2 mm from nose to mouth" in printed and "p, b, m closed 1.000" in printed
-    head, motion = read_table(HERE / "heads" / "ict_lips.csv"), read_sentences(HERE / "sentences.flite")
     rig = read(tmp_path / "ict.toml", "ict")
-    found = judge(head, matrix(head, outputs(rig, motion.frames)), motion.frames, motion.closures)
+    found = judge(head, matrix(head, outputs(rig, spoken.frames)), spoken.frames, spoken.closures)
     assert 0.9 <= found.ratio <= 1.1 and found.opening <= 1.0 and found.width <= 1.0, found.text()
     assert found.closed >= 0.98 and found.through == 0.0 and found.deepest >= -2.5, found.text()
     assert all(column[0] == 0.0 for column in outputs(rig, np.zeros((1, 13))).values())
@@ -83,7 +83,7 @@ def test_where_a_mesh_stands_changes_nothing(tmp_path: Path) -> None:
 
 
 @needs_runtime
-def test_an_avatar_is_fitted_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_avatar_is_fitted_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str], spoken: Motion) -> None:
     """From a file to a rig and a picture, with names that a description cannot spell; the rig reaches on this head what
     is asked of fitted heads."""
     path = tmp_path / "my head.glb"
@@ -94,11 +94,10 @@ def test_an_avatar_is_fitted_and_drawn(tmp_path: Path, capsys: pytest.CaptureFix
     assert (tmp_path / "mine.png").read_bytes()[:4] == b"\x89PNG"
     text = (tmp_path / "mine.toml").read_text()
     assert "[output.jawOpen]    # in the file: blendShape1.jawOpen" in text
-    motion = read_sentences(HERE / "sentences.flite")
     head = read_head(read_avatar(path), str(path), {}).head
-    weights = outputs(read(tmp_path / "mine.toml", "mine"), motion.frames)
+    weights = outputs(read(tmp_path / "mine.toml", "mine"), spoken.frames)
     named = {f"blendShape1.{name}": column for name, column in weights.items()}
-    found = judge(head, matrix(head, named), motion.frames, motion.closures)
+    found = judge(head, matrix(head, named), spoken.frames, spoken.closures)
     assert 0.9 <= found.ratio <= 1.1 and found.opening <= 1.0, found.text()
     assert found.closed >= 0.98 and found.deepest >= -2.5, found.text()
 
@@ -312,19 +311,11 @@ def test_broken_tables(tmp_path: Path, lines: str, message: str) -> None:
     assert message in str(caught.value) and str(path) in str(caught.value)
 
 
-def by_label(motion: Motion) -> Dict[str, List[Tuple[int, int]]]:
-    """The phonemes' frames."""
-    found: Dict[str, List[Tuple[int, int]]] = {}
-    for name, begin, end in motion.phonemes:
-        found.setdefault(name, []).append((begin, end))
-    return found
-
-
 @needs_runtime
 def test_lower_lip_comes_near_in_f_and_v(head: Head, spoken: Motion) -> None:
     """In f and v the lower lip rolls in and comes within 3 mm of the upper one."""
     weights = outputs(face("arkit"), spoken.frames)
     gap = opening(head, matrix(head, weights))
-    places = [span for label in "fv" for span in by_label(spoken)[label]]
+    places = [(begin, end) for label, begin, end in spoken.phonemes if label in ("f", "v")]
     assert np.mean([gap[begin:end].min() <= 3.0 for begin, end in places]) >= 0.95
     assert np.mean([weights["mouthRollLower"][begin:end].max() >= 0.2 for begin, end in places]) >= 0.8

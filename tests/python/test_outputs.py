@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import shutil
-import signal
 import stat
 import subprocess
 import sys
@@ -59,33 +57,6 @@ def given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     save(random_model(1), "model.npz")
     Path("a.lab").write_text(LAB)
     return tmp_path
-
-
-def limited(*arguments: str, size: int = 4096) -> subprocess.CompletedProcess[str]:
-    """The command in a process whose files have `size` bytes at most."""
-    def limit() -> None:
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-
-    return subprocess.run([sys.executable, "-m", "labial", *arguments], preexec_fn=limit, capture_output=True,
-                          text=True, check=False)
-
-
-def test_a_file_that_is_too_large(given: Path) -> None:
-    """The model that was there is whole, and the line names it."""
-    before = Path("model.npz").read_bytes()
-    script = "from labial.tables.model import load, save\nsave(load('model.npz'), 'model.npz')\n"
-    done = subprocess.run(
-        [sys.executable, "-c", "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-         "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n" + script],
-        capture_output=True, text=True, check=False)  # fmt: skip
-    assert "LabialError: model.npz: File too large" in done.stderr
-    assert Path("model.npz").read_bytes() == before and len(before) > 4096
-    assert sorted(os.listdir()) == ["a.lab", "model.npz"]
-    Path("f.csv").write_text("old")
-    done = limited("synth", "model.npz", "a.lab", "-o", "f.csv", size=1000)
-    assert (done.returncode, done.stderr) == (1, "labial: f.csv: File too large\n")
-    assert Path("f.csv").read_text() == "old"
 
 
 def test_what_is_replaced_keeps_its_permissions_and_its_links(given: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import zipfile
 from dataclasses import replace
 from pathlib import Path
-from typing import List, Sequence
+from typing import Iterator
 
 import numpy as np
 import pytest
@@ -25,6 +25,7 @@ from labial.train import protrusion
 from labial.train.expression import AMPLITUDE
 from labial.train.protrusion import table, with_protrusion
 from labial.train.recordings import Recording
+from labial.train.workers import Workers
 from models import random_model, streams
 from runtime import needs_runtime
 
@@ -135,11 +136,10 @@ def test_table_is_fitted() -> None:
     assert np.sqrt(np.mean((found - curve)[inside] ** 2)) < 1.5
 
 
-class Here:
-    """Stands for workers."""
-
-    def run(self, _: str, function: object, tasks: Sequence) -> List:
-        return [function(task) for task in tasks]  # type: ignore[operator]
+@pytest.fixture
+def workers() -> Iterator[Workers]:
+    with Workers(1, False) as found:
+        yield found
 
 
 def recording(rng: np.random.Generator, noise: float) -> Recording:
@@ -150,13 +150,13 @@ def recording(rng: np.random.Generator, noise: float) -> Recording:
                      apex=np.arange(40) * 10, frames=frames)
 
 
-def test_model_protrudes_as_far_as_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_model_protrudes_as_far_as_wanted(monkeypatch: pytest.MonkeyPatch, workers: Workers) -> None:
     """Of a model whose corners move half as far, FAP 17 reaches AMPLITUDE of the recordings'. What leaves FAP 17 out
     teaches nothing, and where the corners do not tell it, it stays a channel."""
     rng = np.random.default_rng(6)
     model, material = random_model(1), [recording(rng, 3.0) for _ in range(3)]
     monkeypatch.setattr(protrusion, "motion_of", lambda task: 0.5 * task[1].frames)
-    found = with_protrusion(model, material, Here())
+    found = with_protrusion(model, material, workers)
     made = interpolated(0.5 * np.concatenate([item.frames for item in material])[:, CORNERS], found.protrusion_range,
                         found.protrusion)
     human = np.concatenate([item.frames for item in material])[:, FAP_17]
@@ -165,7 +165,7 @@ def test_model_protrudes_as_far_as_wanted(monkeypatch: pytest.MonkeyPatch) -> No
     left_out = np.ones(CHANNELS)
     left_out[FAP_17] = 0.0
     other = replace(recording(rng, 500.0), weight=np.broadcast_to(left_out, (400, CHANNELS)))
-    again = with_protrusion(model, [*material, other], Here())
+    again = with_protrusion(model, [*material, other], workers)
     np.testing.assert_array_equal(again.protrusion, found.protrusion)
-    assert with_protrusion(model, [recording(rng, 500.0)], Here()) is model
-    assert with_protrusion(model, [other], Here()) is model
+    assert with_protrusion(model, [recording(rng, 500.0)], workers) is model
+    assert with_protrusion(model, [other], workers) is model
