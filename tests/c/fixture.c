@@ -31,8 +31,8 @@ double fixture_weight_value(uint8_t code)
 
 uint8_t fixture_weight_code(double value)
 {
-    unsigned best = 0, code;
-    for (code = 1; code < 256; code++) {
+    unsigned best = 0;
+    for (unsigned code = 1; code < 256; code++) {
         const double error = fixture_weight_value((uint8_t)code) - value;
         const double least = fixture_weight_value((uint8_t)best) - value;
         if ((error < 0 ? -error : error) < (least < 0 ? -least : least))
@@ -69,11 +69,10 @@ int32_t fixture_target(unsigned phoneme, unsigned channel)
 static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned reach)
 {
     const unsigned predecessors = 2 * reach + 2; /* one at least is repeated */
-    unsigned q, p;
-    for (q = 0; q < count; q++) {
+    for (unsigned q = 0; q < count; q++) {
         uint16_t *transitions = f->transitions[c] + q * predecessors;
         unsigned n = 0;
-        for (p = 0; p < count; p++) {
+        for (unsigned p = 0; p < count; p++) {
             const unsigned away = p > q ? p - q : q - p;
             const unsigned cost = away == 0 ? 4 : away == 1 ? 60 : 90;
             if (away <= reach)
@@ -88,9 +87,8 @@ static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned rea
 /* Puts the first `count` numbers in ascending order. */
 static void sort(int *numbers, unsigned count)
 {
-    unsigned i, j;
-    for (i = 1; i < count; i++)
-        for (j = i; j > 0 && numbers[j] < numbers[j - 1]; j--) {
+    for (unsigned i = 1; i < count; i++)
+        for (unsigned j = i; j > 0 && numbers[j] < numbers[j - 1]; j--) {
             const int other = numbers[j];
             numbers[j] = numbers[j - 1];
             numbers[j - 1] = other;
@@ -111,8 +109,8 @@ double fixture_gain_value(uint8_t code)
 uint8_t fixture_gain_code(double sigma)
 {
     const double wanted = 262144.0 / (sigma * 1.41421356237);
-    unsigned code, nearest = 0;
-    for (code = 1; code < 256; code++) {
+    unsigned nearest = 0;
+    for (unsigned code = 1; code < 256; code++) {
         const double away = fixture_gain_value((uint8_t)code) - wanted;
         const double nearer = fixture_gain_value((uint8_t)nearest) - wanted;
         if (away * away < nearer * nearer)
@@ -129,10 +127,9 @@ double fixture_motion(const labial_channel_t *channel, const labial_state_t *sta
 
 void fixture_pack_kernels(const int8_t *steps, size_t rows, uint32_t *kernels, int8_t *last_kernels)
 {
-    size_t row, k;
-    for (row = 0; row < rows; row++, steps += LABIAL_CHANNELS, kernels += 3) {
+    for (size_t row = 0; row < rows; row++, steps += LABIAL_CHANNELS, kernels += 3) {
         kernels[0] = kernels[1] = kernels[2] = 0;
-        for (k = 0; k < 12; k++)
+        for (size_t k = 0; k < 12; k++)
             kernels[k / 4] |= (uint32_t)(steps[k] + 128) << k % 4 * 8;
         last_kernels[row] = steps[12];
     }
@@ -148,7 +145,6 @@ static uint16_t gain_of(double sigma)
 static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned silence, unsigned reach)
 {
     int means[LABIAL_STATES_MAX];
-    unsigned p, k, c, q;
     memset(f, 0, sizeof *f);
     f->model.format = LABIAL_MODEL_FORMAT;
     f->model.frames_per_second = FIXTURE_RATE;
@@ -163,20 +159,20 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
     f->model.components = f->components;
     f->model.shapes = f->shapes;
     f->model.channels = f->channels;
-    for (p = 0; p < count; p++) {
+    for (unsigned p = 0; p < count; p++) {
         f->phonemes[p].first_component = (uint16_t)(2 * p);
         f->phonemes[p].component_count = 2;
         f->phonemes[p].viseme_class = (uint8_t)(p % FIXTURE_CLASSES);
-        for (k = 0; k < 2; k++) {
+        for (unsigned k = 0; k < 2; k++) {
             labial_component_t *component = &f->components[2 * p + k];
             component->cost = (uint16_t)(k * 10);
             component->duration_mean = (uint16_t)(k ? 260 : 100);
             component->duration_gain = gain_of(k ? 70 : 40);
-            for (c = 0; c < LABIAL_CHANNELS; c++)
+            for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
                 f->shapes[(2 * p + k) * LABIAL_CHANNELS + c] = (int8_t)shape_steps(p, k, c);
         }
     }
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         labial_channel_t *channel = &f->channels[c];
         channel->centre = (int16_t)centre_of(c);
         channel->shape_scale = SHAPE_SCALE;
@@ -189,11 +185,11 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
         channel->initials = f->initials[c];
         channel->motion_scale[0] = channel->motion_scale[1] = 256;
         /* The shapes of the phonemes, and the rest spread over +-300 FAP units. */
-        for (q = 0; q < states; q++)
+        for (unsigned q = 0; q < states; q++)
             means[q] = q < count ? position_of_steps(shape_steps(q, 0, c))
                                  : -4800 + (int)(9600u * (q - count) / (states > count + 1 ? states - count - 1 : 1));
         sort(means, states);
-        for (q = 0; q < states; q++) {
+        for (unsigned q = 0; q < states; q++) {
             labial_emission_t *emission = &f->emissions[c][q];
             labial_state_t *state = &f->states[c][q];
             emission->mean = (int16_t)means[q];
@@ -245,7 +241,6 @@ static void add_floors(fixture_model_t *f)
 /* All that goes beyond the published method. */
 static void enrich(fixture_model_t *f)
 {
-    unsigned i, c, q;
     fixture_random_t random = { 7 };
     int8_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
     f->model.mixture_mean = 1;
@@ -258,28 +253,28 @@ static void enrich(fixture_model_t *f)
     f->model.pair_count = FIXTURE_PAIRS;
     f->model.pair_keys = f->pair_keys;
     f->model.pairs = f->pairs;
-    for (i = 0; i < FIXTURE_PAIRS; i++) /* every phoneme, both sides; every second neighbour */
+    for (unsigned i = 0; i < FIXTURE_PAIRS; i++) /* every phoneme, both sides; every second neighbour */
         f->pair_keys[i] = (uint16_t)(i / (2 * FIXTURE_PAIR_SIDE) << 8 | (i / FIXTURE_PAIR_SIDE % 2) * 128 |
                                      i % FIXTURE_PAIR_SIDE * 2);
     f->model.pair_knots = 2;
-    for (i = 0; i < sizeof f->pairs; i++)
+    for (unsigned i = 0; i < sizeof f->pairs; i++)
         f->pairs[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
-    for (i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
+    for (unsigned i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
         f->floors[i] = (int16_t)(i % 3 ? LABIAL_NO_FLOOR : (int)fixture_below(&random, 4000) - 2000);
     add_floors(f);
-    for (i = 0; i < sizeof f->contexts; i++)
+    for (unsigned i = 0; i < sizeof f->contexts; i++)
         f->contexts[i] = (uint8_t)(fixture_below(&random, 6) | fixture_below(&random, 6) << 4); /* below 3 nats */
-    for (i = 0; i < sizeof f->slopes; i++)
+    for (unsigned i = 0; i < sizeof f->slopes; i++)
         f->slopes[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
-    for (i = 0; i < sizeof kernels; i++)
+    for (unsigned i = 0; i < sizeof kernels; i++)
         kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
     fixture_pack_kernels(kernels, FIXTURE_PHONEMES * FIXTURE_TAPS, f->kernels, f->last_kernels);
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         f->channels[c].contact_weight = fixture_weight_code(1500);
         f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
         f->channels[c].kernel_scale = 512; /* 100 steps: 12.5 FAP units */
         f->channels[c].pair_scale = 1280;  /* 40 steps: 12.5 FAP units */
-        for (q = 0; q < f->model.state_count; q++) {
+        for (unsigned q = 0; q < f->model.state_count; q++) {
             labial_state_t *state = &f->states[c][q];
             f->emissions[c][q].gain = fixture_gain_code(400.0 + 40.0 * (double)(q % 3));
             f->emissions[c][q].cost = (uint8_t)(q % 3 * 3);
@@ -312,17 +307,16 @@ void fixture_slow(fixture_model_t *fixture)
 
 void fixture_laughter(fixture_model_t *fixture)
 {
-    unsigned i;
     build(fixture, FIXTURE_LAUGH_COUNT, FIXTURE_LAUGH_STATES, FIXTURE_LAUGH_SIL, 1);
     fixture->model.search_stride = FIXTURE_STRIDE;
     fixture->phonemes[FIXTURE_HA].boundary = 1;
-    for (i = 0; i < LABIAL_CHANNELS; i++) /* silence near neutral, as that of the speech models */
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) /* silence near neutral, as that of the speech models */
         fixture->shapes[2 * FIXTURE_LAUGH_SIL * LABIAL_CHANNELS + i] = 5;
 }
 
 /* A row of 13 values without that of FAP 17, that of FAP 60 in its place. */
 #define NARROW(type, table, rows)                                                                                      \
-    for (row = 0; row < (rows); row++) {                                                                               \
+    for (size_t row = 0; row < (rows); row++) {                                                                        \
         type wide[LABIAL_CHANNELS];                                                                                    \
         memcpy(wide, (table) + row * LABIAL_CHANNELS, sizeof wide);                                                    \
         wide[2] = wide[12];                                                                                            \
@@ -331,15 +325,13 @@ void fixture_laughter(fixture_model_t *fixture)
 
 void fixture_without_17(fixture_model_t *f)
 {
-    size_t row;
-    unsigned i;
     NARROW(int8_t, f->shapes, FIXTURE_COMPONENTS)
     NARROW(int8_t, f->slopes, FIXTURE_COMPONENTS)
     NARROW(int8_t, f->pairs, FIXTURE_PAIRS * 2u)
     NARROW(int16_t, f->floors, FIXTURE_FLOORS)
-    for (row = 0; row < FIXTURE_PHONEMES * FIXTURE_TAPS; row++)
+    for (size_t row = 0; row < FIXTURE_PHONEMES * FIXTURE_TAPS; row++)
         f->kernels[row * 3] = (f->kernels[row * 3] & 0xff00ffffu) | (uint32_t)(f->last_kernels[row] + 128) << 16;
-    for (i = 0; i < FIXTURE_FLOORS; i++)
+    for (unsigned i = 0; i < FIXTURE_FLOORS; i++)
         f->contacts[i] = (uint16_t)((f->contacts[i] & 0x0ffbu) | (f->contacts[i] >> 12 & 1u) << 2);
     f->channels[2] = f->channels[12];
     f->channels[12] = f->channels[5];
@@ -347,7 +339,7 @@ void fixture_without_17(fixture_model_t *f)
     f->model.protrusion = &f->protrusion;
     f->protrusion.low = -1593;
     f->protrusion.gain = 2621; /* 16 intervals of 200 Q4 */
-    for (i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
+    for (unsigned i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
         f->protrusion.values[i] = (int16_t)(i * (i % 3) * 6 + (i % 2) * 25);
 }
 
@@ -364,9 +356,8 @@ void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t 
 void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, uint32_t seed)
 {
     fixture_random_t random;
-    size_t i;
     random.state = seed * 2654435761u + (uint32_t)kind + 1u;
-    for (i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         fixture_phoneme_t *p = &out[i];
         p->model = 0;
         p->phoneme = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
@@ -417,8 +408,7 @@ void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, u
 uint64_t fixture_duration(const fixture_phoneme_t *input, size_t count)
 {
     uint64_t sum = 0;
-    size_t i;
-    for (i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++)
         sum += input[i].ms;
     return sum;
 }

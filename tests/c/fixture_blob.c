@@ -6,11 +6,9 @@
 uint32_t fixture_crc32(const uint8_t *data, size_t size)
 {
     uint32_t crc = 0xffffffffu;
-    size_t i;
-    int bit;
-    for (i = 0; i < size; i++) {
+    for (size_t i = 0; i < size; i++) {
         crc ^= data[i];
-        for (bit = 0; bit < 8; bit++)
+        for (int bit = 0; bit < 8; bit++)
             crc = crc & 1u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
     }
     return crc ^ 0xffffffffu;
@@ -32,8 +30,7 @@ static void put(writer_t *w, uint32_t value, unsigned bytes)
 static void put_bytes(writer_t *w, const void *table, size_t bytes)
 {
     const uint8_t *from = (const uint8_t *)table;
-    size_t i;
-    for (i = 0; from && i < bytes; i++)
+    for (size_t i = 0; from && i < bytes; i++)
         put(w, from[i], 1);
 }
 
@@ -45,7 +42,6 @@ static void pad(writer_t *w)
 
 static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned states, unsigned predecessors)
 {
-    unsigned q, i;
     put(w, (uint16_t)channel->centre, 2);
     put(w, channel->shape_scale, 2);
     put(w, channel->slope_scale, 2);
@@ -55,13 +51,13 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
     put(w, channel->motion_scale[1], 2);
     put(w, channel->contact_weight, 1);
     put(w, 0, 1);
-    for (q = 0; q < states; q++) {
+    for (unsigned q = 0; q < states; q++) {
         put(w, (uint16_t)channel->emissions[q].mean, 2);
         put(w, channel->emissions[q].gain, 1);
         put(w, channel->emissions[q].cost, 1);
     }
     pad(w);
-    for (q = 0; q < states; q++) {
+    for (unsigned q = 0; q < states; q++) {
         put(w, (uint16_t)channel->states[q].mean, 2);
         put_bytes(w, channel->states[q].motion, 2);
         put(w, channel->states[q].hold, 1);
@@ -69,7 +65,7 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
         put_bytes(w, channel->states[q].weight, 2);
     }
     pad(w);
-    for (i = 0; i < states * predecessors; i++)
+    for (unsigned i = 0; i < states * predecessors; i++)
         put(w, channel->transitions[i], 2);
     pad(w);
     put_bytes(w, channel->initials, states);
@@ -80,7 +76,6 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
 {
     const size_t n = model->component_count, channels = model->protrusion ? LABIAL_CHANNELS_SOLVED : LABIAL_CHANNELS;
     writer_t w;
-    unsigned i;
     w.out = out;
     w.size = 0;
     w.room = room;
@@ -106,7 +101,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
         1);
     put(&w, model->floor_count, 1);
     put(&w, model->pair_count, 2);
-    for (i = 0; i < model->phoneme_count; i++) {
+    for (unsigned i = 0; i < model->phoneme_count; i++) {
         put(&w, model->phonemes[i].first_component, 2);
         put(&w, model->phonemes[i].component_count, 1);
         put(&w, model->phonemes[i].viseme_class, 1);
@@ -114,7 +109,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
         put(&w, model->phonemes[i].floor, 1);
     }
     pad(&w);
-    for (i = 0; i < n; i++) {
+    for (unsigned i = 0; i < n; i++) {
         put(&w, model->components[i].cost, 2);
         put(&w, model->components[i].duration_mean, 2);
         put(&w, model->components[i].duration_gain, 2);
@@ -126,30 +121,30 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     pad(&w);
     put_bytes(&w, model->slopes, n * channels);
     pad(&w);
-    for (i = 0; i < 3u * model->phoneme_count * model->kernel_taps; i++)
+    for (unsigned i = 0; i < 3u * model->phoneme_count * model->kernel_taps; i++)
         put(&w, model->kernels[i], 4);
     if (!model->protrusion)
         put_bytes(&w, model->last_kernels, (size_t)model->phoneme_count * model->kernel_taps);
     pad(&w);
-    for (i = 0; i < model->pair_count; i++)
+    for (unsigned i = 0; i < model->pair_count; i++)
         put(&w, model->pair_keys[i], 2);
     pad(&w);
     put_bytes(&w, model->pairs, (size_t)model->pair_count * model->pair_knots * channels);
     pad(&w);
-    for (i = 0; i < (unsigned)model->floor_count * channels; i++)
+    for (unsigned i = 0; i < (unsigned)model->floor_count * channels; i++)
         put(&w, (uint16_t)model->floors[i], 2);
     pad(&w);
-    for (i = 0; i < model->floor_count; i++)
+    for (unsigned i = 0; i < model->floor_count; i++)
         put(&w, model->contacts[i], 2);
     pad(&w);
     if (model->protrusion) {
         put(&w, (uint16_t)model->protrusion->low, 2);
         put(&w, model->protrusion->gain, 2);
-        for (i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
+        for (unsigned i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
             put(&w, (uint16_t)model->protrusion->values[i], 2);
         pad(&w);
     }
-    for (i = 0; i < channels; i++)
+    for (unsigned i = 0; i < channels; i++)
         put_channel(&w, &model->channels[i], model->state_count, model->predecessors);
     if (w.size <= room)
         fixture_seal(out, w.size);

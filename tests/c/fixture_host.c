@@ -35,11 +35,10 @@ void fixture_record(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNE
 int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count)
 {
     uint32_t size = 0;
-    unsigned i;
     memset(host, 0, sizeof *host);
     host->random.state = 0x1234567u;
     host->model_count = model_count;
-    for (i = 0; i < model_count; i++) {
+    for (unsigned i = 0; i < model_count; i++) {
         const uint32_t wanted = labial_workspace_size(models[i]);
         host->models[i] = models[i];
         if (wanted > size)
@@ -115,16 +114,13 @@ static void check_silent(fixture_host_t *host, int result, unsigned room)
 
 int fixture_tick(fixture_host_t *host)
 {
-    labial_latency_t before, after;
-    unsigned room;
-    int result;
     if (host->moving)
         move(host);
-    before = labial_latency(host->stream);
-    room = labial_room(host->stream);
+    const labial_latency_t before = labial_latency(host->stream);
+    const unsigned room = labial_room(host->stream);
     host->recorder.calls = 0;
-    result = labial_tick(host->stream);
-    after = labial_latency(host->stream);
+    const int result = labial_tick(host->stream);
+    const labial_latency_t after = labial_latency(host->stream);
     if (result < LABIAL_OK || result > LABIAL_DONE) {
         fixture_complain(host, "a tick returned an error or an unknown result");
         return result;
@@ -187,7 +183,6 @@ static size_t feed_some(fixture_host_t *host, const fixture_phoneme_t *input, si
 
 int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, fixture_feed_t feed)
 {
-    labial_latency_t left;
     size_t i = 0;
     unsigned stuck = 0;
     int result = LABIAL_WAITING;
@@ -205,7 +200,7 @@ int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t co
     }
     if (host->complaint)
         return -1;
-    left = labial_latency(host->stream);
+    const labial_latency_t left = labial_latency(host->stream);
     if (left.frames || left.milliseconds || left.phonemes)
         fixture_complain(host, "latency is not zero when the stream is done");
     if (fixture_tick(host) != LABIAL_DONE)
@@ -216,16 +211,15 @@ int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t co
 int fixture_play_told(fixture_host_t *host, const fixture_phoneme_t *input, size_t count, const uint8_t *told,
                       size_t room)
 {
-    size_t next = 0, t;
-    for (t = 0; t < room; t++) {
-        int result;
+    size_t next = 0;
+    for (size_t t = 0; t < room; t++) {
         while (next < count && labial_room(host->stream) > 0 && fixture_push(host, &input[next]) == LABIAL_OK)
             next++;
         if (next == count && !host->ended)
             fixture_end(host);
         if ((t == 0 || told[t] != told[t - 1] || t % 7 == 0) && labial_articulation(host->stream, told[t]) != LABIAL_OK)
             fixture_complain(host, "an articulation is refused");
-        result = fixture_tick(host);
+        const int result = fixture_tick(host);
         if (result == LABIAL_STARVED)
             fixture_complain(host, "a full queue starves");
         if (result == LABIAL_DONE || host->complaint)
@@ -257,8 +251,7 @@ long fixture_difference(const fixture_recorder_t *a, const fixture_recorder_t *b
 int fixture_step(const fixture_recorder_t *recorder, size_t frame)
 {
     int largest = 0;
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         const int change = recorder->frames[frame][c] - recorder->frames[frame - 1][c];
         const int size = change < 0 ? -change : change;
         if (size > largest)

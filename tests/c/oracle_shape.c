@@ -50,9 +50,8 @@ static void aim(const labial_model_t *const *models, const oracle_frame_t *frame
     uint8_t labels[2 * LABIAL_REACH + 1];
     labial_shape_t shape;
     labial_taken_t taken = { 0, 0, 0, 0, 0, 0, 0 };
-    int k;
     bare.floor_count = 0;
-    for (k = -LABIAL_REACH; k <= LABIAL_REACH; k++)
+    for (int k = -LABIAL_REACH; k <= LABIAL_REACH; k++)
         labels[LABIAL_REACH + k] = (uint8_t)oracle_label(models, frames, count, at, k);
     taken.labels = labels + LABIAL_REACH;
     taken.share = (uint16_t)(16384.0 * ((double)frame->number + 0.5) / (double)frame->whole);
@@ -79,8 +78,7 @@ static unsigned keep_floors(const labial_model_t *model, const oracle_frame_t *f
     const unsigned contacts = contacts_of(model, frame->phoneme);
     const int is_silent = frame->phoneme == model->silence;
     const int is_closed = !is_silent && is_made(frame->number, frame->whole);
-    unsigned k;
-    for (k = 0; floor && k < oracle_channels(model); k++) {
+    for (unsigned k = 0; floor && k < oracle_channels(model); k++) {
         const int is_contact = contacts >> k & 1;
         if (is_contact && is_silent)
             target[k] = (int16_t)(target[k] + (floor[k] - target[k]) * (int)frame->rest / RESTING);
@@ -95,8 +93,7 @@ static unsigned borrow(const labial_model_t *model, unsigned phoneme, int16_t ta
 {
     const int16_t *floor = floor_of(model, phoneme);
     const unsigned contacts = contacts_of(model, phoneme);
-    unsigned k;
-    for (k = 0; floor && k < oracle_channels(model); k++)
+    for (unsigned k = 0; floor && k < oracle_channels(model); k++)
         if ((contacts >> k & 1) && target[k] < floor[k])
             target[k] = floor[k];
     return contacts;
@@ -108,12 +105,10 @@ static void part(const labial_model_t *model, unsigned last, unsigned next, size
 {
     const int16_t *one = floor_of(model, last), *other = floor_of(model, next);
     const unsigned both = contacts_of(model, last) & contacts_of(model, next);
-    size_t t;
-    unsigned k;
-    for (t = from; t < to; t++) {
+    for (size_t t = from; t < to; t++) {
         if (contacts[t])
             continue;
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const int parts = PARTED[k] > 0 && (both >> k & 1) && one[k] > -16384 && other[k] > -16384;
             int most = (one[k] < other[k] ? one[k] : other[k]) - 16 * PARTED[k];
             most = most < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX : most;
@@ -144,12 +139,12 @@ static void part_close_contacts(const labial_model_t *const *models, const oracl
 void oracle_targets(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count,
                     int16_t (*targets)[LABIAL_CHANNELS], uint16_t *contacts)
 {
-    size_t t, end;
-    for (t = 0; t < count; t++) {
+    size_t end;
+    for (size_t t = 0; t < count; t++) {
         aim(models, frames, count, t, targets[t]);
         contacts[t] = (uint16_t)keep_floors(model_of(models, &frames[t]), &frames[t], targets[t]);
     }
-    for (t = 0; t < count; t = end) { /* frames t .. end - 1 are alike and of one solution */
+    for (size_t t = 0; t < count; t = end) { /* frames t .. end - 1 are alike and of one solution */
         const labial_model_t *model = model_of(models, &frames[t]);
         const unsigned phoneme = frames[t].phoneme;
         for (end = t + 1; end < count && !frames[end].begins && frames[end].phoneme == phoneme;)

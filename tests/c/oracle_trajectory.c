@@ -18,14 +18,13 @@ static void add_row(equation_t *equations, size_t t, double before, double own, 
                     double mean)
 {
     double w[3];
-    int i, k;
     w[0] = before;
     w[1] = own;
     w[2] = behind;
-    for (i = -1; i <= 1; i++) {
+    for (int i = -1; i <= 1; i++) {
         if (w[i + 1] == 0.0)
             continue;
-        for (k = -1; k <= 1; k++)
+        for (int k = -1; k <= 1; k++)
             equations[(ptrdiff_t)t + i].a[2 + k - i] += w[i + 1] * w[k + 1] * precision;
         equations[(ptrdiff_t)t + i].right += w[i + 1] * precision * mean;
     }
@@ -40,8 +39,7 @@ static double articulated(const labial_channel_t *channel, double position, doub
 static void fill(equation_t *equations, const labial_channel_t *channel, const uint8_t *path, const int16_t *targets,
                  const uint16_t *contacts, unsigned bit, const int32_t *gains, size_t count)
 {
-    size_t t;
-    for (t = 0; t < count; t++) {
+    for (size_t t = 0; t < count; t++) {
         const int32_t gain = gains ? gains[t] : 256;
         const double g = gain / 256.0;
         const labial_state_t *state = &channel->states[path[t]];
@@ -70,22 +68,21 @@ void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, con
                        double *motion)
 {
     equation_t *e = (equation_t *)calloc(count + 2, sizeof *e);
-    size_t t, i;
     if (!e)
         abort();
     fill(e, channel, path, targets, contacts, bit, gain, count);
-    for (t = 0; t < count; t++) /* Gauss: frame t leaves the two equations behind its own */
-        for (i = 1; i <= 2 && t + i < count; i++) {
+    for (size_t t = 0; t < count; t++) /* Gauss: frame t leaves the two equations behind its own */
+        for (size_t i = 1; i <= 2 && t + i < count; i++) {
             const double factor = e[t + i].a[2 - i] / e[t].a[2];
             e[t + i].a[3 - i] -= factor * e[t].a[3];
             e[t + i].a[4 - i] -= factor * e[t].a[4];
             e[t + i].right -= factor * e[t].right;
         }
-    for (t = 0; t < count; t++) {
+    for (size_t t = 0; t < count; t++) {
         const size_t from = start ? start[t] : count - 1;
         const double *a = e[from].a;
         double m1 = e[from].right / (a[2] + a[3] + a[4]), m2 = m1; /* as if the next two were equal to it */
-        for (i = from; i-- > t;) {
+        for (size_t i = from; i-- > t;) {
             const double m = (e[i].right - e[i].a[3] * m1 - e[i].a[4] * m2) / e[i].a[2];
             m2 = m1;
             m1 = m;
@@ -98,8 +95,7 @@ void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, con
 void oracle_starts(const labial_model_t *model, unsigned channel, size_t first, size_t count, size_t *start)
 {
     const size_t stride = model->search_stride, last = first + count - 1;
-    size_t t;
-    for (t = 0; t < count; t++) {
+    for (size_t t = 0; t < count; t++) {
         /* the channel's first turn in which the frame is due; the frame LABIAL_LAG before it has its row, and what came
          * before that all it is tied to */
         size_t turn = first + t + LABIAL_WINDOW + LABIAL_LAG + 1;
@@ -119,14 +115,12 @@ unsigned oracle_channels(const labial_model_t *model)
 void oracle_complete(const labial_model_t *model, double motion[LABIAL_CHANNELS])
 {
     const labial_protrusion_t *table = model->protrusion;
-    double at;
-    int i;
     if (!table)
         return;
     motion[12] = motion[2];
-    at = ((motion[5] + motion[6]) / 2 - table->low) * 2 * table->gain / 1048576; /* intervals of 2^20 / gain */
+    double at = ((motion[5] + motion[6]) / 2 - table->low) * 2 * table->gain / 1048576; /* intervals of 2^20 / gain */
     at = at < 0 ? 0 : at > 16 ? 16 : at;
-    i = at < 15 ? (int)at : 15;
+    const int i = at < 15 ? (int)at : 15;
     motion[2] = table->values[i] + (at - i) * (table->values[i + 1] - table->values[i]);
 }
 
@@ -147,8 +141,7 @@ typedef struct {
 static void reach(const stream_t *stream, const uint8_t *told)
 {
     int percent = told && stream->count > 0 ? told[0] : 100;
-    size_t t;
-    for (t = 0; t < stream->count; t++) {
+    for (size_t t = 0; t < stream->count; t++) {
         const int way = (told ? told[t] : 100) - percent;
         percent += way > 10 ? 10 : way < -10 ? -10 : way;
         stream->reached[t] = (percent * 256 + 50) / 100;
@@ -177,25 +170,24 @@ static void solve(const stream_t *stream, size_t first, size_t count, double (*m
     const labial_model_t *model = stream->models[stream->frames[first].model];
     uint8_t *path = (uint8_t *)malloc(count);
     int16_t *targets = (int16_t *)malloc(count * sizeof *targets);
-    size_t *start = (size_t *)malloc(count * sizeof *start), t;
+    size_t *start = (size_t *)malloc(count * sizeof *start);
     double *m = (double *)malloc(count * sizeof *m);
     int32_t *gain = (int32_t *)malloc(count * sizeof *gain);
-    unsigned c;
     if (!path || !targets || !start || !m || !gain)
         abort();
-    for (c = 0; c < oracle_channels(model); c++) {
+    for (unsigned c = 0; c < oracle_channels(model); c++) {
         oracle_search(model, c, stream->frames + first, (const int16_t(*)[LABIAL_CHANNELS])(stream->targets + first),
                       first, count, path);
-        for (t = 0; t < count; t++) {
+        for (size_t t = 0; t < count; t++) {
             targets[t] = stream->targets[first + t][c];
             gain[t] = gain_at(stream, c, first + t);
         }
         oracle_starts(model, c, first, count, start);
         oracle_trajectory(&model->channels[c], path, targets, stream->contacts + first, c, gain, count, start, m);
-        for (t = 0; t < count; t++)
+        for (size_t t = 0; t < count; t++)
             motion[first + t][c] = limited(m[t]);
     }
-    for (t = 0; t < count; t++)
+    for (size_t t = 0; t < count; t++)
         oracle_complete(model, motion[first + t]);
     free(path);
     free(targets);
@@ -215,18 +207,17 @@ static double faded(double fresh, double held, double pace, unsigned j)
 static void fade(const stream_t *stream, const double *pose, double (*motion)[LABIAL_CHANNELS])
 {
     double held[LABIAL_CHANNELS] = { 0 }, pace[LABIAL_CHANNELS] = { 0 };
-    unsigned c, j = 0;
+    unsigned j = 0;
     int is_paced = 0; /* neither of the two frames before is missing, and the later one did not fade */
-    size_t t;
-    for (t = 0; t < stream->count; t++) {
+    for (size_t t = 0; t < stream->count; t++) {
         if (stream->frames[t].begins && (t > 0 || pose)) {
-            for (c = 0; c < LABIAL_CHANNELS; c++) {
+            for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
                 held[c] = t > 0 ? motion[t - 1][c] : pose[c];
                 pace[c] = is_paced ? held[c] - motion[t - 2][c] : 0.0;
             }
             j = 1;
         }
-        for (c = 0; j > 0 && c < LABIAL_CHANNELS; c++)
+        for (unsigned c = 0; j > 0 && c < LABIAL_CHANNELS; c++)
             motion[t][c] = limited(faded(motion[t][c], held[c], pace[c], j));
         is_paced = t > 0 && j == 0;
         j = j > 0 && j < FADE ? j + 1 : 0;

@@ -23,8 +23,8 @@ static size_t lay(const labial_model_t *const *models, const fixture_phoneme_t *
 {
     const uint64_t rate = models[0]->frames_per_second;
     uint64_t ms = 0, end = 0;
-    size_t i, n = 0;
-    for (i = 0; i < count; i++) {
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++) {
         const uint64_t begin = end;
         ms += input[i].ms;
         end = (ms * rate * 2 + 1000) / 2000;
@@ -50,11 +50,11 @@ size_t oracle_units(const labial_model_t *const *models, const fixture_phoneme_t
                     oracle_frame_t *frames, size_t room)
 {
     span_t *spans = (span_t *)malloc((count + 1) * sizeof *spans);
-    size_t n, s, total = 0;
+    size_t total = 0;
     if (!spans)
         abort();
-    n = lay(models, input, count, spans);
-    for (s = 0; s < n; s++) {
+    const size_t n = lay(models, input, count, spans);
+    for (size_t s = 0; s < n; s++) {
         const fixture_phoneme_t *own = &input[spans[s].input];
         const fixture_phoneme_t *before = s > 0 ? &input[spans[s - 1].input] : NULL;
         const fixture_phoneme_t *behind = s + 1 < n ? &input[spans[s + 1].input] : NULL;
@@ -63,8 +63,7 @@ size_t oracle_units(const labial_model_t *const *models, const fixture_phoneme_t
         const uint64_t length = spans[s].end - spans[s].begin;
         const uint64_t cut = own->phoneme == model->silence && ahead > 0 && length > ahead ? length - ahead : 0;
         const int begins = !before || before->model != own->model, ends = !behind || behind->model != own->model;
-        uint64_t i;
-        for (i = 0; i < length; i++) {
+        for (uint64_t i = 0; i < length; i++) {
             oracle_frame_t *frame = &frames[total];
             if (total++ == room)
                 abort();

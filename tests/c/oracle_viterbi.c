@@ -33,12 +33,11 @@ static int is_nearer(const labial_emission_t *emissions, unsigned a, unsigned b,
 unsigned oracle_window(const labial_model_t *model, const labial_channel_t *channel, int32_t position)
 {
     const int states = model->state_count, width = states < LABIAL_SEARCHED ? states : LABIAL_SEARCHED;
-    unsigned q, nearest = 0;
-    int first;
-    for (q = 1; q < model->state_count; q++)
+    unsigned nearest = 0;
+    for (unsigned q = 1; q < model->state_count; q++)
         if (is_nearer(channel->emissions, q, nearest, position))
             nearest = q;
-    first = (int)nearest - width / 2;
+    const int first = (int)nearest - width / 2;
     return (unsigned)(first < 0 ? 0 : first > states - width ? states - width : first);
 }
 
@@ -47,10 +46,9 @@ static double through(const labial_model_t *model, const labial_channel_t *chann
                       unsigned p, unsigned q)
 {
     double cost = LEAP;
-    unsigned i;
     if (before->cost[p] >= ORACLE_NONE || (before->ends_unit && p != before->best))
         return ORACLE_NONE;
-    for (i = 0; i < model->predecessors; i++) {
+    for (unsigned i = 0; i < model->predecessors; i++) {
         const unsigned transition = channel->transitions[q * model->predecessors + i];
         if ((transition & 255u) == p && (double)(transition >> 8) < cost)
             cost = (double)(transition >> 8);
@@ -61,11 +59,10 @@ static double through(const labial_model_t *model, const labial_channel_t *chann
 void oracle_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position,
                  const oracle_step_t *before, oracle_step_t *step)
 {
-    unsigned q, p;
     step->first = oracle_window(model, channel, position);
     step->ends_unit = 0;
     step->best = step->first;
-    for (q = 0; q < model->state_count; q++) {
+    for (unsigned q = 0; q < model->state_count; q++) {
         step->cost[q] = ORACLE_NONE;
         if (q < step->first || q >= step->first + LABIAL_SEARCHED)
             continue;
@@ -74,7 +71,7 @@ void oracle_step(const labial_model_t *model, const labial_channel_t *channel, i
         } else { /* of ways that cost the same a leap from the best is taken, or that from the lower state */
             step->cost[q] = before->cost[before->best] + LEAP;
             step->from[q] = before->best;
-            for (p = 0; p < model->state_count; p++) {
+            for (unsigned p = 0; p < model->state_count; p++) {
                 const double cost = through(model, channel, before, p, q);
                 if (cost < step->cost[q]) {
                     step->cost[q] = cost;
@@ -108,27 +105,27 @@ void oracle_search(const labial_model_t *model, unsigned channel, const oracle_f
     const size_t stride = model->search_stride;
     oracle_step_t *steps = (oracle_step_t *)malloc(count * sizeof *steps);
     size_t *block = (size_t *)malloc(count * sizeof *block); /* of each frame */
-    size_t t, i, begin = 0, blocks = 0;
+    size_t begin = 0, blocks = 0;
     if (!steps || !block)
         abort();
-    for (t = 0; t < count; t++) {
+    for (size_t t = 0; t < count; t++) {
         block[t] = blocks;
         if (is_turn(model, channel, first + t) || t + 1 == count) {
             size_t turn = first + t; /* of the whole block */
-            size_t seen;
             while (!is_turn(model, channel, turn))
                 turn++;
-            seen = turn + 1 + stride / 2 < first + begin + stride ? begin : turn + 1 + stride / 2 - stride - first;
+            size_t seen =
+                turn + 1 + stride / 2 < first + begin + stride ? begin : turn + 1 + stride / 2 - stride - first;
             seen = seen > t ? t : seen;
             oracle_step(model, &model->channels[channel], targets[seen][channel], blocks ? &steps[blocks - 1] : NULL,
                         &steps[blocks]);
-            for (i = begin; i <= t; i++)
+            for (size_t i = begin; i <= t; i++)
                 steps[blocks].ends_unit |= frames[i].unit_ends;
             blocks++;
             begin = t + 1;
         }
     }
-    for (t = 0; t < count; t++) {
+    for (size_t t = 0; t < count; t++) {
         size_t end = block[t], known = t + LABIAL_LAG;
         while (known < count && !is_turn(model, channel, first + known))
             known++;

@@ -23,8 +23,7 @@ static int draw(int low, int high)
 
 static void draw_frame(int16_t faps[LABIAL_CHANNELS], int limit)
 {
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         faps[c] = (int16_t)draw(-limit, limit);
 }
 
@@ -40,12 +39,11 @@ static void draw_speech(int16_t faps[LABIAL_CHANNELS], int opening, int drop)
 
 static double freedom(double distance, double low, double high)
 {
-    double x;
     if (distance <= low)
         return 0;
     if (distance >= high)
         return 1;
-    x = (distance - low) / (high - low);
+    const double x = (distance - low) / (high - low);
     return 3 * x * x - 2 * x * x * x;
 }
 
@@ -81,8 +79,7 @@ static double wanted(const labial_blend_t *blend, double intensity, double words
 static labial_blend_t draw_table(void)
 {
     labial_blend_t blend;
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         blend.shares[c] = (uint16_t)draw(0, 256);
     blend.closed = (int16_t)draw(-100, 200);
     blend.open = (int16_t)(blend.closed + draw(1, 300));
@@ -96,10 +93,8 @@ TEST(follows_the_equation)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     double worst = 0;
-    unsigned c;
-    int i;
     seed = 1;
-    for (i = 0; i < 50000; i++) {
+    for (int i = 0; i < 50000; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
         const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)(i % 3 ? 256 : draw(0, 256));
         if (i % 5)
@@ -108,7 +103,7 @@ TEST(follows_the_equation)
             draw_frame(speech, 2000);
         draw_frame(laugh, i % 5 ? 300 : 2000);
         assert_int_equal(labial_blend(&blend, intensity, words, speech, laugh, out), LABIAL_OK);
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             const double off = fabs(out[c] - wanted(&blend, intensity / 256.0, words / 256.0, speech, laugh, c));
             worst = off > worst ? off : worst;
         }
@@ -120,9 +115,8 @@ TEST(follows_the_equation)
 TEST(the_ends_are_exact)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
-    int i;
     seed = 2;
-    for (i = 0; i < 20000; i++) {
+    for (int i = 0; i < 20000; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
         draw_frame(speech, i % 3 ? 600 : 32767);
         draw_frame(laugh, i % 3 ? 300 : 32767);
@@ -138,12 +132,10 @@ TEST(the_ends_are_exact)
 TEST(open_lips_follow_wholly)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
-    unsigned c;
-    int i;
     seed = 9;
-    for (i = 0; i < 2000; i++) {
+    for (int i = 0; i < 2000; i++) {
         labial_blend_t blend = draw_table();
-        for (c = 0; c < LABIAL_CHANNELS; c++)
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
             blend.shares[c] = LABIAL_BLEND_FULL;
         draw_frame(speech, 32767);
         draw_frame(laugh, 32767);
@@ -160,10 +152,8 @@ TEST(closures_are_kept)
 {
     static const uint8_t upper[] = { 3, 7, 8 }, lower[] = { 4, 9, 10 };
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
-    unsigned c;
-    int i;
     seed = 3;
-    for (i = 0; i < 60000; i++) {
+    for (int i = 0; i < 60000; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
         const int closed = i % 4 < 2; /* else it is the lower lip at the teeth */
         if (closed)
@@ -172,10 +162,10 @@ TEST(closures_are_kept)
             draw_speech(speech, draw(-500, 500), i % 3 ? draw(-500, blend.touching) : blend.touching);
         draw_frame(laugh, i % 5 ? 400 : 32767);
         assert_int_equal(labial_blend(&blend, (unsigned)draw(0, 300), 256, speech, laugh, out), LABIAL_OK);
-        for (c = 0; c < sizeof lower; c++)
+        for (unsigned c = 0; c < sizeof lower; c++)
             assert_int_equal(out[lower[c]], speech[lower[c]]);
         assert_true(out[JAW] <= speech[JAW]);
-        for (c = 0; closed && c < sizeof upper; c++)
+        for (unsigned c = 0; closed && c < sizeof upper; c++)
             assert_int_equal(out[upper[c]], speech[upper[c]]);
     }
 }
@@ -185,11 +175,10 @@ TEST(what_is_free_laughs)
 {
     int16_t speech[LABIAL_CHANNELS] = { 0 }, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     const labial_blend_t *blend = &labial_blend_default;
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         laugh[c] = 1000;
     assert_int_equal(labial_blend(blend, 256, 256, speech, laugh, out), LABIAL_OK); /* at rest */
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         const unsigned fap = labial_fap_numbers[c];
         const int corner = fap == 53 || fap == 54 || fap >= 59, push = fap == 16 || fap == 17;
         assert_int_equal(out[c], corner ? 898 : push ? 602 : 0);
@@ -216,17 +205,15 @@ TEST(what_is_free_is_rounded_to_the_nearest)
     int16_t speech[LABIAL_CHANNELS] = { 0 }, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     labial_blend_t blend = labial_blend_default;
     const unsigned words = 255;
-    int way;
-    unsigned i;
-    for (i = 0; i < 4; i++)
+    for (unsigned i = 0; i < 4; i++)
         blend.shares[corners[i]] = shares[i];
-    for (way = 0; way <= 65535; way++) {
-        for (i = 0; i < LABIAL_CHANNELS; i++) { /* up and down */
+    for (int way = 0; way <= 65535; way++) {
+        for (unsigned i = 0; i < LABIAL_CHANNELS; i++) { /* up and down */
             speech[i] = (int16_t)(i % 2 ? INT16_MIN : INT16_MAX);
             laugh[i] = (int16_t)(i % 2 ? INT16_MIN + way : INT16_MAX - way);
         }
         assert_int_equal(labial_blend(&blend, LABIAL_BLEND_FULL, words, speech, laugh, out), LABIAL_OK);
-        for (i = 0; i < 4; i++) {
+        for (unsigned i = 0; i < 4; i++) {
             const double gone = way * (1.0 - words * (256.0 - shares[i]) / 65536.0);
             const unsigned c = corners[i];
             assert_int_equal(c % 2 ? out[c] - speech[c] : speech[c] - out[c], (int)floor(gone + 0.5));
@@ -243,18 +230,16 @@ static int toward(int from, int value, int to)
 TEST(monotone_in_intensity_and_words)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], before[LABIAL_CHANNELS];
-    unsigned c, step;
-    int i;
     seed = 4;
-    for (i = 0; i < 600; i++) {
+    for (int i = 0; i < 600; i++) {
         const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
         const unsigned fixed = (unsigned)draw(0, 256);
         draw_frame(speech, i % 3 ? 500 : 32767);
         draw_frame(laugh, i % 3 ? 500 : 32767);
         memcpy(before, speech, sizeof before);
-        for (step = 0; step <= 256; step++) {
+        for (unsigned step = 0; step <= 256; step++) {
             labial_blend(&blend, i % 4 < 2 ? step : fixed, i % 4 < 2 ? fixed : 256u - step, speech, laugh, out);
-            for (c = 0; c < LABIAL_CHANNELS; c++)
+            for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
                 assert_true(toward(speech[c], out[c], laugh[c]) >= toward(speech[c], before[c], laugh[c]));
             memcpy(before, out, sizeof before);
         }
@@ -268,25 +253,23 @@ TEST(extremes_stay_between)
     static const unsigned levels[] = { 0, 1, 127, 128, 255, 256, 257, 65536, UINT32_MAX };
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
     labial_blend_t blend;
-    unsigned c;
-    int i;
     seed = 5;
-    for (i = 0; i < 100000; i++) {
+    for (int i = 0; i < 100000; i++) {
         blend = labial_blend_default;
         if (i % 2) {
-            for (c = 0; c < LABIAL_CHANNELS; c++)
+            for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
                 blend.shares[c] = (uint16_t)draw(0, 65535);
             blend.closed = ends[draw(0, 6)];
             blend.open = ends[draw(0, 6)];
             blend.touching = ends[draw(0, 6)];
             blend.dropped = ends[draw(0, 6)];
         }
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             speech[c] = ends[draw(0, 6)];
             laugh[c] = ends[draw(0, 6)];
         }
         assert_int_equal(labial_blend(&blend, levels[draw(0, 8)], levels[draw(0, 8)], speech, laugh, out), LABIAL_OK);
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             assert_true(out[c] >= (speech[c] < laugh[c] ? speech[c] : laugh[c]));
             assert_true(out[c] <= (speech[c] < laugh[c] ? laugh[c] : speech[c]));
         }
@@ -299,24 +282,22 @@ TEST(continuous)
 {
     int16_t speech[2][LABIAL_CHANNELS], laugh[2][LABIAL_CHANNELS], out[2][LABIAL_CHANNELS];
     const labial_blend_t *blend = &labial_blend_default;
-    unsigned c;
-    int i, k;
     seed = 6;
-    for (i = 0; i < 50000; i++) {
+    for (int i = 0; i < 50000; i++) {
         const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)(i % 2 ? 256 : draw(0, 256));
-        double let_in, opened, dropped;
         draw_speech(speech[0], draw(80, 280), draw(110, 310));
         draw_frame(laugh[0], 300);
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             speech[1][c] = (int16_t)(speech[0][c] + draw(-6, 6));
             laugh[1][c] = (int16_t)(laugh[0][c] + draw(-6, 6));
         }
-        for (k = 0; k < 2; k++)
+        for (int k = 0; k < 2; k++)
             assert_int_equal(labial_blend(blend, intensity, words, speech[k], laugh[k], out[k]), LABIAL_OK);
-        opened = fabs(speech[1][UPPER] + speech[1][LOWER] - speech[0][UPPER] - (double)speech[0][LOWER]);
-        dropped = fabs(speech[1][LOWER] - (double)speech[0][LOWER]);
-        let_in = fmax(opened / (blend->open - blend->closed), dropped / (blend->dropped - blend->touching)) * 1.5;
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        const double opened = fabs(speech[1][UPPER] + speech[1][LOWER] - speech[0][UPPER] - (double)speech[0][LOWER]);
+        const double dropped = fabs(speech[1][LOWER] - (double)speech[0][LOWER]);
+        const double let_in =
+            fmax(opened / (blend->open - blend->closed), dropped / (blend->dropped - blend->touching)) * 1.5;
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             const double by_speech = fabs(speech[1][c] - (double)speech[0][c]);
             const double by_laugh = fabs(laugh[1][c] - (double)laugh[0][c]);
             const double way = fmax(fabs(laugh[0][c] - (double)speech[0][c]), fabs(laugh[1][c] - (double)speech[1][c]));
@@ -329,9 +310,8 @@ TEST(continuous)
 TEST(in_place_and_beyond_full)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], same[LABIAL_CHANNELS];
-    int i;
     seed = 7;
-    for (i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; i++) {
         const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)draw(0, 256);
         draw_frame(speech, 300);
         draw_frame(laugh, 300);

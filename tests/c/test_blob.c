@@ -47,15 +47,14 @@ static int load(labial_blob_t *blob, size_t size, void **copy)
 /* Would catch a table at the wrong place, a wrong pad, a scale that is not read. */
 TEST(a_blob_gives_the_same_frames)
 {
-    unsigned m, i;
-    for (m = 0; m < 5; m++) {
+    for (unsigned m = 0; m < 5; m++) {
         labial_blob_t blob;
         fixture_host_t wanted, host;
         void *copy;
         memset(&blob, 0xee, sizeof blob);
         assert_int_equal(load(&blob, serialise(models[m]), &copy), LABIAL_OK);
         fixture_stream(input, 40, FIXTURE_RANDOM, m);
-        for (i = 0; i < 40; i++)
+        for (unsigned i = 0; i < 40; i++)
             input[i].phoneme = (uint8_t)(input[i].phoneme % models[m]->phoneme_count);
         if (fixture_run(&wanted, models[m], input, 40, FIXTURE_FILL) != 0)
             fail_msg("%s", wanted.complaint);
@@ -73,8 +72,7 @@ TEST(a_blob_gives_the_same_frames)
 TEST(contacts_and_knots_are_read)
 {
     labial_blob_t blob;
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         rich.channels[c].contact_weight = (uint8_t)(0x21 + c);
     assert_int_equal(labial_model_load(&blob, bytes, serialise(&rich.model)), LABIAL_OK);
     assert_int_equal(blob.model.pair_knots, 2);
@@ -82,7 +80,7 @@ TEST(contacts_and_knots_are_read)
     assert_int_equal(blob.model.floor_count, FIXTURE_FLOORS);
     assert_memory_equal(blob.model.floors, rich.floors, sizeof rich.floors);
     assert_memory_equal(blob.model.contacts, rich.contacts, sizeof rich.contacts);
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         assert_int_equal(blob.model.channels[c].contact_weight, 0x21 + c);
     rich.model.pair_knots = 1;
     assert_int_equal(labial_model_load(&blob, bytes, serialise(&rich.model)), LABIAL_OK);
@@ -97,11 +95,9 @@ TEST(contacts_and_knots_are_read)
 
 TEST(every_truncation_is_refused)
 {
-    unsigned m;
-    for (m = 0; m < 3; m++) {
+    for (unsigned m = 0; m < 3; m++) {
         const size_t size = serialise(models[m]);
-        size_t n;
-        for (n = 0; n < size; n += LABIAL_TEST_SHARE) {
+        for (size_t n = 0; n < size; n += LABIAL_TEST_SHARE) {
             labial_blob_t blob;
             void *copy;
             if (load(&blob, n, &copy) != LABIAL_ERROR_MODEL)
@@ -126,16 +122,13 @@ TEST(surplus_bytes_are_refused)
 /* Truncated, with a size and a checksum that fit what is left: every length must be checked before it is relied on. */
 TEST(every_truncation_that_is_sealed_is_refused)
 {
-    unsigned m;
-    for (m = 0; m < 3; m++) {
+    for (unsigned m = 0; m < 3; m++) {
         const size_t size = serialise(models[m]);
-        size_t n;
-        for (n = 12; n < size; n += n < 64 ? 1 : LABIAL_TEST_SHARE) { /* each that may end within the header */
+        for (size_t n = 12; n < size; n += n < 64 ? 1 : LABIAL_TEST_SHARE) { /* each that may end within the header */
             labial_blob_t blob;
             void *copy;
-            int result;
             fixture_seal(bytes, n);
-            result = load(&blob, n, &copy);
+            const int result = load(&blob, n, &copy);
             if (result != LABIAL_ERROR_MODEL)
                 fail_msg("%zu of %zu bytes give %d", n, size, result);
             free(copy);
@@ -149,14 +142,11 @@ TEST(every_damaged_byte_is_refused)
     static const uint8_t flips[] = { 0x01, 0x80, 0xff };
     const size_t size = serialise(&rich.model);
     labial_blob_t blob;
-    size_t n;
-    unsigned i;
     assert_int_equal(labial_model_load(&blob, bytes, size), LABIAL_OK);
-    for (n = 0; n < size; n += LABIAL_TEST_SHARE) {
-        for (i = 0; i < sizeof flips; i++) {
-            int result;
+    for (size_t n = 0; n < size; n += LABIAL_TEST_SHARE) {
+        for (unsigned i = 0; i < sizeof flips; i++) {
             bytes[n] ^= flips[i];
-            result = labial_model_load(&blob, bytes, size);
+            const int result = labial_model_load(&blob, bytes, size);
             bytes[n] ^= flips[i];
             if (result != LABIAL_ERROR_MODEL && result != LABIAL_ERROR_VERSION)
                 fail_msg("byte %zu ^ %u gives %d", n, flips[i], result);
@@ -170,22 +160,19 @@ TEST(damage_that_is_sealed_is_refused_or_plays)
 {
     const size_t size = serialise(&rich.model);
     unsigned refused = 0, played = 0;
-    size_t n;
-    for (n = 12; n < size; n += LABIAL_TEST_SHARE) {
+    for (size_t n = 12; n < size; n += LABIAL_TEST_SHARE) {
         static const uint8_t values[] = { 0x00, 0xff, 0x80, 0x7f };
         const uint8_t was = bytes[n];
         labial_blob_t blob;
         void *copy;
-        int result;
         bytes[n] = n % 5 == 4 ? (uint8_t)(was ^ 1u) : values[(n + n / 5) % 4];
         fixture_seal(bytes, size);
-        result = load(&blob, size, &copy);
+        const int result = load(&blob, size, &copy);
         bytes[n] = was;
         if (result == LABIAL_OK) {
             fixture_host_t host;
-            unsigned i;
             fixture_stream(input, 8, FIXTURE_ONE_FRAME, (uint32_t)n);
-            for (i = 0; i < 8; i++) {
+            for (unsigned i = 0; i < 8; i++) {
                 input[i].phoneme = (uint8_t)(input[i].phoneme % blob.model.phoneme_count);
                 input[i].ms = i * 16;
             }
@@ -208,8 +195,7 @@ TEST(misaligned_data_is_refused)
 {
     const size_t size = serialise(&plain.model);
     labial_blob_t blob;
-    unsigned shift;
-    for (shift = 1; shift < 4; shift++) {
+    for (unsigned shift = 1; shift < 4; shift++) {
         memmove(bytes + shift, bytes + shift - 1, size);
         assert_int_equal(labial_model_load(&blob, bytes + shift, size), LABIAL_ERROR_MODEL);
     }
@@ -226,8 +212,7 @@ TEST(other_formats_are_refused)
                                           { 0xff, 0xff } };
     const size_t size = serialise(&plain.model);
     labial_blob_t blob;
-    unsigned i;
-    for (i = 0; i < 5; i++) {
+    for (unsigned i = 0; i < 5; i++) {
         memcpy(bytes + 12, formats[i], 2);
         fixture_seal(bytes, size);
         assert_int_equal(labial_model_load(&blob, bytes, size), LABIAL_ERROR_VERSION);
@@ -267,8 +252,7 @@ TEST(counts_that_lie_are_refused)
         { 28, 2 },   { 28, 3 },    { 28, 8 }, { 28, 15 }, { 28, 16 },  { 28, 255 }, { 29, 0 },   { 29, 1 }, { 29, 5 },
         { 29, 255 }, { 30, 0 },    { 30, 1 }, { 30, 35 }, { 30, 37 },  { 30, 255 }, { 31, 1 },
     };
-    unsigned i;
-    for (i = 0; i < sizeof lies / sizeof lies[0]; i++) {
+    for (unsigned i = 0; i < sizeof lies / sizeof lies[0]; i++) {
         const size_t size = serialise(&rich.model);
         labial_blob_t blob;
         void *copy;
@@ -289,10 +273,9 @@ static int is_big_endian(void)
 /* Would catch a blob that is played with every number's bytes in the wrong order. */
 static void every_blob_is_refused(void **state)
 {
-    unsigned m;
     (void)state;
     assert_int_equal(labial_model_load(NULL, bytes, 0), LABIAL_ERROR_NULL);
-    for (m = 0; m < 5; m++) {
+    for (unsigned m = 0; m < 5; m++) {
         const size_t size = serialise(models[m]);
         labial_blob_t blob;
         void *copy;

@@ -26,15 +26,14 @@ SETUP(setup)
                                           { 500, LABIAL_NO_FLOOR, LABIAL_NO_FLOOR },
                                           { LABIAL_NO_FLOOR, 700, 200 },
                                           { -800, LABIAL_NO_FLOOR, -5 } };
-    unsigned i;
     fixture_plain(&f);
     memset(f.shapes, 0, sizeof f.shapes);
     f.model.floor_count = FIXTURE_FLOORS;
     f.model.floors = f.floors;
     f.model.contacts = f.contacts;
-    for (i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
+    for (unsigned i = 0; i < FIXTURE_FLOORS * LABIAL_CHANNELS; i++)
         f.floors[i] = LABIAL_NO_FLOOR;
-    for (i = 0; i < FIXTURE_FLOORS; i++)
+    for (unsigned i = 0; i < FIXTURE_FLOORS; i++)
         memcpy(f.floors + i * LABIAL_CHANNELS, floors[i], sizeof floors[i]);
     f.phonemes[FIXTURE_P].floor = 1;
     f.phonemes[FIXTURE_O].floor = 2;
@@ -106,8 +105,7 @@ static void expect(const char *text, unsigned channel, int floor, const char *wa
 {
     static char found[MANY + 1];
     const size_t n = speak(text);
-    size_t t;
-    for (t = 0; t < n; t++) {
+    for (size_t t = 0; t < n; t++) {
         found[t] = contacts[t] >> channel & 1 ? 'x' : '.';
         if (found[t] == 'x' && targets[t][channel] != floor)
             fail_msg("%s: frame %zu is in contact at %d, not %d", text, t, targets[t][channel], floor);
@@ -170,13 +168,12 @@ TEST(close_contacts_are_told_apart)
     };
     const unsigned channel = 4, at = FIXTURE_P;
     int16_t *floor = f.floors + (f.phonemes[at].floor - 1) * LABIAL_CHANNELS;
-    size_t i, t;
     floor[channel] = 1000;
     f.contacts[0] = 1u << channel;
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const size_t n = speak(cases[i].text);
         assert_int_equal(n, strlen(cases[i].where));
-        for (t = 0; t < n; t++) {
+        for (size_t t = 0; t < n; t++) {
             const int where = cases[i].where[t], wanted = where == 'p' ? 1000 : where == 'o' ? 1000 - 1600 : 0;
             if (targets[t][channel] != wanted || (contacts[t] >> channel & 1) != (where == 'p'))
                 fail_msg("%s, frame %zu: %d, not %d", cases[i].text, t, targets[t][channel], wanted);
@@ -194,12 +191,11 @@ TEST(close_contacts_are_told_apart)
 /* What swallowed a pause closes for its last eight frames; before that it is free of its contact, not of its floors. */
 TEST(long_stops_close_at_their_end)
 {
-    size_t t, n;
     lips("t3 p15 t3", "..........xxxxxxxx...");
     lips("t3 p16 t3", "...........xxxxxxxx...");
     lips("t3 p40 t3", "...................................xxxxxxxx...");
-    n = speak("t3 p40 t3");
-    for (t = 0; t < n; t++) {
+    const size_t n = speak("t3 p40 t3");
+    for (size_t t = 0; t < n; t++) {
         const int is_stop = t >= 3 && t < 43;
         assert_int_equal(targets[t][LIPS], t >= 35 && t < 43 ? 1000 : 0);
         assert_int_equal(targets[t][JAW], is_stop ? 100 : 0);
@@ -210,12 +206,11 @@ TEST(long_stops_close_at_their_end)
 TEST(only_contact_is_borrowed)
 {
     static const int wanted[] = { 0, 0, 0, 100, 0, 0, 0 }, floors[] = { 0, 0, 500, 1000, 1000, 1000, 0 };
-    size_t t;
     assert_int_equal(speak("t3 p1 t3"), 7);
-    for (t = 0; t < 7; t++)
+    for (size_t t = 0; t < 7; t++)
         assert_int_equal(targets[t][JAW], wanted[t]);
     assert_int_equal(speak("t2 o2 p1 t2"), 7);
-    for (t = 0; t < 7; t++)
+    for (size_t t = 0; t < 7; t++)
         assert_int_equal(targets[t][LIPS], t == 3 ? 1000 : floors[t]);
     lips("t2 o1 t2", ".....");
     assert_int_equal(contacts[2], 0);
@@ -258,10 +253,9 @@ TEST(stops_at_the_ends_have_their_own_frames)
  * other phoneme, and the stop is what counts there. */
 TEST(pauses_come_to_rest_and_lead_on)
 {
-    size_t t, n;
-    n = speak("t2 _30 t2");
+    const size_t n = speak("t2 _30 t2");
     assert_int_equal(n, 34);
-    for (t = 0; t < n; t++) {
+    for (size_t t = 0; t < n; t++) {
         const int step = t < 2 || t >= 29 ? 0 : t < 17 ? (int)t - 1 : 16;
         if (targets[t][LIPS] != -50 * step)
             fail_msg("frame %zu is %d, not %d", t, targets[t][LIPS], -50 * step);
@@ -303,27 +297,26 @@ TEST(random_streams_keep_contact)
     static oracle_frame_t frames[MANY];
     static int16_t wanted[MANY][LABIAL_CHANNELS];
     static uint16_t touched[MANY];
-    unsigned seed, i, c, touching = 0;
+    unsigned touching = 0;
     fixture_rich(&rich);
-    for (seed = 0; seed < FIXTURE_ROUNDS(300); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(300); seed++) {
         const unsigned phonemes = COUNT < LABIAL_QUEUE ? COUNT : LABIAL_QUEUE;
-        size_t t, count;
         fixture_stream(input, phonemes, seed % 4 ? FIXTURE_CONTACTS : FIXTURE_PAUSES, seed);
         begin(&rich.model);
-        for (i = 0; i < phonemes; i++) {
+        for (unsigned i = 0; i < phonemes; i++) {
             input[i].ms %= 1000;
             input[i].model = (uint8_t)(LABIAL_MODELS > 1 && seed % 3 == 0 && i / 7 % 2);
             input[i].phoneme =
                 (uint8_t)(input[i].phoneme % (input[i].model ? FIXTURE_LAUGH_COUNT : FIXTURE_SPEECH_COUNT));
             (void)labial_units_push(&units, input[i].phoneme, input[i].model, input[i].ms, FIXTURE_RATE);
         }
-        count = oracle_units(models, input, phonemes, frames, MANY);
+        const size_t count = oracle_units(models, input, phonemes, frames, MANY);
         oracle_targets(models, frames, count, wanted, touched);
         assert_int_equal(aim(), count);
-        for (t = 0; t < count; t++) {
+        for (size_t t = 0; t < count; t++) {
             if (contacts[t] != touched[t])
                 fail_msg("seed %u, frame %zu: contact %x, not %x", seed, t, contacts[t], touched[t]);
-            for (c = 0; c < LABIAL_CHANNELS; c++)
+            for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
                 if (targets[t][c] != wanted[t][c])
                     fail_msg("seed %u, frame %zu, channel %u: %d, not %d", seed, t, c, targets[t][c], wanted[t][c]);
             touching += contacts[t] != 0;

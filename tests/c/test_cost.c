@@ -21,12 +21,11 @@ TEST(no_model_costs_nothing)
 /* Would catch a table that is not counted, and one phoneme taken for all of them. */
 TEST(everything_adds_to_the_cost)
 {
-    uint32_t plain, more;
     fixture_plain(&f);
-    plain = labial_model_cost(&f.model);
+    uint32_t plain = labial_model_cost(&f.model);
     assert_true(plain > 0);
     f.phonemes[FIXTURE_T].component_count++;
-    more = labial_model_cost(&f.model);
+    uint32_t more = labial_model_cost(&f.model);
     assert_true(more > plain);
     f.phonemes[FIXTURE_A].component_count--; /* which is not the largest */
     assert_true(labial_model_cost(&f.model) == more);
@@ -70,10 +69,9 @@ static uint32_t cost_of_stride(unsigned stride)
  * turn costs that many times the same. Would catch frames that are not counted, and channels. */
 TEST(frames_of_a_turn_cost_alike)
 {
-    uint32_t of_three, of_two;
     fixture_plain(&f);
-    of_three = cost_of_stride(6) - cost_of_stride(5);
-    of_two = cost_of_stride(8) - cost_of_stride(7);
+    const uint32_t of_three = cost_of_stride(6) - cost_of_stride(5);
+    const uint32_t of_two = cost_of_stride(8) - cost_of_stride(7);
     assert_true(of_two > 0 && of_two < cost_of_stride(7));
     assert_int_equal(2u * of_three, 3u * of_two);
 }
@@ -98,20 +96,18 @@ static uint32_t steps_of_search(unsigned count, unsigned wanted)
  * counted, of few pairs or of many. */
 TEST(pairs_cost_the_comparisons_of_their_search)
 {
-    uint32_t none, each;
-    unsigned count, wanted;
     fixture_plain(&f);
     f.model.pair_knots = 0;
     f.model.pair_count = 0;
-    none = labial_model_cost(&f.model);
+    const uint32_t none = labial_model_cost(&f.model);
     f.model.pair_count = 1;
-    each = labial_model_cost(&f.model);
+    uint32_t each = labial_model_cost(&f.model);
     f.model.pair_count = 2; /* may take two comparisons */
     each = labial_model_cost(&f.model) - each;
     assert_true(each > 0);
-    for (count = 0; count <= 300; count++) {
+    for (unsigned count = 0; count <= 300; count++) {
         uint32_t most = 0;
-        for (wanted = 0; wanted <= count; wanted++)
+        for (unsigned wanted = 0; wanted <= count; wanted++)
             if (steps_of_search(count, wanted) > most)
                 most = steps_of_search(count, wanted);
         f.model.pair_count = (uint16_t)count;

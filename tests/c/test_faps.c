@@ -16,8 +16,8 @@ TEST(channels_have_their_numbers)
 
 TEST(expanded_numbers_ascend)
 {
-    unsigned i = 0, fap;
-    for (fap = 3; fap <= 60; fap++)
+    unsigned i = 0;
+    for (unsigned fap = 3; fap <= 60; fap++)
         if (fap <= 13 || fap == 16 || fap == 17 || fap >= 51)
             assert_int_equal(labial_fap_numbers_expanded[i++], fap);
     assert_int_equal(i, LABIAL_FAPS_EXPANDED);
@@ -35,11 +35,10 @@ TEST(inner_lip_moves_as_the_outer)
         int16_t before, faps[LABIAL_FAPS_EXPANDED], after;
     } out = { -77, { 0 }, -78 };
     int16_t in[LABIAL_CHANNELS];
-    unsigned i;
-    for (i = 0; i < LABIAL_CHANNELS; i++)
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
         in[i] = (int16_t)(1000 + labial_fap_numbers[i]);
     labial_expand(in, out.faps);
-    for (i = 0; i < LABIAL_FAPS_EXPANDED; i++)
+    for (unsigned i = 0; i < LABIAL_FAPS_EXPANDED; i++)
         assert_int_equal(out.faps[i], wanted(labial_fap_numbers_expanded[i]));
     assert_int_equal(out.before, -77);
     assert_int_equal(out.after, -78);
@@ -49,11 +48,10 @@ TEST(inner_lip_moves_as_the_outer)
 TEST(extreme_values_are_copied)
 {
     int16_t in[LABIAL_CHANNELS], out[LABIAL_FAPS_EXPANDED];
-    unsigned i;
-    for (i = 0; i < LABIAL_CHANNELS; i++)
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
         in[i] = i % 2 ? INT16_MIN : INT16_MAX;
     labial_expand(in, out);
-    for (i = 0; i < LABIAL_FAPS_EXPANDED; i++)
+    for (unsigned i = 0; i < LABIAL_FAPS_EXPANDED; i++)
         assert_true(out[i] == INT16_MIN || out[i] == INT16_MAX);
     assert_int_equal(out[0], INT16_MAX);  /* 3, channel 0 */
     assert_int_equal(out[1], INT16_MIN);  /* 4 as 51, channel 3 */

@@ -72,12 +72,11 @@ static void check_product(int32_t a, int32_t b, unsigned shift)
 TEST(products_are_rounded_alike_and_exactly)
 {
     fixture_random_t random = { 1 };
-    unsigned i, k, shift;
-    for (shift = 16; shift <= 31; shift++) {
-        for (i = 0; i < CORNERS; i++)
-            for (k = 0; k < CORNERS; k++)
+    for (unsigned shift = 16; shift <= 31; shift++) {
+        for (unsigned i = 0; i < CORNERS; i++)
+            for (unsigned k = 0; k < CORNERS; k++)
                 check_product(corners[i], corners[k], shift);
-        for (i = 0; i < 20000; i++) {
+        for (unsigned i = 0; i < 20000; i++) {
             const int32_t a = (int32_t)fixture_random(&random), b = (int32_t)fixture_random(&random);
             check_product(a, b, shift);
             check_product(a >> (i % 31), b >> (i / 31 % 31), shift);
@@ -90,8 +89,7 @@ TEST(products_are_rounded_alike_and_exactly)
 TEST(parts_are_rounded_alike)
 {
     fixture_random_t random = { 2 };
-    unsigned i;
-    for (i = 0; i < 400000; i++) {
+    for (unsigned i = 0; i < 400000; i++) {
         const int32_t x = i < 24 * CORNERS ? corners[i % CORNERS] : (int32_t)fixture_random(&random) >> i % 31;
         const uint32_t f = i % 5 ? fixture_below(&random, 65537) : i % 10 ? 65536 : 0;
         const uint32_t g = i % 5 ? fixture_below(&random, (1u << 24) + 1) : i % 10 ? 1u << 24 : 255;
@@ -114,8 +112,7 @@ TEST(sums_wrap)
 
 TEST(weights_are_minifloats)
 {
-    unsigned code;
-    for (code = 0; code < 256; code++) {
+    for (unsigned code = 0; code < 256; code++) {
         assert_true((double)labial_weight((uint8_t)code) == fixture_weight_value((uint8_t)code));
         assert_true(code == 0 || labial_weight((uint8_t)code) > labial_weight((uint8_t)(code - 1)));
     }
@@ -128,10 +125,8 @@ TEST(weights_are_minifloats)
 TEST(steps_are_scaled_and_rounded)
 {
     static const uint16_t scales[] = { 0, 1, 127, 128, 255, 256, 257, 16383, 32767, 65535 };
-    unsigned i;
-    int steps;
-    for (i = 0; i < sizeof scales / sizeof scales[0]; i++)
-        for (steps = -4096; steps <= 4096; steps++)
+    for (unsigned i = 0; i < sizeof scales / sizeof scales[0]; i++)
+        for (int steps = -4096; steps <= 4096; steps++)
             assert_int_equal(labial_scaled(steps, scales[i]), (int)floor(steps * (double)scales[i] / 256.0 + 0.5));
 }
 
@@ -139,8 +134,7 @@ TEST(steps_are_scaled_and_rounded)
 TEST(gaussian_costs_follow_their_formula)
 {
     fixture_random_t random = { 3 };
-    unsigned i;
-    for (i = 0; i < 200000; i++) {
+    for (unsigned i = 0; i < 200000; i++) {
         const uint32_t x = fixture_random(&random) >> (16 + i % 16);
         const uint16_t gain = (uint16_t)(fixture_random(&random) >> (16 + i / 16 % 16));
         const uint32_t limit = i % 3 ? 1023 : fixture_random(&random) >> 16;
@@ -163,12 +157,11 @@ TEST(gaussian_costs_follow_their_formula)
  * said to be the most. */
 TEST(easing_follows_its_curve)
 {
-    unsigned steps, step;
-    for (steps = 1; steps <= 65535; steps = steps < 1000 ? steps + 1 : steps < 1002 ? 65535 : 65536) {
+    for (unsigned steps = 1; steps <= 65535; steps = steps < 1000 ? steps + 1 : steps < 1002 ? 65535 : 65536) {
         int32_t last = 0;
         assert_int_equal(labial_ease(0, steps), 0);
         assert_int_equal(labial_ease(steps, steps), 16384);
-        for (step = 1; step <= steps; step++) {
+        for (unsigned step = 1; step <= steps; step++) {
             const double s = (double)step / steps, wanted = 16384.0 * s * s * (3.0 - 2.0 * s);
             const int32_t gone = labial_ease(step, steps);
             /* 1.5 for s, 3 for its square, 1 for the result */
@@ -192,16 +185,15 @@ TEST(clamping)
 TEST(quotients_are_exact)
 {
     fixture_random_t random = { 7 };
-    unsigned i, j;
-    for (i = 0; i < CORNERS; i++)
-        for (j = 0; j < CORNERS; j++) {
+    for (unsigned i = 0; i < CORNERS; i++)
+        for (unsigned j = 0; j < CORNERS; j++) {
             const uint32_t a = (uint32_t)corners[i], b = (uint32_t)corners[j];
             if (b > 0) {
                 assert_int_equal(labial_quotient(a, b), a / b);
                 assert_int_equal(narrow_quotient(a, b), a / b);
             }
         }
-    for (i = 0; i < FIXTURE_ROUNDS(1000000); i++) {
+    for (unsigned i = 0; i < FIXTURE_ROUNDS(1000000); i++) {
         const uint32_t a = fixture_below(&random, UINT32_MAX) >> fixture_below(&random, 32);
         const uint32_t b = (fixture_below(&random, UINT32_MAX) >> fixture_below(&random, 32)) + 1u;
         if (narrow_quotient(a, b) != a / b)

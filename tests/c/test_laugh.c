@@ -36,10 +36,9 @@ static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
     memset(&laugh, 0xee, sizeof laugh);
     assert_int_equal(labial_laugh_begin(&laugh, length, intensity, seed), LABIAL_OK);
     for (;;) {
-        int result;
         moved = laugh;
         memset(&laugh, 0xdd, sizeof laugh);
-        result = labial_laugh_next(&moved, &phoneme, &ms);
+        const int result = labial_laugh_next(&moved, &phoneme, &ms);
         laugh = moved;
         if (result != LABIAL_OK) {
             assert_int_equal(result, LABIAL_DONE);
@@ -63,11 +62,9 @@ static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
 /* Would catch a phoneme that is lost, counted twice or cut to nothing at the end, at any length. */
 TEST(totals_are_exact)
 {
-    uint32_t length, seed;
-    unsigned intensity;
-    for (length = 0; length < 6000; length += length < 700 ? 1 : 37)
-        for (seed = 0; seed < 4; seed++)
-            for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity += 64) {
+    for (uint32_t length = 0; length < 6000; length += length < 700 ? 1 : 37)
+        for (uint32_t seed = 0; seed < 4; seed++)
+            for (unsigned intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity += 64) {
                 const sum_t sum = sum_of(length, intensity, seed * 77u);
                 assert_int_equal(sum.total, length);
                 assert_true(sum.phonemes == 0 || sum.shortest >= (length < 20 ? length : 20));
@@ -78,8 +75,7 @@ TEST(totals_are_exact)
 /* Would catch phonemes longer than any of the statistics, such as one that fills what is left. */
 TEST(no_phoneme_fills_the_rest)
 {
-    uint32_t seed;
-    for (seed = 0; seed < 300; seed++) {
+    for (uint32_t seed = 0; seed < 300; seed++) {
         assert_true(sum_of(20000, 128, seed).longest <= 920);
         assert_true(sum_of(1800, 128, seed).longest <= 920);
         assert_true(sum_of(1800, 128, seed).phonemes >= 5);
@@ -90,8 +86,7 @@ TEST(no_phoneme_fills_the_rest)
  * by phoneme. */
 TEST(laughs_are_those_of_the_reference)
 {
-    unsigned i;
-    for (i = 0; i < sizeof laughs / sizeof laughs[0]; i++) {
+    for (unsigned i = 0; i < sizeof laughs / sizeof laughs[0]; i++) {
         static uint8_t bytes[3 * 2000];
         labial_laugh_t laugh;
         unsigned phoneme;
@@ -122,14 +117,14 @@ TEST(more_than_the_highest_intensity_is_the_highest)
 TEST(seeds_give_different_laughs)
 {
     labial_laugh_t a, b;
-    unsigned bit, same = 0;
-    for (bit = 0; bit < 32; bit++) {
-        unsigned phoneme_a, phoneme_b, i;
+    unsigned same = 0;
+    for (unsigned bit = 0; bit < 32; bit++) {
+        unsigned phoneme_a, phoneme_b;
         uint32_t ms_a, ms_b;
         int equal = 1;
         assert_int_equal(labial_laugh_begin(&a, 5000, 128, 0), LABIAL_OK);
         assert_int_equal(labial_laugh_begin(&b, 5000, 128, (uint32_t)1 << bit), LABIAL_OK);
-        for (i = 0; i < 12; i++) {
+        for (unsigned i = 0; i < 12; i++) {
             assert_int_equal(labial_laugh_next(&a, &phoneme_a, &ms_a), LABIAL_OK);
             assert_int_equal(labial_laugh_next(&b, &phoneme_b, &ms_b), LABIAL_OK);
             equal = equal && phoneme_a == phoneme_b && ms_a == ms_b;
@@ -145,8 +140,7 @@ TEST(seeds_give_different_laughs)
 TEST(intensity_opens_the_mouth)
 {
     uint32_t seed, open[3] = { 0, 0, 0 }, hummed[3] = { 0, 0, 0 }, a[3] = { 0, 0, 0 };
-    unsigned i;
-    for (i = 0; i < 3; i++)
+    for (unsigned i = 0; i < 3; i++)
         for (seed = 0; seed < 200; seed++) {
             const sum_t sum = sum_of(5000, i * 128, seed);
             open[i] += sum.spoken;
@@ -258,11 +252,9 @@ TEST(intensity_reaches_the_mouth)
 {
     enum { SEEDS = 12, STEPS = 4 };
     seen_t sum[STEPS + 1];
-    unsigned step;
-    uint32_t seed;
     memset(sum, 0, sizeof sum);
-    for (step = 0; step <= STEPS; step++)
-        for (seed = 0; seed < SEEDS; seed++) {
+    for (unsigned step = 0; step <= STEPS; step++)
+        for (uint32_t seed = 0; seed < SEEDS; seed++) {
             const seen_t seen = laughed(step * LABIAL_LAUGH_FULL / STEPS, seed);
             sum[step].opening += seen.opening;
             sum[step].jaw += seen.jaw;
@@ -272,7 +264,7 @@ TEST(intensity_reaches_the_mouth)
         }
     assert_true(sum[0].opening < 120 * SEEDS && sum[0].jaw < 140 * SEEDS);
     assert_true(sum[STEPS].jaw > 3 * sum[0].jaw && 2 * sum[STEPS].corner > 3 * sum[0].corner);
-    for (step = 1; step <= STEPS; step++) {
+    for (unsigned step = 1; step <= STEPS; step++) {
         assert_true(sum[step].opening > sum[step - 1].opening);
         assert_true(sum[step].jaw > sum[step - 1].jaw);
         assert_true(sum[step].corner > sum[step - 1].corner);
@@ -286,18 +278,15 @@ TEST(intensity_reaches_the_mouth)
  * another median, another draw, and a half that is off by the least that can be. */
 TEST(trains_are_as_long_as_intensity_and_chance_have_it)
 {
-    unsigned intensity;
-    uint32_t seed;
-    for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++)
-        for (seed = 0; seed < 300; seed++) {
+    for (unsigned intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++)
+        for (uint32_t seed = 0; seed < 300; seed++) {
             labial_laugh_t laugh;
             uint32_t x = (uint32_t)(((uint64_t)seed + 1u) * 2654435761u) + 8u;
-            double wanted;
             assert_int_equal(labial_laugh_begin(&laugh, 5000, intensity, seed), LABIAL_OK);
             x ^= x << 13;
             x ^= x >> 17;
             x ^= x << 5;
-            wanted = TRAIN_MEDIAN * (2.0 / 3.0) * (1.0 + intensity / 256.0) * (lengths[x >> 27] / 32.0);
+            const double wanted = TRAIN_MEDIAN * (2.0 / 3.0) * (1.0 + intensity / 256.0) * (lengths[x >> 27] / 32.0);
             if (laugh.pulses != (unsigned)(wanted + 0.5 + 1e-9))
                 fail_msg("intensity %u, seed %u: %u pulses, not %g", intensity, (unsigned)seed, laugh.pulses, wanted);
         }
@@ -324,11 +313,10 @@ static unsigned grade_of_first(unsigned intensity, unsigned turn)
  * end too early or too late. */
 TEST(turns_share_out_the_grades)
 {
-    unsigned intensity, turn;
-    for (intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++) {
+    for (unsigned intensity = 0; intensity <= LABIAL_LAUGH_FULL; intensity++) {
         const double asked = floor((intensity - (double)SOFT) * GRADES / 256.0);
         unsigned sum = 0;
-        for (turn = 0; turn < 256; turn++)
+        for (unsigned turn = 0; turn < 256; turn++)
             sum += grade_of_first(intensity, turn);
         assert_int_equal(sum, asked < 0.0 ? 0 : asked > 512.0 ? 512 : (int)asked);
     }
@@ -337,8 +325,7 @@ TEST(turns_share_out_the_grades)
 static unsigned sum_of_shares(const uint8_t *shares, const int16_t *tilts, size_t count)
 {
     unsigned sum = 0;
-    size_t i;
-    for (i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         sum += shares[i];
         assert_true(!tilts || (tilts[i] >= -255 && tilts[i] <= 255)); /* no weight below 0 at any intensity */
     }
@@ -349,26 +336,25 @@ static unsigned sum_of_shares(const uint8_t *shares, const int16_t *tilts, size_
  * below the shortest, a period beyond its limits, a train without pulses. */
 TEST(the_tables_keep_the_limits)
 {
-    size_t i, j;
-    for (i = 0; i < COUNT_OF(stretches); i++)
-        for (j = 1; j < COUNT_OF(medians); j++)
+    for (size_t i = 0; i < COUNT_OF(stretches); i++)
+        for (size_t j = 1; j < COUNT_OF(medians); j++)
             assert_true(medians[j] * stretches[i] / 128 * 218 / 256 >= SHORTEST);
-    for (i = 0; i < COUNT_OF(deviates); i++) {
+    for (size_t i = 0; i < COUNT_OF(deviates); i++) {
         const double period = PERIOD + PERIOD_SPREAD * deviates[i] / 32.0;
         assert_true(period >= PERIOD_SHORTEST + 1 && period <= PERIOD_LONGEST);
     }
-    for (i = 0; i < COUNT_OF(lengths); i++) {
+    for (size_t i = 0; i < COUNT_OF(lengths); i++) {
         assert_true(TRAIN_MEDIAN * 2.0 / 3.0 * lengths[i] / 32.0 >= .5);
         assert_true(TRAIN_MEDIAN * 4.0 / 3.0 * lengths[i] / 32.0 < TRAIN_LONGEST + .5);
     }
     assert_true(sum_of_shares(pulse_shares, pulse_tilts, COUNT_OF(pulse_shares)) <= 256);
     assert_true(sum_of_shares(vowel_shares, vowel_tilts, COUNT_OF(vowel_shares)) <= 256);
     assert_true(sum_of_shares(onset_shares, NULL, COUNT_OF(onset_shares)) <= 256);
-    for (i = 0; i < COUNT_OF(vowels); i++)
+    for (size_t i = 0; i < COUNT_OF(vowels); i++)
         assert_true(vowels[i] < COUNT_OF(soft_grades) && soft_grades[vowels[i]] > 0);
-    for (i = 0; i < COUNT_OF(onsets); i++)
+    for (size_t i = 0; i < COUNT_OF(onsets); i++)
         assert_true(onsets[i] > 0 && onsets[i] < COUNT_OF(medians));
-    for (i = 0; i < COUNT_OF(soft_grades); i++)
+    for (size_t i = 0; i < COUNT_OF(soft_grades); i++)
         assert_true(soft_grades[i] == 0 ||
                     (soft_grades[i] >= COUNT_OF(soft_grades) && soft_grades[i] + 1 < LABIAL_LAUGH_PHONEMES));
 }

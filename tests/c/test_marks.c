@@ -59,8 +59,7 @@ TEST(every_character_is_a_mark_or_none)
 {
     static const unsigned signs[] = { 0x2b0, 0x2b2, 0x2b7, 0x2d0, 0x2d1, 0x2e0, 0x2e1, 0x2e4, 0x207f };
     static const unsigned stress[] = { 0x2c8, 0x2cc, 0x294 };
-    unsigned point;
-    for (point = 0x80; point < 0x10000; point++) {
+    for (unsigned point = 0x80; point < 0x10000; point++) {
         char text[8] = "B";
         const int is_mark = (point >= 0x300 && point <= 0x36f && point != 0x327) ||
                             is_one_of(point, signs, sizeof signs / sizeof signs[0]);
@@ -80,9 +79,8 @@ TEST(every_character_is_a_mark_or_none)
 /* Would catch a mark made of bytes that are no character: every pair of which the first is not ASCII. */
 TEST(two_bytes_are_a_mark_where_they_are_a_character)
 {
-    unsigned a, b;
-    for (a = 0x80; a < 0x100; a++)
-        for (b = 0; b < 0x100; b++) {
+    for (unsigned a = 0x80; a < 0x100; a++)
+        for (unsigned b = 0; b < 0x100; b++) {
             const char behind[] = { 'B', (char)a, (char)b }, before[] = { (char)a, (char)b, 'B' };
             const int is_character = a >= 0xc2 && a < 0xe0 && b >= 0x80 && b < 0xc0;
             if (!is_character && (find(behind, 3) == B || find(before, 3) == B))
@@ -93,8 +91,7 @@ TEST(two_bytes_are_a_mark_where_they_are_a_character)
 /* Would catch an ASCII mark that is forgotten, taken at the wrong end, or dropped behind a blank. */
 TEST(every_sign_is_a_mark_or_none)
 {
-    unsigned c;
-    for (c = 0; c < 0x80; c++) {
+    for (unsigned c = 0; c < 0x80; c++) {
         const char one = (char)c;
         const int is_blank = c == ' ' || c == '\t' || c == '\r' || c == '\n';
         const char behind[] = { 'B', one }, before[] = { one, 'B' }, apart[] = { 'B', ' ', one },
@@ -123,9 +120,8 @@ TEST(every_sign_is_a_mark_or_none)
 /* Would catch a Praat sequence that is forgotten, or a backslash that takes what follows with it. */
 TEST(every_backslash_sequence_is_a_mark_or_none)
 {
-    unsigned a, b;
-    for (a = 1; a < 0x80; a++)
-        for (b = 1; b < 0x80; b++) {
+    for (unsigned a = 1; a < 0x80; a++)
+        for (unsigned b = 1; b < 0x80; b++) {
             const char behind[] = { 'B', '\\', (char)a, (char)b }, before[] = { '\\', (char)a, (char)b, 'B' };
             const int is_mark = (strchr("|0OT-+:~NUDn3cv'`^", (int)a) && strchr("v^()", (int)b)) ||
                                 ((a == ':' || a == '.') && b == 'f') || (a == '\'' && (b == '1' || b == '2'));
@@ -140,7 +136,6 @@ TEST(every_backslash_sequence_is_a_mark_or_none)
 TEST(what_is_left_decides)
 {
     char text[70];
-    size_t length;
     assert_int_equal(find("_h", 2), LABIAL_ERROR_NAME);
     assert_int_equal(find("B::::", 5), B);
     assert_int_equal(find("B_h_h:", 6), B);
@@ -153,7 +148,8 @@ TEST(what_is_left_decides)
     assert_int_equal(find("B'", 2), LABIAL_ERROR_NAME);
     assert_int_equal(find("B\xcb\x88", 3), LABIAL_ERROR_NAME); /* stress is a mark before a label */
     assert_int_equal(find("B\xe2\x81", 3), LABIAL_ERROR_NAME);
-    for (length = 1; length < sizeof text; length++) { /* marks do not count, whatever is in front of the label */
+    for (size_t length = 1; length < sizeof text;
+         length++) { /* marks do not count, whatever is in front of the label */
         memset(text, ':', sizeof text);
         text[0] = 'B';
         assert_int_equal(find(text, length), length <= 32 ? B : LABIAL_ERROR_NAME);
@@ -168,9 +164,8 @@ TEST(what_is_no_sound_is_silence)
 {
     static const char open[] = "<[({+*#", close[] = ">])}+*#";
     char text[40];
-    unsigned i, k, c;
-    for (i = 0; i < 7; i++)
-        for (k = 0; k < 7; k++) {
+    for (unsigned i = 0; i < 7; i++)
+        for (unsigned k = 0; k < 7; k++) {
             text[0] = open[i];
             text[1] = 'B';
             text[2] = close[k];
@@ -181,7 +176,7 @@ TEST(what_is_no_sound_is_silence)
     assert_int_equal(nearest("[]", 2), SILENCE);
     assert_int_equal(nearest("+", 1), SILENCE); /* not the one and the other sign of a pair */
     assert_int_equal(labial_find_nearest(&names, ANY, "+", 1, 5), 5);
-    for (c = 1; c < 0x80; c++) { /* of a lone sign only letters may be sounds */
+    for (unsigned c = 1; c < 0x80; c++) { /* of a lone sign only letters may be sounds */
         const char one = (char)c;
         const int is_letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
         assert_int_equal(nearest(&one, 1), one == 'B' ? B : is_letter ? SCHWA : SILENCE);

@@ -33,7 +33,6 @@ TEST_AFTER(setup, accepts_the_fixtures)
 
 TEST_AFTER(setup, refuses_null)
 {
-    unsigned c;
     assert_int_equal(labial_model_check(NULL), LABIAL_ERROR_NULL);
     TRY(const labial_phoneme_t *, f.model.phonemes, NULL, LABIAL_ERROR_NULL);
     TRY(const labial_component_t *, f.model.components, NULL, LABIAL_ERROR_NULL);
@@ -43,7 +42,7 @@ TEST_AFTER(setup, refuses_null)
     TRY(const int16_t *, f.model.floors, NULL, LABIAL_ERROR_NULL);    /* there are floors */
     TRY(const uint16_t *, f.model.contacts, NULL, LABIAL_ERROR_NULL); /* there are floors, contact or not */
     TRY(const labial_channel_t *, f.model.channels, NULL, LABIAL_ERROR_NULL);
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         TRY(const labial_emission_t *, f.channels[c].emissions, NULL, LABIAL_ERROR_NULL);
         TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
         TRY(const uint16_t *, f.channels[c].transitions, NULL, LABIAL_ERROR_NULL);
@@ -70,11 +69,10 @@ TEST_AFTER(setup, optional_tables_may_be_null)
 /* Would catch tables of 13 channels asked of a model that has 12, and a bit of the thirteenth let through. */
 TEST_AFTER(setup, models_that_compute_protrusion_have_twelve_channels)
 {
-    unsigned c;
     fixture_without_17(&f);
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
     TRY(const uint32_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL);
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
     REFUSED(uint16_t, f.contacts[0], 1u << 12);
     ACCEPTED(uint16_t, f.contacts[0], 1u << 11);
@@ -94,7 +92,6 @@ TEST_AFTER(setup, refuses_other_versions)
 
 TEST_AFTER(setup, refuses_counts_out_of_range)
 {
-    unsigned i;
     REFUSED(uint16_t, f.model.frames_per_second, 0);
     REFUSED(uint16_t, f.model.frames_per_second, 251);
     ACCEPTED(uint16_t, f.model.frames_per_second, 1);
@@ -108,7 +105,7 @@ TEST_AFTER(setup, refuses_counts_out_of_range)
     REFUSED(uint8_t, f.model.predecessors, 0);
     REFUSED(uint8_t, f.model.predecessors, LABIAL_STATES_MAX + 1);
     REFUSED(uint8_t, f.model.predecessors, 255);
-    for (i = 1; i <= FIXTURE_PREDECESSORS; i++)
+    for (unsigned i = 1; i <= FIXTURE_PREDECESSORS; i++)
         ACCEPTED(uint8_t, f.model.predecessors, (uint8_t)i); /* the same transitions, read as other states' */
     REFUSED(uint8_t, f.model.search_stride, 0);
     REFUSED(uint8_t, f.model.search_stride, LABIAL_SEARCH_STRIDE_MAX + 1);
@@ -125,8 +122,7 @@ TEST_AFTER(setup, refuses_counts_out_of_range)
 
 TEST_AFTER(setup, refuses_bad_phonemes)
 {
-    unsigned p;
-    for (p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
+    for (unsigned p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
         REFUSED(uint8_t, f.phonemes[p].component_count, 0);
         REFUSED(uint16_t, f.phonemes[p].first_component, 2 * FIXTURE_SPEECH_COUNT);
         REFUSED(uint16_t, f.phonemes[p].first_component, 2 * FIXTURE_SPEECH_COUNT - 1); /* the second lies outside */
@@ -149,9 +145,8 @@ TEST_AFTER(setup, refuses_bad_phonemes)
 TEST_AFTER(setup, refuses_bad_transitions)
 {
     const unsigned last = FIXTURE_SPEECH_STATES - 1;
-    unsigned c, i;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
-        for (i = 0; i < FIXTURE_SPEECH_STATES * FIXTURE_PREDECESSORS; i++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned i = 0; i < FIXTURE_SPEECH_STATES * FIXTURE_PREDECESSORS; i++) {
             REFUSED(uint16_t, f.transitions[c][i], last + 1);
             REFUSED(uint16_t, f.transitions[c][i], 0x0a00 | 0xff);
             REFUSED(uint16_t, f.transitions[c][i], 0x0a00 | (4 * last));
@@ -166,11 +161,10 @@ TEST_AFTER(setup, refuses_bad_transitions)
 TEST_AFTER(setup, accepts_transitions_of_the_largest_model)
 {
     static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
-    unsigned i, c;
     fixture_slow(&f);
-    for (i = 0; i < LABIAL_STATES_MAX * LABIAL_STATES_MAX; i++)
+    for (unsigned i = 0; i < LABIAL_STATES_MAX * LABIAL_STATES_MAX; i++)
         transitions[i] = (uint16_t)(0x0700 | i % LABIAL_STATES_MAX);
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         f.channels[c].transitions = transitions;
     f.model.predecessors = LABIAL_STATES_MAX;
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
@@ -182,9 +176,8 @@ TEST_AFTER(setup, accepts_transitions_of_the_largest_model)
  * Equal means are in order. */
 TEST_AFTER(setup, refuses_states_out_of_order)
 {
-    unsigned c, q;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
-        for (q = 1; q < FIXTURE_SPEECH_STATES; q++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned q = 1; q < FIXTURE_SPEECH_STATES; q++) {
             REFUSED(int16_t, f.emissions[c][q].mean, f.emissions[c][q - 1].mean - 1);
             ACCEPTED(int16_t, f.emissions[c][q].mean, f.emissions[c][q - 1].mean);
         }
@@ -195,8 +188,7 @@ TEST_AFTER(setup, refuses_states_out_of_order)
 TEST_AFTER(setup, refuses_positions_out_of_range)
 {
     const unsigned last = FIXTURE_SPEECH_STATES - 1;
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         REFUSED(int16_t, f.emissions[c][0].mean, LABIAL_POSITION_MAX + 1);
         REFUSED(int16_t, f.emissions[c][last].mean, -LABIAL_POSITION_MAX - 1);
         REFUSED(int16_t, f.emissions[c][last].mean, INT16_MIN);
@@ -228,9 +220,8 @@ TEST_AFTER(setup, refuses_floors_out_of_range)
 /* Would catch contact of a channel that there is not: the run-time shifts by channels. */
 TEST_AFTER(setup, refuses_contacts_of_no_channel)
 {
-    unsigned row, bit;
-    for (row = 0; row < FIXTURE_FLOORS; row++) {
-        for (bit = 0; bit < 16; bit++)
+    for (unsigned row = 0; row < FIXTURE_FLOORS; row++) {
+        for (unsigned bit = 0; bit < 16; bit++)
             TRY(uint16_t, f.contacts[row], 1u << bit, bit < LABIAL_CHANNELS ? LABIAL_OK : LABIAL_ERROR_MODEL);
         ACCEPTED(uint16_t, f.contacts[row], 0);
         ACCEPTED(uint16_t, f.contacts[row], 0x1fff);
@@ -266,8 +257,7 @@ TEST_AFTER(setup, refuses_pairs_out_of_order)
 
 TEST_AFTER(setup, refuses_scales_out_of_range)
 {
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         REFUSED(uint16_t, f.channels[c].shape_scale, 32768);
         REFUSED(uint16_t, f.channels[c].shape_scale, 65535);
         ACCEPTED(uint16_t, f.channels[c].shape_scale, 32767);
@@ -311,12 +301,12 @@ TEST_AFTER(setup, kernels_stay_within_the_labels)
 {
     static uint32_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * 3];
     static int8_t last_kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1)];
-    int taps, stride, behind, accepted = 0;
+    int accepted = 0;
     f.model.kernels = kernels;
     f.model.last_kernels = last_kernels;
-    for (taps = 1; taps <= LABIAL_KERNEL_TAPS_MAX + 1; taps++)
-        for (stride = 0; stride < 256; stride += stride <= LABIAL_REACH + 1 ? 1 : 31)
-            for (behind = 0; behind <= taps; behind++) {
+    for (int taps = 1; taps <= LABIAL_KERNEL_TAPS_MAX + 1; taps++)
+        for (int stride = 0; stride < 256; stride += stride <= LABIAL_REACH + 1 ? 1 : 31)
+            for (int behind = 0; behind <= taps; behind++) {
                 const int first = -behind * stride, last = (taps - 1 - behind) * stride;
                 const int sound =
                     taps <= LABIAL_KERNEL_TAPS_MAX && behind < taps && first >= -LABIAL_REACH && last <= LABIAL_REACH;
@@ -333,7 +323,6 @@ TEST_AFTER(setup, kernels_stay_within_the_labels)
 /* Counts at their bounds, from both sides: what is refused above is accepted here. */
 TEST_AFTER(setup, accepts_the_bounds_of_counts)
 {
-    unsigned i;
     fixture_plain(&f);
     ACCEPTED(uint8_t, f.model.class_count, LABIAL_CLASSES_MAX);
     ACCEPTED(uint8_t, f.model.class_count, FIXTURE_CLASSES);
@@ -344,9 +333,8 @@ TEST_AFTER(setup, accepts_the_bounds_of_counts)
     ACCEPTED(uint8_t, f.phonemes[0].viseme_class, FIXTURE_CLASSES - 1);
     ACCEPTED(uint8_t, f.phonemes[0].component_count, 1);
     ACCEPTED(uint8_t, f.model.phoneme_count, 1); /* which is silence */
-    for (i = 0; i < LABIAL_CHANNELS; i++) {
-        unsigned k;
-        for (k = 0; k < FIXTURE_PREDECESSORS; k++)
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
+        for (unsigned k = 0; k < FIXTURE_PREDECESSORS; k++)
             f.transitions[i][k] = 0;
     }
     ACCEPTED(uint8_t, f.model.state_count, 1);
@@ -362,9 +350,8 @@ TEST_AFTER(setup, accepts_the_largest_counts)
     static labial_phoneme_t phonemes[LABIAL_PHONEMES_MAX];
     static labial_component_t components[COMPONENTS];
     static int8_t shapes[COMPONENTS * LABIAL_CHANNELS];
-    unsigned p;
     fixture_slow(&f);
-    for (p = 0; p < LABIAL_PHONEMES_MAX; p++) {
+    for (unsigned p = 0; p < LABIAL_PHONEMES_MAX; p++) {
         phonemes[p].first_component = (uint16_t)(p * LABIAL_PHONEME_COMPONENTS_MAX);
         phonemes[p].component_count = LABIAL_PHONEME_COMPONENTS_MAX;
         phonemes[p].viseme_class = (uint8_t)(p % LABIAL_CLASSES_MAX);

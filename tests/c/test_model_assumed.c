@@ -29,19 +29,18 @@ static uint8_t initials[MANY];
 /* As little as there can be of everything. */
 SETUP(setup)
 {
-    unsigned i;
     memset(&model, 0, sizeof model);
     memset(channels, 0, sizeof channels);
     memset(phonemes, 0, sizeof phonemes);
     memset(emissions, 0, sizeof emissions);
     memset(states, 0, sizeof states);
-    for (i = 0; i < MANY; i++) {
+    for (unsigned i = 0; i < MANY; i++) {
         phonemes[i].component_count = 1;
         states[i].hold = LABIAL_WEIGHT_MIN;
     }
-    for (i = 0; i < 65536; i++)
+    for (unsigned i = 0; i < 65536; i++)
         pair_keys[i] = (uint16_t)i;
-    for (i = 0; i < LABIAL_CHANNELS; i++) {
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
         channels[i].emissions = emissions;
         channels[i].states = states;
         channels[i].transitions = transitions;
@@ -76,9 +75,8 @@ static void try_all(const char *member, void *place, size_t size, long least, lo
     const long lowest = is_signed ? -32768 : 0, highest = size == 1 ? 255 : is_signed ? 32767 : 65535;
     /* Where any is accepted there is no rule to try; the ends do, for some tables are as long as the value. */
     const long step = least == lowest && most == highest ? highest : 1;
-    long value;
     memcpy(old, place, size);
-    for (value = lowest; value <= highest; value += step) {
+    for (long value = lowest; value <= highest; value += step) {
         const uint8_t byte = (uint8_t)value;
         const uint16_t word = (uint16_t)value;
         if (size > 1 && value % LABIAL_TEST_SHARE != 0 && labs(value - least) > 1 && labs(value - most) > 1)
@@ -111,12 +109,11 @@ TEST_AFTER(setup, members_of_the_model)
 
 TEST_AFTER(setup, members_of_phonemes)
 {
-    unsigned i;
     model.phoneme_count = 2;
     model.class_count = LABIAL_CLASSES_MAX;
     model.component_count = 65535;
     model.floor_count = ASSUMED_FLOORS;
-    for (i = 0; i < 2; i++) {
+    for (unsigned i = 0; i < 2; i++) {
         labial_phoneme_t *const object = &phonemes[i];
         ASSUMED_OF_PHONEME(TRY_ALL)
         object->component_count = LABIAL_PHONEME_COMPONENTS_MAX;
@@ -147,14 +144,13 @@ TEST_AFTER(setup, members_of_emissions)
 TEST_AFTER(setup, members_of_states)
 {
     labial_state_t *const object = &states[1];
-    unsigned hold, code;
     model.state_count = 2;
     try_all("mean", &object->mean, 2, -LABIAL_POSITION_MAX, LABIAL_POSITION_MAX);
     try_all("hold", &object->hold, 1, 8, 0xaf);
     object->hold = 0x4f;
     try_all("weight[1]", &object->weight[1], 1, 0, 0x85);
-    for (hold = 0; hold < 256; hold++)
-        for (code = 0; code < 256; code++) { /* the most that weight[0] may be, and a little more */
+    for (unsigned hold = 0; hold < 256; hold++)
+        for (unsigned code = 0; code < 256; code++) { /* the most that weight[0] may be, and a little more */
             object->hold = (uint8_t)hold;
             object->weight[0] = object->weight[1] = (uint8_t)code;
 #define IS_ASSUMED(member, least, most) &&object->member >= (least) && object->member <= (most)

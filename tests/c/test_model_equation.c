@@ -27,8 +27,7 @@ static uint8_t not_above(double value)
 /* All states of a channel alike: no pull, and what is given. */
 static void hold_all(unsigned c, uint8_t hold, uint8_t delta, uint8_t delta2)
 {
-    unsigned q;
-    for (q = 0; q < FIXTURE_SPEECH_STATES; q++) {
+    for (unsigned q = 0; q < FIXTURE_SPEECH_STATES; q++) {
         labial_state_t *s = &f.states[c][q];
         s->hold = hold;
         s->weight[0] = delta;
@@ -49,8 +48,7 @@ SETUP(setup)
 TEST_AFTER(setup, refuses_weights_beyond_the_largest_sum)
 {
     const double sum = LABIAL_WEIGHT_SUM_MAX;
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         const uint8_t dd = not_above(1400), d = not_above(1000);
         labial_state_t *const s = f.states[c];
         hold_all(c, not_above(500), 0, 0);
@@ -77,8 +75,7 @@ TEST_AFTER(setup, refuses_weights_beyond_the_largest_sum)
 TEST_AFTER(setup, refuses_contact_that_is_too_firm)
 {
     const double sum = LABIAL_WEIGHT_SUM_MAX;
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         const uint8_t dd = not_above(1400), d = not_above(1000);
         const double room = sum - 6 * fixture_weight_value(dd) - 2 * fixture_weight_value(d);
         hold_all(c, not_above(500), 0, 0);
@@ -101,11 +98,10 @@ TEST_AFTER(setup, refuses_contact_that_is_too_firm)
 /* Would catch a stiffness measured by another state's hold, and motion that no factorisation of this kind bears. */
 TEST_AFTER(setup, refuses_motion_that_is_too_stiff)
 {
-    unsigned c, code;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         hold_all(c, not_above(500), 0, 0);
-        for (code = not_above(LABIAL_WEIGHT_MIN); code <= not_above(120); code++) {
+        for (unsigned code = not_above(LABIAL_WEIGHT_MIN); code <= not_above(120); code++) {
             const double hold = fixture_weight_value((uint8_t)code);
             s->hold = (uint8_t)code;
             ACCEPTED(uint8_t, s->weight[1], not_above(LABIAL_STIFFNESS_MAX * hold));
@@ -132,12 +128,10 @@ static uint16_t scale_of(int mean)
 TEST_AFTER(setup, refuses_pulls_beyond_the_largest)
 {
     const int all = LABIAL_PULL_MAX * LABIAL_WEIGHT_MIN / 4 / 16; /* of a weight of 16; rounded down */
-    unsigned c;
-    int sign;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = f.states[c];
         uint16_t *const scale = f.channels[c].motion_scale;
-        for (sign = -1; sign <= 1; sign += 2) {
+        for (int sign = -1; sign <= 1; sign += 2) {
             hold_all(c, 16, 16, 16);
             s[6].hold = LABIAL_WEIGHT_MIN;
             s[2].motion[0] = (int8_t)(127 * sign);
@@ -162,11 +156,9 @@ TEST_AFTER(setup, refuses_pulls_beyond_the_largest)
 /* Means are positions, whatever they weigh, to either side. */
 TEST_AFTER(setup, refuses_motion_out_of_range)
 {
-    unsigned c, i;
-    int sign;
-    for (c = 0; c < LABIAL_CHANNELS; c++)
-        for (i = 0; i < 2; i++)
-            for (sign = -1; sign <= 1; sign += 2) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
+        for (unsigned i = 0; i < 2; i++)
+            for (int sign = -1; sign <= 1; sign += 2) {
                 hold_all(c, 16, 0, 0);
                 f.states[c][c % FIXTURE_SPEECH_STATES].motion[i] = (int8_t)(127 * sign);
                 ACCEPTED(uint16_t, f.channels[c].motion_scale[i], scale_of(LABIAL_POSITION_MAX));
@@ -179,8 +171,7 @@ TEST_AFTER(setup, refuses_motion_out_of_range)
 
 TEST_AFTER(setup, refuses_states_that_nothing_holds)
 {
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         hold_all(c, 40, 0, 0);
         REFUSED(uint8_t, s->hold, 0);
@@ -195,8 +186,7 @@ TEST_AFTER(setup, refuses_states_that_nothing_holds)
  * modulo 2^32, and a delta-delta that is light enough for its hold and too heavy by itself. */
 TEST_AFTER(setup, refuses_products_that_overflow)
 {
-    unsigned c;
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         labial_state_t *const s = &f.states[c][c % FIXTURE_SPEECH_STATES];
         hold_all(c, not_above(500), 0, 0);
         s->motion[0] = s->motion[1] = 127;

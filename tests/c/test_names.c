@@ -39,10 +39,9 @@ static uint8_t *pack(labial_names_t *packed, unsigned count)
 {
     uint8_t *bytes = NULL;
     size_t size = 0;
-    unsigned pass, i;
-    for (pass = 0; pass < 2; pass++) {
+    for (unsigned pass = 0; pass < 2; pass++) {
         size_t at = 0;
-        for (i = 0; i < count; i++) {
+        for (unsigned i = 0; i < count; i++) {
             const size_t length = strlen(entries[i].name);
             if (pass > 0) {
                 bytes[at] = entries[i].phoneme;
@@ -81,11 +80,9 @@ static int find(const char *name)
 /* Would catch an entry that is passed over, the last one above all. */
 TEST(every_entry_is_found)
 {
-    unsigned i;
-    for (i = 0; i < COUNT; i++) {
+    for (unsigned i = 0; i < COUNT; i++) {
         const size_t length = strlen(entries[i].name);
-        unsigned set;
-        for (set = ARPABET; set <= XSAMPA; set *= 2)
+        for (unsigned set = ARPABET; set <= XSAMPA; set *= 2)
             if (entries[i].sets & set)
                 assert_int_equal(labial_find_in(&names, (labial_labels_t)set, entries[i].name, length),
                                  entries[i].phoneme);
@@ -134,8 +131,7 @@ TEST(unknown_names_are_refused)
         "AAA", "0",    "ZZ",   "b",    "AB",       "AAx", "Zzzzzzzzzzzzzzzzzzzzzzzzzzzz",
         "si",  "sill", "\xff", "\xca", "\xca\x8a", "x1",  "1AA"
     };
-    unsigned i;
-    for (i = 0; i < sizeof unknown / sizeof unknown[0]; i++)
+    for (unsigned i = 0; i < sizeof unknown / sizeof unknown[0]; i++)
         if (find(unknown[i]) != LABIAL_ERROR_NAME)
             fail_msg("%s is %d", unknown[i], find(unknown[i]));
 }
@@ -192,8 +188,7 @@ TEST(marks_alone_are_unknown)
     static const char *const marks[] = { "\xcb\x88", "\xcb\x8c", "\xcb\x90",         "\xcb\x88\xcb\x90",
                                          "\xcb",     "\x88",     "\xcb\x88\xcb\x88", "1",
                                          "00",       "\x90",     "\xcb\x88\x31" };
-    unsigned i;
-    for (i = 0; i < sizeof marks / sizeof marks[0]; i++)
+    for (unsigned i = 0; i < sizeof marks / sizeof marks[0]; i++)
         if (find(marks[i]) != LABIAL_ERROR_NAME)
             fail_msg("mark %u is %d", i, find(marks[i]));
     assert_int_equal(find("AA\xcb"), LABIAL_ERROR_NAME);
@@ -258,10 +253,9 @@ TEST(every_label_has_a_nearest_phoneme)
 TEST(tables_of_every_size)
 {
     labial_names_t part = names;
-    unsigned count, i;
-    for (count = 1; count <= COUNT; count++) {
+    for (unsigned count = 1; count <= COUNT; count++) {
         uint8_t *bytes = pack(&part, count);
-        for (i = 0; i < COUNT; i++) {
+        for (unsigned i = 0; i < COUNT; i++) {
             const int got = labial_find_in(&part, (labial_labels_t)(entries[i].sets & (0u - entries[i].sets)),
                                            entries[i].name, strlen(entries[i].name));
             if (i < count)

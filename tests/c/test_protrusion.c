@@ -21,11 +21,10 @@ SETUP(setup)
 static void fill(uint32_t seed, int16_t low, uint16_t gain, uint32_t range)
 {
     fixture_random_t random;
-    unsigned i;
     random.state = seed;
     table.low = low;
     table.gain = gain;
-    for (i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
+    for (unsigned i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
         table.values[i] = (int16_t)((int)fixture_below(&random, 2 * range) - (int)range);
 }
 
@@ -35,12 +34,10 @@ TEST(tables_are_interpolated)
 {
     static const int16_t lows[] = { -32768, -32767, -800, 0, 5, 32767 };
     static const uint16_t gains[] = { 0, 1, 127, 128, 700, 4096, 65535 };
-    unsigned l, g;
-    for (l = 0; l < sizeof lows / sizeof lows[0]; l++)
-        for (g = 0; g < sizeof gains / sizeof gains[0]; g++) {
-            int32_t sum;
+    for (unsigned l = 0; l < sizeof lows / sizeof lows[0]; l++)
+        for (unsigned g = 0; g < sizeof gains / sizeof gains[0]; g++) {
             fill(l * 16 + g + 1, lows[l], gains[g], g % 2 ? 32767 : 600);
-            for (sum = 2 * INT16_MIN; sum <= 2 * INT16_MAX; sum += g % 2 ? 1 : 7) {
+            for (int32_t sum = 2 * INT16_MIN; sum <= 2 * INT16_MAX; sum += g % 2 ? 1 : 7) {
                 const int32_t above = sum - 2 * lows[l];
                 const double place = above < 0 ? 0 : above > 65535 ? 65535 : above;
                 const double at = floor(place * gains[g] / 4096) / 256;
@@ -57,10 +54,9 @@ TEST(tables_are_interpolated)
 /* A case by hand: 16 intervals of 10 FAP units from -80 on, which rise by 20 each. */
 TEST(a_table_by_hand)
 {
-    unsigned i;
     table.low = -80 * 16;
     table.gain = 3277; /* 2^24 / (2 * 160 * 16) */
-    for (i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
+    for (unsigned i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
         table.values[i] = (int16_t)(i * 20 * 16);
     assert_int_equal(labial_protrusion(&table, 2 * -200 * 16), 0);
     assert_int_equal(labial_protrusion(&table, 2 * -80 * 16), 0);
@@ -74,12 +70,11 @@ TEST(a_table_by_hand)
 TEST(frames_are_in_their_order)
 {
     int16_t motion[LABIAL_CHANNELS];
-    unsigned k;
     fill(3, -1000, 900, 4000);
-    for (k = 0; k < LABIAL_CHANNELS; k++)
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
         motion[k] = (int16_t)(100 * (int)k - 700);
     labial_protrusion_complete(&model, motion);
-    for (k = 0; k < LABIAL_CHANNELS; k++)
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
         if (k == 12)
             assert_int_equal(motion[k], 100 * 2 - 700);
         else if (k == 2)

@@ -21,11 +21,10 @@ static const int codes[] = { LABIAL_OK,           LABIAL_WAITING,       LABIAL_S
 /* Would catch a renumbering, which breaks programs linked against an older library. */
 TEST(zero_is_success_and_errors_are_negative)
 {
-    unsigned i;
     assert_int_equal(LABIAL_OK, 0);
-    for (i = 1; i < 4; i++)
+    for (unsigned i = 1; i < 4; i++)
         assert_int_equal(codes[i], (int)i);
-    for (i = 4; i < CODES; i++)
+    for (unsigned i = 4; i < CODES; i++)
         assert_int_equal(codes[i], 3 - (int)i);
     assert_int_equal(LABIAL_RESULT_LAST_, codes[CODES - 1]);
 }
@@ -33,13 +32,12 @@ TEST(zero_is_success_and_errors_are_negative)
 /* Would catch a text of the wrong row, and two codes with one text. */
 TEST(every_code_has_its_own_text)
 {
-    unsigned i, k;
-    for (i = 0; i < CODES; i++) {
+    for (unsigned i = 0; i < CODES; i++) {
         const char *text = labial_result_text(codes[i]);
         assert_non_null(text);
         assert_true(strlen(text) > 0);
         assert_string_not_equal(text, UNKNOWN);
-        for (k = 0; k < i; k++)
+        for (unsigned k = 0; k < i; k++)
             assert_string_not_equal(text, labial_result_text(codes[k]));
     }
     assert_string_equal(labial_result_text(LABIAL_OK), "success");
@@ -50,8 +48,7 @@ TEST(every_code_has_its_own_text)
 TEST(other_numbers_are_unknown)
 {
     static const int others[] = { 4, 5, 6, 255, -15, -16, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
-    unsigned i;
-    for (i = 0; i < sizeof others / sizeof others[0]; i++)
+    for (unsigned i = 0; i < sizeof others / sizeof others[0]; i++)
         assert_string_equal(labial_result_text(others[i]), UNKNOWN);
 }
 

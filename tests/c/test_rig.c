@@ -86,13 +86,12 @@ TEST(gain_and_weights_multiply)
 
 TEST(every_fap_has_its_weight)
 {
-    unsigned i, k;
-    for (i = 0; i < LABIAL_CHANNELS; i++) {
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
         labial_rig_output_t output = plain();
         const labial_rig_t rig = { &output, 1 };
         output.weights[FAP3] = 0;
         output.weights[i] = LABIAL_RIG_ONE;
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             int16_t faps[LABIAL_CHANNELS] = { 0 };
             int32_t value = 1500;
             faps[k] = 123;
@@ -173,8 +172,7 @@ TEST(jaw_macro_closes_and_opens)
         { 0, -300, 1650 }, { 90, -390, 1650 }, { 200, 0, 1400 },  { -32768, -32768, 1900 },
         { 0, -72, 1400 },  { 20, -92, 1400 },  { 0, -136, 1513 }, { 0, -104, 1443 },
     };
-    unsigned i;
-    for (i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+    for (unsigned i = 0; i < sizeof poses / sizeof poses[0]; i++) {
         const labial_rig_output_t both[2] = { up, down };
         const labial_rig_t rig = { both, 2 };
         int16_t faps[LABIAL_CHANNELS] = { 500, 1, 2, 0, 0, 3, 4, 5, 6, 7, 8, 9, 10 }; /* others must not matter */
@@ -210,7 +208,6 @@ TEST(contact_closes)
                   { INT16_MIN, INT16_MIN, 2000 } };
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
-    unsigned i;
     output.weights[FAP3] = 0;
     output.weights[FAP52] = LABIAL_RIG_ONE;
     output.neutral = 1740; /* minus the lower lip's opening */
@@ -218,7 +215,7 @@ TEST(contact_closes)
     output.closed = 1450;
     output.maximum = 2000;
     assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
-    for (i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+    for (unsigned i = 0; i < sizeof poses / sizeof poses[0]; i++) {
         int16_t faps[LABIAL_CHANNELS] = { 0 };
         int32_t value = 1500, wanted = poses[i].value;
         faps[FAP51] = poses[i].top;
@@ -243,16 +240,15 @@ TEST(looking_ahead_closes_in_time)
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
     int16_t frames[12][LABIAL_CHANNELS] = { { 0 } };
-    int32_t blind = 1400, seeing = 1400, value;
-    unsigned i;
+    int32_t blind = 1400, seeing = 1400;
     output.weights[FAP3] = 0;
     output.weights[FAP52] = -LABIAL_RIG_ONE;
     output.neutral = output.closed = output.minimum = 1400;
     output.contact = 1;
     output.slew = 40;
-    for (i = 0; i < 12; i++)
+    for (unsigned i = 0; i < 12; i++)
         frames[i][FAP52] = i == 8 ? -60 : -200; /* open, but for the ninth frame: 1600, and 1400 in p, b, m */
-    for (i = 0; i < 12; i++) {
+    for (unsigned i = 0; i < 12; i++) {
         static const int32_t wanted[12] = { 1440, 1480, 1520, 1560, 1560, 1520, 1480, 1440, 1400, 1440, 1480, 1520 };
         const int32_t last = seeing;
         labial_rig_apply(&rig, frames[i], &blind);
@@ -262,7 +258,7 @@ TEST(looking_ahead_closes_in_time)
         if (i == 8)
             assert_int_equal(blind, 1560);
     }
-    value = 1600; /* out of reach: as fast as it goes */
+    int32_t value = 1600; /* out of reach: as fast as it goes */
     labial_rig_apply_ahead(&rig, frames[6], 3, &value, NULL);
     assert_int_equal(value, 1560);
     value = 1600; /* not in sight */
@@ -313,7 +309,6 @@ TEST(acceleration_comes_to_rest)
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
     int16_t frames[24][LABIAL_CHANNELS] = { { 0 } };
-    unsigned i, sight;
     output.weights[FAP3] = 0;
     output.weights[FAP52] = -LABIAL_RIG_ONE;
     output.neutral = output.closed = output.minimum = 1400;
@@ -321,11 +316,11 @@ TEST(acceleration_comes_to_rest)
     output.slew = 60;
     output.acceleration = 20;
     assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
-    for (i = 0; i < 24; i++)
+    for (unsigned i = 0; i < 24; i++)
         frames[i][FAP52] = i < 8 ? -200 : 0;
-    for (sight = 1; sight <= 24; sight++) {
+    for (unsigned sight = 1; sight <= 24; sight++) {
         int32_t value = 1600, change = 0, arrived = 0;
-        for (i = 0; i < 24; i++) {
+        for (unsigned i = 0; i < 24; i++) {
             const int32_t last = value, before = change;
             const unsigned left = 24u - i;
             assert_int_equal(
@@ -350,9 +345,8 @@ TEST(acceleration_comes_to_rest)
 /* Whatever is asked, seen or claimed of the last change, the limits hold. */
 TEST(acceleration_holds_for_all)
 {
-    unsigned round, frame, i;
     dice.state = 5;
-    for (round = 0; round < 300; round++) {
+    for (unsigned round = 0; round < 300; round++) {
         labial_rig_output_t output = plain();
         const labial_rig_t rig = { &output, 1 };
         int16_t frames[40][LABIAL_CHANNELS];
@@ -366,11 +360,11 @@ TEST(acceleration_holds_for_all)
         output.contact = (uint8_t)(chance() % 2u);
         output.closed = output.contact ? between(output.minimum, output.maximum) : 0;
         assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
-        for (i = 0; i < 40; i++)
-            for (frame = 0; frame < LABIAL_CHANNELS; frame++)
+        for (unsigned i = 0; i < 40; i++)
+            for (unsigned frame = 0; frame < LABIAL_CHANNELS; frame++)
                 frames[i][frame] = (int16_t)between(-400, 400);
         labial_rig_rest(&rig, &value);
-        for (frame = 0; frame < 40; frame++) {
+        for (unsigned frame = 0; frame < 40; frame++) {
             const int32_t last = value, before = change;
             const unsigned left = 40u - frame;
             labial_rig_apply_ahead(&rig, frames[frame], (uint16_t)(sight < left ? sight : left), &value, &change);
@@ -393,14 +387,14 @@ TEST(delayed_frames_look_ahead)
     int16_t frames[30][LABIAL_CHANNELS] = { { 0 } }, kept[6][LABIAL_CHANNELS];
     labial_rig_delay_t delay = { kept[0], 5, 0 };
     int32_t values[2], changes[2] = { 0, 0 };
-    unsigned i, shown = 0;
+    unsigned shown = 0;
     output.slew = 50;
     output.acceleration = 15;
-    for (i = 0; i < 30; i++)
+    for (unsigned i = 0; i < 30; i++)
         frames[i][FAP3] = (int16_t)(i % 9u < 5u ? 300 : -100);
     labial_rig_rest(&rig, &values[0]);
     labial_rig_rest(&rig, &values[1]);
-    for (i = 0; i < 36; i++) {
+    for (unsigned i = 0; i < 36; i++) {
         const int result = labial_rig_delayed(&rig, &delay, i < 30 ? frames[i] : NULL, &values[0], &changes[0]);
         assert_int_equal(result, i < 5 ? LABIAL_WAITING : i < 35 ? LABIAL_OK : LABIAL_DONE);
         if (result == LABIAL_OK) {
@@ -429,8 +423,7 @@ TEST(acceleration_beyond_its_limit_is_the_limit)
     const labial_rig_t rig = { &output, 1 };
     int16_t faps[LABIAL_CHANNELS] = { 400 };
     int32_t values[2] = { 1500, 1500 }, changes[2] = { 0, 0 };
-    unsigned i;
-    for (i = 0; i < 6; i++) {
+    for (unsigned i = 0; i < 6; i++) {
         output.acceleration = LABIAL_RIG_VALUE_MAX;
         labial_rig_apply_ahead(&rig, faps, 1, &values[0], &changes[0]);
         output.acceleration = INT32_MAX;
@@ -460,9 +453,9 @@ static labial_rig_output_t any_sound_output(void)
     labial_rig_output_t output;
     const unsigned gain_shift = chance() % 28u, value_shift = chance() % 16u;
     int32_t left = LABIAL_RIG_WEIGHT_SUM_MAX, swap;
-    unsigned i, k = chance() % LABIAL_CHANNELS;
+    unsigned k = chance() % LABIAL_CHANNELS;
     memset(&output, 0, sizeof output);
-    for (i = 0; i < LABIAL_CHANNELS; i++, k = (k + 1u) % LABIAL_CHANNELS) {
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++, k = (k + 1u) % LABIAL_CHANNELS) {
         int32_t most = left < 32767 ? left : 32767;
         if (chance() % 4u == 0)
             most = most / 64;
@@ -508,12 +501,11 @@ static double limited(double value, double low, double high)
 /* The header's equations in double precision. */
 static double expected(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], double last)
 {
-    double move = 0, value;
-    unsigned i;
-    for (i = 0; i < LABIAL_CHANNELS; i++)
+    double move = 0;
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
         move += (double)output->weights[i] / 4096.0 * faps[i];
     move = floor(move * output->gain / 65536.0 + 0.5);
-    value = limited(output->neutral + (output->invert ? -move : move), output->minimum, output->maximum);
+    double value = limited(output->neutral + (output->invert ? -move : move), output->minimum, output->maximum);
     if (output->contact)
         value =
             floor(value + (output->closed - value) * limited((136.0 + faps[FAP51] + faps[FAP52]) / 64.0, 0, 1) + .5);
@@ -528,21 +520,20 @@ static double expected(const labial_rig_output_t *output, const int16_t faps[LAB
  * that rounding of the double itself could decide, one unit is allowed. */
 TEST(random_rigs_equal_double)
 {
-    unsigned round, frame, i, off = 0;
+    unsigned off = 0;
     dice.state = 1;
-    for (round = 0; round < 4000; round++) {
+    for (unsigned round = 0; round < 4000; round++) {
         const labial_rig_output_t output = any_sound_output();
         const labial_rig_t rig = { &output, 1 };
         int32_t value;
         assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
         assert_int_equal(labial_rig_rest(&rig, &value), LABIAL_OK);
-        for (frame = 0; frame < 12; frame++) {
+        for (unsigned frame = 0; frame < 12; frame++) {
             int16_t faps[LABIAL_CHANNELS];
             const int32_t last = value;
-            double wanted;
-            for (i = 0; i < LABIAL_CHANNELS; i++)
+            for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
                 faps[i] = any_fap();
-            wanted = expected(&output, faps, last);
+            const double wanted = expected(&output, faps, last);
             labial_rig_apply(&rig, faps, &value);
             if (fabs(wanted - value) > 1.0)
                 fail_msg("rig %u, frame %u: %ld instead of %.1f", round, frame, (long)value, wanted);
@@ -558,21 +549,21 @@ TEST(random_rigs_equal_double)
 /* Tables and values of random bytes: whatever comes out, no sanitizer may object and nothing else is written. */
 TEST(unchecked_tables_stay_defined)
 {
-    unsigned round, i, sound = 0;
+    unsigned sound = 0;
     dice.state = 2;
-    for (round = 0; round < 20000; round++) {
+    for (unsigned round = 0; round < 20000; round++) {
         labial_rig_output_t output;
         labial_rig_curve_t curve;
         const labial_rig_t rig = { &output, 1 };
         uint8_t *bytes = (uint8_t *)&output, *bends = (uint8_t *)&curve;
         int16_t faps[LABIAL_CHANNELS];
         int32_t values[2], changes[2];
-        for (i = 0; i < offsetof(labial_rig_output_t, curve); i++)
+        for (unsigned i = 0; i < offsetof(labial_rig_output_t, curve); i++)
             bytes[i] = (uint8_t)(chance() % 3u ? chance() : (chance() % 2u ? 0x80u : 0xffu));
-        for (i = 0; i < sizeof curve; i++)
+        for (unsigned i = 0; i < sizeof curve; i++)
             bends[i] = (uint8_t)chance();
         output.curve = chance() % 4u ? NULL : &curve;
-        for (i = 0; i < LABIAL_CHANNELS; i++)
+        for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
             faps[i] = any_fap();
         changes[0] = (int32_t)(chance() & 0x7fffffffu) - (int32_t)(chance() & 0x7fffffffu);
         changes[1] = -77;
@@ -597,8 +588,8 @@ TEST(check_names_every_fault)
                                     back = { 2, { { 5, 0, 1 }, { 5, 0, 1 } } };
     static const labial_rig_curve_t *const curves[6] = { &none, &many, &far, &high, &steep, &back };
     labial_rig_output_t good = plain(), bad[28];
-    unsigned i, count = 0;
-    for (i = 0; i < 28; i++)
+    unsigned count = 0;
+    for (unsigned i = 0; i < 28; i++)
         bad[i] = good;
     bad[count++].gain = LABIAL_RIG_GAIN_MAX + 1;
     bad[count++].gain = INT32_MIN;
@@ -617,14 +608,14 @@ TEST(check_names_every_fault)
     bad[count++].deadband = -1;
     bad[count++].acceleration = -1;
     bad[count++].acceleration = LABIAL_RIG_VALUE_MAX + 1;
-    for (i = 0; i < 6; i++)
+    for (unsigned i = 0; i < 6; i++)
         bad[count++].curve = curves[i];
     bad[count++].deadband = LABIAL_RIG_VALUE_MAX + 1;
     bad[count].weights[1] = 32767, bad[count].weights[2] = -32767; /* with 4096: above 65535 */
     count++;
     bad[count].weights[1] = INT16_MIN, bad[count].weights[2] = INT16_MIN;
     count++;
-    for (i = 0; i < count; i++) {
+    for (unsigned i = 0; i < count; i++) {
         /* Behind a sound output, so that a check of the first alone would show. */
         const labial_rig_output_t outputs[2] = { good, bad[i] };
         const labial_rig_t rig = { outputs, 2 }, first = { outputs, 1 };
@@ -639,8 +630,7 @@ TEST(check_accepts_the_very_limits)
     labial_rig_curve_t curve = { LABIAL_RIG_SEGMENTS, { { 0, 0, 0 } } };
     labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 };
-    int32_t i;
-    for (i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
+    for (int32_t i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
         curve.segments[i].from = i ? LABIAL_RIG_VALUE_MAX - LABIAL_RIG_SEGMENTS + 1 + i : -LABIAL_RIG_VALUE_MAX;
         curve.segments[i].to = LABIAL_RIG_VALUE_MAX;
         curve.segments[i].slope = -LABIAL_RIG_SLOPE_MAX;

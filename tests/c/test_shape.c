@@ -25,25 +25,24 @@ static int8_t shapes[COMPONENTS * LABIAL_CHANNELS], slopes[COMPONENTS * LABIAL_C
 /* One phoneme of `count` random components, with all optional tables. */
 static void make(fixture_random_t *random, unsigned count)
 {
-    unsigned c, i;
     fixture_rich(&f);
     memset(phonemes, 0, sizeof phonemes);
-    for (c = 0; c < FIXTURE_CLASSES; c++) {
+    for (unsigned c = 0; c < FIXTURE_CLASSES; c++) {
         phonemes[c].component_count = (uint8_t)count;
         phonemes[c].viseme_class = (uint8_t)c;
     }
-    for (c = 0; c < COMPONENTS; c++) {
+    for (unsigned c = 0; c < COMPONENTS; c++) {
         components[c].cost = (uint16_t)fixture_below(random, 80);
         components[c].duration_mean = (uint16_t)(40 + fixture_below(random, 300));
         components[c].duration_gain = (uint16_t)(262144.0 / ((15.0 + fixture_below(random, 100)) * sqrt(2.0)));
     }
-    for (i = 0; i < sizeof contexts; i++)
+    for (unsigned i = 0; i < sizeof contexts; i++)
         contexts[i] = (uint8_t)fixture_random(random);
-    for (i = 0; i < sizeof shapes; i++) {
+    for (unsigned i = 0; i < sizeof shapes; i++) {
         shapes[i] = (int8_t)((int)fixture_below(random, 255) - 127);
         slopes[i] = (int8_t)((int)fixture_below(random, 255) - 127);
     }
-    for (i = 0; i < LABIAL_CHANNELS; i++) {
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
         f.channels[i].shape_scale = (uint16_t)(1000 + fixture_below(random, 15000));
         f.channels[i].slope_scale = (uint16_t)fixture_below(random, 3000);
     }
@@ -81,8 +80,7 @@ static double oracle(const double *shares, unsigned count, unsigned ms, unsigned
     const labial_channel_t *k = &f.channels[channel];
     const double most = 3.0 / sqrt(2.0);
     double sum = 0;
-    unsigned c;
-    for (c = 0; c < count; c++) {
+    for (unsigned c = 0; c < count; c++) {
         double z = deviation(c, ms);
         z = z > most ? most : z < -most ? -most : z;
         sum += shares[c] * shapes[c * LABIAL_CHANNELS + channel] * k->shape_scale / 256.0;
@@ -104,21 +102,21 @@ static double tolerance(unsigned channel, unsigned count)
 static void compare(unsigned count, unsigned ms, unsigned previous, unsigned next)
 {
     labial_shape_t shape;
-    double costs[COMPONENTS], shares[COMPONENTS], least, sum = 0;
-    unsigned c, k, best = 0;
+    double costs[COMPONENTS], shares[COMPONENTS], sum = 0;
+    unsigned best = 0;
     oracle_shape(&f.model, 0, (uint16_t)ms, previous, next, &shape);
-    for (c = 0; c < count; c++) {
+    for (unsigned c = 0; c < count; c++) {
         costs[c] = cost_of(c, ms, previous, next);
         best = costs[c] < costs[best] ? c : best; /* equation 2; the first of several that are alike */
     }
-    least = costs[best];
-    for (c = 0; c < count; c++) {
+    const double least = costs[best];
+    for (unsigned c = 0; c < count; c++) {
         shares[c] = f.model.mixture_mean ? exp((least - costs[c]) / 32.0) : c == best;
         sum += shares[c];
     }
-    for (c = 0; c < count; c++)
+    for (unsigned c = 0; c < count; c++)
         shares[c] /= sum;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
         const double wanted = oracle(shares, count, ms, k);
         if (fabs(shape.knots[0][k] - wanted) > tolerance(k, count))
             fail_msg("%u components, %u ms, channel %u: %d, not %g (+- %g)", count, ms, k, shape.knots[0][k], wanted,
@@ -131,8 +129,7 @@ static void compare(unsigned count, unsigned ms, unsigned previous, unsigned nex
 TEST(selection_follows_the_formula)
 {
     fixture_random_t random = { 31 };
-    unsigned round;
-    for (round = 0; round < FIXTURE_ROUNDS(4000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(4000); round++) {
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
         f.model.mixture_mean = (uint8_t)(round / 8 % 2);
@@ -172,27 +169,27 @@ TEST(context_has_a_direction)
 TEST(extremes_stay_within_the_range)
 {
     fixture_random_t random = { 33 };
-    unsigned round, i, at_ends = 0;
-    for (round = 0; round < FIXTURE_ROUNDS(600); round++) {
+    unsigned at_ends = 0;
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(600); round++) {
         labial_shape_t shape;
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
         f.model.mixture_mean = (uint8_t)(round & 1);
-        for (i = 0; i < LABIAL_CHANNELS; i++) {
+        for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
             f.channels[i].shape_scale = 32767;
             f.channels[i].slope_scale = 16383;
         }
-        for (i = 0; i < sizeof shapes; i++) {
+        for (unsigned i = 0; i < sizeof shapes; i++) {
             shapes[i] = (int8_t)(i % 2 ? -128 : 127);
             slopes[i] = (int8_t)(i % 2 ? -128 : 127);
         }
-        for (i = 0; i < COMPONENTS; i++) {
+        for (unsigned i = 0; i < COMPONENTS; i++) {
             components[i].cost = (uint16_t)fixture_random(&random);
             components[i].duration_gain = (uint16_t)fixture_random(&random);
             components[i].duration_mean = (uint16_t)fixture_random(&random);
         }
         oracle_shape(&f.model, 0, (uint16_t)fixture_random(&random), 0, 1, &shape);
-        for (i = 0; i < 2 * LABIAL_CHANNELS; i++) {
+        for (unsigned i = 0; i < 2 * LABIAL_CHANNELS; i++) {
             const int value = shape.knots[i / LABIAL_CHANNELS][i % LABIAL_CHANNELS];
             assert_in_range(value + LABIAL_POSITION_MAX, 0, 2 * LABIAL_POSITION_MAX);
             at_ends |= value == LABIAL_POSITION_MAX ? 1u : value == -LABIAL_POSITION_MAX ? 2u : 0u;
@@ -217,10 +214,10 @@ TEST(targets_are_shapes_kernels_and_floors)
     static int8_t kernels[ROWS * LABIAL_CHANNELS], last[ROWS];
     static uint32_t words[ROWS * 3];
     fixture_random_t random = { 34 };
-    unsigned round, i, k, raised = 0, at_ends = 0;
+    unsigned raised = 0, at_ends = 0;
     fixture_rich(&f);
     memset(f.contacts, 0, sizeof f.contacts);
-    for (round = 0; round < FIXTURE_ROUNDS(2000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(2000); round++) {
         uint8_t labels[2 * LABIAL_REACH + 1];
         int16_t target[LABIAL_CHANNELS];
         labial_shape_t shape;
@@ -237,26 +234,27 @@ TEST(targets_are_shapes_kernels_and_floors)
         f.model.kernel_stride = (uint8_t)(1 + fixture_below(&random, 20));
         if (labial_model_check(&f.model) != LABIAL_OK)
             f.model.kernel_taps = f.model.kernel_behind = 0;
-        for (i = 0; i < sizeof kernels; i++)
+        for (unsigned i = 0; i < sizeof kernels; i++)
             kernels[i] = (int8_t)(round % 3 ? (int)fixture_random(&random) : round % 2 ? -128 : 127);
         fixture_pack_kernels(kernels, ROWS, words, last);
-        for (i = 0; i < sizeof labels; i++)
+        for (unsigned i = 0; i < sizeof labels; i++)
             labels[i] = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
-            for (i = 0; i < 2; i++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
+            for (unsigned i = 0; i < 2; i++)
                 shape.knots[i][k] =
                     (int16_t)((int)fixture_below(&random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
             f.channels[k].kernel_scale = (uint16_t)(fixture_random(&random) >> (16 + k));
         }
         assert_int_equal(labial_shape_target(&f.model, &shape, &taken, target), 0);
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double start = shape.knots[0][k], end = shape.knots[1][k];
-            double sum = 0, wanted;
-            for (i = 0; i < f.model.kernel_taps; i++) {
+            double sum = 0;
+            for (unsigned i = 0; i < f.model.kernel_taps; i++) {
                 const int at = LABIAL_REACH + ((int)i - f.model.kernel_behind) * f.model.kernel_stride;
                 sum += kernels[(labels[at] * (size_t)f.model.kernel_taps + i) * LABIAL_CHANNELS + k];
             }
-            wanted = limited(start + (end - start) * taken.share / 16384.0 + sum * f.channels[k].kernel_scale / 256.0);
+            double wanted =
+                limited(start + (end - start) * taken.share / 16384.0 + sum * f.channels[k].kernel_scale / 256.0);
             if (f.phonemes[labels[LABIAL_REACH]].floor) {
                 const int least = f.floors[(f.phonemes[labels[LABIAL_REACH]].floor - 1) * LABIAL_CHANNELS + (int)k];
                 raised += wanted < least;
@@ -275,8 +273,7 @@ TEST(targets_are_shapes_kernels_and_floors)
 static double pair_of(unsigned number, unsigned neighbour, unsigned side, unsigned knot, unsigned k)
 {
     const unsigned knots = f.model.pair_knots, row = knots > 1 ? knot : 0;
-    unsigned i;
-    for (i = 0; i < FIXTURE_PAIRS; i++)
+    for (unsigned i = 0; i < FIXTURE_PAIRS; i++)
         if (f.pair_keys[i] == number * 256u + side + neighbour)
             return f.pairs[(i * knots + row) * LABIAL_CHANNELS + k] * f.channels[k].pair_scale / 256.0;
     return 0.0;
@@ -286,13 +283,13 @@ static double pair_of(unsigned number, unsigned neighbour, unsigned side, unsign
 static unsigned compare_pairs(unsigned number, unsigned previous, unsigned next)
 {
     labial_shape_t without, shape;
-    unsigned j, k, added = 0;
+    unsigned added = 0;
     f.model.pair_count = 0;
     oracle_shape(&f.model, number, 100, previous, next, &without);
     f.model.pair_count = FIXTURE_PAIRS;
     oracle_shape(&f.model, number, 100, previous, next, &shape);
-    for (j = 0; j < 2; j++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned j = 0; j < 2; j++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double before = pair_of(number, previous, 0, j, k), behind = pair_of(number, next, 128, j, k);
             const double wanted = limited(limited(without.knots[j][k] + before) + behind);
             added += before != 0.0 && behind != 0.0;
@@ -310,16 +307,16 @@ TEST(pairs_add_their_row_and_others_nothing)
 {
     static labial_phoneme_t many[LABIAL_PHONEMES_MAX];
     fixture_random_t random = { 35 };
-    unsigned number, round, k, added = 0;
+    unsigned added = 0;
     fixture_rich(&f);
-    for (k = 0; k < LABIAL_CHANNELS; k++)
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
         f.channels[k].pair_scale = (uint16_t)(fixture_random(&random) >> (16 + k));
-    for (k = 0; k < LABIAL_PHONEMES_MAX; k++)
+    for (unsigned k = 0; k < LABIAL_PHONEMES_MAX; k++)
         many[k] = f.phonemes[k % FIXTURE_SPEECH_COUNT];
     f.model.phonemes = many;
     f.model.phoneme_count = LABIAL_PHONEMES_MAX;
-    for (number = 0; number < LABIAL_PHONEMES_MAX; number++) {
-        for (round = 0; round < 2 * LABIAL_PHONEMES_MAX; round++) {
+    for (unsigned number = 0; number < LABIAL_PHONEMES_MAX; number++) {
+        for (unsigned round = 0; round < 2 * LABIAL_PHONEMES_MAX; round++) {
             /* each neighbour to either side, the other one any */
             const unsigned any = fixture_below(&random, round % 3 ? 8 : LABIAL_PHONEMES_MAX);
             f.model.pair_knots = (uint8_t)(1 + round / 2 % 2);
@@ -342,7 +339,6 @@ TEST(pairs_move_from_start_to_end)
     int16_t target[LABIAL_CHANNELS];
     labial_shape_t shape;
     labial_taken_t taken;
-    unsigned i;
     fixture_plain(&f);
     memset(f.shapes, 0, sizeof f.shapes);
     memset(labels, FIXTURE_A, sizeof labels);
@@ -358,7 +354,7 @@ TEST(pairs_move_from_start_to_end)
     memset(&taken, 0, sizeof taken);
     taken.labels = labels + LABIAL_REACH;
     oracle_shape(&f.model, FIXTURE_A, 100, FIXTURE_T, FIXTURE_S, &shape);
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         taken.share = (uint16_t)cases[i].share;
         assert_int_equal(labial_shape_target(&f.model, &shape, &taken, target), 0);
         assert_int_equal(target[7], cases[i].wanted);

@@ -51,10 +51,9 @@ static const labial_model_t *const models[] = { &speech_en, &laughter_synthetic 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     day_t *d = (day_t *)user;
-    unsigned c;
     if (frame != d->next)
         fail_msg("frame %lu came as %lu", (unsigned long)d->next, (unsigned long)frame);
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         if (faps[c] < -1500 || faps[c] > 1500)
             fail_msg("channel %u is at %d", c, faps[c]);
     if (d->kept && d->frames < SENTENCE)
@@ -68,8 +67,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 
 static void paint(uint32_t *words, int check)
 {
-    uint32_t i;
-    for (i = 0; i < CANARIES; i++) {
+    for (uint32_t i = 0; i < CANARIES; i++) {
         if (check && words[i] != (i + 1u) * 0x9e3779b1u)
             fail_msg("memory beside the stream or its workspace was written to");
         words[i] = (i + 1u) * 0x9e3779b1u;
@@ -101,9 +99,8 @@ static uint64_t held(void)
 
 static int tick(void)
 {
-    int result;
     day.calls = 0;
-    result = labial_tick(&day.memory.stream);
+    const int result = labial_tick(&day.memory.stream);
     assert_in_range(result, LABIAL_OK, LABIAL_DONE);
     assert_int_equal(day.calls, result == LABIAL_OK);
     guard(1);
@@ -200,19 +197,17 @@ static void cancel(void)
 /* A sentence and a laugh, after everything else has ended; returns the frames. */
 static size_t speak(int16_t kept[SENTENCE][LABIAL_CHANNELS])
 {
-    size_t frames;
-    unsigned i;
     day.kept = kept;
     assert_int_equal(labial_use(&day.memory.stream, &speech_en), LABIAL_OK);
-    for (i = 0; i < 20; i++)
+    for (unsigned i = 0; i < 20; i++)
         push((i * 7u + 3u) % SPEECH_EN_PHONEMES, 60u + i % 5u * 20u);
     assert_int_equal(labial_use(&day.memory.stream, &laughter_synthetic), LABIAL_OK);
-    for (i = 0; i < 10; i++)
+    for (unsigned i = 0; i < 10; i++)
         push(i % LABIAL_LAUGH_PHONEMES, 110);
     assert_int_equal(labial_end(&day.memory.stream), LABIAL_OK);
     while (tick() != LABIAL_DONE) {
     }
-    frames = (size_t)day.frames;
+    const size_t frames = (size_t)day.frames;
     day.kept = NULL;
     restart();
     return frames;
@@ -223,15 +218,13 @@ TEST(a_day_is_exact_to_the_frame)
 {
     static int16_t first[SENTENCE][LABIAL_CHANNELS], again[SENTENCE][LABIAL_CHANNELS];
     const uint64_t length = (uint64_t)FIXTURE_ROUNDS(24 * 60) * (HOUR / 60u);
-    size_t frames;
     unsigned sentences = 0;
     begin_day(0u - (uint32_t)(length / 2u));
-    frames = speak(first);
+    const size_t frames = speak(first);
     assert_in_range(frames, FADE + 1u, SENTENCE);
     while (day.day < length) {
         const uint32_t chance = fixture_below(&day.random, 4096);
         unsigned burst = fixture_below(&day.random, 8) == 0 ? fixture_below(&day.random, 40) : 0;
-        int result;
         if (day.day / HOUR > sentences || (chance == 0 && day.day < HOUR)) {
             sentences += chance != 0;
             end();
@@ -244,7 +237,7 @@ TEST(a_day_is_exact_to_the_frame)
         }
         for (; burst > 0 && labial_room(&day.memory.stream) > 0; burst--)
             feed();
-        result = tick();
+        const int result = tick();
         assert_int_not_equal(result, LABIAL_DONE);
         day.starved += result == LABIAL_STARVED;
         assert_true(labial_latency(&day.memory.stream).frames == held());
@@ -260,7 +253,7 @@ TEST(a_day_is_exact_to_the_frame)
 TEST(a_restart_at_the_wrap_does_not_jump)
 {
     static int16_t before[SENTENCE][LABIAL_CHANNELS], after[SENTENCE][LABIAL_CHANNELS];
-    unsigned c, frames = 10;
+    unsigned frames = 10;
     int moved = 0;
     begin_day(0u - frames);
     day.kept = before;
@@ -271,7 +264,7 @@ TEST(a_restart_at_the_wrap_does_not_jump)
     push(SPEECH_EN_UW, 1000);
     end();
     assert_int_equal(day.next, RATE);
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         const int step = after[0][c] - before[frames - 1u][c], whole = after[FADE][c] - before[frames - 1u][c];
         moved |= whole > 40 || whole < -40;
         assert_true(step * 4 <= (whole < 0 ? -whole : whole) + 40 && -step * 4 <= (whole < 0 ? -whole : whole) + 40);

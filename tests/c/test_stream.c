@@ -34,22 +34,19 @@ static void run(fixture_host_t *host, const labial_model_t *model, size_t count,
 TEST(frames_do_not_depend_on_the_feeding)
 {
     const labial_model_t *models[2];
-    unsigned m;
-    int kind, feed;
     models[0] = &plain.model;
     models[1] = &rich.model;
-    for (m = 0; m < 2; m++) {
-        for (kind = 0; kind < FIXTURE_HOUR; kind++) {
+    for (unsigned m = 0; m < 2; m++) {
+        for (int kind = 0; kind < FIXTURE_HOUR; kind++) {
             fixture_host_t wanted;
             fixture_stream(input, COUNT, (fixture_kind_t)kind, m);
             run(&wanted, models[m], COUNT, FIXTURE_FILL);
             if (kind != FIXTURE_ZERO && wanted.recorder.count == 0)
                 fail_msg("kind %d delivers nothing", kind);
-            for (feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
+            for (int feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
                 fixture_host_t host;
-                long at;
                 run(&host, models[m], COUNT, (fixture_feed_t)feed);
-                at = fixture_difference(&wanted.recorder, &host.recorder);
+                const long at = fixture_difference(&wanted.recorder, &host.recorder);
                 if (at >= 0)
                     fail_msg("model %u, kind %d, feed %d: frame %ld differs", m, kind, feed, at);
                 fixture_close(&host);
@@ -106,21 +103,21 @@ TEST(two_streams_do_not_disturb_each_other)
     const fixture_phoneme_t *inputs[2];
     size_t next[2] = { 0, 0 };
     int done[2] = { 0, 0 };
-    unsigned i, rounds = 0;
+    unsigned rounds = 0;
     models[0] = &rich.model;
     models[1] = &slow.model;
     inputs[0] = input;
     inputs[1] = other;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 11);
     fixture_stream(other, COUNT, FIXTURE_PAUSES, 12);
-    for (i = 0; i < 2; i++) {
+    for (unsigned i = 0; i < 2; i++) {
         if (fixture_run(&alone[i], models[i], inputs[i], COUNT, FIXTURE_FILL) != 0)
             fail_msg("%s", alone[i].complaint);
         assert_int_equal(fixture_open(&together[i], &models[i], 1), LABIAL_OK);
     }
     while (!done[0] || !done[1]) {
         assert_true(rounds++ < 200000);
-        for (i = 0; i < 2; i++) {
+        for (unsigned i = 0; i < 2; i++) {
             fixture_host_t *host = &together[i];
             if (next[i] < COUNT && labial_room(host->stream) > 0)
                 assert_int_equal(fixture_push(host, &inputs[i][next[i]++]), LABIAL_OK);
@@ -129,7 +126,7 @@ TEST(two_streams_do_not_disturb_each_other)
             done[i] = fixture_tick(host) == LABIAL_DONE;
         }
     }
-    for (i = 0; i < 2; i++) {
+    for (unsigned i = 0; i < 2; i++) {
         if (together[i].complaint)
             fail_msg("%s", together[i].complaint);
         assert_int_equal(fixture_difference(&alone[i].recorder, &together[i].recorder), -1);
@@ -155,19 +152,17 @@ TEST(a_stream_without_phonemes_is_done_at_once)
  * another state, when it is so near that their costs are equal: z below 11.3 / 64, hence 4 FAP units. */
 TEST(a_held_phoneme_settles_to_its_shape)
 {
-    unsigned p, c, i;
-    for (p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
+    for (unsigned p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
         fixture_host_t host;
-        size_t middle;
-        for (i = 0; i < 60; i++) {
+        for (unsigned i = 0; i < 60; i++) {
             input[i].phoneme = (uint8_t)p;
             input[i].ms = 100;
             input[i].model = 0;
         }
         run(&host, &plain.model, 60, FIXTURE_FILL);
         assert_int_equal(host.recorder.count, 300);
-        for (middle = 60; middle < 240; middle++) {
-            for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (size_t middle = 60; middle < 240; middle++) {
+            for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
                 const int wanted = fixture_target(p, c) / 16, got = host.recorder.frames[middle][c];
                 if (abs(got - wanted) > 5)
                     fail_msg("phoneme %u, channel %u, frame %zu: %d, not %d", p, c, middle, got, wanted);
@@ -182,28 +177,26 @@ TEST(a_held_phoneme_settles_to_its_shape)
 TEST(motion_stays_within_the_states_range)
 {
     fixture_host_t host;
-    unsigned c, q;
-    size_t i;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 31);
     run(&host, &plain.model, COUNT, FIXTURE_FILL);
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
-        int low = INT16_MAX, high = INT16_MIN, least = INT16_MAX, most = INT16_MIN, lowest = 0, highest = 0, span;
-        for (q = 0; q < FIXTURE_SPEECH_STATES; q++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
+        int low = INT16_MAX, high = INT16_MIN, least = INT16_MAX, most = INT16_MIN, lowest = 0, highest = 0;
+        for (unsigned q = 0; q < FIXTURE_SPEECH_STATES; q++) {
             const int mean = (plain.states[c][q].mean + plain.channels[c].centre) / 16;
             low = mean < low ? mean : low;
             high = mean > high ? mean : high;
         }
-        for (q = 0; q < FIXTURE_SPEECH_COUNT; q++) {
+        for (unsigned q = 0; q < FIXTURE_SPEECH_COUNT; q++) {
             const int shape = fixture_target(q, c) / 16;
             lowest = q == 0 || shape < lowest ? shape : lowest;
             highest = q == 0 || shape > highest ? shape : highest;
         }
-        for (i = 0; i < host.recorder.count; i++) {
+        for (size_t i = 0; i < host.recorder.count; i++) {
             const int x = host.recorder.frames[i][c];
             least = x < least ? x : least;
             most = x > most ? x : most;
         }
-        span = high - low;
+        const int span = high - low;
         if (least < low - span / 5 || most > high + span / 5)
             fail_msg("channel %u: %d .. %d where states are %d .. %d", c, least, most, low, high);
         if (most - least < (highest - lowest) * 2 / 3)

@@ -40,8 +40,6 @@ static void open_at(fixture_host_t *host, unsigned percent, size_t count)
 TEST(the_first_is_100_and_none_is_0)
 {
     fixture_host_t silent, calm, told_so;
-    size_t t;
-    unsigned c;
     fixture_stream(input, COUNT, FIXTURE_CONTACTS, 3);
     models[0] = &rich.model;
     if (fixture_run(&calm, models[0], input, COUNT, FIXTURE_FILL) != 0)
@@ -50,8 +48,8 @@ TEST(the_first_is_100_and_none_is_0)
     assert_int_equal(fixture_difference(&calm.recorder, &told_so.recorder), -1);
     open_at(&silent, 0, COUNT);
     assert_int_equal(silent.recorder.count, calm.recorder.count);
-    for (t = 0; t < silent.recorder.count; t++)
-        for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (size_t t = 0; t < silent.recorder.count; t++)
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
             assert_int_equal(silent.recorder.frames[t][c], 0);
     assert_int_equal(labial_init(silent.stream, models[0], silent.workspace, labial_workspace_size(models[0]),
                                  fixture_record, &silent.recorder),
@@ -73,10 +71,9 @@ TEST(more_than_the_most_is_the_most)
 {
     static const unsigned more[] = { 201, 255, 256, 300, 356, 65536, 65636, UINT_MAX };
     fixture_host_t most, host;
-    unsigned i;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 4);
     open_at(&most, LABIAL_ARTICULATION_MAX, COUNT);
-    for (i = 0; i < sizeof more / sizeof more[0]; i++) {
+    for (unsigned i = 0; i < sizeof more / sizeof more[0]; i++) {
         open_at(&host, more[i], COUNT);
         assert_int_equal(fixture_difference(&most.recorder, &host.recorder), -1);
         fixture_close(&host);
@@ -92,7 +89,6 @@ TEST(more_than_the_most_is_the_most)
 TEST(cancel_and_restart_keep_it)
 {
     fixture_host_t ever, host;
-    unsigned way;
     fixture_stream(input, COUNT, FIXTURE_VOWELS, 5);
     open_at(&ever, 60, 0);
     fixture_cancel(&ever, 0);
@@ -100,7 +96,7 @@ TEST(cancel_and_restart_keep_it)
         ;
     fixture_restart(&ever);
     play_at(&ever, 60, COUNT);
-    for (way = 0; way < 4; way++) { /* told before, while it eases, when it is done, after the restart */
+    for (unsigned way = 0; way < 4; way++) { /* told before, while it eases, when it is done, after the restart */
         open_at(&host, way == 0 ? 60 : 170, 0);
         fixture_cancel(&host, 20);
         if (way == 1)
@@ -127,21 +123,20 @@ TEST(a_change_is_no_jolt)
     const size_t at = 60, last = 130;
     uint8_t told[160];
     fixture_host_t host;
-    unsigned c, up, moved = 0;
-    size_t t;
+    unsigned moved = 0;
     input[0].phoneme = FIXTURE_A;
     input[0].model = 0;
     input[0].ms = 3000;
     models[0] = &rich.model;
-    for (up = 0; up < 2; up++) {
+    for (unsigned up = 0; up < 2; up++) {
         assert_int_equal(fixture_open(&host, models, 1), LABIAL_OK);
-        for (t = 0; t < sizeof told; t++)
+        for (size_t t = 0; t < sizeof told; t++)
             told[t] = (t < at) == up ? 0 : LABIAL_ARTICULATION_MAX;
         if (fixture_play_told(&host, input, 1, told, sizeof told) != 0)
             fail_msg("%s", host.complaint);
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             const int from = host.recorder.frames[at - 10][c], to = host.recorder.frames[last][c], way = abs(to - from);
-            for (t = at - 10; t < last; t++) {
+            for (size_t t = at - 10; t < last; t++) {
                 const int before = host.recorder.frames[t][c], after = host.recorder.frames[t + 1][c];
                 if (abs(after - before) > way / 7 + 4)
                     fail_msg("channel %u, from %d to %d: %d, then %d in frame %zu", c, from, to, before, after, t + 1);

@@ -112,11 +112,10 @@ static void look(actor_t *actor)
 
 static void push(actor_t *actor)
 {
-    unsigned i;
     push_some(&actor->stream);
     assert_int_equal(labial_push(&actor->stream, FIXTURE_SPEECH_COUNT, 100), LABIAL_ERROR_PHONEME);
     assert_int_equal(labial_push(&actor->stream, 0, LABIAL_DURATION_MAX + 1u), LABIAL_ERROR_DURATION);
-    for (i = labial_room(&actor->stream); i > 0; i--)
+    for (unsigned i = labial_room(&actor->stream); i > 0; i--)
         assert_int_equal(labial_push(&actor->stream, i % 2u ? FIXTURE_S : FIXTURE_A, 40), LABIAL_OK);
     assert_int_equal(labial_push(&actor->stream, 0, 100), LABIAL_ERROR_FULL);
     assert_int_equal(labial_push(NULL, 0, 100), LABIAL_ERROR_NULL);

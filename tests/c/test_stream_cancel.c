@@ -23,11 +23,11 @@ SETUP(setup)
 static void begin(fixture_host_t *host, unsigned rate, size_t frames)
 {
     const labial_model_t *model = &rich.model;
-    unsigned i, guard = 0;
+    unsigned guard = 0;
     rich.model.frames_per_second = (uint16_t)rate;
     assert_int_equal(fixture_open(host, &model, 1), LABIAL_OK);
     fixture_stream(input, 80, FIXTURE_VOWELS, 23);
-    for (i = 0; i < 80 && labial_room(host->stream) > 0; i++)
+    for (unsigned i = 0; i < 80 && labial_room(host->stream) > 0; i++)
         assert_int_equal(fixture_push(host, &input[i]), LABIAL_OK);
     while (host->recorder.count < frames) {
         assert_true(guard++ < 1000);
@@ -87,13 +87,11 @@ TEST(easing_takes_the_time_asked_for_rounded_up)
         { 250, 3997, 1000 },
         { 250, 3996, 999 },
     };
-    unsigned i;
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fixture_host_t host;
-        size_t frames;
         begin(&host, cases[i].rate, 30);
         fixture_cancel(&host, cases[i].ms);
-        frames = drain(&host);
+        const size_t frames = drain(&host);
         if (frames != cases[i].frames)
             fail_msg("%u frames/s, %u ms: %zu frames, not %zu", cases[i].rate, cases[i].ms, frames, cases[i].frames);
         assert_true(is_neutral(host.recorder.frames[host.recorder.count - 1]));
@@ -105,18 +103,17 @@ TEST(easing_takes_the_time_asked_for_rounded_up)
 TEST(easing_is_monotonic_and_even)
 {
     static const unsigned lengths[] = { 1, 2, 3, 7, 10, 50, 333, 1000 };
-    unsigned i, c, moved = 0;
-    size_t t;
-    for (i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+    unsigned moved = 0;
+    for (unsigned i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         const int n = (int)lengths[i];
         fixture_host_t host;
         begin(&host, FIXTURE_RATE, 40 + i);
         fixture_cancel(&host, lengths[i] * 20);
         assert_int_equal(drain(&host), lengths[i]);
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             const int pose = host.recorder.frames[39 + i][c];
             moved += abs(pose) > 50;
-            for (t = 40 + i; t < host.recorder.count; t++) {
+            for (size_t t = 40 + i; t < host.recorder.count; t++) {
                 const int last = host.recorder.frames[t - 1][c], now = host.recorder.frames[t][c];
                 if (abs(now) > abs(last) || (now > 0 && pose < 0) || (now < 0 && pose > 0))
                     fail_msg("%d frames, channel %u: from %d to %d", n, c, last, now);
@@ -132,7 +129,6 @@ TEST(easing_is_monotonic_and_even)
 TEST(nothing_is_accepted_after_a_cancel)
 {
     fixture_host_t host;
-    labial_latency_t latency;
     begin(&host, FIXTURE_RATE, 30);
     fixture_cancel(&host, 100);
     assert_int_equal(labial_room(host.stream), 0);
@@ -142,7 +138,7 @@ TEST(nothing_is_accepted_after_a_cancel)
     assert_int_equal(fixture_tick(&host), LABIAL_OK);
     assert_int_equal(labial_restart(host.stream), LABIAL_ERROR_STATE);
     assert_int_equal(drain(&host), 4);
-    latency = labial_latency(host.stream);
+    const labial_latency_t latency = labial_latency(host.stream);
     assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0);
     fixture_close(&host);
 }
@@ -150,17 +146,14 @@ TEST(nothing_is_accepted_after_a_cancel)
 /* Would catch an ease from a pose that never was: all there is to ease is the neutral face. */
 TEST(cancel_before_the_first_frame_stays_neutral)
 {
-    unsigned ticks;
-    for (ticks = 0; ticks < 4; ticks++) {
+    for (unsigned ticks = 0; ticks < 4; ticks++) {
         fixture_host_t host;
-        unsigned i;
-        size_t t;
         begin(&host, FIXTURE_RATE, 0);
-        for (i = 0; i < ticks; i++)
+        for (unsigned i = 0; i < ticks; i++)
             assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
         fixture_cancel(&host, 200);
         assert_in_range(drain(&host), 1, 10);
-        for (t = 0; t < host.recorder.count; t++)
+        for (size_t t = 0; t < host.recorder.count; t++)
             assert_true(is_neutral(host.recorder.frames[t]));
         fixture_close(&host);
     }
@@ -177,19 +170,18 @@ static void play_again(fixture_host_t *host, size_t count)
 TEST(a_stream_is_taken_up_where_it_stopped)
 {
     fixture_host_t host, fresh;
-    size_t first, i;
-    unsigned c, far = 0;
+    unsigned far = 0;
     rich.model.frames_per_second = FIXTURE_RATE;
-    for (i = 0; i < 30; i++) {
+    for (size_t i = 0; i < 30; i++) {
         input[i].phoneme = FIXTURE_A;
         input[i].ms = 60;
         input[i].model = 0;
     }
     if (fixture_run(&host, &rich.model, input, 30, FIXTURE_FILL) != 0)
         fail_msg("%s", host.complaint);
-    first = host.recorder.count;
+    const size_t first = host.recorder.count;
     assert_int_equal(first, 90);
-    for (i = 0; i < 30; i++)
+    for (size_t i = 0; i < 30; i++)
         input[i].phoneme = FIXTURE_O;
     if (fixture_run(&fresh, &rich.model, input, 30, FIXTURE_FILL) != 0)
         fail_msg("%s", fresh.complaint);
@@ -197,11 +189,11 @@ TEST(a_stream_is_taken_up_where_it_stopped)
     assert_int_equal(labial_room(host.stream), LABIAL_QUEUE);
     play_again(&host, 30);
     assert_int_equal(host.recorder.count, 180);
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         const int pose = host.recorder.frames[first - 1][c];
         const int apart = abs(fresh.recorder.frames[0][c] - pose);
         far += apart > 60;
-        for (i = first; i < first + FADE; i++) {
+        for (size_t i = first; i < first + FADE; i++) {
             const int step = abs(host.recorder.frames[i][c] - host.recorder.frames[i - 1][c]);
             const int own =
                 i == first ? 0 : abs(fresh.recorder.frames[i - first][c] - fresh.recorder.frames[i - first - 1][c]);
@@ -209,7 +201,7 @@ TEST(a_stream_is_taken_up_where_it_stopped)
                 fail_msg("channel %u, frame %zu: a step of %d where %d are to be bridged", c, i - first, step, apart);
         }
         /* After the cross-fade the motion is that of a fresh stream. */
-        for (i = FADE; i < 90; i++)
+        for (size_t i = FADE; i < 90; i++)
             assert_int_equal(host.recorder.frames[first + i][c], fresh.recorder.frames[i][c]);
     }
     assert_true(far >= 3); /* else there was nothing to jump */
@@ -220,16 +212,14 @@ TEST(a_stream_is_taken_up_where_it_stopped)
 TEST(a_cancelled_stream_is_taken_up_from_neutral)
 {
     fixture_host_t host;
-    size_t first;
-    unsigned c;
     begin(&host, FIXTURE_RATE, 30);
     fixture_cancel(&host, 200);
     assert_int_equal(drain(&host), 10);
     fixture_restart(&host);
-    first = host.recorder.count;
+    const size_t first = host.recorder.count;
     play_again(&host, 20);
     assert_true(fixture_is_exact(host.recorder.count - first, fixture_duration(input, 20), FIXTURE_RATE));
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         if (abs(host.recorder.frames[first][c]) > 100) /* shapes are up to 500 from neutral */
             fail_msg("channel %u begins at %d", c, host.recorder.frames[first][c]);
     fixture_close(&host);
@@ -240,11 +230,10 @@ TEST(many_rounds)
 {
     fixture_host_t host;
     fixture_random_t random = { 5 };
-    unsigned round;
     begin(&host, FIXTURE_RATE, 10);
     fixture_cancel(&host, 0);
     (void)drain(&host);
-    for (round = 0; round < 60; round++) {
+    for (unsigned round = 0; round < 60; round++) {
         const size_t before = host.recorder.count;
         const uint32_t count = fixture_below(&random, 60);
         fixture_restart(&host);

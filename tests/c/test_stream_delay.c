@@ -70,17 +70,14 @@ static void foretell(const labial_model_t *const *models, unsigned model_count, 
 TEST(every_tick_is_foretold)
 {
     fixture_model_t *const all[] = { &plain, &rich, &slow };
-    int kind;
-    uint32_t seed;
-    for (kind = 0; kind < FIXTURE_HOUR; kind++)
-        for (seed = 0; seed<24; seed += LABIAL_TEST_SHARE> 1 ? 5 : 1) {
+    for (int kind = 0; kind < FIXTURE_HOUR; kind++)
+        for (uint32_t seed = 0; seed<24; seed += LABIAL_TEST_SHARE> 1 ? 5 : 1) {
             fixture_model_t *const f = all[seed % 3];
             const labial_model_t *const model = &f->model;
             const uint8_t own = f->model.search_stride;
-            size_t i;
             f->model.search_stride = (uint8_t)(1 + seed / 3);
             fixture_stream(input, COUNT, (fixture_kind_t)kind, seed);
-            for (i = 0; i < COUNT; i++)
+            for (size_t i = 0; i < COUNT; i++)
                 input[i].ms %= 1500;
             foretell(&model, 1, seed % 4 * 10, seed);
             f->model.search_stride = own;
@@ -96,9 +93,8 @@ TEST(changes_of_model_delay_nothing)
     uint32_t seed;
     for (seed = 0; seed < FIXTURE_ROUNDS(40); seed++) {
         fixture_random_t random = { seed + 99 };
-        size_t i;
         fixture_stream(input, COUNT, seed % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, seed);
-        for (i = 1; i < COUNT; i++) {
+        for (size_t i = 1; i < COUNT; i++) {
             input[i].model = fixture_below(&random, 1 + seed / 4) == 0 ? !input[i - 1].model : input[i - 1].model;
             input[i].phoneme = (uint8_t)(input[i].phoneme % FIXTURE_LAUGH_COUNT);
         }

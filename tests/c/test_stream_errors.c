@@ -66,12 +66,12 @@ TEST(errors_leave_the_stream_unchanged)
         fail_msg("%s", calm.complaint);
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     while (result != LABIAL_DONE) {
-        labial_latency_t before = labial_latency(host.stream), after;
+        labial_latency_t before = labial_latency(host.stream);
         assert_true(rounds++ < 10000);
         commit_errors(host.stream, host.ended);
         if (result == LABIAL_OK && before.frames > 0)
             assert_int_equal(labial_restart(host.stream), LABIAL_ERROR_STATE); /* frames are still to come */
-        after = labial_latency(host.stream);
+        const labial_latency_t after = labial_latency(host.stream);
         assert_true(before.frames == after.frames && before.phonemes == after.phonemes);
         if (i < COUNT && labial_room(host.stream) > 0)
             assert_int_equal(fixture_push(&host, &input[i++]), LABIAL_OK);
@@ -91,11 +91,10 @@ TEST(the_queue_takes_as_many_as_it_says)
 {
     fixture_host_t host;
     const labial_model_t *model = &rich.model;
-    unsigned room, i;
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-    room = labial_room(host.stream);
+    const unsigned room = labial_room(host.stream);
     assert_int_equal(room, LABIAL_QUEUE);
-    for (i = 0; i < room; i++) {
+    for (unsigned i = 0; i < room; i++) {
         assert_int_equal(labial_room(host.stream), room - i);
         assert_int_equal(labial_push(host.stream, i % FIXTURE_SPEECH_COUNT, 20), LABIAL_OK);
     }
@@ -127,15 +126,14 @@ TEST(nothing_works_before_init)
 {
     static const int fills[] = { 0x00, 0xff, 0x01, 0xa5, 0x7f };
     labial_t *stream = (labial_t *)malloc(sizeof *stream);
-    unsigned i, k;
     assert_non_null(stream);
-    for (i = 0; i < sizeof fills / sizeof fills[0]; i++) {
+    for (unsigned i = 0; i < sizeof fills / sizeof fills[0]; i++) {
         memset(stream, fills[i], sizeof *stream);
         check_refuses(stream, LABIAL_ERROR_STATE);
     }
-    for (i = 0; i < 20; i++) {
+    for (unsigned i = 0; i < 20; i++) {
         fixture_random_t random = { i + 1 };
-        for (k = 0; k < sizeof *stream; k++)
+        for (unsigned k = 0; k < sizeof *stream; k++)
             ((uint8_t *)stream)[k] = (uint8_t)fixture_random(&random);
         check_refuses(stream, LABIAL_ERROR_STATE);
     }
@@ -155,10 +153,9 @@ TEST(a_failed_init_makes_the_stream_unusable)
     labial_t *stream = (labial_t *)malloc(sizeof *stream);
     uint8_t *bytes = (uint8_t *)workspace;
     fixture_recorder_t recorder;
-    unsigned i;
     assert_true(workspace && stream);
     memset(&recorder, 0, sizeof recorder);
-    for (i = 0; i < 10; i++) {
+    for (unsigned i = 0; i < 10; i++) {
         int got = 1, wanted = 1;
         assert_int_equal(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_OK);
         assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_OK);
@@ -216,9 +213,8 @@ TEST(a_failed_init_makes_the_stream_unusable)
 TEST(workspace_sizes_agree)
 {
     static uint32_t constant[LABIAL_WORKSPACE_SIZE(1) / 4];
-    unsigned stride;
     assert_int_equal(sizeof constant, labial_workspace_size(&plain.model));
-    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
+    for (unsigned stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
         slow.model.search_stride = (uint8_t)stride;
         assert_int_equal(labial_workspace_size(&slow.model), LABIAL_WORKSPACE_SIZE(stride));
         assert_int_equal(labial_workspace_size(&slow.model) % 4, 0);
@@ -238,18 +234,17 @@ TEST(memory_beside_the_workspace_is_untouched)
     enum { GUARD = 64, EXTRA = 9 };
     static uint32_t memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4 + EXTRA + GUARD];
     uint8_t *const bytes = (uint8_t *)memory;
-    unsigned extra, i, k, round;
-    for (round = 0; round < 24; round++) {
+    unsigned extra, i, k;
+    for (unsigned round = 0; round < 24; round++) {
         labial_t stream;
         fixture_recorder_t recorder;
         const unsigned stride = 1 + round / 2 % LABIAL_SEARCH_STRIDE_MAX;
         fixture_model_t *const model = round % 2 ? &slow : &rich;
-        uint32_t size;
         extra = round * 3 % (4 * EXTRA);
         fixture_slow(&slow);
         fixture_rich(&rich);
         model->model.search_stride = (uint8_t)stride;
-        size = LABIAL_WORKSPACE_SIZE(stride) + extra;
+        const uint32_t size = LABIAL_WORKSPACE_SIZE(stride) + extra;
         memset(&recorder, 0, sizeof recorder);
         memset(memory, 0xc3, sizeof memory);
         assert_int_equal(labial_init(&stream, &model->model, memory + GUARD, size, fixture_record, &recorder),
@@ -323,14 +318,12 @@ TEST(models_that_nothing_was_pushed_of_make_room)
 {
     fixture_host_t host;
     const labial_model_t *const models[FIXTURE_MODELS] = { &rich.model, &laugh.model, &third.model, &fourth.model };
-    int entered;
-    for (entered = 0; entered < 3; entered++) {
-        int ticks;
+    for (int entered = 0; entered < 3; entered++) {
         assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
         assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
         assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
         assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
-        for (ticks = 0; ticks < entered; ticks++)
+        for (int ticks = 0; ticks < entered; ticks++)
             (void)fixture_tick(&host);
         assert_int_equal(labial_use(host.stream, models[2]), LABIAL_OK); /* no frame was ever the first one's */
         assert_int_equal(labial_push(host.stream, 1, 100), LABIAL_OK);
@@ -341,7 +334,7 @@ TEST(models_that_nothing_was_pushed_of_make_room)
         assert_int_equal(labial_use(host.stream, models[2]), LABIAL_OK);
         assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
         assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
-        for (ticks = 0; ticks < entered; ticks++)
+        for (int ticks = 0; ticks < entered; ticks++)
             (void)fixture_tick(&host);
         assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
         assert_int_equal(labial_use(host.stream, models[3]), LABIAL_OK);

@@ -39,12 +39,10 @@ SETUP(setup)
 static void judge(const fixture_recorder_t *recorder, size_t first, size_t count, double tolerance, const char *what,
                   unsigned seed)
 {
-    size_t t;
-    unsigned c;
     if (recorder->count - first != count)
         fail_msg("%s, seed %u: %zu frames, not %zu", what, seed, recorder->count - first, count);
-    for (t = 0; t < count; t++)
-        for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (size_t t = 0; t < count; t++)
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
             if (fabs(recorder->frames[first + t][c] * 16.0 - wanted[t][c]) > tolerance)
                 fail_msg("%s, seed %u: frame %zu of %zu, channel %u is %d, not %g", what, seed, t, count, c,
                          recorder->frames[first + t][c], wanted[t][c] / 16.0);
@@ -64,13 +62,11 @@ static void compare(unsigned model_count, size_t count, const char *what, unsign
 
 TEST(one_model_is_the_sum_of_its_steps)
 {
-    int kind;
-    unsigned seed, i;
-    for (kind = 0; kind < FIXTURE_MILLI; kind++) {
-        for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
+    for (int kind = 0; kind < FIXTURE_MILLI; kind++) {
+        for (unsigned seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
             models[0] = seed == 0 ? &plain.model : seed < 3 ? &rich.model : &slow.model;
             fixture_stream(input, COUNT, (fixture_kind_t)kind, seed);
-            for (i = 0; kind == FIXTURE_PAUSES && i < COUNT; i++)
+            for (unsigned i = 0; kind == FIXTURE_PAUSES && i < COUNT; i++)
                 input[i].ms %= 2500;
             compare(1, COUNT, "one model", seed);
         }
@@ -80,8 +76,7 @@ TEST(one_model_is_the_sum_of_its_steps)
 /* Every stride there is: would catch a workspace that is laid out for another, a turn that is a tick off. */
 TEST(every_stride_is_the_sum_of_its_steps)
 {
-    unsigned stride;
-    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
+    for (unsigned stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
         fixture_model_t *const f = stride % 2 ? &rich : &slow;
         const uint8_t own = f->model.search_stride;
         f->model.search_stride = (uint8_t)stride;
@@ -98,12 +93,10 @@ TEST(every_stride_is_the_sum_of_its_steps)
  * frames than there are. */
 TEST(short_streams_are_the_sum_of_their_steps)
 {
-    unsigned stride;
-    size_t count;
     models[0] = &rich.model;
-    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
+    for (unsigned stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
         rich.model.search_stride = (uint8_t)stride;
-        for (count = 0; count <= 40; count++) {
+        for (size_t count = 0; count <= 40; count++) {
             fixture_stream(input, count, FIXTURE_ONE_FRAME, stride + (unsigned)count);
             compare(1, count, "short", stride);
         }
@@ -116,13 +109,12 @@ TEST(short_streams_are_the_sum_of_their_steps)
 TEST(protrusion_is_computed_of_the_same_frame)
 {
     static const fixture_kind_t kinds[] = { FIXTURE_ONE_FRAME, FIXTURE_CONTACTS, FIXTURE_RANDOM };
-    unsigned stride, i;
-    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
+    for (unsigned stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
         fixture_model_t *const f = stride % 2 ? &computed : &computed_slow;
         const uint8_t own = f->model.search_stride;
         f->model.search_stride = (uint8_t)stride;
         models[0] = &f->model;
-        for (i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        for (unsigned i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
             fixture_stream(input, COUNT, kinds[i], stride);
             compare(1, COUNT, "computed", stride);
         }
@@ -169,10 +161,9 @@ TEST(rounds_are_the_sum_of_their_steps)
 {
     fixture_host_t host;
     double held[LABIAL_CHANNELS];
-    unsigned round, c;
     models[0] = &rich.model;
     assert_int_equal(fixture_open(&host, models, 1), LABIAL_OK);
-    for (round = 0; round < FIXTURE_ROUNDS(40); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(40); round++) {
         const size_t first = host.recorder.count, count = round % 7 * 4 + 1;
         fixture_stream(input, count, round % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, round);
         if (round > 0)
@@ -182,7 +173,7 @@ TEST(rounds_are_the_sum_of_their_steps)
         judge(&host.recorder, first,
               oracle_stream(models, input, count, first > 0 ? held : NULL, NULL, wanted, MAX_FRAMES), FADED_TOLERANCE,
               "rounds", round);
-        for (c = 0; c < LABIAL_CHANNELS && host.recorder.count > 0; c++)
+        for (unsigned c = 0; c < LABIAL_CHANNELS && host.recorder.count > 0; c++)
             held[c] = host.recorder.frames[host.recorder.count - 1][c] * 16.0;
     }
     fixture_close(&host);
@@ -197,8 +188,7 @@ static void tell_by_chance(uint32_t seed)
 {
     fixture_random_t random = { seed };
     const uint32_t often = 1 + fixture_below(&random, 60);
-    size_t t;
-    for (t = 0; t < MAX_TOLD; t++) {
+    for (size_t t = 0; t < MAX_TOLD; t++) {
         const unsigned kind = fixture_below(&random, 3);
         if (t > 0 && fixture_below(&random, often) > 0)
             told[t] = told[t - 1];
@@ -227,15 +217,13 @@ static void compare_told(unsigned model_count, double tolerance, const char *wha
 TEST(articulated_streams_are_the_sum_of_their_steps)
 {
     static const fixture_kind_t kinds[] = { FIXTURE_ONE_FRAME, FIXTURE_VOWELS, FIXTURE_CONTACTS };
-    unsigned seed;
-    for (seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
         fixture_model_t *const f = seed % 5 == 0 ? &plain : seed % 2 ? &rich : &slow;
         const uint8_t own = f->model.search_stride;
-        unsigned i;
         models[0] = &f->model;
         f->model.search_stride = (uint8_t)(1 + seed % LABIAL_SEARCH_STRIDE_MAX);
         fixture_stream(input, ARTICULATED, kinds[seed % 3], seed);
-        for (i = 0; i < ARTICULATED; i++)
+        for (unsigned i = 0; i < ARTICULATED; i++)
             input[i].ms %= 400;
         compare_told(1, TOLERANCE, "one model, articulated", seed);
         f->model.search_stride = own;

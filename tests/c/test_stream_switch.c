@@ -63,18 +63,15 @@ TEST(switching_keeps_time_and_does_not_depend_on_feeding)
         { 12, 40, 200, "words" },    { 1, 0, 60, "single short phonemes" }, { 1, 20, 1, "single frames" },
         { 3, 0, 400, "short runs" }, { 4, 0, 3, "less than a frame" },      { 2, 600, 3000, "pauses" },
     };
-    unsigned i, seed;
-    int feed;
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (unsigned seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
             fixture_host_t wanted;
             alternate(2, cases[i].longest, cases[i].shortest_ms, cases[i].range_ms, seed);
             play(&wanted, 2, COUNT, FIXTURE_FILL, cases[i].what);
-            for (feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
+            for (int feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
                 fixture_host_t host;
-                long at;
                 play(&host, 2, COUNT, (fixture_feed_t)feed, cases[i].what);
-                at = fixture_difference(&wanted.recorder, &host.recorder);
+                const long at = fixture_difference(&wanted.recorder, &host.recorder);
                 if (at >= 0)
                     fail_msg("%s, feed %d: frame %ld differs", cases[i].what, feed, at);
                 fixture_close(&host);
@@ -89,18 +86,15 @@ TEST(switching_keeps_time_and_does_not_depend_on_feeding)
 TEST(models_are_faded_into_each_other)
 {
     fixture_host_t host;
-    unsigned i;
-    size_t frame;
     int inside = 0, at_joins = 0, far = 0;
-    unsigned c;
-    for (i = 0; i < 40; i++) { /* ten phonemes of 100 ms each in turn: models change every 50 frames */
+    for (unsigned i = 0; i < 40; i++) { /* ten phonemes of 100 ms each in turn: models change every 50 frames */
         input[i].model = (uint8_t)(i / 10 % 2);
         input[i].phoneme = (uint8_t)(input[i].model ? FIXTURE_FRICATIVE : i % 2 ? FIXTURE_A : FIXTURE_S);
         input[i].ms = 100;
     }
     play(&host, 2, 40, FIXTURE_FILL, "ten in turn");
     assert_int_equal(host.recorder.count, 200);
-    for (frame = 1; frame < 200; frame++) {
+    for (size_t frame = 1; frame < 200; frame++) {
         const size_t from_join = frame % 50 < 25 ? frame % 50 : 50 - frame % 50;
         const int step = fixture_step(&host.recorder, frame);
         if (frame < 25 || frame >= 175 || from_join > FADE + 4)
@@ -108,7 +102,7 @@ TEST(models_are_faded_into_each_other)
         else
             at_joins = step > at_joins ? step : at_joins;
     }
-    for (c = 0; c < LABIAL_CHANNELS; c++) {
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         const int change = host.recorder.frames[75][c] - host.recorder.frames[25][c];
         far = change > far ? change : -change > far ? -change : far;
     }
@@ -123,18 +117,16 @@ TEST(models_are_faded_into_each_other)
 TEST(the_other_models_phonemes_are_silence)
 {
     fixture_host_t a, b;
-    unsigned i;
-    size_t frame;
-    for (i = 0; i < 30; i++) {
+    for (unsigned i = 0; i < 30; i++) {
         input[i].model = (uint8_t)(i >= 15);
         input[i].phoneme = (uint8_t)(i % 4);
         input[i].ms = 120;
     }
     play(&a, 2, 30, FIXTURE_FILL, "one laugh");
-    for (i = 15; i < 30; i++)
+    for (unsigned i = 15; i < 30; i++)
         input[i].phoneme = (uint8_t)((i + 1) % 4);
     play(&b, 2, 30, FIXTURE_FILL, "another laugh");
-    for (frame = 0; frame < 15 * 6; frame++)
+    for (size_t frame = 0; frame < 15 * 6; frame++)
         assert_memory_equal(a.recorder.frames[frame], b.recorder.frames[frame], sizeof a.recorder.frames[0]);
     assert_true(fixture_difference(&a.recorder, &b.recorder) >= 0); /* the laughs themselves differ */
     fixture_close(&a);
@@ -145,11 +137,10 @@ TEST(the_other_models_phonemes_are_silence)
  * must, in turn after turn, where the phonemes between them are many. */
 TEST(three_models_in_turn_make_room)
 {
-    unsigned seed, i;
-    for (seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
         fixture_host_t host;
         alternate(3, 1, 150, 200, seed);
-        for (i = 0; i < COUNT; i++) {
+        for (unsigned i = 0; i < COUNT; i++) {
             input[i].model = (uint8_t)(i / 14 % 3);
             input[i].phoneme = (uint8_t)(input[i].phoneme % FIXTURE_LAUGH_COUNT);
         }
@@ -162,11 +153,11 @@ TEST(three_models_in_turn_make_room)
 TEST(a_model_that_is_refused_does_no_harm)
 {
     const labial_model_t *models[3];
-    unsigned seed, refused = 0;
+    unsigned refused = 0;
     models[0] = &speech.model;
     models[1] = &laugh.model;
     models[2] = &slow.model;
-    for (seed = 0; seed < FIXTURE_ROUNDS(6); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(6); seed++) {
         fixture_host_t host;
         unsigned i = 0, ticks = 0;
         int result;

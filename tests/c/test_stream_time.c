@@ -37,10 +37,8 @@ static void play(fixture_model_t *f, unsigned rate, size_t count, fixture_feed_t
 TEST(every_kind_of_stream_lasts_exactly_as_long_as_its_phonemes)
 {
     static const unsigned rates[] = { 1, 24, 30, 50, 60, 99, 250 };
-    unsigned r;
-    int kind;
-    for (kind = 0; kind < FIXTURE_HOUR; kind++) {
-        for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
+    for (int kind = 0; kind < FIXTURE_HOUR; kind++) {
+        for (unsigned r = 0; r < sizeof rates / sizeof rates[0]; r++) {
             fixture_stream(input, KIND, (fixture_kind_t)kind, r);
             play(&plain, rates[r], KIND, FIXTURE_FILL, "plain");
             play(&rich, rates[r], KIND, FIXTURE_CHANCE, "rich");
@@ -76,22 +74,20 @@ static int is_nearest_ms(uint64_t ms, uint64_t frames, unsigned rate)
 TEST(every_prefix_is_exact)
 {
     static const unsigned rates[] = { 1, 7, 24, 30, 50, 60, 240, 250 };
-    unsigned r, i, round;
-    for (r = 0; r < sizeof rates / sizeof rates[0]; r++) {
-        for (round = 0; round < FIXTURE_ROUNDS(8); round++) {
+    for (unsigned r = 0; r < sizeof rates / sizeof rates[0]; r++) {
+        for (unsigned round = 0; round < FIXTURE_ROUNDS(8); round++) {
             fixture_host_t host;
             const labial_model_t *model = &plain.model;
             uint64_t ms = 0;
             plain.model.frames_per_second = (uint16_t)rates[r];
             fixture_stream(input, 80, round % 2 ? FIXTURE_RANDOM : FIXTURE_MILLI, round);
             assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-            for (i = 0; i < 80; i++) {
-                labial_latency_t latency;
+            for (unsigned i = 0; i < 80; i++) {
                 while (labial_room(host.stream) == 0)
                     (void)fixture_tick(&host);
                 assert_int_equal(fixture_push(&host, &input[i]), LABIAL_OK);
                 ms += input[i].ms;
-                latency = labial_latency(host.stream);
+                const labial_latency_t latency = labial_latency(host.stream);
                 if (!fixture_is_exact(latency.frames + host.recorder.count, ms, rates[r]))
                     fail_msg("%u frames/s: %u frames for %lu ms", rates[r], latency.frames, (unsigned long)ms);
                 if (!is_nearest_ms(latency.milliseconds, latency.frames, rates[r]))
@@ -109,13 +105,12 @@ TEST(a_queue_full_of_hours_is_counted_exactly)
     fixture_host_t host;
     const labial_model_t *model = &plain.model;
     uint32_t count = 0;
-    labial_latency_t latency;
     plain.model.frames_per_second = 250;
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     for (; labial_room(host.stream) > 0; count++)
         assert_int_equal(labial_push(host.stream, FIXTURE_T, LABIAL_DURATION_MAX), LABIAL_OK);
     assert_int_equal(count, LABIAL_QUEUE);
-    latency = labial_latency(host.stream);
+    const labial_latency_t latency = labial_latency(host.stream);
     assert_int_equal(latency.frames, count * 900000u);
     assert_int_equal(latency.milliseconds, count * 3600000u);
     assert_int_equal(latency.phonemes, count);
@@ -137,10 +132,9 @@ TEST(latency_is_what_was_pushed_and_not_delivered)
     size_t i = 0;
     uint32_t pushed = 0;
     int result = LABIAL_WAITING;
-    labial_latency_t latency;
     fixture_stream(input, 200, FIXTURE_RANDOM, 14);
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-    latency = labial_latency(host.stream);
+    labial_latency_t latency = labial_latency(host.stream);
     assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0);
     while (result != LABIAL_DONE) {
         uint32_t burst = fixture_below(&random, 4);
@@ -172,9 +166,9 @@ TEST(phonemes_without_time_leave_no_trace)
     static fixture_phoneme_t padded[3 * 100];
     fixture_host_t without, with;
     fixture_random_t random = { 6 };
-    size_t i, n = 0;
+    size_t n = 0;
     fixture_stream(input, 100, FIXTURE_RANDOM, 17);
-    for (i = 0; i < 100; i++) {
+    for (size_t i = 0; i < 100; i++) {
         uint32_t extra = fixture_below(&random, 3);
         input[i].ms += 20; /* each of them gets a frame */
         for (; extra > 0; extra--) {

@@ -54,14 +54,14 @@ static void channels_take_turns(const labial_model_t *model)
 {
     labial_progress_t before[LABIAL_CHANNELS];
     const unsigned stride = model->search_stride;
-    unsigned left = 60, tick, c, moved = 0, turns = 0;
+    unsigned left = 60, moved = 0, turns = 0;
     begin(model);
-    for (tick = 0;; tick++) {
+    for (unsigned tick = 0;; tick++) {
         feed(model->phoneme_count, &left);
         memcpy(before, place.stream.channels.progress, sizeof before);
         if (labial_tick(&place.stream) == LABIAL_DONE)
             break;
-        for (c = 0; c < LABIAL_CHANNELS; c++) {
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             const int changed = memcmp(&before[c], &place.stream.channels.progress[c], sizeof before[c]) != 0;
             if (c % stride != tick % stride && changed)
                 fail_msg("tick %u works on channel %u", tick, c);
@@ -84,16 +84,15 @@ TEST(channels_take_turns_in_every_stride)
  * channels. */
 TEST(shapes_are_selected_ahead)
 {
-    unsigned left = 120, tick, begun = 0, halves = 0;
+    unsigned left = 120, begun = 0, halves = 0;
     begin(&speech_en);
-    for (tick = 0;; tick++) {
+    for (unsigned tick = 0;; tick++) {
         const uint8_t was = place.stream.next.halves;
         const labial_shape_t spoken = place.stream.shape;
-        int has_begun;
         feed(SPEECH_EN_PHONEMES, &left);
         if (labial_tick(&place.stream) == LABIAL_DONE)
             break;
-        has_begun = memcmp(&spoken, &place.stream.shape, sizeof spoken) != 0;
+        const int has_begun = memcmp(&spoken, &place.stream.shape, sizeof spoken) != 0;
         if (has_begun && tick > 0 && was < 2)
             fail_msg("tick %u selects the shape that it uses", tick);
         if (place.stream.next.halves != (has_begun ? 0 : was) && tick > 0) {
@@ -112,9 +111,9 @@ TEST(shapes_are_selected_ahead)
  * tick with most channels, though the tick before could have done it. */
 TEST(the_fullest_ticks_select_no_shape)
 {
-    unsigned left = 120, tick, begun = 0;
+    unsigned left = 120, begun = 0;
     begin(&speech_en);
-    for (tick = 0; left > 0; tick++) {
+    for (unsigned tick = 0; left > 0; tick++) {
         const uint8_t was = place.stream.next.halves;
         const labial_shape_t spoken = place.stream.shape;
         for (; left > 0 && labial_room(&place.stream) > 0; left--)

@@ -50,7 +50,7 @@ static void read_text(const char *text, size_t length, labial_timings_format_t f
 {
     static labial_timings_t timings;
     labial_timing_t timing;
-    size_t at, used;
+    size_t used;
     int result = LABIAL_STARVED;
     labial_timings_init(&timings, format);
     while (result == LABIAL_STARVED) {
@@ -58,7 +58,7 @@ static void read_text(const char *text, size_t length, labial_timings_format_t f
         found->end = 0;
         found->text[0] = '\0';
         result = LABIAL_WAITING;
-        for (at = 0; at < length && result >= 0; at += used) {
+        for (size_t at = 0; at < length && result >= 0; at += used) {
             result =
                 labial_timings_next(&timings, text + at, length - at < piece ? length - at : piece, &used, &timing);
             if (result == LABIAL_OK)
@@ -99,8 +99,7 @@ static int differs(unsigned long line, const char *text, size_t length, labial_t
                    const char *expected)
 {
     static found_t found;
-    size_t piece;
-    for (piece = 1; piece <= LINE_MAX_BYTES; piece += LINE_MAX_BYTES - 1) {
+    for (size_t piece = 1; piece <= LINE_MAX_BYTES; piece += LINE_MAX_BYTES - 1) {
         found.in_milliseconds = strchr(expected, ':') == NULL;
         read_text(text, length, format, piece, &found);
         if (strncmp(found.text, "refused", strlen("refused")) == 0 && strcmp(expected, "refused") == 0)
@@ -144,7 +143,7 @@ TEST(calls_do_as_the_header_says)
     static const uint32_t numbers[] = { 0, 0, 0, 1, 2, 3 };
     static const char expected[] = "mn-mn-";
     labial_timing_t timing;
-    size_t used, i;
+    size_t used;
     int wrong = labial_timings_init(NULL, LABIAL_TIMINGS_AUTO) != LABIAL_ERROR_NULL;
     labial_timings_init(&timings, LABIAL_TIMINGS_AUTO);
     wrong |= labial_timings_next(NULL, "", 0, &used, &timing) != LABIAL_ERROR_NULL;
@@ -160,7 +159,7 @@ TEST(calls_do_as_the_header_says)
     wrong |= strcmp(labial_timings_format_name(LABIAL_TIMINGS_TEXTGRID), "textgrid") != 0;
     wrong |= strcmp(labial_timings_format_suffix(LABIAL_TIMINGS_LAB), ".lab") != 0;
     wrong |= strncmp(labial_timings_format_help(LABIAL_TIMINGS_PHO), "MBROLA", 6) != 0;
-    for (i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         char label = '-';
         labial_timings_init(&timings, LABIAL_TIMINGS_TEXTGRID);
         timings.tier = names[i];
@@ -204,7 +203,6 @@ TEST(texts_are_read_as_the_cases_say)
     while (fgets(row, sizeof row, file)) {
         char *text = strchr(row, '\t'), *expected = text ? strchr(text + 1, '\t') : NULL;
         unsigned format = 0;
-        size_t length;
         line++;
         if (row[0] == '#')
             continue;
@@ -212,7 +210,7 @@ TEST(texts_are_read_as_the_cases_say)
         assert_non_null(expected);
         *text++ = '\0';
         *expected++ = '\0';
-        length = plain(text);
+        const size_t length = plain(text);
         (void)plain(expected);
         if (strcmp(row, "number") == 0) {
             differing += number_differs(line, text, expected);

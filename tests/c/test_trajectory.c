@@ -32,11 +32,10 @@ static unsigned long compared;
 /* Adds one row of W, three coefficients around frame t, with its precision and mean. */
 static void add_row(unsigned t, const double *coefficients, double precision, double mean)
 {
-    int i, k;
-    for (i = -1; i <= 1; i++) {
+    for (int i = -1; i <= 1; i++) {
         if (coefficients[i + 1] == 0.0)
             continue;
-        for (k = -1; k <= 1; k++)
+        for (int k = -1; k <= 1; k++)
             if (coefficients[k + 1] != 0.0)
                 matrix[(int)t + i][(int)t + k] += coefficients[i + 1] * coefficients[k + 1] * precision;
         right[(int)t + i] += coefficients[i + 1] * precision * mean;
@@ -45,16 +44,15 @@ static void add_row(unsigned t, const double *coefficients, double precision, do
 
 static void eliminate(unsigned n)
 {
-    unsigned i, k, j;
-    for (i = 0; i < n; i++)
-        for (k = i + 1; k < n; k++) {
+    for (unsigned i = 0; i < n; i++)
+        for (unsigned k = i + 1; k < n; k++) {
             const double factor = matrix[k][i] / matrix[i][i];
-            for (j = i; factor != 0.0 && j < n; j++)
+            for (unsigned j = i; factor != 0.0 && j < n; j++)
                 matrix[k][j] -= factor * matrix[i][j];
             right[k] -= factor * right[i];
         }
-    for (i = n; i-- > 0;) {
-        for (k = i + 1; k < n; k++)
+    for (unsigned i = n; i-- > 0;) {
+        for (unsigned k = i + 1; k < n; k++)
             right[i] -= matrix[i][k] * right[k];
         right[i] /= matrix[i][i];
     }
@@ -64,10 +62,9 @@ static void eliminate(unsigned n)
 static void solve_densely(unsigned length)
 {
     static const double still[3] = { 0, 1, 0 }, delta[3] = { -0.5, 0, 0.5 }, delta2[3] = { 1, -2, 1 };
-    unsigned t;
     memset(matrix, 0, sizeof matrix);
     memset(right, 0, sizeof right);
-    for (t = 0; t < length; t++) {
+    for (unsigned t = 0; t < length; t++) {
         const labial_state_t *s = &states[path[t]];
         const double g = gain[t] / 256.0;
         double hold = fixture_weight_value(s->hold);
@@ -90,8 +87,7 @@ static void solve_densely(unsigned length)
 /* The limits that the solver is promised: labial_model_check() itself says whether a test keeps to them. */
 static void require_accepted(const char *what, unsigned round)
 {
-    unsigned q;
-    for (q = STATES; q < LABIAL_STATES_MAX; q++)
+    for (unsigned q = STATES; q < LABIAL_STATES_MAX; q++)
         states[q] = states[0];
     model.channels[0].states = states;
     channel = model.channels[0];
@@ -106,16 +102,16 @@ static void go_forward(unsigned length, unsigned most, labial_factors_t *factors
     labial_frame_t frames[FRAMES];
     labial_solver_t solver;
     labial_terms_t terms;
-    unsigned t, run;
+    unsigned run;
     memset(&solver, 0x55, sizeof solver);
     memset(frames, 0x55, sizeof frames);
-    for (t = 0; t < length; t++) {
+    for (unsigned t = 0; t < length; t++) {
         frames[t].target[CHANNEL] = target[t];
         frames[t].contacts = (t % 2u ? ~((uint32_t)1 << CHANNEL) : 0u) | (uint32_t)contact[t] << CHANNEL;
         frames[t].marks =
             (uint8_t)((t == 0 ? LABIAL_BEGINS : 0) | (t + 1 == length ? LABIAL_ENDS | LABIAL_UNIT_ENDS : 0));
     }
-    for (t = 0; t < length; t += run) {
+    for (unsigned t = 0; t < length; t += run) {
         for (run = 1; run < most && t + run < length && path[t + run] == path[t] && gain[t + run] == gain[t];)
             run++;
         labial_trajectory_terms(&channel, path[t], gain[t], &terms);
@@ -127,8 +123,7 @@ static void go_forward(unsigned length, unsigned most, labial_factors_t *factors
 static double most_gain(void)
 {
     int32_t most = LABIAL_GAIN_ONE;
-    unsigned t;
-    for (t = 0; t < FRAMES; t++)
+    for (unsigned t = 0; t < FRAMES; t++)
         most = gain[t] > most ? gain[t] : most;
     return most / 256.0;
 }
@@ -155,7 +150,6 @@ static void compare(unsigned length, const char *what, unsigned round)
     const unsigned window = round % 2 ? LABIAL_WINDOW : round % 13;
     double wanted[FRAMES];
     size_t start[FRAMES];
-    unsigned t, i;
     require_accepted(what, round);
     memset(before, 0x3c, sizeof before);
     go_forward(length, 1 + round % 9, factors);
@@ -164,15 +158,15 @@ static void compare(unsigned length, const char *what, unsigned round)
     solve_densely(length);
     memset(motion, 0x77, sizeof motion);
     labial_trajectory_back(factors + length - 1, 0, length, length - 1, FRAMES, motion);
-    for (t = 0; t < length; t++)
+    for (unsigned t = 0; t < length; t++)
         judge(what, round, length, t, motion[t * LABIAL_CHANNELS], right[t]);
-    for (i = 0; i < FRAMES * LABIAL_CHANNELS; i++)
+    for (unsigned i = 0; i < FRAMES * LABIAL_CHANNELS; i++)
         if (i % LABIAL_CHANNELS || i / LABIAL_CHANNELS >= length)
             assert_int_equal(motion[i], 0x7777); /* other channels and frames are not its own */
-    for (t = 0; t < length; t++)
+    for (unsigned t = 0; t < length; t++)
         start[t] = t + window < length ? t + window : length - 1;
     oracle_trajectory(&channel, path, target, contact, 0, gain, length, start, wanted);
-    for (t = 0; t < length; t++) {
+    for (unsigned t = 0; t < length; t++) {
         labial_trajectory_back(factors + start[t], (unsigned)start[t] - t, 1, 0, 1, motion);
         judge(what, round, length, t, motion[0], wanted[t]);
     }
@@ -200,8 +194,7 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
 {
     const double room = (LABIAL_WEIGHT_SUM_MAX - hold) / 8.0;
     double weakest = hold, mean[STATES][2];
-    unsigned q, i;
-    for (q = 0; q < STATES; q++) {
+    for (unsigned q = 0; q < STATES; q++) {
         labial_state_t *s = &states[q];
         const double r = only_bounds ? fixture_below(random, 2) : fixture_below(random, 1001) / 1000.0;
         const double own = LABIAL_WEIGHT_MIN * pow(hold / LABIAL_WEIGHT_MIN, r);
@@ -215,7 +208,7 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
         s->share = fixture_below(random, 2) ? shares[fixture_below(random, 8)] : (uint8_t)fixture_below(random, 256);
         s->mean = (int16_t)((int)fixture_below(random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
     }
-    for (q = 0; q < STATES; q++) {
+    for (unsigned q = 0; q < STATES; q++) {
         const labial_state_t *s = &states[q];
         const double all = pull * LABIAL_PULL_MAX * weakest / 4.0, part = fixture_below(random, 3) / 2.0;
         const double d = fixture_weight_value(s->weight[0]), dd = fixture_weight_value(s->weight[1]);
@@ -225,13 +218,13 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
         if (q == 0 && part > 0.5)
             mean[q][0] /= 2;
     }
-    for (i = 0; i < 2; i++) {
+    for (unsigned i = 0; i < 2; i++) {
         uint16_t *const scale = &model.channels[0].motion_scale[i];
         double most = 0;
-        for (q = 0; q < STATES; q++)
+        for (unsigned q = 0; q < STATES; q++)
             most = fmax(most, mean[q][i]);
         *scale = (uint16_t)floor(fmax(most - 0.5, 0) * 256.0 / 127.0);
-        for (q = 0; q < STATES; q++) {
+        for (unsigned q = 0; q < STATES; q++) {
             const int steps = (int)(*scale ? least(127, floor(fmax(mean[q][i] - 0.5, 0) * 256.0 / *scale)) : 0);
             states[q].motion[i] = (int8_t)(fixture_below(random, 2) ? -steps : steps);
         }
@@ -258,9 +251,8 @@ static void make_firm(fixture_random_t *random)
 static void walk(fixture_random_t *random, int restless, int extreme)
 {
     const uint32_t touching = fixture_below(random, 4);
-    unsigned t;
     make_firm(random);
-    for (t = 0; t < FRAMES; t++) {
+    for (unsigned t = 0; t < FRAMES; t++) {
         const int anywhere = (int)fixture_below(random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX;
         path[t] =
             (uint8_t)(t > 0 && !restless && fixture_below(random, 3) ? path[t - 1] : fixture_below(random, STATES));
@@ -314,8 +306,7 @@ static double guess_error(double from, double to, double r)
 static double least_guess_error(double from, double to)
 {
     double best = 1.0;
-    unsigned r;
-    for (r = 128; r < 256; r++)
+    for (unsigned r = 128; r < 256; r++)
         best = least(best, guess_error(from, to, r / 256.0));
     return best;
 }
@@ -327,15 +318,14 @@ static double least_guess_error(double from, double to)
 TEST(reciprocals_have_24_bits)
 {
     const unsigned blocks = LABIAL_TEST_SHARE > 10 ? 1 : 16; /* each of which shares the first step */
-    unsigned i, k, block;
-    for (i = 64; i < 128; i++) {
+    for (unsigned i = 64; i < 128; i++) {
         const double from = i / 64.0, to = (i + 1) / 64.0, guessed = least_guess_error(from, to);
         const double stepped = guessed * guessed + from / 65536.0;
         const double most = 1.0 + 65536.0 / from / 262144.0 + 16777216.0 / from * stepped * stepped;
-        for (block = 0; block < 2u * blocks; block++) {
+        for (unsigned block = 0; block < 2u * blocks; block++) {
             const uint32_t first =
                 block < blocks ? (i << 24) + (block << 15) : ((i + 1u) << 24) - ((block + 1u - blocks) << 15);
-            for (k = 0; k < 512; k += 2) {
+            for (unsigned k = 0; k < 512; k += 2) {
                 double lost = 18014398509481984.0 / (first + k) - reciprocal_of_sum(first + k);
                 if (i > 64) /* what the other one sees; both are one function */
                     lost = fmax(lost, 18014398509481984.0 / (first + k) - reciprocal_of(first + k));
@@ -350,10 +340,9 @@ TEST(reciprocals_have_24_bits)
 TEST(ordinary_weights)
 {
     fixture_random_t random = { 21 };
-    unsigned round;
     worst = sum_of_squares = 0;
     compared = 0;
-    for (round = 0; round < FIXTURE_ROUNDS(1500); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(1500); round++) {
         make(&random, 600, 4, 0.02, 0);
         walk(&random, 0, 0);
         compare(1 + round % FRAMES, "ordinary", round);
@@ -367,8 +356,7 @@ TEST(any_weights_within_the_limits)
 {
     static const double holds[] = { 8, 30, 127, 1000, 8000, 15872 };
     fixture_random_t random = { 22 };
-    unsigned round;
-    for (round = 0; round < FIXTURE_ROUNDS(6000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(6000); round++) {
         make(&random, holds[round % 6], LABIAL_STIFFNESS_MAX, round / 6 % 3 / 2.0, 0);
         walk(&random, round / 18 % 2, round / 36 % 2);
         compare(1 + round % 7 * 59 / 6, "any", round);
@@ -381,8 +369,7 @@ TEST(every_bound)
 {
     static const double holds[] = { 8, 8, 16, 120, 126, 1920, 7936, 15872 };
     fixture_random_t random = { 23 };
-    unsigned round;
-    for (round = 0; round < FIXTURE_ROUNDS(8000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(8000); round++) {
         make(&random, holds[round % 8], LABIAL_STIFFNESS_MAX, round / 8 % 2, 1);
         walk(&random, round / 16 % 2, round / 32 % 3 > 0);
         compare(round % 5 ? FRAMES : 1 + round / 5 % FRAMES, "bounds", round);
@@ -396,19 +383,18 @@ TEST(every_articulation)
     static const double holds[] = { 8, 16, 126, 600, 7936, 15872 };
     static const int32_t gains[] = { 0, 1, 128, 255, 257, 333, 511, 512 };
     fixture_random_t random = { 31 };
-    unsigned round, t;
     worst = 0;
-    for (round = 0; round < FIXTURE_ROUNDS(6000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(6000); round++) {
         make(&random, holds[round % 6], LABIAL_STIFFNESS_MAX, round / 6 % 3 / 2.0, round / 18 % 2);
         walk(&random, round / 36 % 2, round / 72 % 2);
-        for (t = 0; t < FRAMES; t++)
+        for (unsigned t = 0; t < FRAMES; t++)
             gain[t] = t > 0 && round % 4 == 0              ? gain[0]
                       : t > 0 && round % 4 == 1            ? 512 - gain[t - 1]
                       : t > 0 && fixture_below(&random, 3) ? gain[t - 1]
                                                            : gains[fixture_below(&random, 8)];
         compare(round % 5 ? FRAMES : 1 + round / 5 % FRAMES, "articulation", round);
     }
-    for (t = 0; t < FRAMES; t++)
+    for (unsigned t = 0; t < FRAMES; t++)
         gain[t] = LABIAL_GAIN_ONE;
     print_message("worst error %.4f FAP\n", worst);
 }
@@ -436,10 +422,9 @@ static double diagonal(unsigned t, unsigned length)
 {
     const labial_state_t *s = &states[path[t]];
     double sum = fixture_weight_value(s->hold);
-    int i;
     if (contact[t])
         sum = fmax(sum, fixture_weight_value(channel.contact_weight));
-    for (i = -1; i <= 1; i++) {
+    for (int i = -1; i <= 1; i++) {
         const int row = (int)t + i;
         if (row > 0 && row + 1 < (int)length) {
             const double d = fixture_weight_value(states[path[row]].weight[0]);
@@ -458,9 +443,8 @@ static double largest_pivot(unsigned length, const char *what, unsigned round)
     labial_solver_t solver;
     labial_terms_t terms;
     double most = 0;
-    unsigned t;
     require_accepted(what, round);
-    for (t = 0; t < length; t++) {
+    for (unsigned t = 0; t < length; t++) {
         labial_frame_t frame;
         memset(&frame, 0, sizeof frame);
         frame.target[CHANNEL] = target[t];
@@ -489,8 +473,7 @@ TEST(pivots_stay_below_the_diagonal)
     static const double holds[] = { 8, 16, 126, 1920, 7936, 15872 };
     fixture_random_t random = { 29 };
     double most = 0;
-    unsigned round, dd, d, q;
-    for (round = 0; round < FIXTURE_ROUNDS(2000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(2000); round++) {
         make(&random, holds[round % 6], LABIAL_STIFFNESS_MAX, 0, round / 6 % 2);
         walk(&random, round / 12 % 2, 0);
         most = fmax(most, largest_pivot(FRAMES, "by chance", round));
@@ -498,14 +481,14 @@ TEST(pivots_stay_below_the_diagonal)
     memset(states, 0, sizeof states);
     memset(contact, 0, sizeof contact);
     model.channels[0].contact_weight = 0;
-    for (dd = 0; fixture_weight_value((uint8_t)dd) * 6 + LABIAL_WEIGHT_MIN <= LABIAL_WEIGHT_SUM_MAX; dd++)
-        for (d = 0; d <= dd; d += 1 + d / 16) {
+    for (unsigned dd = 0; fixture_weight_value((uint8_t)dd) * 6 + LABIAL_WEIGHT_MIN <= LABIAL_WEIGHT_SUM_MAX; dd++)
+        for (unsigned d = 0; d <= dd; d += 1 + d / 16) {
             const double left =
                 LABIAL_WEIGHT_SUM_MAX - 6 * fixture_weight_value((uint8_t)dd) - 2 * fixture_weight_value((uint8_t)d);
             if (left < LABIAL_WEIGHT_MIN || not_above(left) < 8 ||
                 fixture_weight_value((uint8_t)dd) > LABIAL_STIFFNESS_MAX * fixture_weight_value(not_above(left)))
                 continue;
-            for (q = 0; q < STATES; q++) {
+            for (unsigned q = 0; q < STATES; q++) {
                 states[q].hold = not_above(left);
                 states[q].weight[0] = (uint8_t)d;
                 states[q].weight[1] = (uint8_t)dd;
@@ -520,21 +503,20 @@ TEST(pivots_stay_below_the_diagonal)
 TEST(what_rests_stays_at_rest)
 {
     fixture_random_t random = { 25 };
-    unsigned round, q, t;
-    for (round = 0; round < FIXTURE_ROUNDS(500); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(500); round++) {
         const int16_t place = (int16_t)((int)fixture_below(&random, 32767) - LABIAL_POSITION_MAX);
         labial_factors_t factors[FRAMES];
         int16_t motion[FRAMES * LABIAL_CHANNELS];
         make(&random, round % 2 ? 126 : 8000, LABIAL_STIFFNESS_MAX, 0, round / 2 % 2);
         walk(&random, 1, 0);
-        for (q = 0; q < STATES; q++)
+        for (unsigned q = 0; q < STATES; q++)
             states[q].mean = place;
-        for (t = 0; t < FRAMES; t++)
+        for (unsigned t = 0; t < FRAMES; t++)
             target[t] = place;
         require_accepted("rest", round);
         go_forward(FRAMES, FRAMES, factors);
         labial_trajectory_back(factors + FRAMES - 1, 0, FRAMES, FRAMES - 1, FRAMES, motion);
-        for (t = 0; t < FRAMES; t++)
+        for (unsigned t = 0; t < FRAMES; t++)
             if (motion[t * LABIAL_CHANNELS] != place + channel.centre)
                 fail_msg("round %u: frame %u is %d, not %d", round, t, motion[t * LABIAL_CHANNELS],
                          place + channel.centre);
@@ -546,15 +528,13 @@ TEST(what_rests_stays_at_rest)
 TEST(contact_holds_a_frame_at_its_target)
 {
     fixture_random_t random = { 27 };
-    unsigned round;
-    for (round = 0; round < FIXTURE_ROUNDS(500); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(500); round++) {
         labial_factors_t factors[FRAMES];
         int16_t motion[LABIAL_CHANNELS];
-        int both;
         make(&random, 600, 4, 0, 0);
         walk(&random, 0, 0);
         require_accepted("contact", round);
-        for (both = 0; both < 2; both++) {
+        for (int both = 0; both < 2; both++) {
             const labial_state_t *s = &states[path[0]];
             const double share = both ? 1.0 : (s->share + (s->share >= 128)) / 256.0;
             contact[0] = (uint16_t)both;
@@ -572,19 +552,18 @@ TEST(firm_contact_is_met)
 {
     static const double contact_weight[] = { 0, 500, 2000, 14000 };
     double reached[4];
-    unsigned i, t;
     memset(states, 0, sizeof states);
-    for (i = 0; i < STATES; i++) {
+    for (unsigned i = 0; i < STATES; i++) {
         states[i].hold = not_above(100);
         states[i].share = 255;
         states[i].weight[1] = not_above(200);
     }
-    for (t = 0; t < FRAMES; t++) {
+    for (unsigned t = 0; t < FRAMES; t++) {
         path[t] = 0;
         target[t] = (int16_t)(t == 20 ? 3200 : 0);
         contact[t] = t == 20;
     }
-    for (i = 0; i < 4; i++) {
+    for (unsigned i = 0; i < 4; i++) {
         double wanted[FRAMES];
         model.channels[0].contact_weight = not_above(contact_weight[i]);
         compare(FRAMES, "contact_weight", i);
@@ -600,13 +579,11 @@ TEST(firm_contact_is_met)
 TEST(solutions_are_not_coupled)
 {
     fixture_random_t random = { 26 };
-    unsigned round;
-    for (round = 0; round < FIXTURE_ROUNDS(2000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(2000); round++) {
         const unsigned first = 1 + fixture_below(&random, 20), second = 1 + fixture_below(&random, 20);
         labial_factors_t factors[FRAMES];
         double wanted[FRAMES];
         int16_t motion[FRAMES * LABIAL_CHANNELS];
-        unsigned t;
         make(&random, round % 2 ? 126 : 8000, LABIAL_STIFFNESS_MAX, round % 3 / 2.0, 0);
         walk(&random, 0, round / 2 % 2);
         require_accepted("two", round);
@@ -616,7 +593,7 @@ TEST(solutions_are_not_coupled)
         require_accepted("two", round);
         go_forward(second, 3, factors + first);
         labial_trajectory_back(factors + first + second - 1, second, first, round % 7, 7, motion);
-        for (t = 0; t < first && t < 7; t++) /* the earliest seven overwrite the others */
+        for (unsigned t = 0; t < first && t < 7; t++) /* the earliest seven overwrite the others */
             judge("two", round, first, t, motion[(round % 7 + 7 - (first - 1 - t) % 7) % 7 * LABIAL_CHANNELS],
                   wanted[t]);
     }
@@ -624,8 +601,7 @@ TEST(solutions_are_not_coupled)
 
 SETUP(setup)
 {
-    unsigned t;
-    for (t = 0; t < FRAMES; t++)
+    for (unsigned t = 0; t < FRAMES; t++)
         gain[t] = LABIAL_GAIN_ONE;
     fixture_slow(&model);
     return 0;

@@ -183,8 +183,7 @@ TEST(pauses_are_cut_where_one_frame_is_seen)
 static void expect_places(const unsigned *shares, const char *wanted_open, size_t count)
 {
     labial_taken_t taken;
-    size_t i;
-    for (i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
         if (shares)
             assert_int_equal(taken.share, shares[i] * 4);
@@ -258,9 +257,8 @@ static void compose(int kind, uint32_t seed)
 {
     fixture_random_t random = { seed + 100 };
     uint8_t current = 0;
-    unsigned i;
     fixture_stream(input, COUNT, (fixture_kind_t)kind, seed);
-    for (i = 0; i < COUNT; i++) {
+    for (unsigned i = 0; i < COUNT; i++) {
         if (LABIAL_MODELS > 1 && i > 0 && seed % 2 && fixture_below(&random, 1 + seed % 6) == 0)
             current = !current;
         input[i].model = current;
@@ -279,9 +277,8 @@ static void check_place(const labial_taken_t *taken, const oracle_frame_t *frame
 {
     static int shares[MANY], was_open, was_closed;
     const size_t first = at - (size_t)frame->number;
-    size_t i;
     shares[at] = taken->share;
-    for (i = first; frame->number + 1 == frame->whole && i <= at; i++) {
+    for (size_t i = first; frame->number + 1 == frame->whole && i <= at; i++) {
         const int mirrored = shares[i] + shares[first + at - i];
         if (mirrored != 16384 && mirrored != 16384 - 1)
             fail_msg("frame %zu: share %d, and %d at the other end", i, shares[i], shares[first + at - i]);
@@ -335,12 +332,12 @@ static void compare(const labial_taken_t *taken, size_t at, size_t count)
                            (frame->unit_ends ? LABIAL_UNIT_ENDS : 0u);
     const int ahead = (model->kernel_taps ? model->kernel_taps - 1 - model->kernel_behind : 0) * model->kernel_stride;
     const int behind = model->kernel_behind * model->kernel_stride;
-    int k;
     check_place(taken, frame, at);
     if (taken->slot != frame->model || taken->is_first != frame->is_first || taken->marks != marks)
         fail_msg("frame %zu: model %u, first %u, marks %u, not %u, %d, %u", at, taken->slot, taken->is_first,
                  taken->marks, frame->model, frame->is_first, marks);
-    for (k = model->floor_count && behind < 2 ? -2 : -behind; k <= (model->floor_count && ahead < 3 ? 3 : ahead); k++)
+    for (int k = model->floor_count && behind < 2 ? -2 : -behind; k <= (model->floor_count && ahead < 3 ? 3 : ahead);
+         k++)
         if (taken->labels[k] != oracle_label(models, wanted, count, at, k))
             fail_msg("frame %zu: %d from it is phoneme %u, not %u", at, k, taken->labels[k],
                      oracle_label(models, wanted, count, at, k));
@@ -355,11 +352,11 @@ static void follow(int kind, uint32_t seed, int hungry)
 {
     fixture_random_t random = { seed + 7 };
     labial_taken_t taken;
-    size_t count, at = 0, pushed = 0;
+    size_t at = 0, pushed = 0;
     int result = LABIAL_STARVED;
     compose(kind, seed);
     begin(seed % 3 ? &rich.model : seed % 2 ? &floored : &plain.model);
-    count = oracle_units(models, input, COUNT, wanted, MANY);
+    const size_t count = oracle_units(models, input, COUNT, wanted, MANY);
     while (result != LABIAL_DONE) {
         uint32_t more = hungry ? result == LABIAL_STARVED : fixture_below(&random, 5);
         const int ended = pushed == COUNT;
@@ -389,10 +386,8 @@ static void follow(int kind, uint32_t seed, int hungry)
  * let go too early; frames lost or doubled; a segment of no frame that leaves a trace. */
 TEST(random_streams_are_taken_frame_by_frame)
 {
-    int kind;
-    uint32_t seed;
-    for (kind = 0; kind < FIXTURE_HOUR; kind++) {
-        for (seed = 0; seed < 30; seed++) {
+    for (int kind = 0; kind < FIXTURE_HOUR; kind++) {
+        for (uint32_t seed = 0; seed < 30; seed++) {
             follow(kind, seed, 0);
             follow(kind, seed, 1);
         }
@@ -406,9 +401,8 @@ TEST(random_streams_are_taken_frame_by_frame)
 TEST(the_queue_knows_its_models)
 {
     labial_taken_t taken;
-    unsigned slot;
     begin(&plain.model);
-    for (slot = 0; slot < LABIAL_MODELS; slot++)
+    for (unsigned slot = 0; slot < LABIAL_MODELS; slot++)
         assert_int_equal(labial_units_uses(&units, slot), 0);
     push(FIXTURE_A, 0, 1), push(FIXTURE_O, 0, 1);
     assert_int_equal(labial_units_uses(&units, 0), 1);
@@ -426,13 +420,11 @@ TEST(shares_of_the_longest_phoneme_ascend)
     static const uint32_t lengths[] = { 65535, 65536, 65537, 131071, 131072, 262143, 262144, 900000 };
     labial_model_t fast = plain.model;
     labial_taken_t taken;
-    unsigned i;
     fast.frames_per_second = 250;
-    for (i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
-        uint32_t n;
+    for (unsigned i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         begin(&fast);
         assert_int_equal(labial_units_push(&units, FIXTURE_S, 0, lengths[i] * 4u, 250), lengths[i]);
-        for (n = 0; n < lengths[i]; n++) {
+        for (uint32_t n = 0; n < lengths[i]; n++) {
             const double exact = 16384.0 * (n + 0.5) / lengths[i];
             assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
             if (taken.share > exact + 1.6 || taken.share < exact - 1.6) /* to halving, 1 in 32,768 */

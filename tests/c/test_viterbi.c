@@ -26,8 +26,8 @@ static oracle_step_t steps[STEPS];
 static void make(fixture_random_t *random, unsigned states, uint32_t density, uint32_t spread, uint32_t gains)
 {
     uint16_t lists[LABIAL_STATES_MAX][LABIAL_STATES_MAX];
-    unsigned counts[LABIAL_STATES_MAX], most = 0, q, p;
-    for (q = 0; q < states; q++) {
+    unsigned counts[LABIAL_STATES_MAX], most = 0, p;
+    for (unsigned q = 0; q < states; q++) {
         const int16_t mean = (int16_t)((int)fixture_below(random, 2 * spread + 1) - (int)spread);
         unsigned n = 0;
         for (p = q; p > 0 && emissions[p - 1].mean > mean; p--)
@@ -42,7 +42,7 @@ static void make(fixture_random_t *random, unsigned states, uint32_t density, ui
         counts[q] = n;
         most = n > most ? n : most;
     }
-    for (q = 0; q < states; q++)
+    for (unsigned q = 0; q < states; q++)
         for (p = 0; p < most; p++)
             transitions[q * most + p] = lists[q][p < counts[q] ? p : counts[q] - 1];
     model.state_count = (uint8_t)states;
@@ -50,7 +50,7 @@ static void make(fixture_random_t *random, unsigned states, uint32_t density, ui
     channel.emissions = emissions;
     channel.transitions = transitions;
     channel.initials = initials;
-    for (q = 0; q < STEPS; q++) {
+    for (unsigned q = 0; q < STEPS; q++) {
         position[q] = (int32_t)fixture_below(random, 2 * spread + 1) - (int32_t)spread;
         if (q > 0 && fixture_below(random, 3)) /* mostly near the one before, as speech is */
             position[q] = position[q - 1] + ((int32_t)fixture_below(random, spread / 4 + 1) - (int32_t)spread / 8);
@@ -108,10 +108,9 @@ static void take_step(labial_search_t *search, unsigned t, unsigned begin, unsig
 static void check_scores(const labial_search_t *search, const double *cost, int ends_unit, const char *what)
 {
     double least = ORACLE_NONE;
-    unsigned q, i;
-    for (q = 0; q < model.state_count; q++)
+    for (unsigned q = 0; q < model.state_count; q++)
         least = cost[q] < least ? cost[q] : least;
-    for (i = 0; i < width(); i++) {
+    for (unsigned i = 0; i < width(); i++) {
         const double above = ends_unit && i != search->best ? 255.0 : cost[search->first + i] - least;
         if ((double)search->scores[i] != (above < 255.0 ? above : 255.0))
             fail_msg("%s: state %u has a score of %u, not %g", what, search->first + i, search->scores[i], above);
@@ -123,20 +122,19 @@ static void check_scores(const labial_search_t *search, const double *cost, int 
 TEST(scores_are_those_of_exhaustive_search)
 {
     fixture_random_t random = { 11 };
-    unsigned round, t;
-    for (round = 0; round < FIXTURE_ROUNDS(1500); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(1500); round++) {
         const unsigned many = round % 20 == 0, count = 1 + round % (many ? 3u : (unsigned)EXHAUSTED);
         double least[LABIAL_STATES_MAX];
         labial_search_t search;
         make(&random, many ? 10 + fixture_below(&random, 54) : 1 + round % 4, 40 + fixture_below(&random, 200),
              300 + round % 400 * 10, round % 7 ? 3000 : 300);
         memset(&search, 0xa5, sizeof search);
-        for (t = 0; t < count; t++)
+        for (unsigned t = 0; t < count; t++)
             take_step(&search, t, 0, 1, 0);
         exhaust(count, least);
         check_scores(&search, least, 0, "exhaustive");
         assert_true(least[search.first + search.best] == least[steps[count - 1].best]); /* the oracle agrees */
-        for (t = 0; t < search.best; t++)
+        for (unsigned t = 0; t < search.best; t++)
             assert_true(least[search.first + t] > least[search.first + search.best]); /* the lowest of the best */
     }
 }
@@ -145,9 +143,9 @@ TEST(scores_are_those_of_exhaustive_search)
  * first step of its solution; the oracle traces back from the last step, or from the end of the unit. */
 static unsigned check_path(const labial_search_t *search, unsigned last, unsigned begin, const unsigned *spans)
 {
-    unsigned age, step = last, left = spans[last], changed = 0;
-    for (age = 0; age + 1 < spans[last] + LABIAL_LAG + 1; age++, left--) {
-        unsigned end, wanted;
+    unsigned step = last, left = spans[last], changed = 0;
+    for (unsigned age = 0; age + 1 < spans[last] + LABIAL_LAG + 1; age++, left--) {
+        unsigned end;
         while (left == 0) {
             if (step == begin)
                 return changed;
@@ -155,7 +153,7 @@ static unsigned check_path(const labial_search_t *search, unsigned last, unsigne
         }
         for (end = step; end < last && !steps[end].ends_unit;)
             end++;
-        wanted = oracle_traced(steps, end, step);
+        const unsigned wanted = oracle_traced(steps, end, step);
         changed += wanted != steps[step].best;
         if (labial_viterbi_state(search, age) != wanted)
             fail_msg("step %u, %u frames back, step %u: state %u, not %u", last, age, step,
@@ -206,21 +204,21 @@ TEST(a_unit_within_the_lag_has_the_best_path)
     unsigned round, t;
     for (round = 0; round < FIXTURE_ROUNDS(1000); round++) {
         const unsigned count = 1 + round % EXHAUSTED;
-        double least[LABIAL_STATES_MAX], cost, best = ORACLE_NONE;
-        unsigned path[EXHAUSTED], i;
+        double least[LABIAL_STATES_MAX], best = ORACLE_NONE;
+        unsigned path[EXHAUSTED];
         labial_search_t search;
         make(&random, 1 + round % 4, 40 + fixture_below(&random, 200), 300 + round % 400 * 10, 3000);
         for (t = 0; t < count; t++)
             take_step(&search, t, 0, 1, t == count - 1);
         exhaust(count, least);
-        for (i = 0; i < model.state_count; i++)
+        for (unsigned i = 0; i < model.state_count; i++)
             best = least[i] < best ? least[i] : best;
         for (t = 0; t < count; t++)
             path[t] = labial_viterbi_state(&search, count - 1 - t);
-        cost = initials[path[0]] + oracle_emission(&emissions[path[0]], position[0]);
+        double cost = initials[path[0]] + oracle_emission(&emissions[path[0]], position[0]);
         for (t = 1; t < count; t++) {
             unsigned way = 255;
-            for (i = 0; i < model.predecessors; i++) {
+            for (unsigned i = 0; i < model.predecessors; i++) {
                 const unsigned transition = transitions[path[t] * model.predecessors + i];
                 way = (transition & 255u) == path[t - 1] && transition >> 8 < way ? transition >> 8 : way;
             }
@@ -237,10 +235,9 @@ TEST(a_unit_within_the_lag_has_the_best_path)
 
 static void set_up_flat(unsigned states, unsigned predecessors)
 {
-    unsigned q;
     memset(emissions, 0, sizeof emissions);
     memset(initials, 0, sizeof initials);
-    for (q = 0; q < LABIAL_STATES_MAX; q++)
+    for (unsigned q = 0; q < LABIAL_STATES_MAX; q++)
         emissions[q].gain = 0xf0; /* the least */
     model.state_count = (uint8_t)states;
     model.predecessors = (uint8_t)predecessors;
@@ -261,13 +258,12 @@ TEST(the_window_lies_around_the_nearest_state)
     } cases[] = { { -16383, 0 }, { 100, 0 },   { 450, 0 },   { 550, 0 },   { 551, 1 },   { 650, 1 },   { 651, 2 },
                   { 950, 4 },    { 951, 5 },   { 1000, 5 },  { 1001, 7 },  { 1050, 7 },  { 1051, 8 },  { 1150, 8 },
                   { 1250, 9 },   { 1251, 10 }, { 1400, 11 }, { 1500, 12 }, { 2000, 12 }, { 16383, 12 } };
-    unsigned i, q;
     set_up_flat(20, 1);
-    for (q = 0; q < 20; q++) {
+    for (unsigned q = 0; q < 20; q++) {
         emissions[q].mean = (int16_t)(q < 9 ? 100 * (q + 1) : q < 12 ? 1000 : 100 * (q - 1));
         transitions[q] = (uint16_t)q;
     }
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         labial_search_t search;
         labial_viterbi_step(&model, &channel, cases[i].position, LABIAL_BEGINS, &search);
         if (search.first != cases[i].first || oracle_window(&model, &channel, cases[i].position) != cases[i].first)
@@ -308,17 +304,16 @@ TEST(a_leap_is_taken_where_no_edge_is_cheaper)
 TEST(eight_bits_are_enough)
 {
     labial_search_t search;
-    unsigned q, t;
     set_up_flat(LABIAL_STATES_MAX, 1);
-    for (q = 0; q < LABIAL_STATES_MAX; q++) {
+    for (unsigned q = 0; q < LABIAL_STATES_MAX; q++) {
         emissions[q].mean = (int16_t)(q * 500 - 16000);
         emissions[q].gain = 0x0f; /* the largest */
         emissions[q].cost = initials[q] = 255;
         transitions[q] = (uint16_t)(0xff00 | (LABIAL_STATES_MAX - 1 - q));
     }
-    for (t = 0; t < STEPS; t++)
+    for (unsigned t = 0; t < STEPS; t++)
         position[t] = t % 2 ? LABIAL_POSITION_MAX : -LABIAL_POSITION_MAX;
-    for (t = 0; t < STEPS; t++) {
+    for (unsigned t = 0; t < STEPS; t++) {
         take_step(&search, t, 0, 1, 0);
         check_scores(&search, steps[t].cost, 0, "largest costs");
         assert_int_equal(search.first + search.best, t % 2 ? LABIAL_STATES_MAX - LABIAL_SEARCHED : 0);
@@ -329,20 +324,18 @@ TEST(eight_bits_are_enough)
 TEST(ties_go_to_the_lower_state)
 {
     labial_search_t search;
-    unsigned q, t;
     set_up_flat(5, 5);
-    for (q = 0; q < 5; q++) {
+    for (unsigned q = 0; q < 5; q++) {
         emissions[q].gain = fixture_gain_code(1850);
         emissions[q].cost = initials[q] = 7;
-        for (t = 0; t < 5; t++)
+        for (unsigned t = 0; t < 5; t++)
             transitions[q * 5 + t] = (uint16_t)(9u << 8 | t);
     }
-    for (t = 0; t < STEPS; t++)
+    for (unsigned t = 0; t < STEPS; t++)
         position[t] = 50;
-    for (t = 0; t < STEPS; t++) {
-        unsigned age;
+    for (unsigned t = 0; t < STEPS; t++) {
         take_step(&search, t, 0, 1, 0);
-        for (age = 0; age <= LABIAL_LAG && age <= t; age++)
+        for (unsigned age = 0; age <= LABIAL_LAG && age <= t; age++)
             assert_int_equal(labial_viterbi_state(&search, age), 0);
     }
 }
