@@ -12,8 +12,7 @@ static int16_t motion[BENCH_HOLD][LABIAL_CHANNELS];
 int main(void)
 {
     uint32_t instructions = 0;
-    unsigned k;
-    for (k = 0; k < BENCH_CHANNELS; k++) {
+    for (unsigned k = 0; k < BENCH_CHANNELS; k++) {
         bench_unit_fill(&unit, &speech_en, k);
         board_count_start();
         bench_unit_solve(&unit, &speech_en, k, motion);

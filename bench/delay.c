@@ -82,8 +82,7 @@ static int play_sentence(void)
 {
     const bench_input_t input = BENCH_SPEECH;
     uint32_t latest;
-    unsigned i;
-    for (i = 0; i < input.count; i++) {
+    for (unsigned i = 0; i < input.count; i++) {
         phonemes[i].phoneme = input.phonemes[i].phoneme;
         phonemes[i].ms = input.phonemes[i].ms;
     }

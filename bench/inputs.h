@@ -83,9 +83,8 @@ static inline void bench_feed_turns(labial_t *stream, const bench_input_t inputs
 static inline void bench_on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     uint32_t *sum = (uint32_t *)user;
-    unsigned k;
     (void)frame;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
         *sum = *sum * 31u + (uint32_t)(uint16_t)faps[k];
 }
 

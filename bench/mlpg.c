@@ -39,12 +39,10 @@ static void rows(const bench_unit_t *unit, unsigned k, unsigned t, double mean[W
 
 static void fill(bench_unit_t *unit)
 {
-    unsigned k;
     bench_unit_t one;
-    for (k = 0; k < BENCH_CHANNELS; k++) {
-        unsigned t;
+    for (unsigned k = 0; k < BENCH_CHANNELS; k++) {
         bench_unit_fill(&one, model, k);
-        for (t = 0; t < BENCH_UNIT; t++) {
+        for (unsigned t = 0; t < BENCH_UNIT; t++) {
             unit[k].path[t] = one.path[t];
             unit[k].targets[t][k] = one.targets[t][k];
         }
@@ -66,12 +64,11 @@ static double means[BENCH_UNIT][WINDOWS * BENCH_CHANNELS], variances[BENCH_UNIT]
 /* Every frame is a state of its own, since the channels' states change apart. */
 static void hts_states(const bench_unit_t *unit)
 {
-    unsigned t, k, w;
-    for (t = 0; t < BENCH_UNIT; t++)
-        for (k = 0; k < BENCH_CHANNELS; k++) {
+    for (unsigned t = 0; t < BENCH_UNIT; t++)
+        for (unsigned k = 0; k < BENCH_CHANNELS; k++) {
             double mean[WINDOWS], precision[WINDOWS];
             rows(&unit[k], k, t, mean, precision);
-            for (w = 0; w < WINDOWS; w++) {
+            for (unsigned w = 0; w < WINDOWS; w++) {
                 means[t][w * BENCH_CHANNELS + k] = mean[w];
                 variances[t][w * BENCH_CHANNELS + k] = precision[w] > 0.0 ? 1.0 / precision[w] : 1e30;
             }
@@ -88,12 +85,11 @@ static int hts_solve(const bench_unit_t *unit, unsigned long count, double (*res
     size_t durations[BENCH_UNIT];
     HTS_SStream stream;
     HTS_SStreamSet states;
-    unsigned t, k;
 
     hts_states(unit);
     memset(&stream, 0, sizeof stream);
     memset(&states, 0, sizeof states);
-    for (t = 0; t < BENCH_UNIT; t++) {
+    for (unsigned t = 0; t < BENCH_UNIT; t++) {
         mean_rows[t] = means[t];
         variance_rows[t] = variances[t];
         durations[t] = 1;
@@ -116,8 +112,8 @@ static int hts_solve(const bench_unit_t *unit, unsigned long count, double (*res
         if (!HTS_PStreamSet_create(&solved, &states, NULL, NULL))
             return 1;
         if (result && count == 0)
-            for (t = 0; t < BENCH_UNIT; t++)
-                for (k = 0; k < BENCH_CHANNELS; k++)
+            for (unsigned t = 0; t < BENCH_UNIT; t++)
+                for (unsigned k = 0; k < BENCH_CHANNELS; k++)
                     result[t][k] = HTS_PStreamSet_get_parameter(&solved, 0, t, k);
         HTS_PStreamSet_clear(&solved);
     }
@@ -128,12 +124,11 @@ static int compare(bench_unit_t *unit)
 {
     static double expected[BENCH_UNIT][LABIAL_CHANNELS];
     double largest = 0.0;
-    unsigned t, k;
     if (hts_solve(unit, 1, expected))
         return 1;
-    for (k = 0; k < BENCH_CHANNELS; k++) {
+    for (unsigned k = 0; k < BENCH_CHANNELS; k++) {
         bench_solve(model, k, unit[k].path, BENCH_UNIT, &unit[k].targets[0][k]);
-        for (t = 0; t < BENCH_UNIT; t++) {
+        for (unsigned t = 0; t < BENCH_UNIT; t++) {
             const double difference = fabs(unit[k].targets[t][k] - expected[t][k]) / 16.0;
             largest = difference > largest ? difference : largest;
         }
@@ -146,22 +141,20 @@ static int compare(bench_unit_t *unit)
 static void labial_solve(const bench_unit_t *unit, unsigned long count)
 {
     static int16_t motion[BENCH_HOLD][LABIAL_CHANNELS];
-    unsigned k;
     while (count-- > 0)
-        for (k = 0; k < BENCH_CHANNELS; k++)
+        for (unsigned k = 0; k < BENCH_CHANNELS; k++)
             bench_unit_solve(&unit[k], model, k, motion);
 }
 
 static void sptk_write(const bench_unit_t *unit, unsigned long count)
 {
-    unsigned t, k, w;
     while (count-- > 0)
-        for (t = 0; t < BENCH_UNIT; t++) {
+        for (unsigned t = 0; t < BENCH_UNIT; t++) {
             float frame[2][WINDOWS][BENCH_CHANNELS];
-            for (k = 0; k < BENCH_CHANNELS; k++) {
+            for (unsigned k = 0; k < BENCH_CHANNELS; k++) {
                 double mean[WINDOWS], precision[WINDOWS];
                 rows(&unit[k], k, t, mean, precision);
-                for (w = 0; w < WINDOWS; w++) {
+                for (unsigned w = 0; w < WINDOWS; w++) {
                     frame[0][w][k] = (float)mean[w];
                     frame[1][w][k] = (float)precision[w];
                 }

@@ -81,11 +81,10 @@ static void translated(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
 {
     const size_t count = qemu_plugin_tb_n_insns(tb);
     block_t *block = malloc(sizeof *block); /* for as long as QEMU may execute it, which it does not tell */
-    size_t i;
     (void)id;
     if (!block)
         abort();
-    for (i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         struct qemu_plugin_insn *insn = qemu_plugin_tb_get_insn(tb, i);
         const uint64_t address = qemu_plugin_insn_vaddr(insn);
         slot_t *slot = slot_of(address);
@@ -101,14 +100,13 @@ static void translated(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
 static void finish(qemu_plugin_id_t id, void *user)
 {
     FILE *out = fopen(output, "w");
-    uint32_t slot;
     (void)id;
     (void)user;
     if (!out) {
         perror(output);
         return;
     }
-    for (slot = 0; slot < SLOTS; slot++)
+    for (uint32_t slot = 0; slot < SLOTS; slot++)
         if (slots[slot].count)
             fprintf(out, "%" PRIx64 " %" PRIu64 " %" PRIu64 "\n", slots[slot].address - 1, slots[slot].count,
                     slots[slot].left);

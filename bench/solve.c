@@ -22,16 +22,15 @@ static int16_t line[BENCH_SOLVE], positions[BENCH_SOLVE][LABIAL_CHANNELS];
 /* One channel; false when the input ends early. */
 static int solve(const labial_model_t *model, unsigned k, unsigned frames)
 {
-    unsigned t;
     if (fread(path, 1, frames, stdin) != frames || fread(line, sizeof *line, frames, stdin) != frames)
         return 0;
-    for (t = 0; t < frames; t++) {
+    for (unsigned t = 0; t < frames; t++) {
         if (path[t] >= model->state_count)
             return 0;
         positions[t][0] = line[t];
     }
     bench_solve(model, k, path, frames, &positions[0][0]);
-    for (t = 0; t < frames; t++)
+    for (unsigned t = 0; t < frames; t++)
         line[t] = positions[t][0];
     return fwrite(line, sizeof *line, frames, stdout) == frames;
 }
@@ -49,12 +48,11 @@ int main(int argc, char **argv)
         return 2;
     }
     while (fread(&frames, sizeof frames, 1, stdin) == 1) {
-        unsigned k;
         if (frames < 1 || frames > BENCH_SOLVE) {
             fprintf(stderr, "labial-bench-solve: a unit of %u frames\n", frames);
             return 1;
         }
-        for (k = 0; k < labial_channel_count(model); k++)
+        for (unsigned k = 0; k < labial_channel_count(model); k++)
             if (!solve(model, k, frames)) {
                 fputs("labial-bench-solve: malformed input\n", stderr);
                 return 1;

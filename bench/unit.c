@@ -14,8 +14,7 @@ static unsigned state_of(const labial_model_t *model, unsigned k, unsigned t)
 void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k)
 {
     const labial_state_t *states = model->channels[k].states;
-    unsigned t;
-    for (t = 0; t < BENCH_UNIT; t++) {
+    for (unsigned t = 0; t < BENCH_UNIT; t++) {
         const int32_t here = states[state_of(model, k, t)].mean;
         const int32_t next = states[state_of(model, k, t + HOLD)].mean;
         unit->path[t] = (uint8_t)state_of(model, k, t);
@@ -35,11 +34,10 @@ void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, uns
     static labial_solver_t solver;
     static labial_frame_t frames[HOLD];
     labial_factors_t work[LABIAL_WINDOW + HOLD + 1];
-    unsigned t, i;
     labial_terms_t terms;
-    for (t = 0; t < BENCH_UNIT; t += HOLD) {
+    for (unsigned t = 0; t < BENCH_UNIT; t += HOLD) {
         *(labial_kept_t *)(void *)work = kept;
-        for (i = 0; i < HOLD; i++) {
+        for (unsigned i = 0; i < HOLD; i++) {
             frames[i].target[k] = unit->targets[t + i][k];
             frames[i].marks = marks_of(t + i, BENCH_UNIT);
         }
@@ -57,15 +55,14 @@ void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, u
     static labial_factors_t factors[BENCH_SOLVE];
     static labial_solver_t solver;
     static labial_frame_t frame;
-    unsigned t;
     labial_terms_t terms;
-    for (t = 0; t < length; t++) {
+    for (unsigned t = 0; t < length; t++) {
         labial_trajectory_terms(&model->channels[k], path[t], LABIAL_GAIN_ONE, &terms);
         frame.target[k] = positions[t * LABIAL_CHANNELS];
         frame.marks = marks_of(t, length);
         labial_trajectory_rows(&solver, &terms, &frame, k, 1, &factors[t]);
     }
     labial_trajectory_back(&factors[length - 1u], 0, length, length - 1u, length, positions);
-    for (t = 0; t < length; t++)
+    for (unsigned t = 0; t < length; t++)
         positions[t * LABIAL_CHANNELS] = (int16_t)(positions[t * LABIAL_CHANNELS] - model->channels[k].centre);
 }

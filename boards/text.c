@@ -32,7 +32,6 @@ void board_print_signed(int32_t number)
 
 void board_print_hex(uint32_t number)
 {
-    int shift;
-    for (shift = 28; shift >= 0; shift -= 4)
+    for (int shift = 28; shift >= 0; shift -= 4)
         board_put("0123456789abcdef"[number >> shift & 15u]);
 }

@@ -40,11 +40,10 @@ static uint32_t clock_by(unsigned channel)
 
 static void begin_period(void)
 {
-    unsigned servo;
     periods++;
     ended = begun;
     if (playing && begun != pushed) {
-        for (servo = 0; servo < SERVOS_COUNT; servo++)
+        for (unsigned servo = 0; servo < SERVOS_COUNT; servo++)
             lengths[servo] = queue[begun % SERVOS_QUEUE].lengths[servo];
         begun++;
     } else if (ending) {
@@ -96,11 +95,10 @@ void board_interrupt(unsigned number)
 
 void servos_start(const int32_t rest[SERVOS_COUNT])
 {
-    unsigned servo;
     CLOCK_HFCLKSTART = 1;
     while (!CLOCK_HFCLKSTARTED) {
     }
-    for (servo = 0; servo < SERVOS_COUNT; servo++) {
+    for (unsigned servo = 0; servo < SERVOS_COUNT; servo++) {
         lengths[servo] = limited(rest[servo]);
         GPIO_OUTCLR = 1u << pins[servo];
         GPIO_DIRSET = 1u << pins[servo];
@@ -129,8 +127,7 @@ unsigned servos_room(void)
 
 void servos_push(const int32_t face[SERVOS_COUNT])
 {
-    unsigned servo;
-    for (servo = 0; servo < SERVOS_COUNT; servo++)
+    for (unsigned servo = 0; servo < SERVOS_COUNT; servo++)
         queue[pushed % SERVOS_QUEUE].lengths[servo] = limited(face[servo]);
     pushed++;
 }
@@ -148,10 +145,9 @@ void servos_end(void)
 
 int servos_shown(servos_face_t *face)
 {
-    unsigned servo;
     if (passed == ended)
         return 0;
-    for (servo = 0; servo < SERVOS_COUNT; servo++) {
+    for (unsigned servo = 0; servo < SERVOS_COUNT; servo++) {
         face->lengths[servo] = queue[passed % SERVOS_QUEUE].lengths[servo];
         face->measured[servo] = queue[passed % SERVOS_QUEUE].measured[servo];
     }

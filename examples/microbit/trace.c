@@ -9,8 +9,7 @@ static uint32_t faces, work, longest;
 
 static void print_lengths(const uint16_t lengths[SERVOS_COUNT])
 {
-    unsigned i;
-    for (i = 0; i < SERVOS_COUNT; i++) {
+    for (unsigned i = 0; i < SERVOS_COUNT; i++) {
         board_put(' ');
         board_print_unsigned(lengths[i]);
     }

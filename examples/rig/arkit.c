@@ -13,10 +13,9 @@ static const char *const names[] = ARKIT_OUTPUT_NAMES;
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     int32_t *thousandths = (int32_t *)user;
-    unsigned i;
     labial_rig_apply(&arkit, faps, thousandths);
     printf("%u.%02u", (unsigned)frame / 50u, (unsigned)frame % 50u * 2u); /* the models' 50 frames per second */
-    for (i = 0; i < ARKIT_OUTPUTS; i++)
+    for (unsigned i = 0; i < ARKIT_OUTPUTS; i++)
         printf(",%d.%03d", (int)thousandths[i] / 1000, (int)thousandths[i] % 1000);
     putchar('\n');
 }
@@ -25,14 +24,12 @@ int main(void)
 {
     static script_t script;
     int32_t thousandths[ARKIT_OUTPUTS];
-    unsigned i;
-    int result;
     printf("time");
-    for (i = 0; i < ARKIT_OUTPUTS; i++)
+    for (unsigned i = 0; i < ARKIT_OUTPUTS; i++)
         printf(",%s", names[i]);
     putchar('\n');
     labial_rig_rest(&arkit, thousandths);
-    result = script_begin(&script, on_frame, thousandths);
+    int result = script_begin(&script, on_frame, thousandths);
     while (result >= 0 && result != LABIAL_DONE)
         result = script_tick(&script);
     return result < 0;

@@ -22,9 +22,8 @@ int main(void)
 {
     static script_t script;
     int32_t pulse;
-    int result;
     labial_rig_rest(&rig, &pulse);
-    result = script_begin(&script, on_frame, &pulse);
+    int result = script_begin(&script, on_frame, &pulse);
     while (result >= 0 && result != LABIAL_DONE)
         result = script_tick(&script); /* and waits for the next 20 ms */
     return result < 0;

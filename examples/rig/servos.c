@@ -19,9 +19,8 @@
 /* Stands for a board's I2C driver. */
 static void write_registers(unsigned first, const uint8_t *bytes, unsigned count)
 {
-    unsigned i;
     printf("%02x", first);
-    for (i = 0; i < count; i++)
+    for (unsigned i = 0; i < count; i++)
         printf(" %02x", bytes[i]);
     putchar('\n');
 }
@@ -36,10 +35,9 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 {
     int32_t *ticks = (int32_t *)user;
     uint8_t bytes[4 * SERVOS_OUTPUTS];
-    unsigned i;
     (void)frame;
     labial_rig_apply(&servos, faps, ticks);
-    for (i = 0; i < SERVOS_OUTPUTS; i++) {
+    for (unsigned i = 0; i < SERVOS_OUTPUTS; i++) {
         bytes[4 * i] = bytes[4 * i + 1] = 0; /* pulses begin with the period */
         bytes[4 * i + 2] = (uint8_t)(ticks[i] & 0xff);
         bytes[4 * i + 3] = (uint8_t)(ticks[i] >> 8);
@@ -51,12 +49,11 @@ int main(void)
 {
     static script_t script;
     int32_t ticks[SERVOS_OUTPUTS];
-    int result;
     write_register(MODE1, MODE1_SLEEP);
     write_register(PRESCALE, SERVOS_PCA9685_PRESCALE);
     write_register(MODE1, MODE1_INCREMENT); /* then waits 500 us for the oscillator */
     labial_rig_rest(&servos, ticks);
-    result = script_begin(&script, on_frame, ticks);
+    int result = script_begin(&script, on_frame, ticks);
     while (result >= 0 && result != LABIAL_DONE)
         result = script_tick(&script); /* and waits for the next 20 ms */
     return result < 0;

@@ -27,8 +27,7 @@ static const struct {
 static uint32_t distance(const int32_t features[SPRITES_OUTPUTS], unsigned picture)
 {
     uint32_t sum = 0;
-    unsigned i;
-    for (i = 0; i < SPRITES_OUTPUTS; i++) {
+    for (unsigned i = 0; i < SPRITES_OUTPUTS; i++) {
         const int32_t difference = features[i] - pictures[picture].features[i];
         sum += (uint32_t)(difference * difference); /* the rig's limits keep it below 2^21 */
     }
@@ -47,8 +46,8 @@ typedef struct {
  * two frames, and is replaced only by one that is clearly nearer, by a fifth of the distance. */
 static void choose(film_t *film)
 {
-    unsigned nearest = 0, i;
-    for (i = 1; i < PICTURES; i++)
+    unsigned nearest = 0;
+    for (unsigned i = 1; i < PICTURES; i++)
         if (distance(film->features, i) < distance(film->features, nearest))
             nearest = i;
     film->held++;
@@ -96,19 +95,18 @@ static void draw(unsigned picture)
 
 static void write_svg(const film_t *film)
 {
-    unsigned i;
     printf("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 720 480'>\n<defs><g id='strip' "
            "transform='scale(.1)'>\n");
-    for (i = 0; i < PICTURES; i++)
+    for (unsigned i = 0; i < PICTURES; i++)
         draw(i);
     printf("</g></defs>\n<svg x='240' width='240' height='240' viewBox='0 0 120 120'><g><use href='#strip'/>\n"
            "<animateTransform attributeName='transform' type='translate' calcMode='discrete' "
            "repeatCount='indefinite' dur='%ums' values='",
            film->count * 20u);
-    for (i = 0; i < film->count; i++)
+    for (unsigned i = 0; i < film->count; i++)
         printf("%s%d", i > 0 ? ";" : "", -WIDTH * film->shown[i]);
     printf("'/></g></svg>\n");
-    for (i = 0; i < 2; i++)
+    for (unsigned i = 0; i < 2; i++)
         printf("<svg x='0' y='%u' width='720' height='140' viewBox='%u 0 720 140'><use href='#strip'/></svg>\n",
                240u + 120u * i, 720u * i);
     printf("</svg>\n");
@@ -118,9 +116,8 @@ int main(void)
 {
     static script_t script;
     static film_t film;
-    int result;
     labial_rig_rest(&sprites, film.features);
-    result = script_begin(&script, on_frame, &film);
+    int result = script_begin(&script, on_frame, &film);
     while (result >= 0 && result != LABIAL_DONE)
         result = script_tick(&script);
     if (result >= 0)

@@ -35,8 +35,7 @@ __attribute__((noinline)) static uint32_t count_loop(uint32_t rounds)
 __attribute__((noinline)) static void use_stack(unsigned size)
 {
     volatile uint8_t bytes[512];
-    unsigned i;
-    for (i = 0; i < size; i++)
+    for (unsigned i = 0; i < size; i++)
         bytes[sizeof bytes - 1u - i] = (uint8_t)i;
     sink = bytes[sizeof bytes - 1u];
 }
@@ -44,7 +43,6 @@ __attribute__((noinline)) static void use_stack(unsigned size)
 static void check_counter(void)
 {
     const uint32_t one = count_loop(1), round = count_loop(2) - one, many = count_loop(100001);
-    uint32_t long_stretch;
     if (many == 0) /* the host has no counter */
         return;
     board_print("one round of a loop: ");
@@ -55,7 +53,7 @@ static void check_counter(void)
     expect(count_loop(100001) == many, "the same loop counts the same again");
     expect(count_loop(BOARD_COUNT_MAX / round) / round >= BOARD_COUNT_MAX / round,
            "the longest stretch can be counted");
-    long_stretch = count_loop(8000001);
+    const uint32_t long_stretch = count_loop(8000001);
     expect(long_stretch == BOARD_COUNT_OVERFLOW || long_stretch == one + 8000000u * round,
            "a longer stretch is counted or said to be too long");
     expect(count_loop(0) <= 8, "counting itself is not counted");
@@ -63,12 +61,11 @@ static void check_counter(void)
 
 static void check_stack(void)
 {
-    uint32_t shallow, deep;
     board_stack_paint();
     use_stack(16);
-    shallow = board_stack_depth();
+    const uint32_t shallow = board_stack_depth();
     use_stack(512);
-    deep = board_stack_depth();
+    const uint32_t deep = board_stack_depth();
     if (board_stack_left() == UINT32_MAX) /* the host cannot tell */
         return;
     expect(shallow >= 16 && shallow < 128, "a call that touches 16 bytes is seen as such");
@@ -80,7 +77,6 @@ static void check_stack(void)
 
 int main(void)
 {
-    unsigned i;
     uint32_t any = 0;
     board_print("board: ");
     board_print(board_name);
@@ -90,7 +86,7 @@ int main(void)
     board_print_hex(0x0badf00du);
     board_put('\n');
     expect(initialised[0] == 1 && initialised[1] == 0xfeedbeefu && initialised[2] == 3, "variables are initialised");
-    for (i = 0; i < sizeof zeroed / sizeof zeroed[0]; i++)
+    for (unsigned i = 0; i < sizeof zeroed / sizeof zeroed[0]; i++)
         any |= zeroed[i];
     expect(any == 0, "other variables are zero");
     expect(labial_model_check(&speech_en) == LABIAL_OK, "the model's tables are readable");

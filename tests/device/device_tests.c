@@ -24,16 +24,14 @@ void device_require(int holds, const char *what)
 void device_memory_fill(void)
 {
     uint32_t *word = (uint32_t *)(void *)&device_memory;
-    size_t i;
-    for (i = 0; i < sizeof device_memory / 4u; i++)
+    for (size_t i = 0; i < sizeof device_memory / 4u; i++)
         word[i] = (uint32_t)i * 0x9e3779b1u ^ FILLING;
 }
 
 static int is_filled(const uint32_t *canaries)
 {
     const size_t first = (size_t)(canaries - (const uint32_t *)(const void *)&device_memory);
-    size_t i;
-    for (i = 0; i < DEVICE_CANARIES; i++)
+    for (size_t i = 0; i < DEVICE_CANARIES; i++)
         if (canaries[i] != ((uint32_t)(first + i) * 0x9e3779b1u ^ FILLING))
             return 0;
     return 1;
@@ -46,8 +44,7 @@ int device_memory_is_whole(void)
 
 const conformance_stream_t *device_stream(const char *name)
 {
-    unsigned i;
-    for (i = 0; i < conformance_stream_count; i++)
+    for (unsigned i = 0; i < conformance_stream_count; i++)
         if (strcmp(conformance_streams[i].name, name) == 0)
             return &conformance_streams[i];
     device_require(0, name);
@@ -71,11 +68,10 @@ int device_teardown(void **state)
 
 int main(void)
 {
-    int failures;
     board_print("Device tests on ");
     board_print(board_name);
     board_put('\n');
-    failures = test_arithmetic() + test_memory() + test_ticks();
+    const int failures = test_arithmetic() + test_memory() + test_ticks();
     board_print_unsigned((uint32_t)failures);
     board_print(failures ? " tests failed\nFAIL\n" : " tests failed\nOK\n");
     return failures ? 1 : 0;

@@ -66,8 +66,7 @@ static int failures;
 
 static void make(const recipe_t *recipe)
 {
-    unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
         channels[k].shape_scale = channels[k].slope_scale = channels[k].kernel_scale = channels[k].pair_scale = 256;
         channels[k].contact_weight = 0x20;
         channels[k].emissions = emissions;
@@ -75,7 +74,7 @@ static void make(const recipe_t *recipe)
         channels[k].transitions = transitions;
         channels[k].initials = initials;
     }
-    for (k = 0; k < PHONEMES; k++) {
+    for (unsigned k = 0; k < PHONEMES; k++) {
         phonemes[k].first_component = (uint16_t)(k == 2 ? COMPONENTS : 0);
         phonemes[k].component_count = recipe->components;
         phonemes[k].viseme_class = (uint8_t)k;
@@ -135,14 +134,13 @@ static uint32_t counted(const labial_model_t *played)
     int result = labial_init(&stream, played, workspace, sizeof workspace, on_frame, 0);
     expect(result == LABIAL_OK, "the stream begins");
     while (result >= LABIAL_OK && result != LABIAL_DONE) {
-        uint32_t taken;
         for (; pushed < PUSHES && labial_room(&stream) > 0; pushed++)
             labial_push(&stream, 1u + pushed % 2u, 20);
         if (pushed == PUSHES)
             labial_end(&stream);
         board_count_start();
         result = labial_tick(&stream);
-        taken = board_count();
+        const uint32_t taken = board_count();
         worst = taken > worst ? taken : worst;
     }
     expect(result == LABIAL_DONE, "the stream ends");
@@ -169,10 +167,9 @@ static void judge(const char *name, const labial_model_t *played, uint32_t recor
 int main(void)
 {
     const uint32_t bundled = labial_model_cost(&speech_en);
-    unsigned i;
     judge("speech", &speech_en, 18943);
     judge("laughter", &laughter_synthetic, 19240);
-    for (i = 0; i < sizeof recipes / sizeof *recipes; i++) {
+    for (unsigned i = 0; i < sizeof recipes / sizeof *recipes; i++) {
         make(&recipes[i]);
         judge(recipes[i].name, &model, recipes[i].counted);
     }

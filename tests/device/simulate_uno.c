@@ -68,8 +68,7 @@ static void silence_console(void)
 
 static int pressed(uint64_t milliseconds, char **times, int count)
 {
-    int i;
-    for (i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++) {
         const uint64_t begin = strtoul(times[i], NULL, 10);
         if (milliseconds >= begin && milliseconds < begin + PRESS)
             return 1;
@@ -80,13 +79,12 @@ static int pressed(uint64_t milliseconds, char **times, int count)
 int main(int argc, char **argv)
 {
     elf_firmware_t image = { 0 };
-    uint64_t end;
     int was_pressed = 0;
     if (argc < 3 || elf_read_firmware(argv[1], &image) != 0) {
         fprintf(stderr, "usage: simulate_uno IMAGE.elf MILLISECONDS [MILLISECONDS_OF_PRESS...]\n");
         return 2;
     }
-    end = strtoull(argv[2], NULL, 10) * (CLOCK / 1000u);
+    const uint64_t end = strtoull(argv[2], NULL, 10) * (CLOCK / 1000u);
     avr = avr_make_mcu_by_name("atmega328p");
     if (!avr)
         return 2;

@@ -69,8 +69,7 @@ static int32_t hide(int32_t value)
 /* Would catch a lost carry between the parts of the 64-bit product, and a library routine for it that is wrong. */
 TEST(products_are_exact)
 {
-    unsigned i;
-    for (i = 0; i < sizeof products / sizeof products[0]; i++) {
+    for (unsigned i = 0; i < sizeof products / sizeof products[0]; i++) {
         const int32_t a = hide(products[i].a), b = hide(products[i].b);
         assert_int_equal((uint32_t)products[i].result, (uint32_t)labial_mulshift(a, b, products[i].shift));
         assert_int_equal((uint32_t)products[i].result, (uint32_t)labial_mulshift(b, a, products[i].shift));
@@ -81,18 +80,15 @@ TEST(products_are_exact)
 TEST(products_agree_with_division)
 {
     uint32_t seed = 1;
-    unsigned i, shift;
-    for (shift = 16; shift <= 31; shift++)
-        for (i = 0; i < 100; i++) {
+    for (unsigned shift = 16; shift <= 31; shift++)
+        for (unsigned i = 0; i < 100; i++) {
             const int64_t unit = (int64_t)1 << shift;
-            int32_t a, b;
-            int64_t product, quotient;
             seed = seed * 1664525u + 1013904223u;
-            a = hide((int32_t)seed) >> (i % 31u);
+            const int32_t a = hide((int32_t)seed) >> (i % 31u);
             seed = seed * 1664525u + 1013904223u;
-            b = hide((int32_t)seed) >> (i * 7u % 31u);
-            product = (int64_t)a * b;
-            quotient = product / unit;
+            const int32_t b = hide((int32_t)seed) >> (i * 7u % 31u);
+            const int64_t product = (int64_t)a * b;
+            int64_t quotient = product / unit;
             if (product % unit < 0)
                 quotient--;
             assert_int_equal((uint32_t)(quotient & 0xffffffff), (uint32_t)labial_mulshift(a, b, shift));
@@ -103,17 +99,14 @@ TEST(products_agree_with_division)
 TEST(parts_agree_with_division)
 {
     uint32_t seed = 1;
-    unsigned i;
-    for (i = 0; i < 1000; i++) {
+    for (unsigned i = 0; i < 1000; i++) {
         const int64_t unit = 65536;
-        int64_t product, quotient;
-        int32_t x, f;
         seed = seed * 1664525u + 1013904223u;
-        x = hide((int32_t)seed) >> (i % 31u);
+        const int32_t x = hide((int32_t)seed) >> (i % 31u);
         seed = seed * 1664525u + 1013904223u;
-        f = i % 10u ? hide((int32_t)(seed >> 15) % 65537) : 65536;
-        product = (int64_t)x * f;
-        quotient = product / unit;
+        const int32_t f = i % 10u ? hide((int32_t)(seed >> 15) % 65537) : 65536;
+        const int64_t product = (int64_t)x * f;
+        int64_t quotient = product / unit;
         if (product % unit < 0)
             quotient--;
         assert_int_equal((int32_t)quotient, labial_part16(x, (uint32_t)f));
@@ -164,8 +157,7 @@ TEST(transitions_are_smooth)
         { 1, 9, 561 },        { 4, 9, 6829 },  { 8, 9, 15821 },        { 7, 20, 4613 },         { 499, 1000, 8166 },
         { 999, 1000, 16383 }, { 1, 65535, 0 }, { 32768, 65535, 8192 }, { 65534, 65535, 16383 }, { 65535, 65535, 16384 },
     };
-    unsigned i;
-    for (i = 0; i < sizeof transitions / sizeof transitions[0]; i++)
+    for (unsigned i = 0; i < sizeof transitions / sizeof transitions[0]; i++)
         assert_int_equal(transitions[i].gone,
                          labial_ease((unsigned)hide(transitions[i].step), (unsigned)hide(transitions[i].steps)));
 }

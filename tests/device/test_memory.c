@@ -23,9 +23,8 @@ static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNEL
 TEST(fullest_streams_stay_inside)
 {
     static const char *const names[] = { "queue", "long_vowel", "switch_in_long", "turns", "one_frame", "cancelled" };
-    unsigned i, feed;
-    for (i = 0; i < sizeof names / sizeof names[0]; i++)
-        for (feed = 0; feed < CONFORMANCE_FEEDS; feed++) {
+    for (unsigned i = 0; i < sizeof names / sizeof names[0]; i++)
+        for (unsigned feed = 0; feed < CONFORMANCE_FEEDS; feed++) {
             const conformance_stream_t *script = device_stream(names[i]);
             assert_null(conformance_play(script, (conformance_feed_t)feed, &device_memory.stream,
                                          device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
@@ -37,8 +36,7 @@ TEST(fullest_streams_stay_inside)
 TEST(alignment_to_four_bytes_is_enough)
 {
     const conformance_stream_t *script = device_stream("sentence");
-    unsigned offset;
-    for (offset = 0; offset < 2; offset++) {
+    for (unsigned offset = 0; offset < 2; offset++) {
         conformance_digest_t digest = { 0, 0 };
         uint32_t *workspace = device_memory.workspace + (((uintptr_t)device_memory.workspace >> 2) + offset) % 2u;
         /* The last word, one canary, is lent to the workspace where it begins a word later. */
@@ -56,10 +54,9 @@ TEST(unfit_workspaces_are_refused)
     labial_t *stream = &device_memory.stream;
     uint8_t *workspace = (uint8_t *)(void *)device_memory.workspace;
     const uint32_t size = labial_workspace_size(&speech_en);
-    unsigned offset;
     assert_int_equal(SPEECH_EN_WORKSPACE_SIZE, size);
     assert_int_equal(LAUGHTER_SYNTHETIC_WORKSPACE_SIZE, labial_workspace_size(&laughter_synthetic));
-    for (offset = 1; offset < 4; offset++)
+    for (unsigned offset = 1; offset < 4; offset++)
         assert_int_equal(LABIAL_ERROR_WORKSPACE,
                          labial_init(stream, &speech_en, workspace + offset, size, ignore, NULL));
     assert_int_equal(LABIAL_ERROR_WORKSPACE, labial_init(stream, &speech_en, workspace, size - 1u, ignore, NULL));
@@ -94,10 +91,9 @@ TEST(other_formats_are_refused)
 __attribute__((noinline)) static uint32_t depth_of_ticks(void)
 {
     labial_t *stream = &device_memory.stream;
-    unsigned i;
     assert_int_equal(LABIAL_OK,
                      labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
-    for (i = 0; i < LABIAL_QUEUE; i++) {
+    for (unsigned i = 0; i < LABIAL_QUEUE; i++) {
         if (i == SPOKEN)
             assert_int_equal(LABIAL_OK, labial_use(stream, &laughter_synthetic));
         assert_int_equal(LABIAL_OK, labial_push(stream, i % LAUGHTER_SYNTHETIC_PHONEMES, 90));
@@ -113,7 +109,6 @@ __attribute__((noinline)) static uint32_t depth_of_ticks(void)
 TEST(stack_is_small)
 {
     const conformance_stream_t *script = device_stream("switch");
-    uint32_t depth;
     if (board_stack_left() == UINT32_MAX) {
         board_print("[  SKIPPED ] stack_is_small: this board cannot tell how deep the stack is\n");
         return;
@@ -121,7 +116,7 @@ TEST(stack_is_small)
     board_stack_paint();
     assert_null(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, device_memory.workspace,
                                  DEVICE_WORKSPACE, ignore, NULL));
-    depth = board_stack_depth();
+    uint32_t depth = board_stack_depth();
     board_print("stack: ");
     board_print_unsigned(depth);
     board_print(" bytes, ");

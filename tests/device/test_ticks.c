@@ -33,9 +33,8 @@ static void tick(unsigned times, int wanted)
 TEST(the_delay_is_constant)
 {
     const unsigned frames = 100;
-    unsigned i;
     begin();
-    for (i = 0; i < 10; i++) /* vowels and consonants of ten frames */
+    for (unsigned i = 0; i < 10; i++) /* vowels and consonants of ten frames */
         assert_int_equal(
             LABIAL_OK, labial_push(&device_memory.stream, i % 2u ? SPEECH_EN_S : SPEECH_EN_AA, 10000u / SPEECH_EN_FPS));
     assert_int_equal(LABIAL_OK, labial_end(&device_memory.stream));

@@ -26,9 +26,8 @@ static void play(const labial_model_t *model, uint32_t seed)
     fixture_phoneme_t input[24];
     fixture_host_t host;
     uint64_t most = (uint64_t)model->frames_per_second * 2u;
-    unsigned i;
     fixture_stream(input, 24, FIXTURE_RANDOM, seed);
-    for (i = 0; i < 24; i++) {
+    for (unsigned i = 0; i < 24; i++) {
         input[i].phoneme = (uint8_t)((input[i].phoneme + seed) % model->phoneme_count);
         input[i].ms %= model->frames_per_second > 50 ? 60u : 4000u / model->frames_per_second;
     }
@@ -46,12 +45,11 @@ static size_t sound_model(unsigned choice, const uint8_t **bytes)
     static fixture_model_t small[3];
     const labial_model_t *const models[SOUND] = { &small[0].model, &small[1].model, &small[2].model, &speech_en,
                                                   &laughter_synthetic };
-    unsigned i;
     if (lengths[0] == 0) {
         fixture_plain(&small[0]);
         fixture_rich(&small[1]);
         fixture_laughter(&small[2]);
-        for (i = 0; i < SOUND; i++) {
+        for (unsigned i = 0; i < SOUND; i++) {
             lengths[i] = fixture_serialise(models[i], made[i], ROOM);
             REQUIRE(lengths[i] <= ROOM);
         }
@@ -77,7 +75,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     labial_blob_t *blob;
     uint8_t *out, *exact;
     size_t length = size ? size - 1 : 0;
-    int result;
     if (size == 0 || length > ROOM)
         return 0;
     out = (uint8_t *)malloc(ROOM);
@@ -100,7 +97,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     exact = (uint8_t *)malloc(length ? length : 1);
     REQUIRE(exact);
     memcpy(exact, out, length);
-    result = labial_model_load(blob, exact, length);
+    const int result = labial_model_load(blob, exact, length);
     REQUIRE(result == LABIAL_OK || result == LABIAL_ERROR_MODEL || result == LABIAL_ERROR_VERSION);
     if (result == LABIAL_OK) {
         REQUIRE(labial_model_check(&blob->model) == LABIAL_OK);

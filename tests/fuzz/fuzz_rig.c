@@ -29,9 +29,8 @@ static int32_t into(int32_t value, int32_t limit)
 
 static void mend_curve(labial_rig_curve_t *curve)
 {
-    unsigned i;
     curve->count = (uint16_t)(1u + curve->count % LABIAL_RIG_SEGMENTS);
-    for (i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
+    for (unsigned i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
         labial_rig_segment_t *segment = &curve->segments[i];
         segment->from = into(segment->from, LABIAL_RIG_VALUE_MAX / LABIAL_RIG_SEGMENTS);
         segment->from = i ? segment[-1].from + 1 + (segment->from < 0 ? -segment->from : segment->from) : segment->from;
@@ -45,9 +44,8 @@ static void mend_curve(labial_rig_curve_t *curve)
 /* Brings an output into the ranges of a checked table, its weights by dropping those that are too many. */
 static void mend(labial_rig_output_t *output)
 {
-    int32_t sum = 0, low, high;
-    unsigned i;
-    for (i = 0; i < LABIAL_CHANNELS; i++) {
+    int32_t sum = 0;
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
         const int32_t weight = output->weights[i] < 0 ? -output->weights[i] : output->weights[i];
         if (sum + weight > LABIAL_RIG_WEIGHT_SUM_MAX)
             output->weights[i] = 0;
@@ -56,8 +54,8 @@ static void mend(labial_rig_output_t *output)
     }
     output->gain = into(output->gain, LABIAL_RIG_GAIN_MAX);
     output->neutral = into(output->neutral, LABIAL_RIG_VALUE_MAX);
-    low = into(output->minimum, LABIAL_RIG_VALUE_MAX);
-    high = into(output->maximum, LABIAL_RIG_VALUE_MAX);
+    const int32_t low = into(output->minimum, LABIAL_RIG_VALUE_MAX);
+    const int32_t high = into(output->maximum, LABIAL_RIG_VALUE_MAX);
     output->minimum = low < high ? low : high;
     output->maximum = low < high ? high : low;
     output->slew = into(output->slew, LABIAL_RIG_VALUE_MAX);
@@ -79,8 +77,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     input_t input;
     labial_rig_output_t outputs[OUTPUTS];
     labial_rig_t rig;
-    int checked;
-    unsigned i;
     if (size < sizeof input)
         return 0;
     memcpy(&input, data, sizeof input);
@@ -88,7 +84,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size -= sizeof input;
     if (input.sound >> OUTPUTS & 1u)
         mend_curve(&input.curve);
-    for (i = 0; i < OUTPUTS; i++) {
+    for (unsigned i = 0; i < OUTPUTS; i++) {
         memcpy(&outputs[i], input.outputs[i], sizeof input.outputs[i]);
         outputs[i].curve = input.curved >> i & 1u ? &input.curve : NULL;
         if (input.sound >> i & 1u)
@@ -96,7 +92,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     rig.outputs = outputs;
     rig.count = OUTPUTS;
-    checked = labial_rig_check(&rig);
+    const int checked = labial_rig_check(&rig);
     REQUIRE(checked == LABIAL_OK || checked == LABIAL_ERROR_RIG);
     REQUIRE((input.sound & 31u) != 31u || checked == LABIAL_OK);
     while (size >= 2u * LABIAL_CHANNELS) {
@@ -113,7 +109,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             REQUIRE(labial_rig_apply(&rig, frames, values) == LABIAL_OK);
         else
             REQUIRE(labial_rig_apply_ahead(&rig, frames, count, values, changes) == LABIAL_OK);
-        for (i = 0; i < OUTPUTS && checked == LABIAL_OK; i++) {
+        for (unsigned i = 0; i < OUTPUTS && checked == LABIAL_OK; i++) {
             const labial_rig_output_t *output = &outputs[i];
             const int64_t change = (int64_t)values[i] - input.values[i];
             REQUIRE(values[i] >= output->minimum && values[i] <= output->maximum);

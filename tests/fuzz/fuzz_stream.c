@@ -57,22 +57,20 @@ typedef struct {
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     watch_t *watch = (watch_t *)user;
-    unsigned c;
     REQUIRE(frame == watch->next);
     watch->next++;
     watch->calls++;
     watch->frames++;
-    for (c = 0; c < LABIAL_CHANNELS; c++)
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         REQUIRE(faps[c] >= -2048 && faps[c] <= 2048);
 }
 
 static int tick(watch_t *watch)
 {
     const unsigned room = labial_room(watch->stream);
-    int result;
     watch->calls = 0;
     watch->ticks++;
-    result = labial_tick(watch->stream);
+    const int result = labial_tick(watch->stream);
     REQUIRE(result >= LABIAL_OK && result <= LABIAL_DONE);
     REQUIRE(watch->calls == (result == LABIAL_OK ? 1u : 0u));
     if (result == LABIAL_DONE) {
@@ -266,28 +264,26 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     bytes_t bytes;
     watch_t watch;
     void *workspace;
-    uint32_t room;
-    unsigned calls, i;
     if (speech.model.format == 0)
         make_models();
     bytes.data = data;
     bytes.size = size;
     memset(&watch, 0, sizeof watch);
     choose_models(&watch, take(&bytes, 1));
-    room = labial_workspace_size(watch.first);
+    const uint32_t room = labial_workspace_size(watch.first);
     workspace = malloc(room);
     watch.stream = (labial_t *)malloc(sizeof *watch.stream);
     REQUIRE(workspace && watch.stream);
     REQUIRE(labial_init(watch.stream, watch.first, workspace, room, on_frame, &watch) == LABIAL_OK);
     move(&watch);
-    for (calls = 0; bytes.size > 0 && calls < 2000; calls++)
+    for (unsigned calls = 0; bytes.size > 0 && calls < 2000; calls++)
         one_call(&watch, &bytes);
 
     /* The rest is played, unless it lasts long. */
     REQUIRE(labial_end(watch.stream) == LABIAL_OK);
     watch.ended = 1;
     if (labial_latency(watch.stream).frames < 2 * TICKS)
-        for (i = 0; tick(&watch) != LABIAL_DONE; i++)
+        for (unsigned i = 0; tick(&watch) != LABIAL_DONE; i++)
             REQUIRE(i < 100000);
     free(workspace);
     free(watch.stream);

@@ -45,7 +45,7 @@ static uint64_t parse(const uint8_t *data, size_t size, labial_timings_format_t 
     labial_timings_t *timings = (labial_timings_t *)malloc(sizeof *timings);
     labial_timing_t timing;
     uint64_t sum = 0, before = 0;
-    size_t at, used;
+    size_t used;
     int result = LABIAL_STARVED, readings = 0;
     REQUIRE(timings);
     labial_timings_init(timings, format);
@@ -54,7 +54,7 @@ static uint64_t parse(const uint8_t *data, size_t size, labial_timings_format_t 
     while (result == LABIAL_STARVED) {
         REQUIRE(readings++ < 2);
         result = LABIAL_WAITING;
-        for (at = 0; result >= 0 && (at < size || result != LABIAL_DONE);) {
+        for (size_t at = 0; result >= 0 && (at < size || result != LABIAL_DONE);) {
             if (at < size) {
                 const size_t left = size - at < piece ? size - at : piece;
                 result = labial_timings_next(timings, (const char *)data + at, left, &used, &timing);
@@ -84,8 +84,7 @@ static uint64_t parse(const uint8_t *data, size_t size, labial_timings_format_t 
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    unsigned i;
-    for (i = 0; labial_timings_format_name(i); i++) {
+    for (unsigned i = 0; labial_timings_format_name(i); i++) {
         const labial_timings_format_t format = (labial_timings_format_t)i;
         REQUIRE(parse(data, size, format, NULL, 0, 1) == parse(data, size, format, NULL, 0, size));
     }

@@ -20,13 +20,12 @@ static void look_up(const labial_names_t *names, const char *label, size_t lengt
                                             LABIAL_LABELS_AUTO };
     char *copy = (char *)malloc(length ? length : 1), *padded = (char *)malloc(length + 2);
     int found, nearest;
-    size_t i;
     REQUIRE(copy && padded);
     memcpy(copy, label, length);
     memcpy(padded + 1, label, length);
     padded[0] = '\t';
     padded[length + 1] = ' ';
-    for (i = 0; i < sizeof sets / sizeof sets[0]; i++) {
+    for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++) {
         found = labial_find_in(names, sets[i], copy, length);
         REQUIRE(found == LABIAL_ERROR_NAME || (found >= 0 && found < names->phoneme_count));
         REQUIRE(labial_find_in(names, sets[i], padded, length + 2) == found);

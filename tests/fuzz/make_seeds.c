@@ -84,13 +84,12 @@ static void put_step(FILE *file, const conformance_step_t *step, int is_last)
 
 static void make_streams(void)
 {
-    unsigned i, k;
-    for (i = 0; i < conformance_stream_count; i++) {
+    for (unsigned i = 0; i < conformance_stream_count; i++) {
         const conformance_stream_t *stream = &conformance_streams[i];
         const conformance_step_t *change = NULL; /* the part's next one of the articulation */
         FILE *file = create("fuzz_stream", stream->name);
         put(file, BUNDLED, 1);
-        for (k = 0; k < stream->step_count; k++) {
+        for (unsigned k = 0; k < stream->step_count; k++) {
             const conformance_step_t *step = &stream->steps[k];
             if (step->kind == CONFORMANCE_ARTICULATION) {
                 change = change ? change : step;
@@ -114,8 +113,7 @@ static void make_blobs(void)
     static const labial_model_t *const models[] = { &speech_en, &laughter_synthetic };
     static uint8_t blob[BLOB_ROOM];
     char name[16];
-    unsigned i;
-    for (i = 0; i < COUNT(models) + 5u; i++) {
+    for (unsigned i = 0; i < COUNT(models) + 5u; i++) {
         FILE *file;
         snprintf(name, sizeof name, "model_%u", i);
         file = create("fuzz_blob", name);
@@ -147,8 +145,7 @@ static void make_rig(void)
     static uint32_t workspace[CONFORMANCE_WORKSPACE / 4u];
     static labial_t stream;
     FILE *file = create("fuzz_rig", "sentence");
-    int i;
-    for (i = 0; i < OUTPUTS; i++) {
+    for (int i = 0; i < OUTPUTS; i++) {
         labial_rig_output_t output;
         memset(&output, 0, sizeof output);
         output.weights[i] = 4096;
@@ -225,13 +222,12 @@ static void make_labels(const char *table)
     static const labial_names_t *const names[] = { &speech_en_names, &laughter_synthetic_names };
     FILE *labels = fopen(table, "rb"), *file = NULL;
     char line[256];
-    unsigned i, k;
     REQUIRE(labels && fgets(line, sizeof line, labels));
     while (fgets(line, sizeof line, labels))
         add_label(&file, line, strcspn(line, "\t"));
     REQUIRE(!ferror(labels) && fclose(labels) == 0);
-    for (i = 0; i < COUNT(names); i++)
-        for (k = 0; k < names[i]->size; k += 2u + names[i]->entries[k + 1] % 32u)
+    for (unsigned i = 0; i < COUNT(names); i++)
+        for (unsigned k = 0; k < names[i]->size; k += 2u + names[i]->entries[k + 1] % 32u)
             add_label(&file, (const char *)&names[i]->entries[k + 2], names[i]->entries[k + 1] % 32u);
     finish(file);
 }
