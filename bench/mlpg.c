@@ -83,12 +83,10 @@ static int hts_solve(const bench_unit_t *unit, unsigned long count, double (*res
     int left[WINDOWS] = { 0, -1, -1 }, right[WINDOWS] = { 0, 1, 1 };
     double *mean_rows[BENCH_UNIT], *variance_rows[BENCH_UNIT];
     size_t durations[BENCH_UNIT];
-    HTS_SStream stream;
-    HTS_SStreamSet states;
+    HTS_SStream stream = { 0 };
+    HTS_SStreamSet states = { 0 };
 
     hts_states(unit);
-    memset(&stream, 0, sizeof stream);
-    memset(&states, 0, sizeof states);
     for (unsigned t = 0; t < BENCH_UNIT; t++) {
         mean_rows[t] = means[t];
         variance_rows[t] = variances[t];

@@ -29,6 +29,13 @@ static size_t suite_count;
 /* What is done before a test, or with SUITE() before the first one. */
 #define SETUP(name) static int name(void **state __attribute__((unused)))
 
+/* Fails unless a fixture_host_t played to its end: `result` is that of fixture_play() or fixture_run(). */
+#define assert_played(host, result)                                                                                    \
+    do {                                                                                                               \
+        if ((result) != 0)                                                                                             \
+            fail_msg("%s (frame %zu)", (host)->complaint, (host)->recorder.count);                                     \
+    } while (0)
+
 #define SUITE(setup, teardown)                                                                                         \
     int main(void)                                                                                                     \
     {                                                                                                                  \

@@ -56,10 +56,8 @@ TEST(a_blob_gives_the_same_frames)
         fixture_stream(input, 40, FIXTURE_RANDOM, m);
         for (unsigned i = 0; i < 40; i++)
             input[i].phoneme = (uint8_t)(input[i].phoneme % models[m]->phoneme_count);
-        if (fixture_run(&wanted, models[m], input, 40, FIXTURE_FILL) != 0)
-            fail_msg("%s", wanted.complaint);
-        if (fixture_run(&host, &blob.model, input, 40, FIXTURE_FILL) != 0)
-            fail_msg("%s", host.complaint);
+        assert_played(&wanted, fixture_run(&wanted, models[m], input, 40, FIXTURE_FILL));
+        assert_played(&host, fixture_run(&host, &blob.model, input, 40, FIXTURE_FILL));
         assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
         assert_memory_equal(copy, bytes, 64); /* used in place and never written */
         fixture_close(&wanted);

@@ -67,9 +67,8 @@ static size_t aim(void)
 {
     labial_taken_t taken;
     labial_spoken_t spoken;
-    labial_shape_t shape;
+    labial_shape_t shape = { 0 };
     size_t n = 0;
-    memset(&shape, 0, sizeof shape);
     for (;;) {
         if (labial_units_at_first(&units, models)) {
             assert_int_equal(labial_units_next(&units, models, 1, &spoken), 1);

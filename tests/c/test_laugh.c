@@ -28,10 +28,9 @@ static int is_open(unsigned phoneme)
 static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
 {
     labial_laugh_t laugh, moved;
-    sum_t sum;
+    sum_t sum = { 0 };
     unsigned phoneme;
     uint32_t ms;
-    memset(&sum, 0, sizeof sum);
     sum.shortest = UINT32_MAX;
     memset(&laugh, 0xee, sizeof laugh);
     assert_int_equal(labial_laugh_begin(&laugh, length, intensity, seed), LABIAL_OK);
@@ -199,9 +198,8 @@ static seen_t laughed(unsigned intensity, uint32_t seed)
     labial_laugh_t laugh;
     unsigned phoneme;
     uint32_t ms;
-    seen_t seen;
+    seen_t seen = { 0 };
     int result;
-    memset(&seen, 0, sizeof seen);
     assert_int_equal(labial_init(&stream, &laughter_synthetic, workspace, sizeof workspace, see, &seen), 0);
     assert_int_equal(labial_laugh_begin(&laugh, 3000, intensity, seed), LABIAL_OK);
     while (labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK) {

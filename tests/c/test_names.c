@@ -145,8 +145,7 @@ TEST(empty_names_are_refused)
 TEST(null_is_an_error)
 {
     static const uint8_t nothing[1] = { 0 };
-    labial_names_t none;
-    memset(&none, 0, sizeof none);
+    labial_names_t none = { 0 };
     assert_int_equal(labial_find(NULL, "AA", 2), LABIAL_ERROR_NULL);
     assert_int_equal(labial_find(&names, NULL, 2), LABIAL_ERROR_NULL);
     none.entries = nothing;

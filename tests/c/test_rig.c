@@ -17,8 +17,7 @@
 /* An output that moves one unit per FAP unit of FAP 3, from 1500, within 1000 .. 2000. */
 static labial_rig_output_t plain(void)
 {
-    labial_rig_output_t output;
-    memset(&output, 0, sizeof output);
+    labial_rig_output_t output = { 0 };
     output.weights[FAP3] = LABIAL_RIG_ONE;
     output.gain = LABIAL_RIG_GAIN(1, 1);
     output.neutral = 1500;
@@ -450,11 +449,10 @@ TEST(deadband_keeps_small_changes)
 /* A sound output with every number anywhere in its range, small moves as likely as ones that saturate. */
 static labial_rig_output_t any_sound_output(void)
 {
-    labial_rig_output_t output;
+    labial_rig_output_t output = { 0 };
     const unsigned gain_shift = chance() % 28u, value_shift = chance() % 16u;
     int32_t left = LABIAL_RIG_WEIGHT_SUM_MAX, swap;
     unsigned k = chance() % LABIAL_CHANNELS;
-    memset(&output, 0, sizeof output);
     for (unsigned i = 0; i < LABIAL_CHANNELS; i++, k = (k + 1u) % LABIAL_CHANNELS) {
         int32_t most = left < 32767 ? left : 32767;
         if (chance() % 4u == 0)

@@ -221,9 +221,8 @@ TEST(targets_are_shapes_kernels_and_floors)
         uint8_t labels[2 * LABIAL_REACH + 1];
         int16_t target[LABIAL_CHANNELS];
         labial_shape_t shape;
-        labial_taken_t taken;
+        labial_taken_t taken = { 0 };
         const unsigned taps = fixture_below(&random, LABIAL_KERNEL_TAPS_MAX + 1);
-        memset(&taken, 0, sizeof taken);
         taken.labels = labels + LABIAL_REACH;
         taken.share = (uint16_t)fixture_below(&random, 16385);
         taken.is_open = (uint8_t)fixture_below(&random, 2); /* of a phoneme without contact: nothing */
@@ -338,7 +337,7 @@ TEST(pairs_move_from_start_to_end)
     uint8_t labels[2 * LABIAL_REACH + 1];
     int16_t target[LABIAL_CHANNELS];
     labial_shape_t shape;
-    labial_taken_t taken;
+    labial_taken_t taken = { 0 };
     fixture_plain(&f);
     memset(f.shapes, 0, sizeof f.shapes);
     memset(labels, FIXTURE_A, sizeof labels);
@@ -351,7 +350,6 @@ TEST(pairs_move_from_start_to_end)
     f.model.pair_keys = f.pair_keys;
     f.model.pairs = f.pairs;
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
-    memset(&taken, 0, sizeof taken);
     taken.labels = labels + LABIAL_REACH;
     oracle_shape(&f.model, FIXTURE_A, 100, FIXTURE_T, FIXTURE_S, &shape);
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {

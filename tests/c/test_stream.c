@@ -65,8 +65,7 @@ TEST(frames_do_not_depend_on_where_the_structure_lies)
     run(&wanted, model, COUNT, FIXTURE_CHANCE);
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     host.moving = 1;
-    if (fixture_play(&host, input, COUNT, FIXTURE_CHANCE) != 0)
-        fail_msg("%s", host.complaint);
+    assert_played(&host, fixture_play(&host, input, COUNT, FIXTURE_CHANCE));
     assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
     fixture_close(&wanted);
     fixture_close(&host);
@@ -87,8 +86,7 @@ TEST(frames_do_not_depend_on_what_memory_held)
     host.on_way = 0;
     assert_int_equal(labial_init(host.stream, &rich.model, host.workspace, size, fixture_record, &host.recorder),
                      LABIAL_OK);
-    if (fixture_play(&host, input, 40, FIXTURE_FILL) != 0)
-        fail_msg("%s", host.complaint);
+    assert_played(&host, fixture_play(&host, input, 40, FIXTURE_FILL));
     assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
     fixture_close(&wanted);
     fixture_close(&host);
@@ -111,8 +109,7 @@ TEST(two_streams_do_not_disturb_each_other)
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 11);
     fixture_stream(other, COUNT, FIXTURE_PAUSES, 12);
     for (unsigned i = 0; i < 2; i++) {
-        if (fixture_run(&alone[i], models[i], inputs[i], COUNT, FIXTURE_FILL) != 0)
-            fail_msg("%s", alone[i].complaint);
+        assert_played(&alone[i], fixture_run(&alone[i], models[i], inputs[i], COUNT, FIXTURE_FILL));
         assert_int_equal(fixture_open(&together[i], &models[i], 1), LABIAL_OK);
     }
     while (!done[0] || !done[1]) {

@@ -25,8 +25,7 @@ SETUP(setup)
 static void play_at(fixture_host_t *host, unsigned percent, size_t count)
 {
     assert_int_equal(labial_articulation(host->stream, percent), LABIAL_OK);
-    if (fixture_play(host, input, count, FIXTURE_FILL) != 0)
-        fail_msg("%s", host->complaint);
+    assert_played(host, fixture_play(host, input, count, FIXTURE_FILL));
 }
 
 static void open_at(fixture_host_t *host, unsigned percent, size_t count)
@@ -42,8 +41,7 @@ TEST(the_first_is_100_and_none_is_0)
     fixture_host_t silent, calm, told_so;
     fixture_stream(input, COUNT, FIXTURE_CONTACTS, 3);
     models[0] = &rich.model;
-    if (fixture_run(&calm, models[0], input, COUNT, FIXTURE_FILL) != 0)
-        fail_msg("%s", calm.complaint);
+    assert_played(&calm, fixture_run(&calm, models[0], input, COUNT, FIXTURE_FILL));
     open_at(&told_so, 100, COUNT);
     assert_int_equal(fixture_difference(&calm.recorder, &told_so.recorder), -1);
     open_at(&silent, 0, COUNT);
@@ -58,8 +56,7 @@ TEST(the_first_is_100_and_none_is_0)
     silent.recorder.next = 0;
     silent.recorder.count = silent.begun = 0;
     silent.on_way = 0;
-    if (fixture_play(&silent, input, COUNT, FIXTURE_FILL) != 0)
-        fail_msg("%s", silent.complaint);
+    assert_played(&silent, fixture_play(&silent, input, COUNT, FIXTURE_FILL));
     assert_int_equal(fixture_difference(&calm.recorder, &silent.recorder), -1);
     fixture_close(&silent);
     fixture_close(&calm);
@@ -108,8 +105,7 @@ TEST(cancel_and_restart_keep_it)
         fixture_restart(&host);
         if (way == 3)
             assert_int_equal(labial_articulation(host.stream, 60), LABIAL_OK);
-        if (fixture_play(&host, input, COUNT, FIXTURE_FILL) != 0)
-            fail_msg("%s", host.complaint);
+        assert_played(&host, fixture_play(&host, input, COUNT, FIXTURE_FILL));
         assert_int_equal(fixture_difference(&ever.recorder, &host.recorder), -1);
         fixture_close(&host);
     }
@@ -132,8 +128,7 @@ TEST(a_change_is_no_jolt)
         assert_int_equal(fixture_open(&host, models, 1), LABIAL_OK);
         for (size_t t = 0; t < sizeof told; t++)
             told[t] = (t < at) == up ? 0 : LABIAL_ARTICULATION_MAX;
-        if (fixture_play_told(&host, input, 1, told, sizeof told) != 0)
-            fail_msg("%s", host.complaint);
+        assert_played(&host, fixture_play_told(&host, input, 1, told, sizeof told));
         for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
             const int from = host.recorder.frames[at - 10][c], to = host.recorder.frames[last][c], way = abs(to - from);
             for (size_t t = at - 10; t < last; t++) {

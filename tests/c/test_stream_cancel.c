@@ -162,8 +162,7 @@ TEST(cancel_before_the_first_frame_stays_neutral)
 /* Plays input[0 .. count) on a host that was restarted. */
 static void play_again(fixture_host_t *host, size_t count)
 {
-    if (fixture_play(host, input, count, FIXTURE_FILL) != 0)
-        fail_msg("%s (frame %zu)", host->complaint, host->recorder.count);
+    assert_played(host, fixture_play(host, input, count, FIXTURE_FILL));
 }
 
 /* Would catch numbering that begins anew, time that is carried over, and a jump from the pose that was held. */
@@ -177,14 +176,12 @@ TEST(a_stream_is_taken_up_where_it_stopped)
         input[i].ms = 60;
         input[i].model = 0;
     }
-    if (fixture_run(&host, &rich.model, input, 30, FIXTURE_FILL) != 0)
-        fail_msg("%s", host.complaint);
+    assert_played(&host, fixture_run(&host, &rich.model, input, 30, FIXTURE_FILL));
     const size_t first = host.recorder.count;
     assert_int_equal(first, 90);
     for (size_t i = 0; i < 30; i++)
         input[i].phoneme = FIXTURE_O;
-    if (fixture_run(&fresh, &rich.model, input, 30, FIXTURE_FILL) != 0)
-        fail_msg("%s", fresh.complaint);
+    assert_played(&fresh, fixture_run(&fresh, &rich.model, input, 30, FIXTURE_FILL));
     fixture_restart(&host);
     assert_int_equal(labial_room(host.stream), LABIAL_QUEUE);
     play_again(&host, 30);

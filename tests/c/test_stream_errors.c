@@ -62,8 +62,7 @@ TEST(errors_leave_the_stream_unchanged)
     size_t i = 0;
     unsigned rounds = 0;
     int result = LABIAL_WAITING;
-    if (fixture_run(&calm, model, input, COUNT, FIXTURE_FILL) != 0)
-        fail_msg("%s", calm.complaint);
+    assert_played(&calm, fixture_run(&calm, model, input, COUNT, FIXTURE_FILL));
     assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
     while (result != LABIAL_DONE) {
         labial_latency_t before = labial_latency(host.stream);
@@ -101,8 +100,7 @@ TEST(the_queue_takes_as_many_as_it_says)
     assert_int_equal(labial_room(host.stream), 0);
     commit_errors(host.stream, 0); /* LABIAL_ERROR_FULL among them */
     assert_int_equal(labial_latency(host.stream).frames, room);
-    if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
-        fail_msg("%s", host.complaint);
+    assert_played(&host, fixture_play(&host, input, 0, FIXTURE_FILL));
     assert_int_equal(host.recorder.count, room);
     fixture_close(&host);
 }
@@ -152,9 +150,8 @@ TEST(a_failed_init_makes_the_stream_unusable)
     uint32_t *workspace = (uint32_t *)malloc(size + 4u); /* room enough for the misaligned ones */
     labial_t *stream = (labial_t *)malloc(sizeof *stream);
     uint8_t *bytes = (uint8_t *)workspace;
-    fixture_recorder_t recorder;
+    fixture_recorder_t recorder = { 0 };
     assert_true(workspace && stream);
-    memset(&recorder, 0, sizeof recorder);
     for (unsigned i = 0; i < 10; i++) {
         int got = 1, wanted = 1;
         assert_int_equal(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_OK);
@@ -237,7 +234,7 @@ TEST(memory_beside_the_workspace_is_untouched)
     unsigned extra, i, k;
     for (unsigned round = 0; round < 24; round++) {
         labial_t stream;
-        fixture_recorder_t recorder;
+        fixture_recorder_t recorder = { 0 };
         const unsigned stride = 1 + round / 2 % LABIAL_SEARCH_STRIDE_MAX;
         fixture_model_t *const model = round % 2 ? &slow : &rich;
         extra = round * 3 % (4 * EXTRA);
@@ -245,7 +242,6 @@ TEST(memory_beside_the_workspace_is_untouched)
         fixture_rich(&rich);
         model->model.search_stride = (uint8_t)stride;
         const uint32_t size = LABIAL_WORKSPACE_SIZE(stride) + extra;
-        memset(&recorder, 0, sizeof recorder);
         memset(memory, 0xc3, sizeof memory);
         assert_int_equal(labial_init(&stream, &model->model, memory + GUARD, size, fixture_record, &recorder),
                          LABIAL_OK);
@@ -297,13 +293,11 @@ TEST(too_many_models_are_refused_until_ticks_make_room)
 #if LABIAL_MODELS > 1
     assert_int_equal(ticks, frames + still_needed);
     assert_int_equal(labial_push(host.stream, FIXTURE_HA, 1000), LABIAL_OK);
-    if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
-        fail_msg("%s", host.complaint);
+    assert_played(&host, fixture_play(&host, input, 0, FIXTURE_FILL));
     assert_int_equal(host.recorder.count, (LABIAL_MODELS + 1) * frames + 1000 * FIXTURE_RATE / 1000);
 #else
     assert_int_equal(ticks, 400); /* what follows the only phoneme is not known: it is never taken up but at the end */
-    if (fixture_play(&host, input, 0, FIXTURE_FILL) != 0)
-        fail_msg("%s", host.complaint);
+    assert_played(&host, fixture_play(&host, input, 0, FIXTURE_FILL));
     fixture_restart(&host);
     assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
     assert_in_range(still_needed, 1, 100);

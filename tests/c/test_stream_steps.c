@@ -168,8 +168,7 @@ TEST(rounds_are_the_sum_of_their_steps)
         fixture_stream(input, count, round % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, round);
         if (round > 0)
             fixture_restart(&host);
-        if (fixture_play(&host, input, count, FIXTURE_FILL) != 0)
-            fail_msg("%s", host.complaint);
+        assert_played(&host, fixture_play(&host, input, count, FIXTURE_FILL));
         judge(&host.recorder, first,
               oracle_stream(models, input, count, first > 0 ? held : NULL, NULL, wanted, MAX_FRAMES), FADED_TOLERANCE,
               "rounds", round);

@@ -179,10 +179,8 @@ TEST(phonemes_without_time_leave_no_trace)
         padded[n++] = input[i];
     }
     assert_true(n > 150);
-    if (fixture_run(&without, &rich.model, input, 100, FIXTURE_FILL) != 0)
-        fail_msg("%s", without.complaint);
-    if (fixture_run(&with, &rich.model, padded, n, FIXTURE_FILL) != 0)
-        fail_msg("%s", with.complaint);
+    assert_played(&without, fixture_run(&without, &rich.model, input, 100, FIXTURE_FILL));
+    assert_played(&with, fixture_run(&with, &rich.model, padded, n, FIXTURE_FILL));
     assert_int_equal(fixture_difference(&without.recorder, &with.recorder), -1);
     fixture_close(&without);
     fixture_close(&with);

@@ -266,11 +266,9 @@ static void walk(fixture_random_t *random, int restless, int extreme)
 /* A row after which the frame before it, which nothing holds, has the row sum g, and D is d: with c = 2^24 in Q16. */
 static void divide(uint32_t g, uint32_t d, int32_t pull, labial_solver_t *solver, labial_factors_t *factors)
 {
-    labial_terms_t terms;
-    labial_frame_t frame;
+    labial_terms_t terms = { 0 };
+    labial_frame_t frame = { 0 };
     memset(solver, 0, sizeof *solver);
-    memset(&terms, 0, sizeof terms);
-    memset(&frame, 0, sizeof frame);
     solver->row = (int32_t)g;
     solver->bent = (int32_t)(d - g - ((uint32_t)1 << 24));
     solver->pull = pull;
@@ -445,8 +443,7 @@ static double largest_pivot(unsigned length, const char *what, unsigned round)
     double most = 0;
     require_accepted(what, round);
     for (unsigned t = 0; t < length; t++) {
-        labial_frame_t frame;
-        memset(&frame, 0, sizeof frame);
+        labial_frame_t frame = { 0 };
         frame.target[CHANNEL] = target[t];
         frame.contacts = (uint32_t)contact[t] << CHANNEL;
         frame.marks = (uint8_t)((t == 0 ? LABIAL_BEGINS : 0) | (t + 1 == length ? LABIAL_ENDS : 0));

@@ -344,13 +344,12 @@ TEST(ties_go_to_the_lower_state)
  * comes before one of 8160 + 17, and behind one of 8160 + 15. */
 TEST(far_states_cost_the_farthest)
 {
-    labial_search_t search;
+    labial_search_t search = { 0 };
     set_up_flat(2, 1);
     emissions[0].mean = -2000;
     emissions[0].gain = 0; /* z is 16 times the distance */
     emissions[1].mean = 1022;
     emissions[1].gain = 0x40; /* z is the distance */
-    memset(&search, 0, sizeof search);
     emissions[1].cost = 17;
     labial_viterbi_step(&model, &channel, 0, LABIAL_BEGINS, &search);
     labial_viterbi_span(&search, 1);

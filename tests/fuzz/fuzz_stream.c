@@ -262,13 +262,12 @@ static void choose_models(watch_t *watch, unsigned choice)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     bytes_t bytes;
-    watch_t watch;
+    watch_t watch = { 0 };
     void *workspace;
     if (speech.model.format == 0)
         make_models();
     bytes.data = data;
     bytes.size = size;
-    memset(&watch, 0, sizeof watch);
     choose_models(&watch, take(&bytes, 1));
     const uint32_t room = labial_workspace_size(watch.first);
     workspace = malloc(room);

@@ -146,8 +146,7 @@ static void make_rig(void)
     static labial_t stream;
     FILE *file = create("fuzz_rig", "sentence");
     for (int i = 0; i < OUTPUTS; i++) {
-        labial_rig_output_t output;
-        memset(&output, 0, sizeof output);
+        labial_rig_output_t output = { 0 };
         output.weights[i] = 4096;
         output.invert = (uint8_t)(i % 2);
         output.contact = (uint8_t)(i / 2);

@@ -108,10 +108,9 @@ static int on_sound(short *samples, int count, espeak_EVENT *events)
 /* By name or by language, as en-gb. */
 static int select_voice(const char *name)
 {
-    espeak_VOICE wanted;
+    espeak_VOICE wanted = { 0 };
     if (espeak_SetVoiceByName(name) == EE_OK)
         return 0;
-    memset(&wanted, 0, sizeof wanted);
     wanted.languages = name;
     return espeak_SetVoiceByProperties(&wanted) == EE_OK ? 0 : -1;
 }
