@@ -6,7 +6,6 @@
  */
 #include "suite.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "fixture.h"
@@ -142,63 +141,6 @@ TEST(a_stream_without_phonemes_is_done_at_once)
     assert_int_equal(fixture_tick(&host), LABIAL_DONE);
     assert_int_equal(host.recorder.count, 0);
     assert_null(host.complaint);
-    fixture_close(&host);
-}
-
-/* A phoneme held for long is its own shape (equation 2), for that is also a state's mean in the plain model; or that of
- * another state, when it is so near that their costs are equal: z below 11.3 / 64, hence 4 FAP units. */
-TEST(a_held_phoneme_settles_to_its_shape)
-{
-    for (unsigned p = 0; p < FIXTURE_SPEECH_COUNT; p++) {
-        fixture_host_t host;
-        for (unsigned i = 0; i < 60; i++) {
-            input[i].phoneme = (uint8_t)p;
-            input[i].ms = 100;
-            input[i].model = 0;
-        }
-        run(&host, &plain.model, 60, FIXTURE_FILL);
-        assert_int_equal(host.recorder.count, 300);
-        for (size_t middle = 60; middle < 240; middle++) {
-            for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-                const int wanted = fixture_target(p, c) / 16, got = host.recorder.frames[middle][c];
-                if (abs(got - wanted) > 5)
-                    fail_msg("phoneme %u, channel %u, frame %zu: %d, not %d", p, c, middle, got, wanted);
-            }
-        }
-        fixture_close(&host);
-    }
-}
-
-/* Would catch a wrong sign, a wrong centre, wrapped arithmetic: the plain model's motion stays near its states' means,
- * and it moves over most of the range of the phonemes' shapes. */
-TEST(motion_stays_within_the_states_range)
-{
-    fixture_host_t host;
-    fixture_stream(input, COUNT, FIXTURE_RANDOM, 31);
-    run(&host, &plain.model, COUNT, FIXTURE_FILL);
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-        int low = INT16_MAX, high = INT16_MIN, least = INT16_MAX, most = INT16_MIN, lowest = 0, highest = 0;
-        for (unsigned q = 0; q < FIXTURE_SPEECH_STATES; q++) {
-            const int mean = (plain.states[c][q].mean + plain.channels[c].centre) / 16;
-            low = mean < low ? mean : low;
-            high = mean > high ? mean : high;
-        }
-        for (unsigned q = 0; q < FIXTURE_SPEECH_COUNT; q++) {
-            const int shape = fixture_target(q, c) / 16;
-            lowest = q == 0 || shape < lowest ? shape : lowest;
-            highest = q == 0 || shape > highest ? shape : highest;
-        }
-        for (size_t i = 0; i < host.recorder.count; i++) {
-            const int x = host.recorder.frames[i][c];
-            least = x < least ? x : least;
-            most = x > most ? x : most;
-        }
-        const int span = high - low;
-        if (least < low - span / 5 || most > high + span / 5)
-            fail_msg("channel %u: %d .. %d where states are %d .. %d", c, least, most, low, high);
-        if (most - least < (highest - lowest) * 2 / 3)
-            fail_msg("channel %u hardly moves: %d .. %d", c, least, most);
-    }
     fixture_close(&host);
 }
 

@@ -6,7 +6,6 @@
 #include "fixture.h"
 
 #define COUNT 240
-#define FADE 8 /* frames */
 
 static fixture_model_t speech, laugh, slow;
 static fixture_phoneme_t input[COUNT];
@@ -79,58 +78,6 @@ TEST(switching_keeps_time_and_does_not_depend_on_feeding)
             fixture_close(&wanted);
         }
     }
-}
-
-/* Would catch a join without a cross-fade: both models hold shapes far apart, and the way from one to the other takes
- * the frames of the fade instead of one. */
-TEST(models_are_faded_into_each_other)
-{
-    fixture_host_t host;
-    int inside = 0, at_joins = 0, far = 0;
-    for (unsigned i = 0; i < 40; i++) { /* ten phonemes of 100 ms each in turn: models change every 50 frames */
-        input[i].model = (uint8_t)(i / 10 % 2);
-        input[i].phoneme = (uint8_t)(input[i].model ? FIXTURE_FRICATIVE : i % 2 ? FIXTURE_A : FIXTURE_S);
-        input[i].ms = 100;
-    }
-    play(&host, 2, 40, FIXTURE_FILL, "ten in turn");
-    assert_int_equal(host.recorder.count, 200);
-    for (size_t frame = 1; frame < 200; frame++) {
-        const size_t from_join = frame % 50 < 25 ? frame % 50 : 50 - frame % 50;
-        const int step = fixture_step(&host.recorder, frame);
-        if (frame < 25 || frame >= 175 || from_join > FADE + 4)
-            inside = step > inside ? step : inside;
-        else
-            at_joins = step > at_joins ? step : at_joins;
-    }
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-        const int change = host.recorder.frames[75][c] - host.recorder.frames[25][c];
-        far = change > far ? change : -change > far ? -change : far;
-    }
-    assert_true(far > 100); /* else there is nothing to fade */
-    if (at_joins > 2 * inside && at_joins > far / 3)
-        fail_msg("%d at the joins, %d elsewhere, %d from one to the other", at_joins, inside, far);
-    fixture_close(&host);
-}
-
-/* Would catch phoneme numbers that are looked up in the wrong model: those of the other model are silence. A stream
- * whose laughter is unlike silence only in phonemes that speech does not have gives the same speech. */
-TEST(the_other_models_phonemes_are_silence)
-{
-    fixture_host_t a, b;
-    for (unsigned i = 0; i < 30; i++) {
-        input[i].model = (uint8_t)(i >= 15);
-        input[i].phoneme = (uint8_t)(i % 4);
-        input[i].ms = 120;
-    }
-    play(&a, 2, 30, FIXTURE_FILL, "one laugh");
-    for (unsigned i = 15; i < 30; i++)
-        input[i].phoneme = (uint8_t)((i + 1) % 4);
-    play(&b, 2, 30, FIXTURE_FILL, "another laugh");
-    for (size_t frame = 0; frame < 15 * 6; frame++)
-        assert_memory_equal(a.recorder.frames[frame], b.recorder.frames[frame], sizeof a.recorder.frames[0]);
-    assert_true(fixture_difference(&a.recorder, &b.recorder) >= 0); /* the laughs themselves differ */
-    fixture_close(&a);
-    fixture_close(&b);
 }
 
 /* A model makes room for another when its phonemes have been taken up and their frames are no longer needed: so it

@@ -88,6 +88,7 @@ TEST(every_prefix_is_exact)
                 assert_int_equal(fixture_push(&host, &input[i]), LABIAL_OK);
                 ms += input[i].ms;
                 const labial_latency_t latency = labial_latency(host.stream);
+                assert_int_equal(latency.phonemes + labial_room(host.stream), LABIAL_QUEUE);
                 if (!fixture_is_exact(latency.frames + host.recorder.count, ms, rates[r]))
                     fail_msg("%u frames/s: %u frames for %lu ms", rates[r], latency.frames, (unsigned long)ms);
                 if (!is_nearest_ms(latency.milliseconds, latency.frames, rates[r]))
@@ -121,69 +122,6 @@ TEST(a_queue_full_of_hours_is_counted_exactly)
     assert_int_equal(labial_latency(host.stream).frames, latency.frames - 100);
     fixture_close(&host);
     plain.model.frames_per_second = FIXTURE_RATE;
-}
-
-/* Would catch a count that drifts from what is pushed and delivered, at any moment of a stream. */
-TEST(latency_is_what_was_pushed_and_not_delivered)
-{
-    fixture_host_t host;
-    const labial_model_t *model = &rich.model;
-    fixture_random_t random = { 3 };
-    size_t i = 0;
-    uint32_t pushed = 0;
-    int result = LABIAL_WAITING;
-    fixture_stream(input, 200, FIXTURE_RANDOM, 14);
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-    labial_latency_t latency = labial_latency(host.stream);
-    assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0);
-    while (result != LABIAL_DONE) {
-        uint32_t burst = fixture_below(&random, 4);
-        for (; i < 200 && burst > 0 && labial_room(host.stream) > 0; burst--, i++) {
-            input[i].ms = input[i].ms / 20 * 20; /* whole frames: what was pushed is known without rounding */
-            assert_int_equal(fixture_push(&host, &input[i]), LABIAL_OK);
-            pushed += input[i].ms / 20;
-        }
-        if (i == 200 && !host.ended)
-            fixture_end(&host);
-        result = fixture_tick(&host);
-        latency = labial_latency(host.stream);
-        assert_null(host.complaint);
-        assert_int_equal(latency.frames, pushed - host.recorder.count);
-        assert_int_equal(latency.milliseconds, latency.frames * 20);
-        assert_true(latency.phonemes <= LABIAL_QUEUE);
-        if (!host.ended)
-            assert_int_equal(latency.phonemes + labial_room(host.stream), LABIAL_QUEUE);
-    }
-    assert_int_equal(host.recorder.count, pushed);
-    assert_int_equal(latency.frames, 0);
-    fixture_close(&host);
-}
-
-/* "A phoneme that gets no frame of its own is skipped": it is no neighbour, has no part in the kernels and is no
- * boundary. The rich model sees all of these. */
-TEST(phonemes_without_time_leave_no_trace)
-{
-    static fixture_phoneme_t padded[3 * 100];
-    fixture_host_t without, with;
-    fixture_random_t random = { 6 };
-    size_t n = 0;
-    fixture_stream(input, 100, FIXTURE_RANDOM, 17);
-    for (size_t i = 0; i < 100; i++) {
-        uint32_t extra = fixture_below(&random, 3);
-        input[i].ms += 20; /* each of them gets a frame */
-        for (; extra > 0; extra--) {
-            padded[n].model = 0;
-            padded[n].ms = 0;
-            padded[n++].phoneme = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
-        }
-        padded[n++] = input[i];
-    }
-    assert_true(n > 150);
-    assert_played(&without, fixture_run(&without, &rich.model, input, 100, FIXTURE_FILL));
-    assert_played(&with, fixture_run(&with, &rich.model, padded, n, FIXTURE_FILL));
-    assert_int_equal(fixture_difference(&without.recorder, &with.recorder), -1);
-    fixture_close(&without);
-    fixture_close(&with);
 }
 
 SUITE(setup, NULL)
