@@ -142,29 +142,6 @@ TEST(selection_follows_the_formula)
     }
 }
 
-/* Would catch previous and next taken for each other. */
-TEST(context_has_a_direction)
-{
-    fixture_random_t random = { 32 };
-    labial_shape_t shape;
-    make(&random, 2);
-    f.model.mixture_mean = 0;
-    components[0] = components[1];
-    memset(contexts, 0, sizeof contexts);
-    contexts[0 * FIXTURE_CLASSES + 3] = 7;      /* component 0 hardly ever follows class 3 */
-    contexts[1 * FIXTURE_CLASSES + 3] = 7 << 4; /* component 1 hardly ever precedes it */
-    memset(slopes, 0, sizeof slopes);
-    memset(shapes, 10, LABIAL_CHANNELS);
-    memset(shapes + LABIAL_CHANNELS, 90, LABIAL_CHANNELS);
-    f.channels[4].shape_scale = 256; /* positions are steps */
-    oracle_shape(&f.model, 0, 100, 3, 0, &shape);
-    assert_int_equal(shape.knots[0][4], 90);
-    oracle_shape(&f.model, 0, 100, 0, 3, &shape);
-    assert_int_equal(shape.knots[0][4], 10);
-    oracle_shape(&f.model, 0, 100, 0, 0, &shape);
-    assert_int_equal(shape.knots[0][4], 10);
-}
-
 /* Of the longest durations and the strangest tables: within the range of positions, up to its ends. */
 TEST(extremes_stay_within_the_range)
 {
@@ -323,41 +300,6 @@ TEST(pairs_add_their_row_and_others_nothing)
         }
     }
     assert_true(added > 100);
-}
-
-/* Of a pair that adds 160 at the start and takes as much away at the end: by hand, at the phoneme's very ends, in its
- * middle and at the middles of its frames. Would catch knots taken the other way round, or a share beside its frame. */
-TEST(pairs_move_from_start_to_end)
-{
-    static const struct {
-        unsigned share;
-        int wanted;
-    } cases[] = { { 0, 160 },     { 2048, 120 },  { 4096, 80 },    { 6144, 40 },   { 8192, 0 },
-                  { 10240, -40 }, { 12288, -80 }, { 14336, -120 }, { 16384, -160 } };
-    uint8_t labels[2 * LABIAL_REACH + 1];
-    int16_t target[LABIAL_CHANNELS];
-    labial_shape_t shape;
-    labial_taken_t taken = { 0 };
-    fixture_plain(&f);
-    memset(f.shapes, 0, sizeof f.shapes);
-    memset(labels, FIXTURE_A, sizeof labels);
-    f.pair_keys[0] = FIXTURE_A << 8 | FIXTURE_T;
-    f.pairs[7] = 80;
-    f.pairs[LABIAL_CHANNELS + 7] = -80;
-    f.channels[7].pair_scale = 512;
-    f.model.pair_count = 1;
-    f.model.pair_knots = 2;
-    f.model.pair_keys = f.pair_keys;
-    f.model.pairs = f.pairs;
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
-    taken.labels = labels + LABIAL_REACH;
-    oracle_shape(&f.model, FIXTURE_A, 100, FIXTURE_T, FIXTURE_S, &shape);
-    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        taken.share = (uint16_t)cases[i].share;
-        assert_int_equal(labial_shape_target(&f.model, &shape, &taken, target), 0);
-        assert_int_equal(target[7], cases[i].wanted);
-        assert_int_equal(target[6], 0);
-    }
 }
 
 SUITE(NULL, NULL)

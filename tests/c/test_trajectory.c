@@ -543,34 +543,6 @@ TEST(contact_holds_a_frame_at_its_target)
     }
 }
 
-/* What `contact_weight` is for: of a single frame in contact between others that stay far from it, the more is left the
- * firmer it is held, and with the firmest weight nearly all. Would catch a weight that is read and not used. */
-TEST(firm_contact_is_met)
-{
-    static const double contact_weight[] = { 0, 500, 2000, 14000 };
-    double reached[4];
-    memset(states, 0, sizeof states);
-    for (unsigned i = 0; i < STATES; i++) {
-        states[i].hold = not_above(100);
-        states[i].share = 255;
-        states[i].weight[1] = not_above(200);
-    }
-    for (unsigned t = 0; t < FRAMES; t++) {
-        path[t] = 0;
-        target[t] = (int16_t)(t == 20 ? 3200 : 0);
-        contact[t] = t == 20;
-    }
-    for (unsigned i = 0; i < 4; i++) {
-        double wanted[FRAMES];
-        model.channels[0].contact_weight = not_above(contact_weight[i]);
-        compare(FRAMES, "contact_weight", i);
-        oracle_trajectory(&channel, path, target, contact, 0, gain, FRAMES, NULL, wanted);
-        reached[i] = (wanted[20] - channel.centre) / 3200.0;
-    }
-    assert_true(reached[0] < 0.5 && reached[1] > reached[0] + 0.2 && reached[2] > reached[1] + 0.1);
-    assert_true(reached[3] > 0.97 && reached[3] < 1.0);
-}
-
 /* Solutions one after the other, some of a single frame: would catch a backward pass that carries something of the later
  * one into the earlier, and places of the ring of motion that are one off. */
 TEST(solutions_are_not_coupled)

@@ -196,43 +196,6 @@ TEST(paths_are_those_of_the_dense_programme)
 #endif
 }
 
-/* A unit no longer than the lag is searched as published: the best of all paths into its last step. */
-TEST(a_unit_within_the_lag_has_the_best_path)
-{
-#if LABIAL_LAG >= 4
-    fixture_random_t random = { 13 };
-    unsigned round, t;
-    for (round = 0; round < FIXTURE_ROUNDS(1000); round++) {
-        const unsigned count = 1 + round % EXHAUSTED;
-        double least[LABIAL_STATES_MAX], best = ORACLE_NONE;
-        unsigned path[EXHAUSTED];
-        labial_search_t search;
-        make(&random, 1 + round % 4, 40 + fixture_below(&random, 200), 300 + round % 400 * 10, 3000);
-        for (t = 0; t < count; t++)
-            take_step(&search, t, 0, 1, t == count - 1);
-        exhaust(count, least);
-        for (unsigned i = 0; i < model.state_count; i++)
-            best = least[i] < best ? least[i] : best;
-        for (t = 0; t < count; t++)
-            path[t] = labial_viterbi_state(&search, count - 1 - t);
-        double cost = initials[path[0]] + oracle_emission(&emissions[path[0]], position[0]);
-        for (t = 1; t < count; t++) {
-            unsigned way = 255;
-            for (unsigned i = 0; i < model.predecessors; i++) {
-                const unsigned transition = transitions[path[t] * model.predecessors + i];
-                way = (transition & 255u) == path[t - 1] && transition >> 8 < way ? transition >> 8 : way;
-            }
-            cost += way + oracle_emission(&emissions[path[t]], position[t]);
-        }
-        if (cost != best)
-            fail_msg("round %u, %u steps: a path of %g where the best is %g", round, count, cost, best);
-    }
-#else
-    (void)exhaust;
-    assert_in_range(LABIAL_LAG, 0, 3); /* the suites with a lag do this */
-#endif
-}
-
 static void set_up_flat(unsigned states, unsigned predecessors)
 {
     memset(emissions, 0, sizeof emissions);
