@@ -29,7 +29,8 @@ double fixture_weight_value(uint8_t code)
     return exponent == 0 ? (double)mantissa : (double)((16ul + mantissa) << (exponent - 1u));
 }
 
-uint8_t fixture_weight_code(double value)
+/* The nearest weight. */
+static uint8_t weight_code(double value)
 {
     unsigned best = 0;
     for (unsigned code = 1; code < 256; code++) {
@@ -58,11 +59,6 @@ static int position_of_steps(int steps)
 static int centre_of(unsigned channel)
 {
     return ((int)channel - 6) * 40;
-}
-
-int32_t fixture_target(unsigned phoneme, unsigned channel)
-{
-    return position_of_steps(shape_steps(phoneme, 0, channel)) + centre_of(channel);
 }
 
 /* Every state is entered from itself and from those up to `reach` away, 1 or 3; those at the ends have fewer. */
@@ -196,9 +192,9 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
             emission->gain = fixture_gain_code(240.0); /* 15 FAP units; the nearest state is the likeliest */
             f->initials[c][q] = (uint8_t)(60 + q % 5);
             state->mean = (int16_t)means[q];
-            state->hold = fixture_weight_code(64);
-            state->weight[0] = fixture_weight_code(90);
-            state->weight[1] = fixture_weight_code(200);
+            state->hold = weight_code(64);
+            state->weight[0] = weight_code(90);
+            state->weight[1] = weight_code(200);
         }
         connect(f, c, states, reach);
     }
@@ -270,7 +266,7 @@ static void enrich(fixture_model_t *f)
         kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
     fixture_pack_kernels(kernels, FIXTURE_PHONEMES * FIXTURE_TAPS, f->kernels, f->last_kernels);
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-        f->channels[c].contact_weight = fixture_weight_code(1500);
+        f->channels[c].contact_weight = weight_code(1500);
         f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
         f->channels[c].kernel_scale = 512; /* 100 steps: 12.5 FAP units */
         f->channels[c].pair_scale = 1280;  /* 40 steps: 12.5 FAP units */
@@ -280,7 +276,7 @@ static void enrich(fixture_model_t *f)
             f->emissions[c][q].cost = (uint8_t)(q % 3 * 3);
             state->motion[0] = (int8_t)((int)fixture_below(&random, 161) - 80);
             state->motion[1] = (int8_t)((int)fixture_below(&random, 41) - 20);
-            state->hold = fixture_weight_code(120.0 + (double)fixture_below(&random, 400));
+            state->hold = weight_code(120.0 + (double)fixture_below(&random, 400));
             state->share = (uint8_t)(160 + fixture_below(&random, 90));
         }
     }

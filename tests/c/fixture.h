@@ -96,11 +96,7 @@ void fixture_without_17(fixture_model_t *fixture);
 /* The four that have all channels. */
 void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t *laugh, fixture_model_t *slow);
 
-/* Shape of the first component of a speech phoneme on one channel, Q4 FAP, `centre` included. */
-int32_t fixture_target(unsigned phoneme, unsigned channel);
-
-/* Nearest minifloat weight (labial/model.h) and the value of one. */
-uint8_t fixture_weight_code(double value);
+/* The value of a minifloat weight (labial/model.h). */
 double fixture_weight_value(uint8_t code);
 
 /* The short gain (labial/model.h) nearest to that of a standard deviation, and the gain that one stands for. */
@@ -222,12 +218,6 @@ int fixture_run(fixture_host_t *host, const labial_model_t *model, const fixture
 
 /* First frame at which two recordings differ, or -1 when they are the same, lengths included. */
 long fixture_difference(const fixture_recorder_t *a, const fixture_recorder_t *b);
-
-/* Remembers what went wrong first. */
-void fixture_complain(fixture_host_t *host, const char *what);
-
-/* Largest change of any channel from frame - 1 to frame. */
-int fixture_step(const fixture_recorder_t *recorder, size_t frame);
 
 /* ---- Blobs (labial/blob.h) ---- */
 

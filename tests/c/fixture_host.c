@@ -9,7 +9,8 @@
 /* Ticks without a new frame and without a new phoneme after which a stream counts as stuck. */
 #define STUCK 2000u
 
-void fixture_complain(fixture_host_t *host, const char *what)
+/* Remembers what went wrong first. */
+static void complain(fixture_host_t *host, const char *what)
 {
     if (!host->complaint)
         host->complaint = what;
@@ -75,21 +76,21 @@ static void move(fixture_host_t *host)
 void fixture_end(fixture_host_t *host)
 {
     if (labial_end(host->stream) != LABIAL_OK)
-        fixture_complain(host, "the end was refused");
+        complain(host, "the end was refused");
     host->ended = 1;
 }
 
 void fixture_cancel(fixture_host_t *host, uint32_t milliseconds)
 {
     if (labial_cancel(host->stream, milliseconds) != LABIAL_OK)
-        fixture_complain(host, "a cancel was refused");
+        complain(host, "a cancel was refused");
     host->ended = host->cancelled = 1;
 }
 
 void fixture_restart(fixture_host_t *host)
 {
     if (labial_restart(host->stream) != LABIAL_OK)
-        fixture_complain(host, "a restart was refused");
+        complain(host, "a restart was refused");
     host->ended = host->cancelled = 0;
     host->begun = host->recorder.count;
     host->on_way = 0;
@@ -100,16 +101,16 @@ static void check_silent(fixture_host_t *host, int result, unsigned room)
 {
     const int begun = host->recorder.count > host->begun;
     if (result == LABIAL_DONE && !host->ended)
-        fixture_complain(host, "done before the end");
+        complain(host, "done before the end");
     if (result != LABIAL_DONE && (result == LABIAL_WAITING) == begun)
-        fixture_complain(host, "WAITING is for the first frame, STARVED for every other");
+        complain(host, "WAITING is for the first frame, STARVED for every other");
     if (result == LABIAL_STARVED && host->ended)
-        fixture_complain(host, "starves after the end");
+        complain(host, "starves after the end");
     if (result == LABIAL_STARVED && room == 0)
-        fixture_complain(host, "starves with a full queue");
+        complain(host, "starves with a full queue");
     if (result == LABIAL_WAITING && (host->ended || room == 0) &&
         ++host->on_way > LABIAL_DELAY((unsigned)host->models[0]->search_stride))
-        fixture_complain(host, "the first frame takes longer than the delay");
+        complain(host, "the first frame takes longer than the delay");
 }
 
 int fixture_tick(fixture_host_t *host)
@@ -122,20 +123,20 @@ int fixture_tick(fixture_host_t *host)
     const int result = labial_tick(host->stream);
     const labial_latency_t after = labial_latency(host->stream);
     if (result < LABIAL_OK || result > LABIAL_DONE) {
-        fixture_complain(host, "a tick returned an error or an unknown result");
+        complain(host, "a tick returned an error or an unknown result");
         return result;
     }
     host->seen[result]++;
     if (host->recorder.calls != (result == LABIAL_OK ? 1u : 0u))
-        fixture_complain(host, "the callback was not called exactly once per LABIAL_OK");
+        complain(host, "the callback was not called exactly once per LABIAL_OK");
     if (host->recorder.misnumbered)
-        fixture_complain(host, "frame numbers are not consecutive");
+        complain(host, "frame numbers are not consecutive");
     if (after.frames != before.frames - (result == LABIAL_OK && !host->cancelled ? 1u : 0u))
-        fixture_complain(host, "the latency is not what was pushed and not delivered");
+        complain(host, "the latency is not what was pushed and not delivered");
     if (after.delay != LABIAL_DELAY((unsigned)host->models[0]->search_stride))
-        fixture_complain(host, "the delay is not that of the stride");
+        complain(host, "the delay is not that of the stride");
     if ((result == LABIAL_DONE) != (host->ended && before.frames == 0) && !host->cancelled)
-        fixture_complain(host, "done before the last frame, or not after it");
+        complain(host, "done before the last frame, or not after it");
     if (result != LABIAL_OK)
         check_silent(host, result, room);
     return result;
@@ -153,7 +154,7 @@ int fixture_push(fixture_host_t *host, const fixture_phoneme_t *phoneme)
     }
     result = labial_push(host->stream, phoneme->phoneme, phoneme->ms);
     if (result == LABIAL_ERROR_FULL && room > 0)
-        fixture_complain(host, "the queue is full although labial_room() saw room");
+        complain(host, "the queue is full although labial_room() saw room");
     return result;
 }
 
@@ -173,7 +174,7 @@ static size_t feed_some(fixture_host_t *host, const fixture_phoneme_t *input, si
         if (result == LABIAL_ERROR_MODELS)
             break;
         if (result != LABIAL_OK) {
-            fixture_complain(host, "a proper push was refused");
+            complain(host, "a proper push was refused");
             break;
         }
         pushed++;
@@ -196,15 +197,15 @@ int fixture_play(fixture_host_t *host, const fixture_phoneme_t *input, size_t co
             break;
         stuck = pushed || result == LABIAL_OK ? 0 : stuck + 1;
         if (stuck > STUCK)
-            fixture_complain(host, "no progress");
+            complain(host, "no progress");
     }
     if (host->complaint)
         return -1;
     const labial_latency_t left = labial_latency(host->stream);
     if (left.frames || left.milliseconds || left.phonemes)
-        fixture_complain(host, "latency is not zero when the stream is done");
+        complain(host, "latency is not zero when the stream is done");
     if (fixture_tick(host) != LABIAL_DONE)
-        fixture_complain(host, "done is not for good");
+        complain(host, "done is not for good");
     return host->complaint ? -1 : 0;
 }
 
@@ -218,14 +219,14 @@ int fixture_play_told(fixture_host_t *host, const fixture_phoneme_t *input, size
         if (next == count && !host->ended)
             fixture_end(host);
         if ((t == 0 || told[t] != told[t - 1] || t % 7 == 0) && labial_articulation(host->stream, told[t]) != LABIAL_OK)
-            fixture_complain(host, "an articulation is refused");
+            complain(host, "an articulation is refused");
         const int result = fixture_tick(host);
         if (result == LABIAL_STARVED)
-            fixture_complain(host, "a full queue starves");
+            complain(host, "a full queue starves");
         if (result == LABIAL_DONE || host->complaint)
             return host->complaint ? -1 : 0;
     }
-    fixture_complain(host, "there are more frames than were told of");
+    complain(host, "there are more frames than were told of");
     return -1;
 }
 
@@ -233,7 +234,7 @@ int fixture_run(fixture_host_t *host, const labial_model_t *model, const fixture
                 fixture_feed_t feed)
 {
     if (fixture_open(host, &model, 1) != LABIAL_OK) {
-        fixture_complain(host, "labial_init() refused the model");
+        complain(host, "labial_init() refused the model");
         return -1;
     }
     return fixture_play(host, input, count, feed);
@@ -246,16 +247,4 @@ long fixture_difference(const fixture_recorder_t *a, const fixture_recorder_t *b
         if (memcmp(a->frames[i], b->frames[i], sizeof a->frames[i]) != 0)
             return (long)i;
     return a->count == b->count ? -1 : (long)i;
-}
-
-int fixture_step(const fixture_recorder_t *recorder, size_t frame)
-{
-    int largest = 0;
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-        const int change = recorder->frames[frame][c] - recorder->frames[frame - 1][c];
-        const int size = change < 0 ? -change : change;
-        if (size > largest)
-            largest = size;
-    }
-    return largest;
 }

@@ -83,16 +83,10 @@ void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, con
                        const uint16_t *contacts, unsigned bit, const int32_t *gain, size_t count, const size_t *start,
                        double *motion);
 
-/* Where the way back to a stream's frames `first` .. `first` + `count` - 1 begins, counted from `first`. */
-void oracle_starts(const labial_model_t *model, unsigned channel, size_t first, size_t count, size_t *start);
-
 /* ---- FAP 17 of the corners (lib/protrusion.h) ---- */
 
 /* How many channels a model's tables have. */
 unsigned oracle_channels(const labial_model_t *model);
-
-/* The frame that the motion of a model's channels makes, in place, Q4 FAP. */
-void oracle_complete(const labial_model_t *model, double motion[LABIAL_CHANNELS]);
 
 /* ---- A whole stream ---- */
 

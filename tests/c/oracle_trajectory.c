@@ -92,7 +92,8 @@ void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, con
     free(e);
 }
 
-void oracle_starts(const labial_model_t *model, unsigned channel, size_t first, size_t count, size_t *start)
+/* Where the way back to a stream's frames `first` .. `first` + `count` - 1 begins, counted from `first`. */
+static void starts(const labial_model_t *model, unsigned channel, size_t first, size_t count, size_t *start)
 {
     const size_t stride = model->search_stride, last = first + count - 1;
     for (size_t t = 0; t < count; t++) {
@@ -112,7 +113,8 @@ unsigned oracle_channels(const labial_model_t *model)
     return model->protrusion ? 12 : 13;
 }
 
-void oracle_complete(const labial_model_t *model, double motion[LABIAL_CHANNELS])
+/* The frame that the motion of a model's channels makes, in place, Q4 FAP. */
+static void complete(const labial_model_t *model, double motion[LABIAL_CHANNELS])
 {
     const labial_protrusion_t *table = model->protrusion;
     if (!table)
@@ -182,13 +184,13 @@ static void solve(const stream_t *stream, size_t first, size_t count, double (*m
             targets[t] = stream->targets[first + t][c];
             gain[t] = gain_at(stream, c, first + t);
         }
-        oracle_starts(model, c, first, count, start);
+        starts(model, c, first, count, start);
         oracle_trajectory(&model->channels[c], path, targets, stream->contacts + first, c, gain, count, start, m);
         for (size_t t = 0; t < count; t++)
             motion[first + t][c] = limited(m[t]);
     }
     for (size_t t = 0; t < count; t++)
-        oracle_complete(model, motion[first + t]);
+        complete(model, motion[first + t]);
     free(path);
     free(targets);
     free(start);

@@ -1,5 +1,5 @@
 /*
- * test_stream.c - what a stream delivers: the same frames however it is fed and wherever it lies, and sane motion.
+ * test_stream.c - what a stream delivers: the same frames however it is fed and wherever it lies.
  *
  * The host of the fixture checks on every tick that the callback comes once per LABIAL_OK, that frames are numbered
  * without a gap, and that waiting, starving and being done are told apart (fixture_host.c).

@@ -1,5 +1,6 @@
 /*
- * test_stream_cancel.c - cancelling eases to the neutral face; a stream that is over goes on after a restart.
+ * test_stream_cancel.c - cancelling eases to the neutral face; a stream that is over goes on after a restart. What
+ * it then delivers, test_stream_steps.c has.
  */
 #include "suite.h"
 
@@ -7,7 +8,6 @@
 #include <string.h>
 
 #include "fixture.h"
-
 
 static fixture_model_t rich;
 static fixture_phoneme_t input[80];

@@ -152,51 +152,31 @@ TEST(a_failed_init_makes_the_stream_unusable)
     uint8_t *bytes = (uint8_t *)workspace;
     fixture_recorder_t recorder = { 0 };
     assert_true(workspace && stream);
-    for (unsigned i = 0; i < 10; i++) {
-        int got = 1, wanted = 1;
+    const struct {
+        const labial_model_t *model;
+        void *workspace;
+        uint32_t size;
+        labial_frame_fn callback;
+        int wanted;
+    } calls[] = {
+        { NULL, workspace, size, fixture_record, LABIAL_ERROR_NULL },
+        { &plain.model, NULL, size, fixture_record, LABIAL_ERROR_NULL },
+        { &plain.model, workspace, size, NULL, LABIAL_ERROR_NULL },
+        { &plain.model, workspace, size - 1, fixture_record, LABIAL_ERROR_WORKSPACE }, /* one byte short */
+        { &plain.model, workspace, 0, fixture_record, LABIAL_ERROR_WORKSPACE },
+        { &rich.model, workspace, size, fixture_record, LABIAL_ERROR_WORKSPACE },  /* enough for a stride of one, */
+        { &slow.model, workspace, size, fixture_record, LABIAL_ERROR_WORKSPACE },  /* not of two or three */
+        { &plain.model, bytes + 1, size, fixture_record, LABIAL_ERROR_WORKSPACE }, /* misaligned */
+        { &plain.model, bytes + 2, size, fixture_record, LABIAL_ERROR_WORKSPACE },
+        { &older.model, workspace, size, fixture_record, LABIAL_ERROR_VERSION },
+    };
+    for (unsigned i = 0; i < sizeof calls / sizeof calls[0]; i++) {
         assert_int_equal(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_OK);
         assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_OK);
-        switch (i) {
-        case 0: /* null pointers */
-            wanted = LABIAL_ERROR_NULL;
-            got = labial_init(stream, NULL, workspace, size, fixture_record, &recorder);
-            break;
-        case 1:
-            wanted = LABIAL_ERROR_NULL;
-            got = labial_init(stream, &plain.model, NULL, size, fixture_record, &recorder);
-            break;
-        case 2:
-            wanted = LABIAL_ERROR_NULL;
-            got = labial_init(stream, &plain.model, workspace, size, NULL, &recorder);
-            break;
-        case 3: /* one byte short */
-            wanted = LABIAL_ERROR_WORKSPACE;
-            got = labial_init(stream, &plain.model, workspace, size - 1, fixture_record, &recorder);
-            break;
-        case 4:
-            wanted = LABIAL_ERROR_WORKSPACE;
-            got = labial_init(stream, &plain.model, workspace, 0, fixture_record, &recorder);
-            break;
-        case 5: /* enough for a stride of one, not of two or three */
-            wanted = LABIAL_ERROR_WORKSPACE;
-            got = labial_init(stream, &rich.model, workspace, size, fixture_record, &recorder);
-            break;
-        case 6:
-            wanted = LABIAL_ERROR_WORKSPACE;
-            got = labial_init(stream, &slow.model, workspace, size, fixture_record, &recorder);
-            break;
-        case 7: /* misaligned */
-        case 8:
-            wanted = LABIAL_ERROR_WORKSPACE;
-            got = labial_init(stream, &plain.model, bytes + (i - 6), size, fixture_record, &recorder);
-            break;
-        default:
-            wanted = LABIAL_ERROR_VERSION;
-            got = labial_init(stream, &older.model, workspace, size, fixture_record, &recorder);
-            break;
-        }
-        if (got != wanted)
-            fail_msg("case %u: %d, not %d", i, got, wanted);
+        const int got =
+            labial_init(stream, calls[i].model, calls[i].workspace, calls[i].size, calls[i].callback, &recorder);
+        if (got != calls[i].wanted)
+            fail_msg("case %u: %d, not %d", i, got, calls[i].wanted);
         check_refuses(stream, LABIAL_ERROR_STATE);
     }
     assert_int_equal(labial_init(NULL, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_ERROR_NULL);

@@ -1,5 +1,5 @@
 /*
- * test_stream_switch.c - speech and laughter in one stream: no jump where they meet, exact time, room made for a third.
+ * test_stream_switch.c - speech and laughter in one stream: exact time, room made for a third.
  */
 #include "suite.h"
 
