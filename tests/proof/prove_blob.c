@@ -20,7 +20,6 @@ static int is_there(const void *table)
 
 int labial_model_check(const labial_model_t *model)
 {
-    unsigned k;
     int sum = model->format + model->frames_per_second + model->component_count + model->phoneme_count +
               model->class_count + model->state_count + model->predecessors + model->search_stride + model->silence +
               model->mixture_mean + model->kernel_taps + model->kernel_stride + model->kernel_behind +
@@ -29,7 +28,7 @@ int labial_model_check(const labial_model_t *model)
            is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) +
            is_there(model->last_kernels) + is_there(model->pair_keys) + is_there(model->pairs) +
            is_there(model->floors) + is_there(model->contacts) + is_there(model->protrusion);
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];
         sum += channel->centre + channel->shape_scale + channel->slope_scale + channel->kernel_scale +
                channel->pair_scale + channel->motion_scale[0] + channel->motion_scale[1] + channel->contact_weight;
@@ -50,12 +49,11 @@ int main(void)
 {
     static const size_t sizes[] = { 0, 11, 12, 31, 32, 33, 35, 36, 600, 4096, 65536, ROOM };
     labial_blob_t blob;
-    unsigned i;
     FILL(bytes);
     labial_model_load(0, bytes, sizeof bytes);
     labial_model_load(&blob, 0, sizeof bytes);
     load(bytes, Frama_C_size_t_interval(0, ROOM));
-    for (i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
+    for (unsigned i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
         load(bytes + ROOM - sizes[i], sizes[i]);
     return 0;
 }

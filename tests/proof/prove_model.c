@@ -22,7 +22,6 @@ static labial_channel_t channels[LABIAL_CHANNELS];
 int main(void)
 {
     labial_model_t model;
-    unsigned i;
     FILL(phonemes);
     FILL(components);
     FILL(pair_keys);
@@ -32,7 +31,7 @@ int main(void)
     FILL(states);
     FILL(transitions);
     FILL(channels);
-    for (i = 0; i < LABIAL_CHANNELS; i++) {
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
         channels[i].emissions = OR_NULL(const labial_emission_t *, emissions);
         channels[i].states = OR_NULL(const labial_state_t *, states);
         channels[i].transitions = OR_NULL(const uint16_t *, transitions);

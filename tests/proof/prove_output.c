@@ -15,8 +15,7 @@ uint32_t labial_quotient(uint32_t a, uint32_t b)
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     int16_t *sum = (int16_t *)user;
-    unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
         *sum = (int16_t)(*sum ^ faps[k] ^ (int16_t)frame);
 }
 
@@ -60,13 +59,12 @@ static void ease_one(int least, int most)
 
 int main(void)
 {
-    int stride, i;
-    for (stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++)
-        for (i = 0; i <= 8; i++)
+    for (int stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++)
+        for (int i = 0; i <= 8; i++)
             deliver_one(stride, i);
     /* In groups so small that EVA, which sees a step and a number of frames apart, sees how far their quotient goes. */
     /*@ loop unroll 40; */
-    for (i = 1; i <= 1000; i = i + i / 4 + 1)
+    for (int i = 1; i <= 1000; i = i + i / 4 + 1)
         ease_one(i, i + i / 4);
     return 0;
 }

@@ -16,10 +16,9 @@ int main(void)
 {
     labial_rig_t rig;
     labial_rig_delay_t delay;
-    unsigned i;
     int16_t faps[LABIAL_CHANNELS];
     FILL(curve);
-    for (i = 0; i < OUTPUTS; i++) {
+    for (unsigned i = 0; i < OUTPUTS; i++) {
         Frama_C_make_unknown((char *)&outputs[i], offsetof(labial_rig_output_t, curve));
         outputs[i].curve = OR_NULL(const labial_rig_curve_t *, &curve);
     }
