@@ -13,6 +13,7 @@ from typing import Dict
 #: The help of each command, in its order. The module of NAME is ``labial.commands.NAME``, with ``_`` for ``-``.
 COMMANDS: Dict[str, str] = {
     "train": "train a model on a corpus",
+    "train-words": "train how words sound on a pronouncing dictionary",
     "synth": "synthesise frames with the float64 reference",
     "hear": "make frames of speech from its sound alone",
     "timings": "turn phoneme timings of any format into a .lab",

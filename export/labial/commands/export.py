@@ -1,4 +1,4 @@
-"""``labial export``: a model as C tables."""
+"""``labial export``: a model, or tables of words, as C tables."""
 
 from __future__ import annotations
 
@@ -54,11 +54,14 @@ def run(options: argparse.Namespace) -> int:
     from labial.hearing.model import is_hearing
     from labial.tables import emit
     from labial.tables.phones import drawn_streams
+    from labial.words.tables import is_tables
 
     check_name(options.name)
     check_folder(options.output)
     if is_hearing(options.model):
         return _export_hearing(options)
+    if is_tables(options.model):
+        return _export_words(options)
     model, tables = exported(options, options.name)
     streams = drawn_streams(model)
     measured = loss.measure(model, tables, streams)
@@ -83,4 +86,19 @@ def _export_hearing(options: argparse.Namespace) -> int:
         print(path)
     print(f"flash {emit.flash_bytes(tables)} B, workspace {emit.workspace_bytes(tables)} B, "
           f"a frame is known {20 * (tables.ahead + SMOOTHING + 1)} ms after its begin")
+    return 0
+
+
+def _export_words(options: argparse.Namespace) -> int:
+    """Writes tables of words, which `labial train-words` made, and prints their memory."""
+    from labial.words import emit
+    from labial.words.packing import pack
+    from labial.words.tables import load
+
+    if options.blob or options.amplitude != 1.0 or options.predecessors != PREDECESSORS:
+        raise LabialError(f"{options.model}: tables of words; --blob, --amplitude and --predecessors are for models")
+    packed = pack(load(options.model))
+    for path in emit.write(packed, options.name, options.output):
+        print(path)
+    print(f"{packed.size} bytes: trees {len(packed.trees)}, exceptions {len(packed.patches) + 2 * len(packed.buckets)}")
     return 0

@@ -1,0 +1,101 @@
+"""Reads the CMU Pronouncing Dictionary.
+
+A line is ``word PHONE PHONE ...``, with stress digits behind vowels; further pronunciations of a word are ``word(2)``
+and so on; ``#`` and ``;;;`` begin comments. Words with characters other than letters and the apostrophe, and words of
+more than `LONGEST` letters, are left out: the trees have no letters for them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, List, Sequence, Tuple, Union
+
+from labial.corpus.phonesets import ARPABET
+from labial.errors import DataError
+from labial.files.grammar import lines_of, read_text
+
+PathLike = Union[str, os.PathLike[str]]
+
+#: A letter's number is its place here; 0 stands for "outside the word".
+LETTERS = "\0abcdefghijklmnopqrstuvwxyz'"
+#: Most letters of a word: the length of the decoder's memory (LABIAL_WORDS_LETTERS of labial/words.h).
+LONGEST = 32
+#: Phonemes by number: silence, then the 39 of ARPABET in the order of the alphabet, as in the bundled model.
+PHONEMES: Tuple[str, ...] = ("SIL", *ARPABET)
+
+#: The list of common words that comes with this package.
+COMMON = Path(__file__).with_name("common.txt")
+
+_WORD = re.compile(r"[a-z']+")
+_VARIANT = re.compile(r"\(\d+\)$")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One pronunciation of a word."""
+
+    word: str
+    letters: Tuple[int, ...]  #: places in `LETTERS`
+    phonemes: Tuple[int, ...]  #: places in `PHONEMES`
+    variant: int  #: 0 for the word's first pronunciation
+
+    @property
+    def held_out(self) -> bool:
+        """Whether the word belongs to the 15 % that measure how well unknown words are read."""
+        return zlib.crc32(self.word.encode("ascii")) % 20 < 3
+
+
+def read_dictionary(path: PathLike) -> List[Entry]:
+    """The entries of a dictionary file, in its order; repeated pronunciations of a word are dropped.
+
+    Raises DataError, with the line, for a phoneme that ARPABET lacks, a word without phonemes, and a file without
+    words.
+    """
+    numbers = {name: number for number, name in enumerate(PHONEMES)}
+    found: Dict[str, List[Tuple[int, ...]]] = {}
+    entries: List[Entry] = []
+    for line, text in enumerate(lines_of(read_text(path)), 1):
+        fields = text.split("#")[0].split()
+        if not fields or text.startswith(";;;"):
+            continue
+        word = _VARIANT.sub("", fields[0]).lower()
+        try:
+            phonemes = tuple(numbers[name.rstrip("012")] for name in fields[1:])
+        except KeyError as error:
+            raise DataError(path, line, f"{error.args[0]!r} is not a phoneme of ARPABET") from None
+        if not phonemes:
+            raise DataError(path, line, f"{word!r:.40} has no phonemes")
+        if not _WORD.fullmatch(word) or len(word) > LONGEST:
+            continue
+        known = found.setdefault(word, [])
+        if phonemes not in known:
+            entries.append(Entry(word, letters_of(word), phonemes, len(known)))
+            known.append(phonemes)
+    if not entries:
+        raise DataError(path, None, "no word of the letters a to z")
+    return entries
+
+
+def letters_of(word: str) -> Tuple[int, ...]:
+    """The numbers of a word's letters. Raises KeyError for others than a to z and the apostrophe."""
+    return tuple(_NUMBERS[character] for character in word)
+
+
+_NUMBERS = {character: number for number, character in enumerate(LETTERS) if number}
+
+
+def read_common(path: PathLike) -> List[str]:
+    """The words of a list, one per line, the most frequent first; lines that begin with # are comments."""
+    return [line.strip() for line in lines_of(read_text(path)) if line.strip() and not line.startswith("#")]
+
+
+def pronunciations(entries: Sequence[Entry]) -> Dict[str, List[Tuple[int, ...]]]:
+    """All pronunciations of each word."""
+    found: Dict[str, List[Tuple[int, ...]]] = {}
+    for entry in entries:
+        found.setdefault(entry.word, []).append(entry.phonemes)
+    return found

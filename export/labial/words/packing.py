@@ -1,0 +1,132 @@
+"""Packs tables of words into the bytes that ``include/labial/words.h`` describes and ``lib/words.c`` reads.
+
+Node
+    Two bytes, the higher first: ``question << 7 | kind << 5 | five``. Kind 0: both answers lead to leaves; `five` is
+    the one for yes, the next byte the one for no. Kind 1: yes leads to the leaf `five`, the node for no follows. Kind 2:
+    no leads to the leaf `five`, the node for yes follows. Kind 3: both lead to nodes; `five` and the next byte (the
+    lower 8 bits) are the length of the part for yes, which follows, and then that for no. A leaf is a place in the
+    letter's own list of labels, the most frequent first.
+
+Exceptions
+    A word's hash is FNV-1a over the numbers of its letters, times `multiplier`, modulo 2^32. Its first byte is the
+    bucket; a bucket's entries are ordered by the next two bytes, which they begin with. Patches follow, two bytes each:
+    ``last << 15 | label << 5 | letter``. The spelling is not stored. The multiplier is chosen so that no other word of the
+    dictionary has the first 24 bits of an exception's hash.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import List, Sequence, Tuple
+
+from labial.errors import ModelError
+from labial.words.alignment import phonemes_of
+from labial.words.dictionary import LETTERS, LONGEST
+from labial.words.hashing import hash_of
+from labial.words.questions import LABELS_MOST, ends_in_vowel
+from labial.words.tables import WordTables
+
+#: Most labels of a letter; most bytes of a part for yes, of all trees and of all exceptions.
+LETTER_LABELS, _PART, _BYTES = 32, (1 << 13) - 1, 65535
+#: Marks beside a label's phonemes: it ends in a vowel.
+VOWEL = 0x80
+
+
+@dataclass(frozen=True)
+class PackedWords:
+    """The tables as C has them; every number is a byte unless stated otherwise."""
+
+    trees: bytes
+    roots: Tuple[int, ...]  #: 27 places in `trees`, 16 bits
+    bases: Tuple[int, ...]  #: 27 places in `leaves`: where a letter's labels begin, 16 bits
+    leaves: Tuple[int, ...]  #: the labels of each letter
+    labels: Tuple[Tuple[int, int], ...]  #: first and second phoneme of each label, 0 for none; `VOWEL` in the second
+    multiplier: int  #: 32 bits
+    buckets: Tuple[int, ...]  #: 257 places in `patches`, 16 bits
+    patches: bytes  #: entries of all buckets
+
+    @property
+    def size(self) -> int:
+        """Bytes in flash."""
+        return (len(self.trees) + 2 * len(self.roots) + 2 * len(self.bases) + len(self.leaves) + 2 * len(self.labels)
+                + 2 * len(self.buckets) + len(self.patches))
+
+
+def pack(tables: WordTables) -> PackedWords:
+    """Packs tables. Raises ModelError where a number exceeds the format's limits."""
+    trees = bytearray()
+    roots: List[int] = []
+    bases: List[int] = []
+    leaves: List[int] = []
+    for letter in range(1, len(LETTERS)):
+        question, _, _, label = tables.nodes_of(letter)
+        counts = Counter(value for node, value in enumerate(label) if question[node] < 0)
+        own = sorted(counts, key=lambda value: (-counts[value], value))
+        if len(own) > LETTER_LABELS:
+            raise ModelError(f"the letter {LETTERS[letter]} has {len(own)} labels, and there is room for 32")
+        roots.append(len(trees))
+        bases.append(len(leaves))
+        trees += _tree(tables, letter, own)
+        leaves += own
+    labels = tuple(_label(sound) for sound in tables.sounds)
+    buckets, patches = _exceptions(tables)
+    for what, size in (("the trees have", len(trees)), ("the exceptions have", len(patches))):
+        if size > _BYTES:
+            raise ModelError(f"{what} {size} bytes, and there is room for {_BYTES}")
+    return PackedWords(bytes(trees), tuple(roots), tuple(bases), tuple(leaves), labels, tables.multiplier,
+                       buckets, patches)
+
+
+def _tree(tables: WordTables, letter: int, own: Sequence[int]) -> bytes:
+    question, yes, no, label = tables.nodes_of(letter)
+
+    def leaf(node: int) -> int:
+        return own.index(label[node])
+
+    def part(node: int) -> bytes:
+        ask, if_yes, if_no = question[node], yes[node], no[node]
+        if question[if_yes] < 0 and question[if_no] < 0:
+            return _node(ask, 0, leaf(if_yes)) + bytes([leaf(if_no)])
+        if question[if_yes] < 0:
+            return _node(ask, 1, leaf(if_yes)) + part(if_no)
+        if question[if_no] < 0:
+            return _node(ask, 2, leaf(if_no)) + part(if_yes)
+        first = part(if_yes)
+        if len(first) > _PART:
+            raise ModelError(f"a part of the tree of {LETTERS[letter]} has {len(first)} bytes, not up to {_PART}")
+        return _node(ask, 3, len(first) >> 8) + bytes([len(first) & 255]) + first + part(if_no)
+
+    if question[0] < 0:  # a letter that always sounds the same: any question will do
+        return _node(0, 0, leaf(0)) + bytes([leaf(0)])
+    return part(0)
+
+
+def _node(question: int, kind: int, five: int) -> bytes:
+    return (question << 7 | kind << 5 | five).to_bytes(2, "big")
+
+
+def _label(sound: int) -> Tuple[int, int]:
+    first, second = (*phonemes_of(sound), 0, 0)[:2]
+    return first, second | (VOWEL if ends_in_vowel(sound) else 0)
+
+
+def _exceptions(tables: WordTables) -> Tuple[Tuple[int, ...], bytes]:
+    """The places of the 256 buckets and their end, and the bytes of all entries."""
+    found: List[Tuple[int, bytes]] = []
+    for word, patches in tables.exceptions.items():
+        entry = bytearray()
+        for number, (place, label) in enumerate(patches, 1):
+            entry += (((number == len(patches)) << 15) | label << 5 | place).to_bytes(2, "big")
+        found.append(((hash_of(word) * tables.multiplier & 0xFFFFFFFF) >> 8, bytes(entry)))
+    buckets, data = [], bytearray()
+    found.sort()
+    for bucket in range(256):
+        buckets.append(len(data))
+        for key, changes in found:
+            if key >> 16 == bucket:
+                data += (key & 0xFFFF).to_bytes(2, "big") + changes
+    return (*buckets, len(data)), bytes(data)
+
+
+assert LONGEST <= 32 and LABELS_MOST <= 64

@@ -1,0 +1,167 @@
+"""The trained tables of a language's words, and the .npz file in which they are stored."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Dict, List, Sequence, Tuple, Union
+
+import numpy as np
+
+from labial.errors import ModelError
+from labial.files.arrays import ArrayError, array, read_zip
+from labial.files.outputs import writing
+from labial.words.alignment import SOUNDS, phonemes_of
+from labial.words.dictionary import LETTERS, LONGEST, PHONEMES
+from labial.words.questions import LABELS_MOST, QUESTIONS
+
+PathLike = Union[str, os.PathLike[str]]
+
+#: Version of the file's layout, and most bytes of its content.
+FORMAT = 1
+_LARGEST = 16_000_000
+_ARRAYS = ("format", "sounds", "first", "question", "yes", "no", "label", "multiplier", "patch_count", "patch_letter",
+           "patch_label")
+
+Nodes = Tuple[Sequence[int], Sequence[int], Sequence[int], Sequence[int]]
+
+
+@dataclass(frozen=True)
+class WordTables:
+    """Trees and exceptions. The trees of all letters are stored one after the other, each with its root first."""
+
+    sounds: Tuple[int, ...]  #: L sounds (:mod:`labial.words.alignment`) by label; label 0 is silent
+    first: np.ndarray  #: (28,) the root of each letter's tree, and the number of nodes; letter 1 comes first
+    question: np.ndarray  #: (K,) a question, or -1 for a leaf
+    yes: np.ndarray  #: (K,) the node to go to, from the tree's root on
+    no: np.ndarray  #: (K,)
+    label: np.ndarray  #: (K,) of a leaf
+    exceptions: Dict[str, Tuple[Tuple[int, int], ...]]  #: word -> places of letters and the labels to give them
+    multiplier: int = 1  #: of the exceptions' hashes (:mod:`labial.words.packing`), odd
+    attribution: str = ""  #: what redistribution must say
+    training: Dict[str, Any] = field(default_factory=dict)  #: options and figures of the training
+
+    def __post_init__(self) -> None:
+        _check(self)
+
+    @cached_property
+    def _nodes(self) -> List[Nodes]:
+        parts = [slice(begin, end) for begin, end in zip(self.first[:-1], self.first[1:])]
+        return [(self.question[part].tolist(), self.yes[part].tolist(), self.no[part].tolist(),
+                 self.label[part].tolist()) for part in parts]
+
+    def nodes_of(self, letter: int) -> Nodes:
+        """Questions, yes-nodes, no-nodes and labels of a letter's tree."""
+        return self._nodes[letter - 1]
+
+    @property
+    def leaves(self) -> int:
+        """Leaves of all trees."""
+        return int((self.question < 0).sum())
+
+
+def _expect(condition: bool, message: str) -> None:
+    if not condition:
+        raise ModelError(message)
+
+
+def _check(tables: WordTables) -> None:
+    """Raises ModelError unless every number is in range, every node's successors follow it within its tree, and
+    exceptions name letters of their words."""
+    labels, nodes = len(tables.sounds), len(tables.question)
+    _expect(1 <= labels <= LABELS_MOST and tables.sounds[0] == 0, f"there are {labels} labels, not 1 to {LABELS_MOST}")
+    valid = all(0 <= sound < SOUNDS and (not sound or 0 not in phonemes_of(sound)) for sound in tables.sounds)
+    _expect(valid and len(set(tables.sounds)) == labels, "a label's sound does not exist or is there twice")
+    columns = (tables.yes, tables.no, tables.label)
+    _expect(all(column.shape == (nodes,) for column in (tables.question, *columns)), "the trees' columns differ")
+    first = tables.first
+    _expect(first.shape == (len(LETTERS),) and first[0] == 0 and first[-1] == nodes
+            and bool((np.diff(first) > 0).all()), "the trees' roots are out of order")
+    _expect(bool(((tables.question >= -1) & (tables.question < QUESTIONS)).all()), "a question does not exist")
+    _expect(bool(((tables.label >= 0) & (tables.label < labels)).all()), "a node's label does not exist")
+    _expect(0 < tables.multiplier < 1 << 32 and tables.multiplier % 2 == 1, "the multiplier is not an odd number")
+    here = np.arange(nodes) - np.repeat(first[:-1], np.diff(first))
+    size = np.repeat(np.diff(first), np.diff(first))
+    inner = tables.question >= 0
+    for column in columns[:2]:
+        _expect(bool(((column > here) & (column < size))[inner].all()), "a node does not follow the one above it")
+    for word, patches in tables.exceptions.items():
+        known = word and len(word) <= LONGEST and all(character in LETTERS[1:] for character in word)
+        _expect(bool(known), f"the exception {word!r:.40} is not a word of a to z and apostrophes")
+        places = [place for place, _ in patches]
+        _expect(bool(places) and places == sorted(set(places)) and 0 <= places[0] and places[-1] < len(word)
+                and all(0 <= label < labels for _, label in patches), f"the exception {word!r} is out of range")
+
+
+def is_tables(path: PathLike) -> bool:
+    """Whether a file contains tables of words; False for other files, models among them."""
+    try:
+        return "words.npy" in read_zip(path, ["words.npy"], _LARGEST)
+    except (OSError, ArrayError):
+        return False
+
+
+def save(tables: WordTables, path: PathLike) -> None:
+    """Writes the tables as a compressed .npz; the same tables give the same bytes."""
+    patches = list(tables.exceptions.values())
+    about = json.dumps({"attribution": tables.attribution, "training": tables.training}, sort_keys=True)
+    content: Dict[str, np.ndarray] = {
+        "format": np.array([FORMAT]), "sounds": np.array(tables.sounds, dtype=np.uint16),
+        "first": tables.first.astype(np.uint16), "question": tables.question.astype(np.int16),
+        "yes": tables.yes.astype(np.uint16), "no": tables.no.astype(np.uint16), "label": tables.label.astype(np.uint8),
+        "multiplier": np.array([tables.multiplier], dtype=np.uint32),
+        "patch_count": np.array([len(item) for item in patches], dtype=np.uint8),
+        "patch_letter": np.array([place for item in patches for place, _ in item], dtype=np.uint8),
+        "patch_label": np.array([label for item in patches for _, label in item], dtype=np.uint8),
+        "words": np.frombuffer("\n".join(tables.exceptions).encode("ascii"), dtype=np.uint8),
+        "about": np.frombuffer(about.encode("utf-8"), dtype=np.uint8),
+    }  # fmt: skip
+    with writing(path) as file:
+        np.savez_compressed(file, **content)  # type: ignore[arg-type]
+
+
+def load(path: PathLike) -> WordTables:
+    """Reads tables. Raises ModelError, with the file, for any other content."""
+    try:
+        return _load(path)
+    except ModelError as error:
+        raise ModelError(f"{os.fspath(path)}: {error}") from None
+
+
+def _load(path: PathLike) -> WordTables:
+    names = (*_ARRAYS, "words", "about")
+    try:
+        found = read_zip(path, [f"{name}.npy" for name in names], _LARGEST)
+        missing = [name for name in names if f"{name}.npy" not in found]
+        _expect(not missing, f"not tables of words: no array {', '.join(missing)}")
+        content = {name: array(name, found[f"{name}.npy"]) for name in names}
+        about = json.loads(content["about"].astype(np.uint8).tobytes().decode("utf-8"))
+        words = content["words"].astype(np.uint8).tobytes().decode("ascii").split("\n")
+    except OSError as error:
+        raise ModelError(str(error.strerror or error)) from None
+    except (ArrayError, ValueError, RecursionError) as error:
+        raise ModelError(str(error)) from None
+    numbers = {name: content[name].astype(np.int64) for name in _ARRAYS}
+    _expect(all(column.ndim == 1 for column in numbers.values()), "an array has more than one axis")
+    _expect(numbers["format"].tolist() == [FORMAT], f"not format {FORMAT} of tables of words: train them again")
+    _expect(isinstance(about, dict) and isinstance(about.get("attribution"), str)
+            and isinstance(about.get("training"), dict), "what it says of itself is damaged")
+    _expect(len(numbers["multiplier"]) == 1, "there is not one multiplier")
+    counts = numbers["patch_count"]
+    words = words if words != [""] else []
+    total = int(counts.sum())
+    _expect(len(set(words)) == len(words) == len(counts) and bool((counts >= 0).all())
+            and total == len(numbers["patch_letter"]) == len(numbers["patch_label"]), "exceptions and patches differ")
+    pairs = list(zip(numbers["patch_letter"].tolist(), numbers["patch_label"].tolist()))
+    ends = np.cumsum(counts).tolist()
+    exceptions = {word: tuple(pairs[end - count : end]) for word, count, end in zip(words, counts.tolist(), ends)}
+    return WordTables(tuple(numbers["sounds"].tolist()), numbers["first"], numbers["question"], numbers["yes"],
+                      numbers["no"], numbers["label"], exceptions, int(numbers["multiplier"][0]), about["attribution"],
+                      about["training"])
+
+
+def names(numbers: Sequence[int]) -> str:
+    """Phonemes as text."""
+    return " ".join(PHONEMES[number] for number in numbers)

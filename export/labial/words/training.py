@@ -1,0 +1,146 @@
+"""From a dictionary to tables: alignment, trees, exceptions, and how well unknown words are read."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from labial.corpus.phonesets import SPEECH
+from labial.errors import ModelError
+from labial.words import decoder
+from labial.words.alignment import align, learn
+from labial.words.dictionary import LETTERS, Entry, pronunciations
+from labial.words.hashing import multiplier_for
+from labial.words.questions import LABELS_MOST, Asked, features
+from labial.words.tables import WordTables
+from labial.words.trees import FIRST, OTHER, Samples, grow, prune
+
+#: Leaves of all trees, and exceptions, of the bundled tables.
+LEAVES, EXCEPTIONS = 13_000, 1_000
+
+#: What whoever passes the tables on must say; :mod:`labial.words.notice` has the whole notice.
+ATTRIBUTION = ("Trained on the CMU Pronouncing Dictionary. Copyright (C) 1993-2015 Carnegie Mellon University. All "
+               "rights reserved.")
+
+
+Report = Callable[[str], None]
+Sounds = Sequence[Optional[Tuple[int, ...]]]
+
+
+def _silent(_: str) -> None:
+    """Reports to nobody."""
+
+
+def train(entries: Sequence[Entry], common: Sequence[str], *, leaves: int = LEAVES, exceptions: int = EXCEPTIONS,
+          report: Optional[Report] = None) -> WordTables:
+    """The tables of a dictionary; of the `common` words, in their order, the first `exceptions` that the trees read
+    wrongly become exceptions. `report` is told what is being done."""
+    report = report or _silent
+    tables, aligned = _trees(entries, leaves, report)
+    found = _exceptions(tables, entries, aligned, common, exceptions)
+    report(f"{tables.leaves} leaves, {len(tables.sounds)} labels, {len(found)} exceptions")
+    about: Dict[str, Any] = {"entries": len(entries), "words": sum(entry.variant == 0 for entry in entries),
+                             "not_aligned": sum(item is None for item in aligned), "leaves": leaves,
+                             "exceptions": exceptions}  # fmt: skip
+    multiplier = multiplier_for(list(found), (entry.word for entry in entries))
+    return WordTables(tables.sounds, tables.first, tables.question, tables.yes, tables.no, tables.label, found,
+                      multiplier, ATTRIBUTION, about)
+
+
+def held_out(entries: Sequence[Entry], *, leaves: int = LEAVES, report: Optional[Report] = None) -> Dict[str, float]:
+    """How well trees that were trained on 85 % of the words read the others, without exceptions (:func:`score`)."""
+    tables, _ = _trees([entry for entry in entries if not entry.held_out], leaves, report or _silent)
+    return score(tables, pronunciations([entry for entry in entries if entry.held_out]))
+
+
+def score(tables: WordTables, words: Dict[str, List[Tuple[int, ...]]]) -> Dict[str, float]:
+    """Per cent of phonemes, viseme classes and words that are read as one of the word's pronunciations says: 100 less
+    the insertions, deletions and substitutions against the nearest pronunciation, per phoneme of that."""
+    classes = SPEECH.viseme_class
+    size = wrong = wrong_classes = wrong_words = 0
+    for word, known in words.items():
+        got = decoder.phonemes(tables, word)
+        errors, length = min((_distance(got, other), len(other)) for other in known)
+        seen = [classes[p] for p in got]
+        size += length
+        wrong += errors
+        wrong_words += errors > 0
+        wrong_classes += min(_distance(seen, [classes[p] for p in other]) for other in known)
+    return {"words": float(len(words)), "phonemes": 100 - 100 * wrong / size,
+            "viseme classes": 100 - 100 * wrong_classes / size,
+            "whole words": 100 - 100 * wrong_words / len(words)}  # fmt: skip
+
+
+def _distance(a: Sequence[int], b: Sequence[int]) -> int:
+    """The least number of insertions, deletions and substitutions from a to b."""
+    row = list(range(len(b) + 1))
+    for i, item in enumerate(a, 1):
+        corner, row[0] = row[0], i
+        for j, other in enumerate(b, 1):
+            corner, row[j] = row[j], min(corner + (item != other), row[j] + 1, row[j - 1] + 1)
+    return row[-1]
+
+
+def _trees(entries: Sequence[Entry], leaves: int, report: Report) -> Tuple[WordTables, Sounds]:
+    """Tables without exceptions, and the alignment of each entry."""
+    report(f"aligning {len(entries)} pronunciations")
+    aligned = align(entries, learn(entries))
+    sounds, labels = _labels(aligned)
+    asked = Asked(sounds)
+    report(f"{len(sounds)} labels; growing trees")
+    grown = [grow(samples, asked) for samples in _samples(entries, aligned, labels)]
+    pruned = prune(grown, leaves)
+    first = np.cumsum([0, *(len(tree.question) for tree in pruned)])
+    question, yes, no, label = (np.concatenate([getattr(tree, name) for tree in pruned])
+                                for name in ("question", "yes", "no", "label"))
+    return WordTables(sounds, first, question, yes, no, label, {}), aligned
+
+
+def _labels(aligned: Sounds) -> Tuple[Tuple[int, ...], Dict[int, int]]:
+    """The sounds that occur, nothing first and then by number, and the label of each."""
+    used = sorted({0, *(sound for item in aligned if item for sound in item)})
+    if len(used) > LABELS_MOST:
+        raise ModelError(f"the letters have {len(used)} sounds, and there is room for {LABELS_MOST}")
+    return tuple(used), {sound: label for label, sound in enumerate(used)}
+
+
+def _samples(entries: Sequence[Entry], aligned: Sounds, labels: Dict[int, int]) -> List[Samples]:
+    """The samples of each letter; raises ModelError if one does not occur."""
+    rows: List[List[List[int]]] = [[] for _ in LETTERS]
+    chosen: List[List[int]] = [[] for _ in LETTERS]
+    weights: List[List[int]] = [[] for _ in LETTERS]
+    for entry, sounds in zip(entries, aligned):
+        if sounds is None:
+            continue
+        given = [labels[sound] for sound in sounds]
+        for place, letter in enumerate(entry.letters):
+            rows[letter].append(features(entry.letters, place, given))
+            chosen[letter].append(given[place])
+            weights[letter].append(OTHER if entry.variant else FIRST)
+    missing = [LETTERS[letter] for letter in range(1, len(LETTERS)) if not rows[letter]]
+    if missing:
+        raise ModelError(f"no word of the dictionary has the letter {missing[0]}")
+    return [Samples(np.array(rows[letter], dtype=np.uint8), np.array(chosen[letter]), np.array(weights[letter]))
+            for letter in range(1, len(LETTERS))]
+
+
+def _exceptions(tables: WordTables, entries: Sequence[Entry], aligned: Sounds, common: Sequence[str],
+                most: int) -> Dict[str, Tuple[Tuple[int, int], ...]]:
+    """The first `most` words of `common` that are read as none of their pronunciations, with the labels that make them
+    the first one that is aligned."""
+    label = {sound: number for number, sound in enumerate(tables.sounds)}
+    given: Dict[str, Tuple[int, ...]] = {}
+    for entry, sounds in zip(entries, aligned):
+        if sounds is not None and entry.word not in given:
+            given[entry.word] = tuple(label[sound] for sound in sounds)
+    known = pronunciations(entries)
+    found: Dict[str, Tuple[Tuple[int, int], ...]] = {}
+    for word in dict.fromkeys(common):
+        if len(found) == most:
+            break
+        if word in given and decoder.phonemes(tables, word) not in known[word]:
+            read = decoder.labels_of(tables, word)
+            pairs = zip(read, given[word])
+            found[word] = tuple((place, right) for place, (wrong, right) in enumerate(pairs) if wrong != right)
+    return found
