@@ -9,7 +9,8 @@ set(labial_cmake "${CMAKE_INSTALL_LIBDIR}/cmake/labial")
 # ---- Libraries and headers -----------------------------------------------------------------------------------------
 
 set(labial_installed_models ${LABIAL_BUNDLED_MODELS} ${LABIAL_HEARING_MODELS})
-list(TRANSFORM labial_installed_models PREPEND labial_ OUTPUT_VARIABLE labial_model_targets)
+set(labial_tables ${labial_installed_models} ${LABIAL_WORDS})
+list(TRANSFORM labial_tables PREPEND labial_ OUTPUT_VARIABLE labial_model_targets)
 install(TARGETS labial EXPORT labial-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(TARGETS ${labial_model_targets} EXPORT labial-targets
@@ -18,6 +19,9 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/labial" DESTINATION "${CMAKE_IN
   FILES_MATCHING PATTERN "*.h")
 foreach(model IN LISTS labial_installed_models)
   install(FILES "${PROJECT_SOURCE_DIR}/lib/models/${model}.h" DESTINATION "${labial_models_include}")
+endforeach()
+foreach(words IN LISTS LABIAL_WORDS)
+  install(FILES "${PROJECT_SOURCE_DIR}/lib/words/${words}.h" DESTINATION "${labial_models_include}")
 endforeach()
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 if(TARGET labial-say)
@@ -68,6 +72,10 @@ endfunction()
 
 labial_pkg_config(labial "Lip motion from phonemes, on a fixed amount of memory" "" labial
   "-I\${includedir}${labial_pc_definitions}")
+foreach(words IN LISTS LABIAL_WORDS)
+  labial_pkg_config(labial_${words} "Labial's table of words ${words}" "labial = ${PROJECT_VERSION}" labial_${words}
+    "-I\${includedir}/labial/models")
+endforeach()
 foreach(model IN LISTS labial_installed_models)
   labial_pkg_config(labial_${model} "Labial's model ${model}" "labial = ${PROJECT_VERSION}" labial_${model}
     "-I\${includedir}/labial/models")

@@ -33,11 +33,12 @@ def _joined(source: Source, files: List[Path], title: str, above: List[Path]) ->
 
 
 def write(source: Source, folder: Path) -> None:
-    """Writes labial.h, labial.c, the models, which include nothing else of Labial, and the licence into `folder`."""
+    """Writes labial.h, labial.c, the models and words, which include nothing else of Labial, and the licence into
+    `folder`."""
     write_text(folder / "labial.h", _joined(source, source.public, "Labial's public headers", []))
     text = _joined(source, source.sources, "Labial's code", source.public)
     write_text(folder / "labial.c", '#include "labial.h"\n' + text)
-    for path in (path for model in source.models for path in model.files):
+    for path in [*(path for model in source.models for path in model.files), *source.words]:
         text = re.sub(r'^#include "labial/[^"]+"$', '#include "labial.h"', path.read_text("utf-8"), flags=re.MULTILINE)
         write_text(folder / path.name, text)
     write_text(folder / "LICENSE", source.license.read_text(encoding="utf-8"))

@@ -95,6 +95,8 @@ def write(source: Source, folder: Path) -> None:
     for model in source.models:
         for path in model.files:
             shutil.copyfile(path, src / path.name)
+    for path in source.words:
+        shutil.copyfile(path, src / path.name)
     shutil.copyfile(source.license, folder / "LICENSE")
     for name, text in (
         ("src/Labial.h", umbrella(source)),

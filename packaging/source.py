@@ -116,3 +116,4 @@ class Source:
         if not headers:
             raise PackError(f"{folder}: holds no exported model")
         self.models = [Model(path) for path in headers]
+        self.words = sorted((ROOT / "lib" / "words").glob("*.[ch]"))

@@ -18,7 +18,7 @@ MANIFESTS: Dict[str, Tuple[str, ...]] = {
 
 def write(source: Source, folder: Path, kind: str) -> None:
     """Copies the library, the models and the manifests of `kind` into `folder`, each to its own place."""
-    library = [*source.public, *source.private, *source.sources, source.license]
+    library = [*source.public, *source.private, *source.sources, *source.words, source.license]
     targets = {path: path.relative_to(ROOT) for path in [*library, *(ROOT / name for name in MANIFESTS[kind])]}
     for model in source.models:
         targets.update((path, Path("lib", "models", path.name)) for path in model.files)

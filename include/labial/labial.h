@@ -65,13 +65,14 @@ extern "C" {
     X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                      \
     X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")                         \
     X(LABIAL_ERROR_TIMINGS, -13, "the timings are malformed; the parser's message says how")                           \
-    X(LABIAL_ERROR_SOUND, -14, "the sound's rate or number of channels is not supported")
+    X(LABIAL_ERROR_SOUND, -14, "the sound's rate or number of channels is not supported")                              \
+    X(LABIAL_ERROR_WORD, -15, "a word or a character ends before it begins, or begins before an earlier one")
 
 typedef enum {
 #define LABIAL_RESULT_VALUE(name, value, text) name = value,
     LABIAL_RESULTS(LABIAL_RESULT_VALUE)
 #undef LABIAL_RESULT_VALUE
-        LABIAL_RESULT_LAST_ = LABIAL_ERROR_SOUND
+        LABIAL_RESULT_LAST_ = LABIAL_ERROR_WORD
 } labial_result_t;
 
 /* A description of any result, "unknown result" for other numbers. Linked only when used. */

@@ -10,11 +10,25 @@
 
 #define UNKNOWN "unknown result"
 
-static const int codes[] = { LABIAL_OK,           LABIAL_WAITING,       LABIAL_STARVED,        LABIAL_DONE,
-                             LABIAL_ERROR_NULL,   LABIAL_ERROR_VERSION, LABIAL_ERROR_MODEL,    LABIAL_ERROR_WORKSPACE,
-                             LABIAL_ERROR_STATE,  LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION, LABIAL_ERROR_FULL,
-                             LABIAL_ERROR_RATE,   LABIAL_ERROR_MODELS,  LABIAL_ERROR_NAME,     LABIAL_ERROR_RIG,
-                             LABIAL_ERROR_TIMINGS, LABIAL_ERROR_SOUND };
+static const int codes[] = { LABIAL_OK,
+                             LABIAL_WAITING,
+                             LABIAL_STARVED,
+                             LABIAL_DONE,
+                             LABIAL_ERROR_NULL,
+                             LABIAL_ERROR_VERSION,
+                             LABIAL_ERROR_MODEL,
+                             LABIAL_ERROR_WORKSPACE,
+                             LABIAL_ERROR_STATE,
+                             LABIAL_ERROR_PHONEME,
+                             LABIAL_ERROR_DURATION,
+                             LABIAL_ERROR_FULL,
+                             LABIAL_ERROR_RATE,
+                             LABIAL_ERROR_MODELS,
+                             LABIAL_ERROR_NAME,
+                             LABIAL_ERROR_RIG,
+                             LABIAL_ERROR_TIMINGS,
+                             LABIAL_ERROR_SOUND,
+                             LABIAL_ERROR_WORD };
 
 #define CODES (sizeof codes / sizeof codes[0])
 
@@ -47,7 +61,7 @@ TEST(every_code_has_its_own_text)
 
 TEST(other_numbers_are_unknown)
 {
-    static const int others[] = { 4, 5, 6, 255, -15, -16, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
+    static const int others[] = { 4, 5, 6, 255, -16, -17, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
     for (unsigned i = 0; i < sizeof others / sizeof others[0]; i++)
         assert_string_equal(labial_result_text(others[i]), UNKNOWN);
 }

@@ -2,7 +2,7 @@
 # tests/CMakeLists.txt.
 
 if(CMAKE_EXECUTABLE_FORMAT STREQUAL "ELF" AND CMAKE_NM)
-  foreach(library IN ITEMS labial ${LABIAL_BUNDLED_MODELS} ${LABIAL_HEARING_MODELS})
+  foreach(library IN ITEMS labial ${LABIAL_BUNDLED_MODELS} ${LABIAL_HEARING_MODELS} ${LABIAL_WORDS})
     if(library STREQUAL "labial")
       set(target labial)
       set(names "labial_[a-z0-9_]+")
@@ -67,7 +67,8 @@ else()
 endif()
 
 file(GLOB public_headers CONFIGURE_DEPENDS
-  "${PROJECT_SOURCE_DIR}/include/labial/*.h" "${PROJECT_SOURCE_DIR}/lib/models/*.h")
+  "${PROJECT_SOURCE_DIR}/include/labial/*.h" "${PROJECT_SOURCE_DIR}/lib/models/*.h"
+  "${PROJECT_SOURCE_DIR}/lib/words/*.h")
 file(GLOB private_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/lib/*.h")
 set(include_paths "-I${PROJECT_SOURCE_DIR}/include" "-I${PROJECT_SOURCE_DIR}/lib")
 
@@ -103,7 +104,7 @@ if(format_version MATCHES "version 14\\.")
     list(APPEND laid_out ${files})
   endforeach()
   list(FILTER laid_out EXCLUDE REGEX
-    "/lib/models/|/examples/faces/|/examples/talk/|/microbit/face\\.|/laugh_table\\.h|/vectors\\.c|/laughs\\.h")
+    "/lib/models/|/lib/words/|/examples/faces/|/examples/talk/|/microbit/face\\.|/laugh_table\\.h|/vectors\\.c|/laughs\\.h|/words_cases\\.h")
   add_test(NAME layout_of_c COMMAND "${LABIAL_CLANG_FORMAT}" --dry-run --Werror ${laid_out})
 else()
   labial_left_out("The check of the layout of C is left out, it needs clang-format 14: "

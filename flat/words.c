@@ -1,0 +1,84 @@
+/*
+ * words.c - words to phonemes without structures (words.h).
+ */
+#include "words.h"
+
+#include <string.h>
+
+#include "words_en.h"
+
+uint32_t words_stream_size(void)
+{
+    return sizeof(labial_words_stream_t);
+}
+
+uint32_t words_own_size(unsigned count)
+{
+    return (uint32_t)(sizeof(labial_words_own_t) + count * sizeof(labial_words_entry_t));
+}
+
+const labial_words_own_t *words_own(void *memory, unsigned count, const char *packed)
+{
+    labial_words_own_t *const own = (labial_words_own_t *)memory;
+    labial_words_entry_t *const entries = (labial_words_entry_t *)(own + 1);
+    own->entries = entries;
+    own->count = (uint16_t)count;
+    for (unsigned i = 0; i < count; i++) {
+        entries[i].word = packed;
+        packed += strlen(packed) + 1u;
+        entries[i].count = (uint8_t)*packed++;
+        entries[i].phonemes = (const uint8_t *)packed;
+        packed += entries[i].count;
+    }
+    return own;
+}
+
+const char *words_label(unsigned phoneme)
+{
+    return labial_words_label(&words_en, phoneme);
+}
+
+int words_read(const labial_words_own_t *own, const char *text, uint32_t size, uint8_t *out)
+{
+    labial_word_t word;
+    const int result = labial_words_read(&words_en, own, text, size, &word);
+    if (result != LABIAL_OK)
+        return result;
+    *out++ = word.count;
+    *out++ = word.characters;
+    for (unsigned i = 0; i < word.count; i++) {
+        *out++ = word.phonemes[i].phoneme;
+        *out++ = word.phonemes[i].character;
+        *out++ = word.phonemes[i].first;
+    }
+    return word.kind;
+}
+
+int words_begin(labial_words_stream_t *stream, const labial_words_own_t *own, int32_t offset)
+{
+    return labial_words_begin(stream, &words_en, own, offset);
+}
+
+int words_say(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end)
+{
+    return labial_words_say(stream, text, size, start, end);
+}
+
+int words_say_characters(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start,
+                         const uint32_t *ends, unsigned count)
+{
+    return labial_words_say_characters(stream, text, size, start, ends, count);
+}
+
+int words_flush(labial_words_stream_t *stream)
+{
+    return labial_words_flush(stream);
+}
+
+int words_next(labial_words_stream_t *stream, uint32_t *out)
+{
+    unsigned phoneme = 0;
+    const int result = labial_words_next(stream, &phoneme, &out[1]);
+    out[0] = phoneme;
+    return result;
+}

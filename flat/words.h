@@ -1,0 +1,36 @@
+/*
+ * words.h - words to phonemes for languages that call C (flat.h), with the tables words_en. A part of its own, which
+ * the WebAssembly module leaves out.
+ */
+#ifndef LABIAL_FLAT_WORDS_H
+#define LABIAL_FLAT_WORDS_H
+
+#include "flat.h"
+#include "labial/words.h"
+
+/* Bytes of a stream of words, and of `count` words of the caller's own. */
+FLAT(words_stream_size) uint32_t words_stream_size(void);
+FLAT(words_own_size) uint32_t words_own_size(unsigned count);
+
+/* Words of the caller's own from `packed`, which must stay where it is: of each the text, NUL, the number of its
+ * phonemes and these. Returns what the functions below take as `own`, at `memory`. */
+FLAT(words_own) const labial_words_own_t *words_own(void *memory, unsigned count, const char *packed);
+
+/* The label of a phoneme, "" beyond the last. */
+FLAT(words_label) const char *words_label(unsigned phoneme);
+
+/* Reads a text; `out` has 2 + 3 * LABIAL_WORDS_PHONEMES bytes: the number of phonemes, that of the text's characters,
+ * then of each phoneme its number, its character and whether a spoken word begins. Returns the text's kind. */
+FLAT(words_read) int words_read(const labial_words_own_t *own, const char *text, uint32_t size, uint8_t *out);
+
+/* A stream of words; words_next() writes a phoneme and its milliseconds. */
+FLAT(words_begin) int words_begin(labial_words_stream_t *stream, const labial_words_own_t *own, int32_t offset);
+FLAT(words_say)
+int words_say(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end);
+FLAT(words_say_characters)
+int words_say_characters(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start,
+                         const uint32_t *ends, unsigned count);
+FLAT(words_flush) int words_flush(labial_words_stream_t *stream);
+FLAT(words_next) int words_next(labial_words_stream_t *stream, uint32_t *out);
+
+#endif

@@ -1,0 +1,220 @@
+/*
+ * labial/words.h - English words and their times to phonemes and theirs, for voices that tell when each word or each
+ * character is spoken, but not its phonemes. Optional: a program that does not call it links nothing of it.
+ *
+ *     static labial_words_stream_t words;
+ *     unsigned phoneme;
+ *     uint32_t milliseconds;
+ *
+ *     labial_words_begin(&words, &words_en, NULL, 0);      // tables: lib/words/words_en.h
+ *     labial_words_say(&words, "Hello", 5, 120, 480);      // from 120 to 480 ms
+ *     while (labial_words_next(&words, &phoneme, &milliseconds) == LABIAL_OK)
+ *         labial_push(&stream, phoneme, milliseconds);     // while labial_room() > 0
+ *     labial_words_say(&words, "world.", 6, 500, 930);
+ *     ...
+ *     labial_words_flush(&words);                          // the last word; then take its phonemes as well
+ *
+ * Phonemes are numbered as in the bundled speech model: silence, then ARPABET in the order of the alphabet. For a model
+ * with other phonemes, look each label (labial_words_label()) up in its names once.
+ *
+ * The tables are those of one language, and these rules are for English: other languages in Latin letters are read as
+ * if they were English; where a voice reports phonemes or visemes, use these. The tables are trusted, as compiled-in
+ * models are. Texts, times and the order of calls are not trusted.
+ *
+ * What is read
+ * - Letters: through decision trees (docs/words.md), in parts of at most LABIAL_WORDS_LETTERS. Letters of Latin-1 and
+ *   Latin Extended-A lose their marks, and combining marks are passed over. A capital behind a small letter begins a
+ *   word (iPhone), and so do the hyphen, the slash, the underscore and all other punctuation. Apostrophes are read
+ *   within a word.
+ * - Letter by letter: two to five capitals without a vowel (TV, HTTP), some with one (USA, AI), single letters with
+ *   points (U.S.), and single letters but "a" and "I".
+ * - Digits: whole numbers to 999,999,999, also with commas, and digits behind a point; longer ones, and those that
+ *   begin with 0, digit by digit; 1st, 22nd, 3rd, 4th. Years, sums of money, dates and times of day are the caller's to
+ *   write out, or the voice's.
+ * - & @ % + = as and, at, percent, plus, equals.
+ * - Mr Mrs Ms Dr St Prof Jr Sr vs etc, e.g. and i.e.
+ * - [tags] and <tags>, emoji and other punctuation: nothing, that is silence.
+ * - Letters of other scripts are unknown: a word of nothing else moves the lips a little for its time, without closing
+ *   them.
+ * - Bytes that are not UTF-8, and control characters: nothing.
+ */
+#ifndef LABIAL_WORDS_H
+#define LABIAL_WORDS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Format of the tables; a file of another format does not compile. */
+#define LABIAL_WORDS_FORMAT 1
+
+/* Letters that are read together; longer words are read in parts. */
+#define LABIAL_WORDS_LETTERS 32
+
+/* Characters of a text that are read, and the phonemes that they become at most; what follows is passed over. */
+#define LABIAL_WORDS_CHARACTERS 255
+#define LABIAL_WORDS_PHONEMES 96
+
+/* A gap between two words that is shorter, in milliseconds, belongs to the first one. */
+#define LABIAL_WORDS_PAUSE 150u
+
+/* The end of a word whose end is not known: the next word's beginning, or what such a word usually lasts. */
+#define LABIAL_WORDS_NO_END 0xffffffffu
+
+/* How words of a language sound, as `labial export` writes it. Places and numbers are checked there.
+ *
+ * A node of a tree has two bytes, the higher first: question << 7 | kind << 5 | five. Of kind 0, both answers lead to a
+ * leaf: `five` for yes, the next byte for no. Of kind 1, yes leads to the leaf `five`, and the node for no follows; of
+ * kind 2, no leads to it and the node for yes follows. Of kind 3, `five` and the next byte are the length of the part
+ * for yes, which follows, and behind it that for no. A leaf is a place in its letter's part of `leaves`. The questions
+ * are those of export/labial/words/questions.py.
+ *
+ * An exception has the second and third byte of its word's hash, and then two bytes for each label to be changed, the
+ * higher first: last << 15 | label << 5 | letter. The first byte of the hash is its bucket. */
+typedef struct {
+    uint16_t format;         /* LABIAL_WORDS_FORMAT */
+    uint8_t phoneme_count;   /* silence included */
+    uint32_t multiplier;     /* of the hash */
+    const uint16_t *roots;   /* 27 places in `trees` */
+    const uint16_t *bases;   /* 27 places in `leaves` */
+    const uint8_t *leaves;   /* labels of each letter */
+    const uint8_t *labels;   /* two bytes each: phonemes, 0 for none; the second has 0x80 where it ends in a vowel */
+    const uint8_t *trees;    /* nodes */
+    const uint16_t *buckets; /* 257 places in `patches` */
+    const uint8_t *patches;  /* exceptions */
+    const char *phonemes;    /* their labels, each ending with NUL */
+    const uint8_t *milliseconds; /* their mean durations */
+    const uint8_t *classes;      /* 1 for vowels, 2 for voiceless consonants, 0 for others */
+    uint8_t filler[2];           /* phonemes that alternate in unknown words */
+} labial_words_t;
+
+/* A word of the caller's own and its phonemes; numbers beyond the tables' count as silence. The word is compared with
+ * each stretch of a text between blanks and punctuation, small and capital letters of ASCII being the same. */
+typedef struct {
+    const char *word;        /* UTF-8, ends with NUL */
+    const uint8_t *phonemes; /* in their order */
+    uint8_t count;
+} labial_words_entry_t;
+
+/* The caller's own words; they come before all rules. */
+typedef struct {
+    const labial_words_entry_t *entries;
+    uint16_t count;
+} labial_words_own_t;
+
+typedef enum {
+    LABIAL_WORDS_SILENT, /* nothing to be said */
+    LABIAL_WORDS_READ,
+    LABIAL_WORDS_UNKNOWN /* letters of other scripts alone: no phonemes */
+} labial_words_kind_t;
+
+/* A phoneme of a word. */
+typedef struct {
+    uint8_t phoneme;
+    uint8_t character; /* of the text, from 0, that it belongs to */
+    uint8_t first;     /* 1 where a spoken word begins: "21" is two */
+} labial_words_phoneme_t;
+
+/* What a text sounds like. */
+typedef struct {
+    uint8_t kind;       /* labial_words_kind_t */
+    uint8_t count;      /* of `phonemes` */
+    uint8_t characters; /* of the text, LABIAL_WORDS_CHARACTERS at most */
+    labial_words_phoneme_t phonemes[LABIAL_WORDS_PHONEMES];
+} labial_word_t;
+
+/* A word with its time. Private. */
+typedef struct {
+    labial_word_t word;
+    uint32_t start, end;                   /* milliseconds */
+    uint8_t open;                          /* the end is not known */
+    uint8_t spelt;                         /* `reach` holds */
+    uint16_t reach[LABIAL_WORDS_PHONEMES]; /* where a phoneme's characters end, milliseconds from the start */
+} labial_words_span_t;
+
+/* Words in time on their way to phonemes. Private; it may be moved or copied between calls. */
+typedef struct {
+    const labial_words_t *tables;
+    const labial_words_own_t *own;
+    int32_t offset;            /* milliseconds, added to all times */
+    uint32_t latest;           /* beginning of the word that came last */
+    uint32_t time;             /* up to which there are phonemes */
+    uint32_t start, until;     /* of the word being spoken */
+    uint32_t weight, reached;  /* of all its phonemes, and of those before the next one */
+    uint8_t place;             /* its next phoneme */
+    uint8_t speaking, holding; /* whether there is a word being spoken, and one that waits for the next */
+    uint8_t held;              /* which of `spans` waits; the other one is being spoken */
+    uint8_t paused;            /* behind the word being spoken there is a pause */
+    labial_words_span_t spans[2];
+} labial_words_stream_t;
+
+/*
+ * Reads a text of `size` bytes of UTF-8: a word, or all between two blanks. `own` may be null.
+ *
+ * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for tables of
+ * another format.
+ */
+int labial_words_read(const labial_words_t *tables, const labial_words_own_t *own, const char *text, size_t size,
+                      labial_word_t *word);
+
+/* The label of a phoneme in ARPABET, "" for numbers beyond the last and null tables. */
+const char *labial_words_label(const labial_words_t *tables, unsigned phoneme);
+
+/* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
+uint32_t labial_words_length(const labial_words_t *tables, const labial_word_t *word);
+
+/*
+ * Prepares a stream. `offset` milliseconds are added to all times: with a voice that reports its words too early, a
+ * positive number; too late, a negative one. What it moves before the beginning is cut off.
+ *
+ * The tables and the caller's own words must stay where they are. Returns LABIAL_OK, LABIAL_ERROR_NULL or
+ * LABIAL_ERROR_VERSION.
+ */
+int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tables, const labial_words_own_t *own,
+                       int32_t offset);
+
+/*
+ * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END.
+ * How a word ends depends on what follows, so that each word's phonemes come with the next word or with
+ * labial_words_flush(). A gap under LABIAL_WORDS_PAUSE belongs to the word before it, a longer one is silence. A word
+ * that ends after the next one begins is cut off there. A text that is silent leaves its time to what is beside it.
+ *
+ * Take all that labial_words_next() has first. Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL,
+ * LABIAL_ERROR_STATE (not prepared), LABIAL_ERROR_FULL (there are phonemes to be taken), LABIAL_ERROR_WORD (`end`
+ * before `start`, or `start` before that of an earlier word) or LABIAL_ERROR_DURATION (longer than
+ * LABIAL_DURATION_MAX).
+ */
+int labial_words_say(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end);
+
+/*
+ * The same where the end of each of the text's `count` characters (code points) is known; the first one begins at
+ * `start` and the word ends with the last. The boundaries between phonemes are then half way between those of their
+ * characters and those of labial_words_say(); where all characters last equally long, as of voices that only share out
+ * the time of a word, they are those of labial_words_say().
+ *
+ * Returns as labial_words_say(): LABIAL_ERROR_WORD also where `count` is 0, more than LABIAL_WORDS_CHARACTERS or not
+ * the text's number of characters, and where a character ends before the one before it.
+ */
+int labial_words_say_characters(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start,
+                                const uint32_t *ends, unsigned count);
+
+/* No word follows for now: the last one ends where it said. Words may follow nevertheless. Returns as
+ * labial_words_say(). */
+int labial_words_flush(labial_words_stream_t *stream);
+
+/*
+ * The next phoneme and its duration, silences included; as labial_push() takes them, and without gaps from 0 on.
+ *
+ * Returns LABIAL_OK, LABIAL_WAITING where there is none until the next word or labial_words_flush(), LABIAL_DONE where
+ * all words are through, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_words_next(labial_words_stream_t *stream, unsigned *phoneme, uint32_t *milliseconds);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,323 @@
+/*
+ * words_time.c - words in time: what share of its word's time a phoneme gets, and the stream of words.
+ * export/labial/words/times.py is the reference.
+ */
+#include "labial/words.h"
+
+#include <string.h>
+
+#include "labial/labial.h"
+#include "words_parts.h"
+
+#define VOWEL 1u
+#define VOICELESS 2u
+#define NONE 4u /* no phoneme */
+
+/* A word whose end is not known takes all of the time to the next one if that is at most this share of what it usually
+ * lasts, in quarters. */
+#define STRETCHED 6u
+
+/* Unknown words: about how long each phoneme lasts, milliseconds. */
+#define FILLER 150u
+
+/* Characters are of equal length if the standard deviation is below 2/25 of the mean. */
+#define EQUAL 25u
+#define EQUAL_TO 2u
+
+/* Factors in 1/256: of vowels - in words of one syllable, of three or more, in the last and the first syllable, before
+ * a voiceless consonant, before a vowel, at the end of the word, in the last syllable before a pause - and of
+ * consonants - the first, the last, after another, before another, behind the last vowel before a pause, between
+ * vowels. */
+static const uint16_t vowel_factors[] = { 276, 241, 264, 276, 271, 279, 261, 340 };
+static const uint16_t consonant_factors[] = { 300, 261, 225, 243, 353, 279 };
+
+/* ---- Weights ---------------------------------------------------------------------------------------------------- */
+
+static unsigned class_of(const labial_words_t *tables, const labial_word_t *word, unsigned place)
+{
+    return tables->classes[word->phonemes[place].phoneme];
+}
+
+uint32_t labial_words_weight(const labial_words_t *tables, const labial_word_t *word, unsigned place, unsigned pause)
+{
+    const unsigned own = class_of(tables, word, place);
+    unsigned first = place, end = place + 1u, before = NONE, after = NONE, vowel_count = 0, vowels_left = 0,
+             vowels_right = 0;
+    unsigned holds, i;
+    const uint16_t *factor = consonant_factors;
+    uint32_t weight = 64u * tables->milliseconds[word->phonemes[place].phoneme];
+    while (!word->phonemes[first].first)
+        first--;
+    while (end < word->count && !word->phonemes[end].first)
+        end++;
+    for (i = first; i < end; i++) {
+        const unsigned is_vowel = class_of(tables, word, i) == VOWEL;
+        vowel_count += is_vowel;
+        vowels_left += is_vowel && i < place;
+        vowels_right += is_vowel && i > place;
+    }
+    if (place > first)
+        before = class_of(tables, word, place - 1u);
+    if (place + 1u < end)
+        after = class_of(tables, word, place + 1u);
+    pause = pause && end == word->count && vowels_right == 0u;
+    if (own == VOWEL) {
+        holds = (vowel_count == 1u) | (unsigned)(vowel_count >= 3u) << 1 | (unsigned)(vowels_right == 0u) << 2 |
+                (unsigned)(vowels_left == 0u) << 3 | (unsigned)(after == VOICELESS) << 4 |
+                (unsigned)(after == VOWEL) << 5 | (unsigned)(after == NONE) << 6 | pause << 7;
+        factor = vowel_factors;
+    } else {
+        holds = (before == NONE) | (unsigned)(after == NONE) << 1 | (unsigned)(before != NONE && before != VOWEL) << 2 |
+                (unsigned)(after != NONE && after != VOWEL) << 3 | pause << 4 |
+                (unsigned)(before == VOWEL && after == VOWEL) << 5;
+    }
+    for (; holds > 0u; holds >>= 1, factor++)
+        if (holds & 1u)
+            weight = (weight * *factor) >> 8;
+    return weight;
+}
+
+/* The weights of all phonemes from `first` to before `end`. */
+static uint32_t weigh_words(const labial_words_t *tables, const labial_word_t *word, unsigned first, unsigned end,
+                            unsigned pause)
+{
+    uint32_t sum = 0;
+    for (; first < end; first++)
+        sum += labial_words_weight(tables, word, first, pause);
+    return sum;
+}
+
+uint32_t labial_words_length(const labial_words_t *tables, const labial_word_t *word)
+{
+    if (!tables || !word)
+        return 0;
+    return (weigh_words(tables, word, 0, word->count, 0) + 32u) / 64u;
+}
+
+/* value * part / whole, rounded; part <= whole. */
+static uint32_t portion(uint32_t value, uint32_t part, uint32_t whole)
+{
+    return (uint32_t)(((uint64_t)value * part + whole / 2u) / whole);
+}
+
+/* ---- Characters ------------------------------------------------------------------------------------------------- */
+
+/* Whether all characters are about equally long. */
+static int are_equal(uint32_t start, const uint32_t *ends, unsigned count)
+{
+    const uint64_t sum = ends[count - 1u] - start;
+    uint64_t squares = 0;
+    unsigned i;
+    for (i = 0; i < count; i++) {
+        const uint64_t length = ends[i] - (i > 0u ? ends[i - 1u] : start);
+        squares += length * length;
+    }
+    return EQUAL * EQUAL * (count * squares - sum * sum) < EQUAL_TO * EQUAL_TO * sum * sum;
+}
+
+/* Where the characters of each phoneme end: those of a character share its time, and characters without a phoneme
+ * belong to the one before. */
+static void reach_characters(const labial_words_t *tables, labial_words_span_t *span, const uint32_t *ends)
+{
+    const labial_word_t *const word = &span->word;
+    uint32_t begin = 0;
+    unsigned first = 0, end, i;
+    for (; first < word->count; first = end) {
+        uint32_t until = span->end - span->start, whole, part = 0;
+        for (end = first + 1u; end < word->count && word->phonemes[end].character == word->phonemes[first].character;)
+            end++;
+        if (end < word->count)
+            until = ends[word->phonemes[end].character - 1u] - span->start;
+        whole = weigh_words(tables, word, first, end, 0);
+        for (i = first; i < end; i++) {
+            uint32_t reach;
+            part += labial_words_weight(tables, word, i, 0);
+            reach = begin + portion(until - begin, part, whole);
+            span->reach[i] = (uint16_t)(reach < 0xffffu ? reach : 0xffffu);
+        }
+        begin = until;
+    }
+}
+
+/* ---- The stream ------------------------------------------------------------------------------------------------- */
+
+int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tables, const labial_words_own_t *own,
+                       int32_t offset)
+{
+    if (!stream)
+        return LABIAL_ERROR_NULL;
+    memset(stream, 0, sizeof *stream);
+    if (!tables)
+        return LABIAL_ERROR_NULL;
+    if (tables->format != LABIAL_WORDS_FORMAT)
+        return LABIAL_ERROR_VERSION;
+    stream->tables = tables;
+    stream->own = own;
+    stream->offset = offset;
+    return LABIAL_OK;
+}
+
+/* A time of the voice with the offset, from 0 to the latest one. */
+static uint32_t shifted(const labial_words_stream_t *stream, uint32_t time)
+{
+    const int64_t moved = (int64_t)time + stream->offset;
+    return moved < 0 ? 0u : moved > 0xffffffff ? 0xffffffffu : (uint32_t)moved;
+}
+
+/* Begins with the word that waits, up to `limit`, where the next one begins. */
+static void speak(labial_words_stream_t *stream, uint32_t limit)
+{
+    const labial_words_span_t *const span = &stream->spans[stream->held];
+    const labial_word_t *const word = &span->word;
+    const uint32_t room = limit - span->start;
+    uint32_t end = span->end;
+    if (span->open) {
+        const uint32_t usual =
+            word->kind == LABIAL_WORDS_READ ? labial_words_length(stream->tables, word) : 2u * FILLER;
+        end = room <= usual / 4u * STRETCHED ? limit : span->start + usual;
+    }
+    if (end > limit || limit - end < LABIAL_WORDS_PAUSE)
+        end = limit;
+    stream->holding = 0;
+    stream->held ^= 1u;
+    stream->speaking = 1;
+    stream->paused = end < limit;
+    stream->start = shifted(stream, span->start);
+    if (stream->start < stream->time)
+        stream->start = stream->time;
+    stream->until = shifted(stream, end);
+    if (stream->until < stream->start)
+        stream->until = stream->start;
+    stream->place = 0;
+    stream->reached = 0;
+    if (word->kind == LABIAL_WORDS_READ)
+        stream->weight = weigh_words(stream->tables, word, 0, word->count, stream->paused);
+    else /* FILLER milliseconds each, more or less */
+        stream->weight = 1u + (stream->until - stream->start) / (FILLER + FILLER / 2u);
+}
+
+/* Takes a word; with the ends of its characters unless `ends` is null. */
+static int take(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end,
+                const uint32_t *ends, unsigned count)
+{
+    labial_words_span_t *span, *before;
+    if (!stream || !text)
+        return LABIAL_ERROR_NULL;
+    if (!stream->tables)
+        return LABIAL_ERROR_STATE;
+    if (end < start || start < stream->latest)
+        return LABIAL_ERROR_WORD;
+    if (end != LABIAL_WORDS_NO_END && end - start > LABIAL_DURATION_MAX)
+        return LABIAL_ERROR_DURATION;
+    if (stream->speaking)
+        return LABIAL_ERROR_FULL;
+    before = &stream->spans[stream->held];
+    span = &stream->spans[stream->held ^ 1u];
+    (void)labial_words_read(stream->tables, stream->own, text, size, &span->word); /* its arguments were checked */
+    if (ends && span->word.characters != count)
+        return LABIAL_ERROR_WORD;
+    stream->latest = start;
+    if (span->word.kind == LABIAL_WORDS_SILENT) {
+        if (stream->holding && before->open && start > before->start) {
+            before->end = start;
+            before->open = 0;
+        }
+        return LABIAL_OK;
+    }
+    span->start = start;
+    span->end = end;
+    span->open = end == LABIAL_WORDS_NO_END;
+    span->spelt = ends && !are_equal(start, ends, count);
+    if (span->spelt)
+        reach_characters(stream->tables, span, ends);
+    if (stream->holding)
+        speak(stream, start);
+    else
+        stream->held ^= 1u;
+    stream->holding = 1;
+    return LABIAL_OK;
+}
+
+int labial_words_say(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end)
+{
+    return take(stream, text, size, start, end, NULL, 0);
+}
+
+int labial_words_say_characters(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start,
+                                const uint32_t *ends, unsigned count)
+{
+    unsigned i;
+    if (!ends)
+        return LABIAL_ERROR_NULL;
+    if (count == 0u || count > LABIAL_WORDS_CHARACTERS || ends[count - 1u] == LABIAL_WORDS_NO_END)
+        return LABIAL_ERROR_WORD;
+    for (i = 0; i < count; i++)
+        if (ends[i] < (i > 0u ? ends[i - 1u] : start))
+            return LABIAL_ERROR_WORD;
+    return take(stream, text, size, start, ends[count - 1u], ends, count);
+}
+
+int labial_words_flush(labial_words_stream_t *stream)
+{
+    if (!stream)
+        return LABIAL_ERROR_NULL;
+    if (!stream->tables)
+        return LABIAL_ERROR_STATE;
+    if (stream->speaking)
+        return LABIAL_ERROR_FULL;
+    if (stream->holding)
+        speak(stream, 0xffffffffu);
+    return LABIAL_OK;
+}
+
+/* When the next phoneme of the word being spoken ends, from the word's beginning on; moves `reached` behind it. */
+static uint32_t boundary(const labial_words_stream_t *stream, uint32_t *reached)
+{
+    const labial_words_span_t *const span = &stream->spans[stream->held ^ 1u];
+    const uint32_t length = stream->until - stream->start;
+    uint32_t end;
+    if (span->word.kind != LABIAL_WORDS_READ) {
+        *reached = stream->reached + 1u;
+        return portion(length, *reached, stream->weight);
+    }
+    *reached = stream->reached + labial_words_weight(stream->tables, &span->word, stream->place, stream->paused);
+    end = portion(length, *reached, stream->weight);
+    if (span->spelt && *reached < stream->weight) {
+        const uint32_t reach = span->reach[stream->place];
+        end = (end + (reach < length ? reach : length)) / 2u;
+    }
+    return end;
+}
+
+int labial_words_next(labial_words_stream_t *stream, unsigned *phoneme, uint32_t *milliseconds)
+{
+    uint32_t end, reached = 0;
+    if (!stream || !phoneme || !milliseconds)
+        return LABIAL_ERROR_NULL;
+    if (!stream->tables)
+        return LABIAL_ERROR_STATE;
+    do {
+        const labial_words_span_t *const span = &stream->spans[stream->held ^ 1u];
+        if (stream->speaking && stream->reached == stream->weight)
+            stream->speaking = 0;
+        if (!stream->speaking)
+            return stream->holding ? LABIAL_WAITING : LABIAL_DONE;
+        reached = stream->reached;
+        *phoneme = 0;
+        end = stream->start;
+        if (stream->time >= stream->start) {
+            end += boundary(stream, &reached);
+            *phoneme = span->word.kind == LABIAL_WORDS_READ ? span->word.phonemes[stream->place].phoneme
+                                                            : stream->tables->filler[stream->reached & 1u];
+        }
+        if (end - stream->time > LABIAL_DURATION_MAX) {
+            end = stream->time + LABIAL_DURATION_MAX;
+        } else if (stream->time >= stream->start) {
+            stream->reached = reached;
+            stream->place++;
+        }
+        *milliseconds = end - stream->time;
+        stream->time = end;
+    } while (*milliseconds == 0u);
+    return LABIAL_OK;
+}

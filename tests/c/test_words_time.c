@@ -1,0 +1,360 @@
+/*
+ * test_words_time.c - words in time (labial/words.h): shares of phonemes against the exporter's reference, pauses,
+ * bridged gaps, offsets, characters.
+ */
+#include "suite.h"
+
+#include <string.h>
+
+#include "fixture.h"
+#include "labial/labial.h"
+#include "labial/words.h"
+#include "words_cases.h"
+#include "words_en.h"
+
+/* Phonemes and their milliseconds, as they come. */
+typedef struct {
+    unsigned count;
+    unsigned phonemes[1300];
+    uint32_t lasts[1300];
+} spoken_t;
+
+static labial_words_stream_t stream;
+
+static void begin(int32_t offset)
+{
+    memset(&stream, 0xa5, sizeof stream);
+    assert_int_equal(labial_words_begin(&stream, &words_en, NULL, offset), LABIAL_OK);
+}
+
+/* Takes all phonemes that there are; returns what the last call did. */
+static int take_all(spoken_t *spoken)
+{
+    for (;;) {
+        unsigned phoneme = 77;
+        uint32_t milliseconds = 0;
+        const int result = labial_words_next(&stream, &phoneme, &milliseconds);
+        if (result != LABIAL_OK)
+            return result;
+        assert_in_range(milliseconds, 1, LABIAL_DURATION_MAX);
+        assert_true(spoken->count < 1300);
+        spoken->phonemes[spoken->count] = phoneme;
+        spoken->lasts[spoken->count++] = milliseconds;
+    }
+}
+
+/* Says a word and takes what comes of it. */
+static void say(spoken_t *spoken, const char *text, uint32_t start, uint32_t end)
+{
+    assert_int_equal(labial_words_say(&stream, text, strlen(text), start, end), LABIAL_OK);
+    assert_true(take_all(spoken) >= LABIAL_WAITING);
+}
+
+static void flush(spoken_t *spoken)
+{
+    assert_int_equal(labial_words_flush(&stream), LABIAL_OK);
+    assert_int_equal(take_all(spoken), LABIAL_DONE);
+}
+
+/* The end of what was spoken, and of its first `count` phonemes. */
+static uint32_t until(const spoken_t *spoken, unsigned count)
+{
+    uint32_t sum = 0;
+    unsigned i;
+    for (i = 0; i < count; i++)
+        sum += spoken->lasts[i];
+    return sum;
+}
+
+/* Would catch a wrong duration, a factor that is left out or holds elsewhere, and rounding that moves a word's end. */
+TEST(words_share_their_time_as_by_the_reference)
+{
+    unsigned i, k, next;
+    for (i = 0; i < sizeof timed / sizeof timed[0]; i++) {
+        spoken_t spoken = { 0 };
+        labial_word_t word;
+        begin(0);
+        say(&spoken, timed[i].text, 0, timed[i].length);
+        if (!timed[i].pause)
+            say(&spoken, "a", timed[i].length, timed[i].length);
+        else
+            flush(&spoken);
+        assert_int_equal(labial_words_read(&words_en, NULL, timed[i].text, strlen(timed[i].text), &word), LABIAL_OK);
+        for (next = k = 0; k < word.count; k++) {
+            if (timed[i].lasts[k] == 0)
+                continue;
+            assert_int_equal(spoken.phonemes[next], word.phonemes[k].phoneme);
+            assert_int_equal(spoken.lasts[next], timed[i].lasts[k]);
+            next++;
+        }
+        assert_int_equal(spoken.count, next);
+    }
+}
+
+/* Would catch time that is lost or invented: whatever the words, the phonemes lie between their times. */
+TEST(phonemes_keep_the_words_times)
+{
+    spoken_t spoken = { 0 };
+    unsigned first, second;
+    begin(0);
+    say(&spoken, "hello", 100, 400);
+    assert_int_equal(spoken.count, 0);
+    say(&spoken, "world", 549, 800); /* a gap of 149 ms belongs to the word before it */
+    assert_int_equal(spoken.phonemes[0], 0);
+    assert_int_equal(spoken.lasts[0], 100);
+    first = spoken.count;
+    assert_int_equal(until(&spoken, first), 549);
+    say(&spoken, "now", 950, 1200); /* one of 150 ms is silence */
+    second = spoken.count;
+    assert_int_equal(until(&spoken, second), 800);
+    flush(&spoken);
+    assert_int_equal(spoken.phonemes[second], 0);
+    assert_int_equal(spoken.lasts[second], 150);
+    assert_int_equal(until(&spoken, spoken.count), 1200);
+    say(&spoken, "again", 1300, 1600); /* a flush is not the end */
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 1600);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 1600);
+}
+
+/* Would catch a word that runs into the next one, and one without time that is spoken nevertheless. */
+TEST(a_word_ends_where_the_next_begins)
+{
+    spoken_t spoken = { 0 };
+    begin(0);
+    say(&spoken, "hello", 0, 900);
+    say(&spoken, "my", 500, 700);
+    assert_int_equal(until(&spoken, spoken.count), 500);
+    say(&spoken, "own", 500, 600);
+    assert_int_equal(until(&spoken, spoken.count), 500);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 600);
+}
+
+/* Would catch a word that goes back in time behind a flush. */
+TEST(what_is_spoken_is_over)
+{
+    spoken_t spoken = { 0 };
+    begin(0);
+    say(&spoken, "hello", 100, 600);
+    flush(&spoken);
+    say(&spoken, "my", 500, 550);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 600);
+    say(&spoken, "own", 500, 700);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 700);
+}
+
+/* Would catch a word of unknown end that lasts through a pause, or that is cut short. */
+TEST(ends_that_are_not_known_are_guessed)
+{
+    labial_word_t word;
+    uint32_t length;
+    spoken_t spoken = { 0 };
+    unsigned count;
+    assert_int_equal(labial_words_read(&words_en, NULL, "banana", 6, &word), LABIAL_OK);
+    length = labial_words_length(&words_en, &word);
+    assert_in_range(length, 300, 700);
+    begin(0);
+    say(&spoken, "banana", 0, LABIAL_WORDS_NO_END);
+    say(&spoken, "banana", length / 2, LABIAL_WORDS_NO_END); /* spoken fast */
+    assert_int_equal(until(&spoken, spoken.count), length / 2);
+    say(&spoken, "banana", 2 * length, LABIAL_WORDS_NO_END); /* slowly: one and a half times */
+    assert_int_equal(until(&spoken, spoken.count), 2 * length);
+    say(&spoken, "banana", 10 * length, LABIAL_WORDS_NO_END); /* and before a pause */
+    assert_int_equal(until(&spoken, spoken.count), 3 * length);
+    count = spoken.count;
+    say(&spoken, ".", 10 * length + 222, LABIAL_WORDS_NO_END); /* punctuation tells where it ends */
+    flush(&spoken);
+    assert_int_equal(spoken.phonemes[count], 0);
+    assert_int_equal(until(&spoken, spoken.count), 10 * length + 222);
+    say(&spoken, "banana", 20 * length, LABIAL_WORDS_NO_END);
+    say(&spoken, ".", 20 * length, LABIAL_WORDS_NO_END); /* but not with the word */
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 21 * length);
+    say(&spoken, "banana", 0xfffffff0u, LABIAL_WORDS_NO_END); /* hours of silence, in parts */
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 0xffffffffu);
+}
+
+/* Would catch silent texts that cut or lengthen words whose ends are known. */
+TEST(silent_texts_leave_their_time)
+{
+    spoken_t spoken = { 0 };
+    begin(0);
+    say(&spoken, "[sighs]", 0, 300);
+    assert_int_equal(take_all(&spoken), LABIAL_DONE);
+    say(&spoken, "no", 400, 600);
+    say(&spoken, "!", 500, 650);
+    flush(&spoken);
+    assert_int_equal(spoken.lasts[0], 400);
+    assert_int_equal(until(&spoken, spoken.count), 600);
+}
+
+/* Would catch an unknown word that closes the lips, or lasts otherwise than it is told. */
+TEST(unknown_words_move_the_lips)
+{
+    static const char foreign[] = "\xd0\xbf\xd1\x80";
+    spoken_t spoken = { 0 };
+    unsigned i;
+    begin(0);
+    say(&spoken, foreign, 0, 700);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 700);
+    assert_int_equal(spoken.count, 4);
+    for (i = 0; i < spoken.count; i++) {
+        assert_string_equal(labial_words_label(&words_en, spoken.phonemes[i]), i % 2 ? "L" : "AH");
+        assert_in_range(spoken.lasts[i], 100, 225);
+    }
+    say(&spoken, foreign, 800, LABIAL_WORDS_NO_END);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 1100);
+    say(&spoken, foreign, 1100, 1110);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 1110);
+}
+
+/* Would catch an offset that is added twice or to one end alone, and times that wrap below zero or beyond the last. */
+TEST(offsets_move_all_words)
+{
+    static const struct {
+        int32_t offset;
+        uint32_t start, end, silence, last;
+    } cases[] = {
+        { 70, 100, 300, 170, 370 },    { -70, 100, 300, 30, 230 },
+        { -200, 100, 300, 0, 100 },    { -400, 100, 300, 0, 0 },
+        { INT32_MIN, 100, 300, 0, 0 }, { INT32_MAX, 0xf0000000u, 0xf0000010u, 0xffffffffu, 0xffffffffu },
+    };
+    unsigned i;
+    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        spoken_t spoken = { 0 };
+        unsigned silent = 0;
+        begin(cases[i].offset);
+        say(&spoken, "hello", cases[i].start, cases[i].end);
+        flush(&spoken);
+        while (silent < spoken.count && spoken.phonemes[silent] == 0)
+            silent++;
+        assert_int_equal(until(&spoken, silent), cases[i].silence);
+        assert_int_equal(until(&spoken, spoken.count), cases[i].last);
+    }
+}
+
+/* Says "shake" with the ends of its characters, and tells where its phonemes SH, EY and K end. */
+static void shake(const uint32_t ends[5], uint32_t found[3])
+{
+    spoken_t spoken = { 0 };
+    begin(0);
+    assert_int_equal(labial_words_say_characters(&stream, "shake", 5, 0, ends, 5), LABIAL_OK);
+    flush(&spoken);
+    assert_int_equal(spoken.count, 3);
+    found[0] = until(&spoken, 1);
+    found[1] = until(&spoken, 2);
+    found[2] = until(&spoken, 3);
+}
+
+/* Would catch characters that do not count, count alone, or count where they only share out the word's time. */
+TEST(characters_move_boundaries_half_way)
+{
+    static const uint32_t even[5] = { 100, 200, 300, 400, 500 }, late[5] = { 200, 300, 350, 400, 500 },
+                          nearly[5] = { 100, 205, 300, 405, 500 };
+    uint32_t plain[3], found[3];
+    shake(even, plain);
+    shake(nearly, found);
+    assert_memory_equal(found, plain, sizeof found);
+    shake(late, found); /* s and h to 300 ms, a to 350, k and e to 500 */
+    assert_in_range(found[0], (plain[0] + 300) / 2 - 1, (plain[0] + 300) / 2 + 1);
+    assert_in_range(found[1], (plain[1] + 350) / 2 - 1, (plain[1] + 350) / 2 + 1);
+    assert_int_equal(found[2], 500);
+}
+
+/* Would catch phonemes of one character that do not share its time, silent letters at the beginning that take it, and
+ * words that are longer than a place can say. */
+TEST(characters_of_several_phonemes_share_their_time)
+{
+    static const uint32_t box[3] = { 100, 200, 600 }, knee[4] = { 400, 500, 600, 700 }, slow[2] = { 90000, 100000 };
+    spoken_t spoken = { 0 };
+    begin(0);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
+    flush(&spoken); /* B AA K S: the x has K and S */
+    assert_int_equal(spoken.count, 4);
+    assert_in_range(until(&spoken, 3), 290, 460);
+    assert_int_equal(until(&spoken, 4), 600);
+    spoken.count = 0;
+    begin(0);
+    assert_int_equal(labial_words_say_characters(&stream, "knee", 4, 0, knee, 4), LABIAL_OK);
+    flush(&spoken);
+    assert_int_equal(spoken.count, 2);
+    assert_in_range(until(&spoken, 1), 300, 420); /* N has the k's time, too */
+    spoken.count = 0;
+    begin(0);
+    assert_int_equal(labial_words_say_characters(&stream, "go", 2, 0, slow, 2), LABIAL_OK);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, 2), 100000);
+    spoken.count = 0;
+    begin(-200); /* the word begins before the sound, and loses a part */
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 400);
+}
+
+TEST(characters_must_be_in_order)
+{
+    static const uint32_t ends[3] = { 100, 90, 300 }, open[1] = { LABIAL_WORDS_NO_END };
+    uint32_t same[256];
+    unsigned i;
+    for (i = 0; i < 256; i++)
+        same[i] = 500;
+    begin(0);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, ends, 3), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 101, ends, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, ends, 0), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, ends, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say_characters(&stream, "a", 1, 0, open, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, same, 256), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, NULL, 3), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_say_characters(NULL, "a", 1, 0, same, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 500, same, 3), LABIAL_OK);
+}
+
+TEST(misuse_is_an_error)
+{
+    labial_words_t other = words_en;
+    labial_words_stream_t none;
+    unsigned phoneme;
+    uint32_t milliseconds;
+    spoken_t spoken = { 0 };
+    memset(&none, 0, sizeof none);
+    other.format++;
+    assert_int_equal(labial_words_begin(NULL, &words_en, NULL, 0), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_begin(&none, NULL, NULL, 0), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_begin(&none, &other, NULL, 0), LABIAL_ERROR_VERSION);
+    assert_int_equal(labial_words_say(&none, "a", 1, 0, 1), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_flush(&none), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_flush(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_next(&none, &phoneme, &milliseconds), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_next(NULL, &phoneme, &milliseconds), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_length(NULL, &none.spans[0].word), 0);
+    assert_int_equal(labial_words_length(&words_en, NULL), 0);
+    begin(0);
+    assert_int_equal(labial_words_next(&stream, NULL, &milliseconds), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_next(&stream, &phoneme, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &milliseconds), LABIAL_DONE);
+    assert_int_equal(labial_words_say(&stream, NULL, 1, 0, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_say(NULL, "a", 1, 0, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_say(&stream, "a", 1, 2, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say(&stream, "a", 1, 0, LABIAL_DURATION_MAX + 1), LABIAL_ERROR_DURATION);
+    assert_int_equal(labial_words_say(&stream, "a", 1, 10, 10 + LABIAL_DURATION_MAX), LABIAL_OK);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &milliseconds), LABIAL_WAITING);
+    assert_int_equal(labial_words_say(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_say(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END), LABIAL_OK);
+    assert_int_equal(labial_words_say(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END),
+                     LABIAL_ERROR_FULL);
+    assert_int_equal(labial_words_flush(&stream), LABIAL_ERROR_FULL);
+    assert_int_equal(take_all(&spoken), LABIAL_WAITING);
+    assert_int_equal(until(&spoken, spoken.count), 149 + LABIAL_DURATION_MAX);
+    assert_int_equal(labial_words_say(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);
+}
+
+SUITE(NULL, NULL)
