@@ -17,17 +17,21 @@ from labial.words.tables import WordTables, load
 
 MODEL = Path(__file__).resolve().parents[2] / "export" / "models" / "words_en.npz"
 
-TEXTS = """Hello world. "Hello," (yes) don't don’t 'cause 'quoted' dogs' x' ' '' ' - -- ... !? café naïve Zürich Øre ß Æ œuvre
- Łódź e\u0301te\u0301 co\u00adop a\u200bb ＡＢｃ１２ × ÷ a·b ½ donʼt \ufeffa heart\ufe0f a~b {x} A I a i X x Q W iPhone eBay YouTube McDonald O'Neil A'B x'B I'm HTMLx
- TV HTTP PDF BBC ABCD BCDFG BCDFGH USA AI API URL OK IO IT US NASA FAQ usb tv TVs hmm U.S. u.s U.S.A a.m. p.m. A.I. i.e i.e.
- e.g. E.G. e.g.x I.E. e.x i.x J.R.R. U.S.based a.b1 x.yz a. I. B. Mr. Mrs Ms. MR dr. Dr St. prof Prof. jr Jr. sr vs. VS etc etc.
- etcetera Mrs.Smith & @ % + = B&B 50% a@b.com C++ 1+1=2 0 1 2 3 10 11 12 13 19 20 21 30 99 100 101 110 111 120 199 200 999
- 1000 1001 1010 1100 9999 10000 12345 100000 123456 999999 1000000 1000001 1001000 2000002 999999999 1000000000
- 1,000 1,234,567 12,34 1,2345 1,234,56 0,123 999,999,999 1,000,000,000 123456789012 007 00 01 0.5 3.14 3. .5 1.2.3 1,234.5
- 12:30 1/2 2-3 1st 2nd 3rd 4th 5th 8th 9th 11th 12th 13th 20th 21st 22ND 40th 100th 101st 1000th 1000000th 0th 3Rd 1stx 2ndly
- 1st2 007th 5x x5 24h [laughs] [a]b a[b]c [open x<tag/>y <open ] > Привет 你好 日本語 한국어 ελ Привет! aПривет中 [中] 😀 😀! ♥
- rock-n-roll and/or snake_case a.b,c;d (a)(b) abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab
- Pneumonoultramicroscopicsilicovolcanoconiosis bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb'b don't-can't-won't""".split()
+TEXTS = """
+Hello world. "Hello," (yes) don't don’t 'cause 'quoted' dogs' x' ' '' ' - -- ... !? café naïve Zürich Øre ß Æ
+œuvre Łódź e\u0301te\u0301 co\u00adop a\u200bb ＡＢｃ１２ × ÷ a·b ½ donʼt \ufeffa heart\ufe0f a~b {x} A I a i X x Q
+W iPhone eBay YouTube McDonald O'Neil A'B x'B I'm HTMLx TV HTTP PDF BBC ABCD BCDFG BCDFGH USA AI API URL OK IO
+IT US NASA FAQ usb tv TVs hmm U.S. u.s U.S.A a.m. p.m. A.I. i.e i.e. e.g. E.G. e.g.x I.E. e.x i.x J.R.R.
+U.S.based a.b1 x.yz a. I. B. Mr. Mrs Ms. MR dr. Dr St. prof Prof. jr Jr. sr vs. VS etc etc. etcetera Mrs.Smith
+& @ % + = B&B 50% a@b.com C++ 1+1=2 0 1 2 3 10 11 12 13 19 20 21 30 99 100 101 110 111 120 199 200 999 1000
+1001 1010 1100 9999 10000 12345 100000 123456 999999 1000000 1000001 1001000 2000002 999999999 1000000000
+1,000 1,234,567 12,34 1,2345 1,234,56 0,123 999,999,999 1,000,000,000 123456789012 007 00 01 0.5 3.14 3. .5
+1.2.3 1,234.5 12:30 1/2 2-3 1st 2nd 3rd 4th 5th 8th 9th 11th 12th 13th 20th 21st 22ND 40th 100th 101st 1000th
+1000000th 0th 3Rd 1stx 2ndly 1st2 007th 5x x5 24h [laughs] [a]b a[b]c [open x<tag/>y <open ] > Привет 你好 日本語
+한국어 ελ Привет! aПривет中 [中] 😀 😀! ♥ rock-n-roll and/or snake_case a.b,c;d (a)(b)
+abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab
+Pneumonoultramicroscopicsilicovolcanoconiosis bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb'b don't-can't-won't
+""".split()
 LONG = ["111111111" * 30, "ab" * 150, "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
 TIMED = """the a I computer banana strengths idea go tv's reiteration 21 we're asthma B&B hmm spaghetti queue onion boy
  Mississippi extraordinary rhythm""".split()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from ctypes import POINTER, c_char_p, c_int, c_int16, c_uint32, c_void_p
+from ctypes import POINTER, c_char_p, c_int, c_int16, c_int32, c_uint32, c_void_p
 from functools import cache
 from pathlib import Path
 from typing import Any, Dict, Optional, Sequence, Tuple
@@ -19,7 +19,7 @@ from labial.errors import LabialError, StreamError
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 2
+_INTERFACE = 3
 
 #: Results of include/labial/labial.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
@@ -71,6 +71,13 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "ears_end": (c_int, (_POINTER, _POINTER, _POINTER, _NUMBER)),
     "ears_cancel": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
     "ears_stretches": (_NUMBER, (_POINTER,)), "ears_restart": (c_int, (_POINTER,)),
+    "words_stream_size": (_NUMBER, ()), "words_own_size": (_NUMBER, (_NUMBER,)),
+    "words_own": (_POINTER, (_POINTER, _NUMBER, _POINTER)), "words_label": (_TEXT, (_NUMBER,)),
+    "words_read": (c_int, (_POINTER, _TEXT, _NUMBER, _POINTER)),
+    "words_begin": (c_int, (_POINTER, _POINTER, c_int32)),
+    "words_say": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _NUMBER)),
+    "words_say_characters": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _POINTER, _NUMBER)),
+    "words_flush": (c_int, (_POINTER,)), "words_next": (c_int, (_POINTER, _POINTER)),
 }  # fmt: skip
 
 

@@ -2,16 +2,16 @@
 
 Node
     Two bytes, the higher first: ``question << 7 | kind << 5 | five``. Kind 0: both answers lead to leaves; `five` is
-    the one for yes, the next byte the one for no. Kind 1: yes leads to the leaf `five`, the node for no follows. Kind 2:
-    no leads to the leaf `five`, the node for yes follows. Kind 3: both lead to nodes; `five` and the next byte (the
+    the one for yes, the next byte the one for no. Kind 1: yes leads to the leaf `five`, the node for no follows. Kind
+    2: no leads to the leaf `five`, the node for yes follows. Kind 3: both lead to nodes; `five` and the next byte (the
     lower 8 bits) are the length of the part for yes, which follows, and then that for no. A leaf is a place in the
     letter's own list of labels, the most frequent first.
 
 Exceptions
     A word's hash is FNV-1a over the numbers of its letters, times `multiplier`, modulo 2^32. Its first byte is the
     bucket; a bucket's entries are ordered by the next two bytes, which they begin with. Patches follow, two bytes each:
-    ``last << 15 | label << 5 | letter``. The spelling is not stored. The multiplier is chosen so that no other word of the
-    dictionary has the first 24 bits of an exception's hash.
+    ``last << 15 | label << 5 | letter``. The spelling is not stored. The multiplier is chosen so that no other word of
+    the dictionary has the first 24 bits of an exception's hash.
 """
 
 from __future__ import annotations

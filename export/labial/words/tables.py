@@ -22,6 +22,8 @@ PathLike = Union[str, os.PathLike[str]]
 #: Version of the file's layout, and most bytes of its content.
 FORMAT = 1
 _LARGEST = 16_000_000
+#: Questions on the way to a leaf, at most.
+_DEEPEST = 250
 _ARRAYS = ("format", "sounds", "first", "question", "yes", "no", "label", "multiplier", "patch_count", "patch_letter",
            "patch_label")
 
@@ -87,12 +89,28 @@ def _check(tables: WordTables) -> None:
     inner = tables.question >= 0
     for column in columns[:2]:
         _expect(bool(((column > here) & (column < size))[inner].all()), "a node does not follow the one above it")
+    _check_shape(tables)
     for word, patches in tables.exceptions.items():
         known = word and len(word) <= LONGEST and all(character in LETTERS[1:] for character in word)
         _expect(bool(known), f"the exception {word!r:.40} is not a word of a to z and apostrophes")
         places = [place for place, _ in patches]
         _expect(bool(places) and places == sorted(set(places)) and 0 <= places[0] and places[-1] < len(word)
                 and all(0 <= label < labels for _, label in patches), f"the exception {word!r} is out of range")
+
+
+def _check_shape(tables: WordTables) -> None:
+    """Raises ModelError unless every node but the roots is below exactly one other, and none below more than
+    `_DEEPEST`."""
+    for begin, end in zip(tables.first[:-1].tolist(), tables.first[1:].tolist()):
+        question, yes, no = (column[begin:end].tolist() for column in (tables.question, tables.yes, tables.no))
+        depth: List[int] = [0] + [-1] * (end - begin - 1)
+        for node in range(end - begin):
+            if question[node] < 0:
+                continue
+            for below in (yes[node], no[node]):
+                _expect(depth[below] < 0 <= depth[node] < _DEEPEST, "a tree's node is below two others, or too deep")
+                depth[below] = depth[node] + 1
+        _expect(min(depth) >= 0, "a node belongs to no tree")
 
 
 def is_tables(path: PathLike) -> bool:

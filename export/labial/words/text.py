@@ -21,17 +21,17 @@ FOREIGN, NOTHING = "\1", "\2"
 _FOREIGN = ((0x180, 0x2FF), (0x370, 0x1FFF), (0x2C00, 0x2DFF), (0x3041, 0xD7FF), (0xF900, 0xFAFF), (0x20000, 0x3FFFF))
 _MARKS = ((0x300, 0x36F), (0xAD, 0xAD), (0x200B, 0x200D), (0xFE00, 0xFE0F), (0xFEFF, 0xFEFF))
 #: Latin letters that do not come apart into a letter and a mark.
-_LETTERS = {"Æ": "E", "Ð": "D", "Ø": "O", "Þ": "T", "ß": "s", "æ": "e", "ð": "d", "ø": "o", "þ": "t", "Đ": "D", "đ": "d",
-            "Ħ": "H", "ħ": "h", "ı": "i", "Ĳ": "I", "ĳ": "i", "ĸ": "k", "Ŀ": "L", "ŀ": "l", "Ł": "L", "ł": "l", "ŉ": "n",
-            "Ŋ": "N", "ŋ": "n", "Œ": "E", "œ": "e", "Ŧ": "T", "ŧ": "t", "ſ": "s"}  # fmt: skip
+_LETTERS = {"Æ": "E", "Ð": "D", "Ø": "O", "Þ": "T", "ß": "s", "æ": "e", "ð": "d", "ø": "o", "þ": "t", "Đ": "D",
+            "đ": "d", "Ħ": "H", "ħ": "h", "ı": "i", "Ĳ": "I", "ĳ": "i", "ĸ": "k", "Ŀ": "L", "ŀ": "l", "Ł": "L",
+            "ł": "l", "ŉ": "n", "Ŋ": "N", "ŋ": "n", "Œ": "E", "œ": "e", "Ŧ": "T", "ŧ": "t", "ſ": "s"}  # fmt: skip
 
 _UNITS = ("zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
           "seventeen eighteen nineteen").split()
 _TENS = "twenty thirty forty fifty sixty seventy eighty ninety".split()
 _ORDINALS = {"one": "first", "two": "second", "three": "third", "five": "fifth", "eight": "eighth", "nine": "ninth",
              "twelve": "twelfth"}
-_NAMES = dict(zip("abcdefghijklmnopqrstuvwxyz", "ay bee see dee e eff gee aitch eye jay kay ell em en oh pee cue are ess "
-                  "tee you vee double_you ex why zee".split()))
+_NAMES = dict(zip("abcdefghijklmnopqrstuvwxyz", "ay bee see dee e eff gee aitch eye jay kay ell em en oh pee cue are "
+                  "ess tee you vee double_you ex why zee".split()))
 _SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals"}
 _MEANINGS = {"mr": "mister", "mrs": "missiz", "ms": "mizz", "dr": "doctor", "st": "saint", "prof": "professor",
              "jr": "junior", "sr": "senior", "vs": "versus", "etc": "etcetera"}

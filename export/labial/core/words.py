@@ -1,0 +1,115 @@
+"""Words to phonemes, and their times to theirs, by the library (include/labial/words.h)."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from labial.core.library import OK, checked, library, memory
+from labial.errors import LabialError
+
+#: LABIAL_WORDS_PHONEMES and LABIAL_WORDS_CHARACTERS: what the library makes of a word and reads of it at most.
+PHONEMES_MAX, CHARACTERS_MAX = 96, 255
+#: LABIAL_WORDS_NO_END.
+_NO_END = 0xFFFFFFFF
+_OWN_MAX = 65_535
+_KINDS = ("silent", "read", "unknown")
+
+
+class Spoken(NamedTuple):
+    """What a word sounds like."""
+
+    kind: str  #: "silent", "read", or "unknown" for letters of scripts that are not read
+    phonemes: Tuple[str, ...]  #: in ARPABET
+    characters: Tuple[int, ...]  #: of the word, from 0, that each phoneme belongs to
+
+
+@cache
+def labels() -> Tuple[str, ...]:
+    """The phonemes by number: SIL, then ARPABET. Raises LabialError without the library."""
+    found: List[str] = []
+    while label := library().words_label(len(found)):
+        found.append(label.decode("ascii"))
+    return tuple(found)
+
+
+class OwnWords:
+    """Words of the caller's own: each a text and its phonemes in ARPABET. Raises LabialError for unknown phonemes,
+    empty words, words with NUL or more than `PHONEMES_MAX` phonemes, and more than 65,535 words."""
+
+    def __init__(self, words: Optional[Mapping[str, Sequence[str]]] = None) -> None:
+        given = dict(words or {})
+        if len(given) > _OWN_MAX:
+            raise LabialError(f"{len(given)} words of one's own are more than {_OWN_MAX}")
+        packed = b"".join(_packed(word, phonemes) for word, phonemes in given.items())
+        self._packed = ctypes.create_string_buffer(packed, len(packed) + 1)  # both are read as long as this lives
+        self._memory = memory(library().words_own_size(len(given)))
+        self.place = library().words_own(self._memory, len(given), self._packed)
+
+
+def _packed(word: str, phonemes: Sequence[str]) -> bytes:
+    if not word or "\0" in word:
+        raise LabialError(f"{word!r:.40} is no word")
+    names = phonemes.split() if isinstance(phonemes, str) else list(phonemes)
+    if len(names) > PHONEMES_MAX:
+        raise LabialError(f"{word!r:.40} has {len(names)} phonemes, more than {PHONEMES_MAX}")
+    known = _numbers()
+    missing = [name for name in names if name not in known]
+    if missing:
+        raise LabialError(f"{word!r:.40}: {missing[0]!r:.40} is no phoneme of ARPABET")
+    return _encoded(word) + b"\0" + bytes([len(names), *(known[name] for name in names)])
+
+
+@cache
+def _numbers() -> Dict[str, int]:
+    return {label: number for number, label in enumerate(labels())}
+
+
+def _encoded(text: str) -> bytes:
+    """UTF-8; what it cannot encode, half surrogates, is a question mark."""
+    return text.encode("utf-8", "replace")
+
+
+def read(text: str, own: Optional[OwnWords] = None) -> Spoken:
+    """What a text without blanks sounds like."""
+    data = _encoded(text)
+    out = (ctypes.c_uint8 * (2 + 3 * PHONEMES_MAX))()
+    kind = checked(library().words_read(own.place if own else None, data, len(data), out))
+    names = labels()
+    triples = [out[2 + 3 * i : 5 + 3 * i] for i in range(out[0])]
+    return Spoken(_KINDS[kind], tuple(names[item[0]] for item in triples), tuple(item[1] for item in triples))
+
+
+class WordStream:
+    """Words in time, in milliseconds, to phonemes; `offset` milliseconds are added to all times.
+
+    Raises StreamError where the library refuses a call (labial_words_say() in include/labial/words.h).
+    """
+
+    def __init__(self, own: Optional[OwnWords] = None, offset: int = 0) -> None:
+        self._own, self._block = own, memory(library().words_stream_size())
+        checked(library().words_begin(self._block, own.place if own else None, offset))
+
+    def say(self, text: str, start: int, end: Optional[int]) -> None:
+        """A word from `start` to `end`, None where that is not known."""
+        data = _encoded(text)
+        checked(library().words_say(self._block, data, len(data), start, _NO_END if end is None else end), text)
+
+    def say_characters(self, text: str, start: int, ends: Sequence[int]) -> None:
+        """A word and the end of each of its characters."""
+        data = _encoded(text)
+        times = (ctypes.c_uint32 * max(1, len(ends)))(*ends)
+        checked(library().words_say_characters(self._block, data, len(data), start, times, len(ends)), text)
+
+    def flush(self) -> None:
+        """No word follows for now."""
+        checked(library().words_flush(self._block))
+
+    def take(self) -> List[Tuple[str, int]]:
+        """The phonemes that are known, with their milliseconds."""
+        found: List[Tuple[str, int]] = []
+        out = (ctypes.c_uint32 * 2)()
+        while checked(library().words_next(self._block, out)) == OK:
+            found.append((labels()[out[0]], int(out[1])))
+        return found

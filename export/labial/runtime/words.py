@@ -1,0 +1,76 @@
+"""Words to phonemes: of texts, of words with their times, of characters with theirs."""
+
+from __future__ import annotations
+
+from typing import Any, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
+
+from labial.core.numbers import number, whole
+from labial.corpus.words import ENGLISH, LATEST, Pronunciation, Word, phonemes_of, timings_of, words_of_characters
+from labial.errors import LabialError
+
+#: A word, when it begins and when it ends, milliseconds; None for an end that is not known.
+TimedWord = Tuple[str, float, Optional[float]]
+
+
+def phonemes(text: str, *, own: Optional[Mapping[str, Sequence[str]]] = None, language: str = ENGLISH,
+             numbers: bool = False) -> List[str]:
+    """The phonemes of a text, in ARPABET without stress, word after word; silences are not known.
+
+    `own` has words that are pronounced otherwise: ``{"google": "G UW G AH L"}``, or lists of phonemes. `language` is
+    "en", which the library reads itself, or what espeak-ng, if it is installed, calls a language or a voice; its
+    phonemes become those of English that look most like them. With `numbers`, num2words, if it is installed, writes
+    out what stands in digits. Raises LabialError.
+    """
+    if not isinstance(text, str):
+        raise TypeError(f"a text is a str, not {type(text).__name__}")
+    found = phonemes_of(text.split(), _how(own, language, numbers))
+    return [label for spoken in found for label in spoken.phonemes]
+
+
+def word_timings(timed: Iterable[TimedWord], *, offset_ms: float = 0,
+                 own: Optional[Mapping[str, Sequence[str]]] = None, language: str = ENGLISH,
+                 numbers: bool = False) -> List[Tuple[str, int]]:
+    """The timings of :func:`labial.render` from words and their times.
+
+    `timed` are words as they are written, punctuation included, with their beginnings and ends in milliseconds. An end
+    may be None: then the word lasts until the next one, or as long as such a word usually does. `offset_ms` is added to
+    all times: a positive number for a voice that reports its words too early. The other arguments are those of
+    :func:`labial.phonemes`. Raises LabialError, with the word, for words that are not in order.
+    """
+    found = []
+    for place, item in enumerate(timed, 1):
+        if not isinstance(item, (tuple, list)) or len(item) != 3 or not isinstance(item[0], str):
+            raise TypeError(f"word {place} is no text with its beginning and end in milliseconds")
+        text, start, end = item
+        found.append(Word(text, _time(start), None if end is None else _time(end)))
+    return timings_of(found, _how(own, language, numbers), _offset(offset_ms))
+
+
+def character_timings(text: Union[str, Sequence[str]], starts: Sequence[float], ends: Sequence[float], *,
+                      offset_ms: float = 0, own: Optional[Mapping[str, Sequence[str]]] = None,
+                      language: str = ENGLISH, numbers: bool = False) -> List[Tuple[str, int]]:
+    """The same from characters and their times in milliseconds, as ElevenLabs reports them; `text` is a string or a
+    list of characters, blanks included. Raises LabialError where the numbers of characters and times differ."""
+    if not len(text) == len(starts) == len(ends):
+        raise LabialError(f"{len(text)} characters have {len(starts)} beginnings and {len(ends)} ends")
+    found = words_of_characters(list(text), [_time(time) for time in starts], [_time(time) for time in ends])
+    return timings_of(found, _how(own, language, numbers), _offset(offset_ms))
+
+
+def _how(own: Optional[Mapping[str, Sequence[str]]], language: str, numbers: bool) -> Pronunciation:
+    split = {word: sounds.split() if isinstance(sounds, str) else list(sounds) for word, sounds in (own or {}).items()}
+    return Pronunciation(split, language, bool(numbers))
+
+
+def _time(value: Any) -> int:
+    found = number(value, "a time")
+    if not 0.0 <= found <= LATEST:
+        raise LabialError(f"{found:g} ms is no time from 0 to {LATEST} ms")
+    return round(found)
+
+
+def _offset(value: Any) -> int:
+    found = number(value, "an offset")
+    if not abs(found) <= 1e9:
+        raise LabialError(f"an offset of {found:g} ms is not within 1e9 ms")
+    return whole(round(found), "an offset")

@@ -1,0 +1,334 @@
+"""How words sound: the trainer, the packed tables, and the C decoder against the exporter's reference."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+from typing import Dict, List, Tuple
+
+import numpy as np
+import pytest
+import words as cases
+
+from labial.__main__ import main
+from labial.corpus.phonesets import ARPABET
+from labial.errors import DataError, ModelError
+from labial.words import alignment, decoder, dictionary, emit, packing, tables, text, times, training
+from labial.words.questions import Asked, answer, features
+from packages import CC, SOURCE
+from runtime import needs_runtime
+
+TRAINED = SOURCE / "export" / "models" / "words_en.npz"
+#: A dictionary of one's own, for all of its words: LABIAL_CMUDICT=cmudict.dict.
+CMUDICT = os.environ.get("LABIAL_CMUDICT", "")
+
+
+@pytest.fixture(scope="module")
+def trained() -> tables.WordTables:
+    return tables.load(TRAINED)
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A dictionary of 2,500 words as the trained tables read them, with a second pronunciation here and there."""
+    path = tmp_path_factory.mktemp("dictionary") / "small.dict"
+    found = tables.load(TRAINED)
+    lines = ["# a comment", ";;; another one"]
+    for number, word in enumerate(dictionary.read_common(dictionary.COMMON)[:2500]):
+        heard = tables.names(decoder.phonemes(found, word)).split()
+        sounds = [label + "1" * (label in "AA AE IY OW UW") for label in heard]
+        lines.append(f"{word} {' '.join(sounds)} # note")
+        if number % 40 == 0:
+            lines.append(f"{word}(2) {' '.join([*sounds[:-1], 'AH0'])}")
+    path.write_text("\n".join(lines) + "\naaa T R IH P AH L EY\n3d TH R IY D IY\n", encoding="utf-8")
+    return path
+
+
+# ---- The dictionary
+
+
+def test_a_dictionary_is_read(tmp_path: Path) -> None:
+    """Stress, comments and numbers of variants are dropped, equal pronunciations are one, other characters are left."""
+    path = tmp_path / "d"
+    path.write_text("Read R IY1 D # the verb\nread(2) R EH1 D\nread(3) R EH0 D\n;;; x Y\no'clock AH0 K L AA1 K\n"
+                    "b4 B IY\n")
+    entries = dictionary.read_dictionary(path)
+    assert [(entry.word, tables.names(entry.phonemes), entry.variant) for entry in entries] == [
+        ("read", "R IY D", 0), ("read", "R EH D", 1), ("o'clock", "AH K L AA K", 0)]
+    assert entries[2].letters == (15, 27, 3, 12, 15, 3, 11)
+
+
+@pytest.mark.parametrize("content, problem", [
+    ("a AH0\nb QQ1\n", ":2: 'QQ' is not a phoneme of ARPABET"), ("a AH0\nb\n", ":2: 'b' has no phonemes"),
+    ("4 F AO R\n", ": no word of the letters a to z")])
+def test_a_damaged_dictionary_is_refused(tmp_path: Path, content: str, problem: str) -> None:
+    path = tmp_path / "d"
+    path.write_text(content)
+    with pytest.raises(DataError, match=problem):
+        dictionary.read_dictionary(path)
+
+
+# ---- Training
+
+
+def test_alignment_of_a_worked_example() -> None:
+    """Two letters, of which one is silent behind the other: learnt from words where it is alone."""
+    def entry(word: str, phonemes: str) -> dictionary.Entry:
+        numbers = tuple(dictionary.PHONEMES.index(label) for label in phonemes.split())
+        return dictionary.Entry(word, dictionary.letters_of(word), numbers, 0)
+
+    words = [entry("mat", "M AE T"), entry("tam", "T AE M"), entry("mate", "M EY T"), entry("tax", "T AE K S"),
+             entry("at", "AE T"), entry("ma", "M AE"), entry("a", "AE"), entry("t", "T")]  # fmt: skip
+    probability = alignment.learn(words * 100)
+    assert np.allclose(probability[1:].sum(axis=1)[[0, 4, 12, 19]], 1.0)
+    sounds = alignment.align(words, probability)
+    assert [alignment.phonemes_of(sound) for sound in sounds[2]] == [(22,), (13,), (31,), ()]  # M EY T, and silence
+    assert [alignment.phonemes_of(sound) for sound in sounds[3]] == [(31,), (2,), (20, 29)]
+    assert alignment.align([entry("a", "AE T M K S")], probability) == [None]
+
+
+def test_questions_of_all_letters_at_once_are_those_of_one(trained: tables.WordTables) -> None:
+    """The answers that trees are grown by are those that they are read by."""
+    asked = Asked(trained.sounds)
+    numbers = random.Random(5)
+    for word in ("strengths", "o'clock", "a", "queueing", "extraordinary"):
+        letters = dictionary.letters_of(word)
+        labels = [numbers.randrange(len(trained.sounds)) for _ in letters]
+        for place in range(len(letters)):
+            values = features(letters, place, labels)
+            for question in range(400):
+                expected = answer(question, values, trained.sounds)
+                assert asked.yes[question, values[asked.feature[question]]] == expected, (word, place, question)
+
+
+def test_training_is_the_same_each_time(small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The command from a dictionary to C: equal bytes, words that are read as the dictionary says, C that compiles."""
+    for name in "ab":
+        assert main(["train-words", str(small), "-o", str(tmp_path / f"{name}.npz"), "--leaves", "1200", "--exceptions",
+                     "150", "--quiet"]) == 0
+        assert main(["export", str(tmp_path / f"{name}.npz"), "--name", "mine", "-o", str(tmp_path / name)]) == 0
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+    assert (tmp_path / "a/mine.c").read_bytes() == (tmp_path / "b/mine.c").read_bytes()
+    assert "150 exceptions" in capsys.readouterr().out
+    found = tables.load(tmp_path / "a.npz")
+    assert found.leaves <= 1200 and len(found.exceptions) == 150
+    known = dictionary.pronunciations(dictionary.read_dictionary(small))
+    assert all(decoder.phonemes(found, word) in known[word] for word in found.exceptions)
+    assert training.score(found, known)["phonemes"] > 90.0
+    (tmp_path / "main.c").write_text('#include "mine.h"\nint main(void) { return mine.format != 1; }\n')
+    subprocess.run([CC, "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{SOURCE / 'include'}",
+                    f"-I{tmp_path / 'a'}", tmp_path / "main.c", tmp_path / "a/mine.c", "-o", tmp_path / "main"],
+                   check=True)
+    subprocess.run([tmp_path / "main"], check=True)
+
+
+def test_held_out_words_are_measured(small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["train-words", str(small), "-o", str(tmp_path / "w.npz"), "--leaves", "1000", "--exceptions", "0",
+                 "--held-out"]) == 0
+    line = capsys.readouterr().out.splitlines()[0]
+    assert "held-out words: " in line and "viseme classes" in line
+    share = float(line.split(": ")[1].split(" %")[0])
+    assert 60.0 < share < 95.0  # of so few words
+
+
+def test_errors_are_counted_against_the_nearest_pronunciation(trained: tables.WordTables) -> None:
+    """Worked by hand: "go" is G OW. K looks like G, and the second pronunciation is nearer."""
+    g, k, ow, s = (dictionary.PHONEMES.index(label) for label in ("G", "K", "OW", "S"))
+    found = training.score(trained, {"go": [(s, s, s), (k, ow)]})
+    assert found == {"words": 1.0, "phonemes": 50.0, "viseme classes": 100.0, "whole words": 0.0}
+
+
+def test_sizes_that_cannot_be_are_no_trouble(small: Path) -> None:
+    """More leaves than there are samples; a letter that does not occur."""
+    entries = dictionary.read_dictionary(small)[:300] + dictionary.read_dictionary(small)[-1500:]
+    found = training.train(entries, [], leaves=100_000, exceptions=0)
+    assert found.leaves < 5000  # all that there are
+    with pytest.raises(ModelError, match="no word of the dictionary has the letter"):
+        training.train(entries[:3], [], leaves=10)
+
+
+# ---- Files
+
+
+def test_tables_survive_a_file(trained: tables.WordTables, tmp_path: Path) -> None:
+    tables.save(trained, tmp_path / "w.npz")
+    again = tables.load(tmp_path / "w.npz")
+    assert again.exceptions == trained.exceptions and again.sounds == trained.sounds
+    assert again.multiplier == trained.multiplier and np.array_equal(again.question, trained.question)
+    assert tables.is_tables(TRAINED) and not tables.is_tables(TRAINED.with_name("speech_en.npz"))
+    assert not tables.is_tables(tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize("name, change", [
+    ("question", lambda a: a + 400), ("label", lambda a: a + 60), ("yes", lambda a: a * 0),
+    ("first", lambda a: a[::-1]), ("sounds", lambda a: a * 0), ("multiplier", lambda a: a * 2),
+    ("multiplier", lambda a: a[:0]),
+    ("patch_count", lambda a: a[:-1]), ("patch_letter", lambda a: a + 40), ("patch_label", lambda a: a + 60),
+    ("format", lambda a: a + 1),
+    ("about", lambda a: a[:-1]), ("words", lambda a: a + 128), ("no", lambda a: a[:-3]),
+    ("question", lambda a: a.reshape(1, -1))])
+def test_damaged_tables_are_refused(tmp_path: Path, name: str, change) -> None:
+    """A file in which any array is out of range is an error that names the file."""
+    with np.load(TRAINED) as file:
+        content = {key: file[key] for key in file.files}
+    content[name] = change(content[name])
+    np.savez_compressed(tmp_path / "w.npz", **content)
+    with pytest.raises(ModelError, match=r"w\.npz: "):
+        tables.load(tmp_path / "w.npz")
+
+
+def test_files_that_are_no_tables_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "w.npz").write_bytes(b"PK")
+    for path in (tmp_path / "w.npz", tmp_path / "none.npz", TRAINED.with_name("speech_en.npz")):
+        with pytest.raises(ModelError, match="npz: "):
+            tables.load(path)
+    assert main(["export", str(TRAINED), "--name", "words", "-o", str(tmp_path / "o"), "--blob"]) == 1
+    assert "are for models" in capsys.readouterr().err and not (tmp_path / "o").exists()
+
+
+def test_bundled_tables_are_those_that_were_trained(tmp_path: Path, trained: tables.WordTables) -> None:
+    """Catches tables that were trained anew and not exported, and a packing that changed under them."""
+    packed = packing.pack(trained)
+    for path in emit.write(packed, "words_en", tmp_path):
+        assert path.read_bytes() == (SOURCE / "lib/words" / path.name).read_bytes(), "run labial export"
+    assert packed.size < 40_000
+    assert "Copyright (C) 1993-2015 Carnegie Mellon University" in (tmp_path / "words_en.c").read_text()
+
+
+def one_tree(sounds: int, question: List[int], yes: List[int], no: List[int], label: List[int]) -> tables.WordTables:
+    """Tables with this tree for the letter a and a single leaf for every other letter."""
+    others, size = 26, len(question)
+    return tables.WordTables(tuple(range(sounds)), np.array([0, *range(size, size + others + 1)]),
+                             np.array(question + [-1] * others), np.array(yes + [0] * others),
+                             np.array(no + [0] * others), np.array(label + [0] * others), {})
+
+
+def grown(labels: List[int]) -> tables.WordTables:
+    """Tables whose tree for a halves these labels until one is left."""
+    nodes: List[List[int]] = []
+
+    def add(part: List[int]) -> int:
+        number = len(nodes)
+        nodes.append([-1, 0, 0, part[0]])
+        if len(part) > 1:
+            half = len(part) // 2
+            nodes[number][:3] = [number % 400, add(part[:half]), add(part[half:])]
+        return number
+
+    add(labels)
+    return one_tree(max(labels) + 1, *([row[i] for row in nodes] for i in range(4)))
+
+
+def test_packing_has_limits() -> None:
+    """What the format cannot hold is refused: 33 labels of a letter, a part for yes of 8 KB; so are trees that no
+    trainer makes."""
+    assert len(packing.pack(grown(list(range(32)))).leaves) == 32 + 26
+    with pytest.raises(ModelError, match="the letter a has 33 labels"):
+        packing.pack(grown(list(range(33))))
+    assert len(packing.pack(grown([0, 1] * 2048)).trees) > 8191
+    with pytest.raises(ModelError, match="a part of the tree of a has"):
+        packing.pack(grown([0, 1] * 4096))
+    deep = [0, -1] * 300 + [-1]
+    with pytest.raises(ModelError, match="too deep"):
+        one_tree(1, deep, [i + 2 for i in range(601)], [i + 1 for i in range(601)], [0] * 601)
+    with pytest.raises(ModelError, match="below two others"):
+        one_tree(1, [0, -1], [1, 0], [1, 0], [0, 0])
+    with pytest.raises(ModelError, match="belongs to no tree"):
+        one_tree(1, [0, -1, -1, -1], [1, 0, 0, 0], [2, 0, 0, 0], [0] * 4)
+
+
+# ---- The C decoder
+
+
+def test_the_c_suite_knows_the_cases() -> None:
+    """Catches tables or rules that changed and are not written for test_words.c: run tests/c/words.py then."""
+    assert (SOURCE / "tests/c/words_cases.h").read_text(encoding="ascii") == cases.header()
+
+
+def in_c(given: List[str]) -> List[Tuple[str, Tuple[str, ...], Tuple[int, ...]]]:
+    from labial.core.words import read
+    return [tuple(read(word)) for word in given]
+
+
+def by_reference(found: tables.WordTables, given: List[str]) -> List[Tuple[str, Tuple[str, ...], Tuple[int, ...]]]:
+    result = []
+    for word in given:
+        reading = text.read(found, word)
+        result.append((reading.kind, tuple(dictionary.PHONEMES[p] for p, _, _ in reading.phonemes),
+                       tuple(place for _, place, _ in reading.phonemes)))
+    return result
+
+
+@needs_runtime
+def test_c_reads_words_as_the_reference_does(trained: tables.WordTables) -> None:
+    """Common words, and all of a dictionary where one is given: every letter of every one."""
+    given = dictionary.read_common(dictionary.COMMON)[::3]
+    if CMUDICT:
+        given = sorted({entry.word for entry in dictionary.read_dictionary(CMUDICT)})
+    assert in_c(given) == by_reference(trained, given)
+
+
+@needs_runtime
+@pytest.mark.skipif(not CMUDICT, reason="LABIAL_CMUDICT names no cmudict.dict")
+def test_bundled_tables_are_those_of_the_dictionary(tmp_path: Path) -> None:
+    """Catches a trainer that changed under the tables."""
+    assert main(["train-words", CMUDICT, "-o", str(tmp_path / "w.npz"), "--quiet"]) == 0
+    again, known = tables.load(tmp_path / "w.npz"), tables.load(TRAINED)
+    assert np.array_equal(again.question, known.question) and again.exceptions == known.exceptions
+
+
+@needs_runtime
+def test_c_reads_any_text_as_the_reference_does(trained: tables.WordTables) -> None:
+    """Texts of the characters by which rules tell things apart, in any order."""
+    alphabet = "abeigxyzAEIXYZTVUSmrstndh0123456789..,,''-–&%@+=[]<>_ éñÆßœŁ’Ж中😀\u0301\u200b½Ａ"
+    numbers = random.Random(7)
+    given = ["".join(numbers.choice(alphabet) for _ in range(numbers.randint(0, numbers.choice([3, 6, 12, 40, 300]))))
+             for _ in range(3000)]
+    assert in_c(given) == by_reference(trained, given)
+
+
+@needs_runtime
+def test_c_shares_time_as_the_reference_does(trained: tables.WordTables) -> None:
+    """All but the last word of a sentence, which no pause follows."""
+    from labial.core.words import WordStream
+
+    given = [word for word in dictionary.read_common(dictionary.COMMON)[:800] if len(word) > 1
+             and tuple(p for p, _, _ in text.read(trained, word).phonemes) == decoder.phonemes(trained, word)]
+    numbers = random.Random(3)
+    stream, moment, got, expected = WordStream(), 0, [], []
+    for word in given:
+        length = numbers.randint(200, 900)
+        stream.say(word, moment, moment + length)
+        got += stream.take()
+        heard = decoder.phonemes(trained, word)
+        ends = times.ends(times.weights(heard, word == given[-1]), length)
+        expected += [(dictionary.PHONEMES[p], end - start) for p, start, end in zip(heard, [0, *ends], ends)]
+        moment += length
+    stream.flush()
+    assert got + stream.take() == expected
+
+
+def test_weights_are_worked_by_hand() -> None:
+    """"tie" and "bat" before a pause."""
+    number: Dict[str, int] = {label: place for place, label in enumerate(dictionary.PHONEMES)}
+    tie = times.weights([number["T"], number["AY"]], False)
+    assert tie[0] == 64 * 73 * 300 >> 8  # first
+    ay = 64 * 144
+    for factor in (276, 264, 276, 261):  # the only vowel, so in the last and the first syllable; at the word's end
+        ay = ay * factor >> 8
+    assert tie[1] == ay
+    pause = times.weights([number["B"], number["AE"], number["T"]], True)
+    assert pause[2] == (64 * 73 * 261 >> 8) * 353 >> 8  # last; behind the last vowel before a pause
+    assert times.ends([1, 1, 2], 401) == [100, 201, 401]
+    assert set(ARPABET) == set(dictionary.PHONEMES[1:])
+
+
+def test_a_changed_exception_is_seen(trained: tables.WordTables) -> None:
+    """The tests above can fail: another exception gives other bytes and other phonemes."""
+    word = next(iter(trained.exceptions))
+    other = replace(trained, exceptions={**trained.exceptions, word: ((0, 0),)})
+    assert packing.pack(other).patches != packing.pack(trained).patches
+    assert decoder.phonemes(other, word) != decoder.phonemes(trained, word)

@@ -1,0 +1,162 @@
+"""The Python interface of words: texts, words with times, characters with times, other languages, numbers."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from typing import List, Tuple
+
+import pytest
+
+import labial
+from labial.corpus import words as spoken
+from labial.corpus.words import Pronunciation, Word, timings_of, words_of_characters
+from labial.errors import LabialError, StreamError
+from runtime import needs_runtime
+
+pytestmark = needs_runtime
+needs_espeak = pytest.mark.skipif(not shutil.which("espeak-ng"), reason="no espeak-ng: install the Debian package")
+
+
+def total(timings: List[Tuple[str, int]]) -> int:
+    return sum(milliseconds for _, milliseconds in timings)
+
+
+def test_a_text_becomes_phonemes() -> None:
+    assert labial.phonemes(
+        "Hello, world! 😀 [sighs]") == "HH EH L OW W ER L D".split()
+    assert labial.phonemes("") == [] and labial.phonemes("Привет") == []
+    with pytest.raises(TypeError, match="a text is a str"):
+        labial.phonemes(7)  # type: ignore[arg-type]
+
+
+def test_own_words_come_first() -> None:
+    assert labial.phonemes("Kokoro!", own={"kokoro": "K OW K AO R OW"}) == "K OW K AO R OW".split()
+    assert labial.phonemes("Zed’s", own={"Zed’s": ["Z", "EH", "D", "Z"]}) == ["Z", "EH", "D", "Z"]
+    for own, problem in (({"a": "QQ"}, "'a': 'QQ' is no phoneme of ARPABET"), ({"a": ["AA"] * 97}, "97 phonemes")):
+        with pytest.raises(LabialError, match=problem):
+            labial.phonemes("a", own=own)
+    many = {f"w{number}": "AA" for number in range(70_000)}
+    with pytest.raises(LabialError, match="more than 65535"):
+        labial.phonemes("a", own=many)
+
+
+def test_words_with_times_become_timings() -> None:
+    """Silence until the first word; a gap under 150 ms belongs to the word before it, a longer one is silence."""
+    timings = labial.word_timings([("Mama", 200, 500), ("may", 600.4, 800), ("go.", 1000, 1300)])
+    assert timings[0] == ("SIL", 200) and total(timings) == 1300
+    assert [label for label, _ in timings] == "SIL M AA M AH M EY SIL G OW".split()
+    ends = [sum(ms for _, ms in timings[: n + 1]) for n in range(len(timings))]
+    assert ends[4] == 600 and ends[6] == 800 and ends[7] == 1000
+    assert len(labial.render(timings)) == 65
+
+
+def test_ends_may_be_unknown_and_offsets_are_added() -> None:
+    plain = labial.word_timings([("one", 100, None), ("two", 400, None)])
+    later = labial.word_timings([("one", 100, None), ("two", 400, None)], offset_ms=70)
+    assert later[0] == ("SIL", 170) and later[1:] == plain[1:]
+    assert labial.word_timings([("one", 100, 300)], offset_ms=-500) == []
+    assert total(labial.word_timings([("one", 100, 300)], offset_ms=-150)) == 150
+
+
+@pytest.mark.parametrize("given, problem", [
+    ([("a", 200, 100)], "'?a'?: a word or a character ends before it begins"),
+    ([("a", 200, 300), ("b", 100, 300)], "begins before an earlier one"),
+    ([("a", 0, 3_600_001)], "exceeds LABIAL_DURATION_MAX"), ([("a", -1, 2)], "-1 ms is no time"),
+    ([("a", float("nan"), 2)], "nan ms is no time"), ([("a", 0, float("inf"))], "inf ms is no time")])
+def test_times_that_cannot_be_are_errors(given: list, problem: str) -> None:
+    with pytest.raises(LabialError, match=problem):
+        labial.word_timings(given)
+
+
+def test_wrong_types_are_errors() -> None:
+    for given in (["word"], [("word", 1)], [(1, 1, 2)]):
+        with pytest.raises(TypeError, match="word 1 is no text"):
+            labial.word_timings(given)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="a time is a number"):
+        labial.word_timings([("a", "1", 2)])  # type: ignore[list-item]
+    with pytest.raises(LabialError, match="an offset of inf ms"):
+        labial.word_timings([("a", 1, 2)], offset_ms=float("inf"))
+
+
+def test_characters_with_times_become_timings() -> None:
+    """Equal characters tell nothing of the phonemes; a long one makes its phoneme longer; tags are left out."""
+    text = "Hi <b>there</b> [laughs out loud] you"
+    even = labial.character_timings(text, [50 * i for i in range(len(text))], [50 * i + 50 for i in range(len(text))])
+    words = labial.word_timings([("Hi", 0, 100), ("there", 300, 550), ("you", 1700, 1850)])
+    assert even == words
+    slow = labial.character_timings(["m", "y"], [0, 300], [300, 400])
+    assert total(slow) == 400 and slow[0][1] > labial.word_timings([("my", 0, 400)])[0][1] + 50
+    with pytest.raises(LabialError, match="2 characters have 1 beginnings and 2 ends"):
+        labial.character_timings("my", [0], [1, 2])
+
+
+def test_characters_become_words() -> None:
+    """Items of several characters share their time, one that ends early ends with the one before; blanks and tags end
+    words."""
+    found = words_of_characters(["a", "bc", " ", "[x y]", "d", "e", "\n"], [0, 10, 50, 60, 70, 80, 90],
+                                [10, 50, 60, 70, 80, 75, 99])
+    assert found == [Word("abc", 0, 50, (10, 30, 50)), Word("de", 70, 80, (80, 80))]
+    assert words_of_characters([], [], []) == []
+    assert words_of_characters(["[", "a"], [0, 1], [1, 2]) == []
+    long = timings_of([Word("a" * 300, 0, 900, tuple(3 * i + 3 for i in range(300)))])  # more than the library reads
+    assert total(long) == 900
+
+
+def test_any_text_is_read() -> None:
+    """Half surrogates, NUL and characters of every plane."""
+    timings = labial.word_timings([("\ud800", 0, 100), ("a\0b", 100, 200), ("\U0010ffff", 200, 300), ("", 300, 400)])
+    assert total(timings) == 200
+    assert labial.word_timings([("日本語", 0, 600)]) == [("AH", 200), ("L", 200), ("AH", 200)]
+
+
+@needs_espeak
+def test_other_languages_are_espeaks() -> None:
+    """German, Russian and British words, as phonemes of English; own words and silent ones come first."""
+    assert labial.phonemes("Mama", language="de") == ["M", "AA", "M", "AA"]
+    assert labial.phonemes("Привет, мама", language="ru")[-4:-1] == ["M", "AA", "M"]
+    assert labial.phonemes("bad - lot ... pub", language="en-gb")[0] == "B"
+    assert labial.phonemes("Mama", language="de", own={"Mama": "P AA"}) == ["P", "AA"]
+    timings = labial.word_timings([("Guten", 0, 300), ("Tag!", 300, 600)], language="de")
+    assert total(timings) == 600 and timings[0][0] == "G"
+    with pytest.raises(LabialError, match="espeak-ng cannot speak 'xx-none'"):
+        labial.phonemes("a", language="xx-none")
+
+
+def test_languages_that_cannot_be_had_are_errors(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    with pytest.raises(LabialError, match="needs espeak-ng: install"):
+        labial.phonemes("a", language="de")
+    monkeypatch.setattr(shutil, "which", lambda _: "/bin/false")
+    with pytest.raises(LabialError, match="is no language of espeak-ng"):
+        labial.phonemes("a", language="-v")
+
+
+def test_numbers_are_written_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By num2words, for which a stand-in records what it is asked."""
+    asked = []
+
+    class Stub:
+        @staticmethod
+        def num2words(value: float, lang: str, to: str) -> str:
+            asked.append((value, lang, to))
+            if value == 13:
+                raise NotImplementedError
+            return "one hundred and one"
+
+    monkeypatch.setitem(sys.modules, "num2words", Stub)
+    got = labial.phonemes("In 1984, 101 or 2,300.5", numbers=True)
+    assert asked == [(1984, "en", "year"), (101, "en", "cardinal"), (2300.5, "en", "cardinal")]
+    words = labial.phonemes("one hundred one")
+    assert got == [*labial.phonemes("in"), *words, *words, *labial.phonemes("or"), *words]
+    with pytest.raises(LabialError, match="num2words cannot write '13' in the language 'en'"):
+        labial.phonemes("13", numbers=True)
+    monkeypatch.setitem(sys.modules, "num2words", None)
+    with pytest.raises(LabialError, match=r"numbers in words needs the package num2words: install labial\[numbers\]"):
+        labial.phonemes("101", numbers=True)
+
+
+def test_a_refused_word_is_named() -> None:
+    with pytest.raises(StreamError, match="^over: "):
+        timings_of([Word("over", 5, 4)], Pronunciation())
+    assert spoken.PLAIN.language == "en"
