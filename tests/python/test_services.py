@@ -152,7 +152,7 @@ CHUNK = {"sample_rate": 100, "phoneme_alignments": [{"phoneme": "m", "num_sample
     ("azure", [{"audio_offset": 0, "viseme_id": 22}], None, "'22'"),
     ("azure", [{"audio_offset": 9, "viseme_id": 2}, {"audio_offset": -1, "viseme_id": 0}], None, "entry 2"),
     ("azure", [{"audio_offset": 90000, "viseme_id": 2}, {"audio_offset": 1, "viseme_id": 0}], None, "before its start"),
-    ("polly", '{"time":0,"type":"word","value":"a"}', None, "no speech marks of type 'viseme'"),
+    ("polly", '{"time":0,"type":"ssml","value":"a"}', None, "no speech marks of type 'viseme' or 'word'"),
     ("polly", '{"time":0,"type":"viseme","value":"p"}\n{"time":5,"type":"viseme","value":"?"}\n', 2, "'?'"),
     ("headtts", {"phonemes": ["m"], "vtimes": [0, 1], "vdurations": [5]}, None, "one length"),
     ("headtts", {"phonemes": [1], "vtimes": [0], "vdurations": [5]}, None, "one length"),

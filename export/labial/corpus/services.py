@@ -7,21 +7,21 @@ own, else with the number of the entry.
 Characters, as from Piper and Kokoro, become phonemes: a stress mark's time goes to the vowel after it, that of a length
 mark or diacritic to the phoneme before it, the two halves of a diphthong or affricate are one phoneme, and punctuation
 is silence. The blank between two words takes time, too, but lips do not rest there: up to `LONGEST_BLANK`, its time is
-added to the phoneme before it.
+added to the phoneme before it. What services tell of words and of written characters is read by
+:mod:`labial.corpus.word_services`.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import unicodedata
-from dataclasses import dataclass
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
+from labial.corpus import word_services
+from labial.corpus.entries import Entry, entry_of, read_entries, shown
 from labial.corpus.timings import PathLike, SourceSegment, checked
 from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
 from labial.errors import DataError
-from labial.files.grammar import is_blank, lines_of, read_text
 
 #: A blank between words, or a gap between a service's phonemes, is a pause if it is longer, in seconds.
 LONGEST_BLANK = 0.15
@@ -37,83 +37,6 @@ _STRESS = ("ˈ", "ˌ")
 _PAIRS = ("aɪ", "aʊ", "ɔɪ", "eɪ", "oʊ", "əʊ", "tʃ", "dʒ", "ɜɹ")
 #: Kokoro's letters (its grapheme-to-phoneme step Misaki's) that are not the IPA's.
 _MISAKI = {"A": "eɪ", "I": "aɪ", "O": "oʊ", "Q": "əʊ", "W": "aʊ", "Y": "ɔɪ", "T": "ɾ", "ᵊ": "ə"}
-
-
-@dataclass(frozen=True)
-class Entry:
-    """One object of a file: `line` if a line is a document, else its `number` in the document, from 1."""
-
-    path: PathLike
-    line: Optional[int]
-    number: int
-    fields: Dict[str, Any]
-
-    def error(self, problem: str) -> DataError:
-        """`problem`, with its place in the file."""
-        return DataError(self.path, self.line, problem if self.line else f"entry {self.number}: {problem}")
-
-    def get(self, *names: str) -> Any:
-        """The first existing field of `names`, ignoring case and underscores of the file's keys."""
-        for key, value in self.fields.items():
-            if _plain(key) in names:
-                return value
-        raise self.error(f"no field {names[0]!r}")
-
-    def has(self, *names: str) -> bool:
-        """Whether all of `names` exist."""
-        return {_plain(key) for key in self.fields} >= set(names)
-
-    def number_of(self, *names: str) -> float:
-        """A field that must be a finite number, not below zero."""
-        return self.as_number(self.get(*names), names[0])
-
-    def as_number(self, value: Any, what: str) -> float:
-        """`value` as a float, or an error."""
-        try:
-            number = float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else math.nan
-        except OverflowError:
-            number = math.inf
-        if not 0.0 <= number < math.inf:
-            raise self.error(f"{what!r} is {_shown(value)}, not a number from 0 on")
-        return number
-
-    def text_of(self, *names: str) -> str:
-        """A field that must be text."""
-        value = self.get(*names)
-        if not isinstance(value, str):
-            raise self.error(f"{names[0]!r} is {_shown(value)}, not text")
-        return value
-
-    def list_of(self, *names: str) -> List[Any]:
-        """A field that must be a list."""
-        value = self.get(*names)
-        if not isinstance(value, list):
-            raise self.error(f"{names[0]!r} is {_shown(value)}, not a list")
-        return value
-
-    def parts(self, *names: str) -> List[Entry]:
-        """A field that must be a list of objects, as entries."""
-        return [_entry(self.path, self.line, number, item) for number, item in enumerate(self.list_of(*names), 1)]
-
-
-def read_entries(path: PathLike) -> List[Entry]:
-    """The objects of a file: those of a list, a single one, or one per line."""
-    text = read_text(path)
-    try:
-        document = _loads(path, text)
-        items = document if isinstance(document, list) else [document]
-        return [_entry(path, None, number, item) for number, item in enumerate(items, 1)]
-    except json.JSONDecodeError as error:
-        lines = [(number, line) for number, line in enumerate(lines_of(text), 1) if not is_blank(line)]
-        if len(lines) < 2 or not _is_document(lines[0][1]):
-            raise DataError(path, error.lineno, f"not JSON: {error.msg}") from None
-    entries = []
-    for number, line in lines:
-        try:
-            entries.append(_entry(path, number, number, _loads(path, line)))
-        except json.JSONDecodeError as error:
-            raise DataError(path, number, f"not JSON: {error.msg}") from None
-    return entries
 
 
 def read_plain(path: PathLike) -> List[SourceSegment]:
@@ -164,7 +87,7 @@ def read_headtts(path: PathLike) -> List[SourceSegment]:
     origin = 0.0
     for item in read_entries(path):
         if not item.has("vtimes") and isinstance(item.fields.get("data"), dict):
-            item = _entry(path, item.line, item.number, item.fields["data"])  # as the client library returns it
+            item = entry_of(path, item.line, item.number, item.fields["data"])  # as the client library returns it
         labels = item.list_of("phonemes")
         starts = [item.as_number(value, "vtimes") / 1000 for value in item.list_of("vtimes")]
         lengths = [item.as_number(value, "vdurations") / 1000 for value in item.list_of("vdurations")]
@@ -184,7 +107,7 @@ def read_azure(path: PathLike) -> List[SourceSegment]:
     its libraries."""
     marks = []
     for item in read_entries(path):
-        name = _shown(item.get("visemeid", "privvisemeid"))
+        name = shown(item.get("visemeid", "privvisemeid"))
         marks.append((item.number_of("audiooffset", "privaudiooffset") / AZURE_RATE, name, item.line))
     return _from_visemes(path, marks, AZURE, AZURE_PAIRS)
 
@@ -196,6 +119,18 @@ def read_polly(path: PathLike) -> List[SourceSegment]:
     if not marks:
         raise DataError(path, None, "no speech marks of type 'viseme'")
     return _from_visemes(path, marks, POLLY, {})
+
+
+def read_azure_events(path: PathLike) -> List[SourceSegment]:
+    """Azure's visemes, or its word boundaries (and Edge's) where the file has no others."""
+    has_visemes = any(not word_services.is_boundary(item) for item in read_entries(path))
+    return read_azure(path) if has_visemes else word_services.read_boundaries(path)
+
+
+def read_polly_marks(path: PathLike) -> List[SourceSegment]:
+    """Amazon Polly's visemes, or its words where there are none."""
+    has_visemes = any(item.get("type") == "viseme" for item in read_entries(path))
+    return read_polly(path) if has_visemes else word_services.read_word_marks(path)
 
 
 class Service(NamedTuple):
@@ -224,8 +159,10 @@ def _is_plain(first: Entry) -> bool:
 SERVICES: Dict[str, Service] = {
     "kokoro": Service("Kokoro", read_kokoro, lambda first: first.has("preddur")),
     "headtts": Service("HeadTTS", read_headtts, _is_headtts),
-    "azure": Service("Azure", read_azure, lambda first: first.has("visemeid") or first.has("privvisemeid")),
-    "polly": Service("Polly", read_polly, lambda first: first.has("type", "time", "value")),
+    "azure": Service("Azure", read_azure_events, lambda first: first.has("visemeid") or first.has("privvisemeid")
+                     or word_services.is_boundary(first)),
+    "polly": Service("Polly", read_polly_marks, lambda first: first.has("type", "time", "value")),
+    **{name: Service(title, read, told) for name, (title, read, told) in word_services.SERVICES.items()},
     "piper": Service("Piper", read_piper, _is_piper),
     "json": Service("other programs (phoneme, start, end)", read_plain, _is_plain),
 }
@@ -288,7 +225,7 @@ def _piper_phonemes(entries: Sequence[Entry]) -> List[Entry]:
             last = item.get("last")
             if not isinstance(last, dict):
                 raise item.error("the server has not spoken yet: ask for /info after /synthesize")
-            item = _entry(item.path, item.line, item.number, last)
+            item = entry_of(item.path, item.line, item.number, last)
         if item.has("phonemealignments"):
             if item.get("phonemealignments") is None:
                 raise item.error("Piper told no alignments: ask for them by include_alignments=True, of a voice that "
@@ -296,7 +233,7 @@ def _piper_phonemes(entries: Sequence[Entry]) -> List[Entry]:
             rate = item.number_of("samplerate")
             if rate < 1:
                 raise item.error(f"'sample_rate' is {rate:g}")
-            result += [_entry(part.path, part.line, part.number, {
+            result += [entry_of(part.path, part.line, part.number, {
                 "phoneme": part.get("phoneme"), "seconds": part.number_of("numsamples") / rate,
             }) for part in item.parts("phonemealignments")]
         elif item.has("alignments"):
@@ -321,34 +258,3 @@ def _from_visemes(
     for (first, last), phoneme in stand_ins([name for _, name, _ in marks], table, pairs):
         segments.append(SourceSegment(marks[first][0], ends[last], phoneme, line=marks[first][2], labels="arpabet"))
     return checked(path, segments)
-
-
-def _entry(path: PathLike, line: Optional[int], number: int, item: Any) -> Entry:
-    if not isinstance(item, dict):
-        raise Entry(path, line, number, {}).error(f"{_shown(item)} is not an object")
-    return Entry(path, line, number, item)
-
-
-def _loads(path: PathLike, text: str) -> Any:
-    try:
-        return json.loads(text)
-    except (RecursionError, ValueError) as error:  # nested too deeply; a number of too many digits
-        if isinstance(error, json.JSONDecodeError):
-            raise
-        raise DataError(path, None, "JSON that is nested too deeply or has a number of too many digits") from None
-
-
-def _is_document(line: str) -> bool:
-    try:
-        return isinstance(json.loads(line), dict)
-    except (RecursionError, ValueError):
-        return False
-
-
-def _plain(key: str) -> str:
-    return key.replace("_", "").lower()
-
-
-def _shown(value: Any) -> str:
-    text = value if isinstance(value, str) else json.dumps(value)
-    return text if len(text) <= 40 else text[:37] + "..."
