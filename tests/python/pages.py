@@ -221,7 +221,8 @@ class Runner:
         name = block.name or f"block-{block.line}{suffix}"
         path = self._folder / name
         path.write_text(block.text, encoding="utf-8")
-        options = ["-Wall", "-Wextra", "-Werror", "-I.", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}"]
+        options = ["-Wall", "-Wextra", "-Werror", "-I.", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}",
+                   f"-I{SOURCE / 'lib' / 'words'}"]
         target = str(path.with_name(path.name + ".out"))
         self._call([*compiler, *options, "-c", name, "-o", target])
         if _MAIN.search(block.text):

@@ -52,6 +52,9 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     "python.md": {
         "pip install .": "fetches what builds it; test_wheel.py installs the package without",
     },
+    "words.md": {
+        "labial train-words cmudict.dict -o words.npz --held-out": "needs the dictionary; test_words.py trains on less",
+    },
     "reproduction.md": {
         "python3 -m venv build/reproduce && build/reproduce/bin/pip install -r export/requirements-reproduce.txt":
             "fetches; what it installs is in the tests' environment",
@@ -76,7 +79,8 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
 def objects(tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
     """The library and the bundled models, compiled."""
     folder = tmp_path_factory.mktemp("objects")
-    sources = [*(SOURCE / "lib").glob("*.c"), *(SOURCE / "lib" / "models").glob("*.c")]
+    sources = [*(SOURCE / "lib").glob("*.c"), *(SOURCE / "lib" / "models").glob("*.c"),
+               *(SOURCE / "lib" / "words").glob("*.c")]
     run(CC, "-std=c99", "-O1", f"-I{SOURCE / 'include'}", "-c", *sources, cwd=folder)
     return sorted(folder.glob("*.o"))
 

@@ -427,7 +427,9 @@ def test_component_of_esp_idf_has_what_it_builds_from(tmp_path: Path) -> None:
 def test_zephyr_module_offers_every_model() -> None:
     """A model without an option could never be linked; module.yml names what exists."""
     options = re.findall(r"^config (\w+)$", (SOURCE / "zephyr" / "Kconfig").read_text(encoding="utf-8"), re.MULTILINE)
-    assert sorted(options) == sorted(f"LABIAL_{model.upper()}" for model in bundled()), "zephyr/Kconfig and lib/models"
+    words = [path.stem for path in (SOURCE / "lib" / "words").glob("*.h")]
+    tables = [*bundled(), *words]
+    assert sorted(options) == sorted(f"LABIAL_{name.upper()}" for name in tables), "zephyr/Kconfig, lib/models, lib/words"
     module = (SOURCE / "zephyr" / "module.yml").read_text(encoding="utf-8")
     assert (SOURCE / re.findall(r"^  cmake: (.*)$", module, re.MULTILINE)[0] / "CMakeLists.txt").is_file()
     assert (SOURCE / re.findall(r"^  kconfig: (.*)$", module, re.MULTILINE)[0]).is_file()
