@@ -37,6 +37,9 @@ static const char ordinals[] = "zeroth\0first\0second\0third\0fourth\0fifth\0six
 static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0jay\0kay\0ell\0em\0en\0oh\0pee\0cue\0"
                                    "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
 
+/* Letters of the longest word in these lists: "seventeenth". */
+#define LONGEST_SAID 11
+
 /* Signs that are said, and abbreviations with what they stand for; a blank separates spoken words. */
 static const char signs[] = "&and\0@at\0%percent\0+plus\0=equals\0";
 static const char abbreviations[] = "mr\0mister\0mrs\0missiz\0ms\0mizz\0dr\0doctor\0st\0saint\0prof\0professor\0"
@@ -170,7 +173,7 @@ static int is_in_word(unsigned code)
 /* Says words of small letters, separated by blanks, where the text's `character` is. */
 static void say(reading_t *reading, const char *words, unsigned character)
 {
-    labial_words_letter_t letters[LABIAL_WORDS_LETTERS];
+    labial_words_letter_t letters[LONGEST_SAID];
     unsigned count = 0;
     for (;; words++) {
         if (*words > ' ') {

@@ -29,9 +29,10 @@ def updated(text: str, figures: Sequence[Figure]) -> str:
     taken = f"{round(value['m0', 'speech: cycles'], -2):,.0f} cycles for the {number('speech: mean')}"
     stream = f"stream {number('labial_t')}, workspace {number('speech: workspace')};"
     binary = value["m0", "code -Os: blob.c"] + value["m0", "code -Os: model.c"]
+    words = sum(value["m0", f"code -Os: {name}.c"] for name in ("words", "words_text", "words_time"))
     used = (f"rig {number('code -Os: rig.c')}; laughs {number('code -Os: laugh.c')}; speaking while laughing "
             f"{number('code -Os: blend.c')}; names {number('code -Os: names.c')} and speech's "
-            f"{number('speech: names')}; binary models {binary:,.0f} |")
+            f"{number('speech: names')}; binary models {binary:,.0f}; words {words:,.0f} and their tables {number('words: tables')} |")
     for pattern, replacement in (
         (r"(\| code \| )[\d,]+( \|.*the compiler adds )[\d,]+",
          rf"\g<1>{number('code -Os: total')}\g<2>{helpers}"),

@@ -83,8 +83,14 @@ def measure(bench: Bench, board: Board) -> None:
                 variables += found["data"] + found["bss"]
                 bench.add(board.preset, figure, found["text"], "bytes",
                           [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
+        path = bench.source / "lib" / "words" / "words_en.c"
+        run([*command, path, "-o", out])
+        found = sections(size, out)
+        variables += found["data"] + found["bss"]
+        bench.add(board.preset, "words: tables", found["text"], "bytes",
+                  [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
         bench.add(board.preset, ".data and .bss of library and models", variables, "bytes",
-                  [*command, "lib/*.c", "lib/models/*.c", "&&", size, "*.o"], tool_version)
+                  [*command, "lib/*.c", "lib/models/*.c", "lib/words/*.c", "&&", size, "*.o"], tool_version)
         _ram(bench, board, command, Path(scratch), tool_version)
 
 

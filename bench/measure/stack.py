@@ -103,7 +103,8 @@ def public_functions(bench: Bench, header: str = "labial.h") -> List[str]:
 
 
 def measure(bench: Bench, board: Board) -> None:
-    """The deepest call of labial_tick(), of all functions of labial.h and of those of all headers, at each level."""
+    """The deepest call of labial_tick(), of all functions of labial.h, of those of all headers but words.h, which few
+    programs use, and of words.h, at each level."""
     tool_version = version(compiler(board))
     for level in LEVELS:
         graph = CallGraph()
@@ -116,12 +117,14 @@ def measure(bench: Bench, board: Board) -> None:
             for found in sorted(Path(scratch).glob("*.ci")):
                 graph.add_ci(found.read_text(encoding="utf-8"))
         add_archive(graph, board, cpu_flags(bench, board))
-        headers = sorted(path.name for path in (bench.source / "include" / "labial").glob("*.h"))
+        headers = sorted(path.name for path in (bench.source / "include" / "labial").glob("*.h")
+                         if path.name != "words.h")
         everything = [name for header in headers for name in public_functions(bench, header)]
         shown = [*command, "lib/*.c"]
         for figure, depth in (
             (f"stack {level}: labial_tick()", graph.deepest("labial_tick")),
             (f"stack {level}: every function", max(graph.deepest(name) for name in public_functions(bench))),
             (f"stack {level}: all of lib", max(graph.deepest(name) for name in everything)),
+            (f"stack {level}: words.h", max(graph.deepest(name) for name in public_functions(bench, "words.h"))),
         ):
             bench.add(board.preset, figure, depth[0], "bytes", [*shown, "#", " > ".join(depth[1])], tool_version)
