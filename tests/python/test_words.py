@@ -62,7 +62,8 @@ def test_a_dictionary_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content, problem", [
-    ("a AH0\nb QQ1\n", ":2: 'QQ' is not a phoneme of ARPABET"), ("a AH0\nb\n", ":2: 'b' has no phonemes"),
+    ("a AH0\nb QQ1\n", ":2: 'QQ' is not a phoneme of ARPABET"), ("a AH0\nb\n", ":2: 'b' has 0 phonemes, not 1 to 64"),
+    ("a " + "AH0 " * 65, ":1: 'a' has 65 phonemes"),
     ("4 F AO R\n", ": no word of the letters a to z")])
 def test_a_damaged_dictionary_is_refused(tmp_path: Path, content: str, problem: str) -> None:
     path = tmp_path / "d"

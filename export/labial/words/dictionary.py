@@ -30,6 +30,8 @@ PHONEMES: Tuple[str, ...] = ("SIL", *ARPABET)
 #: The list of common words that comes with this package.
 COMMON = Path(__file__).with_name("common.txt")
 
+#: Most phonemes of a word: two for each letter.
+_PHONEMES_MOST = 2 * LONGEST
 _WORD = re.compile(r"[a-z']+")
 _VARIANT = re.compile(r"\(\d+\)$")
 
@@ -52,8 +54,8 @@ class Entry:
 def read_dictionary(path: PathLike) -> List[Entry]:
     """The entries of a dictionary file, in its order; repeated pronunciations of a word are dropped.
 
-    Raises DataError, with the line, for a phoneme that ARPABET lacks, a word without phonemes, and a file without
-    words.
+    Raises DataError, with the line, for a phoneme that ARPABET lacks, a word without phonemes or with more than two
+    for each of `LONGEST` letters, and a file without words.
     """
     numbers = {name: number for number, name in enumerate(PHONEMES)}
     found: Dict[str, List[Tuple[int, ...]]] = {}
@@ -67,8 +69,8 @@ def read_dictionary(path: PathLike) -> List[Entry]:
             phonemes = tuple(numbers[name.rstrip("012")] for name in fields[1:])
         except KeyError as error:
             raise DataError(path, line, f"{error.args[0]!r} is not a phoneme of ARPABET") from None
-        if not phonemes:
-            raise DataError(path, line, f"{word!r:.40} has no phonemes")
+        if not 0 < len(phonemes) <= _PHONEMES_MOST:
+            raise DataError(path, line, f"{word!r:.40} has {len(phonemes)} phonemes, not 1 to {_PHONEMES_MOST}")
         if not _WORD.fullmatch(word) or len(word) > LONGEST:
             continue
         known = found.setdefault(word, [])
