@@ -42,7 +42,7 @@ def properties(source: Source) -> str:
         "url": source.url,
         "architectures": ",".join(ARCHITECTURES),
         "includes": "Labial.h," + ",".join(f"{model.name}.h" for model in source.models),
-        "license": "MIT AND CC-BY-4.0",
+        "license": "MIT AND CC-BY-4.0 AND BSD-2-Clause",
     }
     return "".join(f"{key}={value}\n" for key, value in values.items())
 

@@ -28,7 +28,7 @@ def bill(tree: Path, packages: List[Path], moment: int) -> Item:
         "metadata": {
             "timestamp": datetime.fromtimestamp(moment, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
             "component": {"type": "library", "bom-ref": "labial", "name": "labial", "version": version,
-                          "licenses": [{"expression": "MIT AND CC-BY-4.0"}]},
+                          "licenses": [{"expression": "MIT AND CC-BY-4.0 AND BSD-2-Clause"}]},
         },
         "components": components,
         "dependencies": [{"ref": "labial", "dependsOn": [item["bom-ref"] for item in components
@@ -42,7 +42,7 @@ def _file(path: Path) -> Item:
 
 
 def _corpora(tree: Path) -> List[Item]:
-    """The training data of the bundled models, from their headers."""
+    """The training data of the bundled models, from their headers, and of the tables of words."""
     found = []
     for header in sorted((tree / "lib" / "models").glob("*.h")):
         (notice,) = re.findall(r"do not\s+\*?\s*edit\. ([^/]*)\.\s+\*/", header.read_text(encoding="utf-8"))
@@ -51,6 +51,10 @@ def _corpora(tree: Path) -> List[Item]:
         if "CC BY 4.0" in text:
             item["licenses"] = [{"license": {"id": "CC-BY-4.0"}}]
         found.append(item)
+    for header in sorted((tree / "lib" / "words").glob("*.h")):
+        found.append({"type": "data", "bom-ref": f"words:{header.stem}", "name": header.stem,
+                      "description": "Trained on the CMU Pronouncing Dictionary.",
+                      "licenses": [{"license": {"id": "BSD-2-Clause"}}]})
     return found
 
 

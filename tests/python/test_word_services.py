@@ -6,12 +6,14 @@ All samples say "Maybe, go." from 0.1 to 0.5 s and from 0.75 to 1 s; services/RE
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any, List, Tuple
 
 import pytest
 
 import labial
+from labial.__main__ import main
 from labial.corpus.formats import as_lab
 from labial.errors import DataError
 from runtime import needs_runtime
@@ -113,6 +115,27 @@ def test_malformed_files(tmp_path: Path, source: str, content: Any, problem: str
     with pytest.raises(DataError) as caught:
         phonemes(path, source)
     assert problem in str(caught.value) and str(caught.value).startswith(str(path)) and "\n" not in str(caught.value)
+
+
+def test_times_are_moved_and_words_pronounced_otherwise(tmp_path: Path) -> None:
+    """An offset for every format, cut off at the beginning; own words, and other languages where espeak-ng is."""
+    path = SAMPLES / "words.json"
+    plain = labial.read_timings(path)
+    assert labial.read_timings(path, offset_ms=50) == [("SIL", 50), *plain]
+    early = labial.read_timings(path, offset_ms=-300)
+    assert sum(milliseconds for _, milliseconds in early) == 700 and early[0][0] != "SIL"
+    assert sum(ms for _, ms in labial.read_timings(SAMPLES / "plain.json", offset_ms=40)) == 40 + sum(
+        ms for _, ms in labial.read_timings(SAMPLES / "plain.json"))
+    assert [label for label, _ in labial.read_timings(path, own={"maybe": "P AA"})] == "SIL P AA SIL G OW".split()
+    with pytest.raises(labial.errors.LabialError, match="an offset of nan ms"):
+        labial.read_timings(path, offset_ms=float("nan"))
+    out = tmp_path / "a.lab"
+    assert main(["timings", str(path), "--offset-ms", "50", "-o", str(out)]) == 0
+    assert out.read_text().splitlines()[0].split() [1:] == ["0.0500", "SIL"]
+    if shutil.which("espeak-ng"):
+        assert main(["timings", str(path), "--language", "de", "-o", str(out)]) == 0
+        assert out.read_text().split()[-1] == "OW"
+        assert labial.read_timings(path, language="de") != plain
 
 
 def test_parsed_json_is_read() -> None:

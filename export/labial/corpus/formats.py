@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
@@ -10,6 +11,7 @@ from labial.core import lines
 from labial.corpus import services
 from labial.corpus.phonesets import AUTO
 from labial.corpus.timings import PathLike, SourceSegment, lab_of, phone_set_of, phoneme_segments, read_segments
+from labial.corpus.words import PLAIN, Pronunciation
 from labial.errors import DataError
 from labial.files.grammar import read_text
 
@@ -36,17 +38,32 @@ def suffixes() -> Dict[str, str]:
     return {lines.suffix(name): name for name in lines.names() if lines.suffix(name)}
 
 
-def read_timings(path: PathLike, source: Optional[str] = None) -> List[SourceSegment]:
+def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciation = PLAIN,
+                 offset: float = 0.0) -> List[SourceSegment]:
     """Reads timings in the format `source`, one of `names()`; without it, in the one that the suffix tells, else
-    the content."""
+    the content. Where words are told, `how` says how they are pronounced. `offset` seconds are added to all times; what
+    that moves before the beginning is cut off."""
     form = source or suffixes().get(Path(path).suffix.lower()) or _told_by_content(path)
-    return services.SERVICES[form].read(path) if form in services.SERVICES else read_segments(path, form)
+    service = services.SERVICES.get(form)
+    if service is None:
+        segments = read_segments(path, form)
+    else:
+        segments = service.read(path, how) if service.words else service.read(path)
+    return _moved(segments, offset) if offset else segments
 
 
-def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None) -> str:
+def _moved(segments: List[SourceSegment], offset: float) -> List[SourceSegment]:
+    """Segments with `offset` seconds added to their times, from 0 on."""
+    return [replace(segment, start=max(0.0, segment.start + offset), end=segment.end + offset,
+                    apex=None if segment.apex is None else max(0.0, segment.apex + offset))
+            for segment in segments if segment.end + offset > 0.0]
+
+
+def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None, how: Pronunciation = PLAIN,
+           offset: float = 0.0) -> str:
     """Timings of any format as lines of ``start end phoneme``, seconds: phonemes of speech, or of laughter where that
     knows more of the labels. They follow each other without gaps from time 0."""
-    segments = read_timings(path, source)
+    segments = read_timings(path, source, how, offset)
     return lab_of(phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels))
 
 

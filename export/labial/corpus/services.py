@@ -21,6 +21,7 @@ from labial.corpus import word_services
 from labial.corpus.entries import Entry, entry_of, read_entries, shown
 from labial.corpus.timings import PathLike, SourceSegment, checked
 from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
+from labial.corpus.words import PLAIN, Pronunciation
 from labial.errors import DataError
 
 #: A blank between words, or a gap between a service's phonemes, is a pause if it is longer, in seconds.
@@ -121,24 +122,25 @@ def read_polly(path: PathLike) -> List[SourceSegment]:
     return _from_visemes(path, marks, POLLY, {})
 
 
-def read_azure_events(path: PathLike) -> List[SourceSegment]:
+def read_azure_events(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Azure's visemes, or its word boundaries (and Edge's) where the file has no others."""
     has_visemes = any(not word_services.is_boundary(item) for item in read_entries(path))
-    return read_azure(path) if has_visemes else word_services.read_boundaries(path)
+    return read_azure(path) if has_visemes else word_services.read_boundaries(path, how)
 
 
-def read_polly_marks(path: PathLike) -> List[SourceSegment]:
+def read_polly_marks(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Amazon Polly's visemes, or its words where there are none."""
     has_visemes = any(item.get("type") == "viseme" for item in read_entries(path))
-    return read_polly(path) if has_visemes else word_services.read_word_marks(path)
+    return read_polly(path) if has_visemes else word_services.read_word_marks(path, how)
 
 
 class Service(NamedTuple):
     """A shape of JSON."""
 
     title: str  #: the service's name, for messages
-    read: Callable[[PathLike], List[SourceSegment]]
+    read: Callable[..., List[SourceSegment]]  #: takes a path and, if it may tell words, a Pronunciation
     told: Callable[[Entry], bool]  #: whether the first object of a file is one of it
+    words: bool = False  #: whether it may tell words or characters
 
 
 def _is_piper(first: Entry) -> bool:
@@ -160,9 +162,9 @@ SERVICES: Dict[str, Service] = {
     "kokoro": Service("Kokoro", read_kokoro, lambda first: first.has("preddur")),
     "headtts": Service("HeadTTS", read_headtts, _is_headtts),
     "azure": Service("Azure", read_azure_events, lambda first: first.has("visemeid") or first.has("privvisemeid")
-                     or word_services.is_boundary(first)),
-    "polly": Service("Polly", read_polly_marks, lambda first: first.has("type", "time", "value")),
-    **{name: Service(title, read, told) for name, (title, read, told) in word_services.SERVICES.items()},
+                     or word_services.is_boundary(first), True),
+    "polly": Service("Polly", read_polly_marks, lambda first: first.has("type", "time", "value"), True),
+    **{name: Service(title, read, told, True) for name, (title, read, told) in word_services.SERVICES.items()},
     "piper": Service("Piper", read_piper, _is_piper),
     "json": Service("other programs (phoneme, start, end)", read_plain, _is_plain),
 }

@@ -1,8 +1,8 @@
 """What speech services tell of words, of written characters and of phonemes in their messages, as JSON.
 
-Words and characters are English; :mod:`labial.corpus.words` gives them phonemes. A file holds one message, a list of
-messages or one per line, in the order of their arrival; messages without timings, such as those of sound, are passed
-over. Where a service tells phonemes as well as words, the phonemes count.
+Words and characters get phonemes by :mod:`labial.corpus.words`, as `how` says: English ones without it. A file holds
+one message, a list of messages or one per line, in the order of their arrival; messages without timings, such as those
+of sound, are passed over. Where a service tells phonemes as well as words, the phonemes count.
 
 Some services tell the times of each message from its own sound, others from the beginning: a message that begins before
 the end of the one before it is taken to begin there.
@@ -15,7 +15,7 @@ from typing import Callable, Dict, Iterable, Iterator, List, NamedTuple, Optiona
 
 from labial.corpus.entries import Entry, entry_of, read_entries
 from labial.corpus.timings import PathLike, SourceSegment, checked
-from labial.corpus.words import LATEST, Word, timings_of, words_of_characters
+from labial.corpus.words import LATEST, PLAIN, Pronunciation, Word, timings_of, words_of_characters
 from labial.errors import DataError, StreamError
 
 #: Azure's and Edge's ticks per second.
@@ -43,13 +43,13 @@ class _Timed(NamedTuple):
 # ---- Readers
 
 
-def read_words(path: PathLike) -> List[SourceSegment]:
+def read_words(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads a list of objects with `word` (or `text`), `start` and `end`, in seconds; `start_time` and `end_time` do as
     well."""
-    return _from_words(path, [_word(item) for item in read_entries(path)])
+    return _from_words(path, [_word(item) for item in read_entries(path)], how)
 
 
-def read_boundaries(path: PathLike) -> List[SourceSegment]:
+def read_boundaries(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads word boundaries of Azure's libraries and of edge-tts: `text`, `audio_offset` (or `offset`) and `duration`,
     ticks of 100 ns; boundaries of sentences are passed over."""
     found = []
@@ -60,35 +60,35 @@ def read_boundaries(path: PathLike) -> List[SourceSegment]:
                 "privduration") else None
             text = item.text_of("text", "privtext")
             found.append(_Timed(text, start, None if length is None else start + length, item))
-    return _from_words(path, found)
+    return _from_words(path, found, how)
 
 
-def read_word_marks(path: PathLike) -> List[SourceSegment]:
+def read_word_marks(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads Amazon Polly's speech marks of type "word": `time` in milliseconds."""
     found = [_Timed(item.text_of("value"), item.number_of("time") / 1000, None, item)
              for item in read_entries(path) if item.get("type") == "word"]
     if not found:
         raise DataError(path, None, "no speech marks of type 'viseme' or 'word'")
-    return _from_words(path, found)
+    return _from_words(path, found, how)
 
 
-def read_google(path: PathLike) -> List[SourceSegment]:
+def read_google(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads Google's `timepoints`: marks that are named by the word that follows them, and their `timeSeconds`."""
     marks = [mark for item in read_entries(path)
              for mark in (item.parts("timepoints") if item.has("timepoints") else [item])]
     return _from_words(path, [_Timed(mark.text_of("markname"), mark.number_of("timeseconds"), None, mark)
-                              for mark in marks])
+                              for mark in marks], how)
 
 
-def read_kokoro_fastapi(path: PathLike) -> List[SourceSegment]:
+def read_kokoro_fastapi(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads answers of Kokoro-FastAPI's ``/dev/captioned_speech``: `timestamps` of `word`, `start_time` and
     `end_time`."""
     messages = [[_word(part) for part in item.parts("timestamps")] for item in read_entries(path)
                 if item.has("timestamps") and item.get("timestamps") is not None]
-    return _from_words(path, _joined(messages))
+    return _from_words(path, _joined(messages), how)
 
 
-def read_cartesia(path: PathLike) -> List[SourceSegment]:
+def read_cartesia(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads Cartesia's messages with `phoneme_timestamps` or `word_timestamps`: lists of the texts, their `start` and
     `end` in seconds."""
     sounds: List[_Timed] = []
@@ -97,10 +97,10 @@ def read_cartesia(path: PathLike) -> List[SourceSegment]:
         for name, text, found in (("phonemetimestamps", "phonemes", sounds), ("wordtimestamps", "words", words)):
             if item.has(name) and item.get(name) is not None:
                 found += _lists(_inner(item, name), (text,), ("start",), ("end",))
-    return _from_phonemes(path, sounds) if sounds else _from_words(path, words)
+    return _from_phonemes(path, sounds) if sounds else _from_words(path, words, how)
 
 
-def read_hume(path: PathLike) -> List[SourceSegment]:
+def read_hume(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads Hume's timestamps, of phonemes or of words: `text`, `type` and `time` (`begin` and `end`, milliseconds), in
     messages of their own or in the snippets of an answer."""
     found: Dict[str, List[_Timed]] = {"phoneme": [], "word": []}
@@ -111,10 +111,10 @@ def read_hume(path: PathLike) -> List[SourceSegment]:
             if kind in found:
                 found[kind].append(_Timed(stamp.text_of("text"), time.number_of("begin") / 1000,
                                           time.number_of("end") / 1000, stamp))
-    return _from_phonemes(path, found["phoneme"]) if found["phoneme"] else _from_words(path, found["word"])
+    return _from_phonemes(path, found["phoneme"]) if found["phoneme"] else _from_words(path, found["word"], how)
 
 
-def read_inworld(path: PathLike) -> List[SourceSegment]:
+def read_inworld(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads Inworld's `timestampInfo`: the phones of its `phoneticDetails`, else words, else characters."""
     sounds: List[List[_Timed]] = []
     words: List[List[_Timed]] = []
@@ -133,10 +133,12 @@ def read_inworld(path: PathLike) -> List[SourceSegment]:
             characters.append(_lists(_inner(info, "characteralignment"), _CHARACTERS, _STARTS, _ENDS))
     if any(sounds):
         return _from_phonemes(path, _joined(sounds))
-    return _from_words(path, _joined(words)) if any(words) else _from_characters(path, _joined(characters))
+    if any(words):
+        return _from_words(path, _joined(words), how)
+    return _from_characters(path, _joined(characters), how)
 
 
-def read_fish(path: PathLike) -> List[SourceSegment]:
+def read_fish(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads Fish Audio's events: `alignment` with `segments` of `text`, `start` and `end`, of which the latest of each
     `chunk_seq` counts, later by `chunk_audio_offset_sec`."""
     chunks: Dict[float, List[_Timed]] = {}
@@ -147,10 +149,10 @@ def read_fish(path: PathLike) -> List[SourceSegment]:
         sequence = item.number_of("chunkseq") if item.has("chunkseq") else float(number)
         parts = _inner(item, "alignment").parts("segments")
         chunks[sequence] = [_later(_word(part), origin) for part in parts]
-    return _from_words(path, [word for sequence in sorted(chunks) for word in chunks[sequence]])
+    return _from_words(path, [word for sequence in sorted(chunks) for word in chunks[sequence]], how)
 
 
-def read_minimax(path: PathLike) -> List[SourceSegment]:
+def read_minimax(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads MiniMax's file of subtitles of words: `timestamped_words` of `word`, `time_begin` and `time_end`,
     milliseconds. Pieces of a word, whose places in the text (`word_begin`, `word_end`) adjoin, are joined."""
     found: List[_Timed] = []
@@ -166,25 +168,25 @@ def read_minimax(path: PathLike) -> List[SourceSegment]:
             else:
                 found.append(word)
             behind = part.number_of("wordend") if part.has("wordend") else None
-    return _from_words(path, found)
+    return _from_words(path, found, how)
 
 
-def read_elevenlabs(path: PathLike) -> List[SourceSegment]:
+def read_elevenlabs(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads ElevenLabs' answers and messages: `normalized_alignment`, else `alignment`, with characters and their times
     in seconds (HTTP) or milliseconds (WebSocket)."""
     return _from_characters(path, _joined([
         _lists(found, _CHARACTERS, _STARTS, _ENDS, _DURATIONS) for item in read_entries(path)
-        for found in _first(item, "normalizedalignment", "alignment")]))
+        for found in _first(item, "normalizedalignment", "alignment")]), how)
 
 
-def read_soniox(path: PathLike) -> List[SourceSegment]:
+def read_soniox(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Reads Soniox's messages of characters: the lists may stand in `timestamps`, `alignment` or the message itself."""
     found = []
     for item in read_entries(path):
         holders = list(_first(item, "timestamps", "alignment", "charactertimestamps"))
         found += [_lists(holder, _CHARACTERS, _STARTS, _ENDS, _DURATIONS) for holder in holders or [item]
                   if any(holder.has(name) for name in _CHARACTERS)]
-    return _from_characters(path, _joined(found))
+    return _from_characters(path, _joined(found), how)
 
 
 # ---- How a file's first object tells the service
@@ -220,8 +222,11 @@ def _is_words(first: Entry) -> bool:
                for start, end in (("start", "end"), ("starttime", "endtime")))
 
 
+#: Reads a file; words are pronounced as the second argument says.
+Reader = Callable[[PathLike, Pronunciation], List[SourceSegment]]
+
 #: Title, reader and test of each service, in the order of detection.
-SERVICES: Dict[str, Tuple[str, Callable[[PathLike], List[SourceSegment]], Callable[[Entry], bool]]] = {
+SERVICES: Dict[str, Tuple[str, Reader, Callable[[Entry], bool]]] = {
     "elevenlabs": ("ElevenLabs", read_elevenlabs, _is_elevenlabs),
     "cartesia": ("Cartesia", read_cartesia, lambda first: first.has("wordtimestamps")
                  or first.has("phonemetimestamps") or first.has("type", "contextid")),
@@ -327,25 +332,26 @@ def _adjoin(before: str, after: str) -> bool:
 # ---- Segments
 
 
-def _from_words(path: PathLike, words: Sequence[_Timed]) -> List[SourceSegment]:
+def _from_words(path: PathLike, words: Sequence[_Timed], how: Pronunciation) -> List[SourceSegment]:
     return _segments(path, [Word(word.text, _ms(word, word.start), None if word.end is None else _ms(word, word.end))
-                            for word in words], words)
+                            for word in words], words, how)
 
 
-def _from_characters(path: PathLike, found: Sequence[_Timed]) -> List[SourceSegment]:
+def _from_characters(path: PathLike, found: Sequence[_Timed], how: Pronunciation) -> List[SourceSegment]:
     starts = [_ms(item, item.start) for item in found]
     ends = [_ms(item, item.end or item.start) for item in found]
-    return _segments(path, words_of_characters([item.text for item in found], starts, ends), found)
+    return _segments(path, words_of_characters([item.text for item in found], starts, ends), found, how)
 
 
-def _segments(path: PathLike, words: Sequence[Word], found: Sequence[_Timed]) -> List[SourceSegment]:
+def _segments(path: PathLike, words: Sequence[Word], found: Sequence[_Timed],
+              how: Pronunciation) -> List[SourceSegment]:
     if not found:
         raise DataError(path, None, "no words with their times")
     for before, word in zip(words, words[1:]):
         if word.start < before.start:
             raise DataError(path, None, f"{word.text!r:.40} begins before {before.text!r:.40}, which comes first")
     try:
-        timings = timings_of(words)
+        timings = timings_of(words, how)
     except StreamError as error:
         raise DataError(path, None, str(error)) from None
     segments, moment = [], 0

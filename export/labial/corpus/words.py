@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read
 from labial.corpus.phonesets import SPEECH
@@ -42,6 +42,13 @@ class Pronunciation(NamedTuple):
     own: Mapping[str, Sequence[str]] = {}  #: word -> its phonemes in ARPABET
     language: str = ENGLISH  #: "en", or what espeak-ng calls a language or voice
     numbers: bool = False  #: digits are written out by num2words
+
+
+def pronunciation(own: Optional[Mapping[str, Union[str, Sequence[str]]]] = None, language: str = ENGLISH,
+                  numbers: bool = False) -> Pronunciation:
+    """How words are pronounced, from arguments as callers have them: phonemes in one text, or a list."""
+    split = {word: sounds.split() if isinstance(sounds, str) else list(sounds) for word, sounds in (own or {}).items()}
+    return Pronunciation(split, language, bool(numbers))
 
 
 #: English, without words of one's own.

@@ -6,13 +6,14 @@ import json
 import operator
 import os
 import re
-from typing import Any, Dict, Iterable, List, Optional, TextIO, Tuple, Union
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, TextIO, Tuple, Union
 
 from labial.core.numbers import duration
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import Model
 from labial.runtime.stream import Stream
+from labial.runtime.words import offset
 
 #: A phoneme, by label or number, or a laugh (``<laugh:0.7>``), and how many milliseconds it lasts.
 Timing = Tuple[Union[str, int], float]
@@ -60,19 +61,24 @@ def _intensity(text: Optional[str]) -> float:
 
 
 def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str, Any]], *, labels: str = "auto",
-                 source: Optional[str] = None) -> List[Tuple[str, float]]:
+                 source: Optional[str] = None, offset_ms: float = 0.0,
+                 own: Optional[Mapping[str, Union[str, Sequence[str]]]] = None, language: str = "en",
+                 numbers: bool = False) -> List[Tuple[str, float]]:
     """The input of :func:`render` from timings in any format that ``labial timings`` reads (docs/timings.md): phonemes
     with their milliseconds, from time 0 on and without gaps.
 
     `given` is the path of a file, an open file, such as :class:`io.StringIO`, or the parsed JSON of a service, a list
     or a dict; the list may contain Piper's chunks unchanged. `labels` is the set of the labels, `source` the format if
-    it should not be detected. Raises DataError with the file and, if known, the line.
+    it should not be detected. `offset_ms` is added to all times: a positive number for a voice that reports them too
+    early. Where words or characters are told, the other arguments say how they are pronounced, as for
+    :func:`labial.phonemes`. Raises DataError with the file and, if known, the line.
     """
     from labial.corpus.formats import read_timings as read
     from labial.corpus.timings import phone_set_of, phoneme_segments
+    from labial.corpus.words import pronunciation
 
     path = given if isinstance(given, (str, os.PathLike)) else _content(given)
-    segments = read(path, source)
+    segments = read(path, source, pronunciation(own, language, numbers), offset(offset_ms) / 1000.0)
     found = phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels)
     ends = [round(segment.end * 1000.0) for segment in found]
     return [(segment.label, end - begin) for segment, begin, end in zip(found, [0, *ends], ends)]

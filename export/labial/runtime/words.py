@@ -5,14 +5,24 @@ from __future__ import annotations
 from typing import Any, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.numbers import number, whole
-from labial.corpus.words import ENGLISH, LATEST, Pronunciation, Word, phonemes_of, timings_of, words_of_characters
+from labial.corpus.words import (
+    ENGLISH,
+    LATEST,
+    Word,
+    phonemes_of,
+    pronunciation,
+    timings_of,
+    words_of_characters,
+)
 from labial.errors import LabialError
 
+#: Phonemes in ARPABET: with blanks between them, or a list.
+Sounds = Union[str, Sequence[str]]
 #: A word, when it begins and when it ends, milliseconds; None for an end that is not known.
 TimedWord = Tuple[str, float, Optional[float]]
 
 
-def phonemes(text: str, *, own: Optional[Mapping[str, Sequence[str]]] = None, language: str = ENGLISH,
+def phonemes(text: str, *, own: Optional[Mapping[str, Sounds]] = None, language: str = ENGLISH,
              numbers: bool = False) -> List[str]:
     """The phonemes of a text, in ARPABET without stress, word after word; silences are not known.
 
@@ -23,12 +33,12 @@ def phonemes(text: str, *, own: Optional[Mapping[str, Sequence[str]]] = None, la
     """
     if not isinstance(text, str):
         raise TypeError(f"a text is a str, not {type(text).__name__}")
-    found = phonemes_of(text.split(), _how(own, language, numbers))
+    found = phonemes_of(text.split(), pronunciation(own, language, numbers))
     return [label for spoken in found for label in spoken.phonemes]
 
 
 def word_timings(timed: Iterable[TimedWord], *, offset_ms: float = 0,
-                 own: Optional[Mapping[str, Sequence[str]]] = None, language: str = ENGLISH,
+                 own: Optional[Mapping[str, Sounds]] = None, language: str = ENGLISH,
                  numbers: bool = False) -> List[Tuple[str, int]]:
     """The timings of :func:`labial.render` from words and their times.
 
@@ -43,23 +53,18 @@ def word_timings(timed: Iterable[TimedWord], *, offset_ms: float = 0,
             raise TypeError(f"word {place} is no text with its beginning and end in milliseconds")
         text, start, end = item
         found.append(Word(text, _time(start), None if end is None else _time(end)))
-    return timings_of(found, _how(own, language, numbers), _offset(offset_ms))
+    return timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
 
 
 def character_timings(text: Union[str, Sequence[str]], starts: Sequence[float], ends: Sequence[float], *,
-                      offset_ms: float = 0, own: Optional[Mapping[str, Sequence[str]]] = None,
+                      offset_ms: float = 0, own: Optional[Mapping[str, Sounds]] = None,
                       language: str = ENGLISH, numbers: bool = False) -> List[Tuple[str, int]]:
     """The same from characters and their times in milliseconds, as ElevenLabs reports them; `text` is a string or a
     list of characters, blanks included. Raises LabialError where the numbers of characters and times differ."""
     if not len(text) == len(starts) == len(ends):
         raise LabialError(f"{len(text)} characters have {len(starts)} beginnings and {len(ends)} ends")
     found = words_of_characters(list(text), [_time(time) for time in starts], [_time(time) for time in ends])
-    return timings_of(found, _how(own, language, numbers), _offset(offset_ms))
-
-
-def _how(own: Optional[Mapping[str, Sequence[str]]], language: str, numbers: bool) -> Pronunciation:
-    split = {word: sounds.split() if isinstance(sounds, str) else list(sounds) for word, sounds in (own or {}).items()}
-    return Pronunciation(split, language, bool(numbers))
+    return timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
 
 
 def _time(value: Any) -> int:
@@ -69,7 +74,8 @@ def _time(value: Any) -> int:
     return round(found)
 
 
-def _offset(value: Any) -> int:
+def offset(value: Any) -> int:
+    """Milliseconds to be added to times. Raises TypeError, and LabialError for more than 1e9."""
     found = number(value, "an offset")
     if not abs(found) <= 1e9:
         raise LabialError(f"an offset of {found:g} ms is not within 1e9 ms")
