@@ -435,8 +435,9 @@ static int takes_own(place_t *here, const char *word)
         return 0;
     while (next.code != TEXT_END && next.start < here->start + i)
         advance(&next);
-    if (is_in_word(next.code) && is_in_word(small((unsigned char)word[i - 1u])))
-        return 0;
+    if ((is_in_word((unsigned char)word[i - 1u]) || (unsigned char)word[i - 1u] >= 0x80u) &&
+        (is_in_word(next.code) || (next.code == '\'' && is_latin(following(&next)))))
+        return 0; /* it goes on */
     *here = next;
     return 1;
 }

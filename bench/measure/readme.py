@@ -32,7 +32,8 @@ def updated(text: str, figures: Sequence[Figure]) -> str:
     words = sum(value["m0", f"code -Os: {name}.c"] for name in ("words", "words_text", "words_time"))
     used = (f"rig {number('code -Os: rig.c')}; laughs {number('code -Os: laugh.c')}; speaking while laughing "
             f"{number('code -Os: blend.c')}; names {number('code -Os: names.c')} and speech's "
-            f"{number('speech: names')}; binary models {binary:,.0f}; words {words:,.0f} and their tables {number('words: tables')} |")
+            f"{number('speech: names')}; binary models {binary:,.0f}; words {words:,.0f} and "
+            f"their tables {number('words: tables')} |")
     for pattern, replacement in (
         (r"(\| code \| )[\d,]+( \|.*the compiler adds )[\d,]+",
          rf"\g<1>{number('code -Os: total')}\g<2>{helpers}"),

@@ -92,7 +92,8 @@ typedef struct {
 } labial_words_t;
 
 /* A word of the caller's own and its phonemes; numbers beyond the tables' count as silence. The word is compared with
- * each stretch of a text between blanks and punctuation, small and capital letters of ASCII being the same. */
+ * each stretch of a text between blanks and punctuation other than apostrophes, small and capital letters of ASCII
+ * being the same. */
 typedef struct {
     const char *word;        /* UTF-8, ends with NUL */
     const uint8_t *phonemes; /* in their order */

@@ -139,6 +139,9 @@ TEST(own_words_come_first)
     expect(&own, "c++", 3, "_SIL:0 ZH:1 SIL:2");
     expect(&own, "c++a", 4, "_SIL:0 ZH:1 SIL:2 _AH:3");
     expect(&own, "\xd0\x9f", 2, "_G:0");
+    expect(&own, "\xd0\x9f\xd0\x9f", 4, "unknown");
+    expect(&own, "google's", 8, "_G:0 UW:1 G:3 AH:4 L:4 Z:7");
+    expect(&own, "google'", 7, "_G:0 UW:1 G:2 AH:3 L:4");
     expect(&own, "nothing", 7, "silent");
     expect(&own, "don't", 5, "_G:0 UW:2");
     expect(&none, "go", 2, "_G:0 OW:1");

@@ -98,7 +98,9 @@ def test_characters_become_words() -> None:
                                 [10, 50, 60, 70, 80, 75, 99])
     assert found == [Word("abc", 0, 50, (10, 30, 50)), Word("de", 70, 80, (80, 80))]
     assert words_of_characters([], [], []) == []
-    assert words_of_characters(["[", "a"], [0, 1], [1, 2]) == []
+    assert words_of_characters(["[", "a", "]"], [0, 1, 2], [1, 2, 3]) == []
+    hearts = words_of_characters(list("a <3 [b"), list(range(7)), list(range(1, 8)))
+    assert [word.text for word in hearts] == ["a", "<3", "[b"]
     long = timings_of([Word("a" * 300, 0, 900, tuple(3 * i + 3 for i in range(300)))])  # more than the library reads
     assert total(long) == 900
 

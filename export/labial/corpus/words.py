@@ -82,16 +82,19 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
 
 
 def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: Sequence[int]) -> List[Word]:
-    """The words of characters with their times: what stands between blanks, without [tags] and <tags>.
+    """The words of characters with their times: what stands between blanks, without [tags] and <tags>. A bracket
+    that is not closed begins none.
 
     An item of several characters shares its time evenly among them. A character that ends before the one before it, as
     rounding and zero lengths make it, ends with that.
     """
     words: List[Word] = []
     text, start, times, closing = "", 0, [0], ""
-    for item, begin, end in zip([*characters, " "], [*starts, 0], [*ends, 0]):
+    last = {mark: max((n for n, item in enumerate(characters) if mark in item), default=-1) for mark in _TAGS.values()}
+    for number, (item, begin, end) in enumerate(zip([*characters, " "], [*starts, 0], [*ends, 0])):
         for place, character in enumerate(item, 1):
-            closing = closing or _TAGS.get(character, "")
+            mark = _TAGS.get(character, "")
+            closing = closing or (mark if last.get(mark, -1) >= number else "")
             if closing or character.isspace():
                 if text:
                     words.append(Word(text, start, times[-1], tuple(times[1:])))
