@@ -35,10 +35,13 @@ function(labial_models_header file)
   file(CONFIGURE OUTPUT "${file}" CONTENT "${text}#define LABIAL_BUNDLED${rows}\n" @ONLY)
 endfunction()
 
-# labial_hearing_header(<file>): writes a header with LABIAL_BUNDLED_HEARING, the rows of the models of hearing as
-# { name, model, names of its classes }.
+# labial_hearing_header(<file> [<model> ...]): writes a header with LABIAL_BUNDLED_HEARING, the rows of the models of
+# hearing, or of those that are given, as { name, model, names of its classes }.
 function(labial_hearing_header file)
   labial_hearing_models(models)
+  if(ARGN)
+    set(models ${ARGN})
+  endif()
   set(text "/* The bundled models of hearing; written by cmake/BundledModels.cmake. */\n")
   set(rows "")
   foreach(model IN LISTS models)

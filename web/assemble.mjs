@@ -5,7 +5,7 @@
 //     node assemble.mjs model FILE WASM NAME NOTICE   the model that a module exports, as a binary one, in the same way
 //     node assemble.mjs faces FOLDER DESCRIPTION...   the types of all faces' weights
 //     node assemble.mjs commonjs FOLDER               index.cjs and *.d.cts, from what is in the folder by then
-import { readFileSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { constants, deflateRawSync } from "node:zlib";
 import { binary } from "./layout.mjs";
@@ -89,7 +89,7 @@ function commonjs(folder) {
     };
     add("index");
     writeFileSync(join(folder, "index.cjs"), `"use strict";\n${[...done.values()].join("")}module.exports = in_index;\n`);
-    for (const name of ["index", "faces"]) {
+    for (const name of ["index", "faces"].filter((one) => existsSync(join(folder, `${one}.d.ts`)))) {
         writeFileSync(join(folder, `${name}.d.cts`), read(join(folder, `${name}.d.ts`)).replaceAll('"./faces.js"', '"./faces.cjs"'));
     }
 }

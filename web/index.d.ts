@@ -127,13 +127,93 @@ export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     [Symbol.iterator](): IterableIterator<FrameOf<O>>;
 }
 
+/** An object of pages, where the types of pages are known. */
+type Dom<Name extends string> = typeof globalThis extends { [key in Name]: { prototype: infer One } } ? One : unknown;
+
+/** What can be heard: a MediaStream, an <audio> or <video> element, or an AudioNode. */
+export type Sound =
+    | { getAudioTracks(): unknown[] }
+    | { play(): Promise<void>; currentTime: number }
+    | { readonly context: unknown; readonly numberOfOutputs: number };
+
+export interface HearOptions<O extends Output = Output> {
+    /** Default: "faps". */
+    output?: O;
+    /** Default: "small". "large" hears better. A page fetches the one that it uses. */
+    model?: "small" | "large";
+    /** Of a sound that is pushed: samples per second, 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. */
+    sampleRate?: number;
+    /** Of a sound that is pushed: 1, the default, or 2, whose samples come in pairs, left first. */
+    channels?: 1 | 2;
+    /** The AudioContext whose clock counts. By default that of the node; one for all other sources. */
+    context?: Dom<"AudioContext">;
+    /** Whether the sound is played, in step with the lips: by default it is, but that of an AudioNode is not. */
+    play?: boolean;
+    /** Seconds by which the sound is played later than it comes, at least `latency`. Default: 0.2. */
+    delay?: number;
+}
+
+/** The package labial-hearing. */
+export type Hears = { readonly hear: (...given: any[]) => Promise<unknown> } | { readonly default: unknown };
+
+/** Lips from sound alone, 50 frames per second. All times are seconds: of the AudioContext's clock for a source; for a
+ * sound that is pushed, those that push() was given, or from 0 on. */
+export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>, AsyncIterable<FrameOf<O>> {
+    #private;
+    private constructor();
+    /** Hears samples, full scale being 32768 or 1; `time` is when the first of them is heard, by default when those
+     * before it end. Silence fills gaps. Not for a source. */
+    push(samples: Int16Array | Float32Array, time?: number): void;
+    /** No more sound will come: the last frames follow. */
+    end(): void;
+    /** Drops the frames after this time, by default now, and eases to the neutral face within so many milliseconds, at
+     * most 1,000. Sound of a source is silenced, and what comes of it is not heard. */
+    cancel(milliseconds?: number, seconds?: number): void;
+    /** Continues after end() or cancel(). */
+    restart(): void;
+    /** The mouth at a time, by default now, interpolated between two frames; the last one that is known if it is too
+     * early to know. The same object each time. Without an AudioContext the time must be given. */
+    at(seconds?: number): O extends "faps" ? Float32Array : FrameOf<O>;
+    /** The frames that are known and were not taken, each a new object. Of frames that nobody takes, the last 262,144
+     * stay. */
+    [Symbol.iterator](): IterableIterator<FrameOf<O>>;
+    /** The frames to the end, each as soon as it is known. */
+    [Symbol.asyncIterator](): AsyncIterableIterator<FrameOf<O>>;
+    /** The stretches of one lip class that ended since the last call; the label is a phoneme that stands for the class:
+     * "M" for p, b, m. */
+    segments(): Segment[];
+    /** Number of the frame that was taken last, from 0; -1 before the first. */
+    readonly number: number;
+    /** When that frame is due. */
+    readonly time: number;
+    /** The time that is heard now; null without an AudioContext. */
+    readonly now: number | null;
+    /** Frames per second. */
+    readonly rate: number;
+    /** Seconds from a frame's begin in the sound until it is known: 0.12. */
+    readonly latency: number;
+    /** Seconds by which the sound of a source is played later, so that lips are known by then; 0 for a sound that is
+     * pushed. */
+    readonly delay: number;
+    /** It was ended, cancelled or closed, and every frame was taken. */
+    readonly done: boolean;
+    /** The AudioContext whose clock counts, or null. */
+    readonly context: Dom<"AudioContext"> | null;
+    /** The sound of a source in step with the lips, to be connected where `play` is false; null for a sound that is
+     * pushed. */
+    readonly sound: Dom<"AudioNode"> | null;
+    /** Lets go of the source. A hearing with a source stays until then. */
+    close(): void;
+}
+
 /** The library. One serves any number of streams. */
 export class Labial {
     /** The library, with the speech model. `laughter` is the laughter model, or a function that loads it when laughter()
-     * is called for the first time: `() => import("labial-laughter")`. `wasm` is a build of your own: its bytes, or the
-     * compiled module. */
+     * is called for the first time: `() => import("labial-laughter")`; `hearing` is likewise the package labial-hearing, for
+     * hear(). `wasm` is a build of your own: its bytes, or the compiled module. */
     static load(options?: {
         laughter?: Laughter | Promise<Laughter> | (() => Laughter | Promise<Laughter>);
+        hearing?: Hears | Promise<Hears> | (() => Hears | Promise<Hears>);
         wasm?: BufferSource | WebAssembly.Module | Promise<BufferSource | WebAssembly.Module>;
     }): Promise<Labial>;
     /** The laughter model, loaded once; after that streams laugh. Rejects if load() got none. */
@@ -146,6 +226,9 @@ export class Labial {
     stream<O extends Output = "faps">(options?: StreamOptions<O>): Stream<O>;
     /** The motion of a whole utterance; gaps between segments are silence. */
     render<O extends Output = "faps">(timings: Iterable<Segment>, options?: StreamOptions<O>): Track<O>;
+    /** Lips of a sound: of a source, or, without one, of samples that are pushed. Rejects if load() got no package
+     * labial-hearing, or where the page cannot hear. */
+    hear<O extends Output = "faps">(source?: Sound | null, options?: HearOptions<O>): Promise<Hearing<O>>;
     /** The formats that read() takes. */
     readonly formats: readonly string[];
     /** Timings as text: .lab, flite, HTK, MBROLA, MaryTTS, Sphinx or TextGrid, one of `formats`; "auto", when left out,

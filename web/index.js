@@ -1,5 +1,5 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import { CHANNELS, LabialError, Memory, NO_LAUGHTER, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, amount, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
@@ -61,8 +61,9 @@ export class Labial {
     #loaded;
     #laughter; // where the laughter model comes from
     #coming = null; // its model, while it is on its way
+    #hearing; // where hearing comes from
 
-    constructor(instance, laughter) {
+    constructor(instance, laughter, hearing) {
         this.wasm = instance.exports;
         this.memory = new Memory(this.wasm.memory, this.wasm.__heap_base.value);
         this.models = { speech: new Model(this, this.wasm.bundled_model(0), this.wasm.bundled_names(0)), laughter: null };
@@ -72,13 +73,14 @@ export class Labial {
         this.#scratch = this.memory.take(SCRATCH);
         this.#loaded = new FinalizationRegistry(([at, size]) => this.memory.release(at, size));
         this.#laughter = laughter;
+        this.#hearing = hearing;
         Object.freeze(this);
     }
 
-    static async load({ wasm, laughter } = {}) {
+    static async load({ wasm, laughter, hearing } = {}) {
         const code = (await wasm) ?? unpack(speech);
         const made = await WebAssembly.instantiate(code, {});
-        const labial = new Labial(made.instance ?? made, laughter);
+        const labial = new Labial(made.instance ?? made, laughter, hearing);
         if (laughter && typeof laughter !== "function") await labial.laughter();
         return labial;
     }
@@ -90,6 +92,12 @@ export class Labial {
 
     stream(options) {
         return new Stream(this, options);
+    }
+
+    async hear(source, options) {
+        const found = await given(this.#hearing);
+        if (!found) throw new LabialError(NO_HEARING);
+        return found.hear({ LabialError, Memory, amount, shown, unpack }, this, source, options);
     }
 
     render(segments, { output = "faps", ...options } = {}) {
@@ -237,8 +245,7 @@ export class Labial {
 
     async #fetch() {
         try {
-            let data = await (typeof this.#laughter === "function" ? this.#laughter() : this.#laughter);
-            while (data && data.default) data = data.default; // a module, or one inside another as CommonJS has it
+            const data = await given(this.#laughter);
             if (!data) throw new LabialError(NO_LAUGHTER);
             const model = this.model(typeof data === "string" ? unpack(data) : data);
             if (model.names !== this.wasm.bundled_names(1)) throw new LabialError("the laughter is the model of something else");
@@ -319,6 +326,13 @@ export class Labial {
         const to = this.memory.int16(at, CHANNELS);
         for (let i = 0; i < CHANNELS; i++) to[i] = Math.max(-32768, Math.min(32767, Math.round(faps[i])));
     }
+}
+
+/** What load() was given, or what a function that it was given loads. */
+async function given(source) {
+    let found = await (typeof source === "function" ? source() : source);
+    while (found && found.default) found = found.default; // a module, or one inside another as CommonJS has it
+    return found;
 }
 
 /** The names of each face's weights, by the face's name, in the order of the module. */

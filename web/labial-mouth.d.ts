@@ -1,11 +1,11 @@
-import type { Faps, Stream, Track } from "./index.js";
+import type { Faps, Hearing, Stream, Track } from "./index.js";
 
 /** The element <labial-mouth>: a drawn mouth, 430 wide by 412 high unless CSS says otherwise. The colours behind the
  * face are the CSS variables --labial-backdrop-top and --labial-backdrop-bottom.
  *
- * A source is a track or a stream with the output "faps"; setting one starts it. With an audio element, the drawn frame
- * is within half a frame period of the sound, at any speed and, for a track, through jumps. After the sound's end the
- * source continues by the clock, and so does a source without a sound. */
+ * A source is a track, a stream or a hearing with the output "faps"; setting one starts it. With an audio element, the
+ * drawn frame is within half a frame period of the sound, at any speed and, for a track, through jumps. After the sound's
+ * end the source continues by the clock, and so does a source without a sound. */
 export class LabialMouth extends HTMLElement {
     /** The sound to follow: the one that was set, else the element whose id the attribute `for` names. */
     get audio(): HTMLMediaElement | null;
@@ -16,6 +16,9 @@ export class LabialMouth extends HTMLElement {
     /** The stream that is drawn: the element ticks it. Its first frame is due at time 0 of the sound. */
     get stream(): Stream<"faps"> | null;
     set stream(stream: Stream<"faps"> | null);
+    /** What is heard and drawn: by its own clock, or, where it has none, by the sound to follow. */
+    get hearing(): Hearing<"faps"> | null;
+    set hearing(hearing: Hearing<"faps"> | null);
     /** The drawn frame: 13 FAPs, interpolated for a track. The same object each time. */
     readonly faps: Float32Array;
     /** Draws the given frame. Throws a TypeError unless there are 13 FAPs. */

@@ -1,4 +1,5 @@
-// <labial-mouth>: draws a mouth from a track or a stream and follows a sound. labial-mouth.d.ts documents it.
+// <labial-mouth>: draws a mouth from a track, a stream or a hearing in step with its sound. labial-mouth.d.ts
+// documents it.
 import { CHANNELS, createMouth, follow } from "./mouth.js";
 
 /** Plays a track: any moment of it, interpolated between frames. */
@@ -76,6 +77,32 @@ class StreamPlayer {
     }
 }
 
+/** Plays what is heard: the moment of its own clock, or that of the element's sound where it has none. */
+class HearingPlayer {
+    #hearing;
+    #begin = 0; // of the easing
+    #cancelled = false;
+
+    constructor(hearing) {
+        this.#hearing = hearing;
+        this.period = 1 / hearing.rate;
+    }
+
+    at(seconds) {
+        return this.#hearing.at(this.#hearing.now ?? this.#begin + seconds);
+    }
+
+    over() {
+        return this.#cancelled && this.#hearing.done;
+    }
+
+    cancel(milliseconds) {
+        this.#begin = this.#hearing.now ?? this.#hearing.time;
+        this.#hearing.cancel(milliseconds, this.#begin);
+        this.#cancelled = true;
+    }
+}
+
 const STYLE = ":host, div, svg { display: block } div, svg { width: 100%; height: 100% }";
 
 /** Node has no elements, but the module may be imported there. */
@@ -138,6 +165,14 @@ export class LabialMouth extends Base {
         return this.#faps;
     }
 
+    get hearing() {
+        return this.#player instanceof HearingPlayer ? this.#source : null;
+    }
+
+    set hearing(hearing) {
+        this.#take(hearing, hearing && new HearingPlayer(hearing));
+    }
+
     show(faps) {
         if (faps.length !== CHANNELS.length) {
             throw new TypeError(`a frame has ${CHANNELS.length} FAPs; what is drawn has the output "faps"`);
@@ -149,13 +184,13 @@ export class LabialMouth extends Base {
     cancel(milliseconds = 200) {
         if (this.#rest) return this.#rest.promise;
         this.audio?.pause();
-        const streams = this.#player instanceof StreamPlayer && !this.#player.over();
-        if (streams) this.#player.cancel(milliseconds);
-        if (!this.isConnected || (!streams && !this.#faps.some(Boolean))) {
+        const eases = Boolean(this.#player?.cancel) && !this.#player.over();
+        if (eases) this.#player.cancel(milliseconds);
+        if (!this.isConnected || (!eases && !this.#faps.some(Boolean))) {
             this.#take(null, null);
             return Promise.resolve();
         }
-        this.#take(this.#source, streams ? this.#player : new Easing(this.#faps, milliseconds));
+        this.#take(this.#source, eases ? this.#player : new Easing(this.#faps, milliseconds));
         this.#rest = {};
         this.#rest.promise = new Promise((resolve) => { this.#rest.resolve = resolve; });
         return this.#rest.promise;

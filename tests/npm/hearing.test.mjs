@@ -1,0 +1,249 @@
+// Hearing beside the frames themselves, which tests/python/test_npm_hearing.py compares with the library's: blocks of
+// any length, times, cancels, misuse. Sound comes from a generator; tests/python/test_browser_hearing.py has pages.
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { pathToFileURL } from "node:url";
+import test from "node:test";
+import { Labial, LabialError, folder, source } from "./setup.mjs";
+
+const hearing = () => import(pathToFileURL(`${folder}-hearing/index.js`));
+const labial = await Labial.load({ hearing });
+const RATE = 16000;
+
+/** Int16 samples: a hum that opens and closes, over a little noise. */
+function voice(seconds, rate = RATE) {
+    let seed = 1;
+    return Int16Array.from({ length: Math.round(seconds * rate) }, (_, i) => {
+        seed = (seed * 48271) % 2147483647;
+        let tone = 0;
+        for (let k = 1; k < 20; k++) tone += Math.sin((2 * Math.PI * 120 * k * i) / rate) / k;
+        return tone * 4000 * Math.max(0, Math.sin((2 * Math.PI * 2.3 * i) / rate)) + (seed % 81) - 40;
+    });
+}
+
+function* pieces(samples, lengths) {
+    for (let at = 0, i = 0; at < samples.length; at += lengths[i++ % lengths.length]) {
+        yield samples.subarray(at, at + lengths[i % lengths.length]);
+    }
+}
+
+const rows = (frames) => Array.from(frames, (faps) => [...faps]);
+
+async function heard(blocks, options = {}) {
+    const one = await labial.hear(null, { sampleRate: RATE, ...options });
+    for (const block of blocks) one.push(block);
+    one.end();
+    return rows(one);
+}
+
+test("frames and stretches do not depend on how long blocks are, and 16 bits are floats", async () => {
+    const sound = voice(2.5);
+    const whole = await heard([sound]);
+    assert.equal(whole.length, 125);
+    assert.ok(Math.max(...whole.map((faps) => -(faps[3] + faps[4]))) > 150, "the mouth opens");
+    for (const lengths of [[1], [128], [7, 4096, 333], [4095, 4097]]) {
+        assert.deepEqual(await heard(pieces(sound, lengths)), whole);
+    }
+    assert.deepEqual(await heard([Float32Array.from(sound, (value) => value / 32768)]), whole);
+    const loud = [-5, NaN, Infinity].map((value) => new Float32Array(RATE).fill(value));
+    const clipped = [-32768, 0, 32767].map((value) => new Int16Array(RATE).fill(value));
+    assert.deepEqual(await heard(loud), await heard(clipped));
+    const pairs = Int16Array.from({ length: 2 * sound.length }, (_, i) => sound[i >> 1]);
+    assert.deepEqual(await heard([pairs], { channels: 2 }), whole);
+});
+
+test("models, outputs and rates", async () => {
+    const sound = voice(1);
+    assert.notDeepEqual(await heard([sound], { model: "large" }), await heard([sound]));
+    const faps = await heard([sound]);
+    const one = await labial.hear(null, { sampleRate: RATE, output: "arkit" });
+    one.push(sound);
+    one.end();
+    [...one].forEach((weights, i) => assert.deepEqual(weights, labial.convert(faps[i], "arkit")));
+    for (const sampleRate of [8000, 12000, 22050, 24000, 32000, 44100, 48000]) {
+        assert.equal((await heard([voice(1, sampleRate)], { sampleRate })).length, 50);
+    }
+});
+
+test("a frame is known after the latency, and the iterator waits for it", async () => {
+    const sound = voice(1);
+    const one = await labial.hear(null, { sampleRate: RATE });
+    assert.ok(one.latency > 0.1 && one.latency < 0.2 && one.delay === 0 && one.rate === 50 && one.now === null);
+    assert.equal(one.number, -1);
+    const needed = Math.round(one.latency * RATE);
+    one.push(sound.subarray(0, needed - 1));
+    assert.equal([...one].length, 0);
+    one.push(sound.subarray(needed - 1, needed));
+    assert.equal([...one].length, 1);
+    const taken = [];
+    const taking = (async () => {
+        for await (const frame of one) taken.push([...frame]);
+    })();
+    for (let at = needed; at < sound.length; at += 640) {
+        const before = taken.length;
+        one.push(sound.subarray(at, at + 640));
+        await new Promise((resolve) => setImmediate(resolve));
+        assert.ok(taken.length > before || at + 640 > sound.length);
+    }
+    assert.ok(!one.done);
+    one.end();
+    await taking;
+    assert.deepEqual(taken, (await heard([sound])).slice(1));
+    assert.ok(one.done);
+});
+
+test("at() is a line between frames, at the time of their sound", async () => {
+    const sound = voice(1);
+    const frames = await heard([sound]);
+    const one = await labial.hear(null, { sampleRate: RATE });
+    assert.deepEqual([...one.at(0)], new Array(13).fill(0));
+    one.push(sound, 100);
+    one.end();
+    assert.deepEqual([...one.at(100.2)].map(Math.round), frames[10]);
+    assert.equal(one.number, 10);
+    assert.ok(Math.abs(one.time - 100.2) < 1e-9);
+    assert.deepEqual([...one.at(100.21)].map((v) => Math.round(2 * v)), frames[10].map((v, i) => v + frames[11][i]));
+    assert.deepEqual([...one.at(0)], frames[0]);
+    assert.ok(!one.done);
+    assert.deepEqual([...one.at(999)], frames.at(-1));
+    assert.ok(one.done);
+    assert.equal(one.at(100), one.at(100.5), "no garbage");
+});
+
+test("sound that is heard later leaves the mouth closed between, and its frames come in their time", async () => {
+    const sound = voice(0.5);
+    for (const gap of [0.1, 3600]) {
+        const one = await labial.hear(null, { sampleRate: RATE });
+        one.push(sound, 10);
+        one.push(sound, 10.5 + gap);
+        one.push(new Int16Array(RATE), 11 + gap);
+        const silence = new Int16Array(Math.round(Math.min(gap, 0.7) * RATE));
+        const both = await heard([sound, silence, sound, new Int16Array(RATE)]);
+        const second = (0.5 + Math.min(gap, 0.7)) * 50;
+        for (const k of [0, 5, 24]) {
+            assert.deepEqual([...one.at(10 + k / 50)].map(Math.round), both[k]);
+            assert.deepEqual([...one.at(10.5 + gap + k / 50)].map(Math.round), both[second + k], `${gap} ${k}`);
+        }
+        const between = [...one.at(10.5 + Math.min(gap, 1000))];
+        if (gap > 1) assert.ok(-(between[3] + between[4]) < 100, `closed: ${between}`);
+    }
+});
+
+test("a block that is heard earlier than the one before ends takes its place", async () => {
+    const [a, b] = [voice(1), new Int16Array(RATE)];
+    const one = await labial.hear(null, { sampleRate: RATE });
+    one.push(a, 0);
+    one.push(b, 0.5);
+    one.end();
+    const frames = await heard([a, b]);
+    assert.deepEqual([...one.at(0.4)].map(Math.round), frames[20]);
+    assert.deepEqual([...one.at(0.6)].map(Math.round), frames[55]);
+});
+
+test("a cancel eases from what is shown, and what follows a restart fades in", async () => {
+    const sound = voice(1);
+    const frames = await heard([sound]);
+    const one = await labial.hear(null, { sampleRate: RATE });
+    assert.throws(() => one.restart(), { code: -5 });
+    one.push(sound, 5);
+    one.at(5.4);
+    one.cancel(100, 5.4);
+    assert.throws(() => one.push(sound), { code: -5 });
+    const eased = rows(one);
+    assert.equal(eased.length, 5);
+    assert.deepEqual(eased.at(-1), new Array(13).fill(0));
+    const size = (faps) => Math.hypot(...faps);
+    [frames[20], ...eased].reduce((before, faps) => (assert.ok(size(faps) <= size(before)), faps));
+    assert.ok(Math.abs(one.time - 5.5) < 0.021 && one.done);
+    one.restart();
+    one.push(sound, 7);
+    one.end();
+    const again = rows(one);
+    assert.deepEqual(again.slice(-30), frames.slice(-30), "and its lips are those of the sound");
+    assert.ok(one.segments().every(({ start, end, label }) => start <= 5.4 || (start >= 5.4 && end > start && label)));
+    const fresh = await labial.hear(null, { sampleRate: RATE });
+    fresh.cancel();
+    assert.deepEqual(rows(fresh), [new Array(13).fill(0)]);
+});
+
+test("stretches of lip classes follow each other, with labels that speech has", async () => {
+    const one = await labial.hear(null, { sampleRate: RATE });
+    one.push(voice(3), 2);
+    one.end();
+    const segments = one.segments();
+    assert.ok(segments.length > 3);
+    segments.forEach(({ start, end, label }, i) => {
+        assert.ok(Math.abs(start - (i ? segments[i - 1].end : 2)) < 1e-9 && end > start);
+        assert.ok(Number.isInteger(labial.phoneme(label)));
+    });
+    assert.ok(Math.abs(segments.at(-1).end - 5) < 1e-9);
+    assert.deepEqual(one.segments(), []);
+    assert.equal(labial.render(segments).length, 250);
+});
+
+test("frames that nobody takes do not fill the memory", async () => {
+    const one = await labial.hear(null, { sampleRate: 8000 });
+    const second = new Int16Array(8000);
+    global.gc();
+    const before = process.memoryUsage().arrayBuffers;
+    for (let i = 0; i < 1200; i++) {
+        one.push(second);
+        if (i % 2) one.at(i - 1);
+    }
+    global.gc();
+    assert.ok(process.memoryUsage().arrayBuffers - before < 2 ** 20);
+    assert.ok([...one].length > 40);
+});
+
+test("misuse is told", async () => {
+    await assert.rejects((await Labial.load()).hear(), { name: "LabialError", message: /labial-hearing/ });
+    const lazy = await Labial.load({ hearing: Promise.resolve({ default: await hearing() }) });
+    assert.ok(await lazy.hear(null, { sampleRate: RATE }));
+    await assert.rejects(labial.hear(), { name: "LabialError", message: /^undefined samples per second.*rate/ });
+    await assert.rejects(labial.hear(null, { sampleRate: 11025 }), LabialError);
+    await assert.rejects(labial.hear(null, { sampleRate: RATE, channels: 3 }), LabialError);
+    await assert.rejects(labial.hear(null, { sampleRate: RATE, channels: 2 ** 32 + 1 }), LabialError);
+    await assert.rejects(labial.hear(null, { sampleRate: RATE, model: "huge" }), { message: /small, large/ });
+    await assert.rejects(labial.hear(null, { sampleRate: RATE, output: "arkitt" }), LabialError);
+    await assert.rejects(labial.hear({}), { name: "TypeError", message: /MediaStream/ });
+    await assert.rejects(labial.hear({ getAudioTracks: () => [] }), { message: /no AudioContext here/ });
+    const one = await labial.hear(null, { sampleRate: RATE, channels: 2 });
+    const view = new DataView(new ArrayBuffer(4));
+    for (const wrong of [undefined, "x", [1, 2], new Uint8Array(4), new Int16Array(3), view]) {
+        assert.throws(() => one.push(wrong), TypeError);
+    }
+    assert.throws(() => one.push(new Int16Array(2), NaN), TypeError);
+    assert.throws(() => one.at(), TypeError);
+    assert.throws(() => one.cancel(-1), TypeError);
+    one.close();
+    one.close();
+    for (const call of [() => one.push(new Int16Array(2)), () => one.end(), () => one.cancel(), () => one.restart()]) {
+        assert.throws(call, { message: "the hearing was closed" });
+    }
+    assert.ok(one.done);
+});
+
+test("the package has these files, and CommonJS hears as well", async () => {
+    const files = "LICENSE README.md hearing.js index.cjs index.d.cts index.d.ts index.js large.js package.json small.js tap.js";
+    assert.equal(readdirSync(`${folder}-hearing`).sort().join(" "), files);
+    for (const name of ["small", "large"]) {
+        const text = readFileSync(`${folder}-hearing/${name}.js`, "utf8");
+        assert.match(text, /^\/\*! .*LibriSpeech.*CC BY 4\.0.*GRID.*\*\/\n/);
+    }
+    const require = createRequire(import.meta.url);
+    const common = await require(folder).Labial.load({ hearing: require(`${folder}-hearing`) });
+    const one = await common.hear(null, { sampleRate: RATE, model: "large" });
+    one.push(voice(1));
+    one.end();
+    assert.deepEqual(rows(one), await heard([voice(1)], { model: "large" }));
+});
+
+test("types and what a hearing has are the same", async () => {
+    const types = source("web/index.d.ts").match(/export class Hearing<[^]*?\n\}/)[0];
+    const typed = new Set([...types.matchAll(/^    (?:readonly )?(\w+)[(:]/gm)].map(([, name]) => name));
+    typed.delete("constructor");
+    const one = await labial.hear(null, { sampleRate: RATE });
+    const own = Object.getOwnPropertyNames(Object.getPrototypeOf(one)).filter((name) => name !== "constructor");
+    assert.deepEqual([...typed].sort(), own.sort());
+});
