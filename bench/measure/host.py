@@ -111,8 +111,13 @@ def npm(bench: Bench) -> None:
               ["gzip", "-9c", folder / "npm" / "*.js", "|", "wc", "-c", "#", *names], compiler)
     bench.add("wasm", "laughter, compressed", _compressed(laughter), "bytes",
               ["gzip", "-9c", laughter, "|", "wc", "-c"], compiler)
+    for model in ("small", "large"):
+        hearing = [folder / "npm-hearing" / f"{name}.js" for name in ("index", "hearing", "tap", model)]
+        bench.add("wasm", f"hearing by the {model} model, each script compressed", sum(map(_compressed, hearing)),
+                  "bytes", ["gzip", "-9c", *hearing, "|", "wc", "-c"], compiler)
     for packed in sorted(folder.glob("labial-*.tgz")):
-        name = "packed laughter package" if "laughter" in packed.name else "packed package"
+        kinds = (f"packed {kind} package" for kind in ("laughter", "hearing") if kind in packed.name)
+        name = next(kinds, "packed package")
         bench.add("wasm", name, packed.stat().st_size, "bytes", ["ls", "-l", packed], compiler)
     command = ["node", bench.source / "bench" / "npm.mjs", folder / "npm"]
     engine = "node " + run(["node", "--version"]).stdout.decode().strip().lstrip("v")

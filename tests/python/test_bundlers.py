@@ -14,10 +14,14 @@ import sys
 from pathlib import Path
 from typing import Any, Dict, List
 
+import numpy as np
 import pytest
 
 from browser import Browser, served
 from bundlers import FOLDER, MISSING, install, node, tools
+from labial.hearing import integer
+from labial.hearing.model import load
+from labial.hearing.quantise import quantise
 from npm import package
 from packages import SOURCE, run
 from pages import parse
@@ -48,6 +52,16 @@ def frames() -> List[int]:
     return [value for row in said(WORD, "faps") for value in row]
 
 
+@pytest.fixture(scope="module")
+def heard() -> List[int]:
+    """What the exporter's integers hear in the sound of lips.js, by both models."""
+    i = np.arange(16000)
+    sound = np.where(i % 400 < 200, i * i % 8191, -(i * i % 8191)).astype(np.int16)
+    models = ((name, load(SOURCE / "export" / "models" / f"{name}.npz")) for name in ("hear_small", "hear_large"))
+    return [value for name, model in models
+            for value in integer.hear(quantise(model, name), sound).faps.ravel().tolist()]  # fmt: skip
+
+
 @pytest.fixture(scope="module", params=BUNDLERS)
 def bundle(request: pytest.FixtureRequest, app: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The app as a bundler bundles it."""
@@ -60,7 +74,7 @@ def results(browser: Browser, folder: Path) -> Any:
     """What the page of `folder` finds in each place."""
     with served(folder) as site:
         page = browser.page(f"{site}/index.html")
-        page.wait_for("Object.keys(window.results ?? {}).length === 4")
+        page.wait_for("Object.keys(window.results ?? {}).length === 5")
         assert page.errors() == []
         return page.evaluate("results")
 
@@ -73,21 +87,21 @@ def printed(program: Path, script: Path) -> Any:
     return json.loads(done.stdout)
 
 
-def test_bundles_run_in_chromium(bundle: Path, browser: Browser, frames: List[int]) -> None:
+def test_bundles_run_in_chromium(bundle: Path, browser: Browser, frames: List[int], heard: List[int]) -> None:
     """Catches a file that a bundler does not emit, and what a worker or an AudioWorklet lacks."""
     found = results(browser, bundle / "page")
-    assert found.pop("element") > 3
+    assert found.pop("element") > 3 and found.pop("hearing") == heard
     assert found == {place: frames for place in ("page", "worker", "worklet")}
 
 
-def test_bundles_run_on_servers(bundle: Path, frames: List[int]) -> None:
+def test_bundles_run_on_servers(bundle: Path, frames: List[int], heard: List[int]) -> None:
     """ES modules and CommonJS, under the oldest node that is supported and a newer one."""
     scripts = sorted((bundle / "server").glob("*.[mc]js"))
     own = [path for path in scripts if path.stem in ("server", "required")]
     assert own
     for version in (18, 22):
         for script in own:
-            assert printed(node(version), script) == frames, (version, script)
+            assert printed(node(version), script) == [frames, heard], (version, script)
 
 
 def test_bundles_name_the_source_of_the_data(bundle: Path) -> None:
@@ -96,20 +110,23 @@ def test_bundles_name_the_source_of_the_data(bundle: Path) -> None:
     assert any("GRID audio-visual speech corpus" in text and "CC BY 4.0" in text for text in texts)
 
 
-def test_unbundled_in_node(app: Path, frames: List[int]) -> None:
+def test_unbundled_in_node(app: Path, frames: List[int], heard: List[int]) -> None:
     """``import`` and ``require()`` of the packages themselves."""
     for version in (18, 22):
         for script in ("server.js", "server.cjs"):
-            assert printed(node(version), app / script) == frames, (version, script)
+            assert printed(node(version), app / script) == [frames, heard], (version, script)
 
 
-def test_unbundled_in_chromium(app: Path, browser: Browser, frames: List[int], tmp_path: Path) -> None:
+def test_unbundled_in_chromium(
+    app: Path, browser: Browser, frames: List[int], heard: List[int], tmp_path: Path
+) -> None:
     """A page with an import map, workers and worklets that name the files."""
     folder = tmp_path / "page"
     shutil.copytree(app, folder)
     html = folder / "index.html"
     paths = {"labial": "./node_modules/labial/index.js", "labial/": "./node_modules/labial/",
-             "labial-laughter": "./node_modules/labial-laughter/index.js"}  # fmt: skip
+             "labial-laughter": "./node_modules/labial-laughter/index.js",
+             "labial-hearing": "./node_modules/labial-hearing/index.js"}  # fmt: skip
     html.write_text(html.read_text().replace(
         "<script type", f'<script type="importmap">{json.dumps({"imports": paths})}</script><script type'))  # fmt: skip
     for path in folder.glob("*.js"):
@@ -119,7 +136,7 @@ def test_unbundled_in_chromium(app: Path, browser: Browser, frames: List[int], t
                 text = text.replace(f'"{name}"', f'"{paths[name]}"')
             path.write_text(text)
     found = results(browser, folder)
-    assert found.pop("element") > 3
+    assert found.pop("element") > 3 and found.pop("hearing") == heard
     assert found == {place: frames for place in ("page", "worker", "worklet")}
 
 

@@ -1,9 +1,10 @@
 // The types as CommonJS has them.
 import labial = require("labial");
+import hearing = require("labial-hearing");
 import laughter = require("labial-laughter");
 
 async function word(): Promise<number> {
-    const mouth = await labial.Labial.load({ laughter });
+    const mouth = await labial.Labial.load({ laughter, hearing });
     const track = mouth.render(mouth.read("0 1 AA"), { output: "arkit" });
     // @ts-expect-error no weight has this name
     track.at(0).jawOppen;

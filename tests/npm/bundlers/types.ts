@@ -1,5 +1,5 @@
 // What the types must allow and refuse: each line below an @ts-expect-error has to be an error.
-import { Labial, type Faps, type Stream, type Track, type Weights } from "labial";
+import { Labial, type Faps, type Hearing, type Stream, type Track, type Weights } from "labial";
 import laughter from "labial-laughter";
 import type { LabialMouth } from "labial/labial-mouth.js";
 
@@ -42,6 +42,25 @@ labial.convert(between, mine).jawOpen;
 // @ts-expect-error a rig comes from rig()
 labial.stream({ output: { name: "mine", outputs: ["beak"] } });
 
+const hears = await Labial.load({ hearing: () => import("labial-hearing") });
+const heard = await hears.hear(new MediaStream(), { output: "arkit", model: "large", context: new AudioContext() });
+const jaw: number = heard.at().jawOpen;
+// @ts-expect-error no weight has this name
+heard.at().jawOppen;
+heard.sound?.connect(new AudioContext().destination);
+await hears.hear(document.querySelector("audio"));
+await hears.hear(new GainNode(new AudioContext()), { play: true });
+const pushed: Hearing = await hears.hear(null, { sampleRate: 24000, channels: 2 });
+pushed.push(new Int16Array(480), 3);
+// @ts-expect-error bytes are no samples
+pushed.push(new Uint8Array(480));
+for await (const frame of pushed) frame.subarray(3);
+hears.render(pushed.segments());
+// @ts-expect-error this is no sound
+await hears.hear("voice.wav");
+// @ts-expect-error no model has this name
+await hears.hear(null, { model: "huge" });
+
 /** Code that does not know the face. */
 function total(weights: Weights): number {
     return Object.values<number>(weights).reduce((sum, one) => sum + one, 0);
@@ -55,8 +74,9 @@ function any(stream: Stream<"arkit" | "vrm">): void {
 function follow(mouth: LabialMouth, track: Track, stream: Stream): void {
     mouth.track = track;
     mouth.stream = stream;
+    mouth.hearing = pushed;
     // @ts-expect-error what is drawn has the output "faps"
     mouth.track = vrm;
 }
 
-export { aa, any, beak, faps, follow, ih, open, ou, sil };
+export { aa, any, beak, faps, follow, ih, jaw, open, ou, sil };

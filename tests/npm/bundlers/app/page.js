@@ -1,5 +1,5 @@
 import "labial/labial-mouth.js";
-import { frames } from "./lips.js";
+import { frames, heard as hears } from "./lips.js";
 
 const heard = (port) => new Promise((resolve, reject) => {
     port.onmessage = ({ data }) => (Array.isArray(data) ? resolve(data) : reject(new Error(data)));
@@ -18,6 +18,7 @@ const places = {
     page: () => frames(() => import("labial-laughter")),
     worker: () => heard(new Worker(new URL("./worker.js", import.meta.url), { type: "module" })),
     worklet,
+    hearing: () => hears(() => import("labial-hearing")),
     element: async () => document.querySelector("labial-mouth").shadowRoot.querySelectorAll("path").length,
 };
 window.results = {};

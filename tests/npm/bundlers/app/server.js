@@ -1,5 +1,6 @@
 // A server draws nothing, but the page's modules are imported there.
 import "labial/labial-mouth.js";
-import { frames } from "./lips.js";
+import { frames, heard } from "./lips.js";
 
-frames(() => import("labial-laughter")).then((found) => console.log(JSON.stringify(found)));
+Promise.all([frames(() => import("labial-laughter")), heard(() => import("labial-hearing"))])
+    .then((found) => console.log(JSON.stringify(found)));

@@ -1,0 +1,226 @@
+"""Hearing in a real browser: lips of an <audio> element, a MediaStream and a node against the sound that leaves for the
+loudspeaker, which a recorder of the test's own takes down."""
+
+from __future__ import annotations
+
+import functools
+import shutil
+import subprocess
+import threading
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any, Dict, Iterator
+
+import numpy as np
+import pytest
+
+from browser import CHROMIUM, REASON, Browser, Page
+from labial.hearing import integer
+from labial.hearing.model import load
+from labial.hearing.quantise import quantise
+from npm import MISSING, package
+from packages import SOURCE
+
+FLITE = shutil.which("flite")
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(not CHROMIUM, reason=REASON),
+              pytest.mark.skipif(bool(MISSING), reason=MISSING),
+              pytest.mark.skipif(not FLITE, reason="needs flite: install the Debian package flite")]  # fmt: skip
+
+TEXT = "Mama may be happy. Papa saw a boat by the water."
+FPS = 50
+#: How long a page is watched: longer than the text and what comes before it, so that silence follows.
+SECONDS = 6
+PAGE = """<!DOCTYPE html>
+<link rel="icon" href="data:,">
+<labial-mouth id="face"></labial-mouth>
+<audio id="voice" src="voice.wav"></audio>
+<script type="module">
+import { Labial } from "./node_modules/labial/index.js";
+import "./node_modules/labial/labial-mouth.js";
+
+const RECORDER = `registerProcessor("recorder", class extends AudioWorkletProcessor {
+    process([[samples]]) {
+        this.port.postMessage([currentTime, samples ? samples.slice() : new Float32Array(128)]);
+        return true;
+    }
+});`;
+const labial = window.labial = await Labial.load({ hearing: () => import("./node_modules/labial-hearing/index.js") });
+const data = await (await fetch("voice.wav")).arrayBuffer();
+
+/** A source of sound in each form: what is heard, and what begins it. */
+const sources = {
+    element: async () => [voice, () => voice.play()],
+    stream: async (context) => {
+        const [node, begin] = await sources.node(context);
+        const out = context.createMediaStreamDestination();
+        node.connect(out);
+        return [out.stream, begin];
+    },
+    remote: async (context) => {
+        const [stream, begin] = await sources.stream(context);
+        const [here, there] = [new RTCPeerConnection(), new RTCPeerConnection()];
+        here.onicecandidate = ({ candidate }) => candidate && there.addIceCandidate(candidate);
+        there.onicecandidate = ({ candidate }) => candidate && here.addIceCandidate(candidate);
+        const come = new Promise((resolve) => { there.ontrack = ({ streams: [one] }) => resolve(one); });
+        here.addTrack(stream.getTracks()[0], stream);
+        await here.setLocalDescription();
+        await there.setRemoteDescription(here.localDescription);
+        await there.setLocalDescription();
+        await here.setRemoteDescription(there.localDescription);
+        window.connections = [here, there];
+        return [await come, async () => {
+            while (here.connectionState !== "connected") await new Promise((resolve) => setTimeout(resolve, 50));
+            begin();
+        }];
+    },
+    node: async (context) => {
+        const buffer = await context.decodeAudioData(data.slice(0));
+        const node = new AudioBufferSourceNode(context, { buffer });
+        return [node, () => node.start()];
+    },
+};
+
+window.hear = async (kind, rate, options) => {
+    const context = rate ? new AudioContext({ sampleRate: rate }) : new AudioContext();
+    const [source, begin] = await sources[kind](context);
+    const hearing = await labial.hear(source, { context, ...options });
+    await context.audioWorklet.addModule(URL.createObjectURL(new Blob([RECORDER], { type: "text/javascript" })));
+    const recorder = new AudioWorkletNode(context, "recorder", { channelCount: 1, channelCountMode: "explicit" });
+    const heard = window.heard = { rate: context.sampleRate, delay: hearing.delay, latency: hearing.latency,
+        first: null, samples: [], seen: [], drawn: [], over: false };
+    recorder.port.onmessage = ({ data: [time, samples] }) => {
+        heard.first ??= time;
+        for (const sample of samples) heard.samples.push(Math.round(32768 * sample));
+        if (heard.samples.length % 512 === 0) heard.seen.push([hearing.now, ...hearing.at()]);
+    };
+    hearing.sound.connect(recorder).connect(context.destination);
+    face.hearing = hearing;
+    requestAnimationFrame(function watch() {
+        if (heard.over) return;
+        heard.drawn.push([...hearing.at(), ...face.faps]);
+        requestAnimationFrame(watch);
+    });
+    window.hearing = hearing;
+    await begin();
+};
+window.ready = true;
+</script>
+"""
+
+
+class _Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, *_: Any) -> None:
+        pass
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page, the voice and the packages."""
+    folder = tmp_path_factory.mktemp("hearing") / "page"
+    built = package(tmp_path_factory.mktemp("npm"))
+    for name in ("labial", "labial-hearing"):
+        shutil.copytree(built.with_name(built.name + name[6:]), folder / "node_modules" / name)
+    (folder / "index.html").write_text(PAGE, encoding="utf-8")
+    subprocess.run([str(FLITE), "-voice", "slt", "-t", TEXT, "-o", str(folder / "voice.wav")], check=True, timeout=60)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A browser for the tests of this file."""
+    with Browser(tmp_path_factory.mktemp("browser") / "profile") as started:
+        yield started
+
+
+@pytest.fixture
+def page(folder: Path, browser: Browser) -> Iterator[Page]:
+    """The page, ready to hear."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    page = browser.page(f"http://127.0.0.1:{server.server_port}/index.html")
+    page.wait_for("window.ready")
+    yield page
+    assert page.errors() == []
+    server.shutdown()
+    server.server_close()
+
+
+def opening(faps: np.ndarray) -> np.ndarray:
+    """(T,) distance of the lips beyond the neutral one, FAP units, of (T, 13) FAPs."""
+    return -(faps[:, 3] + faps[:, 4])
+
+
+def lips_of(heard: Dict[str, Any], model: str) -> np.ndarray:
+    """(T,) the opening that the exporter's integers make of the recording."""
+    recorded, rate = np.array(heard["samples"]), int(heard["rate"])
+    if rate > 48000:
+        recorded, rate = recorded[: len(recorded) // 2 * 2].reshape(-1, 2).mean(axis=1), rate // 2
+    samples = np.clip(np.round(recorded), -32768, 32767).astype(np.int16)
+    trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
+    return opening(integer.hear(quantise(trained, f"hear_{model}"), samples, rate).faps)
+
+
+@pytest.mark.parametrize(("kind", "rate", "model"), [
+    ("element", 0, "small"), ("stream", 0, "large"), ("stream", 44100, "small"), ("node", 96000, "small"),
+    ("remote", 0, "small"),
+])  # fmt: skip
+def test_lips_move_with_what_is_heard(page: Page, kind: str, rate: int, model: str) -> None:
+    """Catches lips that are late by what it takes to know them, a sound that is not delayed as much, blocks that are
+    lost, and a face that is drawn from another clock."""
+    page.evaluate(f"hear('{kind}', {rate}, {{ model: '{model}' }})")
+    page.wait_for(f"heard.samples.length > {SECONDS} * heard.rate", 60)
+    heard = page.evaluate("heard.over = true, heard")
+    assert heard["delay"] >= heard["latency"]
+    expected = lips_of(heard, model)
+    seen = np.array(heard["seen"])
+    times, lips = seen[:, 0] - heard["first"], opening(seen[:, 1:])
+    spoken = (times > 0) & (times < len(expected) / FPS - 0.5)
+    assert spoken.sum() > 100
+
+    def difference(lag: float) -> float:
+        at = (times[spoken] - lag) * FPS
+        return float(np.mean(np.abs(np.interp(at, np.arange(len(expected)), expected) - lips[spoken])))
+
+    lags = np.arange(-0.2, 0.201, 0.01)
+    best = lags[np.argmin([difference(lag) for lag in lags])]
+    assert abs(best) <= 0.02, [round(difference(lag), 1) for lag in lags]
+    assert difference(0) < 0.2 * float(np.std(expected))
+    assert lips[spoken].min() < 100 and lips[spoken].max() > 200
+    drawn = np.array(heard["drawn"])
+    assert len(drawn) > 5 and np.abs(drawn[:, :13] - drawn[:, 13:]).mean() < 0.1 * float(np.std(expected))
+
+
+def test_a_cancel_silences_and_a_restart_goes_on(page: Page) -> None:
+    """Catches a sound that runs on behind closed lips, a face that stays open, and an element that can be heard only
+    once."""
+    page.evaluate("hear('element', 0, {})")
+    page.wait_for("heard.samples.length > heard.rate && Math.abs(face.faps[4]) > 100")
+    refused = "(() => { try { hearing.push(new Int16Array(1)); } catch ({ code }) { return code; } })()"
+    assert page.evaluate(refused) == -5
+    page.evaluate("face.cancel(200)")
+    assert page.evaluate("[hearing.done, ...face.faps]") == [True] + [0] * 13
+    level = "heard.samples.slice(-heard.rate / 5).reduce((sum, one) => sum + Math.abs(one), 0) / (heard.rate / 5)"
+    page.wait_for(f"{level} < 1")
+    assert not page.evaluate("voice.paused")
+    page.evaluate("hearing.restart(), voice.currentTime = 0, face.hearing = hearing, 0")
+    page.wait_for(f"{level} > 300 && Math.abs(face.faps[4]) > 100")
+    assert page.evaluate("face.hearing === hearing && hearing.segments().length > 0")
+    page.evaluate("hearing.close(), heard.over = true, voice.play()")
+    assert page.evaluate("hearing.done && hearing.sound === null && !voice.paused")
+    page.evaluate("face.hearing = null, face.show(new Array(13).fill(0))")
+    page.evaluate("labial.hear(voice).then((one) => { face.hearing = hearing = one; voice.currentTime = 0; })")
+    page.wait_for("Math.abs(face.faps[4]) > 100")
+    page.evaluate("hearing.close()")
+
+
+def test_what_cannot_be_heard_is_told(page: Page) -> None:
+    """Catches an error of the browser's that says nothing, and one for a page without https."""
+    attempt = "({}).then(() => '', ({{ message }}) => message)"
+    for source, message in (
+        ("new AudioContext().createMediaStreamDestination().stream", ""),
+        ("new MediaStream()", "the stream has no track of sound"),
+        ("face", "the source is [object HTMLElement], not a MediaStream, an audio element or an AudioNode"),
+    ):
+        assert page.evaluate(attempt.format(f"labial.hear({source})")) == message
+    page.evaluate("Object.defineProperty(AudioContext.prototype, 'audioWorklet', { value: undefined }), 0")
+    assert "AudioWorklet" in page.evaluate(attempt.format("labial.hear(voice)"))
