@@ -104,7 +104,7 @@ if(format_version MATCHES "version 14\\.")
     list(APPEND laid_out ${files})
   endforeach()
   list(FILTER laid_out EXCLUDE REGEX
-    "/lib/models/|/lib/words/|/examples/faces/|/examples/talk/|/microbit/face\\.|/laugh_table\\.h|/vectors\\.c|/laughs\\.h|/words_cases\\.h")
+    "/lib/(models|words)/|/examples/(faces|talk)/|/microbit/face\\.|_table\\.h|/(vectors\\.c|laughs\\.h|hears\\.h|hear_fixture\\.[ch]|words_cases\\.h)")
   add_test(NAME layout_of_c COMMAND "${LABIAL_CLANG_FORMAT}" --dry-run --Werror ${laid_out})
 else()
   labial_left_out("The check of the layout of C is left out, it needs clang-format 14: "
