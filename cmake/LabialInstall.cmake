@@ -1,4 +1,4 @@
-# What `cmake --install` puts below the prefix: the libraries, their headers, labial-say, and what find_package(labial)
+# What `cmake --install` puts below the prefix: the libraries, their headers, programs, and what find_package(labial)
 # and pkg-config read. The headers of the models lie in a folder of their own, so that they take no names from others.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -25,7 +25,7 @@ foreach(words IN LISTS LABIAL_WORDS)
 endforeach()
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 if(TARGET labial-say)
-  install(TARGETS labial-say RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  install(TARGETS labial-say labial-hear RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 endif()
 
 # ---- find_package(labial) ------------------------------------------------------------------------------------------

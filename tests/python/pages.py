@@ -50,6 +50,7 @@ TOOLS: Dict[str, str] = {
     "g++": "the Debian package g++",
     "labial-bench": "a build with LABIAL_BUILD_EXAMPLES",
     "labial-demo": "a build with LABIAL_BUILD_EXAMPLES",
+    "labial-hear": "a build with LABIAL_BUILD_EXAMPLES",
     "labial-rig-sprites": "a build with LABIAL_BUILD_EXAMPLES",
     "labial-say": "a build with LABIAL_BUILD_EXAMPLES",
     "labial-say-espeak": "the Debian package libespeak-ng-dev, before the build",

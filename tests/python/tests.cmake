@@ -89,7 +89,8 @@ if(LABIAL_SPTK)
   list(APPEND variables "LABIAL_SPTK=${LABIAL_SPTK}")
 endif()
 if(TARGET labial-say)
-  list(APPEND variables "LABIAL_SAY=$<TARGET_FILE:labial-say>" "LABIAL_DEMO_PAGE=${LABIAL_DEMO_PAGE}"
+  list(APPEND variables "LABIAL_SAY=$<TARGET_FILE:labial-say>" "LABIAL_HEAR=$<TARGET_FILE:labial-hear>"
+    "LABIAL_DEMO_PAGE=${LABIAL_DEMO_PAGE}"
     "LABIAL_PROGRAMS=$<TARGET_FILE_DIR:labial-say>:$<TARGET_FILE_DIR:labial-demo>:$<TARGET_FILE_DIR:labial-bench>")
 endif()
 if(TARGET labial-python)

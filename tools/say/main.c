@@ -55,20 +55,6 @@ static const char usage_end[] =
 
 /* ---- Options --------------------------------------------------------------------------------------------------- */
 
-/* The value of option `name` at argv[*i], as `--name value` or `--name=value`; null when it is another option. A
- * missing value is the empty string, which no option accepts. */
-static const char *option_value(const char *name, int argc, char **argv, int *i)
-{
-    const size_t length = strlen(name);
-    if (strncmp(argv[*i], name, length) != 0)
-        return NULL;
-    if (argv[*i][length] == '=')
-        return argv[*i] + length + 1;
-    if (argv[*i][length] != '\0')
-        return NULL;
-    return *i + 1 < argc ? argv[++*i] : "";
-}
-
 static int wrong_usage(const char *problem, const char *value)
 {
     fprintf(stderr, "labial-say: %s '%s'; see labial-say --help\n", problem, value);
@@ -101,13 +87,8 @@ static int read_choice(const char *option, const char *value, choice_names_t nam
 
 static int read_percent(const char *value, unsigned *percent)
 {
-    unsigned number = 0;
-    const char *at = value;
-    for (; *at >= '0' && *at <= '9' && number <= LABIAL_ARTICULATION_MAX; at++)
-        number = 10u * number + (unsigned)(*at - '0');
-    if (*value == '\0' || *at != '\0' || number > LABIAL_ARTICULATION_MAX)
+    if (option_number(value, LABIAL_ARTICULATION_MAX, percent) != 0)
         return wrong_usage("--articulation is a whole number from 0 to 200, not", value);
-    *percent = number;
     return 0;
 }
 

@@ -1,0 +1,318 @@
+"""labial-hear from outside: sound in, frames out. The environment variable LABIAL_HEAR holds the program's path."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import random
+import struct
+import subprocess
+import threading
+from pathlib import Path
+from typing import List, Tuple
+
+import numpy as np
+import pytest
+
+import labial
+from runtime import needs_runtime
+from test_hearing import voice
+from test_say import HEADER, SAY, parse_fap
+
+HEAR = os.environ.get("LABIAL_HEAR", "")
+pytestmark = [needs_runtime, pytest.mark.skipif(not HEAR, reason="LABIAL_HEAR does not name the built labial-hear")]
+
+PCM, FLOAT, EXTENSIBLE = 1, 3, 0xFFFE
+
+
+def hear(*arguments: str, data: bytes = b"") -> subprocess.CompletedProcess:
+    """Runs labial-hear; its output as bytes."""
+    return subprocess.run([HEAR, *arguments], input=data, capture_output=True, timeout=60, check=False)
+
+
+def chunk(name: bytes, data: bytes, size: int = -1) -> bytes:
+    """A chunk of RIFF, padded to an even length; of the size that it claims, where one is given."""
+    return name + struct.pack("<I", len(data) if size < 0 else size) + data + b"\0" * (len(data) % 2)
+
+
+def form(rate: int = 16000, channels: int = 1, bits: int = 16, encoding: int = PCM, more: bytes = b"") -> bytes:
+    """The chunk of the format."""
+    size = channels * bits // 8
+    return chunk(b"fmt ", struct.pack("<HHIIHH", encoding, channels, rate, rate * size, size, bits) + more)
+
+
+def riff(*chunks: bytes) -> bytes:
+    """A WAV file."""
+    body = b"WAVE" + b"".join(chunks)
+    return b"RIFF" + struct.pack("<I", len(body)) + body
+
+
+def pcm(samples: np.ndarray) -> bytes:
+    """Samples, low byte first."""
+    return samples.astype("<i2").tobytes()
+
+
+def wav(path: Path, samples: np.ndarray, rate: int) -> str:
+    """Writes samples (N,) or (N, channels); the file's name."""
+    channels = 1 if samples.ndim == 1 else samples.shape[1]
+    path.write_bytes(riff(form(rate, channels), chunk(b"data", pcm(samples))))
+    return str(path)
+
+
+def wanted(samples: np.ndarray, rate: int = 16000, model: str = "hear_small") -> List[List[int]]:
+    """The frames of labial.Hearing."""
+    with labial.Hearing(rate, 1 if samples.ndim == 1 else samples.shape[1], model=model) as hearing:
+        return [list(frame.faps) for frame in hearing.frames([samples])]
+
+
+def motion(done: subprocess.CompletedProcess) -> List[List[int]]:
+    """The frames of a CSV, whose times are checked."""
+    assert done.returncode == 0 and done.stderr == b"", done.stderr
+    header, *lines = done.stdout.decode().splitlines()
+    assert header == HEADER
+    rows = [line.split(",") for line in lines]
+    assert [row[0] for row in rows] == [f"{k / 50:.3f}" for k in range(len(rows))]
+    return [[int(value) for value in row[1:]] for row in rows]
+
+
+SOUND = voice(0.7)
+
+
+# ---- Frames ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rate", [8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000])
+def test_frames_are_those_of_the_library(rate: int, tmp_path: Path) -> None:
+    """Catches a rate or channels that are not those of the file, samples lost between blocks, the other model."""
+    mono = voice(0.7, rate=rate)
+    stereo = np.stack([mono, -(mono // 3)], axis=1)
+    for name, samples in (("mono.wav", mono), ("stereo.wav", stereo)):
+        expected = wanted(samples, rate)
+        assert len(expected) == 35 and len({tuple(row) for row in expected}) > 9
+        assert motion(hear(wav(tmp_path / name, samples, rate))) == expected
+    large = motion(hear("--model=large", str(tmp_path / "mono.wav")))
+    assert large == wanted(mono, rate, "hear_large") != wanted(mono, rate)
+
+
+def test_raw_samples_from_standard_input() -> None:
+    """Catches defaults other than 16 kHz and one channel, options that are passed over, and half a sample that counts
+    as a whole one."""
+    stereo = np.stack([SOUND, SOUND[::-1]], axis=1)
+    assert motion(hear("-", data=pcm(SOUND))) == wanted(SOUND)
+    assert motion(hear("-", data=pcm(SOUND) + b"\x55")) == wanted(SOUND)
+    assert motion(hear("-", "--channels", "2", data=pcm(stereo) + b"\x55\x55\x55")) == wanted(stereo)
+    assert motion(hear("--rate=48000", "-", data=pcm(SOUND))) == wanted(SOUND, 48000)
+    assert motion(hear("-")) == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_blocks_of_any_length(seed: int) -> None:
+    """Catches frames that depend on how the bytes arrive in a pipe."""
+    draw, data = random.Random(seed), pcm(SOUND)
+    pipe = subprocess.PIPE
+    child = subprocess.Popen([HEAR, "-"], stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0)
+    assert child.stdin
+    while data:
+        size = draw.choice((1, 2, 3, 319, 640, 4097))
+        child.stdin.write(data[:size])
+        data = data[size:]
+    out, errors = child.communicate(timeout=60)
+    assert motion(subprocess.CompletedProcess([], child.returncode, out, errors)) == wanted(SOUND)
+
+
+@pytest.mark.parametrize("options", [[], ["--classes"]])
+def test_frames_leave_while_sound_arrives(options: List[str]) -> None:
+    """Catches frames that are kept back: after 400 ms all frames are out that the library knows by then, and in the end
+    all."""
+    with labial.Hearing() as hearing:
+        known = len(hearing.push(SOUND[:6400]))
+    assert known > 10
+    lines: queue.Queue[bytes] = queue.Queue()
+    child = subprocess.Popen([HEAR, "-", *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert child.stdin and child.stdout
+
+    def read() -> None:
+        for line in child.stdout:  # type: ignore[union-attr]
+            lines.put(line)
+
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    try:
+        child.stdin.write(pcm(SOUND[:6400]))
+        child.stdin.flush()
+        early = [lines.get(timeout=60) for _ in range(1 if options else 1 + known)]
+        assert child.poll() is None
+        child.stdin.write(pcm(SOUND[6400:]))
+        child.stdin.close()
+        assert child.wait(timeout=60) == 0
+        reader.join(timeout=60)
+    finally:
+        child.kill()  # so that a failure above ends here instead of waiting for a program that waits
+        child.wait()
+        reader.join(timeout=60)
+        child.stdout.close()
+    while not lines.empty():
+        early.append(lines.get())
+    assert b"".join(early) == hear("-", *options, data=pcm(SOUND)).stdout
+
+
+def test_every_format_has_the_frames() -> None:
+    """Catches a format that has other frames than csv, or none of a face's weights."""
+    rows = motion(hear("-", data=pcm(SOUND)))
+    header, frames = parse_fap(hear("-", "--to=fap", data=pcm(SOUND)).stdout.decode())
+    assert header == ["2.1", "hear_small", "50", "35"]
+    assert [[frame[int(name[3:])] for name in HEADER.split(",")[1:]] for frame in frames] == rows
+    objects = [json.loads(line) for line in hear("-", "--to", "jsonl", data=pcm(SOUND)).stdout.splitlines()]
+    assert [[*item["faps"].values()] for item in objects] == rows
+    for face in ("arkit", "vrm", "oculus"):
+        weights = [json.loads(line)[face] for line in hear("-", "--to", face, data=pcm(SOUND)).stdout.splitlines()]
+        assert len(weights) == 35 and any(value > 0 for item in weights for value in item.values())
+        assert face != "arkit" or weights == [item["arkit"] for item in objects]
+    assert len(hear("-", "--to", "livelink", data=pcm(SOUND)).stdout.splitlines()) == 36
+
+
+def test_classes_are_timings(tmp_path: Path) -> None:
+    """Catches classes with the names of others, times that do not join, and labels that labial-say does not know."""
+    path = wav(tmp_path / "voice.wav", SOUND, 16000)
+    done = hear(path, "--classes")
+    assert done.returncode == 0 and done.stderr == b""
+    with labial.Hearing() as hearing:
+        assert len(list(hearing.frames([SOUND]))) == 35
+        shown = hearing.shown()
+    assert done.stdout.decode() == "".join(
+        f"{item.frame / 50:.3f} {(item.frame + item.frames) / 50:.3f} {item.name}\n" for item in shown)
+    if SAY:
+        said = subprocess.run([SAY, "--from=lab"], input=done.stdout, capture_output=True, timeout=60, check=False)
+        assert said.returncode == 0 and said.stderr == b"" and len(said.stdout.splitlines()) == 36
+
+
+# ---- WAV files -------------------------------------------------------------------------------------------------------
+
+GUID = bytes.fromhex("000000001000800000aa00389b71")
+
+
+@pytest.mark.parametrize("data", [
+    riff(chunk(b"LIST", b"odd" * 333), form(), chunk(b"fact", b"1"), chunk(b"data", pcm(SOUND))),
+    riff(form(), chunk(b"data", pcm(SOUND)), chunk(b"id3 ", b"behind", 0xFFFFFFFF)),
+    riff(form(encoding=EXTENSIBLE, more=struct.pack("<HHIH", 22, 16, 4, PCM) + GUID), chunk(b"data", pcm(SOUND))),
+    riff(form(more=b"\0\0" + b"x" * 601), chunk(b"data", pcm(SOUND))),
+    riff(form(), chunk(b"data", pcm(SOUND), 0xFFFFFFFF)),
+    riff(form(), chunk(b"data", pcm(SOUND), 0x7FFFF000)),
+    riff(form(48000, 2), form(), chunk(b"data", pcm(SOUND) + b"x")),
+    b"RIFF\0\0\0\0" + riff(form(), chunk(b"data", pcm(SOUND)))[8:],
+], ids=["chunks", "behind", "extensible", "long-format", "endless", "largest", "half-a-sample", "no-size"])
+def test_unusual_files_are_heard(data: bytes, tmp_path: Path) -> None:
+    """Catches a reader that expects 44 bytes of header, or believes sizes that writers of pipes do not know; files may
+    come through a pipe, which cannot seek."""
+    (tmp_path / "a.wav").write_bytes(data)
+    assert motion(hear(str(tmp_path / "a.wav"))) == wanted(SOUND)
+    if os.path.exists("/dev/stdin"):
+        assert motion(hear("/dev/stdin", data=data)) == wanted(SOUND)
+
+
+WHOLE = riff(form(), chunk(b"data", pcm(SOUND)))
+
+
+@pytest.mark.parametrize(("data", "told"), [
+    (b"", "is not a WAV file"),
+    (b"RIFF", "is not a WAV file"),
+    (b"RIFX" + WHOLE[4:], "is not a WAV file"),
+    (b"RIFF\0\0\0\0AVI " + WHOLE[12:], "is not a WAV file"),
+    (pcm(SOUND), "is not a WAV file"),
+    (WHOLE[:12], "ends before its samples"),
+    (WHOLE[:19], "ends before its samples"),
+    (WHOLE[:30], "ends within its format"),
+    (WHOLE[:40], "ends before its samples"),
+    (WHOLE[:45], "ends before its samples do"),
+    (WHOLE[:-1], "ends before its samples do"),
+    (riff(form(), chunk(b"LIST", b"short", 0xFFFFFFFF), chunk(b"data", pcm(SOUND))), "a chunk is longer than the file"),
+    (riff(chunk(b"fmt ", b"\1\0\1\0" + bytes(11)), chunk(b"data", b"")), "its format has less than 16 bytes"),
+    (riff(form(more=b"x")[:4] + b"\xff\xff\xff\x7f" + form()[8:], chunk(b"data", pcm(SOUND))),
+     "a chunk is longer than the file"),
+    (riff(chunk(b"data", pcm(SOUND)), form()), "has no format before its samples"),
+    (riff(form(bits=24), chunk(b"data", b"")), "has samples of 24 bits in encoding 1; only 16-bit PCM"),
+    (riff(form(bits=8), chunk(b"data", b"")), "has samples of 8 bits in encoding 1"),
+    (riff(form(bits=32, encoding=FLOAT), chunk(b"data", b"")), "has samples of 32 bits in encoding 3"),
+    (riff(form(encoding=EXTENSIBLE), chunk(b"data", b"")), "has samples of 16 bits in encoding 65534"),
+    (riff(form(encoding=EXTENSIBLE, more=struct.pack("<HHIH", 22, 16, 4, 6) + GUID), chunk(b"data", b"")),
+     "has samples of 16 bits in encoding 6;"),
+    (riff(form(channels=0), chunk(b"data", b"")), "has 0 channels, not 1 or 2"),
+    (riff(form(channels=6), chunk(b"data", b"")), "has 6 channels, not 1 or 2"),
+    (riff(form(2**32 - 1, 0)[:10] + form(48000, 2)[10:20] + b"\2\0\x10\0", chunk(b"data", b"")), "contradicts itself"),
+    (riff(form(11025), chunk(b"data", b"")), "11025 samples per second, channels: 1: the sound's rate"),
+    (riff(form(0), chunk(b"data", b"")), "0 samples per second, channels: 1: the sound's rate"),
+])
+def test_hostile_files_are_refused(data: bytes, told: str, tmp_path: Path) -> None:
+    """An error names the file and what is wrong with it, in one line, and the exit status is 1."""
+    path = tmp_path / "hostile.wav"
+    path.write_bytes(data)
+    done = hear(str(path))
+    message = done.stderr.decode()
+    assert done.returncode == 1
+    assert message.startswith(f"labial-hear: {path}: ") and message.count("\n") == 1
+    assert told in message
+    assert hear(str(path), "--to", "fap").stdout == b"", "a part of the motion under a header of its own"
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_any_bytes_are_survived(seed: int, tmp_path: Path) -> None:
+    """Catches headers that end the program: bytes changed, and the end cut off."""
+    draw, path = random.Random(seed), tmp_path / "any.wav"
+    head = len(WHOLE) - len(pcm(SOUND))
+    for _ in range(25):
+        data = bytearray(WHOLE[: draw.choice((head + 1500, draw.randrange(head)))])
+        for _ in range(draw.randrange(1, 5)):
+            if data:
+                at = draw.randrange(min(len(data), head))
+                data[at] = draw.choice((0, 1, 2, 0x7F, 0x80, 0xFF, draw.randrange(256)))
+        path.write_bytes(data)
+        done = hear(str(path))
+        assert done.returncode in (0, 1)
+        assert done.stderr.count(b"\n") == done.returncode and not done.stderr.strip(b"\n").count(b"\x1b")
+
+
+def test_files_that_cannot_be_read_are_named(tmp_path: Path) -> None:
+    """Catches an error that does not say which file."""
+    for path in (tmp_path / "none.wav", tmp_path):
+        done = hear(str(path))
+        assert done.returncode == 1 and done.stderr.startswith(f"labial-hear: {path}: cannot ".encode())
+    done = hear("-", "--rate", "11025")
+    assert done.returncode == 1
+    assert done.stderr.startswith(b"labial-hear: standard input: 11025 samples per second, channels: 1: ")
+
+
+# ---- Usage -----------------------------------------------------------------------------------------------------------
+
+USAGE: Tuple[List[str], ...] = (
+    [], ["--to"], ["-", "--to", "wav"], ["-", "--model", "x"], ["-", "--model=hear_small"], ["-", "--nonsense"],
+    ["a.wav", "b.wav"], ["a.wav", "--rate", "16000"], ["a.wav", "--channels=1"], ["-", "--classes", "--to", "csv"],
+    *(["-", "--rate", rate] for rate in ("", "0", "-1", "16k", "16000.0", "4294983296")),
+    *(["-", "--channels", channels] for channels in ("", "0", "3", "mono")),
+)
+
+
+@pytest.mark.parametrize("arguments", USAGE)
+def test_usage_errors(arguments: List[str]) -> None:
+    """Options that mean nothing end with status 2 before anything is read or written."""
+    done = hear(*arguments, data=pcm(SOUND))
+    assert done.returncode == 2 and done.stdout == b""
+    assert done.stderr.startswith(b"labial-hear: ") and done.stderr.count(b"\n") == 1
+
+
+def test_help_and_version() -> None:
+    """Both are answered on standard output with status 0."""
+    done = hear("--help")
+    assert done.returncode == 0 and b"usage: labial-hear" in done.stdout and b"small (default)" in done.stdout
+    done = hear("--version")
+    assert done.returncode == 0 and done.stdout.startswith(b"labial-hear ")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
+@pytest.mark.parametrize("options", [[], ["--classes"], ["--to", "fap"]])
+def test_a_full_disk_is_an_error(options: List[str]) -> None:
+    """Motion that could not be written is not success."""
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run([HEAR, "-", *options], input=pcm(SOUND), stdout=full, stderr=subprocess.PIPE, timeout=60,
+                              check=False)
+    assert done.returncode == 1 and b"cannot write" in done.stderr

@@ -1,0 +1,271 @@
+/*
+ * labial-hear - the sound of speech in, lip motion on standard output, while it arrives.
+ *
+ *     labial-hear hello.wav > motion.csv
+ *     arecord -q -t raw -f S16_LE -r 16000 | labial-hear - --to jsonl
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "choice.h"
+#include "frames.h"
+#include "hearing.h"
+#include "labial/hear.h"
+#include "wav.h"
+
+/* Exit statuses. */
+#define EXIT_INPUT 1
+#define EXIT_USAGE 2
+
+#define DEFAULT_RATE 16000
+#define RATE_MAX 1000000
+
+/* Milliseconds of a frame; blocks of sound in a second, and room for a block of the highest rate with two channels. */
+#define FRAME_MS (1000 / LABIAL_HEAR_RATE)
+#define BLOCKS_PER_SECOND 100
+#define BLOCK_MAX (2 * 48000 / BLOCKS_PER_SECOND)
+
+typedef struct {
+    const char *name;
+    const labial_hear_model_t *model;
+    const char *const *classes;
+} hear_model_t;
+
+static const hear_model_t models[] = { LABIAL_BUNDLED_HEARING };
+#define MODELS ((unsigned)(sizeof models / sizeof models[0]))
+
+/* Numbers are places in the lists of what there is; a rate or channels of 0 were not given. */
+typedef struct {
+    const char *sound;
+    unsigned to, model, rate, channels;
+    int to_given, classes;
+} options_t;
+
+typedef struct {
+    const char *sound; /* for messages */
+    const hear_model_t *model;
+    labial_hear_t stream;
+    uint32_t workspace[LABIAL_HEAR_WORKSPACE_SIZE(LABIAL_HEAR_UNITS_MAX, LABIAL_HEAR_ROWS_MAX) / 4u]; /* for any */
+    wav_t wav;
+    frames_t frames;
+    int classes;
+} hear_t;
+
+static const char usage_begin[] =
+    "usage: labial-hear SOUND.wav [--to FORMAT] [--model MODEL] > motion\n"
+    "       labial-hear - [--rate RATE] [--channels N] [--to FORMAT] [--model MODEL] < samples > motion\n"
+    "\n"
+    "Hears speech and writes the motion of lips and jaw, frame by frame, while the sound is still arriving. Frame k\n"
+    "shows the lips in the 20 ms that begin at 20 k ms; it is written when the 140 ms from there on were heard.\n"
+    "\n"
+    "  SOUND.wav       16-bit PCM with one or two channels; 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000\n"
+    "                  samples per second\n"
+    "  -               samples from standard input, 16 bits, low byte first\n"
+    "  --rate RATE     with -: samples per second (16000)\n"
+    "  --channels N    with -: 1, or 2, of which the mean is heard (1)\n"
+    "  --classes       not motion but a .lab file: the phonemes that stand for the lip shapes heard, with their "
+    "times\n";
+
+static const char usage_end[] = "  --help          print this and exit\n"
+                                "  --version       print the version and exit\n"
+                                "\n"
+                                "Exit status: 0 success, 1 malformed sound or failure to write, 2 wrong usage.\n";
+
+/* ---- Options --------------------------------------------------------------------------------------------------- */
+
+/* The name for --model, that of the model without hear_. */
+static const char *model_name(unsigned number)
+{
+    return number < MODELS ? strchr(models[number].name, '_') + 1 : NULL;
+}
+
+static unsigned default_model(void)
+{
+    unsigned number = MODELS - 1u;
+    while (number > 0 && strcmp(model_name(number), "small") != 0)
+        number--;
+    return number;
+}
+
+static int wrong_usage(const char *problem, const char *value)
+{
+    fprintf(stderr, "labial-hear: %s '%s'; see labial-hear --help\n", problem, value);
+    return EXIT_USAGE;
+}
+
+static int read_choice(const char *option, const char *value, choice_names_t names, unsigned *chosen)
+{
+    const int number = choice_of("labial-hear", option, value, names);
+    if (number < 0)
+        return EXIT_USAGE;
+    *chosen = (unsigned)number;
+    return 0;
+}
+
+static int read_number(const char *problem, const char *value, unsigned most, unsigned *number)
+{
+    if (option_number(value, most, number) != 0 || *number == 0)
+        return wrong_usage(problem, value);
+    return 0;
+}
+
+static int read_options(int argc, char **argv, options_t *options)
+{
+    for (int i = 1; i < argc; i++) {
+        const char *value;
+        int result = 0;
+        if ((value = option_value("--to", argc, argv, &i)) != NULL) {
+            result = read_choice("--to", value, frames_format_name, &options->to);
+            options->to_given = 1;
+        } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
+            result = read_choice("--model", value, model_name, &options->model);
+        } else if ((value = option_value("--rate", argc, argv, &i)) != NULL) {
+            result =
+                read_number("--rate is a whole number of samples per second, not", value, RATE_MAX, &options->rate);
+        } else if ((value = option_value("--channels", argc, argv, &i)) != NULL) {
+            result = read_number("--channels is 1 or 2, not", value, 2, &options->channels);
+        } else if (strcmp(argv[i], "--classes") == 0) {
+            options->classes = 1;
+        } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
+            result = wrong_usage("unknown option", argv[i]);
+        } else if (options->sound) {
+            result = wrong_usage("one argument too many:", argv[i]);
+        } else {
+            options->sound = argv[i];
+        }
+        if (result != 0)
+            return result;
+    }
+    if (!options->sound)
+        return wrong_usage("the sound is missing: a WAV file or", "-");
+    if ((options->rate || options->channels) && strcmp(options->sound, "-") != 0)
+        return wrong_usage("--rate and --channels go with -, not with", options->sound);
+    if (options->classes && options->to_given)
+        return wrong_usage("--to selects a format of motion and does not go with", "--classes");
+    return 0;
+}
+
+static void print_usage(void)
+{
+    fputs(usage_begin, stdout);
+    frames_help(stdout);
+    for (unsigned i = 0; i < MODELS; i++)
+        printf("%s%s%s", i == 0 ? "  --model MODEL   " : ", ", model_name(i), i == default_model() ? " (default)" : "");
+    putchar('\n');
+    fputs(usage_end, stdout);
+}
+
+/* ---- The pipe -------------------------------------------------------------------------------------------------- */
+
+static int failed(const hear_t *hear, const char *why)
+{
+    fprintf(stderr, "labial-hear: %s: %s\n", hear->sound, why);
+    return EXIT_INPUT;
+}
+
+static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    hear_t *hear = user;
+    (void)frame;
+    if (!hear->classes)
+        frames_put(&hear->frames, faps);
+}
+
+static void write_time(uint32_t frame)
+{
+    const uint64_t milliseconds = (uint64_t)frame * FRAME_MS;
+    printf("%" PRIu64 ".%03u ", milliseconds / 1000u, (unsigned)(milliseconds % 1000u));
+}
+
+static void on_class(void *user, unsigned shown, uint32_t frame, uint32_t frames)
+{
+    const hear_t *hear = user;
+    write_time(frame);
+    write_time(frame + frames);
+    printf("%s\n", hear->model->classes[shown]);
+}
+
+/* What was written goes on its way. */
+static int flush(hear_t *hear)
+{
+    const int result = hear->classes ? fflush(stdout) != 0 || ferror(stdout) : frames_flush(&hear->frames) != 0;
+    return result ? failed(hear, "cannot write what was heard") : 0;
+}
+
+static int hear_all(hear_t *hear)
+{
+    int16_t samples[BLOCK_MAX];
+    const size_t count = hear->wav.rate / BLOCKS_PER_SECOND; /* a rate that the stream accepted */
+    long read;
+    do {
+        read = wav_read(&hear->wav, samples, count);
+        if (read < 0)
+            return failed(hear, hear->wav.message);
+        (void)labial_hear_push(&hear->stream, samples, (size_t)read);
+        if (flush(hear) != 0)
+            return EXIT_INPUT;
+    } while ((size_t)read == count);
+    (void)labial_hear_end(&hear->stream);
+    return 0;
+}
+
+/* The sound is open, and how it is to be read is known. */
+static int run(hear_t *hear, const options_t *options)
+{
+    const hear_model_t *model = hear->model = &models[options->model];
+    char why[160];
+    const int result = labial_hear_init(&hear->stream, model->model, hear->wav.rate, hear->wav.channels,
+                                        hear->workspace, sizeof hear->workspace, on_frame, hear);
+    if (result < 0) {
+        (void)snprintf(why, sizeof why, "%" PRIu32 " samples per second, channels: %u: %s", hear->wav.rate,
+                       hear->wav.channels, labial_result_text(result));
+        return failed(hear, why);
+    }
+    hear->classes = options->classes;
+    if (hear->classes) {
+        (void)labial_hear_classes(&hear->stream, on_class);
+        const int status = hear_all(hear);
+        return status == 0 ? flush(hear) : status;
+    }
+    frames_init(&hear->frames, stdout, options->to, model->name, LABIAL_HEAR_RATE);
+    const int status = hear_all(hear);
+    if (frames_finish(&hear->frames, status == 0) != 0 && status == 0)
+        return failed(hear, "cannot write what was heard");
+    return status;
+}
+
+static int open_and_run(hear_t *hear, const options_t *options)
+{
+    hear->sound = options->sound;
+    if (strcmp(options->sound, "-") == 0) {
+        hear->sound = "standard input";
+        wav_raw(&hear->wav, stdin, options->rate ? options->rate : DEFAULT_RATE,
+                options->channels ? options->channels : 1u);
+        return run(hear, options);
+    }
+    FILE *in = fopen(options->sound, "rb");
+    if (!in)
+        return failed(hear, "cannot open");
+    const int status = wav_open(&hear->wav, in) == 0 ? run(hear, options) : failed(hear, hear->wav.message);
+    fclose(in);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 2 && strcmp(argv[1], "--help") == 0) {
+        print_usage();
+        return 0;
+    }
+    if (argc == 2 && strcmp(argv[1], "--version") == 0) {
+        printf("labial-hear %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
+        return 0;
+    }
+    options_t options = { NULL, 0, default_model(), 0, 0, 0, 0 };
+    const int result = read_options(argc, argv, &options);
+    if (result != 0)
+        return result;
+    static hear_t hear;
+    return open_and_run(&hear, &options);
+}

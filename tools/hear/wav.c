@@ -1,0 +1,137 @@
+/*
+ * wav.c - chunks, the format, samples.
+ */
+#include "wav.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* Bytes of a format that matter here: those of WAVE_FORMAT_EXTENSIBLE up to the number of the encoding. */
+#define FORMAT_BYTES 26u
+#define FORMAT_BYTES_MIN 16u
+
+#define PCM 1u
+#define EXTENSIBLE 0xfffeu
+
+/* Programs that write into a pipe do not know the size of the sound, and write the largest that their like accepts. */
+#define SIZE_UNKNOWN 0x7ffff000u
+
+static uint32_t little_endian(const unsigned char *at, unsigned bytes)
+{
+    uint32_t value = 0;
+    for (unsigned i = 0; i < bytes; i++)
+        value |= (uint32_t)at[i] << 8 * i;
+    return value;
+}
+
+static int failed(wav_t *wav, const char *why)
+{
+    (void)snprintf(wav->message, sizeof wav->message, "%s", ferror(wav->in) ? "cannot read" : why);
+    return -1;
+}
+
+static int read_all(wav_t *wav, unsigned char *bytes, size_t count, const char *why)
+{
+    return fread(bytes, 1, count, wav->in) == count ? 0 : failed(wav, why);
+}
+
+/* Passes over `count` bytes of a chunk, by reading, as a pipe cannot seek. */
+static int skip(wav_t *wav, uint32_t count)
+{
+    unsigned char bytes[512];
+    while (count > 0) {
+        const uint32_t part = count < sizeof bytes ? count : (uint32_t)sizeof bytes;
+        if (read_all(wav, bytes, part, "a chunk is longer than the file") != 0)
+            return -1;
+        count -= part;
+    }
+    return 0;
+}
+
+static int read_format(wav_t *wav, uint32_t size)
+{
+    unsigned char format[FORMAT_BYTES] = { 0 };
+    const uint32_t taken = size < FORMAT_BYTES ? size : FORMAT_BYTES;
+    if (size < FORMAT_BYTES_MIN)
+        return failed(wav, "its format has less than 16 bytes");
+    if (read_all(wav, format, taken, "ends within its format") != 0)
+        return -1;
+    unsigned encoding = little_endian(format, 2);
+    const unsigned bits = little_endian(format + 14, 2);
+    if (encoding == EXTENSIBLE && size >= FORMAT_BYTES)
+        encoding = little_endian(format + 24, 2);
+    wav->channels = little_endian(format + 2, 2);
+    wav->rate = little_endian(format + 4, 4);
+    if (encoding != PCM || bits != 16) {
+        (void)snprintf(wav->message, sizeof wav->message,
+                       "has samples of %u bits in encoding %u; only 16-bit PCM, encoding 1, can be heard", bits,
+                       encoding);
+        return -1;
+    }
+    if (wav->channels < 1 || wav->channels > 2) {
+        (void)snprintf(wav->message, sizeof wav->message, "has %u channels, not 1 or 2", wav->channels);
+        return -1;
+    }
+    if (little_endian(format + 12, 2) != 2u * wav->channels)
+        return failed(wav, "its format contradicts itself: bytes of a sample");
+    return skip(wav, size - taken) == 0 && skip(wav, size & 1u) == 0 ? 0 : -1;
+}
+
+int wav_open(wav_t *wav, FILE *in)
+{
+    unsigned char head[12];
+    memset(wav, 0, sizeof *wav);
+    wav->in = in;
+    if (read_all(wav, head, 12, "is not a WAV file") != 0)
+        return -1;
+    if (memcmp(head, "RIFF", 4) != 0 || memcmp(head + 8, "WAVE", 4) != 0)
+        return failed(wav, "is not a WAV file");
+    for (;;) {
+        if (read_all(wav, head, 8, "ends before its samples") != 0)
+            return -1;
+        const uint32_t size = little_endian(head + 4, 4);
+        if (memcmp(head, "data", 4) == 0) {
+            wav->left = size;
+            wav->endless = size >= SIZE_UNKNOWN;
+            return wav->channels > 0 ? 0 : failed(wav, "has no format before its samples");
+        }
+        if (memcmp(head, "fmt ", 4) == 0) {
+            if (read_format(wav, size) != 0)
+                return -1;
+        } else if (skip(wav, size) != 0 || skip(wav, size & 1u) != 0) {
+            return -1;
+        }
+    }
+}
+
+void wav_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels)
+{
+    memset(wav, 0, sizeof *wav);
+    wav->in = in;
+    wav->rate = rate;
+    wav->channels = channels;
+    wav->endless = 1;
+}
+
+long wav_read(wav_t *wav, int16_t *samples, size_t count)
+{
+    unsigned char bytes[512];
+    const size_t size = 2u * (size_t)wav->channels; /* divides 512 */
+    size_t read = 0;
+    while (read < count) {
+        size_t wanted = (count - read) * size < sizeof bytes ? (count - read) * size : sizeof bytes;
+        if (!wav->endless && wanted > wav->left)
+            wanted = wav->left;
+        const size_t got = fread(bytes, 1, wanted, wav->in);
+        if (got < wanted && (!wav->endless || ferror(wav->in)))
+            return failed(wav, "ends before its samples do");
+        if (!wav->endless)
+            wav->left -= (uint32_t)got;
+        for (size_t i = 0; i < got / size * wav->channels; i++)
+            samples[read * wav->channels + i] = (int16_t)(uint16_t)little_endian(bytes + 2 * i, 2);
+        read += got / size;
+        if (got < size || (!wav->endless && wav->left == 0) || got < wanted)
+            break;
+    }
+    return (long)read;
+}

@@ -1,0 +1,35 @@
+/*
+ * wav.h - a WAV file with 16-bit PCM samples, read from its begin to its end, so that it may also be a pipe.
+ *
+ * Files are not trusted. Sizes in them are believed only as far as the file has the bytes.
+ */
+#ifndef LABIAL_HEAR_WAV_H
+#define LABIAL_HEAR_WAV_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Read `rate`, `channels` and `message`; the rest is private. */
+typedef struct {
+    uint32_t rate;     /* samples per second, as the file says */
+    unsigned channels; /* likewise */
+    char message[128]; /* of the latest error */
+    FILE *in;
+    uint32_t left; /* bytes of samples that are still to come */
+    int endless;   /* they come until the file ends */
+} wav_t;
+
+/* Reads as far as the first sample. `in` stays the caller's. Returns 0, or -1 with `message`. */
+int wav_open(wav_t *wav, FILE *in);
+
+/* Takes `in` for samples without a header, low byte first, to its end. */
+void wav_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels);
+
+/*
+ * Reads at most `count` samples, of two channels as many pairs. Returns how many it read, fewer only at the end, where
+ * a part of a sample is dropped; or -1 with `message` if the file ends before its samples do, or cannot be read.
+ */
+long wav_read(wav_t *wav, int16_t *samples, size_t count);
+
+#endif
