@@ -45,7 +45,7 @@ def _corpora(tree: Path) -> List[Item]:
     """The training data of the bundled models, from their headers, and of the tables of words."""
     found = []
     for header in sorted((tree / "lib" / "models").glob("*.h")):
-        (notice,) = re.findall(r"do not\s+\*?\s*edit\. ([^/]*)\.\s+\*/", header.read_text(encoding="utf-8"))
+        (notice,) = re.findall(r"do not\s+\*?\s*edit\. (.*?)\.\s+\*/", header.read_text(encoding="utf-8"), re.DOTALL)
         text = re.sub(r"\s+\*?\s*", " ", notice) + "."
         item: Item = {"type": "data", "bom-ref": f"model:{header.stem}", "name": header.stem, "description": text}
         if "CC BY 4.0" in text:

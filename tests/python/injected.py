@@ -19,6 +19,7 @@ import shutil
 import signal
 import sys
 import types
+import wave
 from pathlib import Path
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
@@ -43,6 +44,7 @@ from models import random_model, write_motion
 from test_record import talking
 from test_record import write as write_landmarks
 
+MODELS = Path(labial.corpus.__file__).parents[2] / "models"
 PICTURES = ["amplitude.png", "error_per_class.png", "steps_and_curve.png", "trajectories.png"]
 NOTHING, FULL, KILL, TERM = range(4)
 OLD = b"what was there before\n"
@@ -129,6 +131,45 @@ def _fit() -> None:
     picture.draw = lambda *given: given[-1].write_bytes(bytes(20000))  # type: ignore[assignment]
 
 
+def _train_words() -> None:
+    from labial.words import dictionary, tables, training
+
+    trained = tables.load(MODELS / "words_en.npz")
+    dictionary.read_dictionary = lambda _: []  # type: ignore[assignment]
+    training.train = lambda *_, **__: trained  # type: ignore[assignment]
+
+
+def _train_hear() -> None:
+    import labial.hearing
+    from labial.hearing import clips, model, prepared
+
+    def train(_: Any, __: Any, checkpoint: str, *___: Any) -> model.HearingModel:
+        Path(checkpoint).touch()
+        return model.load(MODELS / "hear_small.npz")
+
+    made = types.ModuleType("labial.hearing.train")  # which needs PyTorch
+    made.Options, made.train = lambda *_: None, train  # type: ignore[attr-defined]
+    labial.hearing.train = made  # type: ignore[attr-defined]
+    sys.modules.update({"torch": types.ModuleType("torch"), made.__name__: made})
+    clips.read = lambda *_: []  # type: ignore[assignment]
+    prepared.prepare = lambda *_: types.SimpleNamespace(classes=[])  # type: ignore
+
+
+def _evaluate_hear() -> None:
+    from labial.evaluate import hearing
+
+    hearing.of_voice = lambda *_: None  # type: ignore
+    hearing.evaluated = lambda *_: []  # type: ignore
+    hearing.table = lambda _: "made up\n" * 2000  # type: ignore[assignment]
+
+
+def _speech_corpus() -> None:
+    from labial.hearing import speech_corpus, voices
+
+    said = voices.Spoken(np.arange(8000, dtype=np.int16), 16000, (Segment(0.0, 0.5, "SIL"),))
+    speech_corpus.speak = lambda *_: iter([said])  # type: ignore[assignment]
+
+
 def cases() -> Dict[str, Case]:
     """Every command that writes, and some in both ways that a folder can be."""
     reports = ["report.md", "table1.csv", "table2.csv", "table3.csv", "table4.csv", "splits.csv", *PICTURES]
@@ -154,6 +195,14 @@ def cases() -> Dict[str, Case]:
         "page": Case(["page", "f.csv", "-o", "out/p.html"], ["p.html"]),
         "landmarks": Case(["landmarks", "v.mp4", "-o", "out/l.npz", "--quiet"], ["l.npz"], patch=_track),
         "record": Case(["record", "seen.npz", "-o", "out/c"], ["c/seen.csv", "c/seen.lab"], there=False),
+        "hear": Case(["hear", "a.wav", "-o", "out/h.csv"], ["h.csv"]),
+        "train-hear": Case(["train-hear", "corpus", "-o", "out/h.npz", "--quiet"], ["h.npz"], patch=_train_hear),
+        "evaluate-hear": Case(["evaluate-hear", str(MODELS / "hear_small.npz"), "-o", "out/t.md", "--cache", "cache"],
+                              ["t.md"], patch=_evaluate_hear),
+        "speech-corpus": Case(["speech-corpus", "out/c", "--sentences", "a.lab", "--voices", "flite:slt", "--minutes",
+                               ".008", "--quiet"], ["c/00000_flite-slt.flac", "c/00000_flite-slt.lab"], there=False,
+                              patch=_speech_corpus),
+        "train-words": Case(["train-words", "a.lab", "-o", "out/w.npz", "--quiet"], ["w.npz"], patch=_train_words),
     }  # fmt: skip
 
 
@@ -164,6 +213,9 @@ def given() -> None:
     Path("face.toml").write_text(FACE)
     write_motion(Path("f.csv"), np.arange(40) / 50, 20 * np.sin(np.add.outer(np.arange(40), np.arange(13))))
     write_landmarks(Path(), "seen", landmarks=talking()[0])
+    with wave.open("a.wav", "wb") as sound:
+        sound.setparams((1, 2, 16000, 0, "NONE", ""))
+        sound.writeframes(bytes(64000))
 
 
 def lay(case: Case) -> None:

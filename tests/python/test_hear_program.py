@@ -17,8 +17,9 @@ import pytest
 
 import labial
 from runtime import needs_runtime
+from test_animation import read_fap
 from test_hearing import voice
-from test_say import HEADER, SAY, parse_fap
+from test_say import HEADER, SAY
 
 HEAR = os.environ.get("LABIAL_HEAR", "")
 pytestmark = [needs_runtime, pytest.mark.skipif(not HEAR, reason="LABIAL_HEAR does not name the built labial-hear")]
@@ -160,8 +161,8 @@ def test_frames_leave_while_sound_arrives(options: List[str]) -> None:
 def test_every_format_has_the_frames() -> None:
     """Catches a format that has other frames than csv, or none of a face's weights."""
     rows = motion(hear("-", data=pcm(SOUND)))
-    header, frames = parse_fap(hear("-", "--to=fap", data=pcm(SOUND)).stdout.decode())
-    assert header == ["2.1", "hear_small", "50", "35"]
+    name, fps, frames = read_fap(hear("-", "--to=fap", data=pcm(SOUND)).stdout.decode())
+    assert (name, fps, len(frames)) == ("hear_small", 50, 35)
     assert [[frame[int(name[3:])] for name in HEADER.split(",")[1:]] for frame in frames] == rows
     objects = [json.loads(line) for line in hear("-", "--to", "jsonl", data=pcm(SOUND)).stdout.splitlines()]
     assert [[*item["faps"].values()] for item in objects] == rows

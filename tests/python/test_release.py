@@ -86,7 +86,7 @@ def check_bill(bill: Dict[str, Any], folder: Path) -> None:
     assert "synthetic" in components["model:laughter_synthetic"]["description"]
     assert {"pypi:numpy", "pypi:scipy", "pypi:mediapipe", "pypi:distributed", "build:ziglang"} <= set(components)
     assert [item["dependsOn"] for item in bill["dependencies"]] == [
-        ["model:laughter_synthetic", "model:speech_en", "words:words_en"]]
+        ["model:hear_large", "model:hear_small", "model:laughter_synthetic", "model:speech_en", "words:words_en"]]
 
 
 def test_what_ci_takes_from_elsewhere_is_pinned() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import tempfile
 from typing import List, Optional
@@ -39,8 +40,8 @@ def run(options: argparse.Namespace) -> int:
     methods = hearing.methods(model)
     chosen = {name: methods[name] for name in _chosen(options.methods, "--methods", list(methods))}
     conditions = _chosen(options.conditions, "--conditions", list(hearing.CONDITIONS))
-    with tempfile.TemporaryDirectory() as temporary:
-        sets = [hearing.of_folder(folder, options.cache or temporary, options.jobs, options.most or 0)
+    with contextlib.nullcontext(options.cache) if options.cache else tempfile.TemporaryDirectory() as cache:
+        sets = [hearing.of_folder(folder, cache, options.jobs, options.most or 0)
                 for folder in options.folder]
         voices = hearing.VOICES if options.voices is None else options.voices
         sets += [hearing.of_voice(voice, hearing.default_sentences()) for voice in voices]

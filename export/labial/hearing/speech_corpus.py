@@ -5,6 +5,7 @@ The folder that it writes is one of those that ``labial train-hear`` reads: soun
 
 from __future__ import annotations
 
+import io
 import zlib
 from pathlib import Path
 from typing import Callable, Iterator, List, NamedTuple, Optional, Sequence, Tuple
@@ -70,7 +71,9 @@ def write_corpus(
         for voice, said in _turns(sentences, voices, seed, strays):
             for spoken in said:
                 name = f"{sounds:05d}_{''.join(c if c.isalnum() else '-' for c in voice)}"
-                soundfile.write(str(place / f"{name}.flac"), spoken.samples, spoken.rate)
+                sound = io.BytesIO()  # so that a full disk is an error of the file, not of the sound's library
+                soundfile.write(sound, spoken.samples, spoken.rate, format="FLAC")
+                (place / f"{name}.flac").write_bytes(sound.getvalue())
                 (place / f"{name}.lab").write_text(lab_of(spoken.segments), "utf-8")
                 seconds += len(spoken.samples) / spoken.rate
                 sounds += 1
