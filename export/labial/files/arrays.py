@@ -1,4 +1,4 @@
-"""Arrays of untrusted NumPy files (.npy, and .npz, a zip of them): sizes are checked before reading.
+"""Arrays of NumPy files (.npy, and .npz, a zip of them): of untrusted ones sizes are checked before reading.
 
 The format is that of https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html; objects are not read.
 """
@@ -6,14 +6,17 @@ The format is that of https://numpy.org/doc/stable/reference/generated/numpy.lib
 from __future__ import annotations
 
 import io
+import json
 import math
 import os
 import zipfile
-from typing import BinaryIO, Dict, Iterable, Optional, Set, Union
+from contextlib import nullcontext
+from typing import Any, BinaryIO, ContextManager, Dict, Iterable, Mapping, Optional, Set, Tuple, Union
 
 import numpy as np
 
 from labial.errors import LabialError
+from labial.files.outputs import writing
 
 PathLike = Union[str, os.PathLike[str]]
 
@@ -24,6 +27,25 @@ _MOST_AXES = 8
 
 class ArrayError(LabialError):
     """A file's content is damaged, encrypted or too large; the message names the array, not the file."""
+
+
+def write_model(path: Union[PathLike, BinaryIO], about: Mapping[str, Any],
+                arrays: Iterable[Tuple[str, np.ndarray]]) -> None:
+    """Writes an .npz with the member ``model.json``, which has `about`, and the arrays by their names, to a path or to
+    a file that is open. The same content gives the same bytes: times are fixed, members are in order."""
+    opened: ContextManager[Any] = writing(path) if isinstance(path, (str, os.PathLike)) else nullcontext(path)
+    with opened as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+
+        def add(name: str, data: bytes) -> None:
+            info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            info.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(info, data, compresslevel=9)
+
+        add("model.json", json.dumps(about, indent=1, sort_keys=True, ensure_ascii=False).encode())
+        for name, value in arrays:
+            buffer = io.BytesIO()
+            np.lib.format.write_array(buffer, np.ascontiguousarray(value), allow_pickle=False)
+            add(name + ".npy", buffer.getvalue())
 
 
 def read_zip(path: PathLike, names: Optional[Iterable[str]], most: int) -> Dict[str, bytes]:

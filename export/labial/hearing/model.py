@@ -6,20 +6,16 @@ Shapes use H units, B blocks, K taps of a block's memory, C lip classes, and the
 
 from __future__ import annotations
 
-import io
 import json
 import os
-import zipfile
-from contextlib import nullcontext
 from dataclasses import dataclass, field
-from typing import Any, BinaryIO, ContextManager, Dict, List, Tuple, Union
+from typing import Any, BinaryIO, Dict, List, Tuple, Union
 
 import numpy as np
 
 from labial.errors import ModelError
-from labial.files.arrays import ArrayError, array, read_zip
+from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS
-from labial.files.outputs import writing
 from labial.hearing.features import BANDS, HOPS
 from labial.hearing.plans import Memory, Plan
 
@@ -129,21 +125,9 @@ def _shapes(model: HearingModel, units: int, classes: int) -> List[Tuple[str, np
 
 def save(model: HearingModel, path: Union[PathLike, BinaryIO]) -> None:
     """Writes the model, to a path or to a file that is open. The same model gives the same bytes."""
-    text = {name: getattr(model, name) for name in _TEXT}
-    opened: ContextManager[Any] = writing(path) if isinstance(path, (str, os.PathLike)) else nullcontext(path)
-    with opened as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-
-        def add(name: str, data: bytes) -> None:
-            info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
-            info.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(info, data, compresslevel=9)
-
-        text.update(kind=KIND, format=FORMAT)
-        add("model.json", json.dumps(text, indent=1, sort_keys=True, ensure_ascii=False).encode())
-        for name, value, _ in _shapes(model, model.plan.units, len(model.classes)):
-            buffer = io.BytesIO()
-            np.lib.format.write_array(buffer, np.ascontiguousarray(value, dtype=np.float32), allow_pickle=False)
-            add(name + ".npy", buffer.getvalue())
+    about = {**{name: getattr(model, name) for name in _TEXT}, "kind": KIND, "format": FORMAT}
+    write_model(path, about, ((name, value.astype(np.float32))
+                              for name, value, _ in _shapes(model, model.plan.units, len(model.classes))))
 
 
 def is_hearing(path: PathLike) -> bool:

@@ -7,21 +7,17 @@ logarithms, precisions inverse variances.
 
 from __future__ import annotations
 
-import io
 import json
 import os
-import zipfile
-from contextlib import nullcontext
 from dataclasses import dataclass, field, fields
-from typing import Any, BinaryIO, ContextManager, Dict, Tuple, Union
+from typing import Any, BinaryIO, Dict, Tuple, Union
 
 import numpy as np
 
 from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError
-from labial.files.arrays import ArrayError, array, read_zip
+from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS
-from labial.files.outputs import writing
 from labial.tables.bundled import model_file
 from labial.tables.protrusion import VALUES
 
@@ -217,23 +213,10 @@ def _check_values(name: str, value: np.ndarray) -> None:
 
 
 def save(model: Model, path: Union[str, os.PathLike[str], BinaryIO]) -> None:
-    """Writes the model, to a path or to a file that is open. The same model gives the same bytes: members are in order,
-    uncompressed times are fixed."""
-    text = {name: getattr(model, name) for name in _TEXT}
-    opened: ContextManager[Any] = writing(path) if isinstance(path, (str, os.PathLike)) else nullcontext(path)
-    with opened as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-
-        def add(name: str, data: bytes) -> None:
-            info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
-            info.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(info, data, compresslevel=9)
-
-        add("model.json", json.dumps({"format": FORMAT, **text}, indent=1, sort_keys=True, ensure_ascii=False).encode())
-        for item in fields(model):
-            if item.name not in _TEXT and not (item.name in _OPTIONAL and not len(getattr(model, item.name))):
-                buffer = io.BytesIO()
-                np.lib.format.write_array(buffer, np.ascontiguousarray(getattr(model, item.name)), allow_pickle=False)
-                add(item.name + ".npy", buffer.getvalue())
+    """Writes the model, to a path or to a file that is open. The same model gives the same bytes."""
+    values = ((item.name, getattr(model, item.name)) for item in fields(model) if item.name not in _TEXT)
+    write_model(path, {"format": FORMAT, **{name: getattr(model, name) for name in _TEXT}},
+                ((name, value) for name, value in values if name not in _OPTIONAL or len(value)))
 
 
 def load(path: Union[str, os.PathLike[str]]) -> Model:
