@@ -1,10 +1,10 @@
 /*
  * board.c - what a stream costs on a board: prints names and numbers, one pair a line.
  *
- * BENCH_MODEL is SPEECH or LAUGHTER, BENCH_SECONDS how much input is synthesised; with BENCH_TURNS it is both by turns. What is counted, in instructions:
- * labial_init() once; every call of labial_tick() from the first, before anything is ready, to the one that says
- * LABIAL_DONE; the calls of labial_push(), labial_room() and labial_end() between ticks. The stack is that of all of
- * these, with a callback that sums up the frame.
+ * BENCH_MODEL is SPEECH or LAUGHTER, BENCH_SECONDS how much input is synthesised; with BENCH_TURNS it is both by turns.
+ * What is counted, in instructions: labial_init() once; every call of labial_tick() from the first, before anything is
+ * ready, to the one that says LABIAL_DONE; the calls of labial_push(), labial_room() and labial_end() between ticks. The
+ * stack is that of all of these, with a callback that sums up the frame.
  */
 #include "board.h"
 #include "inputs.h"
