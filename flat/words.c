@@ -59,6 +59,11 @@ int words_begin(labial_words_stream_t *stream, const labial_words_own_t *own, in
     return labial_words_begin(stream, &words_en, own, offset);
 }
 
+void words_pronounce(labial_words_stream_t *stream, const labial_words_own_t *own)
+{
+    stream->own = own;
+}
+
 int words_say(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end)
 {
     return labial_words_say(stream, text, size, start, end);

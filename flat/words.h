@@ -1,6 +1,6 @@
 /*
- * words.h - words to phonemes for languages that call C (flat.h), with the tables words_en. A part of its own, which
- * the WebAssembly module leaves out.
+ * words.h - words to phonemes for languages that call C (flat.h), with the tables words_en. A part of its own: in npm
+ * it is a module of the package labial-words.
  */
 #ifndef LABIAL_FLAT_WORDS_H
 #define LABIAL_FLAT_WORDS_H
@@ -25,6 +25,8 @@ FLAT(words_read) int words_read(const labial_words_own_t *own, const char *text,
 
 /* A stream of words; words_next() writes a phoneme and its milliseconds. */
 FLAT(words_begin) int words_begin(labial_words_stream_t *stream, const labial_words_own_t *own, int32_t offset);
+/* Other words of the caller's own, for the words that follow. */
+FLAT(words_pronounce) void words_pronounce(labial_words_stream_t *stream, const labial_words_own_t *own);
 FLAT(words_say)
 int words_say(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end);
 FLAT(words_say_characters)

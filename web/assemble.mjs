@@ -70,9 +70,10 @@ function commonjs(folder) {
     const done = new Map();
     const add = (name) => {
         if (done.has(name)) return;
-        if (name === "speech") {
-            const path = 'require("node:path").join(__dirname, "speech.js")';
-            done.set(name, `const in_speech = require("node:fs").readFileSync(${path}, "utf8").split('"')[1];\n`);
+        const code = read(join(folder, `${name}.js`));
+        if (code.startsWith("/*!")) { // data, of which there is one copy
+            const path = `require("node:path").join(__dirname, "${name}.js")`;
+            done.set(name, `const in_${name} = require("node:fs").readFileSync(${path}, "utf8").split('export default "')[1].slice(0, -3);\n`);
             return;
         }
         const exported = [];
@@ -80,7 +81,7 @@ function commonjs(folder) {
             add(from);
             return `const ${all} = in_${from};\n`;
         };
-        const body = read(join(folder, `${name}.js`))
+        const body = code
             .replace(/^import (?:\* as )?(\w+|\{.*\}) from "\.\/(\w+)\.js";\n/gm, (_, all, from) => take(all, from))
             .replace(/^export \{(.*)\};\n/gm, (_, names) => (exported.push(names), ""))
             .replace(/^export (?=(?:async )?(?:const|class|function\*?) (\w+))/gm, (_, one) => (exported.push(one), ""));

@@ -1,5 +1,5 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, amount, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
@@ -28,6 +28,8 @@ const SCRATCH = 16384;
 const LABEL_MAX = 256;
 /** Most bytes of a model. */
 const MODEL_MAX = 2 ** 26;
+/** What other packages take, since their own sources would be copies. */
+const TOOLS = { LabialError, Memory, amount, shown, unpack, timings };
 const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
 
 /** A model for streams, bundled or loaded. */
@@ -62,8 +64,9 @@ export class Labial {
     #laughter; // where the laughter model comes from
     #coming = null; // its model, while it is on its way
     #hearing; // where hearing comes from
+    #words; // where words come from
 
-    constructor(instance, laughter, hearing) {
+    constructor(instance, { laughter, hearing, words }) {
         this.wasm = instance.exports;
         this.memory = new Memory(this.wasm.memory, this.wasm.__heap_base.value);
         this.models = { speech: new Model(this, this.wasm.bundled_model(0), this.wasm.bundled_names(0)), laughter: null };
@@ -74,13 +77,15 @@ export class Labial {
         this.#loaded = new FinalizationRegistry(([at, size]) => this.memory.release(at, size));
         this.#laughter = laughter;
         this.#hearing = hearing;
+        this.#words = words;
         Object.freeze(this);
     }
 
-    static async load({ wasm, laughter, hearing } = {}) {
+    static async load(options = {}) {
+        const { wasm, laughter } = options;
         const code = (await wasm) ?? unpack(speech);
         const made = await WebAssembly.instantiate(code, {});
-        const labial = new Labial(made.instance ?? made, laughter, hearing);
+        const labial = new Labial(made.instance ?? made, options);
         if (laughter && typeof laughter !== "function") await labial.laughter();
         return labial;
     }
@@ -97,7 +102,13 @@ export class Labial {
     async hear(source, options) {
         const found = await given(this.#hearing);
         if (!found) throw new LabialError(NO_HEARING);
-        return found.hear({ LabialError, Memory, amount, shown, unpack }, this, source, options);
+        return found.hear(TOOLS, this, source, options);
+    }
+
+    async words() {
+        const found = await given(this.#words);
+        if (!found) throw new LabialError(NO_WORDS);
+        return found.words(TOOLS, this);
     }
 
     render(segments, { output = "faps", ...options } = {}) {

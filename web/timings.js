@@ -189,10 +189,10 @@ function piperPhonemes(entries) {
     });
 }
 
-// ---- Entries --------------------------------------------------------------------------------------------------------
+// ---- Entries, which the package labial-words takes as well ----------------------------------------------------------
 
 /** One object of what a service tells: `line` where a line is a document of its own, else its `place`, from 1. */
-class Entry {
+export class Entry {
     constructor(fields, line, place) {
         Object.assign(this, { fields, line, place });
         if (!isObject(fields)) throw this.error(`${told(fields)} is not an object`);
@@ -223,15 +223,15 @@ class Entry {
         throw this.error(`'${what}' is ${told(value)}, not a number from 0 on`);
     }
 
-    text(name) {
-        const value = this.get(name);
-        if (typeof value !== "string") throw this.error(`'${name}' is ${told(value)}, not text`);
+    text(...names) {
+        const value = this.get(...names);
+        if (typeof value !== "string") throw this.error(`'${names[0]}' is ${told(value)}, not text`);
         return value;
     }
 
-    list(name) {
-        const value = this.get(name);
-        if (!Array.isArray(value)) throw this.error(`'${name}' is ${told(value)}, not a list`);
+    list(...names) {
+        const value = this.get(...names);
+        if (!Array.isArray(value)) throw this.error(`'${names[0]}' is ${told(value)}, not a list`);
         return value;
     }
 
@@ -241,7 +241,7 @@ class Entry {
 }
 
 /** The objects of a list, a single one, or of JSON: one document, or one per line. */
-function entriesOf(source) {
+export function entriesOf(source) {
     if (typeof source !== "string") return (Array.isArray(source) ? source : [source]).map(entry);
     const text = source.replace(/^\uFEFF/, "");
     linesOf(text);
@@ -280,7 +280,7 @@ function entry(fields, i) {
 }
 
 /** `segments`, or an error where times are late, turned round or overlap, or where there are none. */
-function checked(segments) {
+export function checked(segments) {
     if (!segments.length) throw new LabialError("no segments");
     let previous = -Infinity;
     return segments.map(({ line, ...segment }, i) => {

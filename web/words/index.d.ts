@@ -1,0 +1,2 @@
+/** What Labial.load() takes as `words`; programs call labial.words(). */
+export function words(...given: any[]): Promise<unknown>;
