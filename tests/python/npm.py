@@ -33,7 +33,8 @@ NODE = shutil.which("node") or ""
 _PROLOGUE = r"""
 const url = process.argv[1];
 const { Labial, timings } = await import(url);
-const labial = await Labial.load({ laughter: () => import(url.replace(/\/index\.js$/, "-laughter/index.js")) });
+const more = (name) => () => import(url.replace(/\/index\.js$/, `-${name}/index.js`));
+const labial = await Labial.load({ laughter: more("laughter"), words: more("words") });
 let input = "";
 for await (const piece of process.stdin) input += piece;
 const given = JSON.parse(input);

@@ -97,6 +97,7 @@ def test_other_forms_of_messages(tmp_path: Path, source: str, content: Any) -> N
     ("words", [{"word": "a", "start": "0", "end": 1}], "entry 1: 'start' is 0, not a number from 0 on"),
     ("words", [{"word": 1, "start": 0, "end": 1}], "entry 1: 'word' is 1, not text"),
     ("words", [{"word": "a", "start": 0, "end": 1e9}], "later than any time"),
+    ("words", [{"word": "a", "start": 0, "end": 1e307}], "later than any time"),
     ("words", [{"word": "a", "start": 0}], "entry 1: no field 'end'"),
     ("words", [], "no words with their times"),
     ("cartesia", [{"type": "done", "context_id": "c"}], "no words with their times"),

@@ -22,8 +22,7 @@ export function readers(tools, labial, words) {
     }
 
     function milliseconds({ item }, seconds) {
-        const found = even(seconds * 1000);
-        if (found <= LATEST) return found;
+        if (seconds * 1000 <= LATEST) return even(seconds * 1000);
         throw item.error(`${seconds} s is later than any time that is believed`);
     }
 

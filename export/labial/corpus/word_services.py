@@ -375,7 +375,6 @@ def _from_phonemes(path: PathLike, found: Sequence[_Timed]) -> List[SourceSegmen
 
 
 def _ms(item: _Timed, seconds: float) -> int:
-    milliseconds = round(seconds * 1000)
-    if milliseconds > LATEST:
+    if not seconds * 1000 <= LATEST:
         raise item.place.error(f"{seconds:g} s is later than any time that is believed")
-    return milliseconds
+    return round(seconds * 1000)

@@ -1,0 +1,110 @@
+"""What labial/espeak.js makes of espeak-ng's events, against the exporter."""
+
+from __future__ import annotations
+
+import ctypes.util
+import random
+from pathlib import Path
+from typing import Any, Dict, List, Tuple
+
+import numpy as np
+import pytest
+
+from labial.hearing import espeak
+from npm import answered
+
+Rows = List[Tuple[float, float, str]]
+
+#: Segments of each [events, samples, sampleRate].
+ESPEAK = """
+const { fromEspeak } = await import(url.replace(/index\\.js$/, "espeak.js"));
+answer(given.map(([events, samples, sampleRate]) => {
+    const sound = samples && { samples: samples.map((piece) => Int16Array.from(piece)), sampleRate };
+    const segments = fromEspeak(events, sound);
+    const labels = new Set(segments.filter(({ label }) => label).map(({ label }) => label));
+    return [segments, [...labels].filter((label) => {
+        try {
+            return !Number.isInteger(labial.phoneme(label, { labels: "ipa" }));
+        } catch {
+            return true;
+        }
+    })];
+}));
+"""
+
+
+def events_of(events: List[Tuple[int, str]]) -> List[Dict[str, Any]]:
+    return [{"type": "phoneme", "audio_position": start, "id": name} for start, name in events]
+
+
+def without_gaps(ends: List[Tuple[float, str]]) -> Rows:
+    """The segments of phonemes' ends; those of no length are left out."""
+    found, moment = [], 0.0
+    for end, label in ends:
+        if end > moment:
+            found.append((moment, end, label))
+            moment = end
+    return found
+
+
+def joined(found: Rows) -> Rows:
+    """Adjacent silences as one."""
+    result: Rows = []
+    for start, end, label in found:
+        if result and not label and not result[-1][2]:
+            result[-1] = (result[-1][0], end, "")
+        else:
+            result.append((start, end, label))
+    return result
+
+
+def test_drawn_events_of_espeak(tmp_path: Path) -> None:
+    """Would catch a closure, a pause, a mark or a language's name that is treated otherwise."""
+    rng = random.Random(10)
+    labels = ["m", "ˈɑː", "p", "t", "k", "tʃ", "ɡ", "", "", "ʲ", "(en)", "5", "ə-", "ɐ̃ʊ̃"]
+    given, wanted = [], []
+    for _ in range(200):
+        events, moment = [], 0
+        for _ in range(rng.randrange(1, 15)):
+            events.append((moment, rng.choice(labels)))
+            moment += rng.choice([0, 4, 30, 64, 65, 66, 90, 200])
+        rate = rng.choice([8000, 22050])
+        pieces = [rng.choice([0, 20, 900, 8000]) for _ in range(moment // 15 + 2)]
+        samples = np.repeat(np.array(pieces, "int16"), rate * 15 // 1000) * rng.choice([1, -1])
+        given.append([events_of(events), [samples[:777].tolist(), samples[777:].tolist()], rate])
+        wanted.append(without_gaps(espeak.phonemes(events, samples, rate)))
+    moved = 0
+    for (events, _, _), (found, _), one in zip(given, answered(ESPEAK, given, tmp_path), wanted):
+        segments = [(item["start"], item["end"], item["label"]) for item in found]
+        assert [item[2] for item in joined(segments)] == [item[2] for item in joined(one)], events
+        assert [item[:2] for item in joined(segments)] == pytest.approx([item[:2] for item in joined(one)]), events
+        starts = {event["audio_position"] / 1000 for event in events}
+        moved += sum(item[0] not in starts for item in segments)
+    assert moved > 100
+
+
+#: Sentences with stops between vowels, of each language one.
+SENTENCES = {
+    "en-us": "Mama may keep the top tape. Peter picked a pack of cards.",
+    "de": "Der Papst packt täglich Pakete, die Katze auch!",
+    "fr": "Papa peut parler, tout le monde attend quatre cafés.",
+    "es": "El papá puede cantar, mucho tiempo atrás.",
+    "it": "Il papà può cantare, ciao a tutti.",
+    "pl": "Pan Tadeusz pije kawę, proszę czekać.",
+}
+
+
+@pytest.mark.skipif(not ctypes.util.find_library("espeak-ng"), reason="espeak-ng is not installed")
+def test_espeak_in_six_languages(tmp_path: Path) -> None:
+    """No unknown label, and the times that the exporter takes of the same events."""
+    given, wanted = [], []
+    for voice, text in SENTENCES.items():
+        speaker = espeak.Speaker(voice)
+        samples, rate, ends = speaker.say(text)
+        given.append([events_of(speaker._events), [samples.tolist()], rate])
+        wanted.append(joined(without_gaps(ends)))
+    for voice, (found, unknown), one in zip(SENTENCES, answered(ESPEAK, given, tmp_path), wanted):
+        segments = joined([(item["start"], item["end"], item["label"]) for item in found])
+        assert unknown == [] and len(segments) > 20, voice
+        assert [item[2] for item in segments] == [item[2] for item in one], voice
+        assert [item[:2] for item in segments] == pytest.approx([item[:2] for item in one]), voice
