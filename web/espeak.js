@@ -1,12 +1,12 @@
-// Phonemes and their times from espeak-ng as WebAssembly (@echogarden/espeak-ng-emscripten), whose events have the fields
-// of espeak_EVENT. It does what tools/speak/espeak.c and export/labial/hearing/espeak.py do; a test holds them to each
-// other.
+// Phonemes and their times from espeak-ng as WebAssembly (@echogarden/espeak-ng-emscripten), whose events have the
+// fields of espeak_EVENT. It does what tools/speak/espeak.c and export/labial/hearing/espeak.py do; a test holds them to
+// each other.
 import { LabialError, shown } from "./memory.js";
 
 /** Shorter stretches without a label are word boundaries, glottal stops or glides, for which espeak-ng has no IPA: they
  * belong to the phoneme before. Milliseconds; pauses last 150. */
 const SHORTEST_PAUSE = 65;
-/** Milliseconds: steps in which the sound's level is taken, the longest closure, and what the phoneme before it keeps. */
+/** Milliseconds: steps in which the sound's level is taken, the longest closure, what the phoneme before it keeps. */
 const STEP = 5;
 const LONGEST_CLOSURE = 100;
 const KEPT = 20;
@@ -32,7 +32,8 @@ export function fromEspeak(events, { samples, sampleRate } = {}) {
     let last = 0;
 
     const add = (from, to, what) => {
-        if (to > from) segments.push({ start: from / 1000, end: to / 1000, label: what, ...(what && { labels: "ipa" }) });
+        const labels = what && { labels: "ipa" };
+        if (to > from) segments.push({ start: from / 1000, end: to / 1000, label: what, ...labels });
     };
     const isPause = (moment) => unlabelled > 0 && moment >= unlabelled + SHORTEST_PAUSE;
     const close = (end) => {
@@ -66,7 +67,8 @@ class Sound {
             throw new TypeError(`sampleRate is ${shown(rate)}, not a number from ${RATES[0]} to ${RATES[1]}`);
         }
         const pieces = ArrayBuffer.isView(samples) ? [samples] : samples;
-        if (!Array.isArray(pieces) || !pieces.every((one) => one instanceof Int16Array || one instanceof Float32Array)) {
+        const isSound = (one) => one instanceof Int16Array || one instanceof Float32Array;
+        if (!Array.isArray(pieces) || !pieces.every(isSound)) {
             throw new TypeError(`the samples are ${shown(samples)}, not an Int16Array, a Float32Array or a list of them`);
         }
         this.levels = [];

@@ -206,6 +206,94 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     close(): void;
 }
 
+/** The package labial-words. */
+export type HasWords = { readonly words: (...given: any[]) => Promise<unknown> } | { readonly default: unknown };
+
+/** How words are pronounced. */
+export interface Pronunciation {
+    /** Words that are pronounced otherwise, with their phonemes in ARPABET: `{ google: "G UW G AH L" }`. */
+    own?: Readonly<Record<string, string | readonly string[]>> | ReadonlyMap<string, string | readonly string[]> | null;
+    /** Writes out a number, given as it stands in the text: "1984", "1,234.5". */
+    numbers?: ((digits: string) => string) | null;
+}
+
+export interface WordOptions extends Pronunciation {
+    /** Seconds that are added to all times: a positive number for a voice that reports its words too early. */
+    offset?: number;
+}
+
+/** A word as it is written, punctuation included, and when it is spoken, seconds. */
+export interface TimedWord {
+    text: string;
+    start: number;
+    /** Without it the word lasts until the next one, or as long as such a word usually does. */
+    end?: number | null;
+    /** When each of its characters ends, if that is known. */
+    ends?: Iterable<number> | null;
+}
+
+/** What a message tells: a text, a character, or a phoneme of the IPA, and its time, seconds from the beginning of the
+ * sound; null where it does not tell when a word ends. */
+export interface TimedText {
+    text: string;
+    start: number;
+    end: number | null;
+}
+
+/** What a message tells. */
+export interface Told {
+    phonemes: TimedText[];
+    words: TimedText[];
+    characters: TimedText[];
+    /** Of Fish Audio: of each chunk the latest message counts. */
+    chunk?: number;
+}
+
+/** Reads the messages of one answer, as they arrive. */
+export class MessageReader {
+    #private;
+    private constructor();
+    /** The format; "auto" until a message tells it. */
+    readonly format: string;
+    /** Reads a message, or several; all lists are empty where it tells no words. */
+    read(source: unknown): Told;
+}
+
+/** Words on their way to phonemes, while they are still arriving. */
+export class WordStream {
+    #private;
+    private constructor();
+    /** Adds a word. How it ends depends on what follows, so that its phonemes come with the next word or flush(). */
+    say(word: TimedWord): void;
+    /** No word follows for now: the last one ends where it said. Words may follow nevertheless. */
+    flush(): void;
+    /** The segments that became known since the last call; they follow each other without gaps, from 0 on. */
+    take(): Segment[];
+    /** Frees the memory at once; otherwise the garbage collector does. */
+    free(): void;
+}
+
+/** English words and characters with their times to phonemes and theirs. */
+export class Words {
+    #private;
+    private constructor();
+    /** The phonemes of a text, in ARPABET without stress, word after word. */
+    phonemes(text: string, options?: Pronunciation): string[];
+    /** Segments from words in the order in which they are spoken. */
+    wordTimings(words: Iterable<TimedWord>, options?: WordOptions): Segment[];
+    /** Segments from characters, blanks included, and when each begins and ends, seconds. */
+    characterTimings(text: Iterable<string>, starts: Iterable<number>, ends: Iterable<number>, options?: WordOptions): Segment[];
+    /** The formats that read() takes. */
+    readonly formats: readonly string[];
+    /** Timings of any voice: the JSON of a service, parsed or as text, a message or a list of them in the order of their
+     * arrival, or the text of a `.lab` and its like. The format is told from the content, unless it is named. */
+    read(source: unknown, options?: WordOptions & { format?: string }): Segment[];
+    /** What reads the messages of one answer one by one. */
+    reader(options?: { format?: string }): MessageReader;
+    /** A new stream of words. */
+    stream(options?: WordOptions): WordStream;
+}
+
 /** The library. One serves any number of streams. */
 export class Labial {
     /** The library, with the speech model. `laughter` is the laughter model, or a function that loads it when laughter()
@@ -214,6 +302,7 @@ export class Labial {
     static load(options?: {
         laughter?: Laughter | Promise<Laughter> | (() => Laughter | Promise<Laughter>);
         hearing?: Hears | Promise<Hears> | (() => Hears | Promise<Hears>);
+        words?: HasWords | Promise<HasWords> | (() => HasWords | Promise<HasWords>);
         wasm?: BufferSource | WebAssembly.Module | Promise<BufferSource | WebAssembly.Module>;
     }): Promise<Labial>;
     /** The laughter model, loaded once; after that streams laugh. Rejects if load() got none. */
@@ -229,6 +318,8 @@ export class Labial {
     /** Lips of a sound: of a source, or, without one, of samples that are pushed. Rejects if load() got no package
      * labial-hearing, or where the page cannot hear. */
     hear<O extends Output = "faps">(source?: Sound | null, options?: HearOptions<O>): Promise<Hearing<O>>;
+    /** What turns words into phonemes, loaded once. Rejects if load() got no package labial-words. */
+    words(): Promise<Words>;
     /** The formats that read() takes. */
     readonly formats: readonly string[];
     /** Timings as text: .lab, flite, HTK, MBROLA, MaryTTS, Sphinx or TextGrid, one of `formats`; "auto", when left out,

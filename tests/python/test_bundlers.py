@@ -17,6 +17,7 @@ from typing import Any, Dict, List
 import numpy as np
 import pytest
 
+import labial
 from browser import Browser, served
 from bundlers import FOLDER, MISSING, install, node, tools
 from labial.hearing import integer
@@ -62,6 +63,17 @@ def heard() -> List[int]:
             for value in integer.hear(quantise(model, name), sound).faps.ravel().tolist()]  # fmt: skip
 
 
+@pytest.fixture(scope="module")
+def spoken() -> List[Any]:
+    """What Python makes of the words of lips.js: phonemes, and when they end."""
+    moment = 0
+    found: List[Any] = []
+    for label, length in labial.word_timings([("Maybe,", 100, 500), ("people!", 750, None)]):
+        moment += length
+        found += ["" if label == "SIL" else label, moment / 1000]
+    return found
+
+
 @pytest.fixture(scope="module", params=BUNDLERS)
 def bundle(request: pytest.FixtureRequest, app: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The app as a bundler bundles it."""
@@ -74,7 +86,7 @@ def results(browser: Browser, folder: Path) -> Any:
     """What the page of `folder` finds in each place."""
     with served(folder) as site:
         page = browser.page(f"{site}/index.html")
-        page.wait_for("Object.keys(window.results ?? {}).length === 5")
+        page.wait_for("Object.keys(window.results ?? {}).length === 6")
         assert page.errors() == []
         return page.evaluate("results")
 
@@ -87,21 +99,23 @@ def printed(program: Path, script: Path) -> Any:
     return json.loads(done.stdout)
 
 
-def test_bundles_run_in_chromium(bundle: Path, browser: Browser, frames: List[int], heard: List[int]) -> None:
+def test_bundles_run_in_chromium(
+    bundle: Path, browser: Browser, frames: List[int], heard: List[int], spoken: List[Any]
+) -> None:
     """Catches a file that a bundler does not emit, and what a worker or an AudioWorklet lacks."""
     found = results(browser, bundle / "page")
-    assert found.pop("element") > 3 and found.pop("hearing") == heard
+    assert found.pop("element") > 3 and found.pop("hearing") == heard and found.pop("words") == spoken
     assert found == {place: frames for place in ("page", "worker", "worklet")}
 
 
-def test_bundles_run_on_servers(bundle: Path, frames: List[int], heard: List[int]) -> None:
+def test_bundles_run_on_servers(bundle: Path, frames: List[int], heard: List[int], spoken: List[Any]) -> None:
     """ES modules and CommonJS, under the oldest node that is supported and a newer one."""
     scripts = sorted((bundle / "server").glob("*.[mc]js"))
     own = [path for path in scripts if path.stem in ("server", "required")]
     assert own
     for version in (18, 22):
         for script in own:
-            assert printed(node(version), script) == [frames, heard], (version, script)
+            assert printed(node(version), script) == [frames, heard, spoken], (version, script)
 
 
 def test_bundles_name_the_source_of_the_data(bundle: Path) -> None:
@@ -110,15 +124,15 @@ def test_bundles_name_the_source_of_the_data(bundle: Path) -> None:
     assert any("GRID audio-visual speech corpus" in text and "CC BY 4.0" in text for text in texts)
 
 
-def test_unbundled_in_node(app: Path, frames: List[int], heard: List[int]) -> None:
+def test_unbundled_in_node(app: Path, frames: List[int], heard: List[int], spoken: List[Any]) -> None:
     """``import`` and ``require()`` of the packages themselves."""
     for version in (18, 22):
         for script in ("server.js", "server.cjs"):
-            assert printed(node(version), app / script) == [frames, heard], (version, script)
+            assert printed(node(version), app / script) == [frames, heard, spoken], (version, script)
 
 
 def test_unbundled_in_chromium(
-    app: Path, browser: Browser, frames: List[int], heard: List[int], tmp_path: Path
+    app: Path, browser: Browser, frames: List[int], heard: List[int], spoken: List[Any], tmp_path: Path
 ) -> None:
     """A page with an import map, workers and worklets that name the files."""
     folder = tmp_path / "page"
@@ -126,7 +140,8 @@ def test_unbundled_in_chromium(
     html = folder / "index.html"
     paths = {"labial": "./node_modules/labial/index.js", "labial/": "./node_modules/labial/",
              "labial-laughter": "./node_modules/labial-laughter/index.js",
-             "labial-hearing": "./node_modules/labial-hearing/index.js"}  # fmt: skip
+             "labial-hearing": "./node_modules/labial-hearing/index.js",
+             "labial-words": "./node_modules/labial-words/index.js"}  # fmt: skip
     html.write_text(html.read_text().replace(
         "<script type", f'<script type="importmap">{json.dumps({"imports": paths})}</script><script type'))  # fmt: skip
     for path in folder.glob("*.js"):
@@ -136,7 +151,7 @@ def test_unbundled_in_chromium(
                 text = text.replace(f'"{name}"', f'"{paths[name]}"')
             path.write_text(text)
     found = results(browser, folder)
-    assert found.pop("element") > 3 and found.pop("hearing") == heard
+    assert found.pop("element") > 3 and found.pop("hearing") == heard and found.pop("words") == spoken
     assert found == {place: frames for place in ("page", "worker", "worklet")}
 
 

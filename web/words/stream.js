@@ -1,123 +1,150 @@
 // Words in time on their way to phonemes.
 
-/** LABIAL_WORDS_NO_END. */
+/** LABIAL_WORDS_NO_END, and LABIAL_WORDS_CHARACTERS: what the library reads of a word at most. */
 const NO_END = 2 ** 32 - 1;
+const CHARACTERS_MAX = 255;
 
-const abandoned = new FinalizationRegistry(({ words, memory, at, size, held }) => {
-    memory.release(at, size);
-    words.release(held.table);
-});
+const abandoned = new FinalizationRegistry((line) => line.free());
 
-export class WordStream {
-    #tools;
-    #labial;
-    #wasm;
-    #memory;
-    #words;
+/** The library's stream of words. Its times are whole milliseconds. */
+export class Line {
+    #lexicon;
     #numbers;
     #known; // words of one's own
+    #table; // the library's table of these words
     #at; // 0 when freed
     #size;
-    #held = {}; // the library's table of these words
     #moment = 0; // milliseconds up to which there are phonemes
     #ready = []; // those that were not taken
-    #place = 0;
 
-    constructor(tools, labial, wasm, memory, words, { own, numbers, offset = 0 } = {}) {
-        const milliseconds = words.offset(offset);
-        this.#tools = tools;
-        this.#labial = labial;
-        this.#wasm = wasm;
-        this.#memory = memory;
-        this.#words = words;
+    constructor(lexicon, { own, numbers, offset = 0 }) {
+        const milliseconds = lexicon.offset(offset);
+        this.#lexicon = lexicon;
         this.#numbers = numbers;
-        this.#known = words.known(own, numbers, []);
-        this.#held.table = words.table(this.#known);
-        this.#size = wasm.words_stream_size() + 8; // a phoneme and its milliseconds
-        this.#at = memory.take(this.#size);
-        abandoned.register(this, { words, memory, at: this.#at, size: this.#size, held: this.#held }, this);
-        this.#check(wasm.words_begin(this.#at, this.#held.table.place, milliseconds));
+        this.#known = lexicon.known(own, numbers, []);
+        this.#table = lexicon.table(this.#known);
+        this.#size = lexicon.wasm.words_stream_size() + 8; // and a phoneme with its milliseconds
+        this.#at = lexicon.memory.take(this.#size);
+        lexicon.check(lexicon.wasm.words_begin(this.#at, this.#table.place, milliseconds));
     }
 
-    say(word) {
-        this.add(this.#words.word(word, this.#place + 1));
+    /** A word { text, start, end, ends }; the end may be null, `ends` are those of its characters or undefined. */
+    add({ text, start, end, ends }) {
+        const { wasm, memory } = this.#lexicon;
+        const at = this.#collect();
+        this.#learn(at, text);
+        const spelt = ends?.length > 0 && ends.length <= CHARACTERS_MAX && ends.length === [...text].length;
+        this.#lexicon.withText(text, (place, size) => {
+            if (!spelt) {
+                this.#lexicon.check(wasm.words_say(at, place, size, start, end ?? NO_END), text);
+                return;
+            }
+            this.#lexicon.withBytes(4 * ends.length, (list) => {
+                memory.int32(list, ends.length).set(ends);
+                this.#lexicon.check(wasm.words_say_characters(at, place, size, start, list, ends.length), text);
+            });
+        });
     }
 
+    /** No word follows for now. */
     flush() {
-        const at = this.#open();
-        this.#collect(at);
-        this.#check(this.#wasm.words_flush(at));
+        this.#lexicon.check(this.#lexicon.wasm.words_flush(this.#collect()));
     }
 
+    /** The segments that are known. */
     take() {
-        this.#collect(this.#open());
+        this.#collect();
         return this.#ready.splice(0);
     }
 
     free() {
         if (!this.#at) return;
-        abandoned.unregister(this);
-        this.#memory.release(this.#at, this.#size);
-        this.#words.release(this.#held.table);
+        this.#lexicon.memory.release(this.#at, this.#size);
+        this.#lexicon.release(this.#table);
         this.#at = 0;
     }
 
-    /** A word in whole milliseconds. Not for users. */
-    add(word) {
-        const at = this.#open();
-        const words = this.#words;
-        const wasm = this.#wasm;
-        this.#collect(at);
-        this.#learn(at, word.text);
-        const end = word.end ?? NO_END;
-        words.withText(word.text, (text, size) => {
-            if (!words.spelt(word)) {
-                this.#check(wasm.words_say(at, text, size, word.start, end), word.text);
-                return;
-            }
-            const count = word.ends.length;
-            const ends = this.#memory.take(4 * count);
-            try {
-                this.#memory.int32(ends, count).set(word.ends);
-                this.#check(wasm.words_say_characters(at, text, size, word.start, ends, count), word.text);
-            } finally {
-                this.#memory.release(ends, 4 * count);
-            }
-        });
-        this.#place++;
+    /** Takes the phonemes that are known from the library; returns the stream's address. */
+    #collect() {
+        const { LabialError } = this.#lexicon.tools;
+        const at = this.#at;
+        if (!at) throw new LabialError("the stream of words was freed");
+        const out = at + this.#size - 8;
+        while (this.#lexicon.check(this.#lexicon.wasm.words_next(at, out)) === 0) {
+            const [phoneme, milliseconds] = this.#lexicon.memory.int32(out, 2);
+            const start = this.#moment / 1000;
+            this.#moment += milliseconds;
+            const label = phoneme ? this.#lexicon.labels[phoneme] : "";
+            this.#ready.push({ start, end: this.#moment / 1000, label, labels: "arpabet" });
+        }
+        return at;
     }
 
     /** Tells the library of numbers that are to be written out. */
     #learn(at, text) {
         if (!this.#numbers) return;
-        const known = this.#words.known(this.#known, this.#numbers, [text]);
+        const known = this.#lexicon.known(this.#known, this.#numbers, [text]);
         if (known.size === this.#known.size) return;
-        const table = this.#words.table(known);
-        this.#wasm.words_pronounce(at, table.place);
-        this.#words.release(this.#held.table);
-        this.#held.table = table;
+        const table = this.#lexicon.table(known);
+        this.#lexicon.wasm.words_pronounce(at, table.place);
+        this.#lexicon.release(this.#table);
+        this.#table = table;
         this.#known = known;
     }
+}
 
-    /** Takes the phonemes that are known from the library. */
-    #collect(at) {
-        const out = at + this.#size - 8;
-        while (this.#check(this.#wasm.words_next(at, out)) === 0) {
-            const [phoneme, milliseconds] = this.#memory.int32(out, 2);
-            const start = this.#moment / 1000;
-            this.#moment += milliseconds;
-            const label = phoneme ? this.#words.labels[phoneme] : "";
-            this.#ready.push({ start, end: this.#moment / 1000, label, labels: "arpabet" });
-        }
+/** What programs call: times are in seconds. */
+export class WordStream {
+    #lexicon;
+    #line;
+    #place = 0;
+
+    constructor(lexicon, options = {}) {
+        this.#lexicon = lexicon;
+        this.#line = new Line(lexicon, options);
+        abandoned.register(this, this.#line, this);
     }
 
-    #open() {
-        if (!this.#at) throw new this.#tools.LabialError("the stream of words was freed");
-        return this.#at;
+    say(word) {
+        this.#line.add(inMilliseconds(this.#lexicon, word, this.#place + 1));
+        this.#place++;
     }
 
-    #check(result, what) {
-        if (result < 0) throw this.#labial.failure(result, what === undefined ? "" : this.#tools.shown(what));
-        return result;
+    flush() {
+        this.#line.flush();
+    }
+
+    take() {
+        return this.#line.take();
+    }
+
+    free() {
+        abandoned.unregister(this);
+        this.#line.free();
+    }
+}
+
+/** A program's word, as add() takes it; `place` is its number, from 1. */
+export function inMilliseconds(lexicon, word, place) {
+    const { text, start, end, ends } = word ?? {};
+    if (typeof text !== "string") {
+        throw new TypeError(`word ${place} is ${lexicon.tools.shown(word)}, not an object { text, start, end }`);
+    }
+    return {
+        text, start: lexicon.milliseconds(start), end: end == null ? null : lexicon.milliseconds(end),
+        ends: ends && lexicon.listed(ends, "ends").map((time) => lexicon.milliseconds(time)),
+    };
+}
+
+/** The segments of words in milliseconds, one after the other. */
+export function segmentsOf(lexicon, words, { own, numbers, offset }) {
+    const known = lexicon.known(own, numbers, words.map(({ text }) => text));
+    const line = new Line(lexicon, { own: known, offset });
+    try {
+        for (const word of words) line.add(word);
+        line.flush();
+        return line.take();
+    } finally {
+        line.free();
     }
 }

@@ -1,5 +1,6 @@
 // What the types must allow and refuse: each line below an @ts-expect-error has to be an error.
-import { Labial, type Faps, type Hearing, type Stream, type Track, type Weights } from "labial";
+import { Labial, type Faps, type Hearing, type Segment, type Stream, type Track, type Weights, type Words } from "labial";
+import { fromEspeak } from "labial/espeak.js";
 import laughter from "labial-laughter";
 import type { LabialMouth } from "labial/labial-mouth.js";
 
@@ -61,6 +62,29 @@ await hears.hear("voice.wav");
 // @ts-expect-error no model has this name
 await hears.hear(null, { model: "huge" });
 
+const speaks = await Labial.load({ words: () => import("labial-words") });
+const words: Words = await speaks.words();
+const own = { kokoro: "K OW K AO R OW", zed: ["Z", "EH", "D"] };
+words.phonemes("Kokoro", { own, numbers: (digits) => digits.replaceAll(",", "") }).join();
+speaks.render(words.wordTimings([{ text: "Hi", start: 0.1 }, { text: "you", start: 0.5, end: null }], { offset: 0.03 }));
+words.characterTimings("my", [0, 0.1], [0.1, 0.3], { own: new Map([["my", "M AY"]]) });
+words.characterTimings(["m", "y"], new Float64Array(2), new Float64Array(2));
+const read: Segment[] = words.read([{ word: "go", start: 0, end: 1 }], { format: "words" });
+const live = words.stream({ own });
+const messages = words.reader({ format: "elevenlabs" });
+for (const { text, start, end } of messages.read({}).words) live.say({ text, start, end });
+for (const { label, start, end } of live.take()) speaks.stream().push(label, 1000 * (end - start), { hint: "arpabet" });
+// @ts-expect-error a word has a beginning
+live.say({ text: "go" });
+// @ts-expect-error phonemes are text
+words.phonemes("go", { own: { go: 5 } });
+// @ts-expect-error this is not the package labial-words
+await Labial.load({ words: () => import("labial-hearing") });
+const espoken: Segment[] = fromEspeak([{ type: "phoneme", audio_position: 0, id: "m" }]);
+fromEspeak([], { samples: [new Int16Array(5)], sampleRate: 22050 });
+// @ts-expect-error the rate of the sound is missing
+fromEspeak([], { samples: new Int16Array(5) });
+
 /** Code that does not know the face. */
 function total(weights: Weights): number {
     return Object.values<number>(weights).reduce((sum, one) => sum + one, 0);
@@ -79,4 +103,4 @@ function follow(mouth: LabialMouth, track: Track, stream: Stream): void {
     mouth.track = vrm;
 }
 
-export { aa, any, beak, faps, follow, ih, jaw, open, ou, sil };
+export { aa, any, beak, espoken, faps, follow, ih, jaw, open, ou, read, sil };

@@ -1,4 +1,4 @@
-// What every entry of the matrix does: the frames of a word and a laugh, and those of a sound.
+// What every entry of the matrix does: the frames of a word and a laugh, those of a sound, and words' phonemes.
 import { Labial } from "labial";
 
 export const WORD = "0 .1 sil\n.1 .2 m\n.2 .5 AA\n.5 .6 p\n.6 1.4 <laugh:0.7>\n1.4 1.5 sil";
@@ -21,4 +21,11 @@ export async function heard(hearing) {
         found.push(...Array.from(one, (faps) => [...faps]).flat());
     }
     return found;
+}
+
+/** The phonemes of two words and when they end. */
+export async function spoken(words) {
+    const labial = await Labial.load({ words });
+    const timed = [{ text: "Maybe,", start: 0.1, end: 0.5 }, { text: "people!", start: 0.75 }];
+    return (await labial.words()).wordTimings(timed).flatMap(({ end, label }) => [label, end]);
 }

@@ -1,5 +1,5 @@
 import "labial/labial-mouth.js";
-import { frames, heard as hears } from "./lips.js";
+import { frames, heard as hears, spoken } from "./lips.js";
 
 const heard = (port) => new Promise((resolve, reject) => {
     port.onmessage = ({ data }) => (Array.isArray(data) ? resolve(data) : reject(new Error(data)));
@@ -19,6 +19,7 @@ const places = {
     worker: () => heard(new Worker(new URL("./worker.js", import.meta.url), { type: "module" })),
     worklet,
     hearing: () => hears(() => import("labial-hearing")),
+    words: () => spoken(() => import("labial-words")),
     element: async () => document.querySelector("labial-mouth").shadowRoot.querySelectorAll("path").length,
 };
 window.results = {};

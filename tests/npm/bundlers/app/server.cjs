@@ -1,7 +1,8 @@
 const { Labial } = require("labial");
 
 (async () => {
-    const labial = await Labial.load({ laughter: require("labial-laughter"), hearing: require("labial-hearing") });
+    const [laughter, hearing, words] = [require("labial-laughter"), require("labial-hearing"), require("labial-words")];
+    const labial = await Labial.load({ laughter, hearing, words });
     const { faps } = labial.render(labial.read(process.env.WORD));
     const heard = [];
     for (const model of ["small", "large"]) { // as in lips.js
@@ -10,5 +11,7 @@ const { Labial } = require("labial");
         one.end();
         heard.push(...Array.from(one, (frame) => [...frame]).flat());
     }
-    console.log(JSON.stringify([Array.from(faps), heard]));
+    const timed = [{ text: "Maybe,", start: 0.1, end: 0.5 }, { text: "people!", start: 0.75 }];
+    const spoken = (await labial.words()).wordTimings(timed).flatMap(({ end, label }) => [label, end]);
+    console.log(JSON.stringify([Array.from(faps), heard, spoken]));
 })();

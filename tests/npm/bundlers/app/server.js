@@ -1,6 +1,7 @@
 // A server draws nothing, but the page's modules are imported there.
 import "labial/labial-mouth.js";
-import { frames, heard } from "./lips.js";
+import { frames, heard, spoken } from "./lips.js";
 
-Promise.all([frames(() => import("labial-laughter")), heard(() => import("labial-hearing"))])
-    .then((found) => console.log(JSON.stringify(found)));
+Promise.all([
+    frames(() => import("labial-laughter")), heard(() => import("labial-hearing")), spoken(() => import("labial-words")),
+]).then((found) => console.log(JSON.stringify(found)));

@@ -1,0 +1,216 @@
+// Words beside what tests/python/test_npm_words.py compares with Python: streams of words, messages as they arrive,
+// numbers, memory, misuse.
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { pathToFileURL } from "node:url";
+import test from "node:test";
+import { Labial, LabialError, folder, source } from "./setup.mjs";
+
+const { fromEspeak } = await import(pathToFileURL(`${folder}/espeak.js`));
+const load = () => import(pathToFileURL(`${folder}-words/index.js`));
+const labial = await Labial.load({ words: load });
+/** The memory of the words' module. */
+let memory;
+const { instantiate } = WebAssembly;
+WebAssembly.instantiate = async (...given) => {
+    const made = await instantiate(...given);
+    memory = made.exports.memory;
+    return made;
+};
+const words = await labial.words();
+WebAssembly.instantiate = instantiate;
+const SAID = [{ text: "Maybe", start: 0.1, end: 0.42 }, { text: "people", start: 0.45, end: 0.9 },
+    { text: "in", start: 0.9 }, { text: "1984.", start: 1.1, end: 1.9 }, { text: "Hum", start: 2.5, end: 3 }];
+const numbers = (digits) => (digits === "1984" ? "nineteen eighty-four" : "many");
+const labels = (segments) => segments.map(({ label }) => label || "-").join(" ");
+
+test("words become segments that render() takes, without gaps", () => {
+    const segments = words.wordTimings(SAID);
+    segments.forEach(({ start, end, labels }, i) => {
+        assert.equal(start, i ? segments[i - 1].end : 0);
+        assert.ok(end > start && labels === "arpabet");
+    });
+    assert.match(labels(segments), /^- M EY B IY P IY P AH L IH N W AH N .* - HH AH M$/);
+    assert.equal(labial.render(segments).length, 150);
+});
+
+test("numbers are written out by the caller, once each", () => {
+    const asked = [];
+    const spy = (digits) => (asked.push(digits), numbers(digits));
+    const spelt = labels(words.wordTimings(SAID, { numbers: spy }));
+    assert.match(spelt, / N AY N T IY N EY T IY F AO R - /);
+    assert.deepEqual(asked, ["1984"]);
+    const own = new Map([["1984", "M"]]);
+    assert.equal(words.phonemes("1984, 1,234.5 3rd", { numbers: spy, own }).join(" "), "M M EH N IY TH ER D");
+    assert.deepEqual(asked, ["1984", "1,234.5"]);
+});
+
+test("a stream says what a list says, word by word", () => {
+    for (const options of [{}, { offset: 0.25, own: { people: "P" } }, { numbers }]) {
+        const stream = words.stream(options);
+        const found = [];
+        SAID.forEach((word, i) => {
+            stream.say(word);
+            const known = stream.take();
+            assert.equal(known.length > 0, i > 0, "a word's phonemes come with the next one");
+            found.push(...known);
+        });
+        stream.flush();
+        found.push(...stream.take());
+        assert.deepEqual(found, words.wordTimings(SAID, options));
+        assert.deepEqual(stream.take(), []);
+        stream.say({ text: "More", start: 4, end: 4.5 });
+        stream.flush();
+        assert.match(labels(stream.take()), /^- M AO R$/);
+        stream.free();
+        stream.free();
+        for (const call of [() => stream.say(SAID[0]), () => stream.take(), () => stream.flush()]) {
+            assert.throws(call, new LabialError("the stream of words was freed"));
+        }
+    }
+});
+
+test("words that nobody takes wait, and a refused one changes nothing", () => {
+    const stream = words.stream();
+    for (const word of SAID) stream.say(word);
+    assert.throws(() => stream.say({ text: "late", start: 0 }), { code: -15, message: /^"late": / });
+    assert.throws(() => stream.say({ text: "long", start: 3, end: 9000 }), { code: -7 });
+    assert.throws(() => stream.say({ text: "ab", start: 3, ends: [4, 3.5] }), { code: -15 });
+    stream.flush();
+    assert.deepEqual(stream.take(), words.wordTimings(SAID));
+});
+
+test("characters of a word move its phonemes", () => {
+    const [even, slow] = [[3.15, 3.3], [3.25, 3.3]].map((ends) => words.wordTimings([{ text: "my", start: 3, end: 3.3, ends }]));
+    assert.equal(labels(even), "- M AY");
+    assert.ok(slow[1].end > even[1].end + 0.02);
+    assert.deepEqual(words.characterTimings("my", [3, 3.25], [3.25, 3.3]), slow);
+    assert.deepEqual(words.wordTimings([{ text: "my", start: 3, end: 3.3, ends: [3.3] }]), words.wordTimings([{ text: "my", start: 3, end: 3.3 }]));
+});
+
+test("messages are read as they arrive", () => {
+    const spelt = (text, from) => ({ chars: [...text], charStartTimesMs: [...text].map((_, i) => from + 100 * i), charDurationsMs: [...text].map(() => 100) });
+    const messages = [{ audio: "AAAA", alignment: null }, { alignment: spelt("Hi y", 0) }, '{"isFinal": null}', { alignment: spelt("ou", 0) }];
+    const reader = words.reader();
+    const found = messages.map((message) => reader.read(message));
+    assert.equal(reader.format, "elevenlabs");
+    assert.deepEqual(found[0], { phonemes: [], words: [], characters: [] });
+    assert.deepEqual(found[3].characters.map(({ text, start }) => [text, start]), [["o", 0.4], ["u", 0.5]]);
+    const characters = found.flatMap((one) => one.characters);
+    const times = ["start", "end"].map((name) => characters.map((one) => one[name]));
+    const together = words.characterTimings(characters.map(({ text }) => text), ...times);
+    assert.deepEqual(words.read(messages.filter((one) => typeof one !== "string"), { format: "elevenlabs" }), together);
+    const fish = words.reader({ format: "fish" });
+    const event = (text) => ({ chunk_seq: 3, chunk_audio_offset_sec: 1, alignment: { segments: [{ text, start: 0, end: 1 }] } });
+    assert.deepEqual(fish.read(event("May")), { phonemes: [], words: [{ text: "May", start: 1, end: 2 }], characters: [], chunk: 3 });
+    assert.deepEqual(fish.read([]), { phonemes: [], words: [], characters: [] });
+    assert.equal(fish.read([event("Maybe"), { event: "finish" }]).words[0].text, "Maybe");
+});
+
+test("parsed messages and text are alike, visemes and text formats are read as well", () => {
+    const list = [{ word: "Maybe,", start: 0.1, end: 0.5 }, { word: "go.", start: 0.75, end: 1 }];
+    const segments = words.read(list);
+    assert.deepEqual(words.read(JSON.stringify(list)), segments);
+    assert.deepEqual(words.read(`\uFEFF\n ${list.map((one) => JSON.stringify(one)).join("\n")}`), segments);
+    assert.deepEqual(words.read([{ audioOffset: 0, visemeId: 2 }])[0].label, "AA");
+    assert.deepEqual(words.read("0 .5 AA\n"), labial.read("0 .5 AA\n"));
+    assert.deepEqual(words.read("0 .5 AA\n", { offset: 0.1, format: "lab" })[0], { start: 0.1, end: 0.6, label: "AA" });
+    assert.ok(["elevenlabs", "lab", "piper", "words"].every((name) => words.formats.includes(name)));
+});
+
+test("espeak-ng's events, in any order of kinds, with and without their sound", () => {
+    const event = (audio_position, id, type = "phoneme") => ({ type, text_position: 1, word_length: 0, audio_position, id });
+    const events = [event(0, undefined, "samplerate"), event(0, 1, "sentence"), event(0, "m"), event(100, "ˈɑː"),
+        event(210, 2, "word"), event(300, "p"), event(380, "ɐ̃ʊ̃\u0001"), event(500, ""), event(600, undefined, "end")];
+    const plain = fromEspeak(events);
+    assert.deepEqual(plain.map(({ start, label }) => [start, label]), [[0, "m"], [0.1, "ˈɑː"], [0.3, "p"], [0.38, "ɐ̃ʊ̃"], [0.5, ""]]);
+    const sound = Int16Array.from({ length: 4800 }, (_, i) => (i >= 2000 && i < 2400 ? 0 : 9000 * Math.sin(i)));
+    const [whole, floats, pieces] = [sound, Float32Array.from(sound, (x) => x / 32768), [sound.subarray(0, 7), sound.subarray(7)]]
+        .map((samples) => fromEspeak(events, { samples, sampleRate: 8000 }));
+    assert.deepEqual([whole[1].end, whole[2].start], [0.25, 0.25]);
+    assert.deepEqual(floats, whole);
+    assert.deepEqual(pieces, whole);
+    assert.deepEqual(fromEspeak([event(0, "??"), event(90, undefined, "end")])[0].label, "ʊɐ");
+    for (const [wrong, options] of [[null], ["x"], [{}], [events, { samples: sound }], [events, { samples: sound, sampleRate: 5 }],
+        [events, { samples: "x", sampleRate: 8000 }], [events, { samples: [sound, 5], sampleRate: 8000 }]]) {
+        assert.throws(() => fromEspeak(wrong, options), TypeError);
+    }
+    for (const wrong of [[], [event(0, undefined, "end")], [null], [event(0, 5)], [event("0", "m")], [event(NaN, "m")], [{ type: 7, audio_position: 0 }]]) {
+        assert.throws(() => fromEspeak(wrong), LabialError);
+    }
+});
+
+test("hostile values are refused in a sentence, and take no memory", () => {
+    words.wordTimings(SAID, { own: Object.fromEntries(Array.from({ length: 500 }, (_, i) => [`word${i}`, "M"])) });
+    const before = memory.buffer.byteLength;
+    const calls = [
+        ...[5, null, undefined, {}, ["a"], Symbol("x")].map((x) => () => words.phonemes(x)),
+        ...[5, "x", { a: 5 }, { a: [5] }, { a: "QQ" }, { "": "M" }, { "a\0": "M" }, { a: new Array(97).fill("M") },
+            new Map([[5, "M"]]), new Map(Array.from({ length: 70000 }, (_, i) => [`w${i}`, "M"]))].map((own) => () => words.phonemes("a", { own })),
+        ...[5, "x", () => 5, () => null].map((x) => () => words.phonemes("12", { numbers: x })),
+        ...[null, 5, {}, "word", [null], [5], [{}], [{ text: 5, start: 0 }], [{ text: "a" }], [{ text: "a", start: "0" }],
+            [{ text: "a", start: -1 }], [{ text: "a", start: NaN }], [{ text: "a", start: 0, end: 1e9 }],
+            [{ text: "a", start: 1, end: 0 }], [{ text: "a", start: 0, ends: 5 }], [{ text: "a", start: 0, ends: ["x"] }],
+            [SAID[1], SAID[0]]].map((x) => () => words.wordTimings(x)),
+        ...["x", NaN, 2e6, null, 1n].map((offset) => () => words.wordTimings(SAID, { offset })),
+        ...[[5, [0], [1]], ["a", [0, 1], [1]], ["a", [0], [1, 2]], [[5], [0], [1]], ["a", null, [1]], ["a", ["0"], [1]], ["a", [-1], [1]]]
+            .map((x) => () => words.characterTimings(...x)),
+        ...[null, 5, "", "{", "[]", {}, [], [[]], "nothing", [{ word: "a", start: 0 }], [{ word: "a", start: 0, end: 1e300 }]].map((x) => () => words.read(x)),
+        ...["x", null, "constructor", "lab"].flatMap((format) => [() => words.read([{}], { format }), () => words.reader({ format })]),
+        () => words.reader().read(5), () => words.reader({ format: "words" }).read({}), () => words.stream({ own: 5 }),
+    ];
+    for (const call of [...calls, ...calls, ...calls]) {
+        assert.throws(call, (error) => {
+            assert.ok(["LabialError", "TypeError"].includes(error.name), String(error.stack));
+            assert.match(error.message, /^[^\n]{8,250}$/, error.stack);
+            assert.doesNotMatch(error.message, /undefined \(|Cannot|is not a function|convert|is not iterable/, error.stack);
+            return true;
+        }, call.toString());
+    }
+    assert.equal(memory.buffer.byteLength, before);
+});
+
+test("streams that nobody holds are given back", async () => {
+    const own = Object.fromEntries(Array.from({ length: 300 }, (_, i) => [`word${i}`, "M AA"]));
+    const use = () => {
+        const stream = words.stream({ own, numbers });
+        for (const word of SAID) stream.say(word);
+    };
+    for (let round = 0; round < 20; round++) {
+        for (let i = 0; i < 100; i++) use();
+        globalThis.gc();
+        await new Promise((done) => setTimeout(done));
+    }
+    assert.ok(memory.buffer.byteLength < 2000 * 300 * 5, `${memory.buffer.byteLength} bytes`);
+});
+
+test("words are loaded once, and asked for in a sentence", async () => {
+    assert.equal(await labial.words(), words);
+    const missing = { name: "LabialError", message: /^words are not loaded: Labial\.load\(.*labial-words/ };
+    for (const given of [undefined, () => null]) await assert.rejects((await Labial.load({ words: given })).words(), missing);
+    const other = await Labial.load({ words: Promise.resolve({ default: { default: await load() } }) });
+    assert.notEqual(await other.words(), words);
+    assert.deepEqual((await other.words()).wordTimings(SAID), words.wordTimings(SAID));
+});
+
+test("the package has these files and the dictionary's notice, and CommonJS has words as well", async () => {
+    const files = "LICENSE README.md characters.js english.js index.cjs index.d.cts index.d.ts index.js lexicon.js package.json " +
+        "readers.js services.js stream.js words.js";
+    assert.equal(readdirSync(`${folder}-words`).sort().join(" "), files);
+    const notice = /^\/\*! .*Carnegie Mellon University\. All rights reserved\. .*POSSIBILITY OF SUCH DAMAGE\. \*\/\n/;
+    assert.match(readFileSync(`${folder}-words/english.js`, "utf8"), notice);
+    const require = createRequire(import.meta.url);
+    const common = await require(folder).Labial.load({ words: require(`${folder}-words`) });
+    assert.deepEqual((await common.words()).wordTimings(SAID), words.wordTimings(SAID));
+});
+
+test("types and what words, streams and readers have are the same", () => {
+    for (const [name, one, own] of [["Words", words, ["formats"]], ["WordStream", words.stream(), []], ["MessageReader", words.reader(), []]]) {
+        const types = source("web/index.d.ts").match(new RegExp(`export class ${name} [^]*?\\n\\}`))[0];
+        const typed = [...types.matchAll(/^    (?:readonly )?(\w+)[(:]/gm)].map(([, found]) => found);
+        const has = Object.getOwnPropertyNames(Object.getPrototypeOf(one)).concat(own).filter((found) => found !== "constructor");
+        assert.deepEqual(typed.filter((found) => found !== "constructor").sort(), has.sort());
+        assert.deepEqual(Object.keys(one), own);
+    }
+});
