@@ -52,7 +52,8 @@ def install(package: Path, folder: Path) -> None:
     """Packs the packages and lays them into `folder`/node_modules as ``npm install`` does."""
     own = folder / "node_modules"
     own.mkdir(parents=True)
-    for source in (package, *(package.with_name(f"{package.name}-{name}") for name in ("laughter", "hearing", "words"))):
+    others = (package.with_name(f"{package.name}-{name}") for name in ("laughter", "hearing", "words"))
+    for source in (package, *others):
         name = run(NPM, "pack", "--silent", "--pack-destination", folder, cwd=source).strip().splitlines()[-1]
         shutil.unpack_archive(folder / name, own)
         (own / "package").rename(own / name.rsplit("-", 1)[0])
