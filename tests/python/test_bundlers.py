@@ -173,7 +173,7 @@ def _imports(text: str) -> List[str]:
 # ---- Types, under TypeScript's `strict`: what they allow and refuse, and the code of the pages and the kiosk
 
 #: The pages whose JavaScript is compiled.
-PAGES = ("browser.md", "adapters.md", "kiosk.md", "timings.md")
+PAGES = ("browser.md", "adapters.md", "kiosk.md", "timings.md", "words.md")
 #: What the code of pages takes from elsewhere: the elements that scripts find by their ids, and what the reader has.
 AROUND = """\
 declare const mouth: SVGElement;
@@ -182,6 +182,8 @@ declare module "*/labial/index.js" { export * from "labial"; }
 declare module "*/labial/labial-mouth.js" { export * from "labial/labial-mouth.js"; }
 declare module "three/*";
 declare module "@pixiv/three-vrm";
+declare module "@echogarden/espeak-ng-emscripten";
+declare module "n2words/en-US" { export function toCardinal(value: number | string | bigint): string; }
 declare module "@met4citizen/talkinghead";
 """
 

@@ -14,8 +14,9 @@ import pytest
 import labial
 from bundlers import MISSING, node, tools
 from labial.hearing import espeak
-from npm import answered
-from packages import run
+from npm import answered, package
+from packages import SOURCE, run
+from pages import parse
 from runtime import needs_runtime
 
 Rows = List[Tuple[float, float, str]]
@@ -162,25 +163,42 @@ def test_espeaks_npm_package_in_six_languages(tmp_path: Path) -> None:
     assert stops > 30
 
 
-#: The phonemes of texts whose numbers the npm package n2words writes out.
-NUMBERS = """
-const { toCardinal } = await import("n2words/en-US");
-const numbers = (digits) => toCardinal(digits.replaceAll(",", ""));
-process.stdout.write(JSON.stringify(JSON.parse(process.argv[1]).map(numbers)));
+#: What the code of docs/browser.md says, by espeak-ng and by n2words.
+PAGE = """
+import { Labial } from "labial";
+import { say } from "./espeak.js";
+import { numbers } from "./numbers.js";
+
+const { samples, sampleRate, track } = say("Mama may be happy.");
+const labial = await Labial.load({ words: () => import("labial-words") });
+const words = await labial.words();
+const said = JSON.parse(process.argv[2]).map((digits) => [numbers(digits), words.phonemes(digits, { numbers })]);
+const count = samples.reduce((sum, piece) => sum + piece.length, 0);
+process.stdout.write(JSON.stringify({ seconds: count / sampleRate, lips: track.duration, said }));
 """
 
 
 @pytest.mark.slow
 @needs_runtime
 @pytest.mark.skipif(bool(MISSING), reason=MISSING)
-def test_numbers_by_n2words(tmp_path: Path) -> None:
-    """Numbers as docs/browser.md has n2words write them, which are said like num2words' words."""
-    digits = ["7", "42", "1,234", "1234.5", "999999999", "1000000000000"]
-    written = json.loads(run(node(22), "--input-type=module", "-e", NUMBERS, json.dumps(digits), cwd=tools()))
-    script = """
-    const words = await labial.words();
-    answer(given.map(([digits, text]) => words.phonemes(digits, { numbers: () => text })));
-    """
-    found = answered(script, list(zip(digits, written)), tmp_path)
-    assert found == [labial.phonemes(text.replace("-", " ")) for text in written]
-    assert found[1] == "F AO R T IY T UW".split() and len(found[4]) > 40
+def test_code_of_the_page(tmp_path: Path) -> None:
+    """Would catch calls that espeak-ng's or n2words' package does not have. Numbers are said as they are written."""
+    built = package(tmp_path / "npm")
+    modules = tmp_path / "node_modules"
+    modules.mkdir()
+    for name, folder in (("labial", built), ("labial-words", built.with_name(f"{built.name}-words")),
+                         *((name, tools() / "node_modules" / name) for name in ("@echogarden", "n2words"))):
+        (modules / name).symlink_to(folder)
+    for block in parse(SOURCE / "docs" / "browser.md"):
+        if block.name in ("espeak.js", "numbers.js"):
+            (tmp_path / block.name).write_text(block.text, encoding="utf-8")
+    (tmp_path / "package.json").write_text('{ "type": "module" }')
+    (tmp_path / "page.js").write_text(PAGE)
+    written = {
+        "42": "forty-two", "1984": "nineteen eighty-four", "1900": "nineteen hundred", "1905": "nineteen oh five",
+        "2003": "two thousand three", "2024": "twenty twenty-four", "12.5": "twelve point five",
+        "1,234": "one thousand two hundred thirty-four",
+    }  # fmt: skip
+    found = json.loads(run(node(22), tmp_path / "page.js", json.dumps(list(written))))
+    assert 1.0 < found["seconds"] and abs(found["lips"] - found["seconds"]) < 0.02
+    assert found["said"] == [[text, labial.phonemes(text.replace("-", " "))] for text in written.values()]
