@@ -44,9 +44,10 @@ def updated(text: str, figures: Sequence[Figure]) -> str:
         (r"(\| stack \| )[\d,]+( \| at most; )[\d,]+",
          rf"\g<1>{number('stack -Os: all of lib')}\g<2>{number('stack -O2: all of lib')}"),
         (r"(\| only if used \| \| ).*", rf"\g<1>{used}"),
-        (r"(\| npm package \| )[\d,]+( \| compressed, fetched by a page that speaks; )[\d,]+",
+        (r"(\| npm package \| )[\d,]+( \| compressed, fetched by a page that speaks; )[\d,]+( more when it laughs; )"
+         r"[\d,]+",
          rf"\g<1>{number('a page that speaks, each script compressed', 'wasm')}"
-         rf"\g<2>{number('laughter, compressed', 'wasm')}"),
+         rf"\g<2>{number('laughter, compressed', 'wasm')}\g<3>{number('words, each script compressed', 'wasm')}"),
         (r"(\| speech, mean \| ).*", rf"\g<1>{cells('speech: mean')}"),
         (r"(\| laughter, mean \| ).*", rf"\g<1>{cells('laughter: mean')}"),
         (r"(\| worst tick, times the mean \| ).*", rf"\g<1>{worst} | |"),
