@@ -26,8 +26,8 @@ def drawn_messages(rng: random.Random) -> Tuple[str, str]:
         moment = rng.choice([moment, moment, 0.0])
         found = []
         for _ in range(rng.randrange(0, 6)):
-            start = moment + rng.choice([0, 0, 0.1, 0.15, 0.4, rng.random()])
-            moment = start + rng.choice([0, 0.1, 0.35, rng.random() / 2])
+            start = moment + rng.choice([0, 0, 0.0625, 0.1, 0.15, 0.4, rng.random()])  # half a millisecond, too
+            moment = start + rng.choice([0, 0.0625, 0.1, 0.35, rng.random() / 2])
             found.append((rng.choice(PIECES), start, moment))
         return found
 

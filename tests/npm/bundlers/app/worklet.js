@@ -1,10 +1,12 @@
 import laughter from "labial-laughter";
-import { frames } from "./lips.js";
+import * as words from "labial-words";
+import { frames, spoken } from "./lips.js";
 
 registerProcessor("lips", class extends AudioWorkletProcessor {
     constructor() {
         super();
-        frames(laughter).then((found) => this.port.postMessage(found), (error) => this.port.postMessage(String(error)));
+        Promise.all([frames(laughter), spoken(words)])
+            .then((found) => this.port.postMessage(found.flat()), (error) => this.port.postMessage(String(error)));
     }
 
     process() {
