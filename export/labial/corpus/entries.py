@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from dataclasses import dataclass
 from typing import Any, Dict, List, Optional
 
@@ -69,8 +70,20 @@ class Entry:
         return [entry_of(self.path, self.line, number, item) for number, item in enumerate(self.list_of(*names), 1)]
 
 
+class Documents(os.PathLike[str]):
+    """Parsed JSON that stands in for that of a file wherever one is read. Errors call the file `name`."""
+
+    def __init__(self, items: List[Any], name: str) -> None:
+        self.items, self._name = items, name
+
+    def __fspath__(self) -> str:
+        return self._name
+
+
 def read_entries(path: PathLike) -> List[Entry]:
     """The objects of a file: those of a list, a single one, or one per line."""
+    if isinstance(path, Documents):
+        return [entry_of(path, None, number, item) for number, item in enumerate(path.items, 1)]
     text = read_text(path)
     try:
         document = _loads(path, text)

@@ -8,7 +8,7 @@ Characters, as from Piper and Kokoro, become phonemes: a stress mark's time goes
 mark or diacritic to the phoneme before it, the two halves of a diphthong or affricate are one phoneme, and punctuation
 is silence. The blank between two words takes time, too, but lips do not rest there: up to `LONGEST_BLANK`, its time is
 added to the phoneme before it. What services tell of words and of written characters is read by
-:mod:`labial.corpus.word_services`.
+:mod:`labial.corpus.word_files`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import math
 import unicodedata
 from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
-from labial.corpus import word_services
+from labial.corpus import word_files, word_services
 from labial.corpus.entries import Entry, entry_of, read_entries, shown
 from labial.corpus.timings import PathLike, SourceSegment, checked
 from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
@@ -125,13 +125,17 @@ def read_polly(path: PathLike) -> List[SourceSegment]:
 def read_azure_events(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Azure's visemes, or its word boundaries (and Edge's) where the file has no others."""
     has_visemes = any(not word_services.is_boundary(item) for item in read_entries(path))
-    return read_azure(path) if has_visemes else word_services.read_boundaries(path, how)
+    return read_azure(path) if has_visemes else word_files.read(path, word_services.tell_boundary, how)
 
 
 def read_polly_marks(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Amazon Polly's visemes, or its words where there are none."""
-    has_visemes = any(item.get("type") == "viseme" for item in read_entries(path))
-    return read_polly(path) if has_visemes else word_services.read_word_marks(path, how)
+    kinds = {item.get("type") for item in read_entries(path)}
+    if "viseme" in kinds:
+        return read_polly(path)
+    if "word" not in kinds:
+        raise DataError(path, None, "no speech marks of type 'viseme' or 'word'")
+    return word_files.read(path, word_services.tell_word_mark, how)
 
 
 class Service(NamedTuple):
@@ -164,7 +168,8 @@ SERVICES: Dict[str, Service] = {
     "azure": Service("Azure", read_azure_events, lambda first: first.has("visemeid") or first.has("privvisemeid")
                      or word_services.is_boundary(first), True),
     "polly": Service("Polly", read_polly_marks, lambda first: first.has("type", "time", "value"), True),
-    **{name: Service(title, read, told, True) for name, (title, read, told) in word_services.SERVICES.items()},
+    **{name: Service(service.title, word_files.reader(name), service.told, True)
+       for name, service in word_services.SERVICES.items()},
     "piper": Service("Piper", read_piper, _is_piper),
     "json": Service("other programs (phoneme, start, end)", read_plain, _is_plain),
 }

@@ -30,6 +30,10 @@ LONGEST = 86400.0
 _LONGEST_PHONEME = 3600
 
 
+class Empty(DataError):
+    """There are no segments."""
+
+
 @dataclass(frozen=True)
 class SourceSegment(Segment):
     """A segment with the line it was read from; None where lines tell nothing, as in a JSON document."""
@@ -129,7 +133,7 @@ def lab_of(segments: Iterable[Segment]) -> str:
 def checked(path: PathLike, segments: List[SourceSegment]) -> List[SourceSegment]:
     """`segments`, or a DataError where times are late, turned round, overlap, or there are none."""
     if not segments:
-        raise DataError(path, None, "no segments")
+        raise Empty(path, None, "no segments")
     previous = -math.inf
     for place, item in enumerate(segments, 1):
         where = f"interval {place}: " if item.line is None else ""

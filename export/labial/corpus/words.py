@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read
 from labial.corpus.phonesets import SPEECH
@@ -111,8 +111,13 @@ def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: 
 
 def own_words(texts: Iterable[str], how: Pronunciation) -> OwnWords:
     """What the library is told of the words of these texts."""
+    return OwnWords(known_words(texts, how))
+
+
+def known_words(texts: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[str]]:
+    """The phonemes of the caller's own words and, from these texts, of those that the library does not read itself."""
     known: Dict[str, Sequence[str]] = dict(how.own)
-    stretches = dict.fromkeys(item for text in texts for item in _STRETCH.findall(text) if item not in known)
+    stretches = stretches_of(texts, known)
     if how.numbers:
         for item in stretches:
             if _NUMBER.fullmatch(item):
@@ -120,7 +125,12 @@ def own_words(texts: Iterable[str], how: Pronunciation) -> OwnWords:
     if how.language != ENGLISH:
         missing = [item for item in stretches if item not in known]
         known.update(zip(missing, _by_espeak(missing, how.language)))
-    return OwnWords({word: known[word] if word in how.own else known[word][:PHONEMES_MAX] for word in known})
+    return {word: known[word] if word in how.own else known[word][:PHONEMES_MAX] for word in known}
+
+
+def stretches_of(texts: Iterable[str], known: Container[str]) -> List[str]:
+    """What these texts' words are looked up by, without those that are known."""
+    return list(dict.fromkeys(item for text in texts for item in _STRETCH.findall(text) if item not in known))
 
 
 def _spoken(words: Sequence[str], how: Pronunciation) -> List[str]:
