@@ -32,17 +32,18 @@ if TYPE_CHECKING:
     from labial.runtime.render import read_timings, render
     from labial.runtime.rig import Rig
     from labial.runtime.stream import Stream
+    from labial.runtime.voice import Voice
     from labial.runtime.words import character_timings, phonemes, word_timings
 
     speech_en: Model
     laughter_synthetic: Model
 
-__all__ = ["Frame", "Hearing", "Latency", "Model", "Rig", "Stream", "character_timings", "phonemes", "read_timings",
-           "render", "word_timings", *BUNDLED]
+__all__ = ["Frame", "Hearing", "Latency", "Model", "Rig", "Stream", "Voice", "character_timings", "phonemes",
+           "read_timings", "render", "word_timings", *BUNDLED]
 
 _HOMES = {"Frame": "frame", "Hearing": "hearing", "Latency": "frame", "Model": "models", "Rig": "rig",
-          "Stream": "stream", "character_timings": "words", "phonemes": "words", "word_timings": "words",
-          "read_timings": "render", "render": "render"}  # fmt: skip
+          "Stream": "stream", "Voice": "voice", "character_timings": "words", "phonemes": "words",
+          "word_timings": "words", "read_timings": "render", "render": "render"}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
