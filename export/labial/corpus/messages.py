@@ -123,8 +123,12 @@ def _documents(message: Any, name: str) -> List[Any]:
                             "JSON that is nested too deeply or has a number of too many digits") from None
         if not isinstance(message, (dict, list)):
             raise DataError(name, None, f"{shown(message)} is not an object")
-    items = message if isinstance(message, list) else [message]
-    return [_plain(item) for item in items]
+    if isinstance(message, list):
+        return [_plain(item) for item in message]
+    found = _plain(message)
+    if not isinstance(found, dict):
+        raise TypeError(f"a message is a dict, a list, text or bytes, not {type(message).__name__}")
+    return [found]
 
 
 def _text_of(data: bytes, name: str) -> str:
@@ -136,10 +140,8 @@ def _text_of(data: bytes, name: str) -> str:
 
 def _plain(item: Any) -> Any:
     """One of Piper's chunks as what it would be in JSON; all else as it is."""
-    if isinstance(item, (dict, list, str, int, float, type(None))):
-        return item
     if not hasattr(item, "sample_rate") or not hasattr(item, "phoneme_alignments"):
-        raise TypeError(f"a message is a dict, a list, text or bytes, not {type(item).__name__}")
+        return item
     return {"sample_rate": int(item.sample_rate), "phoneme_alignments": item.phoneme_alignments and [
         {"phoneme": one.phoneme, "num_samples": int(one.num_samples)} for one in item.phoneme_alignments]}
 

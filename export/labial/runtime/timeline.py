@@ -261,11 +261,10 @@ def _put(known: List[Item], items: List[Item]) -> int:
     """Puts items where they belong, in place of those that begin within their time; returns the place of the first."""
     if not items:
         return len(known)
-    starts = [item.start for item in known]
     begin = items[0].start
     end = max(begin + 1, *(item.start + 1 if item.end is None else item.end for item in items))
-    first = bisect_left(starts, begin)
-    known[first : bisect_left(starts, end)] = items
+    first = bisect_left(known, (begin,))
+    known[first : bisect_left(known, (end,))] = items
     return first
 
 

@@ -1,0 +1,377 @@
+"""A voice that is followed: sessions against an oracle, what is told late or otherwise, and what a server may send.
+
+tests/voices has the sessions, which are those of the npm package as well.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+import subprocess
+import sys
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
+
+import pytest
+
+import labial
+from oracle import Oracle, Shown, sessions, summary, times
+from packages import SOURCE
+from regenerate_voices import SESSIONS, SOUNDS, WORDS
+from runtime import needs_runtime
+
+pytestmark = needs_runtime
+FOLDER = SOURCE / "tests" / "voices"
+SERVICES = SOURCE / "tests" / "python" / "services"
+STORED = {session["name"]: session for session in sessions(FOLDER / "sessions.json")}
+
+
+def follow(voice: labial.Voice, steps: Sequence[List[Any]]) -> List[List[Shown]]:
+    """The frames of each step of a session that plays."""
+    found = []
+    for step in steps:
+        if step[0] in ("played", "plays"):
+            found.append([Shown(*frame) for time in times(step) for frame in voice.played(time)])
+        else:
+            getattr(voice, step[0])(*step[1:])
+    return found
+
+
+@pytest.mark.parametrize("name", SESSIONS)
+def test_sessions(name: str) -> None:
+    """Every session shows what the oracle says, which is what the file of sessions has."""
+    session = SESSIONS[name]
+    steps, options = session["steps"], session.get("options", {})
+    oracle = Oracle(options)
+    expected = [found for found in map(oracle.run, steps) if found is not None]
+    assert STORED[name] == json.loads(json.dumps({"name": name, **session, "shown": list(map(summary, expected))}))
+    with labial.Voice(**options) as voice:
+        assert follow(voice, steps) == expected
+
+
+def played(voice: labial.Voice, first: float, last: float) -> List[Tuple[int, ...]]:
+    return [frame.faps for time in times(["plays", first, last, 0.02]) for frame in voice.played(time)]
+
+
+def motion(timings: Iterable[Tuple[str, float]], count: int) -> List[Tuple[int, ...]]:
+    """The first frames of timings, with silence after them."""
+    with labial.Stream() as stream:
+        for label, length in [*timings, ("SIL", 3_600_000)]:
+            stream.push(label, length)
+        return [next(stream).faps for _ in range(count)]
+
+
+def said(words: Sequence[Tuple[str, float, float]]) -> List[Tuple[str, int]]:
+    return labial.word_timings([(text, round(start * 1000), round(end * 1000)) for text, start, end in words])
+
+
+def test_words_in_time_are_rendered() -> None:
+    """A word 1.2 s ahead changes nothing that was shown: no frame differs from those of the whole utterance."""
+    with labial.Voice() as voice:
+        frames = []
+        for number in range(150):
+            for word in WORDS:
+                if round((word[1] - 1.2) * 50) == number or (number == 0 and word[1] < 1.2):
+                    voice.say(*word)
+            frames += [frame.faps for frame in voice.played(number / 50)]
+    assert frames == motion(said(WORDS), 150)
+
+
+@pytest.mark.parametrize("lead, exact", [(0.3, True), (0.1, False)])
+def test_how_early_a_phoneme_must_be_known(lead: float, exact: bool) -> None:
+    """The 300 ms of docs/streams.md: so long before what precedes it is heard, which may be a pause."""
+    with labial.Voice() as voice:
+        frames = []
+        before = [0.0, *(end if end < after else start
+                         for (_, start, end), (_, after, _) in zip(SOUNDS, SOUNDS[1:]))]
+        for number in range(100):
+            for sound, begins in zip(SOUNDS, before):
+                if max(0, math.ceil((begins - lead) * 50 - 1e-6)) == number:
+                    voice.push(*sound)
+            frames += [frame.faps for frame in voice.played(number / 50)]
+    with labial.Voice() as voice:
+        for sound in SOUNDS:
+            voice.push(*sound)
+        assert (frames == played(voice, 0, 1.98)) == exact
+
+
+def steepest(frames: Sequence[Sequence[int]]) -> int:
+    """The largest change of a channel from one frame to the next."""
+    return max(abs(a - b) for one, two in zip(frames, frames[1:]) for a, b in zip(one, two))
+
+
+@pytest.mark.parametrize("moment", [0.1, 0.4, 0.6, 0.9])
+def test_a_revision_takes_eight_frames(moment: float) -> None:
+    """From eight frames after a word was revised, frames are those of the revised words; until then they come nearer,
+    without a jump."""
+    revised = [("Maybe,", 0.1, 0.52), ("purple", 0.56, 0.95), *WORDS[2:]]
+    with labial.Voice() as voice:
+        for word in WORDS:
+            voice.say(*word)
+        before = played(voice, 0, moment)
+        voice.say(*revised[1])
+        after = played(voice, moment + 0.02, 3)
+    first, last = motion(said(WORDS), 151), motion(said(revised), 151)
+    count = len(before)
+    assert before == first[:count] and after[8:] == last[count + 8 :]
+    assert steepest([before[-1], *after]) < 1.5 * max(steepest(first), steepest(last))
+
+
+def test_a_late_word_shows_what_remains_of_it() -> None:
+    """A word that is told while it sounds moves the lips for the rest of it, and shifts nothing behind it."""
+    with labial.Voice() as voice:
+        voice.say(*WORDS[0])
+        shown = played(voice, 0, 0.7)
+        for word in WORDS[1:]:
+            voice.say(*word)
+        shown += played(voice, 0.72, 3)
+    whole = motion(said(WORDS), 151)
+    assert shown[44:] == whole[44:] and shown[30:36] != whole[30:36]
+
+
+def test_what_is_over_makes_no_difference_for_long() -> None:
+    """A new stream is given two to three seconds of what was shown: the rest of a minute makes no difference."""
+    sounds = [(label, round(start + 1.5 * k, 3), round(end + 1.5 * k, 3))
+              for k in range(40) for label, start, end in SOUNDS]
+    with labial.Voice() as voice:
+        for sound in sounds[:-3]:
+            voice.push(*sound)
+        played(voice, 0, 58.6)
+        for sound in sounds[-3:]:
+            voice.push(*sound)
+        late = played(voice, 58.62, 60.5)
+    with labial.Voice() as voice:
+        for sound in sounds:
+            voice.push(*sound)
+        whole = played(voice, 0, 60.5)
+    assert late[8:] == whole[-len(late) + 8 :]
+
+
+def test_cancel_is_a_streams() -> None:
+    """The way to the neutral face is that of `Stream.cancel`, but for rounding."""
+    with labial.Voice() as voice, labial.Stream() as stream:
+        for sound in SOUNDS:
+            voice.push(*sound)
+        shown = played(voice, 0, 0.9)
+        voice.cancel(0.3)
+        assert not voice.done
+        eased = played(voice, 0.92, 1.2)
+        assert voice.done and len(eased) == 15
+        assert played(voice, 1.22, 1.4) == [(0,) * 13] * 10
+        for label, length in said([("ma", 0.0, 1.0)]):
+            stream.push(label, length)
+        voice.push("AA", 0, 1)  # of the cancelled utterance
+        assert not any(map(any, played(voice, 1.42, 2.5)))
+        voice.begin()
+        voice.push("AA", 0.2, 0.5)
+        assert max(frame[0] for frame in played(voice, 2.52, 3.2)) > 100
+    with labial.Stream() as stream:
+        moment = 0.0
+        for label, start, end in SOUNDS:
+            stream.push("SIL", round((start - moment) * 1000))
+            stream.push(label, round((end - start) * 1000))
+            moment = end
+        before = [next(stream).faps for _ in range(46)]
+        stream.cancel(300)
+        expected = [frame.faps for frame in stream]
+    assert before == shown and len(expected) == 15
+    assert max(abs(a - b) for one, two in zip(eased, expected) for a, b in zip(one, two)) <= 1
+
+
+def test_done() -> None:
+    """Half a second after the end of what was told, once nothing more is to come."""
+    with labial.Voice() as voice:
+        for word in WORDS:
+            voice.say(*word)
+        voice.played(5.0)
+        assert not voice.done
+        voice.finish()
+        assert voice.done
+        voice.say("More.", 0, 1)  # the next utterance, from now on
+        assert not voice.done and voice.time == 5.02
+        voice.finish()
+        voice.played(6.48)
+        assert not voice.done
+        voice.played(6.5)
+        assert voice.done
+
+
+def test_follow_waits_for_a_late_clock_and_ends() -> None:
+    """An asynchronous loop: nothing while the sound has not begun, then each frame once, until all is shown."""
+    looks: List[Optional[float]] = [None, None, *(k * 0.03 for k in range(200))]
+
+    async def run(voice: labial.Voice, clock: Iterable[Optional[float]]) -> List[labial.Frame]:
+        left = iter(clock)
+        return [frame async for frame in voice.follow(lambda: next(left))]
+
+    async def closed(voice: labial.Voice) -> int:
+        count = 0
+        async for _ in voice.follow(lambda: 10.0):
+            count += 1
+            voice.close()
+        return count
+
+    waits: List[float] = []
+
+    async def sleep(seconds: float) -> None:
+        waits.append(seconds)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("labial.runtime.voice.asyncio.sleep", sleep)
+        with labial.Voice() as voice:
+            for word in WORDS:
+                voice.say(*word)
+            voice.finish()
+            frames = asyncio.run(run(voice, looks))
+            assert voice.done
+        assert asyncio.run(closed(labial.Voice())) == 1
+    assert [frame.number for frame in frames] == list(range(140))
+    assert waits[:2] == [0.01, 0.01] and all(0.001 <= wait <= 0.02 for wait in waits)
+    assert [frame.faps for frame in frames] == motion(said(WORDS), 140)
+
+
+def test_messages_that_tell_nothing() -> None:
+    """Sound, in JSON or in bytes, and notices; the format is recognised by the first message that tells something."""
+    with labial.Voice() as voice:
+        for message in (b"\x00\x01\xff", b"", b"RIFF....", {"audio": "AAAA"}, {"type": "done"}, [], '{"a": 1}',
+                        {"audio": "AAAA", "alignment": None}):
+            voice.feed(message)
+        voice.feed(b' {"word": "hum", "start": 0.1, "end": 0.5}')
+        voice.feed({"audio": "AAAA", "sequence": 1})
+        voice.feed(json.dumps([{"word": "by", "start": 0.6, "end": 0.9}]))
+        assert played(voice, 0, 1.4) == motion(said([("hum", 0.1, 0.5), ("by", 0.6, 0.9)]), 71)
+
+
+def test_pipers_chunks_are_read_as_they_are() -> None:
+    """Objects with Piper's attributes, whose numbers may be numpy's."""
+    class Thing:
+        def __init__(self, **fields: Any) -> None:
+            self.__dict__.update(fields)
+
+    chunks = json.loads((SERVICES / "piper.json").read_text(encoding="utf-8"))
+    frames = []
+    for convert in (dict, lambda chunk: Thing(sample_rate=chunk["sample_rate"], phoneme_alignments=[
+            Thing(**item) for item in chunk["phoneme_alignments"]])):
+        with labial.Voice() as voice:
+            for chunk in chunks:
+                voice.feed(convert(chunk))
+            frames.append(played(voice, 0, 3))
+    assert frames[0] == frames[1] and max(frame[0] for frame in frames[0]) > 100
+
+
+@pytest.mark.parametrize("form, message, problem", [
+    (None, "{", "message 2: not JSON"),
+    (None, "7", "7 is not an object"),
+    (None, b'{"a": "\xff"}', "not UTF-8"),
+    (None, '{"a": ' + "[" * 100_000, "nested too deeply"),
+    (None, [7], "7 is not an object"),
+    (None, {"word": "a", "start": 2, "end": 1}, "'a' ends at 1 s, before its start 2 s"),
+    (None, {"word": "a", "start": 2, "end": 100000}, "more than a day"),
+    (None, {"word": "a", "start": 2, "end": 4000}, "more than an hour"),
+    (None, {"word": "a" * 1001, "start": 2, "end": 3}, "a text of 1001 characters"),
+    (None, {"word": "a", "start": "x", "end": 3}, "'start' is x, not a number"),
+    (None, {"word": "a", "start": -1, "end": 3}, "not a number from 0 on"),
+    ("azure", {"viseme_id": 77, "audio_offset": 0}, "no viseme is called '77'"),
+    ("cartesia", {"word_timestamps": {"words": [1], "start": [0], "end": [1]}}, "are not of one length"),
+    ("elevenlabs", {"alignment": {"chars": ["a"]}}, "no field"),
+    ("piper", {"phoneme_alignments": None, "sample_rate": 1}, "Piper told no alignments"),
+])  # fmt: skip
+def test_malformed_messages_change_nothing(form: Optional[str], message: Any, problem: str) -> None:
+    with labial.Voice(form) as voice:
+        voice.say("hum", 0.1, 0.5)
+        voice.feed({})
+        with pytest.raises(labial.errors.DataError) as caught:
+            voice.feed(message)
+        assert problem in str(caught.value).replace("message 2: not JSON: ", "message 2: not JSON") or problem in str(
+            caught.value)
+        assert "\n" not in str(caught.value) and str(caught.value).startswith("message 2: ")
+        assert played(voice, 0, 1) == motion(said([("hum", 0.1, 0.5)]), 51)
+
+
+def test_misuse() -> None:
+    with labial.Voice() as voice:
+        for call in (lambda: voice.feed(7), lambda: voice.feed(None), lambda: voice.feed({1}), lambda: voice.say(1, 0),
+                     lambda: voice.say("a", "0"), lambda: voice.push("AA", None, 1), lambda: voice.played("1"),
+                     lambda: labial.Voice(model="a")):
+            with pytest.raises(TypeError):
+                call()
+        for call, problem in ((lambda: labial.Voice("morse"), "'morse' is no format of messages: kokoro"),
+                              (lambda: labial.Voice(labels="x"), "no set of labels"),
+                              (lambda: labial.Voice(own={"a": "QQ"}), "no phoneme of ARPABET"),
+                              (lambda: voice.say("a", 2, 1), "ends before it begins"),
+                              (lambda: voice.say("a", -1), "no time from 0 on"),
+                              (lambda: voice.say("a", math.nan), "no time from 0 on"),
+                              (lambda: voice.push("AA", 0, 4000), "more than an hour"),
+                              (lambda: voice.push("QQ", 0, 1), "no phoneme of this name"),
+                              (lambda: voice.played(math.inf), "inf s is no time"),
+                              (lambda: voice.played(math.nan), "nan s is no time"),
+                              (lambda: voice.begin(-1), "no time from 0 on"),
+                              (lambda: voice.cancel(-1), "a duration is a number")):
+            with pytest.raises(labial.errors.LabialError, match=problem):
+                call()
+        assert len(played(voice, 0, 1)) == 51
+    for call in (lambda: voice.feed({}), lambda: voice.played(1), voice.finish, voice.begin, voice.cancel):
+        with pytest.raises(labial.errors.StreamError, match="the voice is closed"):
+            call()
+    voice.close()
+
+
+def test_a_server_cannot_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So much ahead of the sound is too much; what is over is forgotten."""
+    monkeypatch.setattr("labial.runtime.timeline.MOST", 500)
+    with labial.Voice() as voice:
+        voice.feed([{"word": "a", "start": k / 100, "end": k / 100} for k in range(10)])
+        before = played(voice, 0, 0.1)
+        with pytest.raises(labial.errors.LabialError, match="more than 500 words"):
+            voice.feed([{"word": "a", "start": k, "end": k} for k in range(500)])
+        assert before + played(voice, 0.12, 0.3) == motion(said([("a", k / 100, k / 100) for k in range(10)]), 16)
+    with labial.Voice() as voice, pytest.raises(labial.errors.LabialError, match="more than 500 words"):
+        voice.feed({"normalizedAlignment": {"chars": ["a"] * 501, "charStartTimesMs": list(range(501)),
+                                            "charDurationsMs": [1] * 501}})
+    with labial.Voice() as voice:
+        for second in range(600):
+            if second % 20 == 0:
+                voice.begin(second)
+            voice.say("hum", second % 20 + 0.1, second % 20 + 0.5)
+            voice.say("by", second % 20 + 0.6, second % 20 + 0.9)
+            voice.played(second + 0.1)
+        kept = voice._timeline._utterances
+        assert len(kept) <= 2 and sum(len(one.items["words"]) for one in kept) < 20
+        assert sum(len(one.segments) for one in kept) < 60 and len(voice._pushed) + len(voice._plan) < 60
+
+
+def test_pronunciations_and_labels() -> None:
+    """Words are pronounced as `labial.word_timings` does, labels are those of the set that is named."""
+    own = {"kokoro": "K OW K AO R OW"}
+    word = ("Kokoro!", 0.1, 0.7)
+    with labial.Voice(own=own) as voice:
+        voice.say(*word)
+        assert played(voice, 0, 1) == motion(labial.word_timings([("Kokoro!", 100, 700)], own=own), 51)
+    with labial.Voice(labels="xsampa") as voice:
+        voice.push("{", 0.1, 0.5)
+        assert played(voice, 0, 1) == motion([("SIL", 100), ("AE", 400)], 51)
+    with labial.Voice(nearest=True) as voice:
+        voice.push("ɓ", 0.1, 0.5)
+        voice.push(labial.speech_en.find("AA"), 0.5, 0.7)
+        assert played(voice, 0, 1) == motion([("SIL", 100), ("B", 400), ("AA", 200)], 51)
+
+
+@pytest.mark.parametrize("options", [{"language": "de"}, {"numbers": True}])
+def test_other_pronouncers_are_asked_once(options: Dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """espeak-ng and num2words are asked for each word once, however many messages follow it."""
+    asked: List[str] = []
+    monkeypatch.setattr("labial.corpus.words._by_espeak", lambda words, language: asked.extend(words) or [
+        ["AA", "M"] for _ in words])
+    monkeypatch.setattr("labial.corpus.words._written_out", lambda digits, language: asked.append(digits) or "two")
+    with labial.Voice(**options) as voice:
+        for k in range(5):
+            voice.say("ja" if k % 2 else "21", k / 2, k / 2 + 0.4)
+        assert max(frame[0] for frame in played(voice, 0, 2)) > 100
+    assert sorted(asked) == (["21", "ja"] if "language" in options else ["21"])
+
+
+def test_a_voice_needs_no_numpy() -> None:
+    script = ("import sys\nsys.modules['numpy'] = None\nimport labial\nvoice = labial.Voice()\n"
+              "voice.feed({'word': 'hum', 'start': 0, 'end': 1})\nprint(len(voice.played(0.5)))\n")
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout == "26\n"

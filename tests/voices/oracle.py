@@ -1,0 +1,247 @@
+"""What a voice must show, worked out without :class:`labial.Voice`: slowly, from everything that was ever told.
+
+For each change it makes the whole timeline again, with the readers of files and the conversion of all words at once,
+and for each frame all frames before it, by :func:`labial.render`. Nothing is forgotten and nothing is kept.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import json
+import math
+import sys
+import zlib
+from array import array
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+
+import labial
+
+#: Milliseconds of the silence after all that is known.
+ENDLESS = 3_600_000
+#: Frames of it that a session may see.
+SILENT = 500
+FADE = 8
+
+Plan = List[Tuple[int, float, str]]
+Faps = Tuple[int, ...]
+
+
+class Shown(NamedTuple):
+    """A frame with its number."""
+
+    number: int
+    faps: Faps
+
+
+def sessions(path: Path) -> List[Dict[str, Any]]:
+    """The sessions of ``sessions.json``."""
+    found: List[Dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["sessions"]
+    return found
+
+
+def times(step: List[Any]) -> List[Optional[float]]:
+    """The times of a step ["played", time] or ["plays", first, last, difference]."""
+    if step[0] == "played":
+        return [step[1]]
+    _, first, last, difference = step
+    return [first + k * difference for k in range(math.floor((last - first) / difference + 1e-6) + 1)]
+
+
+def summary(frames: List[Shown]) -> List[int]:
+    """The number of frames, the last one's number, and the CRC-32 of all FAPs, 16 bits each, low byte first."""
+    data = array("h", [fap for frame in frames for fap in frame.faps])
+    if sys.byteorder == "big":
+        data.byteswap()
+    return [len(frames), frames[-1].number if frames else -1, zlib.crc32(data.tobytes())]
+
+
+class Oracle:
+    """Follows a session's steps; `options` are those of :class:`labial.Voice`."""
+
+    def __init__(self, options: Dict[str, Any]) -> None:
+        self.options = options
+        self.utterances: List[Dict[str, Any]] = [_utterance(0)]
+        self.finished = self.cancelled = False
+        self.neutral, self.epoch, self.plan = False, -1, []  # the stream: since when, of what
+        self.next, self.shown = 0, None
+        self.fade: Tuple[Faps, int, int] = ((0,) * 13, 0, 0)
+        self.changed = True
+
+    def run(self, step: List[Any]) -> Optional[List[Shown]]:
+        """A step of a session; returns the frames of one that plays."""
+        name, *arguments = step
+        if name in ("played", "plays"):
+            return [frame for time in times(step) for frame in self.played(time)]
+        getattr(self, name)(*arguments)
+        self.changed = True
+        return None
+
+    # ---- What is told
+
+    def feed(self, message: Any) -> None:
+        if self.listens():
+            self.utterances[-1]["messages"].append(message)
+
+    def say(self, text: str, start: float, end: Optional[float] = None) -> None:
+        if self.listens():
+            _insert(self.utterances[-1]["words"], text, _ms(start), None if end is None else _ms(end))
+
+    def push(self, phoneme: str, start: float, end: float) -> None:
+        if self.listens():
+            _insert(self.utterances[-1]["phonemes"], phoneme, _ms(start), _ms(end))
+
+    def begin(self, at: Optional[float] = None) -> None:
+        start = max(self.ends()[-1] if self.utterances else 0, self.next * 20) if at is None else _ms(at)
+        self.utterances.append(_utterance(start))
+        self.finished = self.cancelled = False
+
+    def finish(self) -> None:
+        self.finished = True
+
+    def cancel(self, fade: float) -> None:
+        self.utterances, self.cancelled, self.finished = [], True, False
+        self.neutral = True
+        frames = max(1, math.ceil(fade * 50 - 1e-6))
+        self.fade = (self.shown or (0,) * 13, 0, frames)
+
+    def listens(self) -> bool:
+        if self.finished and not self.cancelled:
+            self.begin()
+        return not self.cancelled
+
+    # ---- The timeline
+
+    def spoken(self, utterance: Dict[str, Any]) -> List[Tuple[int, int, str]]:
+        """Phonemes of an utterance with their times in it."""
+        if utterance["messages"]:
+            timings = labial.read_timings(utterance["messages"], source=self.options.get("format"))
+        elif utterance["phonemes"]:
+            timings, moment = [], 0
+            starts = [start for start, _, _ in utterance["phonemes"]][1:]
+            for (start, end, label), after in zip(utterance["phonemes"], [*starts, math.inf]):
+                end = min(end, after)
+                timings += [("SIL", start - moment), (label, end - start)]
+                moment = end
+        else:
+            timings = labial.word_timings([(text, start, end) for start, end, text in utterance["words"]])
+        found, moment = [], 0
+        for label, length in timings:
+            found.append((moment, moment + int(length), label))
+            moment += int(length)
+        return [item for item in found if item[2] != "SIL" and item[1] > item[0]]
+
+    def ends(self) -> List[int]:
+        """Where each utterance ends."""
+        found = []
+        for one in self.utterances:
+            last = [end for _, end, _ in self.spoken(one)] + [end or start for start, end, _ in one["words"]]
+            found.append(one["origin"] + max(last, default=0))
+        return found
+
+    def from_time(self, start: int) -> Plan:
+        """All that is known from a time on."""
+        found: Plan = []
+        moment = start
+        origins = [one["origin"] for one in self.utterances]
+        for one, limit in zip(self.utterances, [*origins[1:], math.inf]):
+            shift = one["origin"] + int(self.options.get("offset_ms", 0))
+            for begin, end, label in self.spoken(one):
+                begin, end = max(begin + shift, moment), min(end + shift, limit)
+                if begin < end:
+                    found += [(moment, begin, "SIL")] if begin > moment else []
+                    found.append((begin, end, label))
+                    moment = end
+        return [*found, (moment, math.inf, "SIL")]
+
+    # ---- Frames
+
+    def played(self, time: Optional[float]) -> List[Shown]:
+        """The frames that are due."""
+        due = -1 if time is None or time < 0 else math.floor(time * 50 + 1e-6)
+        late = due - self.next >= 50
+        if late:
+            self.next = due
+        if due >= self.next and (self.changed or late):
+            self.change(late)
+        found = []
+        while self.next <= due:
+            base = (0,) * 13 if self.neutral else frame(self.plan, self.next - self.epoch // 20)
+            offset, step, steps = self.fade
+            if step < steps:
+                step += 1
+                share = (step << 14) // steps
+                left = 16384 - (((share * share >> 14) * (49152 - 2 * share)) >> 14)
+                base = tuple(one + ((more * left + 8192) >> 14) for one, more in zip(base, offset))
+                self.fade = (offset, step, steps)
+            found.append(Shown(self.next, base))
+            self.shown = base
+            self.next += 1
+        return found
+
+    def change(self, late: bool) -> None:
+        """Makes another stream if the phonemes that this one has are not those that it should have."""
+        self.changed = False
+        start = max(0, self.next * 20 // 1000 - 2) * 1000
+        plan = self.from_time(start)
+        if self.neutral and len(plan) == 1:
+            return
+        if not self.neutral and not late and self.epoch >= 0:
+            fed = self.plan[: needed(self.plan, self.next - self.epoch // 20)]
+            clipped = [(max(begin, start), end, label) for begin, end, label in fed if end > start]
+            if plan[: len(clipped)] == clipped:
+                self.plan = [*fed, *plan[len(clipped) :]]
+                return
+        self.epoch, self.plan, self.neutral = start, plan, False
+        if self.shown is not None:
+            before = frame(plan, self.next - 1 - start // 20)
+            self.fade = (tuple(one - other for one, other in zip(self.shown, before)), 0, FADE)
+
+
+def _utterance(origin: int) -> Dict[str, Any]:
+    return {"origin": origin, "messages": [], "words": [], "phonemes": []}
+
+
+def _insert(items: List[Tuple[int, Optional[int], str]], text: str, start: int, end: Optional[int]) -> None:
+    """Puts an item in place of those that begin within its time."""
+    behind = start + 1 if end is None else max(end, start + 1)
+    items[:] = sorted([item for item in items if not start <= item[0] < behind] + [(start, end, text)])
+
+
+def _ms(seconds: float) -> int:
+    return math.floor(seconds * 1000 + 0.5)
+
+
+def _timings(plan: Plan) -> List[Tuple[str, float]]:
+    return [(label, min(end - start, ENDLESS)) for start, end, label in plan]
+
+
+def frame(plan: Plan, number: int) -> Faps:
+    """A frame of the motion of a plan."""
+    return _motion(tuple(plan))[number]
+
+
+@functools.lru_cache(maxsize=4)
+def _motion(plan: Tuple[Tuple[int, float, str], ...]) -> List[Faps]:
+    """The frames of a plan, but not those of an hour of silence."""
+    spoken = [end for _, end, _ in plan if end < math.inf]
+    count = (int(spoken[-1] if spoken else 0) - plan[0][0]) // 20 + SILENT
+    with labial.Stream() as stream:
+        for phoneme, length in _timings(list(plan)):
+            stream.push(phoneme, length)
+        return [item.faps for item in itertools.islice(stream, count)]
+
+
+def needed(plan: Plan, number: int) -> int:
+    """How many phonemes of a plan a stream must have before it makes the frames before this one."""
+    with labial.Stream() as stream:
+        count = frames = 0
+        for phoneme, length in _timings(plan):
+            if frames >= number:
+                break
+            stream.push(phoneme, length)
+            count += 1
+            while frames < number and next(stream, None):
+                frames += 1
+    return count

@@ -1,0 +1,136 @@
+"""Writes ``sessions.json``: what happens in each session, and what :mod:`oracle` shows in it.
+
+    PYTHONPATH=export:tests/voices LABIAL_RUNTIME=.../labial_runtime.so python3 tests/voices/regenerate_voices.py
+
+A step is a call of a voice: its name and arguments. ["plays", first, last, difference] plays to each of these times.
+After a step that plays, `shown` has the number of its frames, the last one's number, and the CRC-32 of all their FAPs,
+16 bits each, low byte first.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Dict, List
+
+from oracle import Oracle, summary
+
+SERVICES = Path(__file__).parents[1] / "python" / "services"
+WORDS = [("Maybe,", 0.1, 0.52), ("people", 0.56, 0.95), ("hum", 0.97, 1.2), ("by", 1.5, 1.7), ("the", 1.7, 1.8),
+         ("pool.", 1.83, 2.3)]  # fmt: skip
+SOUNDS = [("m", 0.1, 0.17), ("eɪ", 0.17, 0.3), ("b", 0.3, 0.36), ("i", 0.36, 0.5), ("ɡ", 0.75, 0.82),
+          ("oʊ", 0.82, 1.0), ("p", 1.0, 1.08), ("uː", 1.08, 1.3), ("l", 1.3, 1.4)]  # fmt: skip
+FRAME = 0.02
+
+
+def _plays(first: float, last: float, step: float = FRAME) -> List[Any]:
+    return ["plays", first, last, step]
+
+
+def _sample(name: str) -> List[List[Any]]:
+    """The messages of a sample of a service."""
+    text = (SERVICES / name).read_text(encoding="utf-8")
+    try:
+        document = json.loads(text)
+    except ValueError:
+        document = [json.loads(line) for line in text.splitlines() if line.strip()]
+    return [["feed", message] for message in (document if isinstance(document, list) else [document])]
+
+
+def _sounds(first: int = 0, end: int = len(SOUNDS)) -> List[List[Any]]:
+    return [["push", *sound] for sound in SOUNDS[first:end]]
+
+
+def _words(first: int = 0, end: int = len(WORDS)) -> List[List[Any]]:
+    return [["say", *word] for word in WORDS[first:end]]
+
+
+def _in_time(calls: List[List[Any]], lead: float) -> List[List[Any]]:
+    """Each call of a word or phoneme so long before the sound plays it, in seconds."""
+    found, moment = [], 0.0
+    for call in calls:
+        due = round(max(0.0, call[2] - lead) / FRAME) * FRAME
+        if due > moment:
+            found.append(_plays(moment, round(due - FRAME, 6)))
+            moment = round(due, 6)
+        found.append(call)
+    return [*found, _plays(moment, 3.0)]
+
+
+def _long() -> List[List[Any]]:
+    """Twelve seconds of phonemes, and then one that was not known in time."""
+    calls = [["push", label, round(start + 1.5 * k, 3), round(end + 1.5 * k, 3)]
+             for k in range(8) for label, start, end in SOUNDS]
+    return [*calls, _plays(0, 11.8), ["push", "m", 12.0, 12.2], ["push", "ɑ", 12.2, 12.5], _plays(11.82, 13.5)]
+
+
+SESSIONS: Dict[str, Dict[str, Any]] = {
+    "phonemes are known before": {"steps": [*_sounds(), _plays(0, 2)]},
+    "phonemes come in time": {"steps": _in_time(_sounds(), 0.6)},
+    "phonemes come late": {"steps": _in_time(_sounds(), 0.05)},
+    "phonemes come when they are over": {"steps": _in_time(_sounds(), -0.2)},
+    "a phoneme fills a pause that is playing": {"steps": [*_sounds(0, 4), _plays(0, 0.58), ["push", "ʃ", 0.55, 0.7],
+                                                         *_sounds(4), _plays(0.6, 2)]},
+    "a phoneme is revised": {"steps": [*_sounds(), _plays(0, 0.3), ["push", "f", 0.82, 1.0], _plays(0.32, 0.9),
+                                       ["push", "ɑ", 0.9, 1.0], _plays(0.92, 2)]},
+    "no clock, then one that begins late": {"steps": [["played", None], *_sounds(), ["played", None],
+                                                      ["played", -0.1], _plays(0, 1.6)]},
+    "a clock of odd steps": {"steps": [*_sounds(), _plays(0, 1.6, 0.0173)]},
+    "a clock that goes back and jumps": {"steps": [*_sounds(), _plays(0, 0.2), ["played", 0.1], ["played", 0.31],
+                                                   ["played", 1.29], ["played", 9.0], ["played", 9.02]]},
+    "the sound was heard before": {"steps": [*_sounds(), ["played", 5.0], _plays(5.02, 5.1)]},
+    "times are moved": {"options": {"offset_ms": 80}, "steps": [*_sounds(), _plays(0, 1.7)]},
+    "cancelled and begun again": {"steps": [*_sounds(), _plays(0, 0.4), ["cancel", 0.2], *_sounds(4),
+                                            _plays(0.42, 0.9), ["begin", 1.0], *_sounds(), _plays(0.92, 2.8)]},
+    "cancelled twice, begun during the fade": {"steps": [*_sounds(), _plays(0, 0.9), ["cancel", 0.5],
+                                                         _plays(0.92, 1.0), ["cancel", 0.3], _plays(1.02, 1.1),
+                                                         ["begin", None], *_sounds(), _plays(1.12, 3)]},
+    "one utterance after the other": {"steps": [*_sounds(), ["begin", None], *_sounds(0, 4), ["begin", 2.2],
+                                                *_sounds(4), _plays(0, 4)]},
+    "an utterance cuts the one before": {"steps": [*_sounds(), _plays(0, 0.5), ["begin", 0.84], *_sounds(),
+                                                   _plays(0.52, 2.6)]},
+    "finished, and more": {"steps": [*_sounds(), ["finish"], _plays(0, 1.5), *_sounds(0, 4), _plays(1.52, 2.6)]},
+    "a long time before": {"steps": _long()},
+    "words are known before": {"words": True, "steps": [*_words(), _plays(0, 3)]},
+    "words come in time": {"words": True, "steps": _in_time(_words(), 1.2)},
+    "words come late": {"words": True, "steps": _in_time(_words(), 0.1)},
+    "words without ends": {"words": True, "steps": _in_time([word[:3] for word in _words()], 0.8)},
+    "a word is revised": {"words": True, "steps": [*_words(), _plays(0, 0.4), ["say", "purple", 0.56, 0.95],
+                                                   _plays(0.42, 0.7), ["say", "poodle", 1.0, 1.2], _plays(0.72, 3)]},
+    "Azure's visemes": {"options": {"format": "azure"}, "steps": [*_sample("azure.json"), _plays(0, 1.5)]},
+    "Azure's visemes come one by one": {
+        "options": {"format": "azure"},
+        "steps": [step for k, feed in enumerate(_sample("azure.json"))
+                  for step in (feed, _plays(0.1 * k, round(0.1 * k + 0.08, 3)))]},
+    "Polly's visemes": {"options": {"format": "polly"}, "steps": [*_sample("polly.marks"), _plays(0, 1.5)]},
+    "Piper's chunks": {"options": {"format": "piper"}, "steps": [*_sample("piper.json"), _plays(0, 4)]},
+    "Kokoro's results": {"options": {"format": "kokoro"}, "steps": [*_sample("kokoro.json"), _plays(0, 3)]},
+    "HeadTTS's answers": {"options": {"format": "headtts"}, "steps": [*_sample("headtts.json"), _plays(0, 3)]},
+    "Cartesia's phonemes": {"options": {"format": "cartesia"},
+                            "steps": [*_sample("cartesia_phonemes.json"), _plays(0, 1.5)]},
+    "Cartesia's words": {"words": True, "options": {"format": "cartesia"},
+                         "steps": [*_sample("cartesia.json")[:2], _plays(0, 0.3), *_sample("cartesia.json")[2:],
+                                   _plays(0.32, 1.5)]},
+    "ElevenLabs' characters": {"words": True, "options": {"format": "elevenlabs"},
+                               "steps": [_sample("elevenlabs_ws.json")[0], _plays(0, 0.3),
+                                         *_sample("elevenlabs_ws.json")[1:], _plays(0.32, 1.7)]},
+    "Fish Audio's chunks are revised": {"words": True, "options": {"format": "fish"},
+                                        "steps": [_sample("fish.json")[0], _plays(0, 0.2), _sample("fish.json")[1],
+                                                  _plays(0.22, 0.5), *_sample("fish.json")[2:], _plays(0.52, 1.5)]},
+}
+
+
+def main() -> None:
+    """Writes the file."""
+    found = []
+    for name, session in SESSIONS.items():
+        oracle = Oracle(session.get("options", {}))
+        shown = [oracle.run(step) for step in session["steps"]]
+        found.append({"name": name, **session, "shown": [summary(frames) for frames in shown if frames is not None]})
+    lines = ",\n".join(json.dumps(session, ensure_ascii=False) for session in found)
+    text = f'{{"about": "written by regenerate_voices.py, which explains it", "sessions": [\n{lines}\n]}}\n'
+    Path(__file__).with_name("sessions.json").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
