@@ -111,6 +111,10 @@ export class Labial {
         return found.words(TOOLS, this);
     }
 
+    async voice(options) {
+        return (await this.words()).voice(options);
+    }
+
     render(segments, { output = "faps", ...options } = {}) {
         this.checkOutput(output);
         const stream = new Stream(this, options);

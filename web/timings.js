@@ -5,7 +5,7 @@ import { LONGEST, LabialError, shown } from "./memory.js";
 /** A blank between words, or what a service leaves out between two phonemes, is a pause from here on, in seconds. */
 const LONGEST_BLANK = 0.15;
 /** Seconds that the last viseme lasts, of which only the beginning is told. */
-const LAST_VISEME = 0.1;
+export const LAST_VISEME = 0.1;
 /** Kokoro's frames per second: 600 samples each, 24,000 samples per second. */
 const KOKORO_RATE = 40;
 /** Azure's ticks per second, of 100 ns. */
@@ -25,6 +25,8 @@ const AZURE = table("SIL AH AA AO EH ER IH UW OW AW OY AY HH R L S SH DH F N K P
 const AZURE_PAIRS = { "8 4": "OW", "4 6": "EY", "19 16": "CH" };
 const POLLY = table("sil SIL p P t N S SH T DH f F k K i IH r R s S l L u UW @ AH a AE e EY E EH o OW O AO B B J Y x K"
     .match(/\S+ \S+/g).map((pair) => pair.split(" ")));
+/** The phoneme of each viseme, and of pairs. */
+export const VISEMES = { azure: [AZURE, AZURE_PAIRS], polly: [POLLY, {}] };
 
 function table(pairs) {
     return new Map(pairs.map(([name, phoneme]) => [String(name), phoneme]));
@@ -95,7 +97,7 @@ export function fromAzure(source) {
     return fromVisemes(entriesOf(source).map((item) => {
         const id = item.get("visemeid", "privvisemeid");
         return [item.number("audiooffset", "privaudiooffset") / TICKS, String(id), item];
-    }), AZURE, AZURE_PAIRS);
+    }), "azure");
 }
 
 /** Amazon Polly's speech marks, of which those of type "viseme" are read. */
@@ -103,7 +105,7 @@ export function fromPolly(source) {
     const marks = entriesOf(source).filter((item) => item.get("type") === "viseme")
         .map((item) => [item.number("time") / 1000, item.text("value"), item]);
     if (!marks.length) throw new LabialError("no speech marks of type 'viseme'");
-    return fromVisemes(marks, POLLY, {});
+    return fromVisemes(marks, "polly");
 }
 
 // ---- Characters and visemes -----------------------------------------------------------------------------------------
@@ -140,23 +142,31 @@ function phonemesOf(tokens) {
 }
 
 /** Segments of visemes of which only the beginnings are told. */
-function fromVisemes(marks, phonemes, pairs) {
-    const found = [];
+function fromVisemes(marks, service) {
+    const [phonemes] = VISEMES[service];
     marks.forEach(([, name, item]) => {
         if (!phonemes.has(name)) throw item.error(`no viseme is called ${shown(name)}`);
     });
-    for (let at = 0; at < marks.length; at++) {
-        const [start, name, { line }] = marks[at];
-        const joined = at + 1 < marks.length ? pairs[`${name} ${marks[at + 1][1]}`] : undefined;
+    return checked(standIns(service, marks.map(([, name]) => name)).map(({ first, last, phoneme }) => {
+        const end = last + 1 < marks.length ? marks[last + 1][0] : marks[last][0] + LAST_VISEME;
+        return { start: marks[first][0], end, label: phoneme, labels: "arpabet", line: marks[first][2].line };
+    }));
+}
+
+/** The phoneme of each viseme or pair of visemes, with the first and the last one that it stands for. */
+export function standIns(service, names) {
+    const [phonemes, pairs] = VISEMES[service];
+    const found = [];
+    for (let at = 0; at < names.length; at++) {
+        const joined = at + 1 < names.length ? pairs[`${names[at]} ${names[at + 1]}`] : undefined;
+        found.push({ first: at, last: joined ? at + 1 : at, phoneme: joined || phonemes.get(names[at]) });
         if (joined) at++;
-        const end = at + 1 < marks.length ? marks[at + 1][0] : marks[at][0] + LAST_VISEME;
-        found.push({ start, end, label: joined || phonemes.get(name), labels: "arpabet", line });
     }
-    const told = found.map((item) => item.label);
+    const told = found.map(({ phoneme }) => phoneme);
     found.forEach((item, i) => {
-        if (told[i] === "UW" && VOWELS.has(told[i + 1]) && told[i + 1] !== "UW") item.label = "W";
+        if (told[i] === "UW" && VOWELS.has(told[i + 1]) && told[i + 1] !== "UW") item.phoneme = "W";
     });
-    return checked(found);
+    return found;
 }
 
 function misaki(label) {

@@ -101,7 +101,7 @@ export class MessageReader {
 }
 
 /** The name of the format that an entry is the first of, or undefined. */
-function formatOf(formats, first) {
+export function formatOf(formats, first) {
     return Object.keys(formats).find((name) => formats[name].told(first));
 }
 

@@ -3,6 +3,7 @@ import { split, wordsOfCharacters } from "./characters.js";
 import { Lexicon } from "./lexicon.js";
 import { MessageReader, formatsOf, readTimings } from "./readers.js";
 import { WordStream, inMilliseconds, segmentsOf } from "./stream.js";
+import { Voice } from "./voice.js";
 
 export class Words {
     #lexicon;
@@ -57,5 +58,9 @@ export class Words {
 
     stream(options) {
         return new WordStream(this.#lexicon, options);
+    }
+
+    voice(options) {
+        return new Voice(this.#lexicon, this.#formats, options);
     }
 }

@@ -1,0 +1,195 @@
+// Voices that are followed: tests/voices/sessions.json has what every language must show, frame by frame, as
+// tests/voices/oracle.py works it out. And clocks, misuse, and what a hostile server can do.
+import assert from "node:assert/strict";
+import { pathToFileURL } from "node:url";
+import test from "node:test";
+import { Labial, LabialError, crc32, folder, source } from "./setup.mjs";
+
+const labial = await Labial.load({ words: () => import(pathToFileURL(`${folder}-words/index.js`)) });
+const { sessions } = JSON.parse(source("tests/voices/sessions.json"));
+
+/** The number of frames, the last one's number, and the CRC-32 of their FAPs. */
+function summary(frames, number) {
+    const faps = Int16Array.from(frames.flatMap((one) => [...one]));
+    return [frames.length, frames.length ? number : -1, crc32(new Uint8Array(faps.buffer))];
+}
+
+function* times([name, first, last, difference]) {
+    if (name === "played") yield first;
+    else for (let k = 0; k <= Math.floor((last - first) / difference + 1e-6); k++) yield first + k * difference;
+}
+
+for (const { name, options: { offset_ms: offset = 0, ...options } = {}, steps, shown } of sessions) {
+    test(name, async () => {
+        const voice = await labial.voice({ ...options, offset: offset / 1000 });
+        const found = [];
+        for (const [call, ...rest] of steps) {
+            if (!call.startsWith("play")) {
+                voice[call](...rest.map((one) => one ?? undefined));
+                continue;
+            }
+            const frames = [...times([call, ...rest])].flatMap((seconds) => voice.played(seconds));
+            found.push(summary(frames, voice.number));
+        }
+        assert.deepEqual(found, shown);
+    });
+}
+
+const WORDS = [["Maybe", 0.1, 0.5], ["people", 0.55, 0.95], ["hum.", 1, 1.3]];
+
+/** A voice that was told the words. */
+async function told(options) {
+    const voice = await labial.voice(options);
+    for (const word of WORDS) voice.say(...word);
+    return voice;
+}
+
+const rows = (frames) => Array.from(frames, (faps) => [...faps]);
+
+test("a clock that was not given is asked for, and a time stands for it", async () => {
+    const voice = await told({});
+    assert.throws(() => voice.played(), { name: "LabialError", message: /^the voice has no clock/ });
+    assert.throws(() => voice.at(), { name: "LabialError" });
+    assert.equal(voice.number, -1);
+    assert.equal(voice.played(0.5).length, 26);
+    assert.deepEqual([voice.number, voice.time, voice.rate, voice.done], [25, 0.5, 50, false]);
+});
+
+test("at() is the frame that played() returned last, in one object", async () => {
+    const [one, other] = [await told({}), await told({ output: "arkit" })];
+    for (let seconds = 0; seconds < 1.5; seconds += 0.013) {
+        const frames = one.played(seconds);
+        const weights = other.at(seconds);
+        assert.equal(other.at(seconds), weights);
+        if (frames.length) assert.deepEqual(weights, labial.convert(frames.at(-1), "arkit"));
+        assert.deepEqual([...one.at(seconds)], frames.length ? [...frames.at(-1)] : [...one.at(seconds)]);
+    }
+    const [faps, weights] = [await told({}), await told({ output: "vrm" })].map((voice) => voice.played(0.6)[30]);
+    assert.deepEqual(weights, labial.convert(faps, "vrm"));
+});
+
+test("an AudioContext counts from begin(), less what its device needs", async () => {
+    const context = { currentTime: 100, outputLatency: 0.05, baseLatency: 0.01, destination: {} };
+    const stream = { getAudioTracks: () => [] };
+    for (const options of [{ clock: context }, { clock: stream, context }]) {
+        context.currentTime = 100;
+        const voice = await told(options);
+        assert.deepEqual(voice.played(), [], "lips wait for begin()");
+        assert.deepEqual([...voice.at()], new Array(13).fill(0));
+        voice.begin(100.25);
+        context.currentTime = 100.29;
+        assert.deepEqual(voice.played(), []);
+        context.currentTime = 101.051;
+        const frames = voice.played();
+        assert.deepEqual(rows(frames), rows((await told({})).played(0.751)));
+        assert.deepEqual([voice.number, Math.round(1000 * voice.time)], [37, 100990]);
+        assert.throws(() => voice.begin(100), RangeError);
+        voice.begin(103); // the next utterance
+        voice.say("Mama", 0, 0.4);
+        context.currentTime = 103.3;
+        const next = await told({});
+        next.played(0.751);
+        next.begin(2.75);
+        next.say("Mama", 0, 0.4);
+        assert.deepEqual([...voice.at()], [...next.at(3)]);
+    }
+    const early = await labial.voice({ clock: { ...context, outputLatency: undefined, currentTime: 7 } });
+    early.begin();
+    assert.ok(Math.abs(early.time - (7 - 0.01 - 0.02)) < 1e-9, "begin() without a time is now, and no frame was shown");
+});
+
+test("a media element counts while it plays", async () => {
+    const element = { currentTime: 0, paused: true, readyState: 0, play: async () => {} };
+    const voice = await told({ clock: element });
+    assert.deepEqual(voice.played(), []);
+    Object.assign(element, { paused: false, readyState: 4 });
+    assert.equal(voice.played().length, 1);
+    Object.assign(element, { currentTime: 0.5, paused: true });
+    assert.equal(voice.played().length, 25);
+});
+
+test("following yields every frame once, in time, and ends", async () => {
+    const begin = performance.now();
+    const clock = () => (performance.now() - begin < 60 ? null : (performance.now() - begin - 60) / 200);
+    const voice = await told({ clock });
+    voice.finish();
+    const found = [];
+    let late = 0;
+    for await (const faps of voice.follow()) {
+        found.push([...faps]);
+        late = Math.max(late, clock() - voice.time);
+    }
+    assert.ok(voice.done && found.length >= 1.8 * 50 && voice.number === found.length - 1 && late < 1);
+    const whole = await told({});
+    assert.deepEqual(found.slice(0, 50), rows(whole.played(0.98)));
+    const stopped = await told({});
+    for await (const faps of stopped.follow(() => 0.1)) {
+        assert.ok(faps);
+        stopped.close();
+    }
+});
+
+test("a voice that is not understood says so in a sentence, and goes on", async () => {
+    const voice = await told({});
+    const before = rows(voice.played(0.2));
+    const numbers = [NaN, -1, Infinity, "80", {}, [], true, 1n, Symbol("x")];
+    const calls = [
+        ...numbers.flatMap((x) => [() => voice.say("a", x), () => voice.say("a", 0, x), () => voice.push("m", x, 9),
+            () => voice.begin(x), () => voice.cancel(x)]),
+        ...[NaN, Infinity, "1", {}, 1e9].map((x) => () => voice.played(x)),
+        ...[null, 5, {}, []].map((x) => () => voice.say(x, 0, 1)),
+        ...["", "zzz", -1, 40, {}, null].map((x) => () => voice.push(x, 0, 1)),
+        ...[[1, 0], [0, 4000], [4e7, 4e7]].flatMap((times) => {
+            return [() => voice.push("m", ...times), () => voice.say("m", ...times)];
+        }),
+        ...[null, undefined, 5, true, "{", "5", "null", [5], [null], [[]], new TextEncoder().encode("{"),
+            new Uint8Array([0x7b, 0xff]), { word: "a", start: 0, end: NaN }, { word: "a", start: 9, end: 1 },
+            { word: "a", start: 0, end: 1e9 }, { word: "x".repeat(1e6), start: 0, end: 1 },
+            { alignment: { chars: ["a"], charStartTimesMs: [], charsDurationsMs: [] } },
+            { audio_offset: 5, viseme_id: 99 }].map((x) => () => voice.feed(x)),
+    ];
+    for (const call of calls) {
+        assert.throws(call, (error) => {
+            assert.ok(["LabialError", "TypeError", "RangeError"].includes(error.name), String(error.stack));
+            assert.match(error.message, /^[^\n]{8,200}$/, error.stack);
+            assert.doesNotMatch(error.message, /undefined \(|Cannot|is not a function|convert/, error.stack);
+            return true;
+        }, call.toString());
+    }
+    for (const sound of [new ArrayBuffer(64), new Int16Array(9), "[]", {}, { audio: "" }, new Blob(["{}"])]) {
+        voice.feed(sound);
+    }
+    const whole = await told({});
+    assert.deepEqual(before.concat(rows(voice.played(0.9))), rows(whole.played(0.9)));
+    for (const options of [{ format: "x" }, { format: 5 }, { output: "x" }, { model: "x" }, { labels: "x" }, { clock: 5 },
+        { unknown: "x" }, { clock: {} }, { offset: "1" }, { own: { a: "x" } }, { own: 5 }]) {
+        await assert.rejects(labial.voice(options), ({ name }) => name === "LabialError" || name === "TypeError");
+    }
+    voice.close();
+    voice.close();
+    for (const call of [() => voice.feed({}), () => voice.say("a", 0), () => voice.played(1), () => voice.at(1),
+        () => voice.begin(), () => voice.finish(), () => voice.cancel()]) {
+        assert.throws(call, { name: "LabialError", message: "the voice is closed" });
+    }
+    await assert.rejects((await Labial.load()).voice(), { message: /^words are not loaded/ });
+});
+
+test("a server that tells without end is refused, and what is over is forgotten", async () => {
+    const voice = await labial.voice();
+    const words = (count, from, length) => {
+        const start = Array.from({ length: count }, (_, i) => from + i * length);
+        const end = start.map((seconds) => seconds + 0.8 * length);
+        return { word_timestamps: { words: start.map(() => "mama"), start, end } };
+    };
+    voice.feed(words(9999, 0, 1));
+    assert.throws(() => voice.feed(words(100, 10000, 1)), { name: "LabialError", message: /^more than 10000 words/ });
+    const long = await labial.voice();
+    const memory = labial.memory.bytes.length;
+    let frames = 0;
+    for (let seconds = 0; seconds < 600; seconds += 10) {
+        long.feed(words(40, seconds, 0.25));
+        for (let now = seconds; now < seconds + 10; now += 0.5) frames += long.played(now).length;
+    }
+    assert.equal(frames, 29976);
+    assert.equal(labial.memory.bytes.length, memory);
+});

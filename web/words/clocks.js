@@ -1,0 +1,28 @@
+// Clocks by which a voice is heard: how many seconds of its sound have reached the listener.
+
+/** What reads a clock: `read` returns seconds, or null while nothing is heard. `anchored` where the clock runs before
+ * the voice does, so that begin() must say when it begins. */
+export function clockOf({ shown }, clock, context) {
+    if (clock == null) return null;
+    if (typeof clock === "function") return { read: () => clock() ?? null, anchored: false };
+    if (typeof clock === "object") {
+        if ("destination" in clock && "currentTime" in clock) return { read: () => heard(clock), anchored: true };
+        if ("play" in clock && "currentTime" in clock) return { read: () => played(clock), anchored: false };
+        if ("getAudioTracks" in clock) {
+            const own = context ?? new AudioContext();
+            return { read: () => heard(own), anchored: true };
+        }
+    }
+    const kinds = "an AudioContext, a media element, a MediaStream or a function";
+    throw new TypeError(`the clock is ${shown(clock)}, not ${kinds}`);
+}
+
+/** The time of an AudioContext that is heard now: what is computed at `currentTime` is heard later. */
+function heard(context) {
+    return context.currentTime - (context.outputLatency || context.baseLatency || 0);
+}
+
+/** The time of an element that is heard now, for which the browser allows for the device. */
+function played(element) {
+    return element.currentTime === 0 && (element.paused || element.readyState < 3) ? null : element.currentTime;
+}
