@@ -292,6 +292,79 @@ export class Words {
     reader(options?: { format?: string }): MessageReader;
     /** A new stream of words. */
     stream(options?: WordOptions): WordStream;
+    /** What labial.voice() resolves to. */
+    voice<O extends Output = "faps">(options?: VoiceOptions<O>): Voice<O>;
+}
+
+/** How much of a sound was heard: the time of an AudioContext, less what its device needs, of an <audio> or <video>
+ * element, of a MediaStream, by an AudioContext, or what a function returns: seconds, or null while nothing is heard. */
+export type Clock =
+    | { readonly currentTime: number; readonly destination: unknown }
+    | { play(): Promise<void>; currentTime: number }
+    | { getAudioTracks(): unknown[] }
+    | (() => number | null | undefined);
+
+export interface VoiceOptions<O extends Output = Output> extends WordOptions {
+    /** What the service's messages are, such as "elevenlabs"; "auto", the default, recognises them. */
+    format?: string;
+    /** Default: "faps". */
+    output?: O;
+    /** Default: "speech". */
+    model?: "speech" | Model;
+    /** The set of labels of phonemes. Default: "auto". */
+    labels?: Labels;
+    /** Treatment of unknown labels of push(), as of a stream; those of services move like the nearest known one. */
+    unknown?: "error" | "nearest";
+    /** By which the voice is heard. Without one, times are given to each call. */
+    clock?: Clock;
+    /** The AudioContext that counts for a MediaStream; by default one of its own. */
+    context?: Dom<"AudioContext">;
+}
+
+/** Lips that follow a voice whose words or phonemes become known while it is heard. Times of what is told are seconds
+ * from the beginning of the utterance, all others those of the clock. A frame is due when number / rate seconds of the
+ * sound were heard; it is final once it was shown. */
+export class Voice<O extends Output = "faps"> {
+    #private;
+    private constructor();
+    /** Takes a message of the service, parsed, as text or as bytes. Messages without timings are passed over. Throws where
+     * one is malformed; what was known stays known. */
+    feed(message: unknown): void;
+    /** Takes a word as it is written; without an end it lasts until the next one, or as long as it usually does. */
+    say(text: string, start: number, end?: number | null): void;
+    /** Takes a phoneme, by label or number of the model. Where an utterance has phonemes, its words are not read. */
+    push(label: string | number, start: number, end: number): void;
+    /** Begins the next utterance, whose sound begins at this time of the clock; by default where the one before ends, or
+     * now if that is over. With the clock of an AudioContext or a MediaStream the first call says when the first
+     * utterance begins; until then lips rest. A clock that was set back, as that of an element with another sound, counts
+     * from there. */
+    begin(at?: number): void;
+    /** Nothing more follows. */
+    finish(): void;
+    /** Drops what is not yet shown and eases to the neutral face within so many seconds, by default 0.2. What is told of
+     * the cancelled utterance is ignored until begin(). */
+    cancel(seconds?: number): void;
+    /** The frames that became due since the last call, each a new object; usually none to three. More than a second after
+     * the last call only the latest one is returned. */
+    played(seconds?: number | null): FrameOf<O>[];
+    /** The frame that is due, by default now: for each picture that is drawn. The same object each time. */
+    at(seconds?: number | null): FrameOf<O>;
+    /** The frames as they become due, until the voice is done or closed; by default by its own clock. */
+    follow(clock?: Clock): AsyncIterableIterator<FrameOf<O>>;
+    /** Number of the frame that was shown last, from 0; -1 before the first. */
+    readonly number: number;
+    /** When that frame was due. */
+    readonly time: number;
+    /** Its clock, or null. */
+    readonly clock: Clock | null;
+    /** The time that is heard now; null while nothing is heard. Throws without a clock. */
+    readonly now: number | null;
+    /** Frames per second. */
+    readonly rate: number;
+    /** All was shown: after finish(), half a second after the last word; after cancel(), when the face is neutral. */
+    readonly done: boolean;
+    /** Frees the memory at once; otherwise the garbage collector does. */
+    close(): void;
 }
 
 /** The library. One serves any number of streams. */
@@ -320,6 +393,8 @@ export class Labial {
     hear<O extends Output = "faps">(source?: Sound | null, options?: HearOptions<O>): Promise<Hearing<O>>;
     /** What turns words into phonemes, loaded once. Rejects if load() got no package labial-words. */
     words(): Promise<Words>;
+    /** Lips of a voice whose messages arrive while it is heard. Rejects if load() got no package labial-words. */
+    voice<O extends Output = "faps">(options?: VoiceOptions<O>): Promise<Voice<O>>;
     /** The formats that read() takes. */
     readonly formats: readonly string[];
     /** Timings as text: .lab, flite, HTK, MBROLA, MaryTTS, Sphinx or TextGrid, one of `formats`; "auto", when left out,

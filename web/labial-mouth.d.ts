@@ -1,9 +1,9 @@
-import type { Faps, Hearing, Stream, Track } from "./index.js";
+import type { Faps, Hearing, Stream, Track, Voice } from "./index.js";
 
 /** The element <labial-mouth>: a drawn mouth, 430 wide by 412 high unless CSS says otherwise. The colours behind the
  * face are the CSS variables --labial-backdrop-top and --labial-backdrop-bottom.
  *
- * A source is a track, a stream or a hearing with the output "faps"; setting one starts it. With an audio element, the
+ * A source is a track, a stream, a hearing or a voice with the output "faps"; setting one starts it. With an audio element, the
  * drawn frame is within half a frame period of the sound, at any speed and, for a track, through jumps. After the sound's
  * end the source continues by the clock, and so does a source without a sound. */
 export class LabialMouth extends HTMLElement {
@@ -19,6 +19,9 @@ export class LabialMouth extends HTMLElement {
     /** What is heard and drawn: by its own clock, or, where it has none, by the sound to follow. */
     get hearing(): Hearing<"faps"> | null;
     set hearing(hearing: Hearing<"faps"> | null);
+    /** The voice that is followed and drawn: by its own clock, or, where it has none, by the sound to follow. */
+    get voice(): Voice<"faps"> | null;
+    set voice(voice: Voice<"faps"> | null);
     /** The drawn frame: 13 FAPs, interpolated for a track. The same object each time. */
     readonly faps: Float32Array;
     /** Draws the given frame. Throws a TypeError unless there are 13 FAPs. */

@@ -1,4 +1,4 @@
-// <labial-mouth>: draws a mouth from a track, a stream or a hearing in step with its sound. labial-mouth.d.ts
+// <labial-mouth>: draws a mouth from a track, a stream, a hearing or a voice in step with its sound. labial-mouth.d.ts
 // documents it.
 import { CHANNELS, createMouth, follow } from "./mouth.js";
 
@@ -103,6 +103,34 @@ class HearingPlayer {
     }
 }
 
+/** Plays a voice that is followed: by its own clock, or by the element's sound where it has none. */
+class VoicePlayer {
+    #voice;
+    #clock;
+    #begin = 0; // of the easing
+    #cancelled = false;
+
+    constructor(voice) {
+        this.#voice = voice;
+        this.#clock = voice.clock !== null;
+        this.period = 1 / voice.rate;
+    }
+
+    at(seconds) {
+        return this.#clock ? this.#voice.at() : this.#voice.at(this.#begin + seconds);
+    }
+
+    over() {
+        return this.#cancelled && this.#voice.done;
+    }
+
+    cancel(milliseconds) {
+        this.#begin = Math.max(0, this.#voice.time);
+        this.#voice.cancel(milliseconds / 1000);
+        this.#cancelled = true;
+    }
+}
+
 const STYLE = ":host, div, svg { display: block } div, svg { width: 100%; height: 100% }";
 
 /** Node has no elements, but the module may be imported there. */
@@ -171,6 +199,14 @@ export class LabialMouth extends Base {
 
     set hearing(hearing) {
         this.#take(hearing, hearing && new HearingPlayer(hearing));
+    }
+
+    get voice() {
+        return this.#player instanceof VoicePlayer ? this.#source : null;
+    }
+
+    set voice(voice) {
+        this.#take(voice, voice && new VoicePlayer(voice));
     }
 
     show(faps) {

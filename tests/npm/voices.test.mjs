@@ -108,6 +108,31 @@ test("a media element counts while it plays", async () => {
     assert.equal(voice.played().length, 25);
 });
 
+test("a cancelled voice eases although its sound has stopped, and an element may get another sound", async () => {
+    const element = { currentTime: 0.3, paused: false, readyState: 4, play: async () => {} };
+    const voice = await told({ clock: element });
+    assert.ok([...voice.at()].some(Boolean));
+    Object.assign(element, { paused: true });
+    voice.cancel(0.1);
+    const begin = performance.now();
+    while (!voice.done && performance.now() - begin < 5000) {
+        voice.at();
+        await new Promise((resolve) => setTimeout(resolve, 10));
+    }
+    assert.ok(voice.done && performance.now() - begin > 80);
+    assert.deepEqual([...voice.at()], new Array(13).fill(0));
+    const { number } = voice;
+    Object.assign(element, { currentTime: 0 });
+    voice.begin(0);
+    for (const word of WORDS) voice.say(...word);
+    Object.assign(element, { paused: false, currentTime: 0.6 });
+    const frames = voice.played();
+    assert.ok(frames.length === 31 && voice.number === number + 31 && Math.abs(voice.time - 0.6) < 0.021);
+    const fresh = rows((await told({})).played(0.6));
+    const apart = Math.max(...frames.at(-1).map((value, i) => Math.abs(value - fresh[30][i])));
+    assert.ok(apart < 40, "but for the beginning, the motion is that of the words alone");
+});
+
 test("following yields every frame once, in time, and ends", async () => {
     const begin = performance.now();
     const clock = () => (performance.now() - begin < 60 ? null : (performance.now() - begin - 60) / 200);

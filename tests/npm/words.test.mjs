@@ -195,8 +195,8 @@ test("words are loaded once, and asked for in a sentence", async () => {
 });
 
 test("the package has these files and the dictionary's notice, and CommonJS has words as well", async () => {
-    const files = "LICENSE README.md characters.js english.js index.cjs index.d.cts index.d.ts index.js lexicon.js package.json " +
-        "readers.js services.js stream.js words.js";
+    const files = "LICENSE README.md characters.js clocks.js english.js index.cjs index.d.cts index.d.ts index.js " +
+        "lexicon.js messages.js package.json readers.js services.js stream.js timeline.js voice.js words.js";
     assert.equal(readdirSync(`${folder}-words`).sort().join(" "), files);
     const notice = /^\/\*! .*Carnegie Mellon University\. All rights reserved\. .*POSSIBILITY OF SUCH DAMAGE\. \*\/\n/;
     assert.match(readFileSync(`${folder}-words/english.js`, "utf8"), notice);
@@ -206,9 +206,10 @@ test("the package has these files and the dictionary's notice, and CommonJS has 
 });
 
 test("types and what words, streams and readers have are the same", () => {
-    for (const [name, one, own] of [["Words", words, ["formats"]], ["WordStream", words.stream(), []], ["MessageReader", words.reader(), []]]) {
-        const types = source("web/index.d.ts").match(new RegExp(`export class ${name} [^]*?\\n\\}`))[0];
-        const typed = [...types.matchAll(/^    (?:readonly )?(\w+)[(:]/gm)].map(([, found]) => found);
+    for (const [name, one, own] of [["Words", words, ["formats"]], ["WordStream", words.stream(), []],
+        ["MessageReader", words.reader(), []], ["Voice", words.voice(), []]]) {
+        const types = source("web/index.d.ts").match(new RegExp(`export class ${name}\\b[^]*?\\n\\}`))[0];
+        const typed = [...types.matchAll(/^    (?:readonly )?(\w+)(?:<[^(]*>)?[(:]/gm)].map(([, found]) => found);
         const has = Object.getOwnPropertyNames(Object.getPrototypeOf(one)).concat(own).filter((found) => found !== "constructor");
         assert.deepEqual(typed.filter((found) => found !== "constructor").sort(), has.sort());
         assert.deepEqual(Object.keys(one), own);

@@ -27,7 +27,9 @@ export class Voice {
     #labial;
     #output;
     #clock; // null without one
+    #given; // as it was given
     #origin; // what the clock tells when the voice's time is 0; null until begin() says
+    #eased = [0, 0]; // of the last cancel: the voice's time, and that of the program, milliseconds
     #settings; // of push()
     #model;
     #messages;
@@ -64,6 +66,7 @@ export class Voice {
         });
         this.#timeline.begin(0);
         this.#clock = clockOf(tools, clock, context);
+        this.#given = clock ?? null;
         this.#origin = this.#clock?.anchored ? null : 0;
         this.#frame = output === "faps" ? new Int16Array(CHANNELS) : {};
     }
@@ -98,6 +101,9 @@ export class Voice {
             if (!this.#cancelled) return;
             this.#begin(0);
         } else {
+            const heard = this.#clock ? (this.#clock.read() ?? 0) : Infinity;
+            const shown = this.#next / this.rate;
+            if (heard - this.#origin < shown - 1 / this.rate) this.#origin = heard - shown; // the clock was set back
             const after = at === undefined ? null : this.#moment(at) - this.#origin;
             if (after !== null && after < 0) throw new RangeError(`${at} s is before the first sound, ${this.#origin} s`);
             this.#begin(after === null ? null : milliseconds(after));
@@ -118,6 +124,7 @@ export class Voice {
         this.#finished = false;
         this.#dropStream();
         this.#fadeFrom(NEUTRAL, Math.max(1, Math.min(steps, FADE_MAX)));
+        this.#eased = [this.#next / this.rate, performance.now()];
     }
 
     // ---- What is shown
@@ -135,9 +142,9 @@ export class Voice {
     }
 
     async *follow(clock) {
-        const read = clock === undefined ? () => this.now : clockOf(this.#tools, clock).read;
+        const own = clock === undefined ? this.#clock : clockOf(this.#tools, clock);
         while (!this.#closed) {
-            const heard = read();
+            const heard = this.#heard(own);
             for (const frame of this.played(heard)) {
                 yield frame;
                 if (this.#closed) return;
@@ -158,8 +165,11 @@ export class Voice {
     }
 
     get now() {
-        if (!this.#clock) throw new this.#tools.LabialError("the voice has no clock: give it one, or say the time");
-        return this.#clock.read();
+        return this.#heard(this.#clock);
+    }
+
+    get clock() {
+        return this.#given;
     }
 
     get rate() {
@@ -179,6 +189,16 @@ export class Voice {
     }
 
     // ---- Inside --------------------------------------------------------------------------------------------------
+
+    /** What a clock tells. While the face eases after a cancel, its sound may have stopped: then time goes on. */
+    #heard(clock) {
+        if (!clock) throw new this.#tools.LabialError("the voice has no clock: give it one, or say the time");
+        const heard = clock.read();
+        if (!this.#cancelled || this.#step === this.#steps || this.#origin === null) return heard;
+        const [time, begin] = this.#eased;
+        const eased = this.#origin + time + (performance.now() - begin) / 1000;
+        return heard > eased ? heard : eased;
+    }
 
     /** A frame in the voice's output. */
     #form(faps) {

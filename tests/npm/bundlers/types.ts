@@ -1,5 +1,5 @@
 // What the types must allow and refuse: each line below an @ts-expect-error has to be an error.
-import { Labial, type Faps, type Hearing, type Segment, type Stream, type Track, type Weights, type Words } from "labial";
+import { Labial, type Faps, type Hearing, type Segment, type Stream, type Track, type Voice, type Weights, type Words } from "labial";
 import { fromEspeak } from "labial/espeak.js";
 import laughter from "labial-laughter";
 import type { LabialMouth } from "labial/labial-mouth.js";
@@ -80,6 +80,20 @@ live.say({ text: "go" });
 words.phonemes("go", { own: { go: 5 } });
 // @ts-expect-error this is not the package labial-words
 await Labial.load({ words: () => import("labial-hearing") });
+const voice = await speaks.voice({ format: "elevenlabs", output: "arkit", clock: new AudioContext(), own, offset: 0.03 });
+voice.feed({ alignment: null });
+voice.begin(1.5);
+const opened: number = voice.at().jawOpen;
+// @ts-expect-error no weight has this name
+voice.at().jawOppen;
+for (const { mouthClose } of voice.played(0.1)) mouthClose.toFixed();
+for await (const weights of voice.follow(document.createElement("audio"))) weights.jawOpen.toFixed();
+const followed: Voice = words.voice({ clock: new MediaStream() });
+for await (const frame of followed.follow(() => null)) frame.subarray(3);
+// @ts-expect-error this is no clock
+await speaks.voice({ clock: 5 });
+// @ts-expect-error no set of labels has this name
+await speaks.voice({ labels: "x" });
 const espoken: Segment[] = fromEspeak([{ type: "phoneme", audio_position: 0, id: "m" }]);
 fromEspeak([], { samples: [new Int16Array(5)], sampleRate: 22050 });
 // @ts-expect-error the rate of the sound is missing
@@ -99,8 +113,9 @@ function follow(mouth: LabialMouth, track: Track, stream: Stream): void {
     mouth.track = track;
     mouth.stream = stream;
     mouth.hearing = pushed;
+    mouth.voice = followed;
     // @ts-expect-error what is drawn has the output "faps"
     mouth.track = vrm;
 }
 
-export { aa, any, beak, espoken, faps, follow, ih, jaw, open, ou, read, sil };
+export { aa, any, beak, espoken, faps, follow, ih, jaw, open, opened, ou, read, sil };
