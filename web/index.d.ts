@@ -339,6 +339,9 @@ export class Voice<O extends Output = "faps"> {
      * utterance begins; until then lips rest. A clock that was set back, as that of an element with another sound, counts
      * from there. */
     begin(at?: number): void;
+    /** The sound goes on so many seconds later than it would have, because its next piece came too late: lips wait. Only
+     * for a clock that does not stop with the sound, as that of an AudioContext. */
+    delay(seconds: number): void;
     /** Nothing more follows. */
     finish(): void;
     /** Drops what is not yet shown and eases to the neutral face within so many seconds, by default 0.2. What is told of

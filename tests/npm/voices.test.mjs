@@ -108,6 +108,20 @@ test("a media element counts while it plays", async () => {
     assert.equal(voice.played().length, 25);
 });
 
+test("a sound that goes on late delays the lips", async () => {
+    const context = { currentTime: 5, outputLatency: 0, destination: {} };
+    const voice = await told({ clock: context });
+    voice.begin(5);
+    context.currentTime = 5.4;
+    assert.equal(voice.played().length, 21);
+    voice.delay(0.3);
+    context.currentTime = 5.7;
+    assert.equal(voice.played().length, 0);
+    context.currentTime = 5.9;
+    assert.deepEqual(rows(voice.played()).at(-1), rows((await told({})).played(0.6)).at(-1));
+    for (const wrong of [-1, NaN, "1"]) assert.throws(() => voice.delay(wrong), TypeError);
+});
+
 test("a cancelled voice eases although its sound has stopped, and an element may get another sound", async () => {
     const element = { currentTime: 0.3, paused: false, readyState: 4, play: async () => {} };
     const voice = await told({ clock: element });
@@ -193,7 +207,7 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     voice.close();
     voice.close();
     for (const call of [() => voice.feed({}), () => voice.say("a", 0), () => voice.played(1), () => voice.at(1),
-        () => voice.begin(), () => voice.finish(), () => voice.cancel()]) {
+        () => voice.begin(), () => voice.delay(1), () => voice.finish(), () => voice.cancel()]) {
         assert.throws(call, { name: "LabialError", message: "the voice is closed" });
     }
     await assert.rejects((await Labial.load()).voice(), { message: /^words are not loaded/ });

@@ -173,7 +173,7 @@ def _imports(text: str) -> List[str]:
 # ---- Types, under TypeScript's `strict`: what they allow and refuse, and the code of the pages and the kiosk
 
 #: The pages whose JavaScript is compiled.
-PAGES = ("browser.md", "adapters.md", "kiosk.md", "timings.md", "words.md")
+PAGES = ("browser.md", "adapters.md", "kiosk.md", "streams.md", "timings.md", "words.md")
 #: What the code of pages takes from elsewhere: the elements that scripts find by their ids, and what the reader has.
 AROUND = """\
 declare const mouth: SVGElement;

@@ -110,6 +110,12 @@ export class Voice {
         }
     }
 
+    delay(seconds) {
+        this.#open();
+        const later = this.#tools.amount(seconds, "the delay");
+        if (this.#origin !== null) this.#origin += later;
+    }
+
     finish() {
         this.#open();
         this.#finished = true;
