@@ -12,6 +12,8 @@ from typing import Any, Callable, Dict, Iterator, List
 import numpy as np
 import pytest
 
+import elevenlabs
+import labial
 from avatars import add_skeleton, document_of, glb, made_head
 from browser import CHROMIUM, REASON, THREE_D, Browser, Page, served
 from bundlers import MISSING, install, tools
@@ -33,6 +35,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING
 #: Rounded, spread and closed lips for five seconds, in which TalkingHead's mouth would move by itself.
 PHONEMES = [("sil", 300), *(("m", 90), ("AA", 160), ("b", 90), ("UW", 180), ("f", 90), ("IY", 140)) * 6, ("sil", 200)]
 SECONDS = sum(milliseconds for _, milliseconds in PHONEMES) / 1000
+WORDS = "Papa may. Mama saw."
 VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E I O U".split()
 
 #: The weights of a frame that is drawn, by name, from the first mesh that has shapes.
@@ -94,6 +97,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], s
         sound.writeframes((3000 * np.sin(np.arange(16000 * SECONDS) / 8)).astype("<i2").tobytes())
     imports = {"three": "three/build/three.module.js", "three/addons/": "three/examples/jsm/",
                "@pixiv/three-vrm": "@pixiv/three-vrm/lib/three-vrm.module.js", "labial": "labial/index.js",
+               "labial-words": "labial-words/index.js",
                "@met4citizen/talkinghead": "@met4citizen/talkinghead/modules/talkinghead.mjs"}
     numbers = iter(range(1000))
 
@@ -279,6 +283,76 @@ def test_talkinghead_streams(site: Any, browser: Browser) -> None:
     page.wait_for("window.beginning !== undefined", 60)
     page.wait_for(f"seconds() > {SECONDS + 1}", 60)
     in_step(page, expected(site.folder, "arkit"))
+
+
+def test_talkinghead_follows_words(site: Any, browser: Browser) -> None:
+    """Messages of characters with pieces of sound: what is drawn is what the words say, in step with the sound that
+    TalkingHead plays, which a recorder takes down."""
+    page = browser.page(site("""
+        import { TalkingHead } from "@met4citizen/talkinghead";
+        import { Labial } from "labial";
+        import { prepare } from "./talkinghead.js";
+        import { speak } from "./voice.js";
+        const head = new TalkingHead(document.getElementById("avatar"), { lipsyncModules: [], cameraView: "head" });
+        prepare(head);
+        await head.showAvatar({ url: "avatar.glb" });
+        const recorder = `registerProcessor("recorder", class extends AudioWorkletProcessor {
+            process([[samples]]) {
+                if (samples && Math.max(...samples) > 0.01) this.port.postMessage(currentTime);
+                return true;
+            }
+        });`;
+        const connect = AudioWorkletNode.prototype.connect;
+        const began = new Promise((resolve) => {
+            AudioWorkletNode.prototype.connect = function (...all) {
+                this.context.audioWorklet.addModule(`data:text/javascript,${encodeURIComponent(recorder)}`).then(() => {
+                    const node = new AudioWorkletNode(this.context, "recorder");
+                    node.port.onmessage = ({ data }) => resolve(window.first ??= data);
+                    connect.call(this, node);
+                });
+                AudioWorkletNode.prototype.connect = connect;
+                return connect.apply(this, all);
+            };
+        });
+        const render = head.render.bind(head);
+        window.seen = [];
+        head.render = () => {
+            render();
+            const { currentTime, outputLatency, baseLatency } = head.audioCtx;
+            seen.push([currentTime - (outputLatency || baseLatency || 0), read(head.morphs)]);
+        };
+        async function* messages() {
+            for (const message of MESSAGES) {
+                const bytes = Uint8Array.from(atob(message.audio ?? ""), (byte) => byte.charCodeAt(0));
+                yield { message, pcm: bytes.length ? bytes.buffer : null };
+                await new Promise((resolve) => setTimeout(resolve, 200));
+            }
+        }
+        const labial = await Labial.load({ words: () => import("labial-words") });
+        await speak(head, labial, messages(), { format: "elevenlabs", sampleRate: 16000 });
+        await began;
+        window.done = true;
+        """.replace("MESSAGES", json.dumps(elevenlabs.messages(WORDS)))))  # fmt: skip
+    page.wait_for("window.done", 60)
+    assert page.errors() == []
+    frames = labial.render(labial.read_timings(elevenlabs.messages(WORDS)))
+    arkit = labial.Rig("arkit")
+    rows = [arkit.apply(frame) for frame in frames]
+    first, seen = page.evaluate("[first, seen]")
+    times = np.array([row[0] for row in seen]) - first
+    spoken = (times > 0.2) & (times < len(rows) / 50 - 0.2)
+    assert spoken.sum() > 4
+
+    def error(delay: float) -> float:
+        places = np.clip(np.floor(50 * (times[spoken] - delay)), 0, len(rows) - 1).astype(int)
+        drawn = [row[1] for row, one in zip(seen, spoken) if one]
+        return max(float(np.median([abs(rows[place][name] - weights[name]) for place, weights in zip(places, drawn)]))
+                   for name in arkit.outputs)
+
+    delays = np.arange(-0.2, 0.201, 0.005)
+    best = float(delays[np.argmin([error(delay) for delay in delays])])
+    assert abs(best) <= 0.08 and error(best) < 0.02, (best, error(best))
+    assert max(weights["jawOpen"] for _, weights in seen) > 0.1 and seen[-1][1]["jawOpen"] < 0.05
 
 
 def test_talkinghead_gives_way(site: Any, browser: Browser) -> None:

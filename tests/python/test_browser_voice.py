@@ -24,7 +24,7 @@ from runtime import needs_runtime
 pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(not CHROMIUM, reason=REASON),
               pytest.mark.skipif(bool(MISSING), reason=MISSING)]  # fmt: skip
 
-TEXT = "Mama may be happy. Papa saw a boat."
+TEXT = "Mama may go. Papa saw a boat."
 FPS = 50
 
 #: The client under node, by its own clock, which begins with the first piece of the sound.
