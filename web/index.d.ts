@@ -352,7 +352,7 @@ export class Voice<O extends Output = "faps"> {
     played(seconds?: number | null): FrameOf<O>[];
     /** The frame that is due, by default now: for each picture that is drawn. The same object each time. */
     at(seconds?: number | null): FrameOf<O>;
-    /** The frames as they become due, until the voice is done or closed; by default by its own clock. */
+    /** The frames as they become due, until the voice is closed or, after finish(), done; by default by its own clock. */
     follow(clock?: Clock): AsyncIterableIterator<FrameOf<O>>;
     /** Number of the frame that was shown last, from 0; -1 before the first. */
     readonly number: number;
@@ -364,7 +364,8 @@ export class Voice<O extends Output = "faps"> {
     readonly now: number | null;
     /** Frames per second. */
     readonly rate: number;
-    /** All was shown: after finish(), half a second after the last word; after cancel(), when the face is neutral. */
+    /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
+     * is neutral. */
     readonly done: boolean;
     /** Frees the memory at once; otherwise the garbage collector does. */
     close(): void;

@@ -161,6 +161,15 @@ test("following yields every frame once, in time, and ends", async () => {
     assert.ok(voice.done && found.length >= 1.8 * 50 && voice.number === found.length - 1 && late < 1);
     const whole = await told({});
     assert.deepEqual(found.slice(0, 50), rows(whole.played(0.98)));
+    const silent = await labial.voice();
+    silent.finish();
+    for await (const faps of silent.follow(() => null)) assert.fail(`${faps}`);
+    const interrupted = await told({});
+    interrupted.played(0.3);
+    interrupted.finish();
+    interrupted.cancel(0.05);
+    for await (const faps of interrupted.follow(() => 0.3)) assert.ok(faps);
+    assert.ok(interrupted.done && interrupted.number >= 17);
     const stopped = await told({});
     for await (const faps of stopped.follow(() => 0.1)) {
         assert.ok(faps);

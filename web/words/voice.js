@@ -127,7 +127,6 @@ export class Voice {
         const steps = Math.ceil(((Math.min(seconds * 1000, DURATION_MAX) / 1000) * this.rate) - 1e-6);
         this.#timeline.clear();
         this.#cancelled = this.#changed = true;
-        this.#finished = false;
         this.#dropStream();
         this.#fadeFrom(NEUTRAL, Math.max(1, Math.min(steps, FADE_MAX)));
         this.#eased = [this.#next / this.rate, performance.now()];
@@ -155,7 +154,7 @@ export class Voice {
                 yield frame;
                 if (this.#closed) return;
             }
-            if (this.done) return;
+            if (this.#finished && this.done) return;
             const wait = heard === null ? PATIENCE : this.#origin + this.#next / this.rate - heard;
             const milliseconds = 1000 * Math.min(Math.max(wait, 0.001), 1 / this.rate);
             await new Promise((resolve) => { setTimeout(resolve, milliseconds); });
@@ -185,6 +184,7 @@ export class Voice {
     get done() {
         if (this.#closed) return true;
         if (this.#cancelled) return this.#step === this.#steps;
+        if (this.#timeline.empty) return this.#finished;
         return this.#finished && this.#next >= (this.#timeline.end / 1000 + REST) * this.rate;
     }
 
