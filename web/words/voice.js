@@ -129,7 +129,7 @@ export class Voice {
         this.#cancelled = this.#changed = true;
         this.#dropStream();
         this.#fadeFrom(NEUTRAL, Math.max(1, Math.min(steps, FADE_MAX)));
-        this.#eased = [this.#next / this.rate, performance.now()];
+        this.#eased = [this.#next / this.rate, Date.now()];
     }
 
     // ---- What is shown
@@ -202,7 +202,7 @@ export class Voice {
         const heard = clock.read();
         if (!this.#cancelled || this.#step === this.#steps || this.#origin === null) return heard;
         const [time, begin] = this.#eased;
-        const eased = this.#origin + time + (performance.now() - begin) / 1000;
+        const eased = this.#origin + time + (Date.now() - begin) / 1000;
         return heard > eased ? heard : eased;
     }
 
