@@ -353,7 +353,7 @@ export class Voice<O extends Output = "faps"> {
     /** The frame that is due, by default now: for each picture that is drawn. The same object each time. */
     at(seconds?: number | null): FrameOf<O>;
     /** The frames as they become due, until the voice is closed or, after finish(), done; by default by its own clock. */
-    follow(clock?: Clock): AsyncIterableIterator<FrameOf<O>>;
+    follow(clock?: () => number | null | undefined): AsyncIterableIterator<FrameOf<O>>;
     /** Number of the frame that was shown last, from 0; -1 before the first. */
     readonly number: number;
     /** When that frame was due. */

@@ -161,6 +161,7 @@ test("following yields every frame once, in time, and ends", async () => {
     assert.ok(voice.done && found.length >= 1.8 * 50 && voice.number === found.length - 1 && late < 1);
     const whole = await told({});
     assert.deepEqual(found.slice(0, 50), rows(whole.played(0.98)));
+    await assert.rejects(voice.follow({}).next(), { name: "TypeError", message: /^the clock is .*, not a function/ });
     const silent = await labial.voice();
     silent.finish();
     for await (const faps of silent.follow(() => null)) assert.fail(`${faps}`);
@@ -209,8 +210,8 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     }
     const whole = await told({});
     assert.deepEqual(before.concat(rows(voice.played(0.9))), rows(whole.played(0.9)));
-    for (const options of [{ format: "x" }, { format: 5 }, { output: "x" }, { model: "x" }, { labels: "x" }, { clock: 5 },
-        { unknown: "x" }, { clock: {} }, { offset: "1" }, { own: { a: "x" } }, { own: 5 }]) {
+    for (const options of [{ format: "x" }, { format: 5 }, { output: "x" }, { model: "x" }, { labels: "x" },
+        { clock: 5 }, { unknown: "x" }, { clock: {} }, { offset: "1" }, { own: { a: "x" } }, { own: 5 }]) {
         await assert.rejects(labial.voice(options), ({ name }) => name === "LabialError" || name === "TypeError");
     }
     voice.close();

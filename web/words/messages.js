@@ -36,8 +36,8 @@ export class Messages {
         this.#labels = labels;
     }
 
-    /** What a message tells: a list of { told, chained, joins, gap }, where `told` lists { kind, items, key }, items are
-     * { text, start, end } in seconds, and the texts of phonemes are labels of ARPABET. */
+    /** What a message tells: a list of { told, chained, joins, gap }, where `told` lists { kind, items, key }. Items are
+     * { text, start, end } in seconds; the texts of phonemes are labels of ARPABET. */
     read(message) {
         this.#count++;
         const found = this.#documents(message).map((fields, i) => this.#heard(this.#entry(fields, i + 1)));

@@ -48,7 +48,8 @@ export class Timeline {
 
     /** When the last utterance ends, as far as is known. */
     get end() {
-        return this.#utterances.at(-1)?.end ?? 0;
+        const last = this.#utterances.at(-1);
+        return last ? Math.max(last.end, last.origin + (last.segments.at(-1)?.end ?? 0)) : 0;
     }
 
     /** A new utterance; the one before it ends there at the latest. */
@@ -112,7 +113,8 @@ export class Timeline {
             for (const { start, end } of items) copy.end = Math.max(copy.end, copy.origin + (end ?? start));
             const all = [...this.#utterances.slice(0, -1), copy].flatMap((one) => Object.values(one.items));
             if (all.reduce((sum, { length }) => sum + length, 0) > MOST) {
-                throw new this.#lexicon.tools.LabialError(`more than ${MOST} words or phonemes are told ahead of the sound`);
+                const { LabialError } = this.#lexicon.tools;
+                throw new LabialError(`more than ${MOST} words or phonemes are told ahead of the sound`);
             }
             if (kind === copy.kind) this.#convert(copy, kind, kind === copy.counted ? first : 0);
         }

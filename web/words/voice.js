@@ -105,7 +105,9 @@ export class Voice {
             const shown = this.#next / this.rate;
             if (heard - this.#origin < shown - 1 / this.rate) this.#origin = heard - shown; // the clock was set back
             const after = at === undefined ? null : this.#moment(at) - this.#origin;
-            if (after !== null && after < 0) throw new RangeError(`${at} s is before the first sound, ${this.#origin} s`);
+            if (after !== null && after < 0) {
+                throw new RangeError(`${at} s is before the first sound, ${this.#origin} s`);
+            }
             this.#begin(after === null ? null : milliseconds(after));
         }
     }
@@ -147,7 +149,10 @@ export class Voice {
     }
 
     async *follow(clock) {
-        const own = clock === undefined ? this.#clock : clockOf(this.#tools, clock);
+        if (clock !== undefined && typeof clock !== "function") {
+            throw new TypeError(`the clock is ${this.#tools.shown(clock)}, not a function; others are an option`);
+        }
+        const own = clock ? clockOf(this.#tools, clock) : this.#clock;
         while (!this.#closed) {
             const heard = this.#heard(own);
             for (const frame of this.played(heard)) {
@@ -223,7 +228,7 @@ export class Voice {
     #timed(start, end, what) {
         const [begin, stop] = [this.#moment(start), end === null ? null : this.#moment(end)];
         if (stop !== null && !(begin <= stop && stop <= begin + DURATION_MAX / 1000)) {
-            throw new RangeError(`${what} from ${begin} to ${stop} s ends before it begins, or lasts more than an hour`);
+            throw new RangeError(`${what} from ${begin} to ${stop} s ends before it begins or lasts more than an hour`);
         }
         return { start: milliseconds(begin), end: stop === null ? null : milliseconds(stop), gap: ROUNDING };
     }

@@ -87,7 +87,7 @@ const opened: number = voice.at().jawOpen;
 // @ts-expect-error no weight has this name
 voice.at().jawOppen;
 for (const { mouthClose } of voice.played(0.1)) mouthClose.toFixed();
-for await (const weights of voice.follow(document.createElement("audio"))) weights.jawOpen.toFixed();
+for await (const weights of voice.follow()) weights.jawOpen.toFixed();
 const followed: Voice = words.voice({ clock: new MediaStream() });
 for await (const frame of followed.follow(() => null)) frame.subarray(3);
 // @ts-expect-error this is no clock
