@@ -52,6 +52,11 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     "python.md": {
         "pip install .": "fetches what builds it; test_wheel.py installs the package without",
     },
+    "streams.md": {
+        "pip install . websockets": "fetches what builds it; test_wheel.py installs the package without",
+        "python3 examples/voices/stand_in.py &": "test_voice_examples.py runs both",
+        'python3 examples/voices/follow_websocket.py "Maybe people hum by the pool."': "likewise",
+    },
     "words.md": {
         "labial train-words cmudict.dict -o words.npz --held-out": "needs the dictionary; test_words.py trains on less",
     },

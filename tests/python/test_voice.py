@@ -154,9 +154,8 @@ def test_cancel_is_a_streams() -> None:
             voice.push(*sound)
         shown = played(voice, 0, 0.9)
         voice.cancel(0.3)
-        assert not voice.done
         eased = played(voice, 0.92, 1.2)
-        assert voice.done and len(eased) == 15
+        assert len(eased) == 15
         assert played(voice, 1.22, 1.4) == [(0,) * 13] * 10
         for label, length in said([("ma", 0.0, 1.0)]):
             stream.push(label, length)
@@ -194,6 +193,16 @@ def test_done() -> None:
         assert not voice.done
         voice.played(6.5)
         assert voice.done
+        voice.cancel(0.1)
+        assert not voice.done
+        voice.played(6.6)
+        assert voice.done
+    with labial.Voice() as voice:
+        voice.say("hum", 0, 1)
+        voice.played(0.2)
+        voice.cancel(0.1)
+        voice.played(0.5)
+        assert voice.done
 
 
 def test_follow_waits_for_a_late_clock_and_ends() -> None:
@@ -206,9 +215,12 @@ def test_follow_waits_for_a_late_clock_and_ends() -> None:
 
     async def closed(voice: labial.Voice) -> int:
         count = 0
-        async for _ in voice.follow(lambda: 10.0):
+        clock = iter(range(1, 9))
+        voice.cancel()  # a conversation goes on behind an interruption
+        async for _ in voice.follow(lambda: next(clock)):
             count += 1
-            voice.close()
+            if count == 30:
+                voice.close()
         return count
 
     waits: List[float] = []
@@ -224,7 +236,7 @@ def test_follow_waits_for_a_late_clock_and_ends() -> None:
             voice.finish()
             frames = asyncio.run(run(voice, looks))
             assert voice.done
-        assert asyncio.run(closed(labial.Voice())) == 1
+        assert asyncio.run(closed(labial.Voice())) == 30
     assert [frame.number for frame in frames] == list(range(140))
     assert waits[:2] == [0.01, 0.01] and all(0.001 <= wait <= 0.02 for wait in waits)
     assert [frame.faps for frame in frames] == motion(said(WORDS), 140)
@@ -375,3 +387,14 @@ def test_a_voice_needs_no_numpy() -> None:
               "voice.feed({'word': 'hum', 'start': 0, 'end': 1})\nprint(len(voice.played(0.5)))\n")
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout == "26\n"
+
+
+def test_a_voice_that_says_nothing_is_done() -> None:
+    """A service that fails before its first message: the loop ends though the sound never began."""
+    async def run(voice: labial.Voice) -> List[labial.Frame]:
+        return [frame async for frame in voice.follow(lambda: None)]
+
+    with labial.Voice() as voice:
+        assert not voice.done
+        voice.finish()
+        assert voice.done and asyncio.run(run(voice)) == []

@@ -129,6 +129,20 @@ else()
   message(STATUS "The tests of training a network of hearing are left out: -DLABIAL_TORCH=PYTHON names one with PyTorch.")
 endif()
 
+# Pipecat and LiveKit's agents are too large to fetch for their examples.
+foreach(framework IN ITEMS pipecat livekit)
+  string(TOUPPER ${framework} name)
+  set(LABIAL_${name} "" CACHE FILEPATH "Python with ${framework} and pytest, to test its example in examples/voices")
+  if(LABIAL_${name})
+    add_test(NAME ${framework} WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
+      COMMAND "${LABIAL_${name}}" -m pytest -p no:cacheprovider
+        --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/agents/test_${framework}.py")
+    set_tests_properties(${framework} PROPERTIES TIMEOUT 120 ENVIRONMENT "${variables}")
+  else()
+    message(STATUS "The tests of examples/voices with ${framework} are left out: -DLABIAL_${name}=PYTHON names one.")
+  endif()
+endforeach()
+
 # Face tracking has an environment of its own, see tracking/requirements.txt.
 if(NOT LABIAL_TRACKING)
   message(STATUS "The tests of face tracking are left out, they fetch 300 MB: -DLABIAL_TRACKING=ON runs them.")

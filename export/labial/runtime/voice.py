@@ -149,7 +149,7 @@ class Voice:
         self._open()
         steps = math.ceil(duration(number(fade, "a fade") * 1000.0) / 1000.0 * self.fps - 1e-6)
         self._timeline.clear()
-        self._cancelled, self._finished, self._changed = True, False, True
+        self._cancelled = self._changed = True
         self._drop_stream()
         self._fade_from(_NEUTRAL, max(1, min(steps, 1000)))
 
@@ -186,25 +186,27 @@ class Voice:
         return frames
 
     async def follow(self, clock: Callable[[], Optional[float]]) -> AsyncIterator[Frame]:
-        """The frames as they become due, until the voice is :attr:`done` or closed. `clock` returns how many seconds of
-        the sound were heard, or None as long as it has not begun."""
+        """The frames as they become due, until the voice is closed or, after :meth:`finish`, :attr:`done`. `clock`
+        returns how many seconds of the sound were heard, or None as long as it has not begun."""
         while not self._closed:
             heard = clock()
             for frame in self.played(heard):
                 yield frame
                 if self._closed:
                     return
-            if self.done:
+            if self._finished and self.done:
                 return
             wait = _PATIENCE if heard is None else self._next / self.fps - heard
             await asyncio.sleep(min(max(wait, 0.001), 1.0 / self.fps))
 
     @property
     def done(self) -> bool:
-        """Whether nothing more will move: after :meth:`finish`, half a second after the last word; after
-        :meth:`cancel`, when the face is neutral."""
+        """Whether nothing more will move: after :meth:`finish`, half a second after the last word, if there was any;
+        after :meth:`cancel`, when the face is neutral."""
         if self._cancelled:
             return self._step == self._steps
+        if self._timeline.is_empty:
+            return self._finished
         return self._finished and self._next >= (self._timeline.end / 1000 + _REST) * self.fps
 
     @property

@@ -1,0 +1,68 @@
+"""examples/voices with LiveKit's agents themselves: a session without a room; its service and output are stand-ins."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from typing import List, Tuple
+
+import pytest
+
+import labial
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "voices"
+sys.path.insert(0, str(EXAMPLES))
+pytest.importorskip("livekit.agents")
+
+import livekit_agent  # noqa: E402
+import stand_in  # noqa: E402
+
+TEXT = "Maybe people hum by the pool."
+
+
+def expected(texts: List[str], count: int) -> List[Tuple[int, ...]]:
+    """The frames of texts that follow each other."""
+    with labial.Voice() as voice:
+        moment = 0.0
+        for text in texts:
+            for said in stand_in.say(text):
+                for word, start, end in said.words:
+                    voice.say(word, moment + start, moment + end)
+                moment += len(said.sound) / (2 * stand_in.RATE)
+        return [frame.faps for k in range(count) for frame in voice.played(k / 50)]
+
+
+def test_lips_follow_an_agents_words() -> None:
+    """The frames are those of the words, bit for bit."""
+    frames = asyncio.run(livekit_agent.main(TEXT))
+    assert [frame.number for frame in frames] == list(range(len(frames))) and len(frames) > 100
+    assert [frame.faps for frame in frames] == expected([TEXT], len(frames))
+
+
+def test_answers_follow_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second answer's words count from where its sound begins, which is behind the first one's."""
+    begun: List[float] = []
+    told = labial.Voice.begin
+    monkeypatch.setattr(labial.Voice, "begin", lambda voice, at: (begun.append(at), told(voice, at)))
+    frames = [frame.faps for frame in asyncio.run(livekit_agent.main(TEXT, "Hello again."))]
+    length = sum(len(said.sound) for said in stand_in.say(TEXT)) / (2 * stand_in.RATE)
+    assert begun[0] == 0.0 and length <= begun[1] < length + 0.5
+    with labial.Voice() as voice:
+        for at, text in zip(begun, (TEXT, "Hello again.")):
+            voice.begin(at)
+            moment = 0.0
+            for said in stand_in.say(text):
+                for word, start, end in said.words:
+                    voice.say(word, moment + start, moment + end)
+                moment += len(said.sound) / (2 * stand_in.RATE)
+        whole = [frame.faps for k in range(len(frames)) for frame in voice.played(k / 50)]
+    second = int(50 * begun[1]) + 9  # a fade, for the words were not known before
+    assert frames[: int(50 * length) - 15] == whole[: int(50 * length) - 15] and frames[second:] == whole[second:]
+
+
+def test_an_interruption_closes_the_mouth() -> None:
+    """Within 200 ms."""
+    frames = [frame.faps for frame in asyncio.run(livekit_agent.main(TEXT, interrupt_after=0.7))]
+    neutral = [number for number, faps in enumerate(frames) if not any(faps)]
+    assert neutral and 25 < neutral[0] < 50
