@@ -1,6 +1,6 @@
-"""A voice that is followed: sessions against an oracle, what is told late or otherwise, and what a server may send.
+"""A voice that is followed: what is told late or otherwise, how it ends, and what a server may send.
 
-tests/voices has the sessions, which are those of the npm package as well.
+test_voice_sessions.py compares whole sessions with an oracle.
 """
 
 from __future__ import annotations
@@ -15,38 +15,13 @@ from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 import pytest
 
 import labial
-from oracle import Oracle, Shown, sessions, summary, times
+from oracle import times
 from packages import SOURCE
-from regenerate_voices import SESSIONS, SOUNDS, WORDS
+from regenerate_voices import SOUNDS, WORDS
 from runtime import needs_runtime
 
 pytestmark = needs_runtime
-FOLDER = SOURCE / "tests" / "voices"
 SERVICES = SOURCE / "tests" / "python" / "services"
-STORED = {session["name"]: session for session in sessions(FOLDER / "sessions.json")}
-
-
-def follow(voice: labial.Voice, steps: Sequence[List[Any]]) -> List[List[Shown]]:
-    """The frames of each step of a session that plays."""
-    found = []
-    for step in steps:
-        if step[0] in ("played", "plays"):
-            found.append([Shown(*frame) for time in times(step) for frame in voice.played(time)])
-        else:
-            getattr(voice, step[0])(*step[1:])
-    return found
-
-
-@pytest.mark.parametrize("name", SESSIONS)
-def test_sessions(name: str) -> None:
-    """Every session shows what the oracle says, which is what the file of sessions has."""
-    session = SESSIONS[name]
-    steps, options = session["steps"], session.get("options", {})
-    oracle = Oracle(options)
-    expected = [found for found in map(oracle.run, steps) if found is not None]
-    assert STORED[name] == json.loads(json.dumps({"name": name, **session, "shown": list(map(summary, expected))}))
-    with labial.Voice(**options) as voice:
-        assert follow(voice, steps) == expected
 
 
 def played(voice: labial.Voice, first: float, last: float) -> List[Tuple[int, ...]]:

@@ -15,6 +15,7 @@ import follow_websocket
 import player
 import pytest
 import stand_in
+import websockets
 
 import labial
 from packages import SOURCE
@@ -22,7 +23,6 @@ from runtime import needs_runtime
 
 pytestmark = needs_runtime
 EXAMPLES = SOURCE / "examples" / "voices"
-websockets = pytest.importorskip("websockets")
 
 
 def test_lips_follow_a_websocket(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -21,7 +21,7 @@ import labial
 #: Milliseconds of the silence after all that is known.
 ENDLESS = 3_600_000
 #: Frames of it that a session may see.
-SILENT = 500
+SILENT = 1000
 FADE = 8
 
 Plan = List[Tuple[int, float, str]]
@@ -86,11 +86,11 @@ class Oracle:
 
     def say(self, text: str, start: float, end: Optional[float] = None) -> None:
         if self.listens():
-            _insert(self.utterances[-1]["words"], text, _ms(start), None if end is None else _ms(end))
+            self.insert("words", text, _ms(start), None if end is None else _ms(end))
 
     def push(self, phoneme: str, start: float, end: float) -> None:
         if self.listens():
-            _insert(self.utterances[-1]["phonemes"], phoneme, _ms(start), _ms(end))
+            self.insert("phonemes", phoneme, _ms(start), _ms(end))
 
     def begin(self, at: Optional[float] = None) -> None:
         start = max(self.ends()[-1] if self.utterances else 0, self.next * 20) if at is None else _ms(at)
@@ -111,6 +111,14 @@ class Oracle:
             self.begin()
         return not self.cancelled
 
+    def insert(self, kind: str, text: str, start: int, end: Optional[int]) -> None:
+        """Puts an item in place of those that begin within its time."""
+        utterance = self.utterances[-1]
+        behind = start + 1 if end is None else max(end, start + 1)
+        kept = [item for item in utterance[kind] if not start <= item[0] < behind]
+        utterance[kind] = sorted([*kept, (start, end, text)], key=lambda item: item[0])
+        utterance["end"] = max(utterance["end"], start if end is None else end)
+
     # ---- The timeline
 
     def spoken(self, utterance: Dict[str, Any]) -> List[Tuple[int, int, str]]:
@@ -121,7 +129,7 @@ class Oracle:
             timings, moment = [], 0
             starts = [start for start, _, _ in utterance["phonemes"]][1:]
             for (start, end, label), after in zip(utterance["phonemes"], [*starts, math.inf]):
-                end = min(end, after)
+                end = after if abs(after - end) <= 1 else min(end, after)  # rounding
                 timings += [("SIL", start - moment), (label, end - start)]
                 moment = end
         else:
@@ -130,14 +138,13 @@ class Oracle:
         for label, length in timings:
             found.append((moment, moment + int(length), label))
             moment += int(length)
-        return [item for item in found if item[2] != "SIL" and item[1] > item[0]]
+        return [item for item in found if item[2] != "SIL"]
 
     def ends(self) -> List[int]:
         """Where each utterance ends."""
         found = []
         for one in self.utterances:
-            last = [end for _, end, _ in self.spoken(one)] + [end or start for start, end, _ in one["words"]]
-            found.append(one["origin"] + max(last, default=0))
+            found.append(one["origin"] + max([one["end"], *(end for _, end, _ in self.spoken(one))]))
         return found
 
     def from_time(self, start: int) -> Plan:
@@ -185,7 +192,7 @@ class Oracle:
         self.changed = False
         start = max(0, self.next * 20 // 1000 - 2) * 1000
         plan = self.from_time(start)
-        if self.neutral and len(plan) == 1:
+        if self.neutral and not any(map(self.spoken, self.utterances)) and self.shown is not None:
             return
         if not self.neutral and not late and self.epoch >= 0:
             fed = self.plan[: needed(self.plan, self.next - self.epoch // 20)]
@@ -200,13 +207,7 @@ class Oracle:
 
 
 def _utterance(origin: int) -> Dict[str, Any]:
-    return {"origin": origin, "messages": [], "words": [], "phonemes": []}
-
-
-def _insert(items: List[Tuple[int, Optional[int], str]], text: str, start: int, end: Optional[int]) -> None:
-    """Puts an item in place of those that begin within its time."""
-    behind = start + 1 if end is None else max(end, start + 1)
-    items[:] = sorted([item for item in items if not start <= item[0] < behind] + [(start, end, text)])
+    return {"origin": origin, "end": 0, "messages": [], "words": [], "phonemes": []}
 
 
 def _ms(seconds: float) -> int:

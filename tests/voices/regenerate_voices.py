@@ -95,6 +95,8 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
     "words come in time": {"words": True, "steps": _in_time(_words(), 1.2)},
     "words come late": {"words": True, "steps": _in_time(_words(), 0.1)},
     "words without ends": {"words": True, "steps": _in_time([word[:3] for word in _words()], 0.8)},
+    "begun behind a word whose end is not known": {
+        "words": True, "steps": [["say", "strengths", 0.1], ["begin", None], ["say", "hum", 0.1], _plays(0, 2.5)]},
     "a word is revised": {"words": True, "steps": [*_words(), _plays(0, 0.4), ["say", "purple", 0.56, 0.95],
                                                    _plays(0.42, 0.7), ["say", "poodle", 1.0, 1.2], _plays(0.72, 3)]},
     "Azure's visemes": {"options": {"format": "azure"}, "steps": [*_sample("azure.json"), _plays(0, 1.5)]},

@@ -86,7 +86,10 @@ class Timeline:
     @property
     def end(self) -> int:
         """When the last utterance ends, as far as is known."""
-        return self._utterances[-1].end if self._utterances else 0
+        if not self._utterances:
+            return 0
+        last = self._utterances[-1]
+        return max(last.end, last.origin + last.segments[-1][1]) if last.segments else last.end
 
     def begin(self, origin: int) -> None:
         """A new utterance; the one before it ends there at the latest."""
