@@ -11,6 +11,9 @@
     motion = labial.render([("HH", 70), ("AY", 230)])
     with labial.Hearing(16000) as hearing:
         print(hearing.push(bytes(9600)))
+    with labial.Voice() as voice:
+        voice.feed({"word": "Hi", "start": 0.0, "end": 0.3})
+        print(voice.played(0.1))
 
 This is the run-time (``labial.runtime``), the C library called from Python, which needs only Python; docs/python.md is
 its manual. The other modules are the exporter, which trains models, writes them as tables for C, and needs numpy.

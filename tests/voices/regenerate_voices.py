@@ -57,6 +57,23 @@ def _in_time(calls: List[List[Any]], lead: float) -> List[List[Any]]:
     return [*found, _plays(moment, 3.0)]
 
 
+def _one_by_one(name: str, every: float) -> List[List[Any]]:
+    """A sample's messages, one after `every` seconds of playing."""
+    return [step for k, feed in enumerate(_sample(name))
+            for step in (feed, _plays(round(every * k, 3), round(every * (k + 1) - FRAME, 3)))]
+
+
+def _split_word() -> List[List[Any]]:
+    """ElevenLabs' characters in messages that end within a word, whose times go on, and begin at 0 again."""
+    def message(text: str, start: int) -> List[Any]:
+        starts = [start + 70 * k + 9 * (k % 3) for k in range(len(text))]
+        lengths = [after - begin for begin, after in zip(starts, [*starts[1:], start + 70 * len(text)])]
+        return ["feed", {"alignment": {"chars": list(text), "charStartTimesMs": starts, "charDurationsMs": lengths}}]
+
+    return [message("Maybe pe", 100), _plays(0, 0.2), message("ople [soft", 660), _plays(0.22, 0.4),
+            message("ly] hum.", 1360), _plays(0.42, 1.6), message(" By the", 0), _plays(1.62, 3)]
+
+
 def _long() -> List[List[Any]]:
     """Twelve seconds of phonemes, and then one that was not known in time."""
     calls = [["push", label, round(start + 1.5 * k, 3), round(end + 1.5 * k, 3)]
@@ -102,8 +119,13 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
     "Azure's visemes": {"options": {"format": "azure"}, "steps": [*_sample("azure.json"), _plays(0, 1.5)]},
     "Azure's visemes come one by one": {
         "options": {"format": "azure"},
-        "steps": [step for k, feed in enumerate(_sample("azure.json"))
-                  for step in (feed, _plays(0.1 * k, round(0.1 * k + 0.08, 3)))]},
+        "steps": _one_by_one("azure.json", 0.1)},
+    "Polly's words come one by one": {"words": True, "options": {"format": "polly"},
+                                      "steps": _one_by_one("polly_words.marks", 0.2)},
+    "Hume's words, then their phonemes": {"words": True, "options": {"format": "hume"},
+                                          "steps": [*_one_by_one("hume.json", 0.04), _plays(0.32, 1.3)]},
+    "ElevenLabs splits a word": {"words": True, "options": {"format": "elevenlabs"}, "steps": _split_word()},
+    "Inworld's phones": {"options": {"format": "inworld"}, "steps": [*_sample("inworld.json"), _plays(0, 1.3)]},
     "Polly's visemes": {"options": {"format": "polly"}, "steps": [*_sample("polly.marks"), _plays(0, 1.5)]},
     "Piper's chunks": {"options": {"format": "piper"}, "steps": [*_sample("piper.json"), _plays(0, 4)]},
     "Kokoro's results": {"options": {"format": "kokoro"}, "steps": [*_sample("kokoro.json"), _plays(0, 3)]},
