@@ -39,21 +39,21 @@ class Remembered(torch.autograd.Function):  # type: ignore[misc, unused-ignore]
         padded = nn.functional.pad(y, (0, 0, reach.past * reach.dilation, reach.ahead * reach.dilation))
         ctx.save_for_backward(padded, weight)
         ctx.reach = reach
-        count = y.shape[1]
+        count, taps = y.shape[1], weight.t().contiguous()
         z = torch.zeros_like(y)
         for k in range(reach.taps):
-            z.addcmul_(padded[:, k * reach.dilation :][:, :count], weight[:, k])
+            z.addcmul_(padded[:, k * reach.dilation :][:, :count], taps[k])
         return z
 
     @staticmethod
     def backward(ctx: Any, gradient: torch.Tensor) -> Tuple[torch.Tensor, torch.Tensor, None]:
         """Gradients of y and of the weights."""
         (padded, weight), reach = ctx.saved_tensors, ctx.reach
-        count = gradient.shape[1]
+        count, taps = gradient.shape[1], weight.t().contiguous()
         mirrored = nn.functional.pad(gradient, (0, 0, reach.ahead * reach.dilation, reach.past * reach.dilation))
         of_y, of_weight = torch.zeros_like(gradient), torch.empty_like(weight)
         for k in range(reach.taps):
-            of_y.addcmul_(mirrored[:, (reach.taps - 1 - k) * reach.dilation :][:, :count], weight[:, k])
+            of_y.addcmul_(mirrored[:, (reach.taps - 1 - k) * reach.dilation :][:, :count], taps[k])
             of_weight[:, k] = (padded[:, k * reach.dilation :][:, :count] * gradient).sum(dim=(0, 1))
         return of_y, of_weight, None
 
