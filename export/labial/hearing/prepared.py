@@ -133,11 +133,18 @@ def _take(sound: np.ndarray, timings: Sequence[Tuple[str, int]]) -> _Take:
 
 
 def _key(clips: Sequence[Clip], takes: int, seed: int) -> str:
-    """A name for what `prepare` makes: of the sounds' names, sizes and times, their segments and the options."""
+    """A name for what `prepare` makes: of the sounds' names, sizes and times, their segments, the voice whose frames
+    are learned, and the options."""
     rows = []
     for clip in clips:
         status = os.stat(clip.sound)
         labels = [[round(item.start, 4), round(item.end, 4), item.label] for item in clip.segments]
         rows.append([os.path.basename(clip.sound), status.st_size, status.st_mtime_ns, labels])
-    text = json.dumps([_VERSION, takes, seed, CHANNELS, BANDS, rows])
+    text = json.dumps([_VERSION, takes, seed, CHANNELS, BANDS, _voice(), rows])
     return hashlib.sha256(text.encode("utf-8")).hexdigest()[:24]
+
+
+def _voice() -> str:
+    """A name for the voice whose frames are learned: of the frames of all its phonemes."""
+    said = [(phoneme, 5 * targets.FRAME_MS) for phoneme in SPEECH.phonemes]
+    return hashlib.sha256(targets.frames(said, 5 * len(said)).tobytes()).hexdigest()
