@@ -1,6 +1,6 @@
 /*
  * make_seeds.c - what the fuzz targets begin with, as their bytes: the conformance streams, the bundled models, a rig
- * with the frames of a sentence, and all labels that are known. The seeds of fuzz_timings are files of seeds/.
+ * with the frames of a sentence, packets of lips, and all labels that are known. The seeds of fuzz_timings are files of seeds/.
  *
  *     make_seeds FOLDER espeak.tsv     writes FOLDER/fuzz_stream/NAME and so on; the folders are there already
  */
@@ -10,6 +10,7 @@
 
 #include "fixture.h"
 #include "fuzz.h"
+#include "labial/beside.h"
 #include "labial/rig.h"
 #include "player.h"
 
@@ -231,6 +232,28 @@ static void make_labels(const char *table)
     finish(file);
 }
 
+/* Packets of ten frames each of a player with two outputs and 64 frames, and the samples that are heard meanwhile; the
+ * last packet cancels. */
+static void make_packets(void)
+{
+    FILE *file = create("fuzz_beside", "sentence");
+    uint32_t frame, i;
+    put(file, 2u << 16 | 64u << 8 | 24u, 3); /* 24,217 samples per second */
+    for (frame = 0; frame < 60; frame += 10) {
+        put(file, 0x011e00u, 3); /* mended, of 30 bytes */
+        put(file, (uint32_t)LABIAL_BESIDE_FORMAT << 24 | (frame == 50u ? 1u << 16 : 0u) | 2u << 8 | 10u, 4);
+        put(file, frame << 24, 4); /* low byte first */
+        for (i = 0; i < 22; i++)
+            put(file, frame * i, 1);
+        for (i = 0; i < 10; i++) {
+            const uint32_t sample = (frame + i) * 485u;
+            putc(2, file);
+            (void)fwrite(&sample, sizeof sample, 1, file);
+        }
+    }
+    finish(file);
+}
+
 int main(int argc, char **argv)
 {
     REQUIRE(argc == 3);
@@ -238,6 +261,7 @@ int main(int argc, char **argv)
     make_streams();
     make_blobs();
     make_rig();
+    make_packets();
     make_sounds();
     make_labels(argv[2]);
     return 0;

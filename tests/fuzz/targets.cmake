@@ -18,6 +18,7 @@ if(count EQUAL 0)
 endif()
 # The longest input of each target, bytes. Inputs have this length from the start; if libFuzzer grows them, they stay
 # below ten bytes.
+set(fuzz_beside_longest 2048)
 set(fuzz_blob_longest 45056)
 set(fuzz_hear_longest 2048)
 set(fuzz_names_longest 64)

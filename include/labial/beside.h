@@ -1,0 +1,154 @@
+/*
+ * labial/beside.h - plays lips that a server computed and sent beside its sound: a byte for each output, 50 times a
+ * second, in step with the samples that are heard. For toys that neither know phonemes nor have room for a model.
+ *
+ *     static labial_beside_t lips;
+ *     static uint8_t memory[LABIAL_BESIDE_SIZE(1, 128)];      // one output, 128 frames (2.56 s) ahead of the sound
+ *     uint8_t values[1];
+ *
+ *     labial_beside_init(&lips, 1, 24000, memory, sizeof memory);
+ *
+ *     labial_beside_feed(&lips, packet, size);                // each packet, as it arrives
+ *
+ *     if (labial_beside_at(&lips, sample, values) >= 0)       // every 20 ms
+ *         set_servo(labial_beside_value(values[0], 1400, 1900));
+ *
+ * `sample` is the number of the sample that is heard now: the first sample that the server sent has the number 0, and
+ * each one that it sent since is counted, played or not. So sound that a program drops moves nothing.
+ *
+ * A packet, numbers with the low byte first:
+ *
+ *     0     LABIAL_BESIDE_FORMAT
+ *     1     1 to cancel, else 0
+ *     2     outputs, 1 .. 255
+ *     3     frames, 0 .. 255
+ *     4..7  number of the first frame, modulo 2^32; frame k begins with sample k * rate / 50
+ *     8     the face at rest, a byte for each output
+ *     ..    the frames, a byte for each output of each
+ *
+ * Each packet stands alone: they may be lost, doubled or late, and may repeat frames of earlier ones. A packet that
+ * cancels makes all earlier frames void; its own number is that of the next frame.
+ *
+ * Without a frame to show for LABIAL_BESIDE_HOLD calls, because packets are missing or the sound stands still, the
+ * values ease to the face at rest in LABIAL_BESIDE_EASE calls. A frame that comes later is shown at once.
+ *
+ * Packets are not trusted: with any bytes, of any size, and any sample number the library reads and writes only the
+ * memory it was given. Integers only, no allocation, no state but the structure and its memory, the same bits on every
+ * target, also where an int has 16 bits: the files beside.h and beside.c need no other file of the library. Calls
+ * on one player must not overlap; the structure may be moved between calls.
+ */
+#ifndef LABIAL_BESIDE_H
+#define LABIAL_BESIDE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Version of the packets' format. Packets of another version are refused. */
+#define LABIAL_BESIDE_FORMAT 1
+
+/* Frames per second. */
+#define LABIAL_BESIDE_RATE 50u
+
+/* Bytes of a packet before the face at rest, and of the longest packet. */
+#define LABIAL_BESIDE_HEAD 8u
+#define LABIAL_BESIDE_LONGEST (LABIAL_BESIDE_HEAD + 255u * 256u)
+
+/* Most frames that a player keeps: 11 minutes. */
+#define LABIAL_BESIDE_FRAMES_MAX 32768u
+
+/* Calls of labial_beside_at() for which the last frame stays when no other comes, 0 .. 120: 100 ms. */
+#ifndef LABIAL_BESIDE_HOLD
+#define LABIAL_BESIDE_HOLD 5
+#endif
+
+/* Calls in which the face then eases to rest, 1 .. 120: 120 ms. */
+#ifndef LABIAL_BESIDE_EASE
+#define LABIAL_BESIDE_EASE 6
+#endif
+
+#if LABIAL_BESIDE_HOLD < 0 || LABIAL_BESIDE_HOLD > 120
+#error "LABIAL_BESIDE_HOLD must be a number from 0 to 120."
+#endif
+#if LABIAL_BESIDE_EASE < 1 || LABIAL_BESIDE_EASE > 120
+#error "LABIAL_BESIDE_EASE must be a number from 1 to 120."
+#endif
+
+/* What calls return. Errors are negative, and change nothing. */
+typedef enum {
+    LABIAL_BESIDE_RESTS = 0,        /* the face is at rest or on the way there; of a packet: it was accepted */
+    LABIAL_BESIDE_SPEAKS = 1,       /* the values are those of a frame */
+    LABIAL_BESIDE_CANCELS = 2,      /* the packet cancels: the program should drop the sound that it has not played */
+    LABIAL_BESIDE_ERROR_NULL = -1,  /* a pointer is null */
+    LABIAL_BESIDE_ERROR_STATE = -2, /* no packet was accepted yet, so that the face at rest is unknown */
+    LABIAL_BESIDE_ERROR_SIZE = -3,  /* no outputs, more than 255, no rate, or memory for less than one frame */
+    LABIAL_BESIDE_ERROR_PACKET = -4 /* not a packet of this format for so many outputs */
+} labial_beside_result_t;
+
+/* A player. 28 bytes where a pointer has 4. */
+typedef struct {
+    uint8_t outputs; /* 0 before labial_beside_init() */
+    uint8_t known;   /* whether a packet was accepted */
+    uint8_t quiet;   /* calls without a frame to show, up to LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE */
+    uint16_t frames; /* that the ring holds, a power of two */
+    uint32_t rate;   /* samples per second */
+    uint32_t now;    /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
+    uint32_t sample; /* a sample at most a second before the last one that was told, */
+    uint32_t frame;  /* and the frame that begins with it */
+    uint8_t *memory; /* the caller's: the face at rest, the face shown, the ring */
+} labial_beside_t;
+
+/* Bytes of memory for so many outputs and frames, a constant expression when they are. The frames must cover the sound
+ * that the server sends before it is heard; a power of two wastes nothing. */
+#define LABIAL_BESIDE_SIZE(outputs, frames) ((size_t)(outputs)*2u + ((size_t)(outputs) + 1u) * (frames))
+
+/*
+ * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of `rate` samples per second, 1 ..
+ * 50,000,000; nothing is known of what was played before. `memory` of `size` bytes belongs to the player from now on.
+ * It keeps as many frames as fit, the largest power of two up to LABIAL_BESIDE_FRAMES_MAX.
+ *
+ * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_SIZE.
+ */
+int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate, void *memory, size_t size);
+
+/*
+ * Accepts a packet of `size` bytes, all of one message. Frames whose time has passed, that are there already, or for
+ * which the ring has no room yet are ignored.
+ *
+ * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_CANCELS, or with nothing changed LABIAL_BESIDE_ERROR_NULL,
+ * LABIAL_BESIDE_ERROR_STATE (not initialised) or LABIAL_BESIDE_ERROR_PACKET.
+ */
+int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size);
+
+/*
+ * The values to show while sample number `sample` is heard, modulo 2^32. Call it every 20 ms, also in silence with a
+ * number that stands still: as it eases by a step in each call, it needs no other clock. Numbers may skip any distance;
+ * one that is less than the ring's length below the last is taken for jitter, one further below for a new beginning.
+ *
+ * Returns LABIAL_BESIDE_SPEAKS or LABIAL_BESIDE_RESTS with the values of all outputs, 0 .. 255, in `values`; or
+ * with nothing written LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_STATE.
+ */
+int labial_beside_at(labial_beside_t *player, uint32_t sample, uint8_t *values);
+
+/*
+ * Drops all frames, because the program drops the sound that it has not played; the face eases to rest.
+ *
+ * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_STATE (not initialised).
+ */
+int labial_beside_cancel(labial_beside_t *player);
+
+/*
+ * A byte in the units of its output: at_0 for 0, at_255 for 255, in between at_0 + (at_255 - at_0) * byte / 255,
+ * rounded to the nearest, as labial_player_value() of baked motion. Either may be the larger; they differ by at most
+ * 8,000,000.
+ */
+int32_t labial_beside_value(uint8_t byte, int32_t at_0, int32_t at_255);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,152 @@
+/*
+ * beside.c - a ring of frames that were sent beside their sound (labial/beside.h).
+ *
+ * The ring holds the frames now .. now + frames - 1, frame k at k modulo `frames`. Before the values of each stands a
+ * mark. When `now` moves on, the marks behind it are cleared, so that a marked place always holds the one frame of the
+ * window that belongs there, however often numbers wrap.
+ */
+#include "labial/beside.h"
+
+#include <string.h>
+
+#define NUMBERS_HALF UINT32_C(0x80000000) /* differences from here on are negative */
+
+/* Marks. */
+#define MARK_EMPTY 0u
+#define MARK_WAITS 1u
+#define MARK_SHOWN 2u
+
+#define QUIET_MOST (LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE)
+
+/* The place of a frame: its mark, then its values. */
+static uint8_t *beside_place(const labial_beside_t *player, uint32_t frame)
+{
+    const size_t at = (size_t)(frame & (player->frames - 1u));
+    return player->memory + (size_t)player->outputs * 2u + at * (player->outputs + 1u);
+}
+
+/* Moves the window to another first frame, which is not before the current one unless all frames are dropped. */
+static void move_window(labial_beside_t *player, uint32_t to, uint32_t dropped)
+{
+    uint32_t i;
+    if (dropped > player->frames)
+        dropped = player->frames;
+    for (i = 0; i < dropped; i++)
+        *beside_place(player, player->now + i) = MARK_EMPTY;
+    player->now = to;
+}
+
+/* The frame that is heard with a sample. The reference moves by whole seconds, in which samples and frames agree. */
+static uint32_t beside_frame(labial_beside_t *player, uint32_t sample)
+{
+    const uint32_t ahead = sample - player->sample;
+    uint32_t seconds = ahead / player->rate;
+    if (ahead >= NUMBERS_HALF)
+        seconds = 0u - ((0u - ahead) / player->rate + 1u);
+    player->sample += seconds * player->rate;
+    player->frame += seconds * LABIAL_BESIDE_RATE;
+    return player->frame + (sample - player->sample) * LABIAL_BESIDE_RATE / player->rate;
+}
+
+int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate, void *memory, size_t size)
+{
+    size_t room;
+    if (!player || !memory)
+        return LABIAL_BESIDE_ERROR_NULL;
+    memset(player, 0, sizeof *player);
+    if (outputs == 0 || outputs > 255u || rate == 0 || rate > UINT32_C(50000000) ||
+        size < LABIAL_BESIDE_SIZE(outputs, 1u))
+        return LABIAL_BESIDE_ERROR_SIZE;
+    room = (size - LABIAL_BESIDE_SIZE(outputs, 0u)) / (outputs + 1u);
+    player->frames = 1;
+    while (player->frames < LABIAL_BESIDE_FRAMES_MAX && player->frames <= room / 2u)
+        player->frames = (uint16_t)(player->frames * 2u);
+    memset(memory, 0, size);
+    player->outputs = (uint8_t)outputs;
+    player->rate = rate;
+    player->quiet = QUIET_MOST;
+    player->memory = (uint8_t *)memory;
+    return LABIAL_BESIDE_RESTS;
+}
+
+int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size)
+{
+    const uint8_t *from = (const uint8_t *)packet;
+    uint32_t frame;
+    unsigned k;
+    if (!player || !from)
+        return LABIAL_BESIDE_ERROR_NULL;
+    if (player->outputs == 0)
+        return LABIAL_BESIDE_ERROR_STATE;
+    if (size < LABIAL_BESIDE_HEAD || from[0] != LABIAL_BESIDE_FORMAT || from[1] > 1u || from[2] != player->outputs ||
+        size != LABIAL_BESIDE_HEAD + (from[3] + 1ul) * player->outputs)
+        return LABIAL_BESIDE_ERROR_PACKET;
+    frame = from[4] | (uint32_t)from[5] << 8 | (uint32_t)from[6] << 16 | (uint32_t)from[7] << 24;
+    if (from[1]) {
+        (void)labial_beside_cancel(player);
+        if (frame - player->now < NUMBERS_HALF)
+            player->now = frame;
+    }
+    player->known = 1;
+    memcpy(player->memory, from + LABIAL_BESIDE_HEAD, player->outputs);
+    for (k = 0; k < from[3]; k++) {
+        uint8_t *const place = beside_place(player, frame + k);
+        if (frame + k - player->now < player->frames && *place == MARK_EMPTY) {
+            memcpy(place + 1, from + LABIAL_BESIDE_HEAD + (k + 1u) * player->outputs, player->outputs);
+            *place = MARK_WAITS;
+        }
+    }
+    return from[1] ? LABIAL_BESIDE_CANCELS : LABIAL_BESIDE_RESTS;
+}
+
+int labial_beside_at(labial_beside_t *player, uint32_t sample, uint8_t *values)
+{
+    uint32_t frame, passed;
+    uint8_t *place, *rest, *pose, i;
+    if (!player || !values)
+        return LABIAL_BESIDE_ERROR_NULL;
+    if (!player->known)
+        return LABIAL_BESIDE_ERROR_STATE;
+    frame = beside_frame(player, sample);
+    passed = frame - player->now;
+    if (passed < NUMBERS_HALF)
+        move_window(player, frame, passed);
+    else if (0u - passed >= player->frames)
+        move_window(player, frame, player->frames);
+    rest = player->memory;
+    pose = rest + player->outputs;
+    place = beside_place(player, frame);
+    if (frame == player->now && *place == MARK_WAITS) {
+        *place = MARK_SHOWN;
+        memcpy(pose, place + 1, player->outputs);
+        player->quiet = 0;
+    } else {
+        if (player->quiet < QUIET_MOST)
+            player->quiet++;
+        if (player->quiet > LABIAL_BESIDE_HOLD) {
+            const int left = QUIET_MOST + 1 - player->quiet;
+            for (i = 0; i < player->outputs; i++)
+                pose[i] = (uint8_t)(pose[i] + (rest[i] - pose[i]) / left);
+        }
+    }
+    memcpy(values, pose, player->outputs);
+    return player->quiet <= LABIAL_BESIDE_HOLD ? LABIAL_BESIDE_SPEAKS : LABIAL_BESIDE_RESTS;
+}
+
+int labial_beside_cancel(labial_beside_t *player)
+{
+    if (!player)
+        return LABIAL_BESIDE_ERROR_NULL;
+    if (player->outputs == 0)
+        return LABIAL_BESIDE_ERROR_STATE;
+    move_window(player, player->now, player->frames);
+    if (player->quiet < LABIAL_BESIDE_HOLD)
+        player->quiet = LABIAL_BESIDE_HOLD;
+    return LABIAL_BESIDE_RESTS;
+}
+
+int32_t labial_beside_value(uint8_t byte, int32_t at_0, int32_t at_255)
+{
+    const int32_t move = (at_255 - at_0) * (int32_t)byte;
+    return at_0 + (move + (move < 0 ? -127 : 127)) / 255;
+}

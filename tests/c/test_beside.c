@@ -1,0 +1,356 @@
+/*
+ * test_beside.c - lips that come beside their sound (labial/beside.h), against a player that has an array of all frames
+ * and counts in 64 bits: lost, late and doubled packets, clocks that jitter, stand still and wrap, cancels.
+ */
+#include "suite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "labial/beside.h"
+
+enum { HOLD = LABIAL_BESIDE_HOLD, EASE = LABIAL_BESIDE_EASE, OUTPUTS = 3, ROOM = 64, RATE = 24000, STEP = RATE / 50 };
+
+static labial_beside_t player;
+static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, ROOM)];
+static uint8_t packet[LABIAL_BESIDE_LONGEST];
+static const uint8_t at_rest[OUTPUTS] = { 10, 128, 250 };
+static uint32_t seed;
+
+static uint32_t draw(uint32_t below)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return (seed >> 8) % below;
+}
+
+/* What frame `frame` shows. */
+static uint8_t value_of(uint64_t frame, unsigned output)
+{
+    return (uint8_t)(frame * 37u + output * 85u + (frame >> 8) * 11u);
+}
+
+static size_t make_packet(int cancels, unsigned outputs, unsigned count, uint64_t first)
+{
+    size_t size = 0;
+    unsigned k, i;
+    packet[size++] = LABIAL_BESIDE_FORMAT;
+    packet[size++] = (uint8_t)cancels;
+    packet[size++] = (uint8_t)outputs;
+    packet[size++] = (uint8_t)count;
+    for (i = 0; i < 4; i++)
+        packet[size++] = (uint8_t)(first >> 8 * i);
+    for (i = 0; i < outputs; i++)
+        packet[size++] = at_rest[i % OUTPUTS];
+    for (k = 0; k < count; k++)
+        for (i = 0; i < outputs; i++)
+            packet[size++] = value_of(first + k, i);
+    return size;
+}
+
+static int feed(int cancels, unsigned count, uint64_t first)
+{
+    return labial_beside_feed(&player, packet, make_packet(cancels, OUTPUTS, count, first));
+}
+
+SETUP(begin)
+{
+    seed = 1;
+    memset(memory, 0xa5, sizeof memory);
+    return labial_beside_init(&player, OUTPUTS, RATE, memory, sizeof memory) == LABIAL_BESIDE_RESTS ? 0 : -1;
+}
+
+static void assert_shows(uint32_t sample, uint64_t frame)
+{
+    uint8_t values[OUTPUTS];
+    assert_int_equal(labial_beside_at(&player, sample, values), LABIAL_BESIDE_SPEAKS);
+    for (unsigned i = 0; i < OUTPUTS; i++)
+        assert_int_equal(values[i], value_of(frame, i));
+}
+
+static void assert_rests(uint32_t sample)
+{
+    uint8_t values[OUTPUTS];
+    assert_int_equal(labial_beside_at(&player, sample, values), LABIAL_BESIDE_RESTS);
+    assert_memory_equal(values, at_rest, OUTPUTS);
+}
+
+/* Catches a frame that is shown a sample too early or too late, an overflow of samples times 50, and numbers that are
+ * wrong after 2^32 samples, or after as many frames. */
+TEST_AFTER(begin, frames_come_with_their_samples)
+{
+    static const uint32_t rates[] = { 50, 8000, 11025, 16000, 22050, 24000, 44100, 48000, 192000, 50000000 };
+    for (unsigned r = 0; r < sizeof rates / sizeof *rates; r++) {
+        const uint64_t rate = rates[r], most = (rate == 50 ? 3u : 1u) * (UINT64_C(1) << 33);
+        uint64_t sample = 0;
+        assert_int_equal(labial_beside_init(&player, OUTPUTS, rates[r], memory, sizeof memory), 0);
+        assert_int_equal(feed(0, 0, 0), LABIAL_BESIDE_RESTS);
+        while (sample < most) {
+            const uint64_t frame = sample * 50 / rate, next = ((frame + 1) * rate + 49) / 50;
+            uint8_t values[OUTPUTS];
+            (void)labial_beside_at(&player, (uint32_t)sample, values); /* so that the window is there */
+            assert_int_equal(feed(0, 2, frame), LABIAL_BESIDE_RESTS);
+            assert_shows((uint32_t)(next - 1), frame);
+            assert_shows((uint32_t)next, frame + 1);
+            sample = next + draw(8) * (rate / 3) + draw(1000) + (draw(4) ? 0 : draw(1u << 24) * UINT64_C(100));
+        }
+    }
+}
+
+/* Catches what no packet is, and changes by it. */
+TEST_AFTER(begin, other_packets_are_refused)
+{
+    const size_t size = make_packet(0, OUTPUTS, 4, 0);
+    uint8_t values[OUTPUTS], saved[64];
+    labial_beside_t before;
+    assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_ERROR_STATE);
+    memcpy(saved, packet, size);
+    before = player;
+    for (size_t cut = 0; cut <= size + 3; cut++)
+        if (cut != size)
+            assert_int_equal(labial_beside_feed(&player, packet, cut), LABIAL_BESIDE_ERROR_PACKET);
+    static const uint8_t others[][2] = { { 0, 0 }, { 0, 2 }, { 1, 2 }, { 1, 128 },
+                                         { 2, 2 }, { 2, 4 }, { 3, 3 }, { 3, 5 } };
+    for (unsigned i = 0; i < sizeof others / sizeof *others; i++) {
+        memcpy(packet, saved, size);
+        packet[others[i][0]] = others[i][1];
+        assert_int_equal(labial_beside_feed(&player, packet, size), LABIAL_BESIDE_ERROR_PACKET);
+    }
+    assert_memory_equal(&player, &before, sizeof player);
+    for (size_t i = 0; i < sizeof memory; i++)
+        assert_int_equal(memory[i], 0);
+    memcpy(packet, saved, size);
+    assert_int_equal(labial_beside_feed(&player, packet, size), LABIAL_BESIDE_RESTS);
+    assert_shows(0, 0);
+}
+
+TEST(null_pointers_and_wrong_sizes_are_refused)
+{
+    uint8_t values[OUTPUTS];
+    uint8_t *const large = (uint8_t *)malloc(LABIAL_BESIDE_SIZE(1, 70000));
+    assert_non_null(large);
+    memset(&player, 0, sizeof player);
+    assert_int_equal(labial_beside_feed(&player, packet, 9), LABIAL_BESIDE_ERROR_STATE);
+    assert_int_equal(labial_beside_cancel(&player), LABIAL_BESIDE_ERROR_STATE);
+    assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_ERROR_STATE);
+    assert_int_equal(labial_beside_init(NULL, 1, RATE, memory, sizeof memory), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_init(&player, 1, RATE, NULL, sizeof memory), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_init(&player, 0, RATE, memory, sizeof memory), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_init(&player, 256, RATE, large, 70000), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_init(&player, 1, 0, memory, sizeof memory), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_init(&player, 1, 50000001, memory, sizeof memory), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_init(&player, OUTPUTS, RATE, memory, LABIAL_BESIDE_SIZE(OUTPUTS, 1) - 1),
+                     LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_feed(&player, packet, 9), LABIAL_BESIDE_ERROR_STATE);
+    for (unsigned frames = 1; frames < 300; frames++) {
+        assert_int_equal(labial_beside_init(&player, 1, RATE, large, LABIAL_BESIDE_SIZE(1, frames)), 0);
+        assert_true(player.frames <= frames && player.frames * 2u > frames &&
+                    (player.frames & (player.frames - 1)) == 0);
+        assert_int_equal(labial_beside_init(&player, 1, RATE, large, LABIAL_BESIDE_SIZE(1, frames + 1) - 1), 0);
+        assert_true(player.frames <= frames);
+    }
+    assert_int_equal(labial_beside_init(&player, 1, RATE, large, LABIAL_BESIDE_SIZE(1, 70000)), 0);
+    assert_int_equal(player.frames, LABIAL_BESIDE_FRAMES_MAX);
+    assert_int_equal(labial_beside_feed(NULL, packet, 9), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_feed(&player, NULL, 9), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_cancel(NULL), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_at(NULL, 0, values), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_at(&player, 0, NULL), LABIAL_BESIDE_ERROR_NULL);
+    free(large);
+}
+
+/* Catches a mouth that stays open where packets are lost or the sound stops, or jumps shut; and frames of a second ago in
+ * the place of lost ones. */
+TEST_AFTER(begin, the_face_eases_to_rest_without_frames)
+{
+    for (int stops = 0; stops < 2; stops++) {
+        uint8_t values[OUTPUTS], last[OUTPUTS];
+        assert_int_equal(begin(NULL), 0);
+        assert_int_equal(feed(0, 30, 0), 0);
+        assert_rests(UINT32_MAX); /* before the first frame */
+        for (unsigned k = 0; k < 30; k++)
+            assert_shows(k * STEP + k, k);
+        for (unsigned k = 0; k < HOLD; k++)
+            assert_shows((stops ? 29 : 30 + k) * STEP, 29);
+        for (unsigned i = 0; i < OUTPUTS; i++)
+            last[i] = value_of(29, i);
+        for (unsigned k = 1; k <= EASE; k++) {
+            assert_int_equal(labial_beside_at(&player, (stops ? 29 : 30 + HOLD + k) * STEP, values), 0);
+            for (unsigned i = 0; i < OUTPUTS; i++) {
+                const double way = last[i] + (at_rest[i] - last[i]) * (double)k / EASE;
+                assert_true(fabs(values[i] - way) < 2);
+            }
+        }
+        assert_memory_equal(values, at_rest, OUTPUTS);
+        assert_int_equal(feed(0, 10, 80), 0);
+        for (unsigned k = 60; k < 80; k++)
+            assert_rests(k * STEP);
+        assert_shows(80 * STEP, 80);
+    }
+}
+
+/* Catches frames that a cancel leaves, ones of before that come after it, and a first frame that is shown too early. */
+TEST_AFTER(begin, a_cancel_drops_what_was_to_come)
+{
+    uint8_t values[OUTPUTS], earlier[OUTPUTS];
+    assert_int_equal(feed(0, 50, 0), 0);
+    assert_shows(20 * STEP, 20);
+    memcpy(earlier, memory + OUTPUTS, OUTPUTS);
+    assert_int_equal(feed(1, 0, 50), LABIAL_BESIDE_CANCELS);
+    assert_int_equal(feed(0, 10, 50), 0);
+    assert_int_equal(feed(0, 20, 30), 0); /* late */
+    for (unsigned k = 0; k < EASE; k++) {
+        assert_int_equal(labial_beside_at(&player, (21 + k) * STEP, values), LABIAL_BESIDE_RESTS); /* still plays */
+        assert_memory_not_equal(values, earlier, OUTPUTS);
+    }
+    assert_rests(27 * STEP);
+    assert_rests(49 * STEP);
+    for (unsigned k = 50; k < 60; k++)
+        assert_shows(k * STEP, k);
+    assert_int_equal(feed(0, 10, 60), 0);
+    assert_shows(60 * STEP, 60);
+    assert_int_equal(labial_beside_cancel(&player), 0); /* by the toy itself */
+    assert_int_equal(labial_beside_at(&player, 61 * STEP, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_cancel(&player), 0); /* while it eases, which goes on */
+    for (unsigned k = 2; k < EASE; k++)
+        assert_int_equal(labial_beside_at(&player, 61 * STEP, values), LABIAL_BESIDE_RESTS);
+    assert_rests(61 * STEP);
+    assert_int_equal(feed(1, 1, 3), LABIAL_BESIDE_CANCELS); /* one of long ago moves no window */
+    assert_int_equal(feed(0, 1, 62), 0);
+    assert_shows(62 * STEP, 62);
+}
+
+/* Catches a cancel of untrusted numbers after which nothing is shown any more. */
+TEST_AFTER(begin, a_cancel_far_ahead_heals)
+{
+    assert_int_equal(feed(0, 50, 0), 0);
+    assert_shows(0, 0);
+    assert_int_equal(feed(1, 0, 0x7ffffff0), LABIAL_BESIDE_CANCELS);
+    uint8_t values[OUTPUTS];
+    assert_int_equal(labial_beside_at(&player, STEP, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(feed(0, 50, 2), 0);
+    assert_shows(2 * STEP, 2);
+}
+
+/* Catches bytes that are another value than baked motion's. */
+TEST(bytes_have_units)
+{
+    for (unsigned i = 0; i < 20000; i++) {
+        const int32_t low = (int32_t)draw(8000000) - 4000000,
+                      high = low + (int32_t)draw(8000001) - (int32_t)draw(2) * 8000000;
+        const uint8_t byte = (uint8_t)draw(256);
+        const double exact = low + ((double)high - low) * byte / 255;
+        if (high - low >= -8000000)
+            assert_true(fabs(labial_beside_value(byte, low, high) - exact) <= .5);
+    }
+    assert_int_equal(labial_beside_value(0, 1900, 1400), 1900);
+    assert_int_equal(labial_beside_value(255, 1900, 1400), 1400);
+    assert_int_equal(labial_beside_value(255, -4000000, 4000000), 4000000);
+}
+
+/* ---- A player that is plain -------------------------------------------------------------------------------------- */
+
+enum { ALL = 20000 };
+
+static struct {
+    uint8_t marks[ALL]; /* 1 waits, 2 shown */
+    int64_t now;
+    unsigned quiet;
+    uint8_t pose[OUTPUTS];
+} plain;
+
+static void plain_feed(int cancels, unsigned count, int64_t first)
+{
+    if (cancels) {
+        memset(plain.marks, 0, sizeof plain.marks);
+        plain.quiet = plain.quiet < HOLD ? HOLD : plain.quiet;
+        plain.now = first > plain.now ? first : plain.now;
+    }
+    for (int64_t k = first; k < first + count; k++)
+        if (k >= plain.now && k < plain.now + ROOM && !plain.marks[k])
+            plain.marks[k] = 1;
+}
+
+static int plain_at(int64_t sample, int64_t rate, uint8_t values[OUTPUTS])
+{
+    const int64_t frame = sample * 50 / rate;
+    if (frame <= plain.now - ROOM)
+        memset(plain.marks, 0, sizeof plain.marks);
+    if (frame > plain.now || frame <= plain.now - ROOM)
+        plain.now = frame;
+    if (frame == plain.now && plain.marks[frame] == 1) {
+        plain.marks[frame] = 2;
+        plain.quiet = 0;
+        for (unsigned i = 0; i < OUTPUTS; i++)
+            plain.pose[i] = value_of((uint64_t)frame, i);
+    } else {
+        plain.quiet = plain.quiet < HOLD + EASE ? plain.quiet + 1 : plain.quiet;
+        for (unsigned i = 0; i < OUTPUTS && plain.quiet > HOLD; i++) {
+            const int left = HOLD + EASE + 1 - (int)plain.quiet;
+            plain.pose[i] = (uint8_t)(plain.pose[i] + (at_rest[i] - plain.pose[i]) / left);
+        }
+    }
+    memcpy(values, plain.pose, OUTPUTS);
+    return plain.quiet <= HOLD;
+}
+
+/* Catches any other difference, with packets and clocks of all kinds. */
+TEST_AFTER(begin, random_packets_and_clocks)
+{
+    for (unsigned round = 0; round < 60; round++) {
+        const int64_t rate = 8000 + 4000 * draw(10) + draw(2) * 1025;
+        int64_t sample = 0, sent = 0, end;
+        const unsigned loses = draw(30);
+        assert_int_equal(labial_beside_init(&player, OUTPUTS, (uint32_t)rate, memory, sizeof memory), 0);
+        memset(&plain, 0, sizeof plain);
+        plain.quiet = HOLD + EASE;
+        assert_int_equal(feed(0, 0, 0), 0);
+        for (unsigned step = 0; step < 1500; step++) {
+            uint8_t values[OUTPUTS], wanted[OUTPUTS];
+            const int64_t heard = sample * 50 / rate;
+            while (sent < heard + 40) {
+                const unsigned count = 1 + draw(20), repeat = draw(3) ? 0 : draw(20);
+                const int64_t first = sent > repeat ? sent - repeat : 0;
+                sent += count;
+                if (draw(100) < loses)
+                    continue;
+                end = sent - first;
+                plain_feed(0, (unsigned)end, first);
+                assert_int_equal(feed(0, (unsigned)end, (uint64_t)first), 0);
+            }
+            if (!draw(400)) {
+                plain_feed(1, 0, sent);
+                assert_int_equal(feed(1, 0, (uint64_t)sent), LABIAL_BESIDE_CANCELS);
+                if (draw(2))
+                    sample = sent * rate / 50; /* what it had is dropped */
+            }
+            const int speaks = plain_at(sample, rate, wanted);
+            assert_int_equal(labial_beside_at(&player, (uint32_t)sample, values), speaks);
+            assert_memory_equal(values, wanted, OUTPUTS);
+            switch (draw(40)) {
+            case 0:
+                break; /* stands still */
+            case 1:
+                sample -= sample < rate / 10 ? 0 : draw((uint32_t)rate / 10);
+                break;
+            case 2:
+                sample += draw((uint32_t)rate);
+                break;
+            case 3:
+                if (!draw(20) && sample > rate * 3) {
+                    sample -= rate * 2; /* a new beginning */
+                    sent = sample * 50 / rate;
+                }
+                break;
+            default:
+                sample += rate / 50 + draw(200) - 100;
+                break;
+            }
+            if (sample < 0)
+                sample = 0;
+        }
+        assert_true(sent < ALL - 300);
+    }
+}
+
+SUITE(NULL, NULL)

@@ -1,0 +1,94 @@
+/*
+ * fuzz_beside.c - any bytes as packets, as sample numbers and as calls in any order (labial/beside.h): nothing is read
+ * beside a packet or written beside the player's memory, values stay between those of frames and the face at rest, and a
+ * good packet is always accepted. The first two bytes are the outputs and the frames of memory; each call begins with a
+ * byte that names it.
+ */
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fuzz.h"
+#include "labial/beside.h"
+
+enum { FEED, FEED_MENDED, AT, CANCEL };
+
+/* A copy of its own, so that the sanitizer sees its ends. */
+static uint8_t *copy_of(const uint8_t *data, size_t size)
+{
+    uint8_t *copy = (uint8_t *)malloc(size ? size : 1);
+    REQUIRE(copy != NULL);
+    memcpy(copy, data, size);
+    return copy;
+}
+
+static void feed(labial_beside_t *player, const uint8_t *data, size_t size, unsigned outputs, int mends)
+{
+    uint8_t *packet = copy_of(data, size);
+    int result, cancels = 0;
+    if (mends && size >= LABIAL_BESIDE_HEAD + outputs) {
+        const size_t frames = size / outputs;
+        packet[0] = LABIAL_BESIDE_FORMAT;
+        cancels = packet[1] &= 1u;
+        packet[2] = (uint8_t)outputs;
+        packet[3] = (uint8_t)((size - LABIAL_BESIDE_HEAD) / outputs - 1u);
+        REQUIRE(frames > 0);
+        size = LABIAL_BESIDE_HEAD + (packet[3] + 1u) * outputs;
+        result = labial_beside_feed(player, packet, size);
+        REQUIRE(result == (cancels ? LABIAL_BESIDE_CANCELS : LABIAL_BESIDE_RESTS) && player->known);
+    } else {
+        result = labial_beside_feed(player, packet, size);
+        REQUIRE(result == LABIAL_BESIDE_ERROR_PACKET || result == LABIAL_BESIDE_RESTS ||
+                result == LABIAL_BESIDE_CANCELS);
+    }
+    free(packet);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    labial_beside_t *player = (labial_beside_t *)malloc(sizeof *player);
+    unsigned outputs, frames;
+    uint32_t sample = 0, rate;
+    uint8_t *memory, *values;
+    REQUIRE(player != NULL);
+    outputs = size > 2 && data[0] ? data[0] : 1u;
+    frames = size > 2 && data[1] ? data[1] : 1u;
+    rate = size > 2 ? 1u + data[2] * 1009u : 1u;
+    memory = (uint8_t *)malloc(LABIAL_BESIDE_SIZE(outputs, frames));
+    values = (uint8_t *)malloc(outputs);
+    REQUIRE(memory != NULL && values != NULL);
+    memset(player, 0x5a, sizeof *player);
+    REQUIRE(labial_beside_init(player, outputs, rate, memory, LABIAL_BESIDE_SIZE(outputs, frames)) == 0);
+    data += size > 2 ? 3 : size;
+    size -= size > 2 ? 3 : size;
+    while (size >= 5) {
+        const unsigned call = data[0] & 3u;
+        if (call == AT) {
+            int result;
+            memcpy(&sample, data + 1, sizeof sample);
+            memset(values, 0xa5, outputs);
+            result = labial_beside_at(player, sample, values);
+            REQUIRE(result == (player->known ? result & 1 : LABIAL_BESIDE_ERROR_STATE));
+            REQUIRE(player->quiet <= LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE);
+            if (player->known && player->quiet == LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE)
+                REQUIRE(memcmp(values, memory, outputs) == 0);
+            data += 5;
+            size -= 5;
+        } else if (call == CANCEL) {
+            REQUIRE(labial_beside_cancel(player) == LABIAL_BESIDE_RESTS);
+            data++;
+            size--;
+        } else {
+            const size_t wanted = data[1] | (data[2] & 3u) << 8;
+            const size_t taken = wanted < size - 3u ? wanted : size - 3u;
+            feed(player, data + 3, taken, outputs, call == FEED_MENDED);
+            data += 3 + taken;
+            size -= 3 + taken;
+        }
+    }
+    free(values);
+    free(memory);
+    free(player);
+    return 0;
+}

@@ -1,0 +1,43 @@
+/* Any packets, sample numbers and cancels, in any order, in players of several sizes. A packet is in memory as long as
+ * the longest of its outputs, since the prover does not relate its size to the count in its head. */
+#include "labial/beside.h"
+
+#include "prove.h"
+
+static uint8_t memory[LABIAL_BESIDE_SIZE(6u, 20u)], values[6];
+static uint8_t packet[LABIAL_BESIDE_HEAD + 6u * 256u];
+
+static void play(unsigned outputs, uint32_t size)
+{
+    labial_beside_t player;
+    if (labial_beside_init(OR_NULL(labial_beside_t *, &player), outputs, any_uint32, OR_NULL(void *, memory), size) !=
+        LABIAL_BESIDE_RESTS)
+        return;
+    while (any_int) {
+        if (any_int) {
+            FILL(packet);
+            labial_beside_feed(OR_NULL(labial_beside_t *, &player), OR_NULL(const void *, packet), any_size);
+        }
+        if (any_int)
+            labial_beside_at(OR_NULL(labial_beside_t *, &player), any_uint32, OR_NULL(uint8_t *, values));
+        if (any_int)
+            labial_beside_cancel(OR_NULL(labial_beside_t *, &player));
+    }
+}
+
+int main(void)
+{
+    static const labial_beside_t unprepared;
+    labial_beside_t player = unprepared;
+    labial_beside_feed(&player, packet, any_size);
+    labial_beside_at(&player, any_uint32, values);
+    labial_beside_cancel(&player);
+    labial_beside_init(&player, any_unsigned, any_uint32, memory, 2);
+    play(0, sizeof memory);
+    play(1, 4);
+    play(1, LABIAL_BESIDE_SIZE(1, 64));
+    play(3, LABIAL_BESIDE_SIZE(3, 17));
+    play(6, sizeof memory);
+    labial_beside_value(any_uint8, any_int16, any_int16);
+    return 0;
+}
