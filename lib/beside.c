@@ -48,6 +48,14 @@ static uint32_t beside_frame(labial_beside_t *player, uint32_t sample)
     return player->frame + (sample - player->sample) * LABIAL_BESIDE_RATE / player->rate;
 }
 
+/* The value a step nearer to another one, where it arrives in `left` steps. */
+static uint8_t nearer(uint8_t value, uint8_t to, unsigned left)
+{
+    if (to < value)
+        return (uint8_t)(value - (unsigned)(value - to) / left);
+    return (uint8_t)(value + (unsigned)(to - value) / left);
+}
+
 int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate, void *memory, size_t size)
 {
     size_t room;
@@ -91,7 +99,7 @@ int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size)
     memcpy(player->memory, from + LABIAL_BESIDE_HEAD, player->outputs);
     for (k = 0; k < from[3]; k++) {
         uint8_t *const place = beside_place(player, frame + k);
-        if (frame + k - player->now < player->frames && *place == MARK_EMPTY) {
+        if (frame + k - player->now < player->frames && *place != MARK_SHOWN) {
             memcpy(place + 1, from + LABIAL_BESIDE_HEAD + (k + 1u) * player->outputs, player->outputs);
             *place = MARK_WAITS;
         }
@@ -124,9 +132,8 @@ int labial_beside_at(labial_beside_t *player, uint32_t sample, uint8_t *values)
         if (player->quiet < QUIET_MOST)
             player->quiet++;
         if (player->quiet > LABIAL_BESIDE_HOLD) {
-            const int left = QUIET_MOST + 1 - player->quiet;
             for (i = 0; i < player->outputs; i++)
-                pose[i] = (uint8_t)(pose[i] + (rest[i] - pose[i]) / left);
+                pose[i] = nearer(pose[i], rest[i], QUIET_MOST + 1u - player->quiet);
         }
     }
     memcpy(values, pose, player->outputs);
@@ -147,6 +154,7 @@ int labial_beside_cancel(labial_beside_t *player)
 
 int32_t labial_beside_value(uint8_t byte, int32_t at_0, int32_t at_255)
 {
-    const int32_t move = (at_255 - at_0) * (int32_t)byte;
-    return at_0 + (move + (move < 0 ? -127 : 127)) / 255;
+    const uint32_t span = at_255 < at_0 ? (uint32_t)(at_0 - at_255) : (uint32_t)(at_255 - at_0);
+    const int32_t move = (int32_t)((span * byte + 127u) / 255u);
+    return at_255 < at_0 ? at_0 - move : at_0 + move;
 }

@@ -115,8 +115,8 @@ typedef struct {
 int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate, void *memory, size_t size);
 
 /*
- * Accepts a packet of `size` bytes, all of one message. Frames whose time has passed, that are there already, or for
- * which the ring has no room yet are ignored.
+ * Accepts a packet of `size` bytes, all of one message. Its frames replace earlier ones of the same numbers. Those that
+ * were shown, whose time has passed, or for which the ring has no room yet are ignored.
  *
  * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_CANCELS, or with nothing changed LABIAL_BESIDE_ERROR_NULL,
  * LABIAL_BESIDE_ERROR_STATE (not initialised) or LABIAL_BESIDE_ERROR_PACKET.

@@ -220,6 +220,21 @@ TEST_AFTER(begin, a_cancel_drops_what_was_to_come)
     assert_shows(62 * STEP, 62);
 }
 
+/* Catches a frame that keeps what an earlier packet said, and one that changes while it is shown. */
+TEST_AFTER(begin, a_later_packet_replaces_frames)
+{
+    const size_t size = make_packet(0, OUTPUTS, 10, 0);
+    uint8_t values[OUTPUTS];
+    assert_int_equal(labial_beside_feed(&player, packet, size), 0);
+    assert_shows(0, 0);
+    memset(packet + LABIAL_BESIDE_HEAD + OUTPUTS, 99, size - LABIAL_BESIDE_HEAD - OUTPUTS);
+    assert_int_equal(labial_beside_feed(&player, packet, size), 0);
+    assert_shows(1, 0);
+    assert_int_equal(labial_beside_at(&player, STEP, values), LABIAL_BESIDE_SPEAKS);
+    for (unsigned i = 0; i < OUTPUTS; i++)
+        assert_int_equal(values[i], 99);
+}
+
 /* Catches a cancel of untrusted numbers after which nothing is shown any more. */
 TEST_AFTER(begin, a_cancel_far_ahead_heals)
 {

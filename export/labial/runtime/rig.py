@@ -37,8 +37,9 @@ class Rig:
         outputs: names of the outputs.
         unit: the unit of the values: us, quarter_us, pca9685, counts or plain, all integers, or weight, whose values
         are floats from 0 to 1 in steps of a thousandth. prescale: the value for the PCA9685's prescale register, if the
-        unit is its ticks; else None. values: current value of each output, by name; the face at rest before the first
-        frame.
+        unit is its ticks; else None. limits: the least and the greatest value of each output, in the unit's whole
+        numbers. resting: the value of each output of the face at rest, likewise. values: current value of each output,
+        by name; the face at rest before the first frame.
     """
 
     BUILTIN: Tuple[str, ...] = FACES
@@ -64,6 +65,8 @@ class Rig:
         rows = convert(rig)
         self.name, self.unit, self.prescale = rig.name, rig.unit.name, rig.unit.prescale
         self.outputs = tuple(row.name for row in rows)
+        self.limits = tuple((row.minimum, row.maximum) for row in rows)
+        self.resting = tuple(row.rest for row in rows)
         core = library()
         size, curve = core.rig_output_size(), core.rig_curve_size()
         self._rows = memory((size + curve) * len(rows))  # the outputs, then their curves

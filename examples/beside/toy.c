@@ -1,0 +1,160 @@
+/*
+ * toy.c - a toy on a PC, for server.py: the loudspeaker is simulated, and the servos are lines on the screen.
+ *
+ *     cc -std=c99 -Iinclude examples/beside/toy.c lib/beside.c -o toy
+ *     printf 'say Mama may pop.\nplay 9000\n' | ./toy 8765
+ *
+ * Standard input has a command in each line: "say TEXT" and "stop" go to the server, with "stop" the toy drops the sound
+ * that it has not played; "play MS" lets time pass, at most until everything has been heard, as fast as the server sends.
+ * Options behind the port: "lose N" loses every Nth packet of lips, "jitter" makes the loudspeaker's clock uneven.
+ *
+ * A line of output is 20 ms: the number of the sample that is heard, 1 if the mouth speaks, the packet's bytes, and the
+ * servos' pulses in microseconds.
+ */
+#define _POSIX_C_SOURCE 200112L
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "labial/beside.h"
+
+#define OUTPUTS 2 /* of face.toml */
+#define FRAMES 64 /* more than the sound that waits here */
+#define WAITS 500 /* milliseconds of sound that are taken before they are played */
+
+/* Pulses of the servos for the bytes 0 and 255, to be found by trial. */
+static const int32_t at_0[OUTPUTS] = { 1400, 1300 }, at_255[OUTPUTS] = { 1900, 1700 };
+
+static labial_beside_t lips;
+static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, FRAMES)];
+static int server;
+static uint32_t rate, received, heard; /* samples since the beginning */
+static int speaks;                     /* utterances whose sound is still to come */
+static int cancelling;                 /* sound is dropped until the server has heard of it */
+static unsigned lose, packets, jitter;
+
+static void fail(const char *what)
+{
+    perror(what);
+    exit(1);
+}
+
+static void take(uint8_t *data, size_t size)
+{
+    while (size > 0) {
+        const ssize_t got = read(server, data, size);
+        if (got <= 0)
+            fail("the server has gone");
+        data += got;
+        size -= (size_t)got;
+    }
+}
+
+/* The next message. What is in it is trusted as little as what is in a packet of lips. */
+static void take_message(void)
+{
+    static uint8_t data[65536];
+    uint8_t head[3];
+    size_t size;
+    take(head, sizeof head);
+    size = head[1] | (size_t)head[2] << 8;
+    take(data, size);
+    if (head[0] == 'R' && size == 4 && rate == 0) {
+        rate = data[0] | (uint32_t)data[1] << 8 | (uint32_t)data[2] << 16 | (uint32_t)data[3] << 24;
+        if (labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) < 0)
+            exit(1);
+    } else if (head[0] == 'A') {
+        received += (uint32_t)(size / 2); /* also of sound that is dropped */
+        if (cancelling)
+            heard = received;
+    } else if (head[0] == 'E') {
+        speaks -= !cancelling && speaks > 0;
+    } else if (head[0] == 'L' && (lose == 0 || ++packets % lose != 0)) {
+        if (labial_beside_feed(&lips, data, size) == LABIAL_BESIDE_CANCELS) {
+            heard = received;
+            cancelling = 0;
+        }
+    }
+}
+
+static void show(void)
+{
+    static uint32_t seed = 1;
+    uint8_t values[OUTPUTS];
+    uint32_t sample = heard;
+    int result, i;
+    if (jitter) {
+        seed = seed * 1664525u + 1013904223u;
+        sample += (seed >> 16) % (rate / 50) - rate / 100; /* up to 10 ms to either side */
+    }
+    result = labial_beside_at(&lips, sample, values);
+    if (result < 0)
+        return;
+    printf("%lu %d", (unsigned long)sample, result);
+    for (i = 0; i < OUTPUTS; i++)
+        printf(" %d", values[i]);
+    for (i = 0; i < OUTPUTS; i++)
+        printf(" %ld", (long)labial_beside_value(values[i], at_0[i], at_255[i]));
+    putchar('\n');
+}
+
+/* Lets 20 ms pass: sound comes in while there is room, and as much is heard, if there is as much. */
+static void pass(void)
+{
+    while ((speaks || cancelling) && (received - heard < rate / 1000 * WAITS || cancelling))
+        take_message();
+    show();
+    heard += received - heard < rate / 50 ? received - heard : rate / 50;
+}
+
+int main(int argc, char **argv)
+{
+    struct sockaddr_in to = { 0 };
+    char line[1024];
+    int i;
+    if (argc < 2) {
+        fputs("usage: toy PORT [lose N] [jitter]\n", stderr);
+        return 2;
+    }
+    for (i = 2; i < argc; i++) {
+        if (strcmp(argv[i], "jitter") == 0)
+            jitter = 1;
+        else if (strcmp(argv[i], "lose") == 0 && i + 1 < argc)
+            lose = (unsigned)atoi(argv[++i]);
+    }
+    to.sin_family = AF_INET;
+    to.sin_port = htons((uint16_t)atoi(argv[1]));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if ((server = socket(AF_INET, SOCK_STREAM, 0)) < 0 || connect(server, (struct sockaddr *)&to, sizeof to) != 0)
+        fail(argv[1]);
+    while (rate == 0)
+        take_message();
+    while (fgets(line, sizeof line, stdin)) {
+        if (strncmp(line, "play ", 5) == 0) {
+            unsigned long left = strtoul(line + 5, NULL, 10) / 20;
+            while (left-- > 0 && (speaks || received != heard))
+                pass();
+            continue;
+        }
+        if (write(server, line, strlen(line)) < 0)
+            fail("the server has gone");
+        if (strncmp(line, "say ", 4) == 0) {
+            speaks++;
+        } else {
+            speaks = 0;
+            cancelling = 1; /* the loudspeaker falls silent now, and the mouth closes */
+            labial_beside_cancel(&lips);
+            for (i = 0; i < LABIAL_BESIDE_EASE; i++)
+                show();
+        }
+    }
+    for (i = 0; i <= LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE; i++)
+        show();
+    return 0;
+}

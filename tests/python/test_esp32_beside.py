@@ -1,0 +1,150 @@
+"""examples/esp32-beside on stubs of ESP-IDF's interfaces: a simulated loudspeaker, the servo, and the lines that the
+patch puts into xiaozhi-esp32."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import re
+import subprocess
+from pathlib import Path
+from typing import List, Tuple
+
+import pytest
+
+import labial
+from labial.rig.description import read
+from packages import SOURCE
+from runtime import needs_runtime
+from test_beside import HELLO, parse
+from test_esp32_hear import CC, CXX, FRAME, MS, STUBS, WARNINGS, hunks, value
+
+pytestmark = [needs_runtime, pytest.mark.skipif(not CC or not CXX, reason="LABIAL_CC or LABIAL_CXX names no compiler")]
+
+EXAMPLE = SOURCE / "examples" / "esp32-beside"
+JAW = SOURCE / "examples" / "faces" / "jaw.toml"
+INCLUDES = [f"-I{SOURCE / 'include'}", f"-I{EXAMPLE}", f"-I{STUBS}"]
+RATE, BLOCK = 24000, 1440  # 60 ms
+HELD, EASED = 5, 6  #: calls, as in labial/beside.h
+
+
+@pytest.fixture()
+def board(tmp_path: Path) -> ctypes.CDLL:
+    """mouth.c as it is compiled for an ESP32, with the stubs, whose assertions end the process."""
+    library = tmp_path / "mouth.so"
+    (tmp_path / "none.c").write_text("void lips_render_step(void);\nvoid lips_render_step(void)\n{\n}\n")
+    subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES, str(EXAMPLE / "mouth.c"),
+                    str(SOURCE / "lib" / "beside.c"), str(STUBS / "host.c"), str(tmp_path / "none.c"), "-o",
+                    str(library)], check=True, timeout=120)
+    loaded = ctypes.CDLL(str(library))
+    loaded.mouth_receive.restype = ctypes.c_int64
+    loaded.mouth_receive.argtypes = [ctypes.c_size_t]
+    loaded.mouth_playing.argtypes = [ctypes.c_int64, ctypes.c_size_t, ctypes.c_int64]
+    loaded.mouth_values.argtypes = [ctypes.c_int64, ctypes.c_char_p]
+    return loaded
+
+
+def shown(board: ctypes.CDLL, now: int) -> Tuple[int, int]:
+    values = ctypes.create_string_buffer(1)
+    result = board.mouth_values(now, values)
+    return result, values.raw[0]
+
+
+def send(board: ctypes.CDLL, sample: int) -> List[int]:
+    """Packets of a word whose sound begins with a sample; the bytes of its frames."""
+    lips, rows = labial.Beside(labial.Rig.of(read(str(JAW), "jaw"))), []
+    for packet in lips.packets(labial.render(HELLO), sample=sample, rate=RATE):
+        assert board.mouth_packet(packet.data, len(packet.data)) == 0
+        rows += [row[0] for row in parse(packet.data).frames]
+    return rows
+
+
+def test_in_step_with_the_loudspeaker(board: ctypes.CDLL) -> None:
+    """Catches a clock that counts sound when it is written, not when it is heard, and a number that drops count."""
+    assert board.mouth_begin(RATE) == 0 and shown(board, 0)[0] < 0
+    rows = send(board, 0)
+    numbers = [board.mouth_receive(BLOCK) for _ in range(16)]
+    assert numbers == [k * BLOCK for k in range(16)]
+    played = [k for k in range(16) if k not in (7, 8)]
+    begun, written = 1000 * MS, 0
+    for step in range(3 * len(played)):
+        now = begun + step * FRAME + 5 * MS
+        while written < len(played) and begun + (60 * written - 40) * MS <= now:  # 40 ms before it is heard
+            board.mouth_playing(numbers[played[written]], BLOCK, max(begun, begun + (60 * written - 40) * MS))
+            written += 1
+        frame = 3 * played[step // 3] + step % 3
+        if frame in (19, 20):
+            frame = 27  # what is heard next waits in its first frame
+        assert shown(board, now) == (1, rows[frame]), step
+    silent = begun + 3 * len(played) * FRAME
+    still = [shown(board, silent + k * FRAME + 5 * MS) for k in range(HELD + EASED)]
+    assert [speaks for speaks, _ in still] == [1] * HELD + [0] * EASED
+    assert still[HELD - 1][1] == rows[47] and still[-1][1] == 0
+
+
+def test_other_sound_and_cancel(board: ctypes.CDLL) -> None:
+    """Catches lips that move to a sound of the toy's own, or after it was told to be quiet."""
+    assert board.mouth_begin(RATE) == 0
+    rows = send(board, 0)
+    board.mouth_receive(20 * BLOCK)
+    board.mouth_playing(-1, BLOCK * 4, 0)
+    assert [shown(board, k * FRAME)[0] for k in range(2, 12)][-3:] == [0] * 3
+    board.mouth_playing(0, BLOCK * 8, 240 * MS)
+    assert shown(board, 240 * MS + 10 * FRAME) == (1, rows[10])
+    board.mouth_cancel()
+    eased = [shown(board, 250 * MS + (11 + k) * FRAME) for k in range(EASED)]
+    assert [speaks for speaks, _ in eased] == [0] * EASED and eased[-1][1] == 0
+    again = send(board, 20 * BLOCK)
+    assert board.mouth_receive(8 * BLOCK) == 20 * BLOCK
+    board.mouth_playing(20 * BLOCK, BLOCK * 8, 2000 * MS)
+    assert [shown(board, 2000 * MS + k * FRAME) for k in range(1, 20)] == [(1, row) for row in again[1:20]]
+    assert board.mouth_begin(0) < 0
+    board.mouth_playing(0, BLOCK, 0)
+    assert shown(board, 0)[0] < 0
+
+
+def test_the_servo_follows(board: ctypes.CDLL) -> None:
+    """Catches pulses before the face at rest is known, ones outside the servo's, and a duty of another resolution."""
+    duties, duty = value(board, "stub_duties", ctypes.c_uint32), value(board, "stub_duty", ctypes.c_uint32)
+    now = value(board, "stub_now", ctypes.c_int64)
+    board.stub_timer.restype = ctypes.c_uint64
+    assert board.mouth_servo(-1) != 0 and board.mouth_servo(5) == 0
+    assert board.stub_timer() == FRAME and duties.value == 0
+    assert board.mouth_begin(RATE) == 0
+    assert board.stub_timer() == FRAME and duties.value == 0
+    rows = send(board, 0)
+    board.mouth_playing(board.mouth_receive(20 * BLOCK), 20 * BLOCK, 0)
+    for row in rows[:50]:
+        board.stub_timer()
+        pulse = 1400 + 500 * row / 255
+        assert abs(duty.value * 20000 / 16384 - pulse) < 2
+        now.value += FRAME
+    assert duties.value == 50 and max(rows) > 200
+
+
+def test_patched_lines_compile(tmp_path: Path) -> None:
+    """Catches calls that mouth.h does not have, or with other arguments: every hunk is compiled as it is."""
+    parts, used = hunks(EXAMPLE / "xiaozhi.patch"), set()
+
+    def patched(match: re.Match) -> str:
+        used.add((match[2], int(match[1])))
+        return parts[match[2]][int(match[1]) - 1]
+
+    text = re.sub(r"/\* hunk (\d+) of (\S+) \*/", patched, (STUBS / "xiaozhi_beside.cc").read_text(encoding="utf-8"))
+    assert used == {(name, k + 1) for name, bodies in parts.items() if name.endswith((".cc", ".h"))
+                    for k in range(len(bodies))}
+    for name in ("mcp_server.h", "mqtt_protocol.h"):
+        (tmp_path / name).touch()
+    source = tmp_path / "xiaozhi.cc"
+    source.write_text(text, encoding="utf-8")
+    subprocess.run([CXX, "-std=c++17", *WARNINGS, *INCLUDES, "-c", str(source), "-o", os.devnull], check=True,
+                   timeout=60)
+
+
+def test_the_patch_names_its_commit_and_files() -> None:
+    """Catches a patch of nobody knows which version, and a build that lacks the files it calls."""
+    text = (EXAMPLE / "xiaozhi.patch").read_text(encoding="utf-8")
+    commit = re.findall(r"commit ([0-9a-f]{40})\.\n", text)[0]
+    assert commit[:12] in (SOURCE / "docs" / "beside.md").read_text(encoding="utf-8")
+    for name in re.findall(r'^\+ *"(\w+\.c)"', text, re.MULTILINE):
+        assert (EXAMPLE / name).exists()
