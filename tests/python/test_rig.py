@@ -26,9 +26,10 @@ from packages import CC, CXX, SOURCE, run, warnings
 from runtime import needs_runtime
 
 FACES = SOURCE / "examples" / "faces"
-#: Descriptions whose tables are kept, with the tables' folder; that of examples/pi is read by Python and has none.
+#: Descriptions whose tables are kept, with the tables' folder; those of examples/pi and beside are read by Python and have
+#: none.
 EXAMPLES = {path: path.parent for path in sorted((SOURCE / "examples").glob("*/*.toml"))
-            if path.parent.name != "pi"}
+            if path.parent.name not in ("pi", "beside")}
 EXAMPLES.update(dict.fromkeys(sorted((SOURCE / "export" / "labial" / "rig").glob("*.toml")), FACES))
 
 JAW = '[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 1900\n'
