@@ -60,7 +60,7 @@ extern "C" {
 /* Most frames that a player keeps: 11 minutes. */
 #define LABIAL_BESIDE_FRAMES_MAX 32768u
 
-/* Calls of labial_beside_at() for which the last frame stays when no other comes, 0 .. 120: 100 ms. */
+/* Calls of labial_beside_at() for which the last frame stays when no other comes, 1 .. 120: 100 ms. */
 #ifndef LABIAL_BESIDE_HOLD
 #define LABIAL_BESIDE_HOLD 5
 #endif
@@ -70,8 +70,8 @@ extern "C" {
 #define LABIAL_BESIDE_EASE 6
 #endif
 
-#if LABIAL_BESIDE_HOLD < 0 || LABIAL_BESIDE_HOLD > 120
-#error "LABIAL_BESIDE_HOLD must be a number from 0 to 120."
+#if LABIAL_BESIDE_HOLD < 1 || LABIAL_BESIDE_HOLD > 120
+#error "LABIAL_BESIDE_HOLD must be a number from 1 to 120."
 #endif
 #if LABIAL_BESIDE_EASE < 1 || LABIAL_BESIDE_EASE > 120
 #error "LABIAL_BESIDE_EASE must be a number from 1 to 120."

@@ -142,6 +142,7 @@ TEST(null_pointers_and_wrong_sizes_are_refused)
     assert_int_equal(labial_beside_init(&player, OUTPUTS, RATE, memory, LABIAL_BESIDE_SIZE(OUTPUTS, 1) - 1),
                      LABIAL_BESIDE_ERROR_SIZE);
     assert_int_equal(labial_beside_feed(&player, packet, 9), LABIAL_BESIDE_ERROR_STATE);
+    assert_int_equal(labial_beside_init(&player, 255, RATE, large, 70000), 0);
     for (unsigned frames = 1; frames < 300; frames++) {
         assert_int_equal(labial_beside_init(&player, 1, RATE, large, LABIAL_BESIDE_SIZE(1, frames)), 0);
         assert_true(player.frames <= frames && player.frames * 2u > frames &&
@@ -220,6 +221,36 @@ TEST_AFTER(begin, a_cancel_drops_what_was_to_come)
     assert_shows(62 * STEP, 62);
 }
 
+/* Catches a clock that is taken for a new beginning when it jitters, or for jitter when it begins anew, and one that does
+ * not know whether it goes forwards. */
+TEST_AFTER(begin, a_clock_may_go_back)
+{
+    const uint32_t farthest = 0x7fffffff;
+    const uint64_t last = farthest * UINT64_C(50) / RATE;
+    const uint32_t back = 0u - (uint32_t)((farthest + UINT64_C(1)) * 50 / RATE + 1);
+    uint8_t values[OUTPUTS];
+    assert_int_equal(feed(0, 10, 0), 0);
+    assert_int_equal(labial_beside_at(&player, 100 * STEP, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(feed(0, 10, 100), 0);
+    assert_int_equal(labial_beside_at(&player, (100 - ROOM + 1) * STEP, values), LABIAL_BESIDE_RESTS);
+    assert_shows(100 * STEP, 100);
+    assert_int_equal(labial_beside_at(&player, (100 - ROOM) * STEP, values), LABIAL_BESIDE_SPEAKS); /* holds */
+    assert_int_equal(feed(0, 10, 100 - ROOM), 0);
+    assert_shows((100 - ROOM) * STEP, 100 - ROOM);
+    assert_int_equal(begin(NULL), 0);
+    assert_int_equal(feed(0, 1, 0), 0);
+    assert_shows(0, 0);
+    (void)labial_beside_at(&player, farthest, values);
+    assert_int_equal(feed(0, 1, last), 0);
+    assert_shows(farthest, last);
+    assert_int_equal(begin(NULL), 0);
+    assert_int_equal(feed(0, 1, 0), 0);
+    assert_shows(0, 0);
+    (void)labial_beside_at(&player, farthest + 1, values);
+    assert_int_equal(feed(0, 1, back), 0);
+    assert_shows(farthest + 1, back);
+}
+
 /* Catches a frame that keeps what an earlier packet said, and one that changes while it is shown. */
 TEST_AFTER(begin, a_later_packet_replaces_frames)
 {
@@ -245,6 +276,27 @@ TEST_AFTER(begin, a_cancel_far_ahead_heals)
     assert_int_equal(labial_beside_at(&player, STEP, values), LABIAL_BESIDE_RESTS);
     assert_int_equal(feed(0, 50, 2), 0);
     assert_shows(2 * STEP, 2);
+}
+
+/* Catches a cancel that does not know whether its number lies ahead, after which its frames have no room. */
+TEST(a_cancel_reaches_across_the_end_of_numbers)
+{
+    static const uint32_t from[] = { 0xfffffff0u, 5, 1000 }, ahead[] = { 70, 0x7fffffff, 0x80000000u };
+    for (unsigned i = 0; i < 3; i++) {
+        const uint32_t to = from[i] + ahead[i];
+        uint8_t values[OUTPUTS];
+        assert_int_equal(labial_beside_init(&player, OUTPUTS, 50, memory, sizeof memory), 0); /* a sample is a frame */
+        assert_int_equal(feed(0, 0, 0), 0);
+        (void)labial_beside_at(&player, from[i], values);
+        assert_int_equal(feed(1, 0, to), LABIAL_BESIDE_CANCELS);
+        if (ahead[i] < 0x80000000u) {
+            assert_int_equal(feed(0, 1, to), 0);
+            assert_shows(to, to);
+        } else {
+            assert_int_equal(feed(0, 1, from[i]), 0);
+            assert_shows(from[i], from[i]);
+        }
+    }
 }
 
 /* Catches bytes that are another value than baked motion's. */

@@ -26,7 +26,7 @@ from packages import CC, CXX, SOURCE, run, warnings
 from runtime import needs_runtime
 
 FACES = SOURCE / "examples" / "faces"
-#: Descriptions whose tables are kept, with the tables' folder; those of examples/pi and beside are read by Python and have
+#: Descriptions whose tables are kept, with the tables' folder; Python reads those of examples/pi and beside, which have
 #: none.
 EXAMPLES = {path: path.parent for path in sorted((SOURCE / "examples").glob("*/*.toml"))
             if path.parent.name not in ("pi", "beside")}
