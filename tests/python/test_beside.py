@@ -8,8 +8,9 @@ import shutil
 import struct
 import subprocess
 import sys
+import zlib
 from pathlib import Path
-from typing import Iterator, List, NamedTuple, Sequence, Tuple
+from typing import Dict, Iterator, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 import pytest
@@ -160,6 +161,83 @@ def test_wrong_frames_and_times_are_refused(tmp_path: Path) -> None:
                     "maximum = 1\n", encoding="utf-8")
     with pytest.raises(LabialError, match="limits of jaw are more than 8000000 apart"):
         labial.Beside(wide)
+
+
+# ---- What boards show ------------------------------------------------------------------------------------------------
+
+
+class Player:
+    """The player of labial/beside.h as its comments say, on a dictionary of frames and exact times."""
+
+    HOLD, EASE = 5, 6
+
+    def __init__(self, rate: int, room: int) -> None:
+        self.rate, self.room, self.now, self.quiet = rate, room, 0, self.HOLD + self.EASE
+        self.frames: Dict[int, Tuple[bytes, bool]] = {}  #: by number: values, and whether they were shown
+        self.rest = self.pose = bytes(2)
+
+    def feed(self, cancels: bool, first: int, rest: bytes, frames: Sequence[bytes]) -> None:
+        self.rest = rest
+        if cancels:
+            self.frames.clear()
+            self.quiet = max(self.quiet, self.HOLD)
+            self.now = max(self.now, first)
+        for number, row in enumerate(frames, first):
+            if self.now <= number < self.now + self.room and not self.frames.get(number, (b"", False))[1]:
+                self.frames[number] = (row, False)
+
+    def at(self, sample: int) -> bool:
+        frame = sample * 50 // self.rate
+        if frame <= self.now - self.room:
+            self.frames.clear()
+            self.now = frame
+        self.now = max(self.now, frame)
+        self.frames = {number: found for number, found in self.frames.items() if number >= self.now}
+        row, old = self.frames.get(frame, (b"", True))
+        if old:
+            self.quiet = min(self.quiet + 1, self.HOLD + self.EASE)
+            if self.quiet > self.HOLD:
+                left = self.HOLD + self.EASE + 1 - self.quiet
+                self.pose = bytes(value + int((to - value) / left) for value, to in zip(self.pose, self.rest))
+        else:
+            self.frames[frame], self.pose, self.quiet = (row, True), row, 0
+        return self.quiet <= self.HOLD
+
+
+def test_what_boards_show() -> None:
+    """Catches a number in tests/device/beside_works.c that the library itself made."""
+    seed, shown = 1, bytearray()
+
+    def draw(below: int) -> int:
+        nonlocal seed
+        seed = (seed * 1664525 + 1013904223) % 2**32
+        return (seed >> 8) % below
+
+    def packet(frame: int) -> Tuple[bool, int, bytes, List[bytes]]:
+        first = frame + draw(40) - 8
+        cancels, frames = draw(20) == 0, draw(17)
+        rows = [bytes((draw(256), draw(256))) for _ in range(frames + 1)]
+        return cancels, first, rows[0], rows[1:]
+
+    for rate in (8000, 11025, 48000):
+        player, sample, frame = Player(rate, 32), 0, 0
+        for call in range(3000):
+            if draw(4) == 0 or call == 0:
+                given = packet(frame)
+                player.feed(*given)
+                shown.append(2 if given[0] else 0)
+            speaks = player.at(sample)
+            unit = 1900 - (3300 * player.pose[0] + 127) // 255
+            shown += bytes([speaks, *player.pose, unit >> 4 & 255])
+            if draw(50) == 0:
+                sample += draw(3) * rate
+                frame += draw(100)
+            elif draw(20) > 0:
+                sample += rate // 50 + draw(64) - 32
+                frame += 1
+    device = (SOURCE / "tests" / "device" / "beside_works.c").read_text(encoding="utf-8")
+    assert f"#define SHOWN {zlib.crc32(shown):#010x}u\n" in device
+    assert len(set(shown[1::5])) > 1
 
 
 # ---- From end to end -------------------------------------------------------------------------------------------------
