@@ -257,15 +257,17 @@ def toy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return program
 
 
-@pytest.fixture(scope="module", params=[0, 10], ids=["once", "repeated"])
+@pytest.fixture(scope="module")
 def server(request: pytest.FixtureRequest) -> Iterator[Tuple[int, int]]:
-    """The port of a server that sends as fast as the toy takes it, and how many frames its packets repeat."""
+    """The port of a server that sends as fast as the toy takes it, and how many frames its packets repeat: 0, or the
+    parameter."""
+    repeat = getattr(request, "param", 0)
     with subprocess.Popen([sys.executable, str(EXAMPLE / "server.py"), "--port", "0", "--ahead", "60", "--repeat",
-                           str(request.param)], stdout=subprocess.PIPE, text=True,
+                           str(repeat)], stdout=subprocess.PIPE, text=True,
                           env={**os.environ, "PYTHONPATH": str(SOURCE / "export")}) as process:
         try:
             assert process.stdout
-            yield int(process.stdout.readline().split()[1]), request.param
+            yield int(process.stdout.readline().split()[1]), repeat
         finally:
             process.terminate()
 
@@ -356,6 +358,7 @@ def test_a_toy_shows_what_is_heard(toy: Path, server: Tuple[int, int], jitter: L
     assert blocks[-1] > start and lines[-1].row == bytes([0, 128]) and not lines[-1].speaks
 
 
+@pytest.mark.parametrize("server", [0, 10], indirect=True)
 def test_a_lost_packet(toy: Path, server: Tuple[int, int]) -> None:
     """Catches a player that needs every packet. With repeats nothing is lost; without, what was not lost is shown, and
     the mouth eases to rest in between."""
