@@ -82,28 +82,30 @@ class Toy:
         self._send(b"L", self._lips.hello())
 
     async def say(self, text: str) -> None:
-        """Sends an utterance, its lips always before its sound."""
+        """Sends an utterance when the ones before it have been sent."""
         async with self._turn:
             try:
                 spoken = await asyncio.to_thread(speak, text, self._voice)
-                packets = self._lips.packets(labial.render(spoken.timings), sample=self._sent, rate=spoken.rate)
-            except LabialError as error:
+                await self._send_utterance(spoken)
+            except (LabialError, ConnectionError) as error:
                 print(f"server: {error}", file=sys.stderr)
-                packets, spoken = [], Spoken(b"", self._rate, [])
-            block = 2 * self._rate * BLOCK // 1000
-            for start in range(0, len(spoken.sound), block):
-                sound = spoken.sound[start : start + block].ljust(block, b"\0")  # whole frames, as of an Opus packet
-                await self._in_time()
-                end = self._sent + block // 2
-                while packets and packets[0].frame * self._rate < end * 50:
-                    self._send(b"L", packets.pop(0).data)
-                self._send(b"A", sound)
-                self._sent = end
-                await self._writer.drain()
-            for packet in packets:
-                self._send(b"L", packet.data)
             self._send(b"E")
+
+    async def _send_utterance(self, spoken: Spoken) -> None:
+        """Sends sound in blocks, each after the packets of lips that begin before its end."""
+        packets = self._lips.packets(labial.render(spoken.timings), sample=self._sent, rate=self._rate)
+        block = 2 * self._rate * BLOCK // 1000
+        for start in range(0, len(spoken.sound), block):
+            sound = spoken.sound[start : start + block].ljust(block, b"\0")  # whole frames, as of an Opus packet
+            await self._in_time()
+            end = self._sent + block // 2
+            while packets and packets[0].frame * self._rate < end * 50:
+                self._send(b"L", packets.pop(0).data)
+            self._send(b"A", sound)
+            self._sent = end
             await self._writer.drain()
+        for packet in packets:
+            self._send(b"L", packet.data)
 
     def cancel(self) -> None:
         """Tells the toy to drop what it has not played."""

@@ -15,6 +15,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,8 +68,11 @@ static void take_message(void)
     take(data, size);
     if (head[0] == 'R' && size == 4 && rate == 0) {
         rate = data[0] | (uint32_t)data[1] << 8 | (uint32_t)data[2] << 16 | (uint32_t)data[3] << 24;
-        if (labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) < 0)
+        if (rate < 8000 || rate > 48000 ||
+            labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) != LABIAL_BESIDE_RESTS) {
+            fprintf(stderr, "%lu samples per second are not supported\n", (unsigned long)rate);
             exit(1);
+        }
     } else if (head[0] == 'A') {
         received += (uint32_t)(size / 2); /* also of sound that is dropped */
         if (cancelling)
@@ -128,6 +132,7 @@ int main(int argc, char **argv)
         else if (strcmp(argv[i], "lose") == 0 && i + 1 < argc)
             lose = (unsigned)atoi(argv[++i]);
     }
+    signal(SIGPIPE, SIG_IGN);
     to.sin_family = AF_INET;
     to.sin_port = htons((uint16_t)atoi(argv[1]));
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
