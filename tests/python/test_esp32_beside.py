@@ -1,14 +1,20 @@
 """examples/esp32-beside on stubs of ESP-IDF's interfaces: a simulated loudspeaker, the servo, and the lines that the
-patch puts into xiaozhi-esp32."""
+patches put into xiaozhi-esp32 and its server."""
 
 from __future__ import annotations
 
+import asyncio
+import base64
 import ctypes
+import importlib.util
+import json
 import os
 import re
 import subprocess
+import sys
+import types
 from pathlib import Path
-from typing import List, Tuple
+from typing import Any, AsyncIterator, Dict, List, Tuple
 
 import pytest
 
@@ -141,10 +147,127 @@ def test_patched_lines_compile(tmp_path: Path) -> None:
                    timeout=60)
 
 
-def test_the_patch_names_its_commit_and_files() -> None:
+# ---- The server ------------------------------------------------------------------------------------------------------
+
+
+class Base:
+    """TTSProviderBase: packets of sound go into a queue."""
+
+    def __init__(self, config: Dict[str, Any], delete_audio_file: bool) -> None:
+        self.queue: List[bytes] = []
+
+    def handle_opus(self, opus_data: bytes) -> None:
+        self.queue.append(opus_data)
+
+
+class Communicate:
+    """edge_tts.Communicate, which says one thing."""
+
+    def __init__(self, text: str, boundary: str = "SentenceBoundary", **_: Any) -> None:
+        self.text, self.boundary = text, boundary
+
+    async def stream(self) -> AsyncIterator[Dict[str, Any]]:
+        yield {"type": "audio", "data": b"mp3"}
+        for place, word in enumerate(self.text.split()):
+            yield {"type": self.boundary, "offset": 1_000_000 + place * 4_000_000, "duration": 3_500_000, "text": word}
+        yield {"type": "audio", "data": b"..."}
+
+
+class Socket:
+    """A WebSocket that keeps what is sent."""
+
+    def __init__(self) -> None:
+        self.sent: List[Any] = []
+
+    async def send(self, data: Any) -> None:
+        self.sent.append(data)
+
+
+@pytest.fixture()
+def provider(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The module of the patched lines, on stubs of the server's."""
+    parts = hunks(EXAMPLE / "xiaozhi-server.patch")
+    used = set()
+
+    def patched(match: re.Match) -> str:
+        used.add((match[2], int(match[1])))
+        return parts[match[2]][int(match[1]) - 1]
+
+    text = re.sub(r"# hunk (\d+) of (\S+)$", patched, (STUBS / "xiaozhi_server.py.in").read_text(encoding="utf-8"),
+                  flags=re.MULTILINE)
+    assert used == {(name, k + 1) for name, bodies in parts.items() for k in range(len(bodies))}
+    for name in ("core", "core.providers", "core.providers.tts", "core.providers.tts.base", "core.utils",
+                 "core.utils.audioRateController", "edge_tts"):
+        monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+    sys.modules["core.providers.tts.base"].TTSProviderBase = Base  # type: ignore[attr-defined]
+    sys.modules["core.utils.audioRateController"].AudioRateController = object  # type: ignore[attr-defined]
+    sys.modules["edge_tts"].Communicate = Communicate  # type: ignore[attr-defined]
+    spec = importlib.util.spec_from_file_location("core.utils.lips", EXAMPLE / "lips.py")
+    assert spec and spec.loader
+    lips = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, "core.utils.lips", lips)
+    spec.loader.exec_module(lips)
+    found = types.ModuleType("patched")
+    exec(compile(text, "patched", "exec"), found.__dict__)  # noqa: S102
+    return found
+
+
+@pytest.mark.parametrize("to_file", [False, True])
+def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_path: Path) -> None:
+    """Catches frames that lose their packet of sound: of two sentences, the first of which is interrupted, every packet
+    of lips comes before its sound and has the frames of its place."""
+    voice = provider.TTSProvider({}, True)
+    voice.edge_pitch = "+0Hz"
+    conn = types.SimpleNamespace(websocket=Socket(), session_id="s")
+    flow: Dict[str, int] = {}
+    wanted: Dict[int, bytes] = {}
+    sounds = 0
+    for text, made, sent in (("Mama may pop", 24, 10), ("Bob may be happy", 30, 30)):
+        said = asyncio.run(voice.text_to_speak(text, str(tmp_path / "a.mp3") if to_file else None))
+        assert said == (None if to_file else b"mp3...")
+        for k in range(made):
+            voice.handle_opus(b"opus%d" % k)
+        words = [(word, 100 + 400 * k, 450 + 400 * k) for k, word in enumerate(text.split())]
+        motion = labial.render(labial.word_timings(words))
+        rows = labial.Beside(EXAMPLE / "face.toml").packets(motion, sample=0, rate=RATE)
+        frames = b"".join(b"".join(parse(packet.data).frames) for packet in rows)
+        wanted.update({sounds * 3 + k: frames[k : k + 1] for k in range(len(frames))})
+        for packet in voice.queue[:sent]:
+            asyncio.run(provider._do_send_audio(conn, packet, flow))
+        voice.queue.clear()
+        sounds += sent
+    asyncio.run(provider._do_send_audio(conn, b"a sound of its own", flow))
+    count, shown = 0, {}
+    for message in conn.websocket.sent:
+        if isinstance(message, bytes):
+            count += 1
+            continue
+        fields = json.loads(message)
+        assert fields["type"] == "lips" and fields["session_id"] == "s"
+        parsed = parse(base64.b64decode(fields["data"]))
+        assert parsed.first == count * 3, "before its sound"
+        shown.update({parsed.first + k: row for k, row in enumerate(parsed.frames)})
+    assert count == 41 and [item for item in conn.websocket.sent if isinstance(item, bytes)][0] == b"opus0"
+    assert len(shown) > 80 and all(shown[k] == wanted[k] for k in shown)
+    assert set(range(110)) - set(shown) == set(range(len(shown), 110)), "without a gap"
+
+
+def test_a_voice_without_times_speaks_on(provider: Any, caplog: pytest.LogCaptureFixture) -> None:
+    """Catches a sentence that is lost because its lips are."""
+    lips = sys.modules["core.utils.lips"]
+    voice = lips.Voice()  # type: ignore[attr-defined]
+    voice.timed([])
+    assert voice.sound(b"a") == b"a" and list(voice.sound(b"a").frames) == []
+    voice.timed([{"type": "WordBoundary", "offset": -1, "duration": "x", "text": 3}])
+    assert "no lips" in caplog.text and list(voice.sound(b"a").frames) == []
+
+
+@pytest.mark.parametrize("patch", ["xiaozhi", "xiaozhi-server"])
+def test_patches_name_their_commit_and_files(patch: str) -> None:
     """Catches a patch of nobody knows which version, and a build that lacks the files it calls."""
-    text = (EXAMPLE / "xiaozhi.patch").read_text(encoding="utf-8")
+    text = (EXAMPLE / f"{patch}.patch").read_text(encoding="utf-8")
     commit = re.findall(r"commit ([0-9a-f]{40})\.\n", text)[0]
-    assert commit[:12] in (SOURCE / "docs" / "beside.md").read_text(encoding="utf-8")
+    page = (SOURCE / "docs" / "beside.md").read_text(encoding="utf-8")
+    assert commit[:12] in page and f"{patch}.patch" in page
     for name in re.findall(r'^\+ *"(\w+\.c)"', text, re.MULTILINE):
         assert (EXAMPLE / name).exists()

@@ -26,10 +26,10 @@ from packages import CC, CXX, SOURCE, run, warnings
 from runtime import needs_runtime
 
 FACES = SOURCE / "examples" / "faces"
-#: Descriptions whose tables are kept, with the tables' folder; Python reads those of examples/pi and beside, which have
-#: none.
+#: Descriptions whose tables are kept, with the tables' folder; Python reads those of examples/pi, beside and
+#: esp32-beside, which have none.
 EXAMPLES = {path: path.parent for path in sorted((SOURCE / "examples").glob("*/*.toml"))
-            if path.parent.name not in ("pi", "beside")}
+            if path.parent.name not in ("pi", "beside", "esp32-beside")}
 EXAMPLES.update(dict.fromkeys(sorted((SOURCE / "export" / "labial" / "rig").glob("*.toml")), FACES))
 
 JAW = '[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 1900\n'
