@@ -47,9 +47,9 @@ LIMITED = ("test_units", "test_contact", "test_viterbi", "test_trajectory", "tes
 FLAGS = ["-Werror=int-conversion", "-Werror=incompatible-pointer-types",
          "-std=c99", "-O1", "-g0", "-fPIC", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
          "-DLABIAL_TEST_SHARE=10"]
-INCLUDES = [f"-I{ROOT / folder}" for folder in ("include", "lib/models", "lib", "tests/c", "tests/conformance",
-                                                "tests/device", "boards")]
-MODELS = sorted((LIB / "models").glob("*.c"))
+INCLUDES = [f"-I{ROOT / folder}" for folder in ("include", "lib/models", "lib/words", "lib", "tests/c",
+                                                "tests/conformance", "tests/device", "boards")]
+TABLES = sorted([*(LIB / "models").glob("*.c"), *(LIB / "words").glob("*.c")])
 
 
 @dataclass
@@ -107,7 +107,7 @@ class Bench:
     def build_tests(self, build: str) -> None:
         """Compiles and links the tests of a build, and measures them."""
         suites = ROOT / "tests" / "c"
-        helpers = [path for path in sorted(suites.glob("*.c")) if not path.name.startswith("test_")] + MODELS
+        helpers = [path for path in sorted(suites.glob("*.c")) if not path.name.startswith("test_")] + TABLES
         archive = self.folder / build / "helpers"
         archive.mkdir(exist_ok=True)
         for path in helpers:
