@@ -6,7 +6,7 @@ import argparse
 import contextlib
 import os
 import tempfile
-from typing import List, Optional
+from typing import List, Optional, Sequence
 
 from labial.commands.common import put
 from labial.errors import LabialError, needs
@@ -22,7 +22,10 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          "sentences, as for speech-corpus (four that no bundled network was trained on)")
     command.add_argument("--conditions", metavar="A,B,...", help="of clean, -40 dBFS, white noise 20 dB and so on; all "
                          "of them by default")
-    command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness and so on (all)")
+    command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness, \"loudness and "
+                         "crossings\" (these), and other projects: wawa-lipsync, \"wawa-lipsync unsmoothed\", "
+                         "headaudio, pocketsphinx")
+    command.add_argument("--npm", metavar="FOLDER", help="where npm installed wawa-lipsync and @met4citizen/headaudio")
     command.add_argument("--most", type=positive, help="clips of each folder (all)")
     command.add_argument("--cache", metavar="FOLDER", help="for alignments")
     command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="processes that align")
@@ -31,14 +34,15 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Prints a table."""
     with needs("evaluating", "hear"):
-        from labial.evaluate import hearing
+        from labial.evaluate import hearing, others
     from labial.files.outputs import check
     from labial.hearing.model import load
 
     check(options.output)
     model = load(options.model)
-    methods = hearing.methods(model)
-    chosen = {name: methods[name] for name in _chosen(options.methods, "--methods", list(methods))}
+    own = hearing.methods(model)
+    names = _chosen(options.methods, "--methods", list(own), list(others.PACKAGES))
+    chosen = {name: own[name] if name in own else others.method(name, options.npm) for name in names}
     conditions = _chosen(options.conditions, "--conditions", list(hearing.CONDITIONS))
     with contextlib.nullcontext(options.cache) if options.cache else tempfile.TemporaryDirectory() as cache:
         sets = [hearing.of_folder(folder, cache, options.jobs, options.most or 0)
@@ -51,11 +55,12 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _chosen(text: Optional[str], option: str, known: List[str]) -> List[str]:
+def _chosen(text: Optional[str], option: str, usual: List[str], more: Sequence[str] = ()) -> List[str]:
+    """The names in an option, of `usual` and `more`; without it the usual ones."""
     if text is None:
-        return known
+        return usual
     names = [name.strip() for name in text.split(",")]
     for name in names:
-        if name not in known:
-            raise LabialError(f"{option}: {name!r} is not one of {'; '.join(known)}")
+        if name not in (*usual, *more):
+            raise LabialError(f"{option}: {name!r} is not one of {'; '.join((*usual, *more))}")
     return names

@@ -31,6 +31,8 @@ SENTENCES = Path(clips.__file__).with_name("sentences.txt")
 VOICES = ("flite:awb", "espeak:en-us+klatt4", "espeak:en-us+f5", "espeak:en-us+Jacky")
 #: dB of full scale that sounds peak at where a condition does not say otherwise.
 PEAK = -6.0
+#: Frames of delay that are looked for: 300 ms, more than any method has.
+LATEST = 15
 
 #: (N,) int16 at 16 kHz -> (T, 13) frames, T of `frames_of(N)`.
 Method = Callable[[np.ndarray], np.ndarray]
@@ -158,7 +160,7 @@ def evaluated(
 
 
 def _row(sounds: str, condition: str, method: str, rows: Sequence[Judged]) -> Row:
-    lag = delay(rows)
+    lag = delay(rows, LATEST)
     rows = [_without(lag, *row) for row in rows]
     each = np.array([measured([row]).opening for row in rows])
     each = each[np.isfinite(each)]

@@ -6,7 +6,7 @@ import itertools
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from pocketsphinx import Decoder
+from pocketsphinx import Decoder, get_model_path
 
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import ARPABET
@@ -21,6 +21,8 @@ _BEAM = 1e-200
 _WIDE = {"beam": _BEAM, "wbeam": _BEAM, "pbeam": _BEAM, "bestpath": False}
 #: Beam width that suffices for the second pass.
 _NARROW = {"beam": 1e-64, "wbeam": 1e-48, "pbeam": 1e-64, "bestpath": False}
+#: Of the search without words, as PocketSphinx's documentation recommends them.
+_PHONE_LOOP = {"lw": 2.0, "beam": 1e-20, "pbeam": 1e-20}
 #: Words of one phoneme, which stand for what the text lacks, are called by this and the phoneme.
 _PHONE = "_"
 #: Probabilities of such a word between two phrases, and of a phrase that is not said. They are weighed by the decoder's
@@ -39,13 +41,14 @@ class Found(NamedTuple):
 
 
 class Recogniser:
-    """Three decoders, each created on first use: one follows words, one follows phrases with any phonemes between them,
-    one finds words."""
+    """Four decoders, each created on first use: one follows words, one follows phrases with any phonemes between them,
+    one finds words, one finds phonemes alone."""
 
     def __init__(self) -> None:
         self._follower: Optional[Decoder] = None
         self._finder: Optional[Decoder] = None
         self._loose: Optional[Decoder] = None
+        self._loop: Optional[Decoder] = None
         self._learnt: Dict[str, str] = {}
 
     @property
@@ -122,6 +125,16 @@ class Recogniser:
             self._finder = Decoder(loglevel="FATAL", fwdflat=False, maxhmmpf=5000)
         self._finder.activate_search()
         return _phonemes(self._finder, samples) if _words(self._finder, samples) else None
+
+    def loop(self, samples: np.ndarray) -> List[Segment]:
+        """The most probable phonemes of `samples`, whatever the words, in seconds; noises are silence."""
+        if len(samples) < _SHORTEST:
+            return []
+        if self._loop is None:
+            model = get_model_path("en-us/en-us-phone.lm.bin")
+            self._loop = Decoder(allphone=model, lm=None, dict=None, loglevel="FATAL", **_PHONE_LOOP)
+        return [Segment(start + (_OFFSET if start else 0.0), end + _OFFSET, phone if phone.isalpha() else "SIL")
+                for phone, start, end in _words(self._loop, samples)]
 
 
 def _behind(phrases: Sequence[Sequence[str]], told: Sequence[str]) -> int:
