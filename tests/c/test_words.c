@@ -29,7 +29,7 @@ static const char *shown(const labial_word_t *word)
     size_t at = 0;
     unsigned i;
     if (word->kind != LABIAL_WORDS_READ)
-        return word->kind == LABIAL_WORDS_SILENT ? "silent" : "unknown";
+        return word->kind == LABIAL_WORDS_SILENT ? "silent" : word->kind == LABIAL_WORDS_UNKNOWN ? "unknown" : "?";
     text[0] = '\0';
     for (i = 0; i < word->count; i++)
         at += (size_t)snprintf(text + at, sizeof text - at, "%s%s%s:%u", i > 0 ? " " : "",
@@ -220,7 +220,8 @@ TEST(questions_are_those_of_the_format)
         assert_string_equal(answers(cases[i].question, cases[i].text), cases[i].answers);
 }
 
-/* Would catch a hash of more letters than the word has: a word that is no exception but has the hash of one. */
+/* Would catch a hash of more letters than the word has, a word that is no exception but has the hash of one, and an
+ * exception that is read beyond its end. */
 TEST(patches_stay_within_the_word)
 {
     static uint16_t buckets[257];
@@ -243,6 +244,14 @@ TEST(patches_stay_within_the_word)
     patches[1] ^= 1;
     assert_int_equal(labial_words_read(&tables, NULL, "go", 2, &word), LABIAL_OK);
     assert_string_equal(shown(&word), "_G:0 OW:1");
+    patches[1] ^= 1;
+    patches[2] = 0x80; /* the first letter is silent, and nothing follows */
+    patches[3] = 0;
+    patches[5] = 1;
+    for (i = 0; i < 257; i++)
+        buckets[i] = i > hash >> 24 ? 4 : 0;
+    assert_int_equal(labial_words_read(&tables, NULL, "go", 2, &word), LABIAL_OK);
+    assert_string_equal(shown(&word), "_OW:1");
 }
 
 TEST(misuse_is_an_error)

@@ -269,6 +269,26 @@ TEST(characters_move_boundaries_half_way)
     assert_int_equal(found[2], 500);
 }
 
+/* Would catch a share of a character's time that is counted from the word's beginning: where K ends in "box", whose x
+ * lasts from 200 to 600 ms. Its share of the x is that of a box of ten minutes, which is said without characters. */
+TEST(a_characters_phonemes_begin_with_it)
+{
+    static const uint32_t box[3] = { 100, 200, 600 };
+    spoken_t slow = { 0 }, plain = { 0 }, spoken = { 0 };
+    uint32_t within;
+    begin(0);
+    say(&slow, "box", 0, 600000);
+    say(&slow, "a", 600000, 600000);
+    within = 200u + 400u * (slow.lasts[2] / 100u) / (slow.lasts[2] / 100u + slow.lasts[3] / 100u);
+    begin(0);
+    say(&plain, "box", 0, 600);
+    flush(&plain);
+    begin(0);
+    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
+    flush(&spoken);
+    assert_in_range(until(&spoken, 3), (until(&plain, 3) + within) / 2u - 1u, (until(&plain, 3) + within) / 2u + 1u);
+}
+
 /* Would catch phonemes of one character that do not share its time, silent letters at the beginning that take it, and
  * words that are longer than a place can say. */
 TEST(characters_of_several_phonemes_share_their_time)
