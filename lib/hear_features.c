@@ -53,7 +53,7 @@ static int32_t log2_q8(uint32_t value)
     return ((int32_t)bits - 1) * 256 + at[0] + (((at[1] - at[0]) * (int32_t)(top & 1023u)) >> 10);
 }
 
-/* Makes 14 bits of the samples and shapes them by the window. Returns by how many bits they grew, -1 .. 14; or 16 for a
+/* Makes 14 bits of the samples and shapes them by the window. Returns by how many bits they grew, -1 .. 13; or 16 for a
  * constant, and then leaves them. */
 static int shape_window(int16_t window[LABIAL_HEAR_WINDOW_])
 {
@@ -69,7 +69,7 @@ static int shape_window(int16_t window[LABIAL_HEAR_WINDOW_])
     if (low == high)
         return 16;
     middle = (low + high) >> 1;
-    up = 14 - (int)bits_of((uint32_t)(high - middle));
+    up = high - middle > 32767 ? -1 : 14 - (int)bits_of((uint32_t)(high - middle)); /* half of 65,535 is rounded up */
     for (i = 0; i < LABIAL_HEAR_WINDOW_; i++) {
         value = window[i] - middle;
         value = up < 0 ? value >> 1 : value * (1 << up);

@@ -185,6 +185,14 @@ def test_integers_are_near_the_float_network(name: str) -> None:
     assert emit.flash_bytes(quantise(model, "x")) < {"small": 21000, "large": 34500}[name] and plan.ahead == 5
 
 
+def test_integers_hear_a_clipped_sound() -> None:
+    """Catches windows with both the least and the largest sample that are heard louder than they are."""
+    sound = np.clip(20 * voice(5.0).astype(int), -32768, 32767).astype(np.int16)
+    assert (sound == -32768).any() and (sound == 32767).any()
+    heard = integer.normalise(integer.log_energies(sound)) / 512
+    assert np.sqrt(np.mean((heard.reshape(250, 48) - front.features(sound)) ** 2)) < 0.01
+
+
 def test_plans_and_classes() -> None:
     """Catches a phoneme of the speech model without a lip class."""
     phonemes = load_speech("speech_en").phonemes
@@ -253,6 +261,7 @@ def test_any_model_gives_the_exporters_bits_in_c(tmp_path: Path, name: str) -> N
                     f"-I{SOURCE / 'include'}", f"-I{tmp_path}", str(tmp_path / "program.c"),
                     str(tmp_path / "some_model.c"), *library, "-o", str(tmp_path / "program")], check=True)
     sound = voice(1.3, seed=2, rate=rate)
+    sound[len(sound) // 2 :] = np.clip(20 * sound[len(sound) // 2 :].astype(int), -32768, 32767)
     done = subprocess.run([tmp_path / "program"], input=sound.astype("<i2").tobytes(), capture_output=True, check=True)
     wanted = integer.hear(tables, sound, rate)
     assert np.array_equal(np.array(done.stdout.split(), dtype=int).reshape(-1, 13), wanted.faps)

@@ -144,7 +144,7 @@ def log_energies(sound: np.ndarray) -> np.ndarray:
     x = padded[np.arange(count)[:, None] * HOP + np.arange(WINDOW)]
     low, high = x.min(axis=1), x.max(axis=1)
     middle = (low + high) >> 1
-    up = 14 - _bits(high - middle)  # high - middle is middle - low or one more
+    up = np.maximum(14 - _bits(high - middle), -1)  # high - middle is middle - low or one more
     sine = sine_table()
     window = (32768 - sine[(np.arange(WINDOW) + 64) & 255]) >> 1
     centred = x - middle[:, None]
