@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 from typing import Callable, Dict, List
 
-from measure import baseline, boards, hearing, host, loss, mlpg, profile, readme, sizes, stack, table
+from measure import baseline, boards, hearing, host, loss, mlpg, profile, readme, sizes, stack, table, words
 from measure.core import Bench, LeftOut
 
 
@@ -53,6 +53,7 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
         attempt(stack.measure, board)
         attempt(boards.measure, board, checksums)
         attempt(hearing.measure, board, heard)
+        attempt(words.measure, board, heard)
     print("Host: speed, instructions, equation 3, loss", flush=True)
     attempt(host.measure, compiler)
     attempt(host.python, compiler)
