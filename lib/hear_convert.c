@@ -40,13 +40,12 @@ static int16_t interpolated(const labial_hear_convert_t *convert, const int16_t 
     const unsigned distance = ((convert->phase + 5u) * 6554u) >> 16; /* a tenth, rounded: the phase is at most 479 */
     const int16_t *right = left + 1, *near_left = filter + distance, *near_right = filter + (spacing - distance);
     int32_t total = 0;
-    unsigned k;
-    for (k = convert->reach; k > 0;
-         k--) { /* below 2^31 in all, since the filter's magnitudes add up to less than 2^16 */
-        total += *left-- * *near_left;
-        total += *right++ * *near_right;
-        near_left += spacing;
-        near_right += spacing;
+    unsigned k = convert->reach;
+    for (;; left--, right++, near_left += spacing, near_right += spacing) {
+        total += *left * *near_left; /* below 2^31 in all: the filter's magnitudes add up to less than 2^16 */
+        total += *right * *near_right;
+        if (--k == 0)
+            break;
     }
     total = ((total >> 10) * (int32_t)spacing + 256) >> 9;
     return (int16_t)(total < -32768 ? -32768 : total > 32767 ? 32767 : total);

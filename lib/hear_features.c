@@ -73,6 +73,9 @@ static int shape_window(int16_t window[LABIAL_HEAR_WINDOW_])
     for (i = 0; i < LABIAL_HEAR_WINDOW_; i++) {
         value = window[i] - middle;
         value = up < 0 ? value >> 1 : value * (1 << up);
+        /* `up` is chosen for the largest. */
+        /*@ assert -16384 <= value <= 16384; */
+        LABIAL_CHECK(value >= -16384 && value <= 16384);
         window[i] = (int16_t)((value * ((32768 - cosine(i)) >> 1) + 16384) >> 15);
     }
     return up;
@@ -92,8 +95,9 @@ static void join_fours(int16_t *points, unsigned quarter)
     const unsigned step = 2u * quarter, turn = PAIRS / 2u / quarter;
     unsigned i, angle;
     for (i = 0, angle = 0; i < step; i += 2u, angle += turn) {
-        int16_t *a;
-        for (a = points + i; a < points + 2 * PAIRS; a += 4u * step) {
+        int16_t *a = points + i;
+        const int16_t *const last = a + (2u * PAIRS - 4u * step);
+        for (;; a += 4u * step) {
             int16_t *const b = a + step, *const c = b + step, *const d = c + step;
             const int32_t er = a[0] + c[0] + 2, ei = a[1] + c[1] + 2, fr = a[0] - c[0] + 2, fi = a[1] - c[1] + 2;
             const int32_t gr = b[0] + d[0], gi = b[1] + d[1], hr = b[1] - d[1], hi = d[0] - b[0];
@@ -111,6 +115,8 @@ static void join_fours(int16_t *points, unsigned quarter)
                 put_turned(c, (er - gr) >> 2, (ei - gi) >> 2, 2u * angle);
                 put_turned(d, (fr - hr) >> 2, (fi - hi) >> 2, 3u * angle);
             }
+            if (a == last)
+                break;
         }
     }
 }
@@ -158,7 +164,13 @@ static void add_bands(const int16_t *points, uint32_t energy[LABIAL_HEAR_BANDS +
         const int16_t *const p = point_of(points, k), *const q = point_of(points, PAIRS - k);
         const int32_t ar = p[0] + q[0], ai = p[1] - q[1], br = p[1] + q[1], bi = q[0] - p[0];
         const int32_t c = cosine(k), s = sine[k];
-        const int32_t tr = (br * c + bi * s + 16384) >> 15, ti = (bi * c - br * s + 16384) >> 15;
+        int32_t tr, ti;
+        /* The window's mean is a half, so that 2^13 sqrt 2 and some rounding is the bound of a point. */
+        /*@ assert -32768 <= br <= 32768; */
+        /*@ assert -32768 <= bi <= 32768; */
+        LABIAL_CHECK(labial_clamp(br, 32768) == br && labial_clamp(bi, 32768) == bi);
+        tr = (br * c + bi * s + 16384) >> 15;
+        ti = (bi * c - br * s + 16384) >> 15;
         share_power(energy, k, ar + tr, ai + ti);
         if (k >= PAIRS - LAST_BIN && k < PAIRS / 2u)
             share_power(energy, PAIRS - k, ar - tr, ai - ti);

@@ -148,6 +148,8 @@ void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, in
     over = heads[model->closure] - rival - model->close_from;
     over = over < 0 ? 0 : over > model->close_width ? model->close_width : over;
     share = (int32_t)labial_quotient((uint32_t)over << 8, (uint32_t)model->close_width); /* Q8 */
+    /*@ assert 0 <= share <= 256; */
+    LABIAL_CHECK(share >= 0 && share <= 256);
     heads += model->classes;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         value = model->mean[k] + ((heads[k] * model->scale[k]) >> 9);

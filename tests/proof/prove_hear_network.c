@@ -1,0 +1,122 @@
+/*
+ * Networks of the sizes of hear_small and of hear_large, with any weights, biases and shifts, after any number of frames:
+ * any features, any memory. All tables are as long as these sizes ask for, and the workspace ends with the last row.
+ * Scores and poses of any model.
+ */
+#include "hear_network.h"
+
+#include <string.h>
+
+#include "prove.h"
+
+#define UNITS 76
+#define ROWS 33
+#define HEADS 40 /* 26 classes and 13 FAPs, and one that fills up */
+
+static int8_t weights[4][UNITS * UNITS], last_weights[UNITS * UNITS], heads_weights[HEADS * UNITS], taps[4][UNITS * 7];
+static int16_t biases[UNITS], positions[3][LABIAL_CHANNELS];
+static uint8_t shifts[UNITS];
+static int16_t workspace[ROWS * UNITS];
+static labial_hear_block_t blocks[4];
+static labial_hear_model_t model;
+static labial_hear_t hear;
+
+/* Tables end where those of so many rows and columns do. */
+#define LAST(table, size) ((table) + (sizeof(table) / sizeof *(table) - (size)))
+
+static void set_layer(labial_hear_dense_t *layer, const int8_t *last_weight, unsigned rows)
+{
+    layer->weights = last_weight;
+    layer->biases = LAST(biases, rows);
+    layer->shifts = LAST(shifts, rows);
+}
+
+static void set_block(unsigned number, unsigned units, unsigned past, unsigned dilation)
+{
+    labial_hear_block_t *const block = &blocks[number];
+    set_layer(&block->dense, LAST(weights[number], units * (number > 0u ? units : LABIAL_HEAR_INPUTS)), units);
+    block->taps = LAST(taps[number], units * (past + 2u));
+    block->shifts = LAST(shifts, units);
+    block->past = (uint8_t)past;
+    block->ahead = 1;
+    block->dilation = (uint8_t)dilation;
+    hear.at[number] = (uint8_t)Frama_C_interval(0, (int)((past + 1u) * dilation) - 1);
+    hear.skip[number] = (uint8_t)Frama_C_interval(0, number > 0u ? (int)dilation - 1 : 0);
+}
+
+static void set_model(unsigned units, unsigned count, unsigned ahead, unsigned rows)
+{
+    model.format = LABIAL_HEAR_MODEL_FORMAT;
+    model.units = (uint8_t)units;
+    model.blocks = (uint8_t)count;
+    model.classes = 26;
+    model.closure = 1;
+    model.ahead = (uint8_t)ahead;
+    model.rows = (uint8_t)rows;
+    model.block = blocks;
+    set_layer(&model.last, LAST(last_weights, units * units), units);
+    set_layer(&model.heads, LAST(heads_weights, HEADS * units), HEADS);
+    hear.model = &model;
+    hear.rows = LAST(workspace, rows * units);
+}
+
+/* A frame, and those before it. */
+static void take(void)
+{
+    const int16_t *heads;
+    labial_hear_network_reset(&hear);
+    FILL(workspace);
+    FILL(hear.features);
+    FILL(hear.window);
+    hear.taken = (uint32_t)Frama_C_interval(0, model.ahead);
+    heads = labial_hear_network(&hear);
+    if (heads)
+        any_int = heads[0] + heads[26 + LABIAL_CHANNELS - 1];
+}
+
+/* Any number of classes. */
+static void pose(void)
+{
+    int16_t heads[LABIAL_HEAR_CLASSES_MAX + LABIAL_CHANNELS], found[LABIAL_CHANNELS];
+    FILL(heads);
+    FILL(positions);
+    model.classes = (uint8_t)Frama_C_interval(2, LABIAL_HEAR_CLASSES_MAX);
+    model.closure = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_CLASSES_MAX - 1);
+    model.close_from = Frama_C_interval(-65536, 65536);
+    model.close_width = Frama_C_interval(1, 65536);
+    model.mean = positions[0];
+    model.scale = positions[1];
+    model.closed = positions[2];
+    labial_hear_leader(&model, heads);
+    labial_hear_pose(&model, heads, found);
+}
+
+uint32_t labial_hear_workspace_size(const labial_hear_model_t *any)
+{
+    return LABIAL_HEAR_WORKSPACE_SIZE((uint32_t)any->units, any->rows);
+}
+
+int main(void)
+{
+    unsigned i;
+    FILL(weights);
+    FILL(last_weights);
+    FILL(heads_weights);
+    FILL(taps);
+    FILL(biases);
+    for (i = 0; i < sizeof shifts; i++)
+        shifts[i] = (uint8_t)Frama_C_interval(0, 15);
+    set_model(64, 3, 5, 29);
+    set_block(0, 64, 4, 1);
+    set_block(1, 64, 4, 2);
+    set_block(2, 64, 4, 2);
+    take();
+    set_model(76, 4, 5, 33);
+    set_block(0, 76, 5, 1);
+    set_block(1, 76, 5, 1);
+    set_block(2, 76, 4, 1);
+    set_block(3, 76, 5, 2);
+    take();
+    pose();
+    return 0;
+}
