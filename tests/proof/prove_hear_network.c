@@ -1,7 +1,7 @@
 /*
  * Networks of the sizes of hear_small and of hear_large, with any weights, biases and shifts, after any number of frames:
  * any features, any memory. All tables are as long as these sizes ask for, and the workspace ends with the last row.
- * Scores and poses of any model.
+ * Scores and poses of any number of classes.
  */
 #include "hear_network.h"
 
