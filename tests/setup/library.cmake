@@ -58,6 +58,11 @@ mark_as_advanced(LABIAL_AVR_GCC)
 if(LABIAL_AVR_GCC)
   foreach(source IN LISTS library_sources)
     get_filename_component(name "${source}" NAME)
+    if(name STREQUAL "beside.c") # which plays on small boards what a server computed
+      add_test(NAME compiles_with_int_of_16_bits_${name} COMMAND "${LABIAL_AVR_GCC}" -std=c99 -mmcu=atmega328p
+        "-I${PROJECT_SOURCE_DIR}/include" -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Werror -fsyntax-only "${source}")
+      continue()
+    endif()
     labial_refused(int_of_16_bits_${name} "${LABIAL_AVR_GCC}" ${name} "Labial needs an int of 32 bits" -mmcu=atmega2560)
   endforeach()
 else()
