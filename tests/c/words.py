@@ -28,7 +28,8 @@ U.S.based a.b1 x.yz a. I. B. Mr. Mrs Ms. MR dr. Dr St. prof Prof. jr Jr. sr vs. 
 1,000 1,234,567 12,34 1,2345 1,234,56 0,123 999,999,999 1,000,000,000 123456789012 007 00 01 0.5 3.14 3. .5
 1.2.3 1,234.5 12:30 1/2 2-3 1st 2nd 3rd 4th 5th 8th 9th 11th 12th 13th 20th 21st 22ND 40th 100th 101st 1000th
 1000000th 0th 3Rd 1stx 2ndly 1st2 007th 5x x5 24h [laughs] [a]b a[b]c [open x<tag/>y <open ] > Привет 你好 日本語
-한국어 ελ Привет! aПривет中 [中] 😀 😀! ♥ na\u036fme \u0180 a\u0180 \u07ff \u0800 \uffff \U00010000 \u0080 rock-n-roll and/or snake_case a.b,c;d (a)(b)
+한국어 ελ Привет! aПривет中 [中] 😀 😀! ♥ na\u036fme \u0180 a\u0180 \u07ff \u0800 \uffff \U00010000
+\u0080 rock-n-roll and/or snake_case a.b,c;d (a)(b)
 abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab
 Pneumonoultramicroscopicsilicovolcanoconiosis bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb'b don't-can't-won't
 """.split()
