@@ -16,9 +16,12 @@ pytest.importorskip("soxr")
 
 from browser import CHROMIUM, REASON, Browser, Page, served  # noqa: E402
 from bundlers import MISSING, tools  # noqa: E402
+from hearing_models import random_hearing  # noqa: E402
+from labial.__main__ import main  # noqa: E402
 from labial.errors import LabialError  # noqa: E402
 from labial.evaluate import others  # noqa: E402
 from labial.hearing.features import RATE  # noqa: E402
+from labial.hearing.model import save  # noqa: E402
 from labial.hearing.targets import TOUCHING, opening  # noqa: E402
 from labial.runtime.render import render  # noqa: E402
 from runtime import needs_runtime  # noqa: E402
@@ -144,6 +147,17 @@ def test_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(shutil, "which", lambda _: None)
     with pytest.raises(LabialError, match="headaudio needs node"):
         others.method("headaudio", tmp_path)
+
+
+@needs_node
+def test_the_command_names_them(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """Other projects are judged only where they are named, and need their packages before anything is aligned."""
+    save(random_hearing(), tmp_path / "hear.npz")
+    given = ["evaluate-hear", str(tmp_path / "hear.npz"), "nowhere"]
+    assert main([*given, "--methods", "integers,headaudio", "--npm", str(tmp_path)]) == 1
+    assert f"npm install --prefix {tmp_path} @met4citizen/headaudio" in capsys.readouterr().err
+    assert main([*given, "--methods", "wawa"]) == 1 and "crossings; wawa-lipsync; " in capsys.readouterr().err
+    assert main(given) == 1 and "nowhere" in capsys.readouterr().err
 
 
 # ---- The recogniser
