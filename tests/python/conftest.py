@@ -16,7 +16,7 @@ from browser import CHROMIUM, REASON, Browser
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / name) for name in
              ("bench", "tests/conformance", "tests/c", "tests/voices", "examples/pi", "examples/microphone",
-              "examples/voices")]
+              "examples/voices", "packaging")]
 
 #: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
 TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter_corpus", "test_packages",

@@ -27,7 +27,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An installed tree, moved after it was installed, with one limit overridden."""
     folder = tmp_path_factory.mktemp("install")
     run(CMAKE, "-S", SOURCE, "-B", folder / "build", "-DLABIAL_BUILD_TESTS=OFF", "-DLABIAL_BUILD_EXAMPLES=OFF",
-        "-DCMAKE_BUILD_TYPE=Release", "-DLABIAL_QUEUE=33", f"-DCMAKE_INSTALL_PREFIX={folder / 'first'}")
+        "-DCMAKE_BUILD_TYPE=Debug", "-DLABIAL_QUEUE=33", f"-DCMAKE_INSTALL_PREFIX={folder / 'first'}")
     run(CMAKE, "--build", folder / "build")
     run(CMAKE, "--install", folder / "build")
     shutil.rmtree(folder / "build")

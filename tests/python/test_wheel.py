@@ -4,7 +4,9 @@ the wheels of a release."""
 from __future__ import annotations
 
 import base64
+import contextlib
 import hashlib
+import io
 import json
 import os
 import re
@@ -12,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tempfile
 import zipfile
 from pathlib import Path
 from typing import Dict, List
@@ -19,6 +22,7 @@ from typing import Dict, List
 import pytest
 
 import labial
+import wheels
 from packages import CC, CMAKE, SOURCE, run
 from runtime import conformance_frames, conformance_scripts
 from scripts import digest
@@ -183,28 +187,37 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("zig")
 
 
-def build(folder: Path, cache: Path, *platforms: str) -> Dict[str, Path]:
-    """The wheels by platform, built in a temporary folder below `folder`."""
+@pytest.fixture(scope="module")
+def builder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The interpreter of an environment with zig and what else the wheels are built with."""
+    if sys.platform != "linux":
+        pytest.skip("needs Linux")
+    return wheels.environment(tmp_path_factory.mktemp("builder") / "environment")
+
+
+def build(folder: Path, builder: Path, cache: Path, *platforms: str) -> Dict[str, Path]:
+    """The wheels by platform, built by the command in a temporary folder below `folder`."""
     (folder / "temporary").mkdir(parents=True)
-    env = {"ZIG_GLOBAL_CACHE_DIR": str(cache), "TMPDIR": str(folder / "temporary"), "SOURCE_DATE_EPOCH": "1700000001"}
-    command = [sys.executable, SOURCE / "packaging" / "wheels.py", "-o", folder / "dist", "--platform", *platforms]
-    done = subprocess.run(command, env={**os.environ, **env, "PYTHONDONTWRITEBYTECODE": "1"}, capture_output=True,
-                          encoding="utf-8", timeout=1500, check=False)  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    return dict(zip(platforms, map(Path, done.stdout.splitlines())))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(wheels, "environment", lambda _: builder)  # which takes long to install
+        patch.setattr(tempfile, "tempdir", str(folder / "temporary"))
+        for name, value in (("ZIG_GLOBAL_CACHE_DIR", str(cache)), ("SOURCE_DATE_EPOCH", "1700000001"),
+                            ("PYTHONDONTWRITEBYTECODE", "1")):
+            patch.setenv(name, value)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            assert wheels.main(["-o", str(folder / "dist"), "--platform", *platforms]) == 0
+    return dict(zip(platforms, map(Path, said.getvalue().splitlines())))
 
 
 @pytest.fixture(scope="module")
-def wheels(tmp_path_factory: pytest.TempPathFactory, cache: Path) -> Dict[str, Path]:
+def built(tmp_path_factory: pytest.TempPathFactory, builder: Path, cache: Path) -> Dict[str, Path]:
     """The wheel of each platform."""
-    if sys.platform != "linux":
-        pytest.skip("needs Linux")
-    return build(tmp_path_factory.mktemp("wheels"), cache, *MACHINES)
+    return build(tmp_path_factory.mktemp("wheels"), builder, cache, *MACHINES)
 
 
-def test_wheels_are_what_their_names_say(wheels: Dict[str, Path]) -> None:
+def test_wheels_are_what_their_names_say(built: Dict[str, Path]) -> None:
     """Catches a library of another processor or a newer system, a damaged list of files, and files that are missing."""
-    for platform, wheel in wheels.items():
+    for platform, wheel in built.items():
         assert wheel.name == f"labial-{labial.__version__}-py3-none-manylinux_2_17_{platform}.whl"
         files = _contents(wheel)
         info = f"labial-{labial.__version__}.dist-info"
@@ -227,33 +240,30 @@ def _contents(wheel: Path) -> Dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-def test_the_same_sources_give_the_same_bytes(wheels: Dict[str, Path], cache: Path, tmp_path: Path) -> None:
+def test_the_same_sources_give_the_same_bytes(built: Dict[str, Path], builder: Path, cache: Path,
+                                              tmp_path: Path) -> None:
     """Catches times, paths and orders of files that come from the machine."""
-    again = build(tmp_path / "elsewhere", cache, "aarch64")
-    assert again["aarch64"].read_bytes() == wheels["aarch64"].read_bytes()
+    again = build(tmp_path / "elsewhere", builder, cache, "aarch64")
+    assert again["aarch64"].read_bytes() == built["aarch64"].read_bytes()
 
 
 @pytest.mark.skipif(os.uname().machine != "x86_64", reason="the machine is none that the wheel is for")
-def test_the_wheel_for_this_machine_plays_the_conformance_streams(wheels: Dict[str, Path], tmp_path: Path) -> None:
+def test_the_wheel_for_this_machine_plays_the_conformance_streams(built: Dict[str, Path], tmp_path: Path) -> None:
     """As an installed package, without numpy."""
     own = tmp_path / "own"
-    run(sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-index", "--target", own, wheels["x86_64"])
+    run(sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-index", "--target", own, built["x86_64"])
     plays([sys.executable, "-S"], {"PYTHONPATH": str(own), "PATH": ""}, tmp_path)
 
 
 @pytest.mark.skipif(not QEMU or not ROOT.is_dir(), reason="needs an emulator: install qemu-user and libc6-arm64-cross")
-def test_the_wheel_for_aarch64_plays_the_conformance_streams(wheels: Dict[str, Path], cache: Path,
+def test_the_wheel_for_aarch64_plays_the_conformance_streams(built: Dict[str, Path], builder: Path, cache: Path,
                                                              tmp_path: Path) -> None:
     """The wheel's own library under qemu, called by the program that every board runs."""
-    (tmp_path / "labial_runtime.so").write_bytes(_contents(wheels["aarch64"])[LIBRARY])
-    run(sys.executable, "-m", "venv", "--without-pip", tmp_path / "zig")
-    site = tmp_path / "zig" / "lib" / Path(sysconfig.get_path("purelib")).parent.name / "site-packages"
-    wanted = re.findall(r"^ziglang==.*$", (SOURCE / "packaging" / "wheels.txt").read_text(), re.M)
-    run(sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", site, *wanted)
+    (tmp_path / "labial_runtime.so").write_bytes(_contents(built["aarch64"])[LIBRARY])
     conformance = SOURCE / "tests" / "conformance"
     includes = [f"-I{SOURCE / name}" for name in ("include", "lib", "lib/models", "boards", "tests/conformance",
                                                   "tests/c")]  # fmt: skip
-    run(tmp_path / "zig" / "bin" / "python", "-m", "ziglang", "cc", "-target", "aarch64-linux-gnu.2.17", "-O1", *LIMITS,
+    run(builder, "-m", "ziglang", "cc", "-target", "aarch64-linux-gnu.2.17", "-O1", *LIMITS,
         '-DBOARD_NAME="aarch64"', *includes,
         *(conformance / f"{name}.c" for name in ("conformance", "player", "vectors")),
         SOURCE / "boards" / "text.c", SOURCE / "boards" / "host" / "host.c", "labial_runtime.so", "-Wl,-rpath,$ORIGIN",
