@@ -3,17 +3,27 @@
 import english from "./english.js";
 import { Words } from "./words.js";
 
-/** What is compiled already, and the words of each library. */
+/** What is compiled already, and the words of each library: an instance is large. */
 let compiled;
 const made = new WeakMap();
 
 /** Words for a library, with `tools`, which are labial's: its own sources would be another copy. */
 export async function words(tools, labial) {
+    const found = made.get(labial) ?? started(tools, labial);
+    made.set(labial, found);
+    try {
+        return await found;
+    } catch (error) {
+        made.delete(labial); // so that it can be tried again
+        throw error;
+    }
+}
+
+async function started(tools, labial) {
     compiled ??= WebAssembly.compile(tools.unpack(english)).catch((error) => {
-        compiled = undefined; // so that it can be tried again
+        compiled = undefined;
         throw error;
     });
     const { exports } = await WebAssembly.instantiate(await compiled, {});
-    if (!made.has(labial)) made.set(labial, new Words(tools, labial, exports));
-    return made.get(labial);
+    return new Words(tools, labial, exports);
 }
