@@ -14,7 +14,7 @@
  *     // where lips are moved or drawn, 50 times a second or as often as you like
  *     lips_frame(esp_timer_get_time(), faps);
  *
- * Hearing knows a frame when it has the 140 ms of sound from the frame's begin on. So sound must be fed 140 ms before
+ * Hearing knows a frame when it has the 120 ms of sound from the frame's begin on. So sound must be fed 120 ms before
  * it is heard; of sound that comes later, the lips are late by what is missing. The clock is the loudspeaker: what is
  * written is heard when what was written before has ended, or at once if it has. So lips_playing() takes the time
  * before the write, and need not know the size of the driver's buffer.

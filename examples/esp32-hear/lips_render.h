@@ -1,5 +1,5 @@
 /*
- * lips_render.h - a renderer of Espressif's av_render that hears what it plays (lips.h), 140 ms before it plays it.
+ * lips_render.h - a renderer of Espressif's av_render that hears what it plays (lips.h), 120 ms before it plays it.
  *
  * av_render decodes sound when it is to be played, too late for lips. This renderer stands in front of another one and
  * holds the sound back in a buffer, from which a task of its own writes it to the other.
@@ -11,7 +11,7 @@
 
 /* Milliseconds that sound is held back, at least what hearing needs. */
 #ifndef LIPS_RENDER_DELAY
-#define LIPS_RENDER_DELAY 140
+#define LIPS_RENDER_DELAY 120
 #endif
 
 /* Bytes of sound in a millisecond, at most: openai_demo plays 16 kHz with two channels. Other sound is refused. */

@@ -20,7 +20,7 @@ labial speech-corpus "$out/flite" --minutes 55 --sentences "$lj/metadata.csv" "$
 
 train() {
     labial train-hear "$talkers" "$out/espeak" "$out/flite" "$lj" "$kathleen" --cache "$out/cache" \
-        --takes 4,2,2,2,2 --shares .33,.25,.22,.08,.12 --attribution-file "$here/attribution.txt" "$@"
+        --takes 8,3,3,4,4 --shares .40,.18,.18,.10,.14 --smoothness 3 --attribution-file "$here/attribution.txt" "$@"
 }
-train --model small --steps 16000 -o "$out/hear_small.npz"
-train --model large --steps 12000 --smoothness 2 -o "$out/hear_large.npz"
+train --model small --steps 45000 -o "$out/hear_small.npz"
+train --model large --steps 38000 -o "$out/hear_large.npz"

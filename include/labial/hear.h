@@ -11,8 +11,8 @@
  *
  * Frames are those of labial.h: 13 FAPs, 50 frames per second, so that rigs, blends and formats take them. Frame k
  * shows the lips in the sound of 20 ms that begins at 20 k ms. It is known once the sound that follows it is known, too:
- * labial_hear_latency() tells how much that is, 140 ms from a frame's begin with the bundled models. A program that has
- * its sound 140 ms before it is heard, as from a network, keeps frames until their time and has lips without delay.
+ * labial_hear_latency() tells how much that is, 120 ms from a frame's begin with the bundled models. A program that has
+ * its sound 120 ms before it is heard, as from a network, keeps frames until their time and has lips without delay.
  *
  * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. The mouth
  * is closed in silence.

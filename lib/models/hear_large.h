@@ -1,5 +1,5 @@
 /*
- * hear_large.h - the model of hearing, 76 units in 4 blocks, 140 ms from a frame's begin until it is known.
+ * hear_large.h - the model of hearing, 76 units in 4 blocks, 120 ms from a frame's begin until it is known.
  * Written by labial export 0.3.0; do not edit. Trained on speech of LibriSpeech (c) 2014 Vassil Panayotov, Guoguo
  * Chen, Daniel Povey and Sanjeev Khudanpur, CC BY 4.0, https://www.openslr.org/12; LibriTTS (c) 2019 Heiga Zen
  * and others, Google, CC BY 4.0, https://www.openslr.org/60; the CSTR VCTK Corpus 0.92 (c) 2019 Junichi
@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-#define HEAR_LARGE_WORKSPACE_SIZE LABIAL_HEAR_WORKSPACE_SIZE(76, 33)
+#define HEAR_LARGE_WORKSPACE_SIZE LABIAL_HEAR_WORKSPACE_SIZE(76, 27)
 #define HEAR_LARGE_CLASSES 26
 
 /* Lip classes, each named by a phoneme that stands for it. */
@@ -57,7 +57,7 @@ enum {
     HEAR_LARGE_EY = 25
 };
 
-/* The model, 33638 bytes on a 32-bit target. */
+/* The model, 33714 bytes on a 32-bit target. */
 extern const labial_hear_model_t hear_large;
 
 /* The names of the classes; linked only when used. */

@@ -7,10 +7,17 @@
 
 #include <string.h>
 
+#include "hear_large.h"
+#include "hear_small.h"
 #include "prove.h"
 
 #define UNITS 76
-#define ROWS 33
+#define ROWS 27
+
+/* The sizes are the models' own. */
+typedef char are_those_of_small[HEAR_SMALL_WORKSPACE_SIZE == LABIAL_HEAR_WORKSPACE_SIZE(68, 27) ? 1 : -1];
+typedef char are_those_of_large[HEAR_LARGE_WORKSPACE_SIZE == LABIAL_HEAR_WORKSPACE_SIZE(UNITS, ROWS) ? 1 : -1];
+
 #define HEADS 40 /* 26 classes and 13 FAPs, and one that fills up */
 
 static int8_t weights[4][UNITS * UNITS], last_weights[UNITS * UNITS], heads_weights[HEADS * UNITS], taps[4][UNITS * 7];
@@ -106,16 +113,14 @@ int main(void)
     FILL(biases);
     for (i = 0; i < sizeof shifts; i++)
         shifts[i] = (uint8_t)Frama_C_interval(0, 15);
-    set_model(64, 3, 5, 29);
-    set_block(0, 64, 4, 1);
-    set_block(1, 64, 4, 2);
-    set_block(2, 64, 4, 2);
+    set_model(68, 3, 4, 27);
+    set_block(0, 68, 5, 1);
+    set_block(1, 68, 5, 1);
+    set_block(2, 68, 5, 2);
     take();
-    set_model(76, 4, 5, 33);
-    set_block(0, 76, 5, 1);
-    set_block(1, 76, 5, 1);
-    set_block(2, 76, 4, 1);
-    set_block(3, 76, 5, 2);
+    set_model(76, 4, 4, 27);
+    for (i = 0; i < 4; i++)
+        set_block(i, 76, 5, 1);
     take();
     pose();
     return 0;

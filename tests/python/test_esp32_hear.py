@@ -30,7 +30,7 @@ WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werr
 INCLUDES = [f"-I{SOURCE / folder}" for folder in ("include", "lib/models", "examples/esp32-hear")]
 MS = 1000  #: microseconds
 GRACE, EASE, FRAME = 40 * MS, 120 * MS, 20 * MS
-AHEAD = 7  #: frames of sound that must be heard until a frame is known
+AHEAD = 6  #: frames of sound that must be heard until a frame is known
 Faps = List[int]
 
 
@@ -345,7 +345,7 @@ def test_the_renderer_holds_sound_back(board: ctypes.CDLL) -> None:
     assert board.lips_render(1) == 1 and value(board, "stub_tasks").value == 1
     assert board.stub_open(rate, 2, 24) != 0 and board.stub_open(11025, 2, 16) != 0
     assert board.stub_open(48000, 2, 16) != 0, "more than the buffer holds"
-    assert board.stub_open(rate, 2, 16) == 0 and board.stub_latency() == 147
+    assert board.stub_open(rate, 2, 16) == 0 and board.stub_latency() == 127
     size, now = value(board, "stub_played_size", ctypes.c_size_t), value(board, "stub_now", ctypes.c_int64)
     played = (ctypes.c_char * (1 << 20)).in_dll(board, "stub_played")
     begun = 0

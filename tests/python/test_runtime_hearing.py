@@ -48,7 +48,7 @@ def test_frames_are_the_exporters(name: str, rate: int) -> None:
     with labial.Hearing(rate, model=name) as hearing:
         frames = list(hearing.frames(np.array_split(sound, 17)))
         shown = hearing.shown()
-        assert hearing.fps == 50 and hearing.latency == pytest.approx(0.14, abs=0.002)
+        assert hearing.fps == 50 and hearing.latency == pytest.approx(0.12, abs=0.002)
     heard = wanted(sound, rate, name)
     assert numbers(frames) == heard.faps.tolist()
     assert [frame.number for frame in frames] == list(range(100))

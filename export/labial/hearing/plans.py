@@ -30,10 +30,10 @@ class Plan(NamedTuple):
         return sum(memory.ahead * memory.dilation for memory in self.memories)
 
 
-#: Both know a frame 100 ms after its end, and have smoothed it 20 ms later, 140 ms after its begin.
+#: Both know a frame 80 ms after its end, and have smoothed it 20 ms later, 120 ms after its begin.
 PLANS: Dict[str, Plan] = {
-    "small": Plan(64, (Memory(4, 1, 1), Memory(4, 1, 2), Memory(4, 1, 2))),
-    "large": Plan(76, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(4, 1, 1), Memory(5, 1, 2))),
+    "small": Plan(68, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 2))),
+    "large": Plan(76, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1))),
 }
 
 #: The lip classes, each named by the ARPABET phoneme that stands for it.
