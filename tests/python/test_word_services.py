@@ -109,6 +109,9 @@ def test_other_forms_of_messages(tmp_path: Path, source: str, content: Any) -> N
     ("hume", {"snippet_id": "a", "timestamp": {"text": "a", "type": "word", "time": 1}}, "1 is not an object"),
     ("google", {"timepoints": 1}, "'timepoints' is 1, not a list"),
     ("inworld", {"timestampInfo": {}}, "no words with their times"),
+    ("fish", [{"chunk_seq": 1, "alignment": {"segments": [{"text": "go", "start": 0, "end": 0.3}]}},
+              {"chunk_seq": 1, "alignment": {"segments": []}}], "no words with their times"),
+    ("polly", [{"type": ["word"], "value": "a", "time": 1}], "no speech marks of type"),
 ])  # fmt: skip
 def test_malformed_files(tmp_path: Path, source: str, content: Any, problem: str) -> None:
     """One line that names the file and says what is wrong."""

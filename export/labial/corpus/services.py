@@ -130,7 +130,7 @@ def read_azure_events(path: PathLike, how: Pronunciation = PLAIN) -> List[Source
 
 def read_polly_marks(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
     """Amazon Polly's visemes, or its words where there are none."""
-    kinds = {item.get("type") for item in read_entries(path)}
+    kinds = [item.get("type") for item in read_entries(path)]
     if "viseme" in kinds:
         return read_polly(path)
     if "word" not in kinds:

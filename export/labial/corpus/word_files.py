@@ -7,7 +7,7 @@ A file holds one message, a list of messages or one per line, in the order of th
 
 from __future__ import annotations
 
-from typing import Callable, Dict, List, Sequence
+from typing import Callable, Dict, List, Sequence, Tuple
 
 from labial.corpus.entries import Entry, read_entries
 from labial.corpus.timings import PathLike, SourceSegment, checked
@@ -32,29 +32,30 @@ def reader(name: str) -> Callable[..., List[SourceSegment]]:
 def read(path: PathLike, tell: Callable[[Entry], List[Told]], how: Pronunciation = PLAIN,
          joins: bool = False) -> List[SourceSegment]:
     """Reads a file of a service's messages, of which `tell` says what each tells."""
-    found: Dict[str, List[Told]] = {"phonemes": [], "words": [], "characters": []}
-    for item in read_entries(path):
+    found: Dict[str, List[Tuple[int, Told]]] = {"phonemes": [], "words": [], "characters": []}
+    for number, item in enumerate(read_entries(path)):
         for told in tell(item):
-            if told.items:
-                found[told.kind].append(told)
-    kind = next((kind for kind, messages in found.items() if messages), "words")
+            found[told.kind].append((number, told))
+    kind = next((kind for kind, messages in found.items() if any(told.items for _, told in messages)), "words")
     items = _all(found[kind], joins)
     if kind == "phonemes":
         return _from_phonemes(path, items)
     return _from_words(path, items, how) if kind == "words" else _from_characters(path, items, how)
 
 
-def _all(messages: Sequence[Told], joins: bool) -> List[Timed]:
-    """The items of messages one after the other."""
-    keyed = {told.key: told.items for told in messages if told.key is not None}
-    if keyed:
+def _all(messages: Sequence[Tuple[int, Told]], joins: bool) -> List[Timed]:
+    """The items of numbered messages one after the other. Where messages have keys, they are in the order of these, and
+    the latest of each counts; one without has its number."""
+    if any(told.key is not None for _, told in messages):
+        keyed = {number if told.key is None else told.key: told.items for number, told in messages}
         return [item for key in sorted(keyed) for item in keyed[key]]
     found: List[Timed] = []
     end = 0.0
-    for told in messages:
-        origin = origin_of(told.items, end) if joins else 0.0
-        found += [later(item, origin) for item in told.items]
-        end = max(end, end_of(found[-len(told.items) :]))
+    for _, told in messages:
+        if told.items:
+            origin = origin_of(told.items, end) if joins else 0.0
+            found += [later(item, origin) for item in told.items]
+            end = max(end, end_of(found[-len(told.items) :]))
     return found
 
 
