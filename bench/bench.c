@@ -16,7 +16,7 @@ static const bench_input_t speech = BENCH_INPUT(SPEECH);
 static const bench_input_t laughter = BENCH_INPUT(LAUGHTER);
 
 static labial_t stream;
-static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4];
+static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4];
 
 int main(int argc, char **argv)
 {
@@ -39,6 +39,7 @@ int main(int argc, char **argv)
     }
     if (labial_init(&stream, input->model, workspace, sizeof workspace, bench_on_frame, &sum) != LABIAL_OK)
         return 1;
+    (void)labial_exact(&stream, 1);
     start = clock();
     do {
         bench_feed(&stream, input, &next, &pushed, (uint32_t)seconds * 1000u);

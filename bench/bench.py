@@ -2,8 +2,8 @@
 """Measures Labial: instructions per frame on every board and on the host, bytes, stack, accuracy.
 
     cmake --workflow --preset bench              measures, writes build/bench/bench.json and bench.md, and checks
-    python3 bench/bench.py --update              makes what was measured last the baseline, bench/baseline.json, and the
-                                                 figures of README.md
+    python3 bench/bench.py --update              makes what was measured last the baseline, bench/baseline.json, and
+                                                 writes the figures of all pages, as bench/figures.py does
 
 Needs the programs of the preset `bench` in its build folder; measurements without their tools are skipped with a
 message.
@@ -16,8 +16,23 @@ import sys
 from pathlib import Path
 from typing import Callable, Dict, List
 
-from measure import baseline, boards, hearing, host, loss, mlpg, profile, readme, sizes, stack, table, words
-from measure.core import Bench, LeftOut
+from measure import (
+    baseline,
+    boards,
+    examples,
+    figures,
+    hearing,
+    host,
+    loss,
+    mlpg,
+    pages,
+    profile,
+    sizes,
+    stack,
+    table,
+    words,
+)
+from measure.core import Bench, Figure, LeftOut
 
 
 def _options() -> argparse.Namespace:
@@ -26,7 +41,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--build", type=Path, default=source / "build" / "bench", help="folder of the preset `bench`")
     parser.add_argument("--check", action="store_true", help="fail when a figure is worse than bench/baseline.json")
     parser.add_argument("--update", action="store_true",
-                        help="measure nothing; make the last figures the baseline and README.md's")
+                        help="measure nothing; make the last figures the baseline and the pages'")
     parser.add_argument("--require-all", action="store_true", help="fail when anything is left out")
     parser.add_argument("--compiler", default="cc", help="that built the host's programs (cc)")
     parser.add_argument("--corpus", default="", help="speech corpus on whose phonemes loss and delay are measured")
@@ -54,6 +69,8 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
         attempt(boards.measure, board, checksums)
         attempt(hearing.measure, board, heard)
         attempt(words.measure, board, heard)
+    attempt(examples.esp32_hear)
+    attempt(examples.uno)
     print("Host: speed, instructions, equation 3, loss", flush=True)
     attempt(host.measure, compiler)
     attempt(host.python, compiler)
@@ -81,7 +98,18 @@ def _check(bench: Bench, path: Path, require_all: bool) -> bool:
               f"{len(bench.figures)} figures. If that is meant: python3 bench/bench.py --update")
     elif not passed_over:
         print("No figure is worse than bench/baseline.json.")
-    return not worse and not (require_all and passed_over)
+    outdated = _outdated(bench.source, bench.figures)
+    return not worse and not outdated and not (require_all and passed_over)
+
+
+def _outdated(source: Path, measured: List[Figure]) -> bool:
+    """Prints the figures of pages that are not those measured now; returns whether there are any."""
+    complaints = pages.refresh(source, figures.of(source, measured), write=False)
+    for sentence in complaints:
+        print(sentence)
+    if complaints:
+        print("To write what was measured into bench/baseline.json and the pages: python3 bench/bench.py --update")
+    return bool(complaints)
 
 
 def main() -> int:
@@ -89,11 +117,9 @@ def main() -> int:
     options = _options()
     recorded, committed = options.build / "bench.json", options.source / "bench" / "baseline.json"
     if options.update:
-        kept = baseline.checked(baseline.read(recorded))
-        page = options.source / "README.md"
-        page.write_text(readme.updated(page.read_text(encoding="utf-8"), kept), encoding="utf-8")
-        baseline.write(committed, kept)
-        print(f"Written: {committed} and the figures of {page}")
+        baseline.write(committed, baseline.checked(baseline.read(recorded)))
+        changed = pages.refresh(options.source, figures.of(options.source), write=True)
+        print("\n".join([*changed, f"Written: {committed} and {len(changed)} figures of pages"]))
         return 0
     bench = Bench(options.source, options.build)
     rows = _measure(bench, options.compiler, options.corpus)

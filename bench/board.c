@@ -15,7 +15,7 @@ static const bench_input_t others[2] = { BENCH_SPEECH, BENCH_LAUGHTER };
 #endif
 
 static labial_t stream;
-static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4];
+static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4];
 
 static void report(const char *name, uint32_t number)
 {
@@ -38,6 +38,7 @@ int main(void)
     initial = board_count();
     if (result != LABIAL_OK)
         return 1;
+    (void)labial_exact(&stream, 1);
     do {
         uint32_t taken;
         board_count_start();

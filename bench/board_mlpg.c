@@ -7,7 +7,7 @@
 #include "unit.h"
 
 static bench_unit_t unit;
-static int16_t motion[BENCH_HOLD][LABIAL_CHANNELS];
+static int16_t motion[BENCH_HOLD];
 
 int main(void)
 {

@@ -42,6 +42,7 @@ static int play(unsigned count, uint32_t *latest)
     uint32_t start = 0;
     unsigned next = 0;
     int result = labial_init(&stream, &speech_en, workspace, sizeof workspace, on_frame, &clock);
+    (void)labial_exact(&stream, 1);
     while (result >= 0 && result != LABIAL_DONE) {
         for (; next < count && start <= clock.tick * period && result >= 0; next++) {
             result = labial_push(&stream, phonemes[next].phoneme, phonemes[next].ms);

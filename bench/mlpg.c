@@ -30,7 +30,7 @@ static void rows(const bench_unit_t *unit, unsigned k, unsigned t, double mean[W
     const double share = (state->share + (state->share >> 7)) / 256.0;
     const int inside = t > 0 && t + 1 < BENCH_UNIT;
     precision[0] = labial_weight(state->hold);
-    mean[0] = state->mean + share * (unit->targets[t][k] - state->mean);
+    mean[0] = state->mean + share * (unit->targets[t] - state->mean);
     precision[1] = inside ? 4.0 * labial_weight(state->weight[0]) : 0.0;
     mean[1] = labial_scaled(state->motion[0], model->channels[k].motion_scale[0]);
     precision[2] = inside ? labial_weight(state->weight[1]) : 0.0;
@@ -44,7 +44,7 @@ static void fill(bench_unit_t *unit)
         bench_unit_fill(&one, model, k);
         for (unsigned t = 0; t < BENCH_UNIT; t++) {
             unit[k].path[t] = one.path[t];
-            unit[k].targets[t][k] = one.targets[t][k];
+            unit[k].targets[t] = one.targets[t];
         }
     }
 }
@@ -125,9 +125,9 @@ static int compare(bench_unit_t *unit)
     if (hts_solve(unit, 1, expected))
         return 1;
     for (unsigned k = 0; k < BENCH_CHANNELS; k++) {
-        bench_solve(model, k, unit[k].path, BENCH_UNIT, &unit[k].targets[0][k]);
+        bench_solve(model, k, unit[k].path, BENCH_UNIT, unit[k].targets);
         for (unsigned t = 0; t < BENCH_UNIT; t++) {
-            const double difference = fabs(unit[k].targets[t][k] - expected[t][k]) / 16.0;
+            const double difference = fabs(unit[k].targets[t] - expected[t][k]) / 16.0;
             largest = difference > largest ? difference : largest;
         }
     }
@@ -138,7 +138,7 @@ static int compare(bench_unit_t *unit)
 
 static void labial_solve(const bench_unit_t *unit, unsigned long count)
 {
-    static int16_t motion[BENCH_HOLD][LABIAL_CHANNELS];
+    static int16_t motion[BENCH_HOLD];
     while (count-- > 0)
         for (unsigned k = 0; k < BENCH_CHANNELS; k++)
             bench_unit_solve(&unit[k], model, k, motion);

@@ -12,26 +12,21 @@
 
 #include "labial/labial.h"
 #include "laughter_synthetic.h"
-#include "protrusion.h"
 #include "speech_en.h"
 #include "unit.h"
 
 static uint8_t path[BENCH_SOLVE];
-static int16_t line[BENCH_SOLVE], positions[BENCH_SOLVE][LABIAL_CHANNELS];
+static int16_t line[BENCH_SOLVE];
 
 /* One channel; false when the input ends early. */
 static int solve(const labial_model_t *model, unsigned k, unsigned frames)
 {
     if (fread(path, 1, frames, stdin) != frames || fread(line, sizeof *line, frames, stdin) != frames)
         return 0;
-    for (unsigned t = 0; t < frames; t++) {
+    for (unsigned t = 0; t < frames; t++)
         if (path[t] >= model->state_count)
             return 0;
-        positions[t][0] = line[t];
-    }
-    bench_solve(model, k, path, frames, &positions[0][0]);
-    for (unsigned t = 0; t < frames; t++)
-        line[t] = positions[t][0];
+    bench_solve(model, k, path, frames, line);
     return fwrite(line, sizeof *line, frames, stdout) == frames;
 }
 
@@ -52,7 +47,7 @@ int main(int argc, char **argv)
             fprintf(stderr, "labial-bench-solve: a unit of %u frames\n", frames);
             return 1;
         }
-        for (unsigned k = 0; k < labial_channel_count(model); k++)
+        for (unsigned k = 0; k < model->channel_count; k++)
             if (!solve(model, k, frames)) {
                 fputs("labial-bench-solve: malformed input\n", stderr);
                 return 1;

@@ -18,7 +18,7 @@ void bench_unit_fill(bench_unit_t *unit, const labial_model_t *model, unsigned k
         const int32_t here = states[state_of(model, k, t)].mean;
         const int32_t next = states[state_of(model, k, t + HOLD)].mean;
         unit->path[t] = (uint8_t)state_of(model, k, t);
-        unit->targets[t][k] = (int16_t)(here + (next - here) * (int32_t)(t % HOLD) / (int32_t)HOLD);
+        unit->targets[t] = (int16_t)(here + (next - here) * (int32_t)(t % HOLD) / (int32_t)HOLD);
     }
 }
 
@@ -27,8 +27,7 @@ static uint8_t marks_of(unsigned t, unsigned length)
     return (uint8_t)((t == 0 ? (unsigned)LABIAL_BEGINS : 0u) | (t + 1u == length ? (unsigned)LABIAL_ENDS : 0u));
 }
 
-void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, unsigned k,
-                      int16_t motion[HOLD][LABIAL_CHANNELS])
+void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, unsigned k, int16_t motion[HOLD])
 {
     static labial_kept_t kept;
     static labial_solver_t solver;
@@ -38,14 +37,13 @@ void bench_unit_solve(const bench_unit_t *unit, const labial_model_t *model, uns
     for (unsigned t = 0; t < BENCH_UNIT; t += HOLD) {
         *(labial_kept_t *)(void *)work = kept;
         for (unsigned i = 0; i < HOLD; i++) {
-            frames[i].target[k] = unit->targets[t + i][k];
+            frames[i].target[k] = unit->targets[t + i];
             frames[i].marks = marks_of(t + i, BENCH_UNIT);
         }
         labial_trajectory_terms(&model->channels[k], unit->path[t], LABIAL_GAIN_ONE, &terms);
         labial_trajectory_rows(&solver, &terms, frames, k, HOLD, work + LABIAL_WINDOW + 1);
         if (t >= LABIAL_WINDOW + HOLD)
-            labial_trajectory_back(work + LABIAL_WINDOW + HOLD - 1, LABIAL_WINDOW, HOLD, HOLD - 1u, HOLD,
-                                   &motion[0][k]);
+            labial_trajectory_back(work + LABIAL_WINDOW + HOLD - 1, LABIAL_WINDOW, HOLD, HOLD - 1u, HOLD, motion);
         kept = *(const labial_kept_t *)(const void *)(work + HOLD);
     }
 }
@@ -58,11 +56,11 @@ void bench_solve(const labial_model_t *model, unsigned k, const uint8_t *path, u
     labial_terms_t terms;
     for (unsigned t = 0; t < length; t++) {
         labial_trajectory_terms(&model->channels[k], path[t], LABIAL_GAIN_ONE, &terms);
-        frame.target[k] = positions[t * LABIAL_CHANNELS];
+        frame.target[k] = positions[t];
         frame.marks = marks_of(t, length);
         labial_trajectory_rows(&solver, &terms, &frame, k, 1, &factors[t]);
     }
     labial_trajectory_back(&factors[length - 1u], 0, length, length - 1u, length, positions);
     for (unsigned t = 0; t < length; t++)
-        positions[t * LABIAL_CHANNELS] = (int16_t)(positions[t * LABIAL_CHANNELS] - model->channels[k].centre);
+        positions[t] = (int16_t)(positions[t] - model->channels[k].centre);
 }

@@ -57,11 +57,13 @@ uint32_t board_count(void);
 
 /* ---- Interrupts, only on Arm boards ----------------------------------------------------------------------------- */
 
-/* Interrupts that have a vector. */
+/* Interrupts that have a vector, and the number that the system timer has beside theirs; board_count_start() takes that
+ * timer for itself. */
 #define BOARD_INTERRUPTS 32
+#define BOARD_SYSTEM_TIMER (0u - 1u)
 
-/* Called for every interrupt that the image enables, with its number below BOARD_INTERRUPTS: an image that uses
- * interrupts defines it. Without a definition an interrupt is a processor fault. */
+/* Called for every interrupt that the image enables, with its number below BOARD_INTERRUPTS or that of the timer: an image
+ * that uses interrupts defines it. Without a definition an interrupt is a processor fault. */
 void board_interrupt(unsigned number);
 
 /* ---- Stack ------------------------------------------------------------------------------------------------------- */

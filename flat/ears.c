@@ -116,3 +116,8 @@ int ears_restart(ears_t *ears)
 {
     return labial_hear_restart(&ears->hear);
 }
+
+int ears_exact(ears_t *ears, unsigned exact)
+{
+    return labial_hear_exact(&ears->hear, exact != 0);
+}

@@ -41,6 +41,7 @@ FLAT(ears_end) int ears_end(ears_t *ears, int16_t *faps, uint32_t *stretches, ui
 FLAT(ears_cancel)
 int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint32_t *stretches, uint32_t room);
 FLAT(ears_stretches) uint32_t ears_stretches(const ears_t *ears);
+FLAT(ears_exact) int ears_exact(ears_t *ears, unsigned exact);
 FLAT(ears_restart) int ears_restart(ears_t *ears);
 
 #endif

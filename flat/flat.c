@@ -25,6 +25,11 @@ const char *flat_version(void)
     return NUMBER(LABIAL_VERSION_MAJOR) "." NUMBER(LABIAL_VERSION_MINOR) "." NUMBER(LABIAL_VERSION_PATCH);
 }
 
+const char *flat_method(void)
+{
+    return LABIAL_PAPER ? "paper" : "labial";
+}
+
 const char *result_text(int result)
 {
     return labial_result_text(result);
@@ -137,6 +142,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 {
     mouth_t *mouth = (mouth_t *)user;
     memcpy(mouth->faps, faps, sizeof mouth->faps);
+    mouth->moved = 1;
     (void)frame;
 }
 
@@ -163,17 +169,22 @@ unsigned mouth_room(const mouth_t *mouth)
 
 int mouth_end(mouth_t *mouth)
 {
+    mouth->ended = 1;
     return labial_end(&mouth->stream);
 }
 
 int mouth_cancel(mouth_t *mouth, uint32_t milliseconds)
 {
+    mouth->ended = 1;
     return labial_cancel(&mouth->stream, milliseconds);
 }
 
 int mouth_restart(mouth_t *mouth)
 {
-    return labial_restart(&mouth->stream);
+    const int result = labial_restart(&mouth->stream);
+    if (result == LABIAL_OK)
+        mouth->ended = 0;
+    return result;
 }
 
 int mouth_articulation(mouth_t *mouth, unsigned percent)
@@ -181,10 +192,22 @@ int mouth_articulation(mouth_t *mouth, unsigned percent)
     return labial_articulation(&mouth->stream, percent);
 }
 
+int mouth_exact(mouth_t *mouth, unsigned exact)
+{
+    mouth->exact = exact != 0;
+    return labial_exact(&mouth->stream, mouth->exact);
+}
+
 int mouth_tick(mouth_t *mouth)
 {
+    mouth->moved = 0;
     mouth->state = labial_tick(&mouth->stream);
     return mouth->state;
+}
+
+unsigned mouth_moved(const mouth_t *mouth)
+{
+    return mouth->moved;
 }
 
 const int16_t *mouth_faps(const mouth_t *mouth)
@@ -220,16 +243,16 @@ unsigned mouth_delay(const mouth_t *mouth)
 int mouth_run(mouth_t *mouth, int16_t *out, unsigned count)
 {
     unsigned underway = labial_latency(&mouth->stream).delay, frames = 0;
-    while (frames < count) {
-        const int result = mouth_tick(mouth);
-        if (result < 0)
-            return result;
+    int result = labial_exact(&mouth->stream, mouth->exact || !mouth->ended);
+    while (result >= 0 && frames < count) {
+        result = mouth_tick(mouth);
         if (result == LABIAL_OK)
             memcpy(&out[LABIAL_CHANNELS * frames++], mouth->faps, sizeof mouth->faps);
         else if (result != LABIAL_WAITING || underway-- == 0)
             break;
     }
-    return (int)frames;
+    (void)labial_exact(&mouth->stream, mouth->exact);
+    return result < 0 ? result : (int)frames;
 }
 
 /* ---- Laughs ------------------------------------------------------------------------------------------------------ */

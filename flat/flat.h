@@ -17,7 +17,7 @@
 #include "labial/timings.h"
 
 /* Version of this interface; the Python package refuses a library of another one. */
-#define FLAT_INTERFACE 3
+#define FLAT_INTERFACE 4
 
 #ifdef __wasm__
 #define FLAT(name) __attribute__((export_name(#name)))
@@ -30,12 +30,16 @@ typedef struct {
     labial_t stream;
     int16_t faps[LABIAL_CHANNELS]; /* of the frame delivered last */
     int32_t state;                 /* result of the last tick */
-    uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4u];
+    uint8_t moved;                 /* whether the last tick delivered a face */
+    uint8_t exact, ended;          /* what mouth_exact() was told; whether no more phonemes will come */
+    uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4u];
 } mouth_t;
 
-/* FLAT_INTERFACE, "MAJOR.MINOR.PATCH", and a sentence for a result. */
+/* FLAT_INTERFACE, "MAJOR.MINOR.PATCH", the method that the library is built for ("labial" or "paper"), and a sentence for
+ * a result. */
 FLAT(flat_interface) uint32_t flat_interface(void);
 FLAT(flat_version) const char *flat_version(void);
+FLAT(flat_method) const char *flat_method(void);
 FLAT(result_text) const char *result_text(int result);
 
 /* Bytes of what the caller makes room for: a stream, a loaded model, a laugh, a parser of timings, an output and a curve
@@ -67,7 +71,8 @@ FLAT(find) int find(const labial_names_t *names, unsigned labels, const char *na
 FLAT(find_nearest)
 int find_nearest(const labial_names_t *names, unsigned labels, const char *name, uint32_t length, unsigned silence);
 
-/* A stream. mouth_faps() is where the frame of the last mouth_tick() lies. */
+/* A stream. mouth_faps() is where the face that mouth_tick() delivered last lies, mouth_moved() whether the last one
+ * did: also one that comes to rest while phonemes are late. */
 FLAT(mouth_init) int mouth_init(mouth_t *mouth, const labial_model_t *model);
 FLAT(mouth_use) int mouth_use(mouth_t *mouth, const labial_model_t *model);
 FLAT(mouth_push) int mouth_push(mouth_t *mouth, unsigned phoneme, uint32_t milliseconds);
@@ -76,7 +81,9 @@ FLAT(mouth_end) int mouth_end(mouth_t *mouth);
 FLAT(mouth_cancel) int mouth_cancel(mouth_t *mouth, uint32_t milliseconds);
 FLAT(mouth_restart) int mouth_restart(mouth_t *mouth);
 FLAT(mouth_articulation) int mouth_articulation(mouth_t *mouth, unsigned percent);
+FLAT(mouth_exact) int mouth_exact(mouth_t *mouth, unsigned exact);
 FLAT(mouth_tick) int mouth_tick(mouth_t *mouth);
+FLAT(mouth_moved) unsigned mouth_moved(const mouth_t *mouth);
 FLAT(mouth_faps) const int16_t *mouth_faps(const mouth_t *mouth);
 FLAT(mouth_state) int mouth_state(const mouth_t *mouth);
 
@@ -87,7 +94,8 @@ FLAT(mouth_waiting) unsigned mouth_waiting(const mouth_t *mouth);
 FLAT(mouth_delay) unsigned mouth_delay(const mouth_t *mouth);
 
 /* Ticks until `count` frames lie at `out` or no more can be had; they are as many as it returns, unless it is an error.
- * Ticks that bring nothing before the first frame are made, too. */
+ * Ticks that bring nothing before the first frame are made, too. As these follow no clock, the face stays where it is
+ * while phonemes are late. */
 FLAT(mouth_run) int mouth_run(mouth_t *mouth, int16_t *out, unsigned count);
 
 /* A laugh; laugh_next() writes a phoneme and its milliseconds. */

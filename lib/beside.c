@@ -11,10 +11,17 @@
 
 #define NUMBERS_HALF UINT32_C(0x80000000) /* differences from here on are negative */
 
+/* The highest rate: times LABIAL_BESIDE_RATE it has 32 bits. */
+#define RATE_MOST UINT32_C(50000000)
+
 /* Marks. */
 #define MARK_EMPTY 0u
 #define MARK_WAITS 1u
 #define MARK_SHOWN 2u
+
+/* What is known. */
+#define KNOWN_REST 1u
+#define KNOWN_SESSION 2u
 
 #define QUIET_MOST (LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE)
 
@@ -22,7 +29,7 @@
 static uint8_t *beside_place(const labial_beside_t *player, uint32_t frame)
 {
     const size_t at = (size_t)(frame & (player->frames - 1u));
-    return player->memory + (size_t)player->outputs * 2u + at * (player->outputs + 1u);
+    return player->memory + (size_t)player->outputs * 4u + at * (player->outputs + 1u);
 }
 
 /* Moves the window to another first frame, which is not before the current one unless all frames are dropped. */
@@ -48,12 +55,24 @@ static uint32_t beside_frame(labial_beside_t *player, uint32_t sample)
     return player->frame + (sample - player->sample) * LABIAL_BESIDE_RATE / player->rate;
 }
 
-/* The value a step nearer to another one, where it arrives in `left` steps. */
-static uint8_t nearer(uint8_t value, uint8_t to, unsigned left)
+/* The value a step nearer to another one, where it arrives in `left` steps of at most `most` each. */
+static uint8_t nearer(uint8_t value, uint8_t to, unsigned left, unsigned most)
 {
-    if (to < value)
-        return (uint8_t)(value - (unsigned)(value - to) / left);
-    return (uint8_t)(value + (unsigned)(to - value) / left);
+    unsigned way = to < value ? (unsigned)value - to : (unsigned)to - value;
+    if (left > 1u)
+        way /= left;
+    if (way > most)
+        way = most;
+    return (uint8_t)(to < value ? value - way : value + way);
+}
+
+/* Drops all frames; numbers begin where second `second` of a session does, with its frame `now`. */
+static void begin_session(labial_beside_t *player, uint32_t second, uint32_t now)
+{
+    (void)labial_beside_cancel(player);
+    player->sample = second * player->rate;
+    player->frame = second * LABIAL_BESIDE_RATE;
+    player->now = now;
 }
 
 int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate, void *memory, size_t size)
@@ -62,24 +81,52 @@ int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate,
     if (!player || !memory)
         return LABIAL_BESIDE_ERROR_NULL;
     memset(player, 0, sizeof *player);
-    if (outputs == 0 || outputs > 255u || rate == 0 || rate > UINT32_C(50000000) ||
-        size < LABIAL_BESIDE_SIZE(outputs, 1u))
+    if (outputs == 0 || outputs > 255u || rate == 0 || rate > RATE_MOST || size < LABIAL_BESIDE_SIZE(outputs, 1u))
         return LABIAL_BESIDE_ERROR_SIZE;
     room = (size - LABIAL_BESIDE_SIZE(outputs, 0u)) / (outputs + 1u);
     player->frames = 1;
     while (player->frames < LABIAL_BESIDE_FRAMES_MAX && player->frames <= room / 2u)
         player->frames = (uint16_t)(player->frames * 2u);
-    memset(memory, 0, size);
     player->outputs = (uint8_t)outputs;
     player->rate = rate;
     player->quiet = QUIET_MOST;
     player->memory = (uint8_t *)memory;
+    memset(memory, 0, size);
+    memset(player->memory + outputs * 3u, 255, outputs);
+    return LABIAL_BESIDE_RESTS;
+}
+
+int labial_beside_limit(labial_beside_t *player, unsigned output, unsigned most)
+{
+    if (!player)
+        return LABIAL_BESIDE_ERROR_NULL;
+    if (player->outputs == 0)
+        return LABIAL_BESIDE_ERROR_STATE;
+    if (output >= player->outputs || most == 0 || most > 255u)
+        return LABIAL_BESIDE_ERROR_SIZE;
+    player->memory[player->outputs * 3u + output] = (uint8_t)most;
+    return LABIAL_BESIDE_RESTS;
+}
+
+int labial_beside_begin(labial_beside_t *player, uint32_t rate)
+{
+    if (!player)
+        return LABIAL_BESIDE_ERROR_NULL;
+    if (player->outputs == 0)
+        return LABIAL_BESIDE_ERROR_STATE;
+    if (rate == 0 || rate > RATE_MOST)
+        return LABIAL_BESIDE_ERROR_SIZE;
+    player->rate = rate;
+    player->known &= KNOWN_REST;
+    begin_session(player, 0, 0);
     return LABIAL_BESIDE_RESTS;
 }
 
 int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size)
 {
     const uint8_t *from = (const uint8_t *)packet;
+    int result = LABIAL_BESIDE_RESTS;
+    uint16_t session;
     uint32_t frame;
     unsigned k;
     if (!player || !from)
@@ -90,12 +137,22 @@ int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size)
         size != LABIAL_BESIDE_HEAD + (from[3] + 1ul) * player->outputs)
         return LABIAL_BESIDE_ERROR_PACKET;
     frame = from[4] | (uint32_t)from[5] << 8 | (uint32_t)from[6] << 16 | (uint32_t)from[7] << 24;
-    if (from[1]) {
+    session = (uint16_t)(from[8] | (unsigned)from[9] << 8);
+    if (from[1])
+        result = LABIAL_BESIDE_CANCELS;
+    if (!(player->known & KNOWN_SESSION) || session != player->session) {
+        if (player->known & KNOWN_SESSION)
+            result = LABIAL_BESIDE_BEGINS;
+        begin_session(player, frame / LABIAL_BESIDE_RATE, frame);
+    } else if (from[1]) {
         (void)labial_beside_cancel(player);
         if (frame - player->now < NUMBERS_HALF)
             player->now = frame;
     }
-    player->known = 1;
+    if (!player->known)
+        memcpy(player->memory + player->outputs, from + LABIAL_BESIDE_HEAD, player->outputs);
+    player->known = KNOWN_REST | KNOWN_SESSION;
+    player->session = session;
     memcpy(player->memory, from + LABIAL_BESIDE_HEAD, player->outputs);
     for (k = 0; k < from[3]; k++) {
         uint8_t *const place = beside_place(player, frame + k);
@@ -104,13 +161,14 @@ int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size)
             *place = MARK_WAITS;
         }
     }
-    return from[1] ? LABIAL_BESIDE_CANCELS : LABIAL_BESIDE_RESTS;
+    return result;
 }
 
 int labial_beside_at(labial_beside_t *player, uint32_t sample, uint8_t *values)
 {
     uint32_t frame, passed;
-    uint8_t *place, *rest, *pose, i;
+    unsigned left = 1;
+    uint8_t *place, *rest, *pose, *goal, *limits, i;
     if (!player || !values)
         return LABIAL_BESIDE_ERROR_NULL;
     if (!player->known)
@@ -123,19 +181,22 @@ int labial_beside_at(labial_beside_t *player, uint32_t sample, uint8_t *values)
         move_window(player, frame, player->frames);
     rest = player->memory;
     pose = rest + player->outputs;
+    goal = pose + player->outputs;
+    limits = goal + player->outputs;
     place = beside_place(player, frame);
     if (frame == player->now && *place == MARK_WAITS) {
         *place = MARK_SHOWN;
-        memcpy(pose, place + 1, player->outputs);
+        memcpy(goal, place + 1, player->outputs);
         player->quiet = 0;
-    } else {
-        if (player->quiet < QUIET_MOST)
-            player->quiet++;
-        if (player->quiet > LABIAL_BESIDE_HOLD) {
-            for (i = 0; i < player->outputs; i++)
-                pose[i] = nearer(pose[i], rest[i], QUIET_MOST + 1u - player->quiet);
-        }
+    } else if (player->quiet < QUIET_MOST) {
+        player->quiet++;
     }
+    if (player->quiet > LABIAL_BESIDE_HOLD) {
+        goal = rest;
+        left = QUIET_MOST + 1u - player->quiet;
+    }
+    for (i = 0; i < player->outputs; i++)
+        pose[i] = nearer(pose[i], goal[i], left, limits[i]);
     memcpy(values, pose, player->outputs);
     return player->quiet <= LABIAL_BESIDE_HOLD ? LABIAL_BESIDE_SPEAKS : LABIAL_BESIDE_RESTS;
 }

@@ -7,9 +7,8 @@
 
 #include "fixed.h"
 #include "labial/labial.h"
-#include "protrusion.h"
 
-#define HEADER_SIZE 32u
+#define HEADER_SIZE 48u
 #define CHECKED_FROM 12u /* first byte that the checksum covers */
 
 enum { HAS_CONTEXTS = 1, HAS_SLOPES = 2, HAS_TWO_KNOTS = 4, HAS_PROTRUSION = 8 };
@@ -96,7 +95,7 @@ static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessor
 
 static void read_tables(reader_t *reader, unsigned optional, labial_model_t *model, labial_channel_t *channels)
 {
-    const uint32_t width = (optional & HAS_PROTRUSION) ? LABIAL_CHANNELS_SOLVED : LABIAL_CHANNELS;
+    const uint32_t width = model->channel_count;
     const uint32_t components = model->component_count, shape = components * width;
     const uint32_t rows = (uint32_t)model->phoneme_count * model->kernel_taps;
     unsigned k;
@@ -107,11 +106,8 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     model->shapes = (const int8_t *)table(reader, shape, 1u);
     if (optional & HAS_SLOPES)
         model->slopes = (const int8_t *)table(reader, shape, 1u);
-    if (model->kernel_taps) {
-        model->kernels = (const uint32_t *)table(reader, rows, 12u);
-        if (width == LABIAL_CHANNELS)
-            model->last_kernels = (const int8_t *)table(reader, rows, 1u);
-    }
+    if (model->kernel_taps)
+        model->kernels = (const uint32_t *)table(reader, rows, 4u * LABIAL_KERNEL_WORDS(width));
     if (model->pair_count) {
         model->pair_keys = (const uint16_t *)table(reader, model->pair_count, 2u);
         model->pairs = (const int8_t *)table(reader, (uint32_t)model->pair_count * model->pair_knots * width, 1u);
@@ -124,8 +120,6 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
         model->protrusion = (const labial_protrusion_t *)table(reader, 1u, sizeof(labial_protrusion_t));
     for (k = 0; k < width; k++)
         read_channel(reader, model->state_count, model->predecessors, &channels[k]);
-    if (width < LABIAL_CHANNELS)
-        channels[width] = channels[width - 1u];
     model->channels = channels;
 }
 
@@ -144,7 +138,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
         return LABIAL_ERROR_MODEL;
     if (u16(header + 12) != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
-    if (header[28] > (HAS_CONTEXTS | HAS_SLOPES | HAS_TWO_KNOTS | HAS_PROTRUSION))
+    if (header[28] > (HAS_CONTEXTS | HAS_SLOPES | HAS_TWO_KNOTS | HAS_PROTRUSION) || header[32] > LABIAL_CHANNELS)
         return LABIAL_ERROR_MODEL;
     if (u32(header + 8) != checksum(header + CHECKED_FROM, size - CHECKED_FROM))
         return LABIAL_ERROR_MODEL;
@@ -167,6 +161,8 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     model->pair_knots = (header[28] & HAS_TWO_KNOTS) ? 2u : 1u;
     model->floor_count = header[29];
     model->pair_count = u16(header + 30);
+    model->channel_count = header[32];
+    memcpy(model->sources, header + 33, sizeof model->sources);
     reader.data = header;
     reader.size = size;
     reader.at = HEADER_SIZE;

@@ -4,17 +4,18 @@
  * A state lasts `stride` frames, and so channels take turns: in each tick those that are next are searched and solved
  * for the frames since their last step, up to the latest one, and go back from there to the frames that are due.
  * Channel c has its step every `stride` ticks, c ticks apart from channel 0. So every tick does about the same work,
- * and a frame is complete LABIAL_DELAY(stride) ticks after it was taken. The last channel has none while all frames in
- * hand are of models that compute FAP 17 (protrusion.h). Beside frames of others it moves theirs as the tables in its
- * place say, and nobody asks.
+ * and a frame is complete LABIAL_DELAY(stride) ticks after it was taken.
+ *
+ * Models of a stream may have different numbers of channels. As many step as the widest model has of those whose frames
+ * are in hand. Beside frames of a narrower model the others move as its first channel does, and nobody asks.
  */
 #ifndef LABIAL_CHANNELS_H
 #define LABIAL_CHANNELS_H
 
 #include "labial/labial.h"
 
-/* Divides up a workspace of LABIAL_WORKSPACE_SIZE(stride) bytes and resets them. */
-void labial_channels_init(labial_channels_t *channels, unsigned stride, void *workspace);
+/* Divides up a workspace of LABIAL_WORKSPACE_SIZE(stride, width) bytes and resets them. */
+void labial_channels_init(labial_channels_t *channels, unsigned stride, unsigned width, void *workspace);
 
 /* Drops all frames. */
 void labial_channels_reset(labial_channels_t *channels);
@@ -30,10 +31,9 @@ void labial_channels_run_out(labial_channels_t *channels);
  * 1/LABIAL_GAIN_ONE (trajectory.h). */
 void labial_channels_step(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS], int32_t gain);
 
-/* Completes the frame that is due; returns its motion, Q4 FAP, of LABIAL_CHANNELS; NULL when none is. Called once a tick;
- * valid until the next step. */
-const int16_t *labial_channels_due(const labial_channels_t *channels,
-                                   const labial_model_t *const models[LABIAL_MODELS]);
+/* Writes the frame that is due, Q4 FAP; returns whether one is. */
+int labial_channels_due(const labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
+                        int16_t frame[LABIAL_CHANNELS]);
 
 /* Whether frames of the model in `slot` are still to be completed. */
 int labial_channels_uses(const labial_channels_t *channels, unsigned slot);

@@ -5,7 +5,6 @@
  * takes for it, compiled by GCC with -Os or -O2. tests/device/model_cost.c counts them.
  */
 #include "labial/labial.h"
-#include "protrusion.h"
 
 enum {
     PER_TICK = 3500,     /* the queue, floors and contact, fades, the callback's frame */
@@ -45,6 +44,18 @@ static uint32_t selection(const labial_model_t *model)
     return most * PER_COMPONENT + pairs;
 }
 
+#if LABIAL_PAPER
+
+/* Instructions of one channel in the tick that ends a piece: all its steps, over all states, and all its rows. */
+static uint32_t channel_step(const labial_model_t *model, uint32_t stride)
+{
+    const uint32_t steps = (LABIAL_PIECE + stride - 1u) / stride;
+    return steps * (PER_SEARCH + model->state_count * (PER_STATE + (uint32_t)model->predecessors * PER_TRANSITION)) +
+           LABIAL_PIECE * (PER_ROW + PER_STEP_BACK);
+}
+
+#else
+
 /* Instructions of one channel step: a step of the search, the rows of its frames and one more at the end, the backward
  * pass. */
 static uint32_t channel_step(const labial_model_t *model, uint32_t stride)
@@ -55,13 +66,15 @@ static uint32_t channel_step(const labial_model_t *model, uint32_t stride)
            (LABIAL_WINDOW + 1u + stride) * PER_STEP_BACK;
 }
 
+#endif
+
 uint32_t labial_model_cost(const labial_model_t *model)
 {
     uint32_t stride, channels;
     if (!model || model->search_stride == 0)
         return 0;
     stride = model->search_stride;
-    channels = (labial_channel_count(model) + stride - 1u) / stride;
+    channels = LABIAL_PAPER ? model->channel_count : (model->channel_count + stride - 1u) / stride;
     return PER_TICK + (uint32_t)model->kernel_taps * PER_TAP + SELECTED * selection(model) +
            channels * channel_step(model, stride);
 }

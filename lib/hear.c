@@ -7,6 +7,9 @@
  * What the network tells of single frames moves faster than lips, so a pose is delivered with a quarter of the one
  * before and of the one after it, which it waits for.
  *
+ * Silence is rest, whatever the network makes of it: as the frames after the one that is delivered are known, the face
+ * leaves rest so early that it is all there when the sound begins.
+ *
  * The window's samples, its spectrum and what layers put out share their memory, since each is done with before the
  * next one begins; only the samples that the next window needs are kept aside.
  */
@@ -14,6 +17,7 @@
 
 #include <string.h>
 
+#include "fade.h"
 #include "fixed.h"
 #include "hear_convert.h"
 #include "hear_features.h"
@@ -24,11 +28,16 @@
 /* Samples that a window shares with the next one. */
 #define SHARED (LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_)
 
-/* Frames over which the first ones after a restart fade in. */
-#define FADING 8u
+/* The longest easing of a cancel, milliseconds. */
+#define EASING 1000u
 
-/* The largest number of frames over which a cancel eases: a second. */
-#define EASING LABIAL_HEAR_RATE
+/* Sound that stays within this span for a frame is silent. */
+#define SILENT_SPAN 32
+
+/* A frame is silent when it, as many before it and all known ones after it are; the face comes to rest, and leaves it, in
+ * as many frames as are known after the first of them. */
+#define SILENT_BEFORE 2u
+#define RESTING 5u
 
 uint32_t labial_hear_workspace_size(const labial_hear_model_t *model)
 {
@@ -43,16 +52,23 @@ static int usable(const labial_hear_t *hear)
 
 /* ---- Frames out --------------------------------------------------------------------------------------------------- */
 
-/* Delivers a pose, Q4. */
-static void tell_frame(labial_hear_t *hear, const int16_t pose[LABIAL_CHANNELS])
+/* Delivers a pose, Q4, or the neutral face, as far as the fade leads there. */
+static void tell_frame(labial_hear_t *hear, const int16_t *pose)
 {
     int16_t faps[LABIAL_CHANNELS];
-    unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        faps[k] = (int16_t)((pose[k] + 8) >> 4);
+    labial_fade_to(&hear->fade, pose);
+    labial_fade_faps(&hear->fade, faps);
     hear->busy = 1;
     hear->callback(hear->user, hear->frame++, faps);
     hear->busy = 0;
+}
+
+/* Delivers the way to rest. */
+static void tell_way_to_rest(labial_hear_t *hear, unsigned frames)
+{
+    labial_fade_begin(&hear->fade, frames, 0);
+    for (; frames > 0; frames--)
+        tell_frame(hear, NULL);
 }
 
 /* Tells the class of the frames before the next one, if there are any. */
@@ -71,7 +87,8 @@ static void tell_class(labial_hear_t *hear)
 static void deliver_heads(labial_hear_t *hear, const int16_t *heads)
 {
     const uint8_t leader = hear->leader;
-    int16_t next[LABIAL_CHANNELS];
+    int16_t next[LABIAL_CHANNELS], pose[LABIAL_CHANNELS];
+    int32_t share;
     unsigned k;
     hear->leader = (uint8_t)labial_hear_leader(hear->model, heads);
     labial_hear_pose(hear->model, heads, next);
@@ -85,31 +102,48 @@ static void deliver_heads(labial_hear_t *hear, const int16_t *heads)
     if (leader != hear->shown)
         tell_class(hear);
     hear->shown = leader;
+    if (hear->silent > SILENT_BEFORE + hear->model->ahead + 1u)
+        hear->rest = (uint8_t)(hear->rest < RESTING ? hear->rest + 1u : RESTING);
+    else
+        hear->rest = (uint8_t)(hear->rest > 0 ? hear->rest - 1u : 0u);
+    share = labial_ease(RESTING - hear->rest, RESTING);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
-        hear->pose[k] = (int16_t)((hear->before[k] + 2 * (int32_t)hear->now[k] + next[k] + 2) >> 2);
+        pose[k] = (int16_t)((hear->before[k] + 2 * (int32_t)hear->now[k] + next[k] + 2) >> 2);
+        pose[k] = (int16_t)((pose[k] * share + 8192) >> 14);
         hear->before[k] = hear->now[k];
         hear->now[k] = next[k];
     }
-    if (hear->fade > 0) {
-        const int32_t share = labial_ease(hear->fade, FADING + 1u);
-        for (k = 0; k < LABIAL_CHANNELS; k++)
-            hear->pose[k] = (int16_t)(hear->faded[k] + (((hear->pose[k] - hear->faded[k]) * share + 8192) >> 14));
-        hear->fade = (uint8_t)(hear->fade < FADING ? hear->fade + 1u : 0u);
-    }
-    tell_frame(hear, hear->pose);
+    tell_frame(hear, pose);
 }
 
 /* ---- Sound in ---------------------------------------------------------------------------------------------------- */
+
+/* Whether the samples that a window has beyond the one before it are silent. */
+static int is_silent(const labial_hear_t *hear)
+{
+    int32_t least = hear->window[SHARED], most = least;
+    unsigned i;
+    for (i = SHARED + 1u; i < LABIAL_HEAR_WINDOW_; i++) {
+        least = hear->window[i] < least ? hear->window[i] : least;
+        most = hear->window[i] > most ? hear->window[i] : most;
+    }
+    return most - least <= SILENT_SPAN;
+}
 
 /* Hears a window that is complete. */
 static void hear_window(labial_hear_t *hear)
 {
     const int16_t *heads = NULL;
+    if (!is_silent(hear))
+        hear->loud = 1;
     memcpy(hear->tail, hear->window + LABIAL_HEAR_HOP_, sizeof hear->tail);
     labial_hear_features(hear->window, &hear->level, hear->features + hear->hop * LABIAL_HEAR_BANDS);
     hear->hop ^= 1u;
-    if (hear->hop == 0)
+    if (hear->hop == 0) {
+        hear->silent = (uint8_t)(hear->loud ? 0u : hear->silent < UINT8_MAX ? hear->silent + 1u : UINT8_MAX);
+        hear->loud = 0;
         heads = labial_hear_network(hear);
+    }
     if (heads)
         deliver_heads(hear, heads);
     memcpy(hear->window, hear->tail, sizeof hear->tail);
@@ -140,10 +174,13 @@ static void hear_at_rate(labial_hear_t *hear, int32_t sample)
         hear_sample(hear, out[i]);
 }
 
-/* Forgets the sound. */
+/* Forgets the sound: there was silence before, and what follows fades in. */
 static void reset_sound(labial_hear_t *hear)
 {
-    hear->hop = hear->fade = hear->held = 0;
+    hear->hop = hear->held = hear->loud = 0;
+    hear->silent = UINT8_MAX;
+    hear->rest = RESTING;
+    labial_fade_begin(&hear->fade, LABIAL_FADE_STEPS, 0);
     hear->filled = SHARED;
     hear->sounding = 0;
     hear->first = hear->frame;
@@ -221,25 +258,26 @@ int labial_hear_end(labial_hear_t *hear)
     }
     tell_class(hear);
     hear->ended = 1;
+    if (!hear->exact && !labial_fade_rests(&hear->fade))
+        tell_way_to_rest(hear, LABIAL_EASE_FRAMES);
     return LABIAL_OK;
+}
+
+int labial_hear_exact(labial_hear_t *hear, int exact)
+{
+    const int result = usable(hear);
+    if (result == LABIAL_OK)
+        hear->exact = exact != 0;
+    return result;
 }
 
 int labial_hear_cancel(labial_hear_t *hear, uint32_t milliseconds)
 {
     const int result = usable(hear);
-    int16_t pose[LABIAL_CHANNELS];
-    unsigned step, steps, k;
     if (result != LABIAL_OK)
         return result;
     tell_class(hear);
-    steps = milliseconds < 1000u ? (unsigned)labial_quotient(milliseconds + 19u, 20u) : EASING;
-    for (step = 1, steps += steps == 0; step <= steps; step++) {
-        const int32_t left = 16384 - labial_ease(step, steps);
-        for (k = 0; k < LABIAL_CHANNELS; k++)
-            pose[k] = (int16_t)((hear->pose[k] * left + 8192) >> 14);
-        tell_frame(hear, pose);
-    }
-    memset(hear->pose, 0, sizeof hear->pose);
+    tell_way_to_rest(hear, labial_fade_frames(milliseconds < EASING ? milliseconds : EASING, LABIAL_HEAR_RATE));
     reset_sound(hear);
     hear->ended = 1;
     return LABIAL_OK;
@@ -253,8 +291,6 @@ int labial_hear_restart(labial_hear_t *hear)
     if (!hear->ended)
         return LABIAL_ERROR_STATE;
     reset_sound(hear);
-    memcpy(hear->faded, hear->pose, sizeof hear->faded);
-    hear->fade = 1;
     hear->ended = 0;
     return LABIAL_OK;
 }

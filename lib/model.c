@@ -4,8 +4,8 @@
 #include <stddef.h>
 
 #include "fixed.h"
+#include "followers.h"
 #include "labial/labial.h"
-#include "protrusion.h"
 
 static int is_within(uint32_t value, uint32_t least, uint32_t most)
 {
@@ -28,13 +28,15 @@ static int tables_are_there(const labial_model_t *model)
     unsigned k;
     if (!model->phonemes || !model->components || !model->shapes || !model->channels)
         return 0;
-    if (model->kernel_taps && (!model->kernels || !(model->last_kernels || model->protrusion)))
+    if (model->kernel_taps && !model->kernels)
         return 0;
     if (model->pair_count && (!model->pair_keys || !model->pairs))
         return 0;
     if (model->floor_count && (!model->floors || !model->contacts))
         return 0;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
+    if (model->sources[LABIAL_FAP_17] == LABIAL_FROM_CORNERS && !model->protrusion)
+        return 0;
+    for (k = 0; k < model->channel_count && k < LABIAL_CHANNELS; k++)
         if (!model->channels[k].emissions || !model->channels[k].states || !model->channels[k].transitions ||
             !model->channels[k].initials)
             return 0;
@@ -50,6 +52,19 @@ static int counts_are_sound(const labial_model_t *model)
            is_within(model->predecessors, 1, LABIAL_STATES_MAX) &&
            is_within(model->search_stride, 1, LABIAL_SEARCH_STRIDE_MAX) && model->silence < model->phoneme_count &&
            model->mixture_mean <= 1;
+}
+
+/* Whether every channel of a frame is one of the model's, or FAP 17 computed of two that are. */
+static int sources_are_sound(const labial_model_t *model)
+{
+    unsigned k;
+    if (!is_within(model->channel_count, 1, LABIAL_CHANNELS))
+        return 0;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        if (model->sources[k] >= model->channel_count &&
+            (k != LABIAL_FAP_17 || model->sources[k] != LABIAL_FROM_CORNERS))
+            return 0;
+    return 1;
 }
 
 static int kernels_are_sound(const labial_model_t *model)
@@ -72,7 +87,7 @@ static int pairs_are_sound(const labial_model_t *model)
 
 static int floors_are_sound(const labial_model_t *model)
 {
-    const unsigned width = labial_channel_count(model);
+    const unsigned width = model->channel_count;
     unsigned i, k;
     for (i = 0; i < model->floor_count; i++) {
         if (model->contacts[i] >> width)
@@ -166,7 +181,7 @@ static int states_are_sound(const labial_model_t *model, const labial_channel_t 
 static int channels_are_sound(const labial_model_t *model)
 {
     unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (k = 0; k < model->channel_count; k++) {
         const labial_channel_t *channel = &model->channels[k];
         if (!is_position(channel->centre) || channel->shape_scale > 32767u || channel->slope_scale > 16383u ||
             !emissions_are_sound(model, channel) || !states_are_sound(model, channel) ||
@@ -184,8 +199,8 @@ int labial_model_check(const labial_model_t *model)
         return LABIAL_ERROR_VERSION;
     if (!tables_are_there(model))
         return LABIAL_ERROR_NULL;
-    return counts_are_sound(model) && kernels_are_sound(model) && pairs_are_sound(model) && floors_are_sound(model) &&
-                   phonemes_are_sound(model) && channels_are_sound(model)
+    return counts_are_sound(model) && sources_are_sound(model) && kernels_are_sound(model) && pairs_are_sound(model) &&
+                   floors_are_sound(model) && phonemes_are_sound(model) && channels_are_sound(model)
                ? LABIAL_OK
                : LABIAL_ERROR_MODEL;
 }

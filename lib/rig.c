@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "fixed.h"
+#include "rig_parts.h"
 
 /* Channels of FAP 51 and FAP 52: the opening of the lips is minus their sum. */
 #define UPPER_LIP 3
@@ -61,8 +62,7 @@ static int output_is_sound(const labial_rig_output_t *output)
            closing_is_sound(output) && curve_is_sound(output->curve);
 }
 
-/* value within the output's limits; the maximum where an unchecked table has minimum > maximum. */
-static int32_t limited(const labial_rig_output_t *output, int32_t value)
+int32_t labial_rig_limited(const labial_rig_output_t *output, int32_t value)
 {
     if (value < output->minimum)
         value = output->minimum;
@@ -98,7 +98,7 @@ static int32_t bent(const labial_rig_curve_t *curve, int32_t linear)
     return labial_add(segment->to, scaled(labial_sub(linear, segment->from), segment->slope, 20));
 }
 
-static int32_t target(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS])
+int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS])
 {
     /* Q12 FAP. The weights' limit keeps it within 65,535 * 2^15, below 2^31; the gain's limit then keeps the product of
      * Q12 and Q16 below 2^59, and the move below 2^31. */
@@ -108,9 +108,10 @@ static int32_t target(const labial_rig_output_t *output, const int16_t faps[LABI
         mix = labial_add(mix, (int32_t)output->weights[i] * faps[i]);
     move = labial_clamp(scaled(mix, output->gain, 28), MOVE_MAX);
     value = labial_add(output->neutral, output->invert ? -move : move);
-    value = limited(output, output->curve ? bent(output->curve, value) : value);
+    value = labial_rig_limited(output, output->curve ? bent(output->curve, value) : value);
     if (output->contact) /* both values are within the limits, and so is what lies between them */
-        value = limited(output, labial_add(value, scaled(labial_sub(output->closed, value), contact(faps), 24)));
+        value =
+            labial_rig_limited(output, labial_add(value, scaled(labial_sub(output->closed, value), contact(faps), 24)));
     return value;
 }
 
@@ -125,9 +126,9 @@ int labial_rig_check(const labial_rig_t *rig)
     return rig->count > 0 ? LABIAL_OK : LABIAL_ERROR_RIG;
 }
 
-static int32_t at_rest(const labial_rig_output_t *output)
+int32_t labial_rig_resting(const labial_rig_output_t *output)
 {
-    return limited(output, output->contact ? output->closed : output->neutral);
+    return labial_rig_limited(output, output->contact ? output->closed : output->neutral);
 }
 
 int labial_rig_rest(const labial_rig_t *rig, int32_t *values)
@@ -136,7 +137,7 @@ int labial_rig_rest(const labial_rig_t *rig, int32_t *values)
     if (!rig || !rig->outputs || !values)
         return LABIAL_ERROR_NULL;
     for (i = 0; i < rig->count; i++)
-        values[i] = at_rest(&rig->outputs[i]);
+        values[i] = labial_rig_resting(&rig->outputs[i]);
     return LABIAL_OK;
 }
 
@@ -146,13 +147,13 @@ static int32_t towards_closed(const labial_rig_output_t *output, int32_t wanted,
     const int32_t low = labial_sub(output->closed, room), high = labial_add(output->closed, room);
     if (wanted < low)
         wanted = low;
-    return limited(output, wanted > high ? high : wanted);
+    return labial_rig_limited(output, wanted > high ? high : wanted);
 }
 
-static int32_t moved(const labial_rig_output_t *output, int32_t last, int32_t wanted)
+static int32_t moved(const labial_rig_output_t *output, int32_t last, int32_t wanted, int32_t deadband)
 {
     const int32_t change = labial_sub(wanted, last);
-    if (change < output->deadband && labial_sub(0, change) < output->deadband)
+    if (change < deadband && labial_sub(0, change) < deadband)
         return last;
     if (output->slew > 0 && change > output->slew)
         return labial_add(last, output->slew);
@@ -168,25 +169,16 @@ int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS
         return LABIAL_ERROR_NULL;
     for (i = 0; i < rig->count; i++) {
         const labial_rig_output_t *output = &rig->outputs[i];
-        values[i] = moved(output, limited(output, values[i]), target(output, faps));
+        values[i] =
+            moved(output, labial_rig_limited(output, values[i]), labial_rig_target(output, faps), output->deadband);
     }
     return LABIAL_OK;
 }
 
 /* ---- Limits of acceleration -------------------------------------------------------------------------------------- */
 
-/* The frames ahead of an output, for limits from above; limits from below use the mirrored values. */
-typedef struct {
-    int32_t wanted[LABIAL_RIG_SIGHT]; /* units, of this frame and those that follow */
-    int32_t
-        highest[LABIAL_RIG_SIGHT]; /* units: from here it can still come to rest at the wanted value of each frame */
-    unsigned count;                /* of frames, 1 or more; the last one continues without end */
-    int32_t rest;                  /* units: the value of the output at rest, which is always allowed */
-    int32_t speed, acceleration;   /* units per frame, and per frame and frame; both positive */
-} sight_t;
-
 /* Computes `highest`. Slowing down to a target over k frames covers the same `room` as speeding up over k frames. */
-static void look_up(sight_t *sight)
+static void look_up(labial_sight_t *sight)
 {
     unsigned i, k;
     for (i = 0; i < LABIAL_RIG_SIGHT; i++) {
@@ -205,7 +197,7 @@ static void look_up(sight_t *sight)
 }
 
 /* Whether a value that moves on from `value` by `change`, and brakes from then on, stays below `highest`. */
-static int stays_below(const sight_t *sight, int32_t value, int32_t change)
+static int stays_below(const labial_sight_t *sight, int32_t value, int32_t change)
 {
     unsigned i;
     for (i = 0;; i++) {
@@ -220,7 +212,7 @@ static int stays_below(const sight_t *sight, int32_t value, int32_t change)
 }
 
 /* The change that is nearest to `change` and stays below `highest`; `least` where none does. */
-static int32_t not_above(const sight_t *sight, int32_t value, int32_t change, int32_t least)
+static int32_t not_above(const labial_sight_t *sight, int32_t value, int32_t change, int32_t least)
 {
     int32_t low = least, high = change;
     if (stays_below(sight, value, change) || !stays_below(sight, value, least))
@@ -235,7 +227,7 @@ static int32_t not_above(const sight_t *sight, int32_t value, int32_t change, in
     return low;
 }
 
-static void mirror(sight_t *sight)
+static void mirror(labial_sight_t *sight)
 {
     unsigned i;
     for (i = 0; i < sight->count; i++)
@@ -245,7 +237,7 @@ static void mirror(sight_t *sight)
 
 /* The next change of a value that is at `last` and changed by `change`. Not crossing the rest value has priority: where
  * the value cannot be both in time and slow enough, it is late. */
-static int32_t steered(sight_t *sight, int32_t last, int32_t change, int32_t deadband)
+static int32_t steer(labial_sight_t *sight, int32_t last, int32_t change, int32_t deadband)
 {
     const int flip = last < sight->rest;
     int32_t least, most, next;
@@ -269,35 +261,58 @@ static int32_t steered(sight_t *sight, int32_t last, int32_t change, int32_t dea
     return flip ? labial_sub(0, next) : next;
 }
 
+/* The next value within limits of speed and acceleration. */
+static int32_t steered(const labial_rig_output_t *output, labial_sight_t *sight, int32_t last, int32_t change,
+                       int32_t deadband)
+{
+    sight->rest = labial_rig_resting(output);
+    sight->acceleration = labial_clamp(output->acceleration, LABIAL_RIG_VALUE_MAX);
+    sight->speed =
+        labial_clamp(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX, LABIAL_RIG_SIGHT * sight->acceleration);
+    return labial_rig_limited(output, labial_add(last, steer(sight, last, change, deadband)));
+}
+
+/* The next value within a limit of speed, on the way to `wanted`; lips touch in the frame `touch`. */
+static int32_t slewed(const labial_rig_output_t *output, int32_t wanted, uint32_t touch, int32_t last, int32_t deadband)
+{
+    if (output->contact && output->slew > 0 && touch != LABIAL_RIG_NEVER) {
+        int32_t room = 0;
+        for (; touch > 0 && room < ROOM_MAX; touch--)
+            room = labial_add(room, output->slew);
+        wanted = towards_closed(output, wanted, room);
+    }
+    return moved(output, last, wanted, deadband);
+}
+
+int32_t labial_rig_step(const labial_rig_output_t *output, labial_sight_t *sight, uint32_t touch, int32_t last,
+                        int32_t change, int32_t deadband)
+{
+    return output->acceleration > 0 ? steered(output, sight, last, change, deadband)
+                                    : slewed(output, sight->wanted[0], touch, last, deadband);
+}
+
 int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values,
                            int32_t *changes)
 {
-    unsigned i, until = 0, k;
-    sight_t sight;
+    unsigned i, k;
+    uint32_t touch = 0;
+    labial_sight_t sight;
     if (!rig || !rig->outputs || !frames || !values || count == 0)
         return LABIAL_ERROR_NULL;
-    while (until < count && contact(frames + (size_t)LABIAL_CHANNELS * until) < CONTACT_ONE)
-        until++;
+    while (touch < count && contact(frames + (size_t)LABIAL_CHANNELS * touch) < CONTACT_ONE)
+        touch++;
+    if (touch == count)
+        touch = LABIAL_RIG_NEVER;
     for (i = 0; i < rig->count; i++) {
         const labial_rig_output_t *output = &rig->outputs[i];
-        const int32_t last = limited(output, values[i]);
+        const int32_t last = labial_rig_limited(output, values[i]);
         if (changes && output->acceleration > 0) {
             sight.count = count < LABIAL_RIG_SIGHT ? count : LABIAL_RIG_SIGHT;
             for (k = 0; k < LABIAL_RIG_SIGHT; k++)
-                sight.wanted[k] = k < sight.count ? target(output, frames + (size_t)LABIAL_CHANNELS * k) : 0;
-            sight.rest = at_rest(output);
-            sight.acceleration = labial_clamp(output->acceleration, LABIAL_RIG_VALUE_MAX);
-            sight.speed = labial_clamp(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX,
-                                       LABIAL_RIG_SIGHT * sight.acceleration);
-            values[i] = limited(output, labial_add(last, steered(&sight, last, changes[i], output->deadband)));
+                sight.wanted[k] = k < sight.count ? labial_rig_target(output, frames + (size_t)LABIAL_CHANNELS * k) : 0;
+            values[i] = steered(output, &sight, last, changes[i], output->deadband);
         } else {
-            int32_t wanted = target(output, frames), room = 0;
-            if (output->contact && output->slew > 0 && until < count) {
-                for (k = 0; k < until && room < ROOM_MAX; k++)
-                    room = labial_add(room, output->slew);
-                wanted = towards_closed(output, wanted, room);
-            }
-            values[i] = moved(output, last, wanted);
+            values[i] = slewed(output, labial_rig_target(output, frames), touch, last, output->deadband);
         }
         if (changes)
             changes[i] = labial_sub(values[i], last);

@@ -7,13 +7,10 @@
 #include <string.h>
 
 #include "fixed.h"
-#include "protrusion.h"
 
 #define ONE 4096u /* the whole of a mixture, Q12 */
 
 #define FAR (2u * LABIAL_CONTACT_FRAMES) /* farther than contacts are looked for, frames */
-
-#define FIRST_HALF 8u /* channels whose shape the first half of a selection mixes */
 
 /* Largest z of a duration: over a thousand standard deviations, so that the widest component takes an endless pause. */
 #define DURATION_Z_MAX 65535u
@@ -27,10 +24,9 @@ static const uint16_t coarse[16] = { 32768, 19875, 12055, 7312, 4435, 2690, 1631
 static const uint16_t fine[16] = { 32768, 31760, 30783, 29836, 28918, 28028, 27166, 26330,
                                    25520, 24735, 23974, 23236, 22521, 21828, 21157, 20506 };
 
-/* By how much lips part between two contacts, FAP: half a standard deviation of the lips in speech; and in which
- * channels they do, FAPs 51, 52, 55 to 58. */
+/* By how much lips part between two contacts, FAP: half a standard deviation of the lips in speech, in FAPs 51, 52, 55
+ * to 58; 0 in those that do not part. */
 static const uint8_t parted[LABIAL_CHANNELS] = { 0, 0, 0, 28, 100, 0, 0, 25, 25, 86, 86, 0, 0 };
-#define PARTING 0x798u
 
 /* Q15 */
 static uint16_t likelihood(uint32_t cost)
@@ -101,10 +97,10 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
 /* Mixes the channels of the first or second half of a phoneme's shape, the same at both knots. */
 static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, labial_selection_t *selection)
 {
-    const unsigned count = selection->count, width = labial_channel_count(model);
-    const unsigned end = selection->halves == 0 ? FIRST_HALF : width;
+    const unsigned count = selection->count, width = model->channel_count;
+    const unsigned half = (width + 1u) / 2u, end = selection->halves == 0 ? half : width;
     unsigned c, k;
-    for (k = selection->halves == 0 ? 0u : FIRST_HALF; k < end; k++) {
+    for (k = selection->halves == 0 ? 0u : half; k < end; k++) {
         const labial_channel_t *channel = &model->channels[k];
         int32_t mean = 0, change = 0; /* in table steps, Q12 */
         for (c = 0; c < count; c++) {
@@ -128,7 +124,7 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
  * in `pair_keys`. */
 static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *shape)
 {
-    const unsigned knots = model->pair_knots, width = labial_channel_count(model);
+    const unsigned knots = model->pair_knots, width = model->channel_count;
     unsigned low = 0, high = model->pair_count, j, k;
     while (low < high) {
         const unsigned middle = (low + high) / 2u;
@@ -175,14 +171,14 @@ static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
     const unsigned floor = model->phonemes[phoneme].floor;
     /*@ assert floor > 0; */
     LABIAL_CHECK(floor > 0u);
-    return model->floors + (floor - 1u) * labial_channel_count(model);
+    return model->floors + (floor - 1u) * model->channel_count;
 }
 
 /* Brings those of the channels that come to rest in silence `rest` of LABIAL_REST_FRAMES of the way there. */
 static void settle(const labial_model_t *model, unsigned channels, int32_t rest, int16_t target[LABIAL_CHANNELS])
 {
     const int16_t *pose = floors_of(model, model->silence);
-    const unsigned width = labial_channel_count(model);
+    const unsigned width = model->channel_count;
     unsigned k;
     for (k = 0; k < width; k++, channels >>= 1)
         if (channels & 1u)
@@ -193,9 +189,9 @@ static void settle(const labial_model_t *model, unsigned channels, int32_t rest,
 static void apply_floor(const labial_model_t *model, unsigned phoneme, unsigned channels,
                         int16_t target[LABIAL_CHANNELS])
 {
-    const unsigned floor = model->phonemes[phoneme].floor, width = labial_channel_count(model);
+    const unsigned floor = model->phonemes[phoneme].floor, width = model->channel_count;
     unsigned k;
-    if (floor == 0 || channels == 0)
+    if (floor == 0)
         return;
     for (k = 0; k < width; k++, channels >>= 1) {
         const int16_t least = model->floors[(floor - 1u) * width + k];
@@ -225,19 +221,21 @@ static void part(const labial_model_t *model, const uint8_t *labels, int16_t tar
 {
     const unsigned ahead = distance_to_contact(model, labels, 1);
     const unsigned behind = ahead < FAR ? distance_to_contact(model, labels, -1) : FAR;
-    const unsigned width = labial_channel_count(model);
     const int16_t *last, *next;
-    unsigned channels, k;
+    unsigned channels, fap;
     if (ahead == FAR || behind == FAR || ahead + behind > LABIAL_CONTACT_FRAMES + 1u)
         return;
-    channels = contacts_of(model, labels[-(int)behind]) & contacts_of(model, labels[ahead]) & PARTING;
+    channels = contacts_of(model, labels[-(int)behind]) & contacts_of(model, labels[ahead]);
     last = floors_of(model, labels[-(int)behind]);
     next = floors_of(model, labels[ahead]);
-    for (k = 0; k < width; k++) {
-        const int32_t floor = last[k] < next[k] ? last[k] : next[k];
-        const int32_t most = labial_clamp(floor - parted[k] * 16, LABIAL_POSITION_MAX);
-        if ((channels >> k & 1u) && floor > LABIAL_NO_FLOOR && target[k] > most)
-            target[k] = (int16_t)most;
+    for (fap = 0; fap < LABIAL_CHANNELS; fap++) {
+        const unsigned k = model->sources[fap];
+        if (parted[fap] && (channels >> k & 1u)) { /* FAP 17, which may have no channel, does not part */
+            const int32_t floor = last[k] < next[k] ? last[k] : next[k];
+            const int32_t most = labial_clamp(floor - parted[fap] * 16, LABIAL_POSITION_MAX);
+            if (floor > LABIAL_NO_FLOOR && target[k] > most)
+                target[k] = (int16_t)most;
+        }
     }
 }
 
@@ -255,58 +253,60 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
     apply_floor(model, labels[0], is_open ? ~own : ~0u, target);
     if (taken->rest && own)
         settle(model, own, taken->rest, target);
-    apply_floor(model, labels[1], before, target);
-    apply_floor(model, labels[-1], after, target);
+    if (before)
+        apply_floor(model, labels[1], before, target);
+    if (after)
+        apply_floor(model, labels[-1], after, target);
     if (!(own | before | after) && labels[0] != model->silence)
         part(model, labels, target);
     return (is_open ? 0u : own) | before | after;
 }
 
-/* What the kernels' taps add up to on every channel, in steps; 0 on one that the model does not have. Two channels of a
- * word are summed at once. */
-static void add_taps(const labial_model_t *model, const uint8_t *labels, int16_t *sums)
+/* Where the kernels' taps of a frame begin. */
+static void find_taps(const labial_model_t *model, const uint8_t *labels, const uint32_t **words)
 {
-    const uint32_t *words[LABIAL_KERNEL_TAPS_MAX], *const *row; /* of each tap's phoneme */
-    const uint32_t halves = 0x00ff00ffu;
-    const unsigned taps = model->kernel_taps;
-    const int8_t *const last_kernels = model->last_kernels;
+    const unsigned taps = model->kernel_taps, size = LABIAL_KERNEL_WORDS((unsigned)model->channel_count);
     int lag = -(int)(model->kernel_behind * model->kernel_stride); /* an index, for no pointer may pass the end */
+    unsigned tap;
+    for (tap = 0; tap < taps; tap++, lag += model->kernel_stride)
+        words[tap] = model->kernels + ((size_t)labels[lag] * taps + tap) * size;
+}
+
+/* What the taps add up to on the four channels of word `group`, in steps. Two channels of a word are summed at once. */
+static void add_taps(const uint32_t *const *words, unsigned taps, unsigned group, int16_t sums[4])
+{
+    const uint32_t halves = 0x00ff00ffu;
     const int32_t bias = (int32_t)(taps * 128u);
-    unsigned tap, group;
-    int32_t last = 0;
-    for (tap = 0; tap < taps; tap++, lag += model->kernel_stride) {
-        const size_t at = (size_t)labels[lag] * taps + tap;
-        words[tap] = model->kernels + at * 3u;
-        if (last_kernels)
-            last += last_kernels[at];
+    const uint32_t *const *const end = words + taps;
+    uint32_t even = 0, odd = 0;
+    for (; words < end; words++) {
+        const uint32_t word = (*words)[group];
+        even += word & halves;
+        odd += word >> 8 & halves;
     }
-    for (group = 0; group < LABIAL_CHANNELS_SOLVED / 4u; group++) {
-        uint32_t even = 0, odd = 0;
-        for (row = words; row < words + taps; row++) {
-            const uint32_t word = (*row)[group];
-            even += word & halves;
-            odd += word >> 8 & halves;
-        }
-        *sums++ = (int16_t)((int32_t)(even & 0xffffu) - bias);
-        *sums++ = (int16_t)((int32_t)(odd & 0xffffu) - bias);
-        *sums++ = (int16_t)((int32_t)(even >> 16) - bias);
-        *sums++ = (int16_t)((int32_t)(odd >> 16) - bias);
-    }
-    *sums = (int16_t)last;
+    sums[0] = (int16_t)((int32_t)(even & 0xffffu) - bias);
+    sums[1] = (int16_t)((int32_t)(odd & 0xffffu) - bias);
+    sums[2] = (int16_t)((int32_t)(even >> 16) - bias);
+    sums[3] = (int16_t)((int32_t)(odd >> 16) - bias);
 }
 
 uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
                              int16_t target[LABIAL_CHANNELS])
 {
+    const uint32_t *words[LABIAL_KERNEL_TAPS_MAX]; /* of each tap's phoneme */
     const int32_t share = taken->share;
-    const unsigned width = labial_channel_count(model);
-    unsigned k;
-    add_taps(model, taken->labels, target);
-    for (k = 0; k < width; k++) {
-        const int32_t start = shape->knots[0][k];
-        const int32_t position = start + (((shape->knots[1][k] - start) * share + 8192) >> 14) +
-                                 labial_scaled(target[k], model->channels[k].kernel_scale);
-        target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
+    const unsigned width = model->channel_count, groups = LABIAL_KERNEL_WORDS(width);
+    unsigned group, i, k = 0;
+    find_taps(model, taken->labels, words);
+    for (group = 0; group < groups; group++) {
+        int16_t sums[4];
+        add_taps(words, model->kernel_taps, group, sums);
+        for (i = 0; i < 4u && k < width; i++, k++) {
+            const int32_t start = shape->knots[0][k];
+            const int32_t position = start + (((shape->knots[1][k] - start) * share + 8192) >> 14) +
+                                     labial_scaled(sums[i], model->channels[k].kernel_scale);
+            target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
+        }
     }
     return (uint16_t)(model->floor_count ? touch(model, taken, target) : 0u);
 }

@@ -9,27 +9,36 @@
  *
  * Where the model changes, and at the end, the solution ends with the last frame and the next one begins anew; the
  * backward pass does not couple the two, for rho is one there and kappa zero. Frames that are delivered then fade from
- * the pose that was delivered last, which moves on a little as it did before.
+ * the pose that was delivered last (fade.h). When there is no frame to deliver, because the stream is over, was cancelled
+ * or waits for phonemes, the face goes to rest; from there, or from where it is on its way, later frames fade in.
  */
 #include <string.h>
 
 #include "channels.h"
+#include "fade.h"
 #include "fixed.h"
 #include "shape.h"
 #include "trajectory.h"
 #include "units.h"
+#include "unlocked.h"
 
 #define MAGIC 0x4c41424cu /* "LABL" */
-
-/* Frames over which a solution that begins anew fades in. */
-#define FADE 8u
 
 /* Percent by which the articulation changes from frame to frame, at most. */
 #define SLEW 10
 
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
-    return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride) : 0;
+    return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, model->channel_count) : 0;
+}
+
+/* How many channels a workspace has room for, which is enough for those of `model`. */
+static unsigned width_of(const labial_model_t *model, size_t size)
+{
+    unsigned width = model->channel_count;
+    while (width < LABIAL_CHANNELS && LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, width + 1u) <= size)
+        width++;
+    return width;
 }
 
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
@@ -50,6 +59,19 @@ static void select_halves(labial_t *stream, unsigned halves)
                                 &stream->next);
 }
 
+/* Does its share of selecting the shape of the phoneme that begins next. The last of a stride's ticks has the fewest
+ * channels, and selects. Where the phoneme begins before that tick, those until then share it; where it begins after
+ * the next such tick, both do. */
+static void select_ahead(labial_t *stream)
+{
+    const unsigned stride = stream->channels.stride, wait = stride - 1u - stream->channels.phase;
+    const uint32_t left = labial_units_left(&stream->units, stream->models);
+    if (wait == 0)
+        select_halves(stream, left < stride ? 2u : 1u);
+    else if (left < wait)
+        select_halves(stream, left == 0 ? 2u : 1u);
+}
+
 /* Percent in 1/LABIAL_GAIN_ONE, rounded: times 2.56, which is 5243 / 2^11. */
 static int32_t gain_of(unsigned percent)
 {
@@ -68,7 +90,7 @@ static void store(labial_t *stream, const labial_taken_t *taken)
     frame->marks = taken->marks;
     stream->articulation =
         (uint8_t)(stream->articulation + labial_clamp((int32_t)stream->wanted - stream->articulation, SLEW));
-    if ((taken->marks & LABIAL_BEGINS) && (stream->channels.entered > 1u || stream->shown))
+    if (taken->marks & LABIAL_BEGINS)
         stream->begins[0] |= 1u;
 }
 
@@ -98,82 +120,57 @@ static int take_frame(labial_t *stream)
 
 /* ---- One frame out ----------------------------------------------------------------------------------------------- */
 
-/* Q4 to whole FAP units. */
-static void call_back(labial_t *stream, const int16_t motion[LABIAL_CHANNELS])
+/* Delivers the pose, as the next frame or in its place. */
+static void call_back(labial_t *stream, unsigned counts)
 {
+    const uint32_t frame = stream->frame;
     int16_t faps[LABIAL_CHANNELS];
-    unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        faps[k] = (int16_t)((motion[k] + 8) >> 4);
-    stream->shown = 1;
-    stream->callback(stream->user, stream->frame++, faps); /* last: it may call anything */
+    labial_fade_faps(&stream->fade, faps);
+    stream->frame += counts;
+    LABIAL_TICK_ENDS(stream);
+    stream->callback(stream->user, frame, faps); /* last: it may call anything */
 }
 
-/* Begins to fade from the pose that was delivered last, which moves on as far as the last frame moved it, half as far
- * with each frame. */
-static void begin_fade(labial_t *stream)
-{
-    unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
-        stream->earlier[k] = (int16_t)(stream->fade_step == 0 ? stream->pose[k] - stream->earlier[k] : 0);
-        stream->faded[k] = stream->pose[k];
-    }
-    stream->fade_step = 1;
-}
-
-/* Delivers the frame that is due; returns whether one is. */
+/* Makes the frame that is due the pose to deliver; returns whether one is due. */
 static int deliver(labial_t *stream)
 {
     const unsigned delay = LABIAL_DELAY(stream->channels.stride);
-    const int16_t *motion = labial_channels_due(&stream->channels, stream->models);
-    unsigned k;
-    if (!motion)
+    int16_t motion[LABIAL_CHANNELS];
+    if (!labial_channels_due(&stream->channels, stream->models, motion))
         return 0;
-    if (stream->begins[delay / 32u] >> (delay % 32u) & 1u)
-        begin_fade(stream);
-    if (stream->fade_step == 0) {
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
-            stream->earlier[k] = stream->begun ? stream->pose[k] : motion[k]; /* nothing moved to a first frame */
-            stream->pose[k] = motion[k];
-        }
-    } else {
-        const int32_t share = labial_ease(stream->fade_step, FADE + 1u);
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
-            const int32_t from = stream->faded[k] + stream->earlier[k] - (stream->earlier[k] >> stream->fade_step);
-            const int32_t value = from + (((motion[k] - from) * share + 8192) >> 14);
-            stream->pose[k] = (int16_t)labial_clamp(value, INT16_MAX);
-        }
-        if (++stream->fade_step > FADE) {
-            stream->fade_step = 0;
-            memcpy(stream->earlier, stream->pose, sizeof stream->earlier);
-        }
-    }
+    if (stream->resting || (stream->begins[delay / 32u] >> (delay % 32u) & 1u))
+        labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, !stream->resting);
+    labial_fade_to(&stream->fade, motion);
     stream->pending--;
+    stream->resting = stream->held = 0;
     stream->begun = 1;
-    call_back(stream, stream->pose);
     return 1;
 }
 
-/* The face at the present step of the way from `pose` to the neutral one. */
-static void eased(const labial_t *stream, int16_t motion[LABIAL_CHANNELS])
+/* Makes the next pose of the way to rest the one to deliver; returns whether there is one. */
+static int rest(labial_t *stream)
 {
-    const int32_t left = 16384 - labial_ease(stream->ease_step, stream->ease_length);
-    unsigned k;
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        motion[k] = (int16_t)((stream->pose[k] * left + 8192) >> 14);
+    if (!stream->resting) {
+        if (stream->exact || labial_fade_rests(&stream->fade))
+            return 0;
+        labial_fade_begin(&stream->fade, LABIAL_EASE_FRAMES, 0);
+        stream->resting = 1;
+    }
+    if (stream->fade.step == 0)
+        return 0;
+    labial_fade_to(&stream->fade, NULL);
+    return 1;
 }
 
-/* Delivers the next frame of the way from `pose` to the neutral face. */
-static void ease(labial_t *stream)
+/* The same where no frame is due: the pose is held for a while before. */
+static int hold_or_rest(labial_t *stream)
 {
-    int16_t motion[LABIAL_CHANNELS];
-    stream->ease_step++;
-    eased(stream, motion);
-    if (stream->ease_step == stream->ease_length) {
-        stream->ease_length = 0;
-        memset(stream->pose, 0, sizeof stream->pose);
-    }
-    call_back(stream, motion);
+    if (stream->exact)
+        return 0;
+    if (stream->resting || stream->held == LABIAL_HOLD_TICKS)
+        return rest(stream);
+    stream->held++;
+    return 0;
 }
 
 /* ---- The calls --------------------------------------------------------------------------------------------------- */
@@ -184,9 +181,8 @@ static void reset_input(labial_t *stream)
     labial_channels_reset(&stream->channels);
     stream->pending = 0;
     stream->ended = stream->begun = stream->next.halves = 0;
+    stream->held = 0;
     stream->articulation = stream->wanted;
-    stream->fade_step = 0;
-    stream->ease_length = stream->ease_step = 0;
 }
 
 int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, size_t size, labial_frame_fn callback,
@@ -206,7 +202,8 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     stream->callback = callback;
     stream->user = user;
     stream->wanted = 100;
-    labial_channels_init(&stream->channels, model->search_stride, workspace);
+    stream->resting = 1;
+    labial_channels_init(&stream->channels, model->search_stride, width_of(model, size), workspace);
     stream->magic = MAGIC;
     reset_input(stream);
     return LABIAL_OK;
@@ -227,6 +224,8 @@ int labial_use(labial_t *stream, const labial_model_t *model)
     if (model->frames_per_second != stream->models[stream->slot]->frames_per_second ||
         model->search_stride != stream->channels.stride)
         return LABIAL_ERROR_RATE;
+    if (model->channel_count > stream->channels.width)
+        return LABIAL_ERROR_WORKSPACE;
     for (slot = LABIAL_MODELS; slot-- > 0;) {
         if (stream->models[slot] == model) {
             chosen = slot;
@@ -240,6 +239,16 @@ int labial_use(labial_t *stream, const labial_model_t *model)
     stream->models[chosen] = model;
     stream->slot = (uint8_t)chosen;
     return LABIAL_OK;
+}
+
+int labial_uses(const labial_t *stream, const labial_model_t *model)
+{
+    unsigned slot;
+    for (slot = 0; status(stream) == LABIAL_OK && slot < LABIAL_MODELS; slot++)
+        if (stream->models[slot] == model && (slot == stream->slot || labial_channels_uses(&stream->channels, slot) ||
+                                              labial_units_uses(&stream->units, slot)))
+            return 1;
+    return 0;
 }
 
 int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
@@ -257,6 +266,7 @@ int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
         return LABIAL_ERROR_DURATION;
     if (stream->units.count == LABIAL_QUEUE)
         return LABIAL_ERROR_FULL;
+    stream->held = 0;
     stream->pending += labial_units_push(&stream->units, phoneme, stream->slot, milliseconds, model->frames_per_second);
     return LABIAL_OK;
 }
@@ -276,46 +286,43 @@ int labial_end(labial_t *stream)
 
 int labial_tick(labial_t *stream)
 {
-    int must_select, result = status(stream);
+    int is_late, is_due = 0, has_pose, result = status(stream);
     if (result != LABIAL_OK)
         return result;
-    if (stream->ease_length) {
-        ease(stream);
-        return LABIAL_OK;
-    }
-    must_select = stream->next.halves < 2u && labial_units_at_first(&stream->units, stream->models);
-    if (must_select)
+    is_late = stream->next.halves < 2u && labial_units_left(&stream->units, stream->models) == 0;
+    if (is_late) /* it was not known before what it depends on */
         select_halves(stream, 2);
     result = take_frame(stream);
     if (result == LABIAL_OK) {
         labial_channels_step(&stream->channels, stream->models, gain_of(stream->articulation));
-        if (stream->channels.phase > 0) { /* the first of a stride's ticks has most channels, and should not have to */
-            const int is_last = stream->channels.phase + 1u == stream->channels.stride;
-            if (is_last && labial_units_at_first(&stream->units, stream->models))
-                select_halves(stream, 2);
-            else if (!must_select)
-                select_halves(stream, 1);
-        }
-        if (deliver(stream))
-            return LABIAL_OK;
+        if (!is_late)
+            select_ahead(stream);
+        is_due = deliver(stream);
     }
-    return result == LABIAL_DONE ? LABIAL_DONE : stream->begun ? LABIAL_STARVED : LABIAL_WAITING;
+    has_pose = is_due;
+    if (result == LABIAL_DONE) {
+        has_pose = is_due = rest(stream);
+        result = is_due ? LABIAL_OK : LABIAL_DONE;
+    } else if (!is_due) {
+        has_pose = hold_or_rest(stream);
+        result = stream->begun ? LABIAL_STARVED : LABIAL_WAITING;
+    }
+    if (has_pose)
+        call_back(stream, (unsigned)is_due);
+    else
+        LABIAL_TICK_ENDS(stream);
+    return result;
 }
 
 int labial_cancel(labial_t *stream, uint32_t milliseconds)
 {
-    uint32_t frames;
     const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
-    if (milliseconds > LABIAL_DURATION_MAX)
-        milliseconds = LABIAL_DURATION_MAX;
-    frames = labial_quotient(milliseconds * stream->models[stream->slot]->frames_per_second + 999u, 1000u);
-    if (stream->ease_length) /* cancelled again on the way */
-        eased(stream, stream->pose);
     reset_input(stream);
-    stream->ended = 1;
-    stream->ease_length = (uint16_t)(frames < 1u ? 1u : frames < 1000u ? frames : 1000u);
+    stream->ended = stream->resting = 1;
+    labial_fade_begin(&stream->fade, labial_fade_frames(milliseconds, stream->models[stream->slot]->frames_per_second),
+                      0);
     return LABIAL_OK;
 }
 
@@ -324,11 +331,20 @@ int labial_restart(labial_t *stream)
     const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
-    if (!stream->ended || stream->pending || stream->ease_length)
+    if (!stream->ended || stream->pending)
         return LABIAL_ERROR_STATE;
     reset_input(stream);
-    memcpy(stream->earlier, stream->pose, sizeof stream->earlier); /* which is at rest */
+    if (!stream->resting)
+        labial_fade_stand(&stream->fade);
     return LABIAL_OK;
+}
+
+int labial_exact(labial_t *stream, int exact)
+{
+    const int result = status(stream);
+    if (result == LABIAL_OK)
+        stream->exact = exact != 0;
+    return result;
 }
 
 int labial_articulation(labial_t *stream, unsigned percent)

@@ -85,7 +85,7 @@ int labial_timings_is_word(const char *text, const char *word)
 uint32_t labial_timings_length(const char *text)
 {
     uint32_t length = 0;
-    while (text[length])
+    while (length < LABIAL_TIMINGS_FIELD_MAX && text[length]) /* both conditions, or compilers make it strlen() */
         length++;
     return length;
 }

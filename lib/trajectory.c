@@ -76,6 +76,20 @@ static unsigned headroom(uint32_t d)
 #endif
 }
 
+/* The same, tried first with that of the row before, `hint`. */
+static inline unsigned headroom_near(uint32_t d, uint8_t *hint)
+{
+#if LABIAL_NARROW_MULTIPLY
+    const uint32_t shifted = d << *hint;
+    if (shifted >> 30 != 1u || shifted >> *hint != d)
+        *hint = (uint8_t)headroom(d);
+    return *hint;
+#else
+    (void)hint;
+    return headroom(d);
+#endif
+}
+
 /* scaled / 2^(6 - shift) */
 static inline uint32_t unscaled(int32_t scaled, unsigned shift)
 {
@@ -90,9 +104,9 @@ static uint16_t short_part(uint32_t part)
 }
 
 /* The position of the pending frame given all before it; `g` is its row sum, eliminated. */
-static int32_t filtered(const labial_solver_t *solver, int32_t g)
+static int32_t filtered(labial_solver_t *solver, int32_t g)
 {
-    const unsigned shift = headroom((uint32_t)g);
+    const unsigned shift = headroom_near((uint32_t)g, &solver->shifts[0]);
     const uint32_t inverse = reciprocal((uint32_t)g << shift);
     const uint32_t hold = (uint32_t)solver->hold << (shift + 1u); /* below 2^16 */
     const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
@@ -124,7 +138,7 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     q = filtered(solver, g);
 
     d = (uint32_t)(g + f + c * 65536);
-    shift = headroom(d);
+    shift = headroom_near(d, &solver->shifts[1]);
     d <<= shift;
     inverse = reciprocal(d);
     rho = unscaled(labial_part24(g, inverse), shift);
@@ -215,7 +229,7 @@ void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsi
         m += moved;
     }
     for (;;) {
-        motion[place * LABIAL_CHANNELS] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
+        motion[place] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
         if (--wanted == 0)
             return;
         moved = step_back(--newest, m, moved);

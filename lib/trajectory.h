@@ -46,8 +46,8 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
 
 /*
  * The backward pass from the frame of `newest`, with the factors of those before it in front of its own. The `wanted`
- * frames that end `ahead` frames before it are put into `motion`, a ring of `places` frames, from `place` backwards:
- * Q4 FAP, one frame every LABIAL_CHANNELS.
+ * frames that end `ahead` frames before it are put into `motion`, a ring of `places` frames, from `place` backwards,
+ * Q4 FAP.
  */
 void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsigned wanted, unsigned place,
                             unsigned places, int16_t *motion);

@@ -83,10 +83,14 @@ static uint32_t head_of(const labial_segment_t *segment, const labial_model_t *m
     return segment->phoneme == model->silence && ahead > 0 && segment->frames > ahead ? segment->frames - ahead : 0u;
 }
 
-int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
+uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
 {
     const labial_segment_t *segment = segment_at(units, 0);
-    return units->count > 0 && (units->taken == 0 || units->taken == head_of(segment, models[segment->slot]));
+    uint32_t head;
+    if (units->count == 0 || units->taken == 0)
+        return 0;
+    head = head_of(segment, models[segment->slot]);
+    return (units->taken <= head ? head : segment->frames) - units->taken;
 }
 
 int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
@@ -96,7 +100,7 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     const labial_model_t *model;
     uint32_t from = units->taken, head;
     unsigned i = 0, slot;
-    if (units->count > 0 && !labial_units_at_first(units, models)) { /* in a silence, or in the next segment */
+    if (labial_units_left(units, models) > 0) { /* in a silence, or in the next segment */
         head = head_of(segment, models[segment->slot]);
         i = from > head;
         from = i ? 0u : head;
@@ -222,5 +226,8 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
         taken->rest = rest_of(units);
     taken->is_open = (uint8_t)lies_open(units->taken - begin, end - begin);
     taken->marks = (uint8_t)go_on(units, segment, model->phonemes[segment->phoneme].boundary, is_last);
+#if LABIAL_PAPER
+    taken->marks = (uint8_t)(taken->marks | (taken->is_first ? LABIAL_PHONEME_BEGINS : 0));
+#endif
     return LABIAL_OK;
 }

@@ -39,9 +39,10 @@ typedef struct {
 } labial_taken_t;
 
 enum {
-    LABIAL_BEGINS = 1,   /* the first frame of a solution */
-    LABIAL_ENDS = 2,     /* the last one */
-    LABIAL_UNIT_ENDS = 4 /* the last frame of a unit */
+    LABIAL_BEGINS = 1,        /* the first frame of a solution */
+    LABIAL_ENDS = 2,          /* the last one */
+    LABIAL_UNIT_ENDS = 4,     /* the last frame of a unit */
+    LABIAL_PHONEME_BEGINS = 8 /* the first frame of a phoneme; set with LABIAL_PAPER alone */
 };
 
 /* Empties the queue. */
@@ -64,8 +65,8 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
 int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_spoken_t *spoken);
 
-/* Whether the next frame begins a phoneme. */
-int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS]);
+/* Frames before the next phoneme begins; 0 where the next frame does. */
+uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS]);
 
 /* Whether phonemes of the model in `slot` are in the queue. */
 int labial_units_uses(const labial_units_t *units, unsigned slot);

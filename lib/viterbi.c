@@ -5,11 +5,6 @@
 
 #include <string.h>
 
-#include "fixed.h"
-
-/* Largest z of an emission, just below 16 in Q6: beyond some 22 standard deviations a state costs no more. */
-#define EMISSION_Z_MAX 1023u
-
 /* States of the window. */
 static unsigned searched(const labial_model_t *model)
 {
@@ -35,15 +30,6 @@ static unsigned first_of_window(const labial_model_t *model, const labial_channe
     return low + size < states ? low : states - size;
 }
 
-/* Negative log-likelihood of a position in a state. */
-static inline uint32_t emission(const labial_emission_t *state, int32_t position)
-{
-    const int32_t distance = position - state->mean;
-    const uint32_t z =
-        ((uint32_t)(distance < 0 ? -distance : distance) * (16u + (state->gain & 15u))) >> (state->gain >> 4);
-    return labial_z_cost(z < EMISSION_Z_MAX ? z : EMISSION_Z_MAX) + state->cost;
-}
-
 /* Ages the stored paths by a step, or drops them. */
 static void age(labial_search_t *search, int is_first)
 {
@@ -60,30 +46,39 @@ static void age(labial_search_t *search, int is_first)
 #endif
 }
 
-/* The least cost of entering state `i` of a window, by its transitions or from the best state; stores the
- * predecessor. */
+/* The least of a cost and of that of entering state `i` of a window by a transition; stores the predecessor. */
+static inline uint32_t cross(labial_search_t *search, unsigned transition, unsigned i, uint32_t least)
+{
+    const unsigned predecessor = (transition & 255u) - search->first;
+    if (predecessor < LABIAL_SEARCHED) { /* in the window, as all are where there are fewer states */
+        const uint32_t score = search->scores[predecessor] + (transition >> 8);
+        if (score < least) {
+#if LABIAL_LAG > 0
+            search->back[0][i] = (uint8_t)predecessor;
+#else
+            (void)i;
+#endif
+            return score;
+        }
+    }
+    return least;
+}
+
+/* The least cost of entering state `i` of a window, by its transitions or from the best state. */
 static inline uint32_t enter(labial_search_t *search, const uint16_t *transition, const uint16_t *const end, unsigned i)
 {
-    const unsigned first = search->first;
-    const uint8_t *const scores = search->scores;
     uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
 #if LABIAL_LAG > 0
     search->back[0][i] = search->best;
-#else
-    (void)i;
 #endif
-    do {
-        const unsigned predecessor = (uint8_t)*transition - first;
-        if (predecessor < LABIAL_SEARCHED) { /* in the window, as all are where there are fewer states */
-            const uint32_t score = scores[predecessor] + ((uint32_t)*transition >> 8);
-            if (score < least) {
-                least = score;
-#if LABIAL_LAG > 0
-                search->back[0][i] = (uint8_t)predecessor;
-#endif
-            }
-        }
-    } while (++transition < end);
+    for (; end - transition >= 4; transition += 4) {
+        least = cross(search, transition[0], i, least);
+        least = cross(search, transition[1], i, least);
+        least = cross(search, transition[2], i, least);
+        least = cross(search, transition[3], i, least);
+    }
+    for (; transition < end; transition++)
+        least = cross(search, *transition, i, least);
     return least;
 }
 
@@ -108,7 +103,7 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
             transition = end;
         }
     for (i = 0; i < size; i++, state++) {
-        costs[i] += emission(state, position);
+        costs[i] += labial_viterbi_emission(state, position);
         if (costs[i] < least) {
             least = costs[i];
             best = i;

@@ -14,10 +14,23 @@
 #ifndef LABIAL_VITERBI_H
 #define LABIAL_VITERBI_H
 
+#include "fixed.h"
 #include "labial/labial.h"
 #include "units.h"
 
 #define LABIAL_DEAD 255u
+
+/* Largest z of an emission, just below 16 in Q6: beyond some 22 standard deviations a state costs no more. */
+#define LABIAL_EMISSION_Z_MAX 1023u
+
+/* Negative log-likelihood of a position in a state. */
+static inline uint32_t labial_viterbi_emission(const labial_emission_t *state, int32_t position)
+{
+    const int32_t distance = position - state->mean;
+    const uint32_t z =
+        ((uint32_t)(distance < 0 ? -distance : distance) * (16u + (state->gain & 15u))) >> (state->gain >> 4);
+    return labial_z_cost(z < LABIAL_EMISSION_Z_MAX ? z : LABIAL_EMISSION_Z_MAX) + state->cost;
+}
 
 /*
  * Makes the next step of a path, for a target `position`. `marks` are those of its frames (units.h): with LABIAL_BEGINS

@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 from typing import List
 
-from source import Source, write_text
+from source import ROOT, Source, write_text
 
 _INCLUDE = re.compile(r'^#include "(?:labial/)?([^"]+)"\n', re.MULTILINE)
 
@@ -28,7 +28,7 @@ def _joined(source: Source, files: List[Path], title: str, above: List[Path]) ->
         return f"/* ---- {path.parent.name}/{path.name} ---- */\n\n{text}\n"
 
     notice = f"{title}; Labial {source.version}. Written by packaging/pack.py; do not edit.\n\n"
-    notice += source.license.read_text(encoding="utf-8")
+    notice += (ROOT / "LICENSE").read_text(encoding="utf-8")
     return f"/*\n{notice}*/\n\n" + "".join(map(section, files))
 
 
@@ -41,4 +41,4 @@ def write(source: Source, folder: Path) -> None:
     for path in [*(path for model in source.models for path in model.files), *source.words]:
         text = re.sub(r'^#include "labial/[^"]+"$', '#include "labial.h"', path.read_text("utf-8"), flags=re.MULTILINE)
         write_text(folder / path.name, text)
-    write_text(folder / "LICENSE", source.license.read_text(encoding="utf-8"))
+    write_text(folder / "LICENSE", source.licence())

@@ -97,8 +97,8 @@ def write(source: Source, folder: Path) -> None:
             shutil.copyfile(path, src / path.name)
     for path in source.words:
         shutil.copyfile(path, src / path.name)
-    shutil.copyfile(source.license, folder / "LICENSE")
     for name, text in (
+        ("LICENSE", source.licence()),
         ("src/Labial.h", umbrella(source)),
         ("library.properties", properties(source)),
         ("keywords.txt", keywords(source)),

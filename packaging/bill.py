@@ -10,6 +10,8 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Dict, List
 
+from notices import notice
+
 Item = Dict[str, Any]
 
 
@@ -45,8 +47,7 @@ def _corpora(tree: Path) -> List[Item]:
     """The training data of the bundled models, from their headers, and of the tables of words."""
     found = []
     for header in sorted((tree / "lib" / "models").glob("*.h")):
-        (notice,) = re.findall(r"do not\s+\*?\s*edit\. (.*?)\.\s+\*/", header.read_text(encoding="utf-8"), re.DOTALL)
-        text = re.sub(r"\s+\*?\s*", " ", notice) + "."
+        text = notice(header)
         item: Item = {"type": "data", "bom-ref": f"model:{header.stem}", "name": header.stem, "description": text}
         if "CC BY 4.0" in text:
             item["licenses"] = [{"license": {"id": "CC-BY-4.0"}}]

@@ -3,9 +3,11 @@
 
     pack.py amalgamation -o DIR    labial.h, labial.c and the models, to drop into any project
     pack.py arduino -o DIR         a library for the Arduino IDE; --zip for "Add .ZIP Library"
-    pack.py platformio -o DIR what a PlatformIO project needs in its lib/ folder pack.py esp-idf -o DIR what an ESP-IDF
-    project needs in its components/ folder pack.py zephyr -o DIR a Zephyr module pack.py version [X.Y.Z] prints the
-    version, or sets it in every file that holds it
+    pack.py platformio -o DIR      what a PlatformIO project needs in its lib/ folder
+    pack.py esp-idf -o DIR         what an ESP-IDF project needs in its components/ folder
+    pack.py zephyr -o DIR          a Zephyr module
+    pack.py notice                 writes NOTICE, the attributions of the bundled models, which every package carries
+    pack.py version [X.Y.Z]        prints the version, or sets it in every file that holds it
 
 PlatformIO, ESP-IDF and Zephyr can also use the source tree directly. ``--models FOLDER`` takes models that ``labial
 export`` wrote instead of the bundled ones.
@@ -21,7 +23,8 @@ from typing import List, Optional
 import amalgamation
 import arduino
 import trees
-from source import URL, PackError, Source, exit_status, set_version, version
+from notices import notices
+from source import ROOT, URL, PackError, Source, exit_status, set_version, version, write_text
 
 
 def _empty_folder(path: Path) -> Path:
@@ -54,6 +57,12 @@ def _version(options: argparse.Namespace) -> None:
         print(version())
 
 
+def _notice(options: argparse.Namespace) -> None:
+    source = Source()
+    write_text(ROOT / "NOTICE", notices(source.headers()))
+    print(ROOT / "NOTICE")
+
+
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
     parser = argparse.ArgumentParser(prog="pack.py", description="Lays Labial out for other build systems.")
@@ -73,8 +82,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
             command.add_argument("--url", default=URL, help=f"where the project is to be found ({URL})")
     command = kinds.add_parser("version", help="print or set the version")
     command.add_argument("number", nargs="?", metavar="X.Y.Z")
+    kinds.add_parser("notice", help="write NOTICE, the attributions of the bundled models")
     options = parser.parse_args(arguments)
-    work = _version if options.kind == "version" else _pack
+    work = {"version": _version, "notice": _notice}.get(options.kind, _pack)
     return exit_status("pack.py", lambda: work(options))
 
 

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import Callable, Dict, List, Optional
 
+from notices import notices
+
 #: The folder of the source tree.
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -109,7 +111,6 @@ class Source:
         folder = models if models else ROOT / "lib" / "models"
         self.version = version()
         self.url = url
-        self.license = ROOT / "LICENSE"
         self.public = sorted((ROOT / "include" / "labial").glob("*.h"))
         self.private = sorted((ROOT / "lib").glob("*.h"))
         self.sources = sorted((ROOT / "lib").glob("*.c"))
@@ -119,3 +120,11 @@ class Source:
             raise PackError(f"{folder}: holds no exported model")
         self.models = [Model(path) for path in headers]
         self.words = sorted((ROOT / "lib" / "words").glob("*.[ch]"))
+
+    def headers(self) -> List[Path]:
+        """The headers of the models and of the tables of words, which name the data that these were made from."""
+        return [model.files[0] for model in self.models] + [path for path in self.words if path.suffix == ".h"]
+
+    def licence(self) -> str:
+        """The text of a package's LICENSE: that of the code, then the attributions of the models and words."""
+        return (ROOT / "LICENSE").read_text(encoding="utf-8") + "\n" + notices(self.headers())

@@ -26,8 +26,8 @@ from source import ROOT, PackError, exit_status
 PLATFORMS = ("x86_64", "aarch64")
 GLIBC = "2.17"
 #: What the build reads, beside what `sdist.include` of pyproject.toml leaves out of it.
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "include", "lib", "flat", "cmake/BundledModels.cmake",
-           "cmake/LabialTarget.cmake", "export/labial", "export/models")
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "NOTICE", "include", "lib", "flat",
+           "cmake/BundledModels.cmake", "cmake/LabialTarget.cmake", "export/labial", "export/models")
 #: Seconds since 1970: the first time that a zip file can name.
 EARLIEST = "315532800"
 

@@ -56,6 +56,9 @@ export interface StreamOptions<O extends Output = Output> {
     labels?: Labels;
     /** Treatment of unknown labels: an exception ("error", the default), or the motion of the nearest known label. */
     unknown?: "error" | "nearest";
+    /** Only the frames of the phonemes: the mouth stays as the last one leaves it, and where phonemes are late. By
+     * default it comes to rest, in 12 frames. */
+    exact?: boolean;
 }
 
 /** A frame of an output. */
@@ -65,7 +68,7 @@ export type FrameOf<O extends Output> =
 /** The laughter model as the package labial-laughter has it, or the bytes of its .lbm file. */
 export type Laughter = string | ArrayBuffer | ArrayBufferView | { readonly default: unknown };
 
-/** A mouth that moves while its phonemes are still arriving. */
+/** A mouth that moves while its phonemes are still arriving. Its first frames lead from the neutral face to the motion. */
 export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     /** Adds a phoneme, by label or number, of the current model; milliseconds from 0 to 3,600,000. Fractions of
      * milliseconds accumulate. Up to 65,536 phonemes may wait. */
@@ -75,20 +78,23 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     laugh(seconds: number, intensity?: number, seed?: number): void;
     /** Selects another model of the same frame rate for the next pushes. */
     use(model: "speech" | "laughter" | Model): void;
-    /** No more phonemes will come. */
+    /** No more phonemes will come: after the frames of the last one the mouth comes to rest. */
     end(): void;
     /** Drops what is not yet delivered and eases back to the neutral face; then the stream is done. */
     cancel(milliseconds?: number): void;
-    /** Continues a stream that is done or was cancelled. */
+    /** Continues a stream that was cancelled or that has ended and delivered the frames of all phonemes. */
     restart(): void;
     /** How far the mouth moves, in percent, 0 to 200: 100 at first, 50 a mumble, 130 a shout. Lips still close. From the
      * next frame that is taken in it comes nearer to that by up to 10 percent a frame. */
     articulation(percent: number): void;
     /** Call once per frame period: returns the next frame, or null if there is none yet. The frame is the same object
-     * each time, which avoids garbage; copy it to keep it. */
+     * each time, which avoids garbage; copy it to keep it. Where phonemes are late for more than five calls the mouth
+     * comes to rest: then it returns frames, too, and `number` stays as it is. */
     tick(): FrameOf<O> | null;
     /** All frames that are ready, each a new object. */
     [Symbol.iterator](): IterableIterator<FrameOf<O>>;
+    /** Whether it has only the frames of the phonemes, as the option; from the next frame on. */
+    exact: boolean;
     /** Number of the frame that was delivered last, from 0; -1 before the first. */
     readonly number: number;
     /** When that frame is due, seconds after the first. */
@@ -99,7 +105,7 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly model: Model;
     /** The stream was ended or cancelled, and every frame was delivered. */
     readonly done: boolean;
-    /** The next frame waits for more phonemes. */
+    /** The next frame waits for more phonemes: the stream is late by one frame for each tick after which this holds. */
     readonly starved: boolean;
     /** The input that is pushed and not yet delivered, and `delay`, the frames from accepting a frame to delivering
      * it. */
@@ -108,7 +114,8 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     free(): void;
 }
 
-/** The motion of a whole utterance. Frame k is due k / rate seconds after the sound begins. */
+/** The motion of a whole utterance. Frame k is due k / rate seconds after the sound begins. It begins and ends at rest, as
+ * a rule 12 frames after the last segment, unless it was to be exact. */
 export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly output: O;
     /** Frames per second. */
@@ -151,12 +158,14 @@ export interface HearOptions<O extends Output = Output> {
     play?: boolean;
     /** Seconds by which the sound is played later than it comes, at least `latency`. Default: 0.2. */
     delay?: number;
+    /** Whether end() gives the frames of the sound alone. By default the mouth comes to rest, in 12 more. */
+    exact?: boolean;
 }
 
 /** The package labial-hearing. */
 export type Hears = { readonly hear: (...given: any[]) => Promise<unknown> } | { readonly default: unknown };
 
-/** Lips from sound alone, 50 frames per second. All times are seconds: of the AudioContext's clock for a source; for a
+/** Lips from sound alone, 50 frames per second; at rest in silence. All times are seconds: of the AudioContext's clock for a source; for a
  * sound that is pushed, those that push() was given, or from 0 on. */
 export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>, AsyncIterable<FrameOf<O>> {
     #private;
@@ -164,7 +173,7 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     /** Hears samples, full scale being 32768 or 1; `time` is when the first of them is heard, by default when those
      * before it end. Silence fills gaps. Not for a source. */
     push(samples: Int16Array | Float32Array, time?: number): void;
-    /** No more sound will come: the last frames follow. */
+    /** No more sound will come: the last frames and the way to rest follow. */
     end(): void;
     /** Drops the frames after this time, by default now, and eases to the neutral face within so many milliseconds, at
      * most 1,000. Sound of a source is silenced, and what comes of it is not heard. */

@@ -313,6 +313,11 @@ export class Labial {
         return frames;
     }
 
+    /** One frame, which then lies at mouth_faps(); returns their number, 0 if the stream waits. */
+    next(mouth) {
+        return this.wasm.mouth_run(mouth, this.#scratch, 1);
+    }
+
     owns(model) {
         return this.#owned.has(model);
     }

@@ -1,9 +1,10 @@
 // The layout of a model's tables in the module's memory (labial_model_t of include/labial/model.h, for 32-bit targets),
 // for // builds and tests.
 
-const CHANNELS = 13;
-/** Offsets of pointers in labial_model_t. */
-const [PROTRUSION, DESCRIPTORS] = [64, 68];
+/** Offsets in labial_model_t: of the number of channels, of the first table's pointer and of the channels'. */
+const [COUNT, TABLES, DESCRIPTORS] = [20, 36, 80];
+/** Bytes of the number of channels and of their sources, and of the header of a binary model. */
+const [SOURCES, HEADER] = [14, 48];
 
 /** The tables in the order of a binary model (include/labial/blob.h): name, address, bytes, bytes of a row. */
 export function tables(buffer, model) {
@@ -16,17 +17,17 @@ export function tables(buffer, model) {
     const floors = byte(16);
     const knots = byte(17);
     const pairs = half(18);
-    const channels = view.getUint32(model + PROTRUSION, true) ? CHANNELS - 1 : CHANNELS;
+    const channels = byte(COUNT);
     const found = [];
     const add = (name, at, rows, width) => {
         if (at && rows) found.push({ name, at, size: rows * width, width });
     };
     [
         ["phonemes", phonemes, 6], ["components", components, 6], ["contexts", components, classes],
-        ["shapes", components, channels], ["slopes", components, channels], ["kernels", phonemes * taps, 12],
-        ["last_kernels", phonemes * taps, 1], ["pair_keys", pairs, 2], ["pairs", pairs * knots, channels],
+        ["shapes", components, channels], ["slopes", components, channels], ["kernels", phonemes * taps, (channels + 3) & ~3],
+        ["pair_keys", pairs, 2], ["pairs", pairs * knots, channels],
         ["floors", floors, 2 * channels], ["contacts", floors, 2], ["protrusion", 1, 38],
-    ].forEach(([name, rows, width], i) => add(name, view.getUint32(model + 20 + 4 * i, true), rows, width));
+    ].forEach(([name, rows, width], i) => add(name, view.getUint32(model + TABLES + 4 * i, true), rows, width));
     for (let k = 0; k < channels; k++) {
         const at = view.getUint32(model + DESCRIPTORS, true) + 32 * k;
         add("scales", at, 1, 16);
@@ -42,7 +43,7 @@ export function binary(buffer, model) {
     const view = new DataView(buffer);
     const parts = tables(buffer, model);
     const padded = parts.map(({ size }) => (size + 3) & ~3);
-    const bytes = new Uint8Array(32 + padded.reduce((sum, size) => sum + size, 0));
+    const bytes = new Uint8Array(HEADER + padded.reduce((sum, size) => sum + size, 0));
     const header = new DataView(bytes.buffer);
     bytes.set(new TextEncoder().encode("LBM1"));
     header.setUint32(4, bytes.length, true);
@@ -53,7 +54,8 @@ export function binary(buffer, model) {
     header.setUint8(28, (has("contexts") ? 1 : 0) | (has("slopes") ? 2 : 0) | (knots === 2 ? 4 : 0) | (has("protrusion") ? 8 : 0));
     header.setUint8(29, view.getUint8(model + 16));
     header.setUint16(30, view.getUint16(model + 18, true), true);
-    let at = 32;
+    bytes.set(new Uint8Array(buffer, model + COUNT, SOURCES), 32);
+    let at = HEADER;
     parts.forEach((part, i) => {
         bytes.set(new Uint8Array(buffer, part.at, part.size), at);
         at += padded[i];

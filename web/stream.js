@@ -37,9 +37,10 @@ export class Stream {
     #laughs = 0;
     #frame;
     #number = -1;
+    #exact = false;
 
     constructor(labial, options = {}) {
-        const { output = "faps", model = "speech", labels = "auto", unknown = "error" } = options;
+        const { output = "faps", model = "speech", labels = "auto", unknown = "error", exact = false } = options;
         labial.checkOutput(output);
         labial.labels(labels);
         if (unknown !== "error" && unknown !== "nearest") {
@@ -59,6 +60,7 @@ export class Stream {
             throw labial.failure(result);
         }
         this.#at = at;
+        this.exact = exact;
         abandoned.register(this, { memory: labial.memory, at, size }, this);
     }
 
@@ -134,11 +136,12 @@ export class Stream {
         const at = this.#open();
         this.#feed(at);
         this.#state = this.#check(this.#labial.wasm.mouth_tick(at));
-        if (this.#state !== OK) {
-            if (this.#refused && this.#refused++ > PATIENCE) throw this.#labial.failure(ERROR_MODELS);
-            return null;
-        }
-        this.#number++;
+        if (this.#state !== OK && this.#refused && this.#refused++ > PATIENCE) throw this.#labial.failure(ERROR_MODELS);
+        this.#number += this.#state === OK ? 1 : 0;
+        return this.#labial.wasm.mouth_moved(at) ? this.#shown(at) : null;
+    }
+
+    #shown(at) {
         const place = this.#labial.wasm.mouth_faps(at);
         if (this.#output !== "faps") return this.#labial.weigh(place, this.#output, this.#frame);
         this.#frame.set(this.#labial.memory.int16(place, CHANNELS));
@@ -147,14 +150,36 @@ export class Stream {
 
     *[Symbol.iterator]() {
         for (;;) {
-            let underway = this.#labial.wasm.mouth_delay(this.#open());
-            let frame = this.tick();
-            while (!frame && this.#state !== DONE && (this.#refused || (!this.starved && underway-- > 0))) {
-                frame = this.tick();
-            }
-            if (!frame) return;
+            const at = this.#open();
+            if (!this.#pull(at)) return;
+            this.#number++;
+            const frame = this.#shown(at);
             yield this.#output === "faps" ? frame.slice() : { ...frame };
         }
+    }
+
+    /** Takes the next frame, by no clock; returns whether there is one. */
+    #pull(at) {
+        let before, count;
+        let idle = 0;
+        do {
+            before = this.#waiting.length - this.#head;
+            this.#feed(at);
+            count = this.#check(this.#labial.next(at));
+            idle = this.#waiting.length - this.#head < before ? 0 : idle + 1;
+        } while (!count && (idle === 0 || (this.#refused && idle < PATIENCE)));
+        this.#state = this.#labial.wasm.mouth_state(at);
+        if (!count && this.#refused) throw this.#labial.failure(ERROR_MODELS);
+        return count > 0;
+    }
+
+    get exact() {
+        return this.#exact;
+    }
+
+    set exact(exact) {
+        this.#check(this.#labial.wasm.mouth_exact(this.#open(), exact ? 1 : 0));
+        this.#exact = Boolean(exact);
     }
 
     get number() {

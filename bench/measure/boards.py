@@ -88,6 +88,12 @@ def printed(command: List[str]) -> Dict[str, int]:
     return {name: int(number) for name, number in found.items()}
 
 
+#: The inputs of board_ticks.c, by the names that it prints.
+INPUTS = {"sentence": "the sentence", "laughter": "the laugh", "voices": "other sentences",
+          "short": "phonemes of 20 to 40 ms", "frames": "phonemes of 20 ms", "turns": "models by turns",
+          "changes": "another model at every phoneme", "all": "all inputs"}
+
+
 def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
     """Runs the images of `board`. `checksums`, by model, are those of the host's frames, which must come out again."""
     images = build(bench, board)
@@ -116,6 +122,12 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
                                 ("worst change", found["tick_worst"], "instructions"),
                                 ("worst change / mean", round(found["tick_worst"] / mean, 3), "ratio")):
         bench.add(board.preset, f"turns: {figure}", value, unit, command, tool_version)
+    command = images["bench_ticks"]
+    found = printed(command)
+    for name, what in INPUTS.items():
+        for figure, key in (("mean", "mean"), ("99th percentile", "99th"), ("largest", "largest")):
+            bench.add(board.preset, f"ticks, {what}: {figure}", found[f"{name}_{key}"], "instructions", command,
+                      tool_version)
     command = images["bench_mlpg"]
     found = printed(command)
     bench.add(board.preset, "MLPG", round(found["instructions"] / found["frames"], 1), "instructions/frame and channel",

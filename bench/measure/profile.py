@@ -10,7 +10,7 @@ import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 from measure.boards import BOARDS, RATE, Board, build, printed
 from measure.core import Bench, LeftOut, run, version
@@ -80,6 +80,20 @@ def measure(bench: Bench, rows: List[Row]) -> None:
                       round(100.0 * total * RATE / (board.clock * 1e6), 2), "%", command, tool)
             if model == "speech" and not rows:
                 rows.extend(found)
+                for name, instructions in _by_file(bench, found).items():
+                    bench.add(board.preset, f"speech: {name}", round(instructions), "instructions/frame", command, tool)
+
+
+def _by_file(bench: Bench, rows: Sequence[Row]) -> Dict[str, float]:
+    """Instructions per frame in the functions of each file of lib/. Inlined functions count in their callers."""
+    sums: Dict[str, float] = {}
+    for path in sorted((bench.source / "lib").glob("*.c")):
+        text = path.read_text(encoding="utf-8")
+        own = sum(row.instructions for row in rows  # the compiler's copies of a function have a point in their names
+                  if re.search(rf"^\w[^;\n]*\b{re.escape(row.function.split('.')[0])}\(", text, re.MULTILINE))
+        if own >= 0.5:
+            sums[path.name] = own
+    return sums
 
 
 def _profile(bench: Bench, board: Board, image: List[str]) -> Tuple[List[str], List[Row]]:

@@ -12,30 +12,35 @@ from measure.core import Bench, run, version
 
 #: Files of lib/ that play compiled-in models. A program links the others only if it calls them, or for models from
 #: files (model.c, the check, and blob.c).
-CORE = ("stream", "channels", "units", "shape", "viterbi", "trajectory", "protrusion", "fixed")
+CORE = ("stream", "channels", "units", "shape", "viterbi", "trajectory", "followers", "fade", "fixed")
 
 LEVELS = ("-Os", "-O2")
+
+#: What a program calls that moves servos by a stream and a clock.
+FACE = ("labial_face_init", "labial_face_frame", "labial_face_due", "labial_face_tick", "labial_face_soft_start",
+        "labial_face_attached")
 
 #: The bundled models: their C file, and their names here.
 MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 
 
-#: Parts of RAM and their bytes in C; those of the workspace add up to LABIAL_WORKSPACE_SIZE() for the stride of the
-#: bundled models, except for rounding to four.
+#: Parts of RAM and their bytes in C; those of the workspace add up to LABIAL_WORKSPACE_SIZE() for the voice, except for
+#: rounding to four.
 PARTS = {
     "labial_t: queue and labels": "sizeof(labial_units_t)",
     "labial_t: shapes": "sizeof(labial_shape_t) + sizeof(labial_selection_t)",
     "labial_t: poses": "3 * LABIAL_CHANNELS * sizeof(int16_t)",
-    "workspace: searches": "LABIAL_CHANNELS * (sizeof(labial_progress_t) - sizeof(labial_solver_t)"
+    "workspace: searches": "COUNT * (sizeof(labial_progress_t) - sizeof(labial_solver_t)"
                            " - sizeof(labial_kept_t))",
-    "workspace: solvers": "LABIAL_CHANNELS * sizeof(labial_solver_t)",
-    "workspace: factors": "LABIAL_CHANNELS * sizeof(labial_kept_t)",
+    "workspace: solvers": "COUNT * sizeof(labial_solver_t)",
+    "workspace: factors": "COUNT * sizeof(labial_kept_t)",
     "workspace: frames": "(STRIDE + LABIAL_LAG) * sizeof(labial_frame_t)",
-    "workspace: motion": "STRIDE * LABIAL_CHANNELS * sizeof(int16_t)",
+    "workspace: motion": "STRIDE * COUNT * sizeof(int16_t)",
 }
 
-#: Frames that share a state in the bundled models.
+#: Frames that share a state in the voice, and its channels.
 STRIDE = 3
+COUNT = 8
 
 
 def compile_command(bench: Bench, board: Board, level: str) -> List[str]:
@@ -75,6 +80,7 @@ def measure(bench: Bench, board: Board) -> None:
             bench.add(board.preset, f"code {level}: compiler's helpers", _helpers(bench, board, objects), "bytes",
                       [*shown, "#", "members", "of", "libgcc.a", "that", "these", "link"], tool_version)
         command = compile_command(bench, board, "-Os")
+        _face(bench, board, command, Path(scratch), tool_version)
         for model, stem in MODELS.items():
             for figure, name in ((f"{model}: model", f"{stem}.c"), (f"{model}: names", f"{stem}_names.c")):
                 path = bench.source / "lib" / "models" / name
@@ -92,6 +98,21 @@ def measure(bench: Bench, board: Board) -> None:
         bench.add(board.preset, ".data and .bss of library and models", variables, "bytes",
                   [*command, "lib/*.c", "lib/models/*.c", "lib/words/*.c", "&&", size, "*.o"], tool_version)
         _ram(bench, board, command, Path(scratch), tool_version)
+
+
+def _face(bench: Bench, board: Board, command: List[str], scratch: Path, tool_version: str) -> None:
+    """What a program links of face.c for servos that follow a stream, and with what that needs of rig.c and fixed.c."""
+    link = [compiler(board), *cpu_flags(bench, board), "-nostdlib", "-r", "-Wl,--gc-sections",
+            *(f"-Wl,-u,{name}" for name in FACE)]
+    objects: List[Path] = []
+    for stem, figure in (("face", "a face, of face.c"), ("rig", ""), ("fixed", "a face, with rig.c and fixed.c")):
+        objects.append(scratch / f"face_part_{stem}.o")
+        run([*command, "-ffunction-sections", bench.source / "lib" / f"{stem}.c", "-o", objects[-1]])
+        if figure:
+            run([*link, *objects, "-o", scratch / "face_linked.o"])
+            found = sections(f"{board.prefix}size", scratch / "face_linked.o")
+            bench.add(board.preset, f"code -Os: {figure}", found["text"], "bytes",
+                      [*command, "-ffunction-sections", "lib/*.c", "&&", *link, "*.o"], tool_version)
 
 
 def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
@@ -115,10 +136,10 @@ def _ram(bench: Bench, board: Board, command: List[str], scratch: Path, tool_ver
     lines = [f'#include "{stem}.h"' for stem in MODELS.values()]
     lines.append("char stream[sizeof(labial_t)];")
     lines += [f"char {model}[{stem.upper()}_WORKSPACE_SIZE];" for model, stem in MODELS.items()]
-    for model, stem in MODELS.items():
-        same = f"{stem.upper()}_WORKSPACE_SIZE == LABIAL_WORKSPACE_SIZE({STRIDE})"
-        lines.append(f"typedef char stride_is_that_of_{model}[{same} ? 1 : -1];")
-    lines += [f"#define STRIDE {STRIDE}", *(f"char part_{i}[{size}];" for i, size in enumerate(PARTS.values()))]
+    same = f"{MODELS['speech'].upper()}_WORKSPACE_SIZE == LABIAL_WORKSPACE_SIZE({STRIDE}, {COUNT})"
+    lines.append(f"typedef char sizes_are_those_of_the_voice[{same} ? 1 : -1];")
+    lines += [f"#define STRIDE {STRIDE}", f"#define COUNT {COUNT}"]
+    lines += [f"char part_{i}[{size}];" for i, size in enumerate(PARTS.values())]
     source.write_text("\n".join(lines) + "\n", encoding="ascii")
     command = [*command, f"-I{bench.source / 'lib' / 'models'}", str(source)]
     run([*command, "-o", out])

@@ -98,6 +98,7 @@ SECTIONS: Tuple[Tuple[str, str, Callable[[Figure], bool]], ...] = (
      "The npm package under node, on the host, by bench/npm.mjs: utterances rendered whole by `labial.render()`, "
      "ticks of a `labial.stream()`, and `track.at()`, 60 times per second. Compressed by gzip at its highest "
      "level.", _of("wasm")),
+    ("Arduino Uno", "Flash of examples/uno without its motion, and of the player of baked motion alone.", _of("uno")),
     ("Speed of the host, one core", "", _on_a_processor("Speed")),
 )  # fmt: skip
 

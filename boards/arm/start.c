@@ -64,7 +64,7 @@ typedef struct {
 __attribute__((section(".vectors"), used)) static const vectors_t vectors = {
     board_stack_end,
     { board_reset, board_fault, board_fault, board_fault, board_fault, board_fault, 0, 0, 0, 0, board_fault,
-      board_fault, 0, board_fault, board_fault, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS,
+      board_fault, 0, board_fault, interrupt, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS,
       FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS, FOUR_INTERRUPTS }
 };
 /* clang-format on */

@@ -7,6 +7,7 @@
  * Standard input has a command in each line: "say TEXT" and "stop" go to the server, with "stop" the toy drops the sound
  * that it has not played; "play MS" lets time pass, at most until everything has been heard, as fast as the server sends.
  * Options behind the port: "lose N" loses every Nth packet of lips, "jitter" makes the loudspeaker's clock uneven.
+ * Without a server, or when it goes or falls silent, it says so and ends with status 1.
  *
  * A line of output is 20 ms: the number of the sample that is heard, 1 if the mouth speaks, the packet's bytes, and the
  * servos' pulses in microseconds.
@@ -14,6 +15,7 @@
 #define _POSIX_C_SOURCE 200112L
 
 #include <arpa/inet.h>
+#include <errno.h>
 #include <netinet/in.h>
 #include <signal.h>
 #include <stdint.h>
@@ -21,6 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include "labial/beside.h"
@@ -29,8 +32,14 @@
 #define FRAMES 64 /* more than the sound that waits here */
 #define WAITS 500 /* milliseconds of sound that are taken before they are played */
 
-/* Pulses of the servos for the bytes 0 and 255, to be found by trial. */
+#ifndef PATIENCE
+#define PATIENCE 20 /* seconds in which a server that is asked for something sends it */
+#endif
+
+/* Pulses of the servos for the bytes 0 and 255, to be found by trial, and the largest changes in 20 ms that they follow:
+ * `slew` of face.toml. */
 static const int32_t at_0[OUTPUTS] = { 1400, 1300 }, at_255[OUTPUTS] = { 1900, 1700 };
+static const uint8_t limits[OUTPUTS] = { LABIAL_BESIDE_CHANGE(100, 1400, 1900), LABIAL_BESIDE_CHANGE(80, 1300, 1700) };
 
 static labial_beside_t lips;
 static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, FRAMES)];
@@ -40,9 +49,11 @@ static int speaks;                     /* utterances whose sound is still to com
 static int cancelling;                 /* sound is dropped until the server has heard of it */
 static unsigned lose, packets, jitter;
 
-static void fail(const char *what)
+/* Ends the program: "toy: WHAT: WHY". What was shown so far is on the screen. */
+static void fail(const char *what, const char *why)
 {
-    perror(what);
+    fflush(stdout);
+    fprintf(stderr, "toy: %s: %s\n", what, why);
     exit(1);
 }
 
@@ -50,11 +61,46 @@ static void take(uint8_t *data, size_t size)
 {
     while (size > 0) {
         const ssize_t got = read(server, data, size);
-        if (got <= 0)
-            fail("the server has gone");
+        if (got == 0)
+            fail("the server has gone", "it closed the connection");
+        if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+            fail("the server has gone", "it sends nothing");
+        if (got < 0)
+            fail("the server has gone", strerror(errno));
         data += got;
         size -= (size_t)got;
     }
+}
+
+static void give(const char *line)
+{
+    size_t left = strlen(line);
+    while (left > 0) {
+        const ssize_t sent = write(server, line, left);
+        if (sent < 0)
+            fail("the server has gone", strerror(errno));
+        line += sent;
+        left -= (size_t)sent;
+    }
+}
+
+/* Connects to a port of this computer. */
+static void connect_to(unsigned port)
+{
+    struct timeval patience = { 0, 0 };
+    struct sockaddr_in to;
+    char where[16];
+    memset(&to, 0, sizeof to);
+    patience.tv_sec = PATIENCE;
+    to.sin_family = AF_INET;
+    to.sin_port = htons((uint16_t)port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    (void)snprintf(where, sizeof where, "port %u", port);
+    signal(SIGPIPE, SIG_IGN);
+    if ((server = socket(AF_INET, SOCK_STREAM, 0)) < 0 ||
+        setsockopt(server, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
+        connect(server, (struct sockaddr *)&to, sizeof to) != 0)
+        fail(where, strerror(errno));
 }
 
 /* The next message. What is in it is trusted as little as what is in a packet of lips. */
@@ -69,10 +115,10 @@ static void take_message(void)
     if (head[0] == 'R' && size == 4 && rate == 0) {
         rate = data[0] | (uint32_t)data[1] << 8 | (uint32_t)data[2] << 16 | (uint32_t)data[3] << 24;
         if (rate < 8000 || rate > 48000 ||
-            labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) != LABIAL_BESIDE_RESTS) {
-            fprintf(stderr, "%lu samples per second are not supported\n", (unsigned long)rate);
-            exit(1);
-        }
+            labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) != LABIAL_BESIDE_RESTS)
+            fail("the server", "it sends sound of an unknown rate");
+        for (unsigned i = 0; i < OUTPUTS; i++)
+            (void)labial_beside_limit(&lips, i, limits[i]);
     } else if (head[0] == 'A') {
         received += (uint32_t)(size / 2); /* also of sound that is dropped */
         if (cancelling)
@@ -117,46 +163,53 @@ static void pass(void)
     heard += received - heard < rate / 50 ? received - heard : rate / 50;
 }
 
+/* A whole number from 1 to `most`; 0 for any other text. */
+static unsigned number(const char *text, unsigned long most)
+{
+    char *end;
+    const unsigned long value = strtoul(text, &end, 10);
+    return *text >= '0' && *text <= '9' && *end == '\0' && value <= most ? (unsigned)value : 0;
+}
+
 int main(int argc, char **argv)
 {
-    struct sockaddr_in to = { 0 };
+    static const char usage[] = "usage: toy PORT [lose N] [jitter]\n";
+    unsigned port = argc > 1 ? number(argv[1], 65535) : 0;
     char line[1024];
     int i;
-    if (argc < 2) {
-        fputs("usage: toy PORT [lose N] [jitter]\n", stderr);
-        return 2;
-    }
     for (i = 2; i < argc; i++) {
         if (strcmp(argv[i], "jitter") == 0)
             jitter = 1;
-        else if (strcmp(argv[i], "lose") == 0 && i + 1 < argc)
-            lose = (unsigned)atoi(argv[++i]);
+        else if (strcmp(argv[i], "lose") != 0 || i + 1 == argc || (lose = number(argv[++i], 1000000)) == 0)
+            port = 0;
     }
-    signal(SIGPIPE, SIG_IGN);
-    to.sin_family = AF_INET;
-    to.sin_port = htons((uint16_t)atoi(argv[1]));
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if ((server = socket(AF_INET, SOCK_STREAM, 0)) < 0 || connect(server, (struct sockaddr *)&to, sizeof to) != 0)
-        fail(argv[1]);
+    if (port == 0) {
+        fputs(usage, stderr);
+        return 2;
+    }
+    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* a line is seen when it is shown */
+    connect_to(port);
     while (rate == 0)
         take_message();
     while (fgets(line, sizeof line, stdin)) {
+        if (!strchr(line, '\n') && strlen(line) == sizeof line - 1)
+            fail("standard input", "a line is too long");
         if (strncmp(line, "play ", 5) == 0) {
             unsigned long left = strtoul(line + 5, NULL, 10) / 20;
             while (left-- > 0 && (speaks || received != heard))
                 pass();
-            continue;
-        }
-        if (write(server, line, strlen(line)) < 0)
-            fail("the server has gone");
-        if (strncmp(line, "say ", 4) == 0) {
+        } else if (strncmp(line, "say ", 4) == 0) {
+            give(line);
             speaks++;
-        } else {
+        } else if (strncmp(line, "stop", 4) == 0) {
+            give(line);
             speaks = 0;
             cancelling = 1; /* the loudspeaker falls silent now, and the mouth closes */
             labial_beside_cancel(&lips);
             for (i = 0; i < LABIAL_BESIDE_EASE; i++)
                 show();
+        } else {
+            fail("standard input", "a line is neither say TEXT, play MS nor stop");
         }
     }
     for (i = 0; i <= LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE; i++)

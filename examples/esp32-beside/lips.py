@@ -40,7 +40,7 @@ class Voice:
         self._motion, self._packets = [], 0
         try:
             if boundaries:
-                self._motion = labial.render(labial.read_timings(boundaries, language=LANGUAGE))
+                self._motion = labial.render(labial.read_timings(boundaries, language=LANGUAGE), exact=True)
         except LabialError as error:
             logging.getLogger(__name__).warning("no lips: %s", error)
 

@@ -8,6 +8,7 @@
 #include <freertos/FreeRTOS.h>
 
 #include "labial/beside.h"
+#include "labial/clock.h"
 
 #define PERIOD 20000 /* microseconds: of a frame and of a servo's pulses */
 #define TIMER LEDC_TIMER_3
@@ -18,18 +19,21 @@ static portMUX_TYPE guard = portMUX_INITIALIZER_UNLOCKED;
 /* Shared. */
 static labial_beside_t lips;
 static uint8_t memory[LABIAL_BESIDE_SIZE(MOUTH_OUTPUTS, MOUTH_FRAMES)];
-static uint32_t rate;
-static int64_t received;   /* samples so far */
-static int64_t first, end; /* the latest that were given to the loudspeaker with numbers that follow each other */
-static int64_t silent;     /* when they will have been heard, microseconds */
+static labial_clock_t loudspeaker;
+static int64_t received; /* samples so far */
 
 int mouth_begin(uint32_t samples_per_second)
 {
     int result;
     portENTER_CRITICAL(&guard);
-    result = labial_beside_init(&lips, MOUTH_OUTPUTS, samples_per_second, memory, sizeof memory);
-    rate = result < 0 ? 0 : samples_per_second;
-    received = first = end = silent = 0;
+    result = labial_beside_begin(&lips, samples_per_second);
+    if (result == LABIAL_BESIDE_ERROR_STATE) { /* the first one */
+        result = labial_beside_init(&lips, MOUTH_OUTPUTS, samples_per_second, memory, sizeof memory);
+        (void)labial_beside_limit(&lips, 0, LABIAL_BESIDE_CHANGE(MOUTH_CHANGE, MOUTH_AT_0, MOUTH_AT_255));
+    }
+    if (labial_clock_init(&loudspeaker, result < 0 ? 0 : samples_per_second) != 0 && result >= 0)
+        result = LABIAL_BESIDE_ERROR_SIZE;
+    received = 0;
     portEXIT_CRITICAL(&guard);
     return result;
 }
@@ -56,18 +60,7 @@ int64_t mouth_receive(size_t count)
 void mouth_playing(int64_t number, size_t count, int64_t now)
 {
     portENTER_CRITICAL(&guard);
-    if (rate > 0) {
-        if (silent < now)
-            silent = now;
-        silent += (int64_t)count * 1000000 / rate;
-        if (number < 0) { /* the sample before stays, while another sound is heard */
-            first = end;
-        } else {
-            if (number != end)
-                first = number;
-            end = number + (int64_t)count;
-        }
-    }
+    labial_clock_play(&loudspeaker, number, (uint32_t)count, now);
     portEXIT_CRITICAL(&guard);
 }
 
@@ -75,20 +68,17 @@ void mouth_cancel(void)
 {
     portENTER_CRITICAL(&guard);
     (void)labial_beside_cancel(&lips);
-    first = end;
+    labial_clock_stop(&loudspeaker);
     portEXIT_CRITICAL(&guard);
 }
 
 int mouth_values(int64_t now, uint8_t values[MOUTH_OUTPUTS])
 {
-    int result = LABIAL_BESIDE_ERROR_STATE;
+    int64_t sample;
+    int result;
     portENTER_CRITICAL(&guard);
-    if (rate > 0) {
-        const int64_t left = silent > now ? (silent - now) * rate / 1000000 : 0;
-        int64_t sample = end - left > first ? end - left : first;
-        sample -= sample == end && end > 0; /* the next one has not begun */
-        result = labial_beside_at(&lips, (uint32_t)sample, values);
-    }
+    (void)labial_clock_at(&loudspeaker, now, &sample);
+    result = labial_beside_at(&lips, (uint32_t)sample, values);
     portEXIT_CRITICAL(&guard);
     return result;
 }

@@ -45,10 +45,15 @@ extern "C" {
 #define MOUTH_AT_255 1900
 #endif
 
-/* What mouth_playing() is told of sound that did not come from the server. */
+/* The largest change in 20 ms that the servo follows, in microseconds. It is never exceeded. */
+#ifndef MOUTH_CHANGE
+#define MOUTH_CHANGE 100
+#endif
+
+/* What mouth_playing() is told of sound that did not come from the server: LABIAL_CLOCK_NONE. */
 #define MOUTH_NONE (-1)
 
-/* A connection begins, with sound of a rate. Returns 0, or a negative number for a rate that cannot be. */
+/* A connection begins, with sound of a rate; the mouth eases to rest from where it is. Returns 0, or a negative number for a rate that cannot be. */
 int mouth_begin(uint32_t rate);
 
 /* A packet of lips. Returns as labial_beside_feed(). */

@@ -19,11 +19,15 @@
  * written is heard when what was written before has ended, or at once if it has. So lips_playing() takes the time
  * before the write, and need not know the size of the driver's buffer.
  *
+ * Where a sound ends, lips_frame() ends hearing, so that its last 120 ms have their frames, too: when a frame is due that
+ * is not known, and the next sound is late (LIPS_DRY). What comes then is heard anew.
+ *
  * Sound that is fed and never played, because a queue was emptied, moves nothing. When everything that was given to the
  * loudspeaker has been heard, the mouth eases to the neutral face, and from there into the next words.
  *
  * Threads: lips_feed() in one thread, lips_playing() in one, lips_frame() in one, which may be three different ones;
- * lips_cancel() in any; lips_begin() in any while lips_feed() does not run. Only lips_feed() takes long, as it hears.
+ * lips_cancel() in any; lips_begin() in any while lips_feed() does not run. lips_feed() takes long, as it hears, and
+ * lips_frame() once at the end of a sound: six frames of 20 ms, less than the hearing of 140 ms of sound.
  * Nothing is allocated: there is one mouth in a program.
  */
 #ifndef LIPS_H
@@ -57,6 +61,11 @@ extern "C" {
 #endif
 #ifndef LIPS_EASE
 #define LIPS_EASE 120
+#endif
+
+/* A sound has ended when the next lips_feed() is late by so many milliseconds, and its frames are due. */
+#ifndef LIPS_DRY
+#define LIPS_DRY 20
 #endif
 
 /* Prepares for sound of one rate and 1 or 2 channels, those of labial/hear.h; what was heard before is forgotten.

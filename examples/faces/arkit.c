@@ -35,9 +35,9 @@ static const labial_rig_output_t outputs[10] = {
     /* mouthUpperUpRight: 1.62251 per FAP unit of (-1 lower_t_midlip_o -0.15 raise_b_midlip_o) */
     { { 0, 0, 0, -16384, -2458, 0, 0, 0, 0, 0, 0, 0, 0 },
       0, 0, 26583, -77, 0, 1000, 0, 0, 0, 0, 0 },
-    /* mouthRollLower: 4.19886 per FAP unit of (+1 open_jaw -1 lower_t_midlip_o +1 raise_b_midlip_o) */
-    { { 4096, 0, 0, -4096, 4096, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 275176, -250, 0, 400, 0, 0, 0, 0, 0 }
+    /* mouthRollLower: 5.87965 per FAP unit of (+0.714 open_jaw -1 lower_t_midlip_o +0.714 raise_b_midlip_o) */
+    { { 5849, 0, 0, -8192, 5849, 0, 0, 0, 0, 0, 0, 0, 0 },
+      0, 0, 192664, -280, 0, 400, 0, 0, 0, 0, 0 }
 };
 
 const labial_rig_t arkit = { outputs, 10 };

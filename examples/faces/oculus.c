@@ -11,9 +11,9 @@ static const labial_rig_output_t outputs[10] = {
     /* PP: 8.2842 per FAP unit of (+1 lower_t_midlip_o +0.274 raise_b_midlip_o) */
     { { 0, 0, 0, 16384, 4489, 0, 0, 0, 0, 0, 0, 0, 0 },
       0, 0, 135728, -96, 0, 1000, 0, 0, 0, 0, 0 },
-    /* FF: 4.19886 per FAP unit of (+1 open_jaw -1 lower_t_midlip_o +1 raise_b_midlip_o) */
-    { { 4096, 0, 0, -4096, 4096, 0, 0, 0, 0, 0, 0, 0, 0 },
-      0, 0, 275176, -250, 0, 250, 0, 0, 0, 0, 0 },
+    /* FF: 5.87965 per FAP unit of (+0.714 open_jaw -1 lower_t_midlip_o +0.714 raise_b_midlip_o) */
+    { { 5849, 0, 0, -8192, 5849, 0, 0, 0, 0, 0, 0, 0, 0 },
+      0, 0, 192664, -280, 0, 250, 0, 0, 0, 0, 0 },
     /* TH: 4 per FAP unit of (-0.25 open_jaw -1 push_t_lip -0.5 lower_t_midlip_o -0.5 raise_b_midlip_o +0.5
      * stretch_l_cornerlip_o +0.5 stretch_r_cornerlip_o) */
     { { -1024, 0, -4096, -2048, -2048, 2048, 2048, 0, 0, 0, 0, 0, 0 },
@@ -33,13 +33,13 @@ static const labial_rig_output_t outputs[10] = {
     /* aa: 1.12989 per FAP unit of (-0.122 open_jaw -0.472 lower_t_midlip_o -1 raise_b_midlip_o) */
     { { -1999, 0, 0, -7733, -16384, 0, 0, 0, 0, 0, 0, 0, 0 },
       0, 0, 18512, -86, 0, 1000, 0, 0, 0, 0, 0 },
-    /* oh: 1.60412 per FAP unit of (-0.274 push_t_lip -0.5 stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
-    { { 0, 0, -4489, 0, 0, -8192, -8192, 0, 0, 0, 0, 0, 0 },
-      0, 0, 26282, -60, 0, 1000, 0, 0, 0, 0, 0 },
-    /* ou: 2.44115 per FAP unit of (+1 push_t_lip +0.2 raise_b_midlip_o -0.4 stretch_l_cornerlip_o -0.4
-     * stretch_r_cornerlip_o) */
-    { { 0, 0, 16384, 0, 3277, -6554, -6554, 0, 0, 0, 0, 0, 0 },
-      0, 0, 39996, -120, 0, 1000, 0, 0, 0, 0, 0 }
+    /* oh: 1.54358 per FAP unit of (-0.5 stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
+    { { 0, 0, 0, 0, 0, -2048, -2048, 0, 0, 0, 0, 0, 0 },
+      0, 0, 101160, -20, 0, 1000, 0, 0, 0, 0, 0 },
+    /* ou: 3.10811 per FAP unit of (+1 push_t_lip -0.5 lower_t_midlip_o +0.1 raise_b_midlip_o -0.5
+     * stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
+    { { 0, 0, 8192, -4096, 819, -4096, -4096, 0, 0, 0, 0, 0, 0 },
+      0, 0, 101846, -150, 0, 1000, 0, 0, 0, 0, 0 }
 };
 
 const labial_rig_t oculus = { outputs, 10 };

@@ -12,10 +12,10 @@ static const labial_rig_output_t outputs[3] = {
      * stretch_r_cornerlip_o) */
     { { 0, 0, 0, -16384, 0, -1049, -1049, 0, 0, 0, 0, 0, 0 },
       0, 0, 54378, 0, 0, 1000, 0, 0, 0, 0, 0 },
-    /* ou: 2.44115 per FAP unit of (+1 push_t_lip +0.2 raise_b_midlip_o -0.4 stretch_l_cornerlip_o -0.4
-     * stretch_r_cornerlip_o) */
-    { { 0, 0, 16384, 0, 3277, -6554, -6554, 0, 0, 0, 0, 0, 0 },
-      0, 0, 39996, -120, 0, 1000, 0, 0, 0, 0, 0 }
+    /* ou: 3.10811 per FAP unit of (+1 push_t_lip -0.5 lower_t_midlip_o +0.1 raise_b_midlip_o -0.5
+     * stretch_l_cornerlip_o -0.5 stretch_r_cornerlip_o) */
+    { { 0, 0, 8192, -4096, 819, -4096, -4096, 0, 0, 0, 0, 0, 0 },
+      0, 0, 101846, -150, 0, 1000, 0, 0, 0, 0, 0 }
 };
 
 const labial_rig_t vrm = { outputs, 3 };

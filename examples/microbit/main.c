@@ -5,7 +5,7 @@
  * interrupt shows one every 20 ms (servos.c).
  */
 #include "face.h"
-#include "labial/labial.h"
+#include "labial/face.h"
 #include "nrf51.h"
 #include "script.h"
 #include "servos.h"
@@ -13,16 +13,12 @@
 
 typedef char one_servo_per_output[FACE_OUTPUTS == SERVOS_COUNT ? 1 : -1];
 
-static script_t script;
-static int32_t pulses[FACE_OUTPUTS];
+#define ATTACH 25u /* periods from one servo to the next: half a second to get to rest */
 
-static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
-{
-    (void)user;
-    (void)frame;
-    labial_rig_apply(&face, faps, pulses);
-    servos_push(pulses); /* a tick has one frame at most, and there was room before it */
-}
+static script_t script;
+static labial_face_t mouth;
+static int32_t room[LABIAL_FACE_SIZE(FACE_OUTPUTS, 0) / 4];
+static int32_t pulses[FACE_OUTPUTS];
 
 /* Takes shown faces out of the queue. */
 static void tidy(void)
@@ -32,12 +28,29 @@ static void tidy(void)
         trace_face(&shown);
 }
 
+/* Lets the servos begin one after the other, so that the supply need not move all of them at once. */
+static void attach(void)
+{
+    for (unsigned servo = 1; servo <= SERVOS_COUNT; servo++) {
+        const uint32_t begin = servos_counts().periods;
+        servos_attach(servo);
+        while (servos_counts().periods - begin < ATTACH)
+            servos_wait();
+    }
+}
+
+/* Says the script, and goes on until the face is at rest. */
 static int speak(void)
 {
-    int result = script_begin(&script, on_frame, 0);
-    while (result >= 0 && result != LABIAL_DONE) {
+    int result = script_begin(&script, labial_face_frame, &mouth), shown = LABIAL_OK;
+    while (result >= 0 && shown >= 0 && (result != LABIAL_DONE || shown != LABIAL_DONE)) {
         const uint32_t begin = servos_clock();
-        result = script_tick(&script);
+        if (result != LABIAL_DONE)
+            result = script_tick(&script);
+        if (result != LABIAL_WAITING) { /* nothing to show before the first frame */
+            shown = labial_face_tick(&mouth, pulses);
+            servos_push(pulses);
+        }
         trace_work(servos_clock() - begin);
         tidy();
         if (servos_room() == 0)
@@ -53,15 +66,16 @@ static int speak(void)
         servos_wait();
         tidy();
     }
-    return result < 0;
+    return result < 0 || shown < 0;
 }
 
 int main(void)
 {
-    int failed;
-    labial_rig_rest(&face, pulses);
+    int failed = labial_face_init(&mouth, &face, 50, 0, room, sizeof room) < 0;
+    failed |= labial_face_tick(&mouth, pulses) < 0; /* at rest, which the servos are told first */
     servos_start(pulses);
-    failed = speak();
+    attach();
+    failed |= speak();
 #if defined(MICROBIT_TRACE)
     failed |= speak(); /* as if the button had been pressed */
 #else

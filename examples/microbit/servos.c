@@ -18,7 +18,7 @@ static const uint8_t pins[SERVOS_COUNT] = { MICROBIT_P0, MICROBIT_P1, MICROBIT_P
  */
 static volatile servos_face_t queue[SERVOS_QUEUE];
 static volatile uint32_t pushed, begun, ended, passed;
-static volatile uint32_t playing, ending;
+static volatile uint32_t playing, ending, attached;
 
 /* Written only by the handler. */
 static volatile uint32_t periods, interrupts, late;
@@ -60,7 +60,8 @@ static void make_edge(void)
     const unsigned servo = edge / 2u;
     const uint32_t pin = 1u << pins[servo], begin = FIRST_PULSE + SLOT * servo;
     if (edge % 2u == 0) {
-        GPIO_OUTSET = pin;
+        if (servo < attached)
+            GPIO_OUTSET = pin;
         risen = clock_by(1);
         TIMER_CC(TIMER1, 1) = begin + lengths[servo];
     } else {
@@ -118,6 +119,11 @@ void servos_start(const int32_t rest[SERVOS_COUNT])
     TIMER_CLEAR(TIMER1) = 1;
     NVIC_ISER = 1u << TIMER1_INTERRUPT;
     TIMER_START(TIMER1) = 1;
+}
+
+void servos_attach(unsigned count)
+{
+    attached = count;
 }
 
 unsigned servos_room(void)

@@ -26,9 +26,12 @@ typedef struct {
     uint16_t measured[SERVOS_COUNT];
 } servos_face_t;
 
-/* Starts the timers and shows a face until others come. Lengths beyond SERVOS_PULSE_MAX, and negative ones, are cut to
- * that, here and in servos_push(). */
+/* Starts the timers, for a face that is shown until others come, by the servos that are attached: none yet. Lengths beyond
+ * SERVOS_PULSE_MAX, and negative ones, are cut to that, here and in servos_push(). */
 void servos_start(const int32_t lengths[SERVOS_COUNT]);
+
+/* Attaches the first `count` servos: they have pulses from now on. */
+void servos_attach(unsigned count);
 
 /* Faces that can be pushed. A face leaves the queue when it was shown and servos_shown() has passed it on. */
 unsigned servos_room(void);

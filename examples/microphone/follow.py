@@ -11,7 +11,6 @@ A frame is shown 120 ms after its sound, plus what the sound device needs.
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
@@ -20,7 +19,8 @@ import wave
 from typing import Callable, Iterator, List, Optional, Tuple
 
 import labial
-from labial.errors import LabialError
+from labial.errors import LabialError, apt, missing
+from labial.program import Parser, complain, run
 
 #: Of the microphone: samples per second, of one channel.
 RATE = 16000
@@ -42,10 +42,10 @@ def microphone() -> Iterator[bytes]:
             while True:
                 block, lost = stream.read(BLOCK)
                 if lost:
-                    print("this computer is too slow: sound was lost", file=sys.stderr)
+                    complain("follow", "this computer is too slow: sound was lost")
                 yield bytes(block)
     except sounddevice.PortAudioError as error:
-        raise RuntimeError(f"the microphone: {error}") from None
+        raise LabialError(f"the microphone: {error}") from None
 
 
 def arecord() -> Iterator[bytes]:
@@ -54,14 +54,14 @@ def arecord() -> Iterator[bytes]:
         recorder = subprocess.Popen(["arecord", "-q", "-t", "raw", "-f", "S16_LE", "-c", "1", "-r", str(RATE)],
                                     stdout=subprocess.PIPE)
     except FileNotFoundError:
-        raise RuntimeError("there is neither sounddevice (pip install sounddevice) nor arecord "
-                           "(apt-get install alsa-utils)") from None
+        raise missing("the microphone", "sounddevice or arecord",
+                      f"pip install sounddevice, or {apt('alsa-utils')}") from None
     assert recorder.stdout is not None
     try:
         while block := recorder.stdout.read(2 * BLOCK):
             yield block
         if recorder.wait() != 0:
-            raise RuntimeError("arecord cannot record")
+            raise LabialError("arecord cannot record")
     finally:
         recorder.kill()
         recorder.wait()
@@ -71,9 +71,12 @@ def arecord() -> Iterator[bytes]:
 def file(path: str, sleep: Callable[[float], None] = time.sleep,
          clock: Callable[[], float] = time.monotonic) -> Tuple[int, int, Iterator[bytes]]:
     """Rate, channels and blocks of a WAV file of 16 bits; a block comes when a microphone would have it."""
-    sound = wave.open(path, "rb")  # closed by the generator
+    try:
+        sound = wave.open(path, "rb")  # closed by the generator
+    except (wave.Error, EOFError) as error:
+        raise LabialError(f"{path}: {str(error) or 'the file is cut off'}") from None
     if sound.getsampwidth() != 2:
-        raise RuntimeError(f"{path}: {8 * sound.getsampwidth()} bits per sample, not 16")
+        raise LabialError(f"{path}: {8 * sound.getsampwidth()} bits per sample, not 16")
 
     def blocks() -> Iterator[bytes]:
         with sound:
@@ -99,8 +102,8 @@ def line(frame: labial.Frame) -> str:
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Runs the command; returns its exit status."""
-    parser = argparse.ArgumentParser(description="Follows the microphone with a mouth.")
+    """The command line."""
+    parser = Parser(prog="follow", description="Follows the microphone with a mouth.")
     parser.add_argument("--sound", metavar="FILE.wav", help="in place of the microphone")
     parser.add_argument("--to", choices=("bar", "jsonl"), default="bar", help="a bar in the terminal, or text (bar)")
     parser.add_argument("--model", choices=("small", "large"), default="small")
@@ -114,13 +117,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
                 sys.stdout.flush()
     except KeyboardInterrupt:
         pass
-    except (OSError, EOFError, RuntimeError, wave.Error, LabialError) as error:
-        print(f"follow.py: {error}", file=sys.stderr)
-        return 1
     if options.to == "bar":
         print()
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run("follow", main))

@@ -7,6 +7,7 @@ import time
 from typing import Any, Dict, Optional, TextIO
 
 import labial
+from labial.errors import LabialError, apt, missing
 
 
 class Printer:
@@ -14,6 +15,9 @@ class Printer:
 
     def __init__(self, out: Optional[TextIO] = None) -> None:
         self._out = out or sys.stdout
+
+    def start(self, face: labial.Face) -> None:
+        """Does nothing."""
 
     def show(self, milliseconds: int, values: Dict[str, int]) -> None:
         """Shows one frame."""
@@ -32,16 +36,24 @@ class PCA9685:
 
     def __init__(self, rig: labial.Rig, bus: Any, address: int = 0x40) -> None:
         if rig.unit != "pca9685":
-            raise ValueError(f'{rig.name} is made for {rig.unit}: write unit = "pca9685" in its description')
+            raise LabialError(f'{rig.name} is made for {rig.unit}: write unit = "pca9685" in its description')
         self._bus, self._address = bus, address
         bus.write_byte_data(address, self.MODE1, self.ASLEEP)  # the prescaler can only be set asleep
         bus.write_byte_data(address, self.PRESCALE, rig.prescale)
         bus.write_byte_data(address, self.MODE1, self.AWAKE)
         time.sleep(0.001)
-        self.show(0, rig.rest())
+
+    def start(self, face: labial.Face) -> None:
+        """Attaches the servos at rest, one after the other, half a second each: a channel has no pulses before its
+        first value."""
+        face.soft_start(25)
+        for _ in range(25 * len(face.rig.outputs)):
+            values = face.tick()
+            self.show(0, {name: values[name] for name in face.attached})
+            time.sleep(0.02)
 
     def show(self, milliseconds: int, values: Dict[str, int]) -> None:
-        """Shows one frame: each pulse begins at 0 and ends at its tick."""
+        """Shows one frame, of the first servos or of all: each pulse begins at 0 and ends at its tick."""
         for channel, ticks in enumerate(values.values()):
             self._bus.write_i2c_block_data(self._address, self.FIRST_CHANNEL + 4 * channel,
                                            [0, 0, ticks & 0xFF, ticks >> 8])
@@ -58,8 +70,8 @@ def open_servos(rig: labial.Rig, bus: int = 1) -> Any:
 
         return PCA9685(rig, SMBus(bus))
     except ImportError:
-        why = "smbus2 is not installed (apt-get install python3-smbus2)"
+        why = missing("a PCA9685", "smbus2", apt("python3-smbus2"))
     except OSError as error:
-        why = f"no PCA9685 answers on I2C bus {bus} ({error})"
+        why = LabialError(f"no PCA9685 answers on I2C bus {bus} ({error})")
     print(f"{why}: the servos are printed", file=sys.stderr)
     return Printer()

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import List, NamedTuple, Sequence
 
 import labial
+from labial.errors import LabialError, missing
 
 
 class Utterance(NamedTuple):
@@ -27,17 +28,16 @@ class Espeak:
         self.say("a")  # whether there is such a voice
 
     def say(self, text: str) -> Utterance:
-        """The sound of a text and its motion. Raises RuntimeError if espeak-ng cannot speak it."""
+        """The sound of a text and its motion. Raises LabialError if espeak-ng cannot speak it."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "utterance.wav"
             try:
                 done = subprocess.run(["labial-say-espeak", "--voice", self._voice, path, "-"], input=text, check=True,
                                       capture_output=True, encoding="utf-8")
             except FileNotFoundError:
-                raise RuntimeError("labial-say-espeak is not installed: see \"With flite or espeak-ng\" in "
-                                   "docs/kiosk.md") from None
+                raise missing("this voice", "labial-say-espeak", "build it (docs/install.md)") from None
             except subprocess.CalledProcessError as error:
-                raise RuntimeError(error.stderr.strip()) from None
+                raise LabialError(error.stderr.strip()) from None
             with wave.open(str(path)) as sound:
                 motion: List[List[int]] = [[int(value) for value in row.split(",")[1:]]
                                            for row in done.stdout.splitlines()[1:]]
@@ -51,8 +51,11 @@ class Piper:
         try:
             from piper import PiperVoice
         except ImportError:
-            raise RuntimeError("Piper is not installed: pip install 'piper-tts[alignment]'") from None
-        self._voice = PiperVoice.load(voice, include_alignments=True)
+            raise missing("this voice", "the package piper", "pip install 'piper-tts[alignment]'") from None
+        try:
+            self._voice = PiperVoice.load(voice, include_alignments=True)
+        except ValueError as error:  # a .json that is none, for instance
+            raise LabialError(f"{voice}: {error}") from None
 
     def say(self, text: str) -> Utterance:
         """The sound of a text, which is not empty, and its motion."""

@@ -6,6 +6,7 @@
  */
 #include <stdio.h>
 
+#include "labial/face.h"
 #include "script.h"
 #include "servos.h"
 
@@ -31,30 +32,39 @@ static void write_register(unsigned address, unsigned value)
     write_registers(address, &byte, 1);
 }
 
-static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+/* Shows the first servos: those that are attached. The others' channels have no pulses yet. */
+static void show(const int32_t *ticks, unsigned attached)
 {
-    int32_t *ticks = (int32_t *)user;
     uint8_t bytes[4 * SERVOS_OUTPUTS];
-    (void)frame;
-    labial_rig_apply(&servos, faps, ticks);
-    for (unsigned i = 0; i < SERVOS_OUTPUTS; i++) {
+    for (unsigned i = 0; i < attached; i++) {
         bytes[4 * i] = bytes[4 * i + 1] = 0; /* pulses begin with the period */
         bytes[4 * i + 2] = (uint8_t)(ticks[i] & 0xff);
         bytes[4 * i + 3] = (uint8_t)(ticks[i] >> 8);
     }
-    write_registers(LED0_ON_L, bytes, sizeof bytes);
+    write_registers(LED0_ON_L, bytes, 4 * attached);
 }
 
 int main(void)
 {
     static script_t script;
+    static labial_face_t face;
+    static int32_t room[LABIAL_FACE_SIZE(SERVOS_OUTPUTS, 0) / 4];
     int32_t ticks[SERVOS_OUTPUTS];
     write_register(MODE1, MODE1_SLEEP);
     write_register(PRESCALE, SERVOS_PCA9685_PRESCALE);
     write_register(MODE1, MODE1_INCREMENT); /* then waits 500 us for the oscillator */
-    labial_rig_rest(&servos, ticks);
-    int result = script_begin(&script, on_frame, ticks);
-    while (result >= 0 && result != LABIAL_DONE)
-        result = script_tick(&script); /* and waits for the next 20 ms */
-    return result < 0;
+    int moves = labial_face_init(&face, &servos, 50, 0, room, sizeof room);
+    labial_face_soft_start(&face, 25); /* half a second for each servo to get to rest */
+    for (int i = 0; moves >= 0 && i < 25 * SERVOS_OUTPUTS; i++) {
+        moves = labial_face_tick(&face, ticks); /* and waits for the next 20 ms, here and below */
+        show(ticks, labial_face_attached(&face));
+    }
+    int result = script_begin(&script, labial_face_frame, &face);
+    while (result >= 0 && moves >= 0 && (result != LABIAL_DONE || moves != LABIAL_DONE)) {
+        if (result != LABIAL_DONE)
+            result = script_tick(&script);
+        moves = labial_face_tick(&face, ticks);
+        show(ticks, labial_face_attached(&face));
+    }
+    return result < 0 || moves < 0;
 }

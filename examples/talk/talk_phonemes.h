@@ -1,5 +1,5 @@
 /*
- * talk_phonemes.h - 30 phonemes, 3.5 s, of talk.lab, for the model speech_en. Written by labial bake 0.3.0; do not
+ * talk_phonemes.h - 30 phonemes, 3.1 s, of talk.lab, for the model speech_en. Written by labial bake 0.3.0; do not
  * edit.
  */
 #ifndef LABIAL_PHONEMES_TALK_PHONEMES_H
@@ -12,7 +12,7 @@
 #endif
 
 #define TALK_PHONEMES_PHONEMES 30u
-#define TALK_PHONEMES_MILLISECONDS 3480ul
+#define TALK_PHONEMES_MILLISECONDS 3125ul
 
 /* A phoneme of speech_en in the low byte, its milliseconds above it. */
 static const uint32_t talk_phonemes[30] = {
@@ -23,7 +23,7 @@ static const uint32_t talk_phonemes[30] = {
     SPEECH_EN_SIL | 90ul << 8, SPEECH_EN_AE | 58ul << 8, SPEECH_EN_N | 40ul << 8, SPEECH_EN_D | 50ul << 8,
     SPEECH_EN_AY | 150ul << 8, SPEECH_EN_AE | 80ul << 8, SPEECH_EN_M | 50ul << 8, SPEECH_EN_AH | 50ul << 8,
     SPEECH_EN_P | 120ul << 8, SPEECH_EN_AH | 80ul << 8, SPEECH_EN_P | 80ul << 8, SPEECH_EN_IH | 70ul << 8,
-    SPEECH_EN_T | 72ul << 8, SPEECH_EN_SIL | 500ul << 8
+    SPEECH_EN_T | 72ul << 8, SPEECH_EN_SIL | 145ul << 8
 };
 
 /*

@@ -13,13 +13,17 @@ import sys
 import time
 from typing import Any, List, Optional
 
-from livekit import rtc
-from livekit.agents import Agent, AgentSession, APIConnectOptions, tts, utils
-from livekit.agents.types import DEFAULT_API_CONNECT_OPTIONS, TimedString
-from livekit.agents.voice.io import AudioOutput, AudioOutputCapabilities
-
 import stand_in
-from livekit_lips import Lips
+
+try:
+    from livekit import rtc
+    from livekit.agents import Agent, AgentSession, APIConnectOptions, tts, utils
+    from livekit.agents.types import DEFAULT_API_CONNECT_OPTIONS, TimedString
+    from livekit.agents.voice.io import AudioOutput, AudioOutputCapabilities
+
+    from livekit_lips import Lips
+except ModuleNotFoundError as error:
+    sys.exit(f"livekit_agent: this needs the package {error.name}: pip install livekit-agents")
 
 
 class StandInTTS(tts.TTS):

@@ -11,18 +11,22 @@ import asyncio
 import sys
 from typing import Any, AsyncGenerator, Optional
 
-from pipecat.frames.frames import EndFrame, Frame, OutputAudioRawFrame, StartFrame, TTSAudioRawFrame, TTSSpeakFrame
-from pipecat.pipeline.pipeline import Pipeline
-from pipecat.pipeline.worker import PipelineParams, PipelineWorker
-from pipecat.services.settings import TTSSettings
-from pipecat.services.tts_service import TTSService
-from pipecat.transports.base_output import BaseOutputTransport
-from pipecat.transports.base_transport import TransportParams
-from pipecat.workers.runner import WorkerRunner
-
 import labial
 import stand_in
-from pipecat_lips import Lips
+
+try:
+    from pipecat.frames.frames import EndFrame, Frame, OutputAudioRawFrame, StartFrame, TTSAudioRawFrame, TTSSpeakFrame
+    from pipecat.pipeline.pipeline import Pipeline
+    from pipecat.pipeline.worker import PipelineParams, PipelineWorker
+    from pipecat.services.settings import TTSSettings
+    from pipecat.services.tts_service import TTSService
+    from pipecat.transports.base_output import BaseOutputTransport
+    from pipecat.transports.base_transport import TransportParams
+    from pipecat.workers.runner import WorkerRunner
+
+    from pipecat_lips import Lips
+except ModuleNotFoundError as error:
+    sys.exit(f"pipecat_bot: this needs the package {error.name}: pip install pipecat-ai")
 
 
 class StandInTTS(TTSService):

@@ -4,7 +4,7 @@
 #     sh export/hearing/train.sh TALKERS LJ KATHLEEN OUT
 #
 # TALKERS has sounds with a .txt beside each, LJ a metadata.csv and its wavs, KATHLEEN the repository's data folder. OUT
-# is a new folder. Needs labial[hear], flite, festival with festvox-kallpc16k and festvox-us-slt-hts, and espeak-ng.
+# is a new folder. Needs Labial with the extra hear, flite, festival with festvox-kallpc16k and festvox-us-slt-hts, and espeak-ng.
 set -eu
 talkers=$1 lj=$2 kathleen=$3 out=$4
 here=$(dirname "$0")

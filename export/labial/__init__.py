@@ -30,6 +30,7 @@ __version__ = "0.3.0"
 
 if TYPE_CHECKING:
     from labial.runtime.beside import Beside
+    from labial.runtime.face import Face
     from labial.runtime.frame import Frame, Latency
     from labial.runtime.hearing import Hearing
     from labial.runtime.models import Model
@@ -42,12 +43,12 @@ if TYPE_CHECKING:
     speech_en: Model
     laughter_synthetic: Model
 
-__all__ = ["Beside", "Frame", "Hearing", "Latency", "Model", "Rig", "Stream", "Voice", "character_timings", "phonemes",
-           "read_timings", "render", "word_timings", *BUNDLED]
+__all__ = ["Beside", "Face", "Frame", "Hearing", "Latency", "Model", "Rig", "Stream", "Voice", "character_timings",
+           "phonemes", "read_timings", "render", "word_timings", *BUNDLED]
 
-_HOMES = {"Beside": "beside", "Frame": "frame", "Hearing": "hearing", "Latency": "frame", "Model": "models",
-          "Rig": "rig", "Stream": "stream", "Voice": "voice", "character_timings": "words", "phonemes": "words",
-          "word_timings": "words", "read_timings": "render", "render": "render"}  # fmt: skip
+_HOMES = {"Beside": "beside", "Face": "face", "Frame": "frame", "Hearing": "hearing", "Latency": "frame",
+          "Model": "models", "Rig": "rig", "Stream": "stream", "Voice": "voice", "character_timings": "words",
+          "phonemes": "words", "word_timings": "words", "read_timings": "render", "render": "render"}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

@@ -13,28 +13,17 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from types import FrameType
-from typing import Iterator, List, NoReturn, Optional, Sequence
+from typing import Iterator, List, Optional, Sequence
 
 from labial import __version__
 from labial.commands import COMMANDS
 from labial.errors import LabialError, needs
-
-
-class _Parser(argparse.ArgumentParser):
-    """Prints an error in the arguments in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {_one_line(message)}\n")
-
-
-def _one_line(text: str) -> str:
-    """`text` as one printable line: control characters and bytes that are not UTF-8 are escaped."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+from labial.program import Parser, complain, drop_output
 
 
 def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     """The parser of a command line. It imports only the module of the command that `arguments` name."""
-    top = _Parser(
+    top = Parser(
         prog="labial", description="Trains lip-motion models and exports them for the C library."
     )
     top.add_argument("--version", action="version", version=f"labial {__version__}")
@@ -88,10 +77,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
         except LabialError as error:
             _complain(str(error))
         except BrokenPipeError:  # the reader of the output closed the pipe
-            _drop_output()
+            drop_output()
         except OSError as error:
             _complain(f"{_name(error)}: {error.strerror or error}")
-            _drop_output()
+            drop_output()
         except MemoryError:
             _complain("there is not enough memory for this")
         except KeyboardInterrupt:
@@ -107,13 +96,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
 
 
 def _complain(text: str) -> None:
-    print(f"labial: {_one_line(text)}", file=sys.stderr)
-
-
-def _drop_output() -> None:
-    """Discards unwritten standard output, so that Python does not try to write it again at exit."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    complain("labial", text)
 
 
 def _name(error: OSError) -> str:

@@ -35,6 +35,24 @@ class StreamError(LabialError):
         self.result = result  #: LABIAL_ERROR_PHONEME and so on, a negative number (labial/labial.h)
 
 
+def missing(what: str, thing: str, command: str) -> LabialError:
+    """The error that `what`, such as "training", needs a package or a program that is not there, which `command`
+    installs."""
+    return LabialError(f"{what} needs {thing}: {command}")
+
+
+def pip(extra: str = "") -> str:
+    """The command that installs this package with an extra. Only its folder has it: other packages on an index may bear
+    its name."""
+    target = f"'.[{extra}]'" if extra else "."
+    return f"pip install {target} in Labial's folder (docs/install.md)"
+
+
+def apt(package: str) -> str:
+    """The command that installs a program on Debian, Ubuntu and Raspberry Pi OS."""
+    return f"apt-get install {package}"
+
+
 @contextmanager
 def needs(what: str, extra: str) -> Iterator[None]:
     """Wraps the imports of an optional package: a LabialError says that `what`, such as "training", needs it, and which
@@ -44,4 +62,4 @@ def needs(what: str, extra: str) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] == "labial":
             raise
-        raise LabialError(f"{what} needs the package {error.name}: install labial[{extra}]") from None
+        raise missing(what, f"the package {error.name}", pip(extra)) from None

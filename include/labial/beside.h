@@ -13,8 +13,8 @@
  *     if (labial_beside_at(&lips, sample, values) >= 0)       // every 20 ms
  *         set_servo(labial_beside_value(values[0], 1400, 1900));
  *
- * `sample` is the number of the sample that is heard now: the first sample that the server sent has the number 0, and
- * each one that it sent since is counted, played or not. So sound that a program drops moves nothing.
+ * `sample` is the number of the sample that is heard now: the first sample of a session has the number 0, and each one
+ * that the server sent since is counted, played or not. Dropping sound therefore does not shift the lips.
  *
  * A packet, numbers with the low byte first:
  *
@@ -23,19 +23,25 @@
  *     2     outputs, 1 .. 255
  *     3     frames, 0 .. 255
  *     4..7  number of the first frame, modulo 2^32; frame k begins with sample k * rate / 50
- *     8     the face at rest, a byte for each output
+ *     8..9  the session: another number than that of the session before
+ *     10    the face at rest, a byte for each output
  *     ..    the frames, a byte for each output of each
  *
- * Each packet stands alone: they may be lost, doubled or late, and may repeat frames of earlier ones. A packet that
- * cancels makes all earlier frames void; its own number is that of the next frame.
+ * Each packet stands alone: it may be lost, doubled or late, and may repeat frames of earlier ones. A packet that
+ * cancels makes all earlier frames void; its own number is that of the next frame. A packet of another session than the
+ * packet before does the same, and its numbers have nothing to do with the earlier ones: a server may begin again at any
+ * time, and a player may join at any time.
  *
  * Without a frame to show for LABIAL_BESIDE_HOLD calls, because packets are missing or the sound stands still, the
- * values ease to the face at rest in LABIAL_BESIDE_EASE calls. A frame that comes later is shown at once.
+ * values ease to the face at rest in LABIAL_BESIDE_EASE calls, or more where a limit asks for them. No value ever
+ * changes by more than its limit (labial_beside_limit()) from one call to the next, whatever packets say; a frame that
+ * is further away is approached.
  *
  * Packets are not trusted: with any bytes, of any size, and any sample number the library reads and writes only the
- * memory it was given. Integers only, no allocation, no state but the structure and its memory, the same bits on every
- * target, also where an int has 16 bits: the files beside.h and beside.c need no other file of the library. Calls
- * on one player must not overlap; the structure may be moved between calls.
+ * memory it was given. They have no key either: who can send to the player moves the face, within its limits. Let them
+ * come through TLS or a network that you trust. Integers only, no allocation, no state but the structure and its memory,
+ * the same bits on every target, also where an int has 16 bits: the files beside.h and beside.c need no other file of
+ * the library. Calls on one player must not overlap; the structure may be moved between calls.
  */
 #ifndef LABIAL_BESIDE_H
 #define LABIAL_BESIDE_H
@@ -48,13 +54,13 @@ extern "C" {
 #endif
 
 /* Version of the packets' format. Packets of another version are refused. */
-#define LABIAL_BESIDE_FORMAT 1
+#define LABIAL_BESIDE_FORMAT 2
 
 /* Frames per second. */
 #define LABIAL_BESIDE_RATE 50u
 
 /* Bytes of a packet before the face at rest, and of the longest packet. */
-#define LABIAL_BESIDE_HEAD 8u
+#define LABIAL_BESIDE_HEAD 10u
 #define LABIAL_BESIDE_LONGEST (LABIAL_BESIDE_HEAD + 255u * 256u)
 
 /* Most frames that a player keeps: 11 minutes. */
@@ -79,46 +85,67 @@ extern "C" {
 
 /* What calls return. Errors are negative, and change nothing. */
 typedef enum {
-    LABIAL_BESIDE_RESTS = 0,        /* the face is at rest or on the way there; of a packet: it was accepted */
-    LABIAL_BESIDE_SPEAKS = 1,       /* the values are those of a frame */
-    LABIAL_BESIDE_CANCELS = 2,      /* the packet cancels: the program should drop the sound that it has not played */
-    LABIAL_BESIDE_ERROR_NULL = -1,  /* a pointer is null */
+    LABIAL_BESIDE_RESTS = 0,       /* the face is at rest or on the way there; of a packet: it was accepted */
+    LABIAL_BESIDE_SPEAKS = 1,      /* the values are those of a frame, or on the way there */
+    LABIAL_BESIDE_CANCELS = 2,     /* the packet cancels: the program should drop the sound that it has not played */
+    LABIAL_BESIDE_BEGINS = 3,      /* and the packet is the first of another session, whose samples count from now on */
+    LABIAL_BESIDE_ERROR_NULL = -1, /* a pointer is null */
     LABIAL_BESIDE_ERROR_STATE = -2, /* no packet was accepted yet, so that the face at rest is unknown */
-    LABIAL_BESIDE_ERROR_SIZE = -3,  /* no outputs, more than 255, no rate, or memory for less than one frame */
+    LABIAL_BESIDE_ERROR_SIZE = -3,  /* a number is out of range, or there is memory for less than one frame */
     LABIAL_BESIDE_ERROR_PACKET = -4 /* not a packet of this format for so many outputs */
 } labial_beside_result_t;
 
-/* A player. 28 bytes where a pointer has 4. */
-typedef struct {
-    uint8_t outputs; /* 0 before labial_beside_init() */
-    uint8_t known;   /* whether a packet was accepted */
-    uint8_t quiet;   /* calls without a frame to show, up to LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE */
-    uint16_t frames; /* that the ring holds, a power of two */
-    uint32_t rate;   /* samples per second */
-    uint32_t now;    /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
-    uint32_t sample; /* a sample at most a second before the last one that was told, */
-    uint32_t frame;  /* and the frame that begins with it */
-    uint8_t *memory; /* the caller's: the face at rest, the face shown, the ring */
-} labial_beside_t;
+/* A player; its members are private. */
+typedef struct labial_beside labial_beside_t;
 
 /* Bytes of memory for so many outputs and frames, a constant expression when they are. The frames must cover the sound
  * that the server sends before it is heard; a power of two wastes nothing. */
-#define LABIAL_BESIDE_SIZE(outputs, frames) ((size_t)(outputs)*2u + ((size_t)(outputs) + 1u) * (frames))
+#define LABIAL_BESIDE_SIZE(outputs, frames) ((size_t)(outputs)*4u + ((size_t)(outputs) + 1u) * (frames))
+
+/* A change in the units of an output whose bytes 0 and 255 stand for at_0 and at_255, in bytes for
+ * labial_beside_limit(): LABIAL_BESIDE_CHANGE(100, 1400, 1900) is 51. A constant expression; 1 .. 255. */
+#define LABIAL_BESIDE_SPAN_(at_0, at_255) ((at_255) < (at_0) ? (long)(at_0) - (at_255) : (long)(at_255) - (at_0))
+#define LABIAL_BESIDE_CHANGE(change, at_0, at_255)                                                                     \
+    ((change) >= LABIAL_BESIDE_SPAN_(at_0, at_255) ? 255u                                                              \
+     : (change)*255L < 2 * LABIAL_BESIDE_SPAN_(at_0, at_255)                                                           \
+         ? 1u                                                                                                          \
+         : (unsigned)((change)*255L / LABIAL_BESIDE_SPAN_(at_0, at_255)))
 
 /*
  * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of `rate` samples per second, 1 ..
- * 50,000,000; nothing is known of what was played before. `memory` of `size` bytes belongs to the player from now on.
- * It keeps as many frames as fit, the largest power of two up to LABIAL_BESIDE_FRAMES_MAX.
+ * 50,000,000. `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest
+ * power of two up to LABIAL_BESIDE_FRAMES_MAX. Where the outputs stand is not known: the first packet puts them at rest,
+ * without a limit. Outputs have no limits until labial_beside_limit().
  *
  * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_SIZE.
  */
 int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate, void *memory, size_t size);
 
 /*
+ * The largest change of an output, 0 .. outputs - 1, from one call of labial_beside_at() to the next: `most` steps of the
+ * 255 between its ends, 1 .. 255. It is the servo's, and holds for every packet; give the server's description of the
+ * face the same (`slew`), so that what it sends arrives unchanged.
+ *
+ * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL, LABIAL_BESIDE_ERROR_STATE (not initialised) or
+ * LABIAL_BESIDE_ERROR_SIZE.
+ */
+int labial_beside_limit(labial_beside_t *player, unsigned output, unsigned most);
+
+/*
+ * A connection begins, beside sound of `rate` samples per second: samples count from 0, and the next packet is the first
+ * of its session. Frames are dropped; the face eases to rest from where it is, within its limits, which stay. A program
+ * that is told of sessions by packets alone (LABIAL_BESIDE_BEGINS) does not need it.
+ *
+ * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL, LABIAL_BESIDE_ERROR_STATE (not initialised) or
+ * LABIAL_BESIDE_ERROR_SIZE.
+ */
+int labial_beside_begin(labial_beside_t *player, uint32_t rate);
+
+/*
  * Accepts a packet of `size` bytes, all of one message. Its frames replace earlier ones of the same numbers. Those that
  * were shown, whose time has passed, or for which the ring has no room yet are ignored.
  *
- * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_CANCELS, or with nothing changed LABIAL_BESIDE_ERROR_NULL,
+ * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_CANCELS, LABIAL_BESIDE_BEGINS, or with nothing changed LABIAL_BESIDE_ERROR_NULL,
  * LABIAL_BESIDE_ERROR_STATE (not initialised) or LABIAL_BESIDE_ERROR_PACKET.
  */
 int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size);
@@ -126,7 +153,7 @@ int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size)
 /*
  * The values to show while sample number `sample` is heard, modulo 2^32. Call it every 20 ms, also in silence with a
  * number that stands still: as it eases by a step in each call, it needs no other clock. Numbers may skip any distance;
- * one that is less than the ring's length below the last is taken for jitter, one further below for a new beginning.
+ * one that is less than the ring's length below the last is taken for jitter, one further below starts over from there.
  *
  * Returns LABIAL_BESIDE_SPEAKS or LABIAL_BESIDE_RESTS with the values of all outputs, 0 .. 255, in `values`; or
  * with nothing written LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_STATE.
@@ -146,6 +173,23 @@ int labial_beside_cancel(labial_beside_t *player);
  * 8,000,000.
  */
 int32_t labial_beside_value(uint8_t byte, int32_t at_0, int32_t at_255);
+
+/* ---- Private ------------------------------------------------------------------------------------------------------ */
+
+/* 28 bytes where a pointer has 4. */
+struct labial_beside {
+    uint8_t outputs;  /* 0 before labial_beside_init() */
+    uint8_t known;    /* 0 nothing; 1 the face at rest; 2 also the session */
+    uint8_t quiet;    /* calls without a frame to show, up to LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE */
+    uint16_t frames;  /* that the ring holds, a power of two */
+    uint16_t session; /* of the latest packet */
+    uint32_t rate;    /* samples per second */
+    uint32_t now;     /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
+    uint32_t sample;  /* a sample at most a second before the last one that was told, */
+    uint32_t frame;   /* and the frame that begins with it */
+    uint8_t
+        *memory; /* the caller's: the face at rest, as it is shown, the frame that it approaches, limits, the ring */
+};
 
 #ifdef __cplusplus
 }

@@ -15,8 +15,10 @@
  *   byte 28      which optional tables follow: 1 contexts, 2 slopes, 8 protrusion; 4: pairs have two knots
  *   byte 29      floor_count (uint8)
  *   bytes 30-31  pair_count (uint16)
+ *   bytes 32-45  channel_count, sources (uint8)
+ *   bytes 46-47  0
  *   then the tables of labial_model_t in their order, each padded with zeros to a multiple of four bytes: phonemes,
- *   components, contexts, shapes, slopes, kernels, last_kernels, pair_keys, pairs, floors, contacts, protrusion; and for
+ *   components, contexts, shapes, slopes, kernels, pair_keys, pairs, floors, contacts, protrusion; and for
  *   each channel centre (int16), shape_scale, slope_scale, kernel_scale, pair_scale, both motion_scale (uint16), contact_weight
  *   (uint8), 0 (uint8), then emissions, states, transitions, initials
  */

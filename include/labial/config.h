@@ -6,15 +6,21 @@
 
 #include <stdint.h>
 
+/* 1 builds the published method to the letter (docs/method.md): each unit is searched and solved as a whole when its last
+ * frame is known, and cross-faded with the next. LABIAL_WINDOW, LABIAL_LAG and LABIAL_SEARCHED have no effect then. */
+#ifndef LABIAL_PAPER
+#define LABIAL_PAPER 0
+#endif
+
 /* How many frames ahead of the delivered ones the trajectory's backward pass starts, 1 .. 48. Each frame makes the
- * motion smoother and costs a frame of delay and 104 bytes of workspace. With the bundled models 3 frames leave an
+ * motion smoother and costs a frame of delay and 8 bytes of workspace in each channel. With the bundled models 3 frames leave an
  * error of .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 3
 #endif
 
 /* How many frames after a step the search decides its state, if the unit does not end earlier, 0 .. 40. Each frame
- * makes the path more probable and costs a frame of delay and about 175 bytes of workspace; with the bundled models the
+ * makes the path more probable and costs a frame of delay, 32 bytes of workspace and 11 in each channel; with the bundled models the
  * difference is not visible. With a lag as long as the longest unit, the states of each unit are the most probable path
  * through it (Viterbi) among the states that LABIAL_SEARCHED allows. */
 #ifndef LABIAL_LAG
@@ -47,9 +53,19 @@
 #define LABIAL_MODELS 2
 #endif
 
+/* Which calls on a stream take the lock that the program provides as labial_lock() and labial_unlock() (labial.h):
+ * 0: none, no two calls overlap; 1: all but labial_tick(), which interrupts the others and is held off by the lock; 2: all
+ * calls, from any tasks or threads. */
+#ifndef LABIAL_LOCKS
+#define LABIAL_LOCKS 0
+#endif
+
 /* These values do not compile: numbers out of range, sums without parentheses (which the macros would break apart), and
  * unsigned numbers. */
 #define LABIAL_IS_NUMBER_(x, least, most) (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
+#if !LABIAL_IS_NUMBER_(LABIAL_PAPER, 0, 1)
+#error "LABIAL_PAPER must be a number from 0 to 1."
+#endif
 #if !LABIAL_IS_NUMBER_(LABIAL_WINDOW, 1, 48)
 #error "LABIAL_WINDOW must be a number from 1 to 48."
 #endif
@@ -58,6 +74,9 @@
 #endif
 #if !LABIAL_IS_NUMBER_(LABIAL_SEARCHED, 2, 64)
 #error "LABIAL_SEARCHED must be a number from 2 to 64."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_LOCKS, 0, 2)
+#error "LABIAL_LOCKS must be a number from 0 to 2."
 #endif
 #if LABIAL_WINDOW + LABIAL_LAG > 55
 #error "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together."
@@ -76,6 +95,11 @@
 #endif
 
 /* Ticks from accepting a frame to delivering it. */
+#if LABIAL_PAPER
+#define LABIAL_PIECE 40 /* most frames of a unit; a longer one is cut into pieces */
+#define LABIAL_DELAY(stride) (LABIAL_PIECE - 1 + 0 * (stride))
+#else
 #define LABIAL_DELAY(stride) (LABIAL_WINDOW + LABIAL_LAG + (stride))
+#endif
 
 #endif

@@ -14,8 +14,9 @@
  * labial_hear_latency() tells how much that is, 120 ms from a frame's begin with the bundled models. A program that has
  * its sound 120 ms before it is heard, as from a network, keeps frames until their time and has lips without delay.
  *
- * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. The mouth
- * is closed in silence.
+ * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. A stream
+ * begins and ends with the neutral face, all FAPs 0, and so is silence: sound whose samples differ by 32 at most for 140
+ * ms.
  *
  * Like the stream of phonemes (labial/labial.h) it never allocates, keeps no state outside `hear` and `workspace`,
  * computes in integers only and gives the same bits on every target and for blocks of any length. Calls on one stream
@@ -66,7 +67,9 @@ typedef struct {
 typedef struct {
     uint8_t channels, hop;
     uint8_t ended, busy;                  /* no more sound is heard; a callback runs */
-    uint8_t fade;                         /* the step of the fade after a restart, 0 without */
+    uint8_t exact;                        /* the end delivers no way to rest */
+    uint8_t loud, silent;                 /* the frame has sound; frames without before it, 255 for more */
+    uint8_t rest;                         /* how far the face has come to rest in silence */
     uint8_t shown;                        /* the class of the last frame */
     uint8_t held, leader;                 /* `now` is a pose; its class */
     uint8_t at[LABIAL_HEAR_BLOCKS_MAX];   /* the oldest row of each block's memory */
@@ -85,8 +88,7 @@ typedef struct {
     void *user;
     int16_t before[LABIAL_CHANNELS]; /* the pose before `now`, Q4 */
     int16_t now[LABIAL_CHANNELS];    /* the pose that is delivered next, before it is smoothed */
-    int16_t pose[LABIAL_CHANNELS];   /* the last frame, Q4 */
-    int16_t faded[LABIAL_CHANNELS];  /* and the last one before a restart */
+    labial_fade_t fade;
     int16_t features[LABIAL_HEAR_INPUTS];
     int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_];
     labial_hear_convert_t convert;
@@ -134,11 +136,19 @@ int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count);
 
 /*
  * No more sound will come: delivers all frames that are still to come, as if silence followed. A frame that the sound
- * fills in part is the last one.
+ * fills in part is the last one; after it the face comes to rest in LABIAL_EASE_FRAMES more, unless no channel is farther
+ * than 8 FAP units from it already. The callback receives all of them during the call; a program shows one every 20 ms.
  *
  * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_hear_end(labial_hear_t *hear);
+
+/*
+ * Whether the end delivers the frames of the sound alone, from now on; 0 after labial_hear_init().
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_hear_exact(labial_hear_t *hear, int exact);
 
 /*
  * Drops everything that is not yet delivered, and eases the last delivered frame back to the neutral face (all FAPs 0)

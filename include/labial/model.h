@@ -32,24 +32,25 @@ extern "C" {
 
 /* Version of this format. A generated model of another version does not compile, and a blob of another version is
  * refused. */
-#define LABIAL_MODEL_FORMAT 5
+#define LABIAL_MODEL_FORMAT 6
 
 /* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
 #define LABIAL_CHANNELS 13
 
-/* Channels that tables of a model with `protrusion` have: FAP 60 in the place of FAP 17, which has none. */
-#define LABIAL_CHANNELS_SOLVED 12
+/* In `sources`: FAP 17 is computed of the corners, by the table `protrusion`. */
+#define LABIAL_FROM_CORNERS 255
 
 /* Limits of the run-time's arithmetic and memory; labial_model_check() refuses a model that exceeds them. */
-#define LABIAL_PHONEMES_MAX 128         /* phonemes of one model */
-#define LABIAL_CLASSES_MAX 32           /* viseme classes of one model */
-#define LABIAL_PHONEME_COMPONENTS_MAX 8 /* mixture components of one phoneme */
-#define LABIAL_STATES_MAX 64            /* codebook entries of one channel */
-#define LABIAL_KERNEL_TAPS_MAX 32       /* taps of one temporal kernel */
-#define LABIAL_PROTRUSION_VALUES 17     /* ends of the intervals of labial_protrusion_t */
-#define LABIAL_SEARCH_STRIDE_MAX 8      /* frames that share a state */
-#define LABIAL_NO_FLOOR (-16384)        /* in `floors`: below every position */
-#define LABIAL_POSITION_MAX 16383       /* Q4: +-1023.9 FAP units around the channel's centre */
+#define LABIAL_PHONEMES_MAX 128                              /* phonemes of one model */
+#define LABIAL_CLASSES_MAX 32                                /* viseme classes of one model */
+#define LABIAL_PHONEME_COMPONENTS_MAX 8                      /* mixture components of one phoneme */
+#define LABIAL_STATES_MAX 64                                 /* codebook entries of one channel */
+#define LABIAL_KERNEL_TAPS_MAX 32                            /* taps of one temporal kernel */
+#define LABIAL_KERNEL_WORDS(channels) (((channels) + 3) / 4) /* that hold a tap of one phoneme */
+#define LABIAL_PROTRUSION_VALUES 17                          /* ends of the intervals of labial_protrusion_t */
+#define LABIAL_SEARCH_STRIDE_MAX 8                           /* frames that share a state */
+#define LABIAL_NO_FLOOR (-16384)                             /* in `floors`: below every position */
+#define LABIAL_POSITION_MAX 16383                            /* Q4: +-1023.9 FAP units around the channel's centre */
 
 /* The least length of a contact in frames; a longer phoneme is in contact in the middle half of its frames. A shorter
  * one borrows the frame before it and, if it has only one frame, the frame after it as well. A phoneme of
@@ -130,8 +131,9 @@ typedef struct {
     int16_t values[LABIAL_PROTRUSION_VALUES]; /* Q4 FAP */
 } labial_protrusion_t;
 
-/* A model. Of its channels there are C: 13, or LABIAL_CHANNELS_SOLVED with `protrusion`. Arrays are row-major in the
- * order given; those marked optional may be null. */
+/* A model. It searches and solves C channels, of which `sources` makes the 13 of a frame: one of them may be several
+ * FAPs, as in a mouth whose two sides move alike. Arrays are row-major in the order given; those marked optional may be
+ * null. */
 typedef struct {
     uint16_t format;            /* LABIAL_MODEL_FORMAT */
     uint16_t frames_per_second; /* 1 .. 250 */
@@ -152,27 +154,28 @@ typedef struct {
     uint8_t floor_count;        /* F: rows of `floors`, 0 .. 255 */
     uint8_t pair_knots;         /* K': 1, or 2 where pairs move from a phoneme's start to its end */
     uint16_t pair_count;        /* R: rows of `pairs` */
+    uint8_t channel_count;      /* C: 1 .. LABIAL_CHANNELS */
+    uint8_t sources[LABIAL_CHANNELS];     /* of each channel of a frame: which of the C it is, or LABIAL_FROM_CORNERS */
     const labial_phoneme_t *phonemes;     /* P */
     const labial_component_t *components; /* N */
-    const uint8_t *contexts;    /* N x V, in 1/2 nat: cost of the previous phoneme's class in the low four bits, of the
+    const uint8_t *contexts;   /* N x V, in 1/2 nat: cost of the previous phoneme's class in the low four bits, of the
                                 * next one's in the high four; less the least of a phoneme's components; optional */
-    const int8_t *shapes;       /* N x C, mean shape in steps of shape_scale */
-    const int8_t *slopes;       /* N x C, change of shape per unit of z, in steps of slope_scale; optional */
-    const uint32_t *kernels;    /* P x L x 3, in steps of kernel_scale: channels 0 to 11, four to a word, the first in
-                                * the low byte, each 128 more than its steps; null when L is 0 */
-    const int8_t *last_kernels; /* P x L, channel 12, in steps of its kernel_scale; null when L is 0 or C is 12 */
-    const uint16_t *pair_keys;  /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one;
+    const int8_t *shapes;      /* N x C, mean shape in steps of shape_scale */
+    const int8_t *slopes;      /* N x C, change of shape per unit of z, in steps of slope_scale; optional */
+    const uint32_t *kernels;   /* P x L x LABIAL_KERNEL_WORDS(C), in steps of kernel_scale: four channels to a word, the
+                                * first in the low byte, each 128 more than its steps; null when L is 0 */
+    const uint16_t *pair_keys; /* R, ascending: phoneme * 256 + neighbour, + 128 when the neighbour is the next one;
                                 * null when R is 0 */
-    const int8_t *pairs;        /* R x K' x C, what such a neighbour adds to the phoneme's shape, in steps of
+    const int8_t *pairs;       /* R x K' x C, what such a neighbour adds to the phoneme's shape, in steps of
                                 * pair_scale */
-    const int16_t *floors;      /* F x C, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
+    const int16_t *floors;     /* F x C, positions that targets in the phoneme do not fall below; LABIAL_NO_FLOOR where
                                 * none; null when F is 0 */
-    const uint16_t *contacts;   /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
+    const uint16_t *contacts;  /* F, bit k: channel k's floor is contact, as of the lips in p, b, m whatever their
                                 * neighbours do: its `hold` is `contact_weight` at least, for LABIAL_CONTACT_FRAMES
                                 * frames or more. In silence: it is where the channel comes to rest in a pause.
                                 * Null when F is 0 */
-    const labial_protrusion_t *protrusion; /* of which FAP 17 is computed; optional: without it that is a channel */
-    const labial_channel_t *channels;      /* 13; where C is 12, the last is another one again */
+    const labial_protrusion_t *protrusion; /* of which FAP 17 is computed; null where that has a channel */
+    const labial_channel_t *channels;      /* C */
 } labial_model_t;
 
 /*
@@ -190,7 +193,8 @@ int labial_model_check(const labial_model_t *model);
  * them. Where models change, a tick takes at most the sum of their costs, one for each run of a model's phonemes within
  * the latest `search_stride` frames.
  *
- * The bundled models cost about 36,000 and 35,000, and their ticks take 19,400 at most. A model that
+ * The bundled models cost about 31,000 and 26,000, and their ticks take 14,600 at most, 15,900 where models change with
+ * every phoneme. A model that
  * labial_model_check() accepts can cost 180,000. So a program that plays foreign models compares this number with the
  * instructions that its processor has for a frame:
  *

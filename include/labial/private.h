@@ -69,6 +69,7 @@ typedef struct {
     int32_t position;  /* Q12 FAP */
     int32_t pull, next_pull;
     uint16_t hold, delta;
+    uint8_t shifts[2]; /* headroom of the last row's two divisors, where cores do not count leading zeros */
 } labial_solver_t;
 
 /* A frame's numbers for the backward pass (trajectory.c). */
@@ -79,8 +80,8 @@ typedef struct {
 
 /* An accepted frame (stream.c). */
 typedef struct {
-    uint32_t contacts;               /* bit k: channel k is in contact */
-    int16_t target[LABIAL_CHANNELS]; /* positions */
+    uint32_t contacts;               /* bit k: channel k of the model is in contact */
+    int16_t target[LABIAL_CHANNELS]; /* positions of the model's channels */
     uint8_t marks;
 } labial_frame_t;
 
@@ -97,18 +98,58 @@ typedef struct {
     labial_search_t search;
 } labial_progress_t;
 
-/* All channels (channels.c). The pointers are to parts of the workspace. */
+#if LABIAL_PAPER
+
+/* The latest frames, and the search of one channel (published.c): all of the workspace. */
+typedef struct {
+    labial_frame_t frames[LABIAL_PIECE];
+    int16_t motion[LABIAL_CHANNELS][LABIAL_PIECE]; /* Q4 FAP */
+    int16_t gains[LABIAL_PIECE];                   /* articulation, in 1/256 */
+    uint8_t back[LABIAL_PIECE][LABIAL_STATES_MAX]; /* the predecessor of each state in each step */
+} labial_pieces_t;
+
+/* All channels (published.c). The rings of frames share their place. */
 typedef struct {
     uint8_t stride;  /* frames that share a state */
-    uint8_t phase;   /* channels phase, phase + stride, ... step next */
+    uint8_t phase;   /* 0: channels take no turns */
     uint8_t entered; /* accepted frames, 255 for more */
     uint8_t beyond;  /* ticks since the last frame was accepted */
-    uint8_t full;    /* ticks for which frames are in hand whose model has all LABIAL_CHANNELS */
-    uint8_t slots[LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) + 1]; /* i: model of the frame that was accepted i ticks ago */
-    labial_progress_t *progress;                               /* LABIAL_CHANNELS */
-    labial_frame_t *frames; /* the latest stride + LABIAL_LAG, the newest at the end */
-    int16_t *motion;        /* a ring of stride x LABIAL_CHANNELS, Q4 FAP */
+    uint8_t width;   /* channels that the workspace holds: all */
+    uint8_t place;   /* of the latest frame in the rings */
+    uint8_t frames;  /* of the piece so far, those included that it shares with the one before */
+    uint8_t shared;  /* of these */
+    uint8_t phoneme; /* frames of the latest phoneme, 0 for the piece's first */
+    uint8_t slots[LABIAL_PIECE];
+    labial_pieces_t *pieces;
 } labial_channels_t;
+
+#else
+
+/* All channels (channels.c). The pointers are to parts of the workspace. */
+typedef struct {
+    uint8_t stride;   /* frames that share a state */
+    uint8_t phase;    /* channels phase, phase + stride, ... step next */
+    uint8_t entered;  /* accepted frames, 255 for more */
+    uint8_t beyond;   /* ticks since the last frame was accepted */
+    uint8_t width;    /* channels that the workspace holds */
+    uint8_t stepping; /* channels of the frames in hand: the most that one of their models has */
+    uint8_t wide;     /* ticks after which it may be fewer */
+    uint8_t slots[LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) + 1]; /* i: model of the frame that was accepted i ticks ago */
+    labial_progress_t *progress;                               /* width */
+    labial_frame_t *frames; /* the latest stride + LABIAL_LAG, the newest at the end */
+    int16_t *motion;        /* width rings of stride frames, Q4 FAP */
+} labial_channels_t;
+
+#endif
+
+/* The pose that was delivered last, and its way to another one (fade.c). */
+typedef struct {
+    uint16_t step;                    /* the next one of the way; 0 when there is none */
+    uint16_t length;                  /* of the way, in steps */
+    int16_t pose[LABIAL_CHANNELS];    /* Q4 FAP */
+    int16_t earlier[LABIAL_CHANNELS]; /* the pose before it; on the way, how far `from` moves on */
+    int16_t from[LABIAL_CHANNELS];    /* where the way begins */
+} labial_fade_t;
 
 #define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
@@ -118,14 +159,13 @@ typedef struct {
     uint8_t slot;         /* model of the next push */
     uint8_t ended;        /* no more phonemes will come */
     uint8_t begun;        /* a frame was delivered since the stream was initialised or restarted */
-    uint8_t shown;        /* a frame was delivered since labial_init(): a new solution fades in from `pose` */
-    uint8_t fade_step;    /* 0 when nothing fades */
+    uint8_t exact;        /* the face rests only after a cancel */
+    uint8_t resting;      /* the face is at rest or on its way there: motion fades in from it */
+    uint8_t held;         /* ticks without a frame since the last frame or push, up to as many as the face is held */
     uint8_t wanted;       /* articulation, percent */
     uint8_t articulation; /* of the latest frame */
-    uint16_t ease_length; /* frames of easing back to neutral; 0 when the stream does not ease */
-    uint16_t ease_step;
-    uint32_t frame;   /* number of the next frame */
-    uint32_t pending; /* frames pushed and not yet delivered */
+    uint32_t frame;       /* number of the next frame */
+    uint32_t pending;     /* frames pushed and not yet delivered */
     uint32_t
         begins[LABIAL_BEGINS_WORDS_]; /* bit i: a solution begins with the frame that was taken i ticks ago; what was
                                             * taken before a cancel moves beyond the delay before a frame is due */
@@ -133,11 +173,9 @@ typedef struct {
     const labial_model_t *models[LABIAL_MODELS];
     void (*callback)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
     void *user;
-    labial_shape_t shape;             /* of the phoneme that the latest frame belongs to */
-    labial_selection_t next;          /* that of the phoneme that begins next */
-    int16_t pose[LABIAL_CHANNELS];    /* the frame delivered last, Q4 FAP */
-    int16_t earlier[LABIAL_CHANNELS]; /* the one before it; while something fades, how far it moved on */
-    int16_t faded[LABIAL_CHANNELS];   /* the pose that fades */
+    labial_shape_t shape;    /* of the phoneme that the latest frame belongs to */
+    labial_selection_t next; /* that of the phoneme that begins next */
+    labial_fade_t fade;
     labial_units_t units;
 } labial_t;
 

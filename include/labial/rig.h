@@ -21,6 +21,8 @@
  * outer lips, which are slightly apart when the inner lips meet. From there contact falls to 0 at LABIAL_RIG_APART. So
  * servos with `closed` close the mouth in p, b, m.
  *
+ * Servos need more than this: labial/face.h moves them by such a rig from any source, and always to rest.
+ *
  * Values have whatever unit the table's author chose: microseconds of a servo's pulse, quarter microseconds (Maestro),
  * ticks of a PWM chip (PCA9685), counts of a timer, or weights of blendshapes from 0 to LABIAL_RIG_WEIGHT_ONE, which
  * stands for 1.
@@ -109,7 +111,7 @@ typedef struct {
     uint16_t count;
 } labial_rig_t;
 
-/* FAP units between the lips, -(FAP 51 + FAP 52), that LABIAL_RIG_JAW() takes for wide open. */
+/* FAP units between the lips, -(FAP 51 + FAP 52), that LABIAL_RIG_JAW() and LABIAL_RIG_SERVO() take for wide open. */
 #define LABIAL_RIG_OPENING 600
 
 /*
@@ -117,11 +119,14 @@ typedef struct {
  * talker is often open while the lips are closed (p, b, m). `closed` and `open` are integer constants in units of the
  * output; either may be the larger.
  */
-#define LABIAL_RIG_JAW(closed, open)                                                                                   \
+#define LABIAL_RIG_JAW(closed, open) LABIAL_RIG_SERVO(closed, open, 0)
+
+/* The same for a servo whose value changes by at most `slew` units per frame; 0 for no limit. */
+#define LABIAL_RIG_SERVO(closed, open, slew)                                                                           \
     {                                                                                                                  \
         { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 1,                                   \
             LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open),   \
-            (closed) < (open) ? (open) : (closed), 0, (closed), 0, 0, 0                                                \
+            (closed) < (open) ? (open) : (closed), (slew), (closed), 0, 0, 0                                           \
     }
 
 /* ---- Calls ------------------------------------------------------------------------------------------------------- */

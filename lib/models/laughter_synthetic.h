@@ -9,7 +9,7 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-#if LABIAL_MODEL_FORMAT != 5
+#if LABIAL_MODEL_FORMAT != 6
 #error "laughter_synthetic was exported for another version of Labial: run labial export again."
 #endif
 
@@ -24,7 +24,7 @@ extern "C" {
 #define LAUGHTER_SYNTHETIC_FPS 50
 #define LAUGHTER_SYNTHETIC_PHONEMES 24
 #define LAUGHTER_SYNTHETIC_STATES 10
-#define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(3)
+#define LAUGHTER_SYNTHETIC_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(3, 8)
 
 /* Phoneme numbers. */
 enum {
@@ -54,7 +54,7 @@ enum {
     LAUGHTER_SYNTHETIC_A_LOUD = 23
 };
 
-/* The model, 13018 bytes on a 32-bit target. */
+/* The model, 8418 bytes on a 32-bit target. */
 extern const labial_model_t laughter_synthetic;
 
 /* Its labels and aliases; linked only when used. */

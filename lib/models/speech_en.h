@@ -10,7 +10,7 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-#if LABIAL_MODEL_FORMAT != 5
+#if LABIAL_MODEL_FORMAT != 6
 #error "speech_en was exported for another version of Labial: run labial export again."
 #endif
 
@@ -25,7 +25,7 @@ extern "C" {
 #define SPEECH_EN_FPS 50
 #define SPEECH_EN_PHONEMES 40
 #define SPEECH_EN_STATES 50
-#define SPEECH_EN_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(3)
+#define SPEECH_EN_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE(3, 8)
 
 /* Phoneme numbers. */
 enum {
@@ -71,7 +71,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 34970 bytes on a 32-bit target. */
+/* The model, 24806 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

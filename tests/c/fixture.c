@@ -121,14 +121,20 @@ double fixture_motion(const labial_channel_t *channel, const labial_state_t *sta
     return scaled >= 0 ? scaled / 256 : -((255 - scaled) / 256); /* rounded down */
 }
 
-void fixture_pack_kernels(const int8_t *steps, size_t rows, uint32_t *kernels, int8_t *last_kernels)
+void fixture_pack_kernels(const int8_t *steps, size_t rows, unsigned channels, uint32_t *kernels)
 {
-    for (size_t row = 0; row < rows; row++, steps += LABIAL_CHANNELS, kernels += 3) {
-        kernels[0] = kernels[1] = kernels[2] = 0;
-        for (size_t k = 0; k < 12; k++)
+    for (; rows > 0; rows--, steps += channels, kernels += LABIAL_KERNEL_WORDS(channels)) {
+        memset(kernels, 0x5a, LABIAL_KERNEL_WORDS(channels) * sizeof *kernels); /* of what nobody asks for */
+        for (unsigned k = 0; k < channels; k++) {
+            kernels[k / 4] &= ~((uint32_t)0xff << k % 4 * 8);
             kernels[k / 4] |= (uint32_t)(steps[k] + 128) << k % 4 * 8;
-        last_kernels[row] = steps[12];
+        }
     }
+}
+
+int fixture_kernel(const uint32_t *kernels, size_t row, unsigned channels, unsigned channel)
+{
+    return (int)(kernels[row * LABIAL_KERNEL_WORDS(channels) + channel / 4] >> channel % 4 * 8 & 255u) - 128;
 }
 
 /* gain = 2^18 / (sigma * sqrt 2) */
@@ -151,6 +157,9 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
     f->model.search_stride = 1;
     f->model.pair_knots = 1;
     f->model.silence = (uint8_t)silence;
+    f->model.channel_count = LABIAL_CHANNELS;
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+        f->model.sources[k] = (uint8_t)k;
     f->model.phonemes = f->phonemes;
     f->model.components = f->components;
     f->model.shapes = f->shapes;
@@ -245,7 +254,6 @@ static void enrich(fixture_model_t *f)
     f->model.contexts = f->contexts;
     f->model.slopes = f->slopes;
     f->model.kernels = f->kernels;
-    f->model.last_kernels = f->last_kernels;
     f->model.pair_count = FIXTURE_PAIRS;
     f->model.pair_keys = f->pair_keys;
     f->model.pairs = f->pairs;
@@ -264,7 +272,7 @@ static void enrich(fixture_model_t *f)
         f->slopes[i] = (int8_t)((int)fixture_below(&random, 81) - 40);
     for (unsigned i = 0; i < sizeof kernels; i++)
         kernels[i] = (int8_t)((int)fixture_below(&random, 201) - 100);
-    fixture_pack_kernels(kernels, FIXTURE_PHONEMES * FIXTURE_TAPS, f->kernels, f->last_kernels);
+    fixture_pack_kernels(kernels, FIXTURE_PHONEMES * FIXTURE_TAPS, LABIAL_CHANNELS, f->kernels);
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         f->channels[c].contact_weight = weight_code(1500);
         f->channels[c].slope_scale = 2048; /* 40 steps: 20 FAP units per unit of z */
@@ -310,28 +318,49 @@ void fixture_laughter(fixture_model_t *fixture)
         fixture->shapes[2 * FIXTURE_LAUGH_SIL * LABIAL_CHANNELS + i] = 5;
 }
 
-/* A row of 13 values without that of FAP 17, that of FAP 60 in its place. */
-#define NARROW(type, table, rows)                                                                                      \
-    for (size_t row = 0; row < (rows); row++) {                                                                        \
-        type wide[LABIAL_CHANNELS];                                                                                    \
-        memcpy(wide, (table) + row * LABIAL_CHANNELS, sizeof wide);                                                    \
-        wide[2] = wide[12];                                                                                            \
-        memcpy((table) + row * LABIAL_CHANNELS_SOLVED, wide, LABIAL_CHANNELS_SOLVED * sizeof wide[0]);                 \
-    }
+const uint8_t fixture_computed[LABIAL_CHANNELS] = { 0, 1, LABIAL_FROM_CORNERS, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12 };
+const uint8_t fixture_mirrored[LABIAL_CHANNELS] = { 0, 1, LABIAL_FROM_CORNERS, 3, 4, 5, 5, 7, 7, 9, 9, 11, 11 };
+const uint8_t fixture_crossed[LABIAL_CHANNELS] = { 0, 0, LABIAL_FROM_CORNERS, 3, 4, 6, 6, 8, 8, 9, 10, 12, 12 };
 
-void fixture_without_17(fixture_model_t *f)
+/* Moves the values of a table's rows that belong to channels that stay. */
+#define NARROW(table, rows)                                                                                            \
+    for (size_t row = 0; row < (rows); row++)                                                                          \
+        for (unsigned k = 0; k < count; k++)                                                                           \
+            (table)[row * count + k] = (table)[row * LABIAL_CHANNELS + own[k]];
+
+void fixture_narrow(fixture_model_t *f, const uint8_t sources[LABIAL_CHANNELS])
 {
-    NARROW(int8_t, f->shapes, FIXTURE_COMPONENTS)
-    NARROW(int8_t, f->slopes, FIXTURE_COMPONENTS)
-    NARROW(int8_t, f->pairs, FIXTURE_PAIRS * 2u)
-    NARROW(int16_t, f->floors, FIXTURE_FLOORS)
-    for (size_t row = 0; row < FIXTURE_PHONEMES * FIXTURE_TAPS; row++)
-        f->kernels[row * 3] = (f->kernels[row * 3] & 0xff00ffffu) | (uint32_t)(f->last_kernels[row] + 128) << 16;
-    for (unsigned i = 0; i < FIXTURE_FLOORS; i++)
-        f->contacts[i] = (uint16_t)((f->contacts[i] & 0x0ffbu) | (f->contacts[i] >> 12 & 1u) << 2);
-    f->channels[2] = f->channels[12];
-    f->channels[12] = f->channels[5];
-    f->model.last_kernels = NULL;
+    unsigned own[LABIAL_CHANNELS], column[LABIAL_CHANNELS], count = 0;
+    int8_t steps[FIXTURE_PHONEMES * FIXTURE_TAPS * LABIAL_CHANNELS];
+    const unsigned rows = f->model.phoneme_count * (unsigned)f->model.kernel_taps;
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
+        column[k] = count;
+        if (sources[k] == k)
+            own[count++] = k;
+    }
+    for (unsigned i = 0; i < rows * LABIAL_CHANNELS; i++)
+        steps[i] = (int8_t)fixture_kernel(f->kernels, i / LABIAL_CHANNELS, LABIAL_CHANNELS, i % LABIAL_CHANNELS);
+    NARROW(steps, rows)
+    fixture_pack_kernels(steps, rows, count, f->kernels);
+    NARROW(f->shapes, FIXTURE_COMPONENTS)
+    NARROW(f->slopes, FIXTURE_COMPONENTS)
+    NARROW(f->pairs, FIXTURE_PAIRS * 2u)
+    NARROW(f->floors, FIXTURE_FLOORS)
+    for (unsigned i = 0; i < FIXTURE_FLOORS; i++) {
+        unsigned bits = 0;
+        for (unsigned k = 0; k < count; k++)
+            bits |= ((unsigned)f->contacts[i] >> own[k] & 1u) << k;
+        f->contacts[i] = (uint16_t)bits;
+    }
+    for (unsigned k = 0; k < count; k++)
+        f->channels[k] = f->channels[own[k]];
+    for (unsigned k = count; k < LABIAL_CHANNELS; k++)
+        memset(&f->channels[k], 0, sizeof f->channels[k]);
+    f->model.channel_count = (uint8_t)count;
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+        f->model.sources[k] = sources[k] < LABIAL_CHANNELS ? (uint8_t)column[sources[k]] : sources[k];
+    if (sources[2] != LABIAL_FROM_CORNERS)
+        return;
     f->model.protrusion = &f->protrusion;
     f->protrusion.low = -1593;
     f->protrusion.gain = 2621; /* 16 intervals of 200 Q4 */

@@ -35,6 +35,7 @@ uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit 
 #define FIXTURE_COMPONENTS 16
 #define FIXTURE_CLASSES 4
 #define FIXTURE_TAPS 7
+#define FIXTURE_KERNEL_WORDS LABIAL_KERNEL_WORDS(LABIAL_CHANNELS)
 #define FIXTURE_FLOORS 4
 #define FIXTURE_PREDECESSORS 8 /* of each state, at most */
 #define FIXTURE_PAIR_SIDE 3    /* known neighbours of each phoneme, to either side */
@@ -49,8 +50,7 @@ typedef struct {
     uint8_t contexts[FIXTURE_COMPONENTS * FIXTURE_CLASSES];
     int8_t shapes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
     int8_t slopes[FIXTURE_COMPONENTS * LABIAL_CHANNELS];
-    uint32_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * 3];
-    int8_t last_kernels[FIXTURE_PHONEMES * FIXTURE_TAPS];
+    uint32_t kernels[FIXTURE_PHONEMES * FIXTURE_TAPS * FIXTURE_KERNEL_WORDS];
     uint16_t pair_keys[FIXTURE_PAIRS];
     int8_t pairs[FIXTURE_PAIRS * 2 * LABIAL_CHANNELS];
     int16_t floors[FIXTURE_FLOORS * LABIAL_CHANNELS];
@@ -89,9 +89,15 @@ void fixture_laughter(fixture_model_t *fixture);
  * may, to both sides. */
 void fixture_slow(fixture_model_t *fixture);
 
-/* Takes FAP 17 of a fixture away: all its tables are written again without that channel, FAP 60 in its place, and a table
- * of it over the corners is added, whose values go up and down by a FAP unit for each unit of the corners at most. */
-void fixture_without_17(fixture_model_t *fixture);
+/* Takes channels of a fixture away, which has all: its tables are written again with those alone that are their own source
+ * in `sources` (13 channels of a frame), in this order. If FAP 17 is LABIAL_FROM_CORNERS, a table of it is added, whose
+ * values go up and down by a FAP unit for each unit of the corners at most. */
+void fixture_narrow(fixture_model_t *fixture, const uint8_t sources[LABIAL_CHANNELS]);
+
+/* Sources: all channels but FAP 17, which is computed; those of the left side, which the right one mirrors; the left side
+ * after the right one, and FAP 16 after FAP 3. */
+extern const uint8_t fixture_computed[LABIAL_CHANNELS], fixture_mirrored[LABIAL_CHANNELS],
+    fixture_crossed[LABIAL_CHANNELS];
 
 /* The four that have all channels. */
 void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t *laugh, fixture_model_t *slow);
@@ -106,8 +112,9 @@ double fixture_gain_value(uint8_t code);
 /* The mean of a state's delta, or with 1 of its delta-delta, in positions, with an articulation of `gain` / 256. */
 double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which, int32_t gain);
 
-/* Kernels as a model has them, of steps of 13 channels in each row. */
-void fixture_pack_kernels(const int8_t *steps, size_t rows, uint32_t *kernels, int8_t *last_kernels);
+/* Kernels as a model has them, of steps of `channels` channels in each row; and one step of such a row. */
+void fixture_pack_kernels(const int8_t *steps, size_t rows, unsigned channels, uint32_t *kernels);
+int fixture_kernel(const uint32_t *kernels, size_t row, unsigned channels, unsigned channel);
 
 /* ---- Streams of phonemes ---- */
 

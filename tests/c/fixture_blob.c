@@ -74,7 +74,7 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
 
 size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
 {
-    const size_t n = model->component_count, channels = model->protrusion ? LABIAL_CHANNELS_SOLVED : LABIAL_CHANNELS;
+    const size_t n = model->component_count, channels = model->channel_count;
     writer_t w;
     w.out = out;
     w.size = 0;
@@ -101,6 +101,9 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
         1);
     put(&w, model->floor_count, 1);
     put(&w, model->pair_count, 2);
+    put(&w, model->channel_count, 1);
+    put_bytes(&w, model->sources, LABIAL_CHANNELS);
+    put(&w, 0, 2);
     for (unsigned i = 0; i < model->phoneme_count; i++) {
         put(&w, model->phonemes[i].first_component, 2);
         put(&w, model->phonemes[i].component_count, 1);
@@ -121,11 +124,8 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     pad(&w);
     put_bytes(&w, model->slopes, n * channels);
     pad(&w);
-    for (unsigned i = 0; i < 3u * model->phoneme_count * model->kernel_taps; i++)
+    for (size_t i = 0; i < LABIAL_KERNEL_WORDS(channels) * model->phoneme_count * model->kernel_taps; i++)
         put(&w, model->kernels[i], 4);
-    if (!model->protrusion)
-        put_bytes(&w, model->last_kernels, (size_t)model->phoneme_count * model->kernel_taps);
-    pad(&w);
     for (unsigned i = 0; i < model->pair_count; i++)
         put(&w, model->pair_keys[i], 2);
     pad(&w);

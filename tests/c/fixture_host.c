@@ -51,7 +51,8 @@ int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsi
         abort();
     memset(host->stream, 0xa5, sizeof *host->stream);
     memset(host->workspace, 0x5a, size);
-    return labial_init(host->stream, models[0], host->workspace, size, fixture_record, &host->recorder);
+    const int result = labial_init(host->stream, models[0], host->workspace, size, fixture_record, &host->recorder);
+    return result == LABIAL_OK ? labial_exact(host->stream, 1) : result;
 }
 
 void fixture_close(fixture_host_t *host)

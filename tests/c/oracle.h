@@ -83,14 +83,9 @@ void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, con
                        const uint16_t *contacts, unsigned bit, const int32_t *gain, size_t count, const size_t *start,
                        double *motion);
 
-/* ---- FAP 17 of the corners (lib/protrusion.h) ---- */
-
-/* How many channels a model's tables have. */
-unsigned oracle_channels(const labial_model_t *model);
-
 /* ---- A whole stream ---- */
 
-/* The frames of a stream, Q4 FAP, `held` being the pose it fades in from, or null; `told` the articulation, percent, that
+/* The frames of a stream, Q4 FAP, `held` being the pose it fades in from, null for the face at rest; `told` the articulation, percent, that
  * holds when each frame is taken in, or null for 100. At least `room` frames fit; returns their number. */
 size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_t *input, size_t count,
                      const double *held, const uint8_t *told, double (*motion)[LABIAL_CHANNELS], size_t room);

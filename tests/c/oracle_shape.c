@@ -23,7 +23,7 @@ static const labial_model_t *model_of(const labial_model_t *const *models, const
 static const int16_t *floor_of(const labial_model_t *model, unsigned phoneme)
 {
     const unsigned floor = model->floor_count ? model->phonemes[phoneme].floor : 0;
-    return floor ? model->floors + (floor - 1) * oracle_channels(model) : NULL;
+    return floor ? model->floors + (floor - 1) * model->channel_count : NULL;
 }
 
 static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
@@ -78,7 +78,7 @@ static unsigned keep_floors(const labial_model_t *model, const oracle_frame_t *f
     const unsigned contacts = contacts_of(model, frame->phoneme);
     const int is_silent = frame->phoneme == model->silence;
     const int is_closed = !is_silent && is_made(frame->number, frame->whole);
-    for (unsigned k = 0; floor && k < oracle_channels(model); k++) {
+    for (unsigned k = 0; floor && k < model->channel_count; k++) {
         const int is_contact = contacts >> k & 1;
         if (is_contact && is_silent)
             target[k] = (int16_t)(target[k] + (floor[k] - target[k]) * (int)frame->rest / RESTING);
@@ -93,7 +93,7 @@ static unsigned borrow(const labial_model_t *model, unsigned phoneme, int16_t ta
 {
     const int16_t *floor = floor_of(model, phoneme);
     const unsigned contacts = contacts_of(model, phoneme);
-    for (unsigned k = 0; floor && k < oracle_channels(model); k++)
+    for (unsigned k = 0; floor && k < model->channel_count; k++)
         if ((contacts >> k & 1) && target[k] < floor[k])
             target[k] = floor[k];
     return contacts;
@@ -108,11 +108,13 @@ static void part(const labial_model_t *model, unsigned last, unsigned next, size
     for (size_t t = from; t < to; t++) {
         if (contacts[t])
             continue;
-        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
-            const int parts = PARTED[k] > 0 && (both >> k & 1) && one[k] > -16384 && other[k] > -16384;
-            int most = (one[k] < other[k] ? one[k] : other[k]) - 16 * PARTED[k];
+        for (unsigned fap = 0; fap < LABIAL_CHANNELS; fap++) {
+            const unsigned k = model->sources[fap];
+            if (PARTED[fap] == 0 || !(both >> k & 1) || one[k] == -16384 || other[k] == -16384)
+                continue;
+            int most = (one[k] < other[k] ? one[k] : other[k]) - 16 * PARTED[fap];
             most = most < -LABIAL_POSITION_MAX ? -LABIAL_POSITION_MAX : most;
-            if (parts && targets[t][k] > most)
+            if (targets[t][k] > most)
                 targets[t][k] = (int16_t)most;
         }
     }

@@ -106,20 +106,18 @@ static void starts(const labial_model_t *model, unsigned channel, size_t first, 
     }
 }
 
-/* ---- FAP 17 of the corners ---- */
-
-unsigned oracle_channels(const labial_model_t *model)
-{
-    return model->protrusion ? 12 : 13;
-}
+/* ---- The channels that follow others ---- */
 
 /* The frame that the motion of a model's channels makes, in place, Q4 FAP. */
 static void complete(const labial_model_t *model, double motion[LABIAL_CHANNELS])
 {
     const labial_protrusion_t *table = model->protrusion;
-    if (!table)
+    double own[LABIAL_CHANNELS];
+    memcpy(own, motion, sizeof own);
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+        motion[k] = own[model->sources[k] < LABIAL_CHANNELS ? model->sources[k] : 0];
+    if (model->sources[2] != 255)
         return;
-    motion[12] = motion[2];
     double at = ((motion[5] + motion[6]) / 2 - table->low) * 2 * table->gain / 1048576; /* intervals of 2^20 / gain */
     at = at < 0 ? 0 : at > 16 ? 16 : at;
     const int i = at < 15 ? (int)at : 15;
@@ -177,7 +175,7 @@ static void solve(const stream_t *stream, size_t first, size_t count, double (*m
     int32_t *gain = (int32_t *)malloc(count * sizeof *gain);
     if (!path || !targets || !start || !m || !gain)
         abort();
-    for (unsigned c = 0; c < oracle_channels(model); c++) {
+    for (unsigned c = 0; c < model->channel_count; c++) {
         oracle_search(model, c, stream->frames + first, (const int16_t(*)[LABIAL_CHANNELS])(stream->targets + first),
                       first, count, path);
         for (size_t t = 0; t < count; t++) {
@@ -212,9 +210,9 @@ static void fade(const stream_t *stream, const double *pose, double (*motion)[LA
     unsigned j = 0;
     int is_paced = 0; /* neither of the two frames before is missing, and the later one did not fade */
     for (size_t t = 0; t < stream->count; t++) {
-        if (stream->frames[t].begins && (t > 0 || pose)) {
+        if (stream->frames[t].begins) {
             for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-                held[c] = t > 0 ? motion[t - 1][c] : pose[c];
+                held[c] = t > 0 ? motion[t - 1][c] : pose ? pose[c] : 0.0;
                 pace[c] = is_paced ? held[c] - motion[t - 2][c] : 0.0;
             }
             j = 1;

@@ -17,6 +17,7 @@ static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, ROOM)];
 static uint8_t packet[LABIAL_BESIDE_LONGEST];
 static const uint8_t at_rest[OUTPUTS] = { 10, 128, 250 };
 static uint32_t seed;
+static uint16_t session; /* of the packets that are made */
 
 static uint32_t draw(uint32_t below)
 {
@@ -40,6 +41,8 @@ static size_t make_packet(int cancels, unsigned outputs, unsigned count, uint64_
     packet[size++] = (uint8_t)count;
     for (i = 0; i < 4; i++)
         packet[size++] = (uint8_t)(first >> 8 * i);
+    packet[size++] = (uint8_t)session;
+    packet[size++] = (uint8_t)(session >> 8);
     for (i = 0; i < outputs; i++)
         packet[size++] = at_rest[i % OUTPUTS];
     for (k = 0; k < count; k++)
@@ -56,6 +59,7 @@ static int feed(int cancels, unsigned count, uint64_t first)
 SETUP(begin)
 {
     seed = 1;
+    session = 0x1234;
     memset(memory, 0xa5, sizeof memory);
     return labial_beside_init(&player, OUTPUTS, RATE, memory, sizeof memory) == LABIAL_BESIDE_RESTS ? 0 : -1;
 }
@@ -109,7 +113,7 @@ TEST_AFTER(begin, other_packets_are_refused)
     for (size_t cut = 0; cut <= size + 3; cut++)
         if (cut != size)
             assert_int_equal(labial_beside_feed(&player, packet, cut), LABIAL_BESIDE_ERROR_PACKET);
-    static const uint8_t others[][2] = { { 0, 0 }, { 0, 2 }, { 1, 2 }, { 1, 128 },
+    static const uint8_t others[][2] = { { 0, 0 }, { 0, 1 }, { 0, 3 }, { 1, 2 }, { 1, 128 },
                                          { 2, 2 }, { 2, 4 }, { 3, 3 }, { 3, 5 } };
     for (unsigned i = 0; i < sizeof others / sizeof *others; i++) {
         memcpy(packet, saved, size);
@@ -118,7 +122,7 @@ TEST_AFTER(begin, other_packets_are_refused)
     }
     assert_memory_equal(&player, &before, sizeof player);
     for (size_t i = 0; i < sizeof memory; i++)
-        assert_int_equal(memory[i], 0);
+        assert_int_equal(memory[i], i / OUTPUTS == 3 ? 255 : 0); /* no limits */
     memcpy(packet, saved, size);
     assert_int_equal(labial_beside_feed(&player, packet, size), LABIAL_BESIDE_RESTS);
     assert_shows(0, 0);
@@ -133,6 +137,8 @@ TEST(null_pointers_and_wrong_sizes_are_refused)
     assert_int_equal(labial_beside_feed(&player, packet, 9), LABIAL_BESIDE_ERROR_STATE);
     assert_int_equal(labial_beside_cancel(&player), LABIAL_BESIDE_ERROR_STATE);
     assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_ERROR_STATE);
+    assert_int_equal(labial_beside_begin(&player, RATE), LABIAL_BESIDE_ERROR_STATE);
+    assert_int_equal(labial_beside_limit(&player, 0, 1), LABIAL_BESIDE_ERROR_STATE);
     assert_int_equal(labial_beside_init(NULL, 1, RATE, memory, sizeof memory), LABIAL_BESIDE_ERROR_NULL);
     assert_int_equal(labial_beside_init(&player, 1, RATE, NULL, sizeof memory), LABIAL_BESIDE_ERROR_NULL);
     assert_int_equal(labial_beside_init(&player, 0, RATE, memory, sizeof memory), LABIAL_BESIDE_ERROR_SIZE);
@@ -155,6 +161,15 @@ TEST(null_pointers_and_wrong_sizes_are_refused)
     assert_int_equal(labial_beside_feed(NULL, packet, 9), LABIAL_BESIDE_ERROR_NULL);
     assert_int_equal(labial_beside_feed(&player, NULL, 9), LABIAL_BESIDE_ERROR_NULL);
     assert_int_equal(labial_beside_cancel(NULL), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_begin(NULL, RATE), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_limit(NULL, 0, 1), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_begin(&player, 0), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_begin(&player, 50000001), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_begin(&player, 50000000), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_limit(&player, 1, 1), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_limit(&player, 0, 0), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_limit(&player, 0, 256), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_limit(&player, 0, 255), LABIAL_BESIDE_RESTS);
     assert_int_equal(labial_beside_at(NULL, 0, values), LABIAL_BESIDE_ERROR_NULL);
     assert_int_equal(labial_beside_at(&player, 0, NULL), LABIAL_BESIDE_ERROR_NULL);
     free(large);
@@ -299,6 +314,118 @@ TEST(a_cancel_reaches_across_the_end_of_numbers)
     }
 }
 
+/* Catches a new server, after any time, whose numbers are taken for late or early ones of the one before; sessions that
+ * differ in one of their bytes; frames of the one before; and a face that jumps when it begins. */
+TEST(a_session_begins_whatever_its_numbers)
+{
+    static const uint64_t heard[] = { 0,
+                                      40,
+                                      1000000,
+                                      UINT64_C(0x7fffffff),
+                                      UINT64_C(0x80000000),
+                                      UINT64_C(2419200000),
+                                      UINT64_C(0xffffffff),
+                                      UINT64_C(0x1234567890) };
+    static const uint16_t other[] = { 0x1281, 0x1380, 0 };
+    for (unsigned i = 0; i < 64 * 3; i++) {
+        const uint64_t from = heard[i % 8] / STEP, to = heard[i / 8 % 8] / STEP;
+        uint8_t values[OUTPUTS];
+        assert_int_equal(begin(NULL), 0);
+        session = 0x1280;
+        assert_int_equal(feed(0, 50, from), LABIAL_BESIDE_RESTS); /* also from the middle of one */
+        for (unsigned k = 0; k < 20; k++)
+            assert_shows((uint32_t)((from + k) * STEP), from + k);
+        session = other[i / 64];
+        assert_int_equal(feed(0, 20, to), LABIAL_BESIDE_BEGINS);
+        assert_int_equal(feed(0, 10, to + 20), LABIAL_BESIDE_RESTS);
+        for (unsigned k = 0; k < 30; k++)
+            assert_shows((uint32_t)((to + k) * STEP), to + k);
+        session++;
+        assert_int_equal(feed(1, 0, 7), LABIAL_BESIDE_BEGINS); /* a cancel, too */
+        assert_int_equal(feed(1, 0, 7), LABIAL_BESIDE_CANCELS);
+        for (unsigned k = 0; k < EASE; k++) {
+            assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_RESTS);
+            assert_int_equal(memcmp(values, at_rest, OUTPUTS) == 0, k == EASE - 1);
+        }
+    }
+}
+
+/* Catches a connection whose numbers are those of the one before, or whose face jumps to rest. */
+TEST_AFTER(begin, a_connection_begins_with_other_numbers)
+{
+    const uint32_t late = UINT32_C(2419200000); /* 14 hours at 48 kHz */
+    uint8_t values[OUTPUTS];
+    assert_int_equal(labial_beside_begin(&player, RATE), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_ERROR_STATE); /* nothing is known yet */
+    session = 0;
+    assert_int_equal(feed(0, 0, 0), 0);
+    assert_rests(0);
+    assert_int_equal(labial_beside_begin(&player, RATE), LABIAL_BESIDE_RESTS);
+    assert_int_equal(feed(0, 10, late / STEP), 0);
+    assert_shows(late, late / STEP);
+    assert_int_equal(begin(NULL), 0);
+    session = 0;
+    assert_int_equal(feed(0, 10, late / STEP), 0);
+    assert_shows(late, late / STEP);
+    assert_int_equal(labial_beside_begin(&player, 16000), LABIAL_BESIDE_RESTS);
+    for (unsigned k = 0; k < EASE; k++) {
+        assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_RESTS);
+        assert_int_equal(memcmp(values, at_rest, OUTPUTS) == 0, k == EASE - 1);
+    }
+    assert_int_equal(feed(0, 10, 0), LABIAL_BESIDE_RESTS); /* of the same session, by chance */
+    assert_shows(320, 1);
+}
+
+/* Catches a servo that jumps after lost packets, after a cancel, at the first frame, or with frames that are no motion; a
+ * limit of another output; and a frame that is given up on the way. */
+TEST(no_value_changes_by_more_than_its_limit)
+{
+    static const uint8_t limits[OUTPUTS] = { 1, 31, 255 };
+    for (unsigned loses = 0; loses < 100; loses += 33) {
+        uint8_t values[OUTPUTS], last[OUTPUTS];
+        assert_int_equal(begin(NULL), 0);
+        for (unsigned i = 0; i < OUTPUTS; i++)
+            assert_int_equal(labial_beside_limit(&player, i, limits[i]), LABIAL_BESIDE_RESTS);
+        assert_int_equal(feed(0, 0, 0), 0);
+        memcpy(last, at_rest, OUTPUTS);
+        for (unsigned k = 0; k < 3000; k++) {
+            if (draw(100) >= loses)
+                (void)feed(!draw(50), 1 + draw(20), k);
+            session = (uint16_t)(session + !draw(200));
+            assert_true(labial_beside_at(&player, k * STEP, values) >= 0);
+            for (unsigned i = 0; i < OUTPUTS; i++)
+                assert_true(abs(values[i] - last[i]) <= limits[i]);
+            memcpy(last, values, OUTPUTS);
+        }
+        for (unsigned k = 0; k < 1 + HOLD + EASE + 255; k++)
+            (void)labial_beside_at(&player, 3000 * STEP, values);
+        assert_memory_equal(values, at_rest, OUTPUTS);
+    }
+    assert_int_equal(begin(NULL), 0);
+    assert_int_equal(labial_beside_limit(&player, 0, 40), LABIAL_BESIDE_RESTS);
+    assert_int_equal(feed(0, 1, 6), 0); /* a frame of 222, from 10 */
+    uint8_t values[OUTPUTS];
+    for (unsigned k = 0; k <= HOLD; k++) {
+        assert_int_equal(labial_beside_at(&player, 6 * STEP, values), LABIAL_BESIDE_SPEAKS);
+        assert_int_equal(values[0], k < HOLD ? 50 + 40 * k : 222);
+        assert_int_equal(values[1], value_of(6, 1));
+    }
+}
+
+/* Catches changes in units that are rounded to more than the servo bears. */
+TEST(changes_have_units)
+{
+    assert_int_equal(LABIAL_BESIDE_CHANGE(100, 1400, 1900), 51);
+    assert_int_equal(LABIAL_BESIDE_CHANGE(99, 1900, 1400), 50);
+    assert_int_equal(LABIAL_BESIDE_CHANGE(60, 1400, 1900), 30);
+    assert_int_equal(LABIAL_BESIDE_CHANGE(1, 1400, 1900), 1);
+    assert_int_equal(LABIAL_BESIDE_CHANGE(500, 1400, 1900), 255);
+    assert_int_equal(LABIAL_BESIDE_CHANGE(8000000, 4000000, -4000000), 255);
+    assert_int_equal(LABIAL_BESIDE_CHANGE(7999999, 4000000, -4000000), 254);
+    static uint8_t constant[LABIAL_BESIDE_CHANGE(4, 0, 255)];
+    assert_int_equal(sizeof constant, 4);
+}
+
 /* Catches bytes that are another value than baked motion's. */
 TEST(bytes_have_units)
 {
@@ -323,7 +450,7 @@ static struct {
     uint8_t marks[ALL]; /* 1 waits, 2 shown */
     int64_t now;
     unsigned quiet;
-    uint8_t pose[OUTPUTS];
+    uint8_t pose[OUTPUTS], goal[OUTPUTS], limits[OUTPUTS];
 } plain;
 
 static void plain_feed(int cancels, unsigned count, int64_t first)
@@ -349,13 +476,16 @@ static int plain_at(int64_t sample, int64_t rate, uint8_t values[OUTPUTS])
         plain.marks[frame] = 2;
         plain.quiet = 0;
         for (unsigned i = 0; i < OUTPUTS; i++)
-            plain.pose[i] = value_of((uint64_t)frame, i);
+            plain.goal[i] = value_of((uint64_t)frame, i);
     } else {
         plain.quiet = plain.quiet < HOLD + EASE ? plain.quiet + 1 : plain.quiet;
-        for (unsigned i = 0; i < OUTPUTS && plain.quiet > HOLD; i++) {
-            const int left = HOLD + EASE + 1 - (int)plain.quiet;
-            plain.pose[i] = (uint8_t)(plain.pose[i] + (at_rest[i] - plain.pose[i]) / left);
-        }
+    }
+    for (unsigned i = 0; i < OUTPUTS; i++) {
+        const int left = HOLD + EASE + 1 - (int)plain.quiet, most = plain.limits[i];
+        int move = plain.goal[i] - plain.pose[i];
+        if (plain.quiet > HOLD)
+            move = (at_rest[i] - plain.pose[i]) / left;
+        plain.pose[i] = (uint8_t)(plain.pose[i] + (move > most ? most : move < -most ? -most : move));
     }
     memcpy(values, plain.pose, OUTPUTS);
     return plain.quiet <= HOLD;
@@ -371,6 +501,11 @@ TEST_AFTER(begin, random_packets_and_clocks)
         assert_int_equal(labial_beside_init(&player, OUTPUTS, (uint32_t)rate, memory, sizeof memory), 0);
         memset(&plain, 0, sizeof plain);
         plain.quiet = HOLD + EASE;
+        memcpy(plain.pose, at_rest, OUTPUTS);
+        for (unsigned i = 0; i < OUTPUTS; i++) {
+            plain.limits[i] = (uint8_t)(1 + draw(255));
+            assert_int_equal(labial_beside_limit(&player, i, plain.limits[i]), 0);
+        }
         assert_int_equal(feed(0, 0, 0), 0);
         for (unsigned step = 0; step < 1500; step++) {
             uint8_t values[OUTPUTS], wanted[OUTPUTS];

@@ -23,7 +23,7 @@ SETUP(setup)
     models[0] = &plain.model;
     models[1] = &rich.model;
     fixture_rich(&computed);
-    fixture_without_17(&computed);
+    fixture_narrow(&computed, fixture_mirrored);
     models[2] = &computed.model;
     models[3] = &slow.model;
     models[4] = &laugh.model;

@@ -70,7 +70,7 @@ static size_t aim(void)
     labial_shape_t shape = { 0 };
     size_t n = 0;
     for (;;) {
-        if (labial_units_at_first(&units, models)) {
+        if (units.count > 0 && labial_units_left(&units, models) == 0) {
             assert_int_equal(labial_units_next(&units, models, 1, &spoken), 1);
             oracle_shape(models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next, &shape);
         }

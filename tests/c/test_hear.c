@@ -208,12 +208,59 @@ TEST(nothing_follows_the_end)
     assert_int_equal(stretch_count, 0);
     begin(16000, 1);
     assert_int_equal(labial_hear_push(&hear, samples, 0), LABIAL_OK);
+    assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_OK);
+    make_sound(3, 321, 1);
     assert_int_equal(labial_hear_push(&hear, samples, 321), LABIAL_OK);
     assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
     assert_int_equal(frame_count, 2);
     assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
     assert_int_equal(frame_count, 2);
     assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
+}
+
+/* Would catch an end that stays open, a way to rest that counts as sound, and one that an exact stream goes. */
+TEST(the_face_comes_to_rest_after_the_end)
+{
+    unsigned count, f, k;
+    int exact;
+    make_sound(3, 8000, 1);
+    for (exact = 1; exact >= 0; exact--) {
+        begin(16000, 1);
+        assert_int_equal(labial_hear_exact(&hear, exact), LABIAL_OK);
+        push_in_blocks(8000, 1, 333);
+        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        count = 25;
+        assert_int_equal(frame_count, exact ? count : count + LABIAL_EASE_FRAMES);
+        assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], count);
+    }
+    for (f = 0; f < LABIAL_EASE_FRAMES; f++)
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const double way = (f + 1.0) / LABIAL_EASE_FRAMES, share = way * way * (3 - 2 * way);
+            const double error = told[count + f][k] - told[count - 1u][k] * (1 - share);
+            assert_true(error > -1.1 && error < 1.1);
+        }
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_int_equal(labial_hear_exact(NULL, 1), LABIAL_ERROR_NULL);
+    memset(&hear, 0, sizeof hear);
+    assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_ERROR_STATE);
+}
+
+/* Would catch a face that opens in silence, at any level of it, and one that rests where there is sound. */
+TEST(silence_is_rest)
+{
+    unsigned i, k, span;
+    for (span = 32; span <= 33; span++) {
+        unsigned moved = 0;
+        begin(16000, 1);
+        for (i = 0; i < 16000u; i++)
+            samples[i] = (int16_t)(8000u + (i % 7u == 0 ? span : i % 3u));
+        push_in_blocks(16000, 1, 1000);
+        labial_hear_end(&hear);
+        for (i = 0; i < 50u; i++)
+            for (k = 0; k < LABIAL_CHANNELS; k++)
+                moved += told[i][k] != 0;
+        assert_true(span == 32 ? moved == 0 && frame_count == 50u : moved > 100u);
+    }
 }
 
 /* Would catch a jump of the lips, or frames after the neutral one. */
@@ -256,12 +303,14 @@ TEST(a_restart_fades_and_then_hears_afresh)
     unsigned f, k, count, before;
     make_sound(5, 9000, 1);
     begin(44100, 1);
+    labial_hear_exact(&hear, 1);
     push_in_blocks(9000, 1, 500);
     labial_hear_end(&hear);
     memcpy(fresh, told, sizeof fresh);
     count = frame_count;
     assert_true(count > 9u);
     begin(44100, 1);
+    labial_hear_exact(&hear, 1);
     assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
     make_sound(3, 9001, 1);
     push_in_blocks(9001, 1, 500);
@@ -276,7 +325,7 @@ TEST(a_restart_fades_and_then_hears_afresh)
     for (f = 0; f < count; f++)
         for (k = 0; k < LABIAL_CHANNELS; k++) {
             const double step = f < 8u ? (f + 1.0) / 9.0 : 1.0, share = step * step * (3 - 2 * step);
-            const double last = told[before - 1u][k], wanted = last + (fresh[f][k] - last) * share;
+            const double last = told[before - 1u][k], wanted = last * (1 - share) + fresh[f][k]; /* which fades, too */
             const double error = told[before + f][k] - wanted;
             assert_true(error > -1.6 && error < 1.6);
         }

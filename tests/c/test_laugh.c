@@ -153,6 +153,7 @@ static seen_t laughed(unsigned intensity, uint32_t seed)
     seen_t seen = { 0 };
     int result;
     assert_int_equal(labial_init(&stream, &laughter_synthetic, workspace, sizeof workspace, see, &seen), 0);
+    assert_int_equal(labial_exact(&stream, 1), LABIAL_OK);
     assert_int_equal(labial_laugh_begin(&laugh, 3000, intensity, seed), LABIAL_OK);
     while (labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK) {
         while (labial_room(&stream) == 0)

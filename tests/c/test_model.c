@@ -37,8 +37,7 @@ TEST_AFTER(setup, refuses_null)
     TRY(const labial_phoneme_t *, f.model.phonemes, NULL, LABIAL_ERROR_NULL);
     TRY(const labial_component_t *, f.model.components, NULL, LABIAL_ERROR_NULL);
     TRY(const int8_t *, f.model.shapes, NULL, LABIAL_ERROR_NULL);
-    TRY(const uint32_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL); /* there are taps */
-    TRY(const int8_t *, f.model.last_kernels, NULL, LABIAL_ERROR_NULL);
+    TRY(const uint32_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL);  /* there are taps */
     TRY(const int16_t *, f.model.floors, NULL, LABIAL_ERROR_NULL);    /* there are floors */
     TRY(const uint16_t *, f.model.contacts, NULL, LABIAL_ERROR_NULL); /* there are floors, contact or not */
     TRY(const labial_channel_t *, f.model.channels, NULL, LABIAL_ERROR_NULL);
@@ -57,7 +56,6 @@ TEST_AFTER(setup, optional_tables_may_be_null)
     ACCEPTED(const int8_t *, f.model.slopes, NULL);
     f.model.kernel_taps = f.model.kernel_behind = 0;
     ACCEPTED(const uint32_t *, f.model.kernels, NULL);
-    ACCEPTED(const int8_t *, f.model.last_kernels, NULL);
     f.model.floor_count = 0;
     f.phonemes[FIXTURE_P].floor = f.phonemes[FIXTURE_O].floor = 0;
     f.phonemes[FIXTURE_S].floor = f.phonemes[FIXTURE_SIL].floor = 0;
@@ -66,21 +64,42 @@ TEST_AFTER(setup, optional_tables_may_be_null)
     REFUSED(uint8_t, f.phonemes[FIXTURE_P].floor, 1); /* a row of a table that is not there */
 }
 
-/* Would catch tables of 13 channels asked of a model that has 12, and a bit of the thirteenth let through. */
-TEST_AFTER(setup, models_that_compute_protrusion_have_twelve_channels)
+/* Would catch tables of 13 channels asked of a model that has 8, a bit of a ninth let through, and sources that no channel
+ * is. */
+TEST_AFTER(setup, models_have_the_channels_that_they_solve)
 {
-    fixture_without_17(&f);
+    fixture_narrow(&f, fixture_mirrored);
+    assert_int_equal(f.model.channel_count, 8);
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
     TRY(const uint32_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL);
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
+    TRY(const labial_protrusion_t *, f.model.protrusion, NULL, LABIAL_ERROR_NULL);
+    for (unsigned c = 0; c < 8; c++)
         TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
-    REFUSED(uint16_t, f.contacts[0], 1u << 12);
-    ACCEPTED(uint16_t, f.contacts[0], 1u << 11);
+    REFUSED(uint16_t, f.contacts[0], 1u << 8);
+    ACCEPTED(uint16_t, f.contacts[0], 1u << 7);
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
+        ACCEPTED(uint8_t, f.model.sources[k], 7);
+        REFUSED(uint8_t, f.model.sources[k], 8);
+        REFUSED(uint8_t, f.model.sources[k], 254);
+        if (k != 2)
+            REFUSED(uint8_t, f.model.sources[k], LABIAL_FROM_CORNERS);
+    }
+    f.model.sources[2] = 0;
+    ACCEPTED(const labial_protrusion_t *, f.model.protrusion, NULL);
+    f.model.sources[2] = LABIAL_FROM_CORNERS;
+    REFUSED(uint8_t, f.model.channel_count, 0);
+    REFUSED(uint8_t, f.model.channel_count, 7);
+    TRY(uint8_t, f.model.channel_count, 9, LABIAL_ERROR_NULL); /* whose tables are not there */
+    fixture_rich(&f);
+    ACCEPTED(uint8_t, f.model.channel_count, LABIAL_CHANNELS);
+    REFUSED(uint8_t, f.model.channel_count, LABIAL_CHANNELS + 1);
+    REFUSED(uint8_t, f.model.channel_count, 255);
+    fixture_narrow(&f, fixture_mirrored);
     ACCEPTED(int16_t, f.protrusion.low, -32768);
     ACCEPTED(uint16_t, f.protrusion.gain, 65535);
     ACCEPTED(int16_t, f.protrusion.values[16], -32768);
-    REFUSED(int16_t, f.floors[FIXTURE_FLOORS * 12 - 1], LABIAL_NO_FLOOR - 1);
-    ACCEPTED(int16_t, f.floors[FIXTURE_FLOORS * 12], LABIAL_NO_FLOOR - 1); /* behind the table */
+    REFUSED(int16_t, f.floors[FIXTURE_FLOORS * 8 - 1], LABIAL_NO_FLOOR - 1);
+    ACCEPTED(int16_t, f.floors[FIXTURE_FLOORS * 8], LABIAL_NO_FLOOR - 1); /* behind the table */
 }
 
 TEST_AFTER(setup, refuses_other_versions)
@@ -220,11 +239,9 @@ TEST_AFTER(setup, refuses_pairs_out_of_order)
  * is what lib/shape.c and the proofs take for granted. */
 TEST_AFTER(setup, kernels_stay_within_the_labels)
 {
-    static uint32_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * 3];
-    static int8_t last_kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1)];
+    static uint32_t kernels[FIXTURE_SPEECH_COUNT * (LABIAL_KERNEL_TAPS_MAX + 1) * FIXTURE_KERNEL_WORDS];
     int accepted = 0;
     f.model.kernels = kernels;
-    f.model.last_kernels = last_kernels;
     for (int taps = 1; taps <= LABIAL_KERNEL_TAPS_MAX + 1; taps++)
         for (int stride = 0; stride < 256; stride += stride <= LABIAL_REACH + 1 ? 1 : 31)
             for (int behind = 0; behind <= taps; behind++) {

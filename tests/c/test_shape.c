@@ -188,8 +188,8 @@ static double limited(double value)
 TEST(targets_are_shapes_kernels_and_floors)
 {
     enum { ROWS = FIXTURE_SPEECH_COUNT * LABIAL_KERNEL_TAPS_MAX };
-    static int8_t kernels[ROWS * LABIAL_CHANNELS], last[ROWS];
-    static uint32_t words[ROWS * 3];
+    static int8_t kernels[ROWS * LABIAL_CHANNELS];
+    static uint32_t words[ROWS * FIXTURE_KERNEL_WORDS];
     fixture_random_t random = { 34 };
     unsigned raised = 0, at_ends = 0;
     fixture_rich(&f);
@@ -200,11 +200,14 @@ TEST(targets_are_shapes_kernels_and_floors)
         labial_shape_t shape;
         labial_taken_t taken = { 0 };
         const unsigned taps = fixture_below(&random, LABIAL_KERNEL_TAPS_MAX + 1);
+        const unsigned channels = 1 + round % LABIAL_CHANNELS;
         taken.labels = labels + LABIAL_REACH;
         taken.share = (uint16_t)fixture_below(&random, 16385);
         taken.is_open = (uint8_t)fixture_below(&random, 2); /* of a phoneme without contact: nothing */
         f.model.kernels = words;
-        f.model.last_kernels = last;
+        f.model.channel_count = (uint8_t)channels;
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+            f.model.sources[k] = (uint8_t)(k % channels);
         f.model.kernel_taps = (uint8_t)taps;
         f.model.kernel_behind = (uint8_t)(taps ? fixture_below(&random, taps) : 0);
         f.model.kernel_stride = (uint8_t)(1 + fixture_below(&random, 20));
@@ -212,7 +215,7 @@ TEST(targets_are_shapes_kernels_and_floors)
             f.model.kernel_taps = f.model.kernel_behind = 0;
         for (unsigned i = 0; i < sizeof kernels; i++)
             kernels[i] = (int8_t)(round % 3 ? (int)fixture_random(&random) : round % 2 ? -128 : 127);
-        fixture_pack_kernels(kernels, ROWS, words, last);
+        fixture_pack_kernels(kernels, ROWS, channels, words);
         for (unsigned i = 0; i < sizeof labels; i++)
             labels[i] = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
         for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
@@ -222,17 +225,17 @@ TEST(targets_are_shapes_kernels_and_floors)
             f.channels[k].kernel_scale = (uint16_t)(fixture_random(&random) >> (16 + k));
         }
         assert_int_equal(labial_shape_target(&f.model, &shape, &taken, target), 0);
-        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
+        for (unsigned k = 0; k < channels; k++) {
             const double start = shape.knots[0][k], end = shape.knots[1][k];
             double sum = 0;
             for (unsigned i = 0; i < f.model.kernel_taps; i++) {
                 const int at = LABIAL_REACH + ((int)i - f.model.kernel_behind) * f.model.kernel_stride;
-                sum += kernels[(labels[at] * (size_t)f.model.kernel_taps + i) * LABIAL_CHANNELS + k];
+                sum += kernels[(labels[at] * (size_t)f.model.kernel_taps + i) * channels + k];
             }
             double wanted =
                 limited(start + (end - start) * taken.share / 16384.0 + sum * f.channels[k].kernel_scale / 256.0);
             if (f.phonemes[labels[LABIAL_REACH]].floor) {
-                const int least = f.floors[(f.phonemes[labels[LABIAL_REACH]].floor - 1) * LABIAL_CHANNELS + (int)k];
+                const int least = f.floors[(f.phonemes[labels[LABIAL_REACH]].floor - 1u) * channels + k];
                 raised += wanted < least;
                 wanted = wanted < least ? least : wanted;
             }

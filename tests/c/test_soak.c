@@ -87,6 +87,7 @@ static void begin_day(uint32_t first)
     guard(0);
     assert_int_equal(labial_init(&day.memory.stream, &speech_en, day.memory.workspace, WORKSPACE, on_frame, &day),
                      LABIAL_OK);
+    assert_int_equal(labial_exact(&day.memory.stream, 1), LABIAL_OK);
     day.random.state = 20;
     day.memory.stream.frame = day.next = first; /* no day is long enough to come there otherwise */
 }

@@ -50,6 +50,7 @@ TEST(the_first_is_100_and_none_is_0)
     assert_int_equal(labial_init(silent.stream, models[0], silent.workspace, labial_workspace_size(models[0]),
                                  fixture_record, &silent.recorder),
                      LABIAL_OK);
+    assert_int_equal(labial_exact(silent.stream, 1), LABIAL_OK);
     silent.ended = 0;
     silent.recorder.next = 0;
     silent.recorder.count = silent.begun = 0;

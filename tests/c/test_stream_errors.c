@@ -186,20 +186,25 @@ TEST(a_failed_init_makes_the_stream_unusable)
 }
 
 /* Would catch a formula that differs between macro and function; the tests' workspaces are exactly this large. Only the
- * stride matters. */
+ * stride and the number of channels matter. */
 TEST(workspace_sizes_agree)
 {
-    static uint32_t constant[LABIAL_WORKSPACE_SIZE(1) / 4];
+    static uint32_t constant[LABIAL_WORKSPACE_SIZE(1, LABIAL_CHANNELS) / 4];
     assert_int_equal(sizeof constant, labial_workspace_size(&plain.model));
     for (unsigned stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
         slow.model.search_stride = (uint8_t)stride;
-        assert_int_equal(labial_workspace_size(&slow.model), LABIAL_WORKSPACE_SIZE(stride));
-        assert_int_equal(labial_workspace_size(&slow.model) % 4, 0);
-        assert_true(stride == 1 || LABIAL_WORKSPACE_SIZE(stride) > LABIAL_WORKSPACE_SIZE(stride - 1));
+        for (unsigned count = 1; count <= LABIAL_CHANNELS; count++) {
+            slow.model.channel_count = (uint8_t)count;
+            assert_int_equal(labial_workspace_size(&slow.model), LABIAL_WORKSPACE_SIZE(stride, count));
+            assert_int_equal(labial_workspace_size(&slow.model) % 4, 0);
+            assert_true(stride == 1 || LABIAL_WORKSPACE_SIZE(stride, count) > LABIAL_WORKSPACE_SIZE(stride - 1, count));
+            assert_true(count == 1 || LABIAL_WORKSPACE_SIZE(stride, count) > LABIAL_WORKSPACE_SIZE(stride, count - 1));
+        }
     }
-    assert_int_equal(LABIAL_WORKSPACE_SIZE(1 + 1), LABIAL_WORKSPACE_SIZE(2)); /* an expression is one value */
+    assert_int_equal(LABIAL_WORKSPACE_SIZE(1 + 1, 4 + 4), LABIAL_WORKSPACE_SIZE(2, 8)); /* expressions are one value */
     assert_int_equal(LABIAL_DELAY(1 + 1), LABIAL_DELAY(2));
-    assert_int_equal(LABIAL_LARGER(LABIAL_WORKSPACE_SIZE(1), LABIAL_WORKSPACE_SIZE(3)), LABIAL_WORKSPACE_SIZE(3));
+    assert_int_equal(LABIAL_LARGER(LABIAL_WORKSPACE_SIZE(1, 8), LABIAL_WORKSPACE_SIZE(3, 8)),
+                     LABIAL_WORKSPACE_SIZE(3, 8));
     fixture_slow(&slow);
     assert_int_equal(labial_workspace_size(NULL), 0);
 }
@@ -209,7 +214,8 @@ TEST(workspace_sizes_agree)
 TEST(memory_beside_the_workspace_is_untouched)
 {
     enum { GUARD = 64, EXTRA = 9 };
-    static uint32_t memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4 + EXTRA + GUARD];
+    static uint32_t
+        memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4 + EXTRA + GUARD];
     uint8_t *const bytes = (uint8_t *)memory;
     unsigned extra, i, k;
     for (unsigned round = 0; round < 24; round++) {
@@ -221,7 +227,9 @@ TEST(memory_beside_the_workspace_is_untouched)
         fixture_slow(&slow);
         fixture_rich(&rich);
         model->model.search_stride = (uint8_t)stride;
-        const uint32_t size = LABIAL_WORKSPACE_SIZE(stride) + extra;
+        if (round % 3 == 0)
+            fixture_narrow(model, fixture_mirrored);
+        const uint32_t size = labial_workspace_size(&model->model) + extra;
         memset(memory, 0xc3, sizeof memory);
         assert_int_equal(labial_init(&stream, &model->model, memory + GUARD, size, fixture_record, &recorder),
                          LABIAL_OK);
@@ -239,6 +247,33 @@ TEST(memory_beside_the_workspace_is_untouched)
     }
     fixture_slow(&slow);
     fixture_rich(&rich);
+}
+
+/* Would catch a workspace that a wider model's channels run out of, and one that has room for them and is not used. */
+TEST(a_model_of_more_channels_needs_room)
+{
+    static uint32_t memory[LABIAL_WORKSPACE_SIZE(FIXTURE_STRIDE, LABIAL_CHANNELS) / 4];
+    static const uint32_t wide = sizeof memory;
+    fixture_recorder_t recorder = { 0 };
+    fixture_model_t narrow;
+    labial_t stream;
+    fixture_rich(&narrow);
+    fixture_narrow(&narrow, fixture_mirrored);
+    const uint32_t size = labial_workspace_size(&narrow.model);
+    assert_true(size + 5 * sizeof(labial_progress_t) < wide);
+    assert_int_equal(labial_init(&stream, &rich.model, memory, wide - 4, fixture_record, &recorder),
+                     LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_init(&stream, &narrow.model, memory, size - 4, fixture_record, &recorder),
+                     LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_init(&stream, &narrow.model, memory, size, fixture_record, &recorder), LABIAL_OK);
+    assert_int_equal(labial_use(&stream, &rich.model), LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_push(&stream, FIXTURE_A, 100), LABIAL_OK); /* unchanged, of the first model */
+    assert_int_equal(labial_init(&stream, &narrow.model, memory, wide - 1, fixture_record, &recorder), LABIAL_OK);
+    assert_int_equal(labial_use(&stream, &rich.model), LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_init(&stream, &narrow.model, memory, wide, fixture_record, &recorder), LABIAL_OK);
+    assert_int_equal(labial_use(&stream, &rich.model), LABIAL_OK);
+    assert_int_equal(labial_init(&stream, &rich.model, memory, wide, fixture_record, &recorder), LABIAL_OK);
+    assert_int_equal(labial_use(&stream, &narrow.model), LABIAL_OK);
 }
 
 /* More models than LABIAL_MODELS: refused while phonemes of all others are held, accepted once ticks have taken up those

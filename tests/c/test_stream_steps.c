@@ -21,7 +21,7 @@
 #define TOLERANCE (8.0 + 1.6)
 #define FADED_TOLERANCE (TOLERANCE + 6.0)
 
-static fixture_model_t plain, rich, laugh, slow, computed, computed_slow;
+static fixture_model_t plain, rich, laugh, slow, computed, computed_slow, mirrored, crossed, narrow;
 static fixture_phoneme_t input[COUNT];
 static const labial_model_t *models[2];
 static double wanted[MAX_FRAMES][LABIAL_CHANNELS];
@@ -30,9 +30,13 @@ SETUP(setup)
 {
     fixture_all(&plain, &rich, &laugh, &slow);
     fixture_rich(&computed);
-    fixture_without_17(&computed);
+    fixture_narrow(&computed, fixture_computed);
     fixture_slow(&computed_slow);
-    fixture_without_17(&computed_slow);
+    fixture_narrow(&computed_slow, fixture_computed);
+    fixture_rich(&mirrored);
+    fixture_narrow(&mirrored, fixture_mirrored);
+    fixture_slow(&crossed);
+    fixture_narrow(&crossed, fixture_crossed);
     return 0;
 }
 
@@ -104,38 +108,43 @@ TEST(short_streams_are_the_sum_of_their_steps)
     rich.model.search_stride = FIXTURE_STRIDE;
 }
 
-/* Would catch tables whose rows are read with the width of others, a turn that no channel has, corners of another frame.
- */
-TEST(protrusion_is_computed_of_the_same_frame)
+/* Would catch tables whose rows are read with the width of others, a turn that no channel has, corners of another frame, a
+ * side that follows another channel than its own, lips that part in another channel. */
+TEST(channels_follow_those_of_the_same_frame)
 {
     static const fixture_kind_t kinds[] = { FIXTURE_ONE_FRAME, FIXTURE_CONTACTS, FIXTURE_RANDOM };
-    for (unsigned stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++) {
-        fixture_model_t *const f = stride % 2 ? &computed : &computed_slow;
+    fixture_model_t *const followed[] = { &computed, &computed_slow, &mirrored, &crossed };
+    for (unsigned i = 0; i < 2 * LABIAL_SEARCH_STRIDE_MAX; i++) {
+        const unsigned stride = 1 + i / 2;
+        fixture_model_t *const f = followed[stride % 2 + i % 2 * 2];
         const uint8_t own = f->model.search_stride;
         f->model.search_stride = (uint8_t)stride;
         models[0] = &f->model;
-        for (unsigned i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-            fixture_stream(input, COUNT, kinds[i], stride);
-            compare(1, COUNT, "computed", stride);
+        for (unsigned k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+            fixture_stream(input, COUNT, kinds[k], stride);
+            compare(1, COUNT, "followers", stride);
         }
         f->model.search_stride = own;
     }
 }
 
-/* Runs of two models in turn, from single frames to seconds; some of the first compute FAP 17, which the other does not.
- */
+/* Runs of two models in turn, from single frames to seconds; of twelve, eight or thirteen channels the first, of thirteen or
+ * eight the other, so that channels of both kinds begin and rest in the midst of the stream. */
 TEST(two_models_are_the_sum_of_their_steps)
 {
     static const fixture_kind_t kinds[] = { FIXTURE_ONE_FRAME, FIXTURE_RANDOM, FIXTURE_VOWELS };
     fixture_random_t random = { 41 };
     unsigned seed, i;
 #if LABIAL_MODELS > 1
-    models[1] = &laugh.model;
+    fixture_model_t *const firsts[] = { &computed, &mirrored, &rich, &slow };
+    fixture_laughter(&narrow);
+    fixture_narrow(&narrow, fixture_crossed);
     for (seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
-        fixture_model_t *const f = seed % 4 == 3 ? &slow : seed % 4 == 2 ? &rich : &computed;
+        fixture_model_t *const f = firsts[seed % 4], *const other = seed % 8 < 6 ? &laugh : &narrow;
+        models[1] = &other->model;
         uint8_t model = 0;
         const uint8_t own = f->model.search_stride;
-        f->model.search_stride = laugh.model.search_stride = (uint8_t)(1 + seed / 3 % LABIAL_SEARCH_STRIDE_MAX);
+        f->model.search_stride = other->model.search_stride = (uint8_t)(1 + seed / 3 % LABIAL_SEARCH_STRIDE_MAX);
         models[0] = &f->model;
         fixture_stream(input, COUNT, kinds[seed % 3], seed);
         for (i = 0; i < COUNT; i++) {
@@ -146,7 +155,7 @@ TEST(two_models_are_the_sum_of_their_steps)
         }
         compare(2, COUNT, "two models", seed);
         f->model.search_stride = own;
-        laugh.model.search_stride = FIXTURE_STRIDE;
+        other->model.search_stride = FIXTURE_STRIDE;
     }
 #else
     (void)seed;

@@ -3,6 +3,8 @@
  */
 #include "suite.h"
 
+#include <string.h>
+
 #include "fixture.h"
 
 #define COUNT 240
@@ -128,6 +130,53 @@ TEST(a_model_that_is_refused_does_no_harm)
         fixture_close(&host);
     }
     assert_true(refused > 0);
+}
+
+static void collect(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    int16_t *frames = (int16_t *)user;
+    assert_true(frame < 200);
+    memcpy(frames + (size_t)LABIAL_CHANNELS * frame, faps, LABIAL_CHANNELS * sizeof *faps);
+}
+
+/* A model that the stream says it no longer uses may be overwritten, and one that it uses is not yet let go. */
+TEST(an_unused_model_may_be_overwritten)
+{
+    static int16_t wanted[200 * LABIAL_CHANNELS], found[200 * LABIAL_CHANNELS];
+    static labial_t stream;
+    static uint32_t workspace[1024];
+    assert_int_equal(labial_uses(NULL, &speech.model), 0);
+    for (unsigned round = 0; round < 2; round++) {
+        unsigned ticks = 0, used = 0;
+        memset(&stream, 0, sizeof stream);
+        assert_int_equal(labial_uses(&stream, &speech.model), 0);
+        fixture_rich(&speech);
+        assert_int_equal(
+            labial_init(&stream, &speech.model, workspace, sizeof workspace, collect, round ? found : wanted),
+            LABIAL_OK);
+        assert_int_equal(labial_uses(&stream, &speech.model), 1);
+        assert_int_equal(labial_uses(&stream, &laugh.model), 0);
+        assert_int_equal(labial_uses(&stream, NULL), 0);
+        for (unsigned i = 0; i < 8; i++)
+            labial_push(&stream, i % FIXTURE_SPEECH_COUNT, 70 + 30 * i);
+        labial_use(&stream, &laugh.model);
+        assert_int_equal(labial_uses(&stream, &laugh.model), 1);
+        for (unsigned i = 0; i < 8; i++)
+            labial_push(&stream, i % FIXTURE_LAUGH_COUNT, 120);
+        labial_end(&stream);
+        for (int result = LABIAL_OK; result != LABIAL_DONE; ticks++) {
+            const int uses = labial_uses(&stream, &speech.model);
+            used += (unsigned)uses;
+            if (round == 1 && !uses)
+                memset(&speech, 0xff, sizeof speech); /* its pointers, too */
+            result = labial_tick(&stream);
+            assert_true(result >= 0 && ticks < 300);
+        }
+        assert_in_range(used, 60, 90); /* 1,400 ms are 70 frames, and there is the delay */
+        assert_int_equal(labial_uses(&stream, &laugh.model), 1);
+    }
+    assert_memory_equal(wanted, found, sizeof wanted);
+    fixture_rich(&speech);
 }
 
 SUITE(setup, NULL)

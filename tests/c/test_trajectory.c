@@ -145,7 +145,7 @@ static void judge(const char *what, unsigned round, unsigned length, unsigned t,
 /* Whole solutions, and such as go back from `window` frames ahead. */
 static void compare(unsigned length, const char *what, unsigned round)
 {
-    static int16_t motion[FRAMES * LABIAL_CHANNELS];
+    static int16_t motion[FRAMES];
     labial_factors_t before[FRAMES + 2], *factors = before + 1; /* to either side what must stay as it is */
     const unsigned window = round % 2 ? LABIAL_WINDOW : round % 13;
     double wanted[FRAMES];
@@ -159,10 +159,9 @@ static void compare(unsigned length, const char *what, unsigned round)
     memset(motion, 0x77, sizeof motion);
     labial_trajectory_back(factors + length - 1, 0, length, length - 1, FRAMES, motion);
     for (unsigned t = 0; t < length; t++)
-        judge(what, round, length, t, motion[t * LABIAL_CHANNELS], right[t]);
-    for (unsigned i = 0; i < FRAMES * LABIAL_CHANNELS; i++)
-        if (i % LABIAL_CHANNELS || i / LABIAL_CHANNELS >= length)
-            assert_int_equal(motion[i], 0x7777); /* other channels and frames are not its own */
+        judge(what, round, length, t, motion[t], right[t]);
+    for (unsigned i = (unsigned)length; i < FRAMES; i++)
+        assert_int_equal(motion[i], 0x7777); /* other frames are not its own */
     for (unsigned t = 0; t < length; t++)
         start[t] = t + window < length ? t + window : length - 1;
     oracle_trajectory(&channel, path, target, contact, 0, gain, length, start, wanted);
@@ -503,7 +502,7 @@ TEST(what_rests_stays_at_rest)
     for (unsigned round = 0; round < FIXTURE_ROUNDS(500); round++) {
         const int16_t place = (int16_t)((int)fixture_below(&random, 32767) - LABIAL_POSITION_MAX);
         labial_factors_t factors[FRAMES];
-        int16_t motion[FRAMES * LABIAL_CHANNELS];
+        int16_t motion[FRAMES];
         make(&random, round % 2 ? 126 : 8000, LABIAL_STIFFNESS_MAX, 0, round / 2 % 2);
         walk(&random, 1, 0);
         for (unsigned q = 0; q < STATES; q++)
@@ -514,9 +513,8 @@ TEST(what_rests_stays_at_rest)
         go_forward(FRAMES, FRAMES, factors);
         labial_trajectory_back(factors + FRAMES - 1, 0, FRAMES, FRAMES - 1, FRAMES, motion);
         for (unsigned t = 0; t < FRAMES; t++)
-            if (motion[t * LABIAL_CHANNELS] != place + channel.centre)
-                fail_msg("round %u: frame %u is %d, not %d", round, t, motion[t * LABIAL_CHANNELS],
-                         place + channel.centre);
+            if (motion[t] != place + channel.centre)
+                fail_msg("round %u: frame %u is %d, not %d", round, t, motion[t], place + channel.centre);
     }
 }
 
@@ -552,7 +550,7 @@ TEST(solutions_are_not_coupled)
         const unsigned first = 1 + fixture_below(&random, 20), second = 1 + fixture_below(&random, 20);
         labial_factors_t factors[FRAMES];
         double wanted[FRAMES];
-        int16_t motion[FRAMES * LABIAL_CHANNELS];
+        int16_t motion[FRAMES];
         make(&random, round % 2 ? 126 : 8000, LABIAL_STIFFNESS_MAX, round % 3 / 2.0, 0);
         walk(&random, 0, round / 2 % 2);
         require_accepted("two", round);
@@ -563,8 +561,7 @@ TEST(solutions_are_not_coupled)
         go_forward(second, 3, factors + first);
         labial_trajectory_back(factors + first + second - 1, second, first, round % 7, 7, motion);
         for (unsigned t = 0; t < first && t < 7; t++) /* the earliest seven overwrite the others */
-            judge("two", round, first, t, motion[(round % 7 + 7 - (first - 1 - t) % 7) % 7 * LABIAL_CHANNELS],
-                  wanted[t]);
+            judge("two", round, first, t, motion[(round % 7 + 7 - (first - 1 - t) % 7) % 7], wanted[t]);
     }
 }
 

@@ -10,15 +10,13 @@ from typing import Dict, List, Sequence, Tuple
 import numpy as np
 
 from labial.files.faps import CHANNELS
+from labial.reference.fade import FADE, eased, faded, rests
 from labial.reference.stream import aims, gains, solution
 from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
 from labial.reference.units import frame_counts
 from labial.reference.viterbi import LAG
 from scripts import Part, Push, Script, ease_frames
-
-#: Frames over which what begins anew fades in.
-FADE = 8
 
 
 @dataclass(frozen=True)
@@ -46,19 +44,6 @@ def runs(pushes: Sequence[Push], fps: int) -> List[Run]:
     return result
 
 
-def smooth(s: np.ndarray) -> np.ndarray:
-    """(T, 1) how far a transition has gone at `s` (T,), 0 .. 1."""
-    return (s * s * (3.0 - 2.0 * s))[:, None]
-
-
-def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray) -> np.ndarray:
-    """(T, 13): the first frames `fresh` (T, 13), at most FADE, fading in from the pose `held` (13,), which goes on as
-    far as its last frame `moved` it (13,), half as far with each frame."""
-    step = np.arange(1, len(fresh) + 1)
-    base = held + moved * (1.0 - 0.5 ** step[:, None])
-    return base + (fresh - base) * smooth(step / (FADE + 1))
-
-
 def part_gain(part: Part, frames: int, stride: int, percent: int, window: int = WINDOW, lag: int = LAG) -> np.ndarray:
     """(frames, 13) the articulation of the frames of a part, which begins with `percent`. When n frames are delivered,
     n and the delay are taken in."""
@@ -69,10 +54,10 @@ def part_gain(part: Part, frames: int, stride: int, percent: int, window: int = 
 
 
 def part_motion(
-    tables: Dict[str, Tables], part: Part, held: np.ndarray, resumed: bool, percent: int = 100, **limits: int
+    tables: Dict[str, Tables], part: Part, held: np.ndarray, percent: int = 100, **limits: int
 ) -> np.ndarray:
-    """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without easing. `held` (13,) is the pose
-    from which it fades in when it is `resumed`; `percent` the articulation that it begins with; `limits` are the
+    """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without the way to rest. `held` (13,) is
+    the pose from which it fades in; `percent` the articulation that it begins with; `limits` are the
     `window`, `lag` and `searched` of a library that is built for others."""
     motion = np.zeros((0, CHANNELS))
     faded_until = 0  # the frame behind the last that a fade has touched
@@ -84,11 +69,10 @@ def part_motion(
         own = tables[run.model]
         articulated = gain[run.begin : end, : len(own.solved)]
         fresh = solution(own, *aims(own, run.phonemes, run.counts), articulated, begin=run.begin, **limits)
-        if run.begin or resumed:
-            rests = run.begin < 2 or run.begin <= faded_until
-            moved = np.zeros(CHANNELS) if rests else motion[-1] - motion[-2]
-            fresh[:FADE] = faded(motion[-1] if run.begin else held, moved, fresh[:FADE])
-            faded_until = run.begin + FADE
+        stands = run.begin < 2 or run.begin <= faded_until
+        moved = np.zeros(CHANNELS) if stands else motion[-1] - motion[-2]
+        fresh = faded(motion[-1] if run.begin else held, moved, fresh)
+        faded_until = run.begin + FADE
         motion = np.concatenate([motion, fresh])
     return motion[: part.cancel[0]] if part.cancel else motion
 
@@ -99,17 +83,19 @@ def script_motion(tables: Dict[str, Tables], script: Script, **limits: int) -> n
     held, percent = np.zeros(CHANNELS), 100
     shown: List[np.ndarray] = [np.zeros((0, CHANNELS))]
     for part in script.parts:
-        resumed = any(len(frames) for frames in shown)
-        motion = part_motion(tables, part, held, resumed, percent, **limits)
+        motion = part_motion(tables, part, held, percent, **limits)
         percent = part.articulation[-1][1] if part.articulation else percent
         shown.append(motion)
         held = motion[-1] if len(motion) else held
         if part.cancel:
-            eased = [part.cancel[1], *(milliseconds for _, milliseconds in part.again)]
+            over = [part.cancel[1], *(milliseconds for _, milliseconds in part.again)]
             until = [frames for frames, _ in part.again]
-            for milliseconds, frames in zip(eased, [*until, None]):
+            for milliseconds, frames in zip(over, [*until, None]):
                 length = ease_frames(milliseconds, rate)
-                shown.append((held * (1.0 - smooth(np.arange(1, length + 1) / length)))[:frames])
+                shown.append(eased(held, length)[:frames])
                 held = shown[-1][-1] if len(shown[-1]) else held
+            held = np.zeros(CHANNELS)
+        elif not rests(held):
+            shown.append(eased(held))
             held = np.zeros(CHANNELS)
     return np.concatenate(shown)

@@ -145,7 +145,7 @@ static void finish(player_t *player, const conformance_step_t *step)
         }
         if (labial_cancel(player->stream, step->milliseconds) != LABIAL_OK)
             complain(player, "a cancel is refused");
-    } else if (labial_end(player->stream) != LABIAL_OK) {
+    } else if (labial_end(player->stream) != LABIAL_OK || labial_exact(player->stream, 0) != LABIAL_OK) {
         complain(player, "an end is refused");
     }
 }
@@ -192,6 +192,7 @@ const char *conformance_play(const conformance_stream_t *script, conformance_fee
     player.model = CONFORMANCE_SPEECH;
     if (labial_init(stream, &speech_en, workspace, workspace_size, on_frame, &player) != LABIAL_OK)
         return "labial_init() failed";
+    (void)labial_exact(stream, 1); /* as long as phonemes are to come: feeds starve it, each in its way */
     begin_part(&player, script, 0);
 
     for (i = 0; i < script->step_count && !player.complaint; i++) {
@@ -213,7 +214,7 @@ const char *conformance_play(const conformance_stream_t *script, conformance_fee
         if (player.next->kind == CONFORMANCE_ARTICULATION)
             complain(&player, "an articulation is set after the part's frames");
         if (i + 1u < script->step_count) {
-            if (labial_restart(stream) != LABIAL_OK)
+            if (labial_restart(stream) != LABIAL_OK || labial_exact(stream, 1) != LABIAL_OK)
                 complain(&player, "a restart is refused");
             begin_part(&player, script, i + 1u);
         }

@@ -9,7 +9,7 @@
 #define OUTPUTS 2u
 #define FRAMES 32u
 #define CALLS 3000u
-#define SHOWN 0x8731fd28u
+#define SHOWN 0xed6009b3u
 
 static labial_beside_t player;
 static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, FRAMES)];
@@ -32,7 +32,9 @@ static void add(uint32_t number)
 static void feed(uint32_t frame)
 {
     uint8_t packet[LABIAL_BESIDE_HEAD + OUTPUTS * 17u];
-    uint32_t first = frame + draw(40) - 8u, size = 0, frames, k;
+    static uint32_t session;
+    uint32_t first = frame + draw(40), size = 0, frames, k;
+    first -= first < 8u ? first : 8u;
     packet[size++] = LABIAL_BESIDE_FORMAT;
     packet[size++] = draw(20) == 0;
     packet[size++] = OUTPUTS;
@@ -40,6 +42,9 @@ static void feed(uint32_t frame)
     packet[size++] = (uint8_t)frames;
     for (k = 0; k < 4; k++)
         packet[size++] = (uint8_t)(first >> 8 * k);
+    session += draw(60) == 0;
+    packet[size++] = (uint8_t)session;
+    packet[size++] = 0x5a;
     for (k = 0; k < OUTPUTS * (frames + 1u); k++)
         packet[size++] = (uint8_t)draw(256);
     add((uint32_t)labial_beside_feed(&player, packet, size));
@@ -52,6 +57,8 @@ int main(void)
     uint8_t values[OUTPUTS];
     for (i = 0; i < 3; i++) {
         labial_beside_init(&player, OUTPUTS, rates[i], memory, sizeof memory);
+        labial_beside_limit(&player, 0, 100);
+        labial_beside_limit(&player, 1, 255);
         sample = frame = 0;
         for (k = 0; k < CALLS; k++) {
             if (draw(4) == 0 || k == 0)

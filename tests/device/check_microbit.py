@@ -71,8 +71,10 @@ def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
         return faults
     number = {name: int(value) for name, value in counts.items()}
 
-    total = phonemes[-1][3]
-    expect(len(faces) == number["faces"] == 2 * total, f"{len(faces)} faces instead of twice {total}")
+    total = len(faces) // 2
+    spoken = phonemes[-1][3]
+    expect(len(faces) == number["faces"] == 2 * total and spoken < total < spoken + 40,
+           f"{len(faces)} faces for twice {spoken} frames and the way to rest")
     expect([face[0] for face in faces] == list(range(len(faces))), "faces are missing or out of order")
     expect(len(lines) == len(faces) + 1, "there are other lines")
     if faults:
@@ -85,6 +87,7 @@ def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
         expect(max(pulses) - min(pulses) > 0.6 * (servo["maximum"] - servo["minimum"]), f"{name} hardly moves")
         steps = [abs(b - a) for a, b in zip(pulses, pulses[1:])]
         expect(max(steps) <= servo["slew"], f"{name} is faster than its slew limit")
+        expect(pulses[total - 1] == pulses[-1] == servo.get("closed", servo["neutral"]), f"{name} does not end at rest")
         # The pins themselves: the handler read its timer where it saw them go high and low.
         expect(all(abs(face[column + 3] - face[column]) <= TOLERANCE for face in faces), f"{name}'s pulses differ")
 
@@ -99,7 +102,7 @@ def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
     for begin, end in closures:
         least = min(opening(frame) for frame in range(begin, end))
         expect(least < 110, f"the lips stay {least:.0f} FAP units open in the closure at frame {begin}")
-    widest = max(opening(frame) for frame in range(total))
+    widest = max(opening(frame) for frame in range(spoken))
     expect(widest > 450, f"the mouth opens by {widest:.0f} FAP units only")
     laugh = min(begin for model, _, begin, _ in phonemes if model == "LAUGHTER")
     neutral = servos["corners"]["neutral"]

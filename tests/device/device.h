@@ -1,13 +1,13 @@
 /*
- * device.h - what the suites of the device tests share: the memory under test, and their entries.
+ * device.h - what the files of the device tests share: the memory under test.
  */
 #ifndef DEVICE_H
 #define DEVICE_H
 
-#include "board.h" /* before cmocka.h, which then writes to the board */
-#include "player.h"
+#include <unity.h>
 
-#include <cmocka.h>
+#include "board.h"
+#include "player.h"
 
 #define DEVICE_WORKSPACE CONFORMANCE_WORKSPACE
 
@@ -30,18 +30,15 @@ int device_memory_is_whole(void);
 /* The stream of vectors.c with that name; the test fails if there is none. */
 const conformance_stream_t *device_stream(const char *name);
 
-/* Fails the test and says of what, where something does not hold. */
-void device_require(int holds, const char *what);
+/* Fails the test unless a result is the wanted one. */
+#define ASSERT_RESULT(wanted, result) TEST_ASSERT_EQUAL_INT32(wanted, result)
 
-/* The suites, each in a file of its name. Return how many tests failed. */
-int test_arithmetic(void);
-int test_memory(void);
-int test_ticks(void);
+/* Runs all device tests; returns 1 if one of them failed, else 0. */
+int device_tests(void);
 
-/* A test, and its entry in a suite: setup and teardown see to it that it stays within its memory. */
-#define TEST(name) static void name(void **state __attribute__((unused)))
-#define DEVICE_TEST(function) cmocka_unit_test_setup_teardown(function, device_setup, device_teardown)
-int device_setup(void **state);
-int device_teardown(void **state);
+/* The tests of a file of this name, each run by RUN_TEST. */
+void test_arithmetic(void);
+void test_memory(void);
+void test_ticks(void);
 
 #endif

@@ -10,17 +10,6 @@
 
 device_memory_t device_memory;
 
-static int is_sound; /* whether all held that the present test required */
-
-void device_require(int holds, const char *what)
-{
-    if (holds)
-        return;
-    board_print(what);
-    board_print(": FAILED\n");
-    is_sound = 0;
-}
-
 void device_memory_fill(void)
 {
     uint32_t *word = (uint32_t *)(void *)&device_memory;
@@ -47,32 +36,29 @@ const conformance_stream_t *device_stream(const char *name)
     for (unsigned i = 0; i < conformance_stream_count; i++)
         if (strcmp(conformance_streams[i].name, name) == 0)
             return &conformance_streams[i];
-    device_require(0, name);
+    TEST_FAIL_MESSAGE(name);
     return &conformance_streams[0];
 }
 
-int device_setup(void **state)
+/* Unity calls these before and after each test. */
+void setUp(void)
 {
-    (void)state;
     device_memory_fill();
-    is_sound = 1;
-    return 0;
 }
 
-int device_teardown(void **state)
+void tearDown(void)
 {
-    (void)state;
-    device_require(device_memory_is_whole(), "memory beside the stream or the workspace was written to");
-    return is_sound ? 0 : 1;
+    TEST_ASSERT_TRUE_MESSAGE(device_memory_is_whole(), "memory beside the stream or the workspace was written to");
 }
 
-int main(void)
+int device_tests(void)
 {
+    UNITY_BEGIN(); /* before any text: a framework's Unity opens its port there */
     board_print("Device tests on ");
     board_print(board_name);
     board_put('\n');
-    const int failures = test_arithmetic() + test_memory() + test_ticks();
-    board_print_unsigned((uint32_t)failures);
-    board_print(failures ? " tests failed\nFAIL\n" : " tests failed\nOK\n");
-    return failures ? 1 : 0;
+    test_arithmetic();
+    test_memory();
+    test_ticks();
+    return UNITY_END() > 0;
 }

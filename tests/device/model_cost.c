@@ -33,8 +33,7 @@ static const labial_component_t components[2 * COMPONENTS] = { SIXTEEN(COMPONENT
 static const uint8_t initials[LABIAL_STATES_MAX] = { 0 };
 static const uint8_t contexts[2 * COMPONENTS * PHONEMES] = { 0 };
 static const int8_t shapes[2 * COMPONENTS * LABIAL_CHANNELS] = { 0 }; /* and slopes */
-static const uint32_t kernels[PHONEMES * LABIAL_KERNEL_TAPS_MAX * 3] = { 0 };
-static const int8_t last_kernels[PHONEMES * LABIAL_KERNEL_TAPS_MAX] = { 0 };
+static const uint32_t kernels[PHONEMES * LABIAL_KERNEL_TAPS_MAX * LABIAL_KERNEL_WORDS(LABIAL_CHANNELS)] = { 0 };
 static const uint16_t pair_keys[PAIRS] = { 0x100, 0x102, 0x180, 0x182, 0x200, 0x201, 0x280, 0x281 };
 static const int8_t pairs[PAIRS * 2 * LABIAL_CHANNELS] = { 0 };
 static const int16_t floors[LABIAL_CHANNELS] = { 0 };
@@ -60,7 +59,7 @@ static labial_phoneme_t phonemes[PHONEMES];
 static labial_channel_t channels[LABIAL_CHANNELS];
 static labial_model_t model;
 static labial_t stream;
-static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4];
+static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4];
 static int32_t sum;
 static int failures;
 
@@ -95,12 +94,14 @@ static void make(const recipe_t *recipe)
     model.floor_count = 1;
     model.pair_knots = 2;
     model.pair_count = PAIRS;
+    model.channel_count = LABIAL_CHANNELS;
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+        model.sources[k] = (uint8_t)k;
     model.phonemes = phonemes;
     model.components = components;
     model.contexts = contexts;
     model.shapes = model.slopes = shapes;
     model.kernels = kernels;
-    model.last_kernels = last_kernels;
     model.pair_keys = pair_keys;
     model.pairs = pairs;
     model.floors = floors;

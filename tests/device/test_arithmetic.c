@@ -67,17 +67,17 @@ static int32_t hide(int32_t value)
 }
 
 /* Would catch a lost carry between the parts of the 64-bit product, and a library routine for it that is wrong. */
-TEST(products_are_exact)
+static void products_are_exact(void)
 {
     for (unsigned i = 0; i < sizeof products / sizeof products[0]; i++) {
         const int32_t a = hide(products[i].a), b = hide(products[i].b);
-        assert_int_equal((uint32_t)products[i].result, (uint32_t)labial_mulshift(a, b, products[i].shift));
-        assert_int_equal((uint32_t)products[i].result, (uint32_t)labial_mulshift(b, a, products[i].shift));
+        TEST_ASSERT_EQUAL_HEX32((uint32_t)products[i].result, (uint32_t)labial_mulshift(a, b, products[i].shift));
+        TEST_ASSERT_EQUAL_HEX32((uint32_t)products[i].result, (uint32_t)labial_mulshift(b, a, products[i].shift));
     }
 }
 
 /* Would catch the same for operands of every size; the expected product is made by division, not by shifts. */
-TEST(products_agree_with_division)
+static void products_agree_with_division(void)
 {
     uint32_t seed = 1;
     for (unsigned shift = 16; shift <= 31; shift++)
@@ -91,12 +91,12 @@ TEST(products_agree_with_division)
             int64_t quotient = product / unit;
             if (product % unit < 0)
                 quotient--;
-            assert_int_equal((uint32_t)(quotient & 0xffffffff), (uint32_t)labial_mulshift(a, b, shift));
+            TEST_ASSERT_EQUAL_HEX32((uint32_t)(quotient & 0xffffffff), (uint32_t)labial_mulshift(a, b, shift));
         }
 }
 
 /* Would catch the same in the narrower products of the solver, whatever way this core takes. */
-TEST(parts_agree_with_division)
+static void parts_agree_with_division(void)
 {
     uint32_t seed = 1;
     for (unsigned i = 0; i < 1000; i++) {
@@ -109,45 +109,45 @@ TEST(parts_agree_with_division)
         int64_t quotient = product / unit;
         if (product % unit < 0)
             quotient--;
-        assert_int_equal((int32_t)quotient, labial_part16(x, (uint32_t)f));
+        TEST_ASSERT_EQUAL_INT32((int32_t)quotient, labial_part16(x, (uint32_t)f));
     }
 }
 
 /* Would catch a compiler whose right shifts of negative numbers are not arithmetic, or round towards zero. */
-TEST(shifts_are_arithmetic)
+static void shifts_are_arithmetic(void)
 {
-    assert_int_equal(-1, hide(-1) >> 1);
-    assert_int_equal(-1, hide(-1) >> 31);
-    assert_int_equal(-3, hide(-5) >> 1);
-    assert_int_equal(INT32_MIN / 65536, hide(INT32_MIN) >> 16);
+    TEST_ASSERT_EQUAL_INT32(-1, hide(-1) >> 1);
+    TEST_ASSERT_EQUAL_INT32(-1, hide(-1) >> 31);
+    TEST_ASSERT_EQUAL_INT32(-3, hide(-5) >> 1);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN / 65536, hide(INT32_MIN) >> 16);
 }
 
 /* Would catch a compiler that takes sums beyond 32 bits for impossible. */
-TEST(sums_wrap)
+static void sums_wrap(void)
 {
-    assert_int_equal(INT32_MIN, labial_add(hide(INT32_MAX), 1));
-    assert_int_equal(INT32_MAX, labial_sub(hide(INT32_MIN), 1));
-    assert_int_equal(-8, labial_sub(hide(-5), 3));
-    assert_int_equal(127, labial_clamp(hide(INT32_MAX), 127));
-    assert_int_equal(-127, labial_clamp(hide(INT32_MIN), 127));
-    assert_int_equal(-126, labial_clamp(hide(-126), 127));
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, labial_add(hide(INT32_MAX), 1));
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX, labial_sub(hide(INT32_MIN), 1));
+    TEST_ASSERT_EQUAL_INT32(-8, labial_sub(hide(-5), 3));
+    TEST_ASSERT_EQUAL_INT32(127, labial_clamp(hide(INT32_MAX), 127));
+    TEST_ASSERT_EQUAL_INT32(-127, labial_clamp(hide(INT32_MIN), 127));
+    TEST_ASSERT_EQUAL_INT32(-126, labial_clamp(hide(-126), 127));
 }
 
 /* Would catch 16-bit promotions: products of uint16 that do not fit an int. */
-TEST(costs_are_unsigned)
+static void costs_are_unsigned(void)
 {
-    assert_int_equal(0, labial_weight((uint8_t)hide(0)));
-    assert_int_equal(15, labial_weight((uint8_t)hide(15)));
-    assert_int_equal(16, labial_weight((uint8_t)hide(16)));
-    assert_int_equal(507904, labial_weight((uint8_t)hide(255)));
-    assert_int_equal(65535, labial_z((uint32_t)hide(65535), (uint16_t)hide(65535), 65535));
-    assert_int_equal(16384, labial_z((uint32_t)hide(32768), (uint16_t)hide(2048), 65535));
-    assert_int_equal(33553408, labial_z_cost((uint32_t)hide(65535)));
-    assert_int_equal(1, labial_z_cost((uint32_t)hide(12)));
+    TEST_ASSERT_EQUAL_INT32(0, labial_weight((uint8_t)hide(0)));
+    TEST_ASSERT_EQUAL_INT32(15, labial_weight((uint8_t)hide(15)));
+    TEST_ASSERT_EQUAL_INT32(16, labial_weight((uint8_t)hide(16)));
+    TEST_ASSERT_EQUAL_INT32(507904, labial_weight((uint8_t)hide(255)));
+    TEST_ASSERT_EQUAL_INT32(65535, labial_z((uint32_t)hide(65535), (uint16_t)hide(65535), 65535));
+    TEST_ASSERT_EQUAL_INT32(16384, labial_z((uint32_t)hide(32768), (uint16_t)hide(2048), 65535));
+    TEST_ASSERT_EQUAL_INT32(33553408, labial_z_cost((uint32_t)hide(65535)));
+    TEST_ASSERT_EQUAL_INT32(1, labial_z_cost((uint32_t)hide(12)));
 }
 
 /* Would catch squares that overflow where an int is short, and a quotient that a library routine gets wrong. */
-TEST(transitions_are_smooth)
+static void transitions_are_smooth(void)
 {
     static const struct {
         uint16_t step, steps;
@@ -158,17 +158,18 @@ TEST(transitions_are_smooth)
         { 999, 1000, 16383 }, { 1, 65535, 0 }, { 32768, 65535, 8192 }, { 65534, 65535, 16383 }, { 65535, 65535, 16384 },
     };
     for (unsigned i = 0; i < sizeof transitions / sizeof transitions[0]; i++)
-        assert_int_equal(transitions[i].gone,
-                         labial_ease((unsigned)hide(transitions[i].step), (unsigned)hide(transitions[i].steps)));
+        TEST_ASSERT_EQUAL_INT32(transitions[i].gone,
+                                labial_ease((unsigned)hide(transitions[i].step), (unsigned)hide(transitions[i].steps)));
 }
 
-int test_arithmetic(void)
+void test_arithmetic(void)
 {
-    static const struct CMUnitTest tests[] = {
-        DEVICE_TEST(shifts_are_arithmetic),     DEVICE_TEST(sums_wrap),
-        DEVICE_TEST(products_are_exact),        DEVICE_TEST(products_agree_with_division),
-        DEVICE_TEST(parts_agree_with_division), DEVICE_TEST(costs_are_unsigned),
-        DEVICE_TEST(transitions_are_smooth),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    Unity.TestFile = __FILE__;
+    RUN_TEST(shifts_are_arithmetic);
+    RUN_TEST(sums_wrap);
+    RUN_TEST(products_are_exact);
+    RUN_TEST(products_agree_with_division);
+    RUN_TEST(parts_agree_with_division);
+    RUN_TEST(costs_are_unsigned);
+    RUN_TEST(transitions_are_smooth);
 }

@@ -20,20 +20,20 @@ static void ignore(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNEL
 
 /* Would catch a workspace whose parts overlap or end elsewhere than LABIAL_WORKSPACE_SIZE says: canaries are checked
  * after every test. The streams are those that fill the queue and the rings. */
-TEST(fullest_streams_stay_inside)
+static void fullest_streams_stay_inside(void)
 {
     static const char *const names[] = { "queue", "long_vowel", "switch_in_long", "turns", "one_frame", "cancelled" };
     for (unsigned i = 0; i < sizeof names / sizeof names[0]; i++)
         for (unsigned feed = 0; feed < CONFORMANCE_FEEDS; feed++) {
             const conformance_stream_t *script = device_stream(names[i]);
-            assert_null(conformance_play(script, (conformance_feed_t)feed, &device_memory.stream,
-                                         device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
-            device_require(device_memory_is_whole(), names[i]);
+            TEST_ASSERT_NULL(conformance_play(script, (conformance_feed_t)feed, &device_memory.stream,
+                                              device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+            TEST_ASSERT_TRUE_MESSAGE(device_memory_is_whole(), names[i]);
         }
 }
 
 /* Would catch an access of eight bytes at once, which four-byte alignment does not allow on every processor. */
-TEST(alignment_to_four_bytes_is_enough)
+static void alignment_to_four_bytes_is_enough(void)
 {
     const conformance_stream_t *script = device_stream("sentence");
     for (unsigned offset = 0; offset < 2; offset++) {
@@ -41,64 +41,61 @@ TEST(alignment_to_four_bytes_is_enough)
         uint32_t *workspace = device_memory.workspace + (((uintptr_t)device_memory.workspace >> 2) + offset) % 2u;
         /* The last word, one canary, is lent to the workspace where it begins a word later. */
         const uint32_t lent = device_memory.after[0];
-        assert_null(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, workspace, DEVICE_WORKSPACE,
-                                     conformance_digest, &digest));
+        TEST_ASSERT_NULL(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, workspace, DEVICE_WORKSPACE,
+                                          conformance_digest, &digest));
         device_memory.after[0] = lent;
-        assert_int_equal(script->digest, digest.crc);
+        TEST_ASSERT_EQUAL_HEX32(script->digest, digest.crc);
     }
 }
 
 /* Would catch a check that lets the library read or write where it must not. */
-TEST(unfit_workspaces_are_refused)
+static void unfit_workspaces_are_refused(void)
 {
     labial_t *stream = &device_memory.stream;
     uint8_t *workspace = (uint8_t *)(void *)device_memory.workspace;
     const uint32_t size = labial_workspace_size(&speech_en);
-    assert_int_equal(SPEECH_EN_WORKSPACE_SIZE, size);
-    assert_int_equal(LAUGHTER_SYNTHETIC_WORKSPACE_SIZE, labial_workspace_size(&laughter_synthetic));
+    TEST_ASSERT_EQUAL_UINT32(SPEECH_EN_WORKSPACE_SIZE, size);
+    TEST_ASSERT_EQUAL_UINT32(LAUGHTER_SYNTHETIC_WORKSPACE_SIZE, labial_workspace_size(&laughter_synthetic));
     for (unsigned offset = 1; offset < 4; offset++)
-        assert_int_equal(LABIAL_ERROR_WORKSPACE,
-                         labial_init(stream, &speech_en, workspace + offset, size, ignore, NULL));
-    assert_int_equal(LABIAL_ERROR_WORKSPACE, labial_init(stream, &speech_en, workspace, size - 1u, ignore, NULL));
-    assert_int_equal(LABIAL_ERROR_NULL, labial_init(stream, &speech_en, NULL, size, ignore, NULL));
-    assert_int_equal(LABIAL_ERROR_STATE, labial_tick(stream));
-    assert_int_equal(LABIAL_OK, labial_init(stream, &speech_en, workspace, size, ignore, NULL));
+        ASSERT_RESULT(LABIAL_ERROR_WORKSPACE, labial_init(stream, &speech_en, workspace + offset, size, ignore, NULL));
+    ASSERT_RESULT(LABIAL_ERROR_WORKSPACE, labial_init(stream, &speech_en, workspace, size - 1u, ignore, NULL));
+    ASSERT_RESULT(LABIAL_ERROR_NULL, labial_init(stream, &speech_en, NULL, size, ignore, NULL));
+    ASSERT_RESULT(LABIAL_ERROR_STATE, labial_tick(stream));
+    ASSERT_RESULT(LABIAL_OK, labial_init(stream, &speech_en, workspace, size, ignore, NULL));
 }
 
 /* Would catch tables that were damaged on their way to flash, and structures with another layout. */
-TEST(models_are_sound)
+static void models_are_sound(void)
 {
-    assert_int_equal(LABIAL_OK, labial_model_check(&speech_en));
-    assert_int_equal(LABIAL_OK, labial_model_check(&laughter_synthetic));
+    ASSERT_RESULT(LABIAL_OK, labial_model_check(&speech_en));
+    ASSERT_RESULT(LABIAL_OK, labial_model_check(&laughter_synthetic));
 }
 
 /* Would catch an image whose models are of another format than its library. */
-TEST(other_formats_are_refused)
+static void other_formats_are_refused(void)
 {
     labial_t *stream = &device_memory.stream;
     labial_model_t other = speech_en;
     other.format++;
-    assert_int_equal(LABIAL_ERROR_VERSION, labial_model_check(&other));
-    assert_int_equal(LABIAL_ERROR_VERSION,
-                     labial_init(stream, &other, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
-    assert_int_equal(LABIAL_ERROR_STATE, labial_tick(stream));
-    assert_int_equal(LABIAL_OK,
-                     labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
-    assert_int_equal(LABIAL_ERROR_VERSION, labial_use(stream, &other));
+    ASSERT_RESULT(LABIAL_ERROR_VERSION, labial_model_check(&other));
+    ASSERT_RESULT(LABIAL_ERROR_VERSION,
+                  labial_init(stream, &other, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+    ASSERT_RESULT(LABIAL_ERROR_STATE, labial_tick(stream));
+    ASSERT_RESULT(LABIAL_OK, labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+    ASSERT_RESULT(LABIAL_ERROR_VERSION, labial_use(stream, &other));
 }
 
 /* Stack below this function of the ticks of a sentence and a laugh, all pushed before, callback included. */
 __attribute__((noinline)) static uint32_t depth_of_ticks(void)
 {
     labial_t *stream = &device_memory.stream;
-    assert_int_equal(LABIAL_OK,
-                     labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
+    ASSERT_RESULT(LABIAL_OK, labial_init(stream, &speech_en, device_memory.workspace, DEVICE_WORKSPACE, ignore, NULL));
     for (unsigned i = 0; i < LABIAL_QUEUE; i++) {
         if (i == SPOKEN)
-            assert_int_equal(LABIAL_OK, labial_use(stream, &laughter_synthetic));
-        assert_int_equal(LABIAL_OK, labial_push(stream, i % LAUGHTER_SYNTHETIC_PHONEMES, 90));
+            ASSERT_RESULT(LABIAL_OK, labial_use(stream, &laughter_synthetic));
+        ASSERT_RESULT(LABIAL_OK, labial_push(stream, i % LAUGHTER_SYNTHETIC_PHONEMES, 90));
     }
-    assert_int_equal(LABIAL_OK, labial_end(stream));
+    ASSERT_RESULT(LABIAL_OK, labial_end(stream));
     board_stack_paint();
     while (labial_tick(stream) != LABIAL_DONE) {
     }
@@ -106,7 +103,7 @@ __attribute__((noinline)) static uint32_t depth_of_ticks(void)
 }
 
 /* Would catch a buffer or a recursion that a small stack does not bear. */
-TEST(stack_is_small)
+static void stack_is_small(void)
 {
     const conformance_stream_t *script = device_stream("switch");
     if (board_stack_left() == UINT32_MAX) {
@@ -114,29 +111,27 @@ TEST(stack_is_small)
         return;
     }
     board_stack_paint();
-    assert_null(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, device_memory.workspace,
-                                 DEVICE_WORKSPACE, ignore, NULL));
+    TEST_ASSERT_NULL(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, device_memory.workspace,
+                                      DEVICE_WORKSPACE, ignore, NULL));
     uint32_t depth = board_stack_depth();
     board_print("stack: ");
     board_print_unsigned(depth);
     board_print(" bytes, ");
-    assert_true(depth <= STACK_LIMIT);
+    TEST_ASSERT_TRUE(depth <= STACK_LIMIT);
     depth = depth_of_ticks();
     board_print("of a tick alone: ");
     board_print_unsigned(depth);
     board_print(" bytes\n");
-    assert_true(depth <= TICK_STACK_LIMIT);
+    TEST_ASSERT_TRUE(depth <= TICK_STACK_LIMIT);
 }
 
-int test_memory(void)
+void test_memory(void)
 {
-    static const struct CMUnitTest tests[] = {
-        DEVICE_TEST(models_are_sound),
-        DEVICE_TEST(unfit_workspaces_are_refused),
-        DEVICE_TEST(other_formats_are_refused),
-        DEVICE_TEST(fullest_streams_stay_inside),
-        DEVICE_TEST(alignment_to_four_bytes_is_enough),
-        DEVICE_TEST(stack_is_small),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    Unity.TestFile = __FILE__;
+    RUN_TEST(models_are_sound);
+    RUN_TEST(unfit_workspaces_are_refused);
+    RUN_TEST(other_formats_are_refused);
+    RUN_TEST(fullest_streams_stay_inside);
+    RUN_TEST(alignment_to_four_bytes_is_enough);
+    RUN_TEST(stack_is_small);
 }

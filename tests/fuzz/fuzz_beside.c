@@ -1,8 +1,8 @@
 /*
  * fuzz_beside.c - any bytes as packets, as sample numbers and as calls in any order (labial/beside.h): nothing is read
- * beside a packet or written beside the player's memory, values stay between those of frames and the face at rest, and a
- * good packet is always accepted. The first two bytes are the outputs and the frames of memory; each call begins with a
- * byte that names it.
+ * beside a packet or written beside the player's memory, no value changes by more than its limit, the face comes to rest,
+ * and a good packet is always accepted. The first two bytes are the outputs and the frames of memory; each call begins
+ * with a byte that names it.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -36,11 +36,12 @@ static void feed(labial_beside_t *player, const uint8_t *data, size_t size, unsi
         REQUIRE(frames > 0);
         size = LABIAL_BESIDE_HEAD + (packet[3] + 1u) * outputs;
         result = labial_beside_feed(player, packet, size);
-        REQUIRE(result == (cancels ? LABIAL_BESIDE_CANCELS : LABIAL_BESIDE_RESTS) && player->known);
+        REQUIRE((result == (cancels ? LABIAL_BESIDE_CANCELS : LABIAL_BESIDE_RESTS) || result == LABIAL_BESIDE_BEGINS) &&
+                player->known);
     } else {
         result = labial_beside_feed(player, packet, size);
-        REQUIRE(result == LABIAL_BESIDE_ERROR_PACKET || result == LABIAL_BESIDE_RESTS ||
-                result == LABIAL_BESIDE_CANCELS);
+        REQUIRE(result == LABIAL_BESIDE_ERROR_PACKET ||
+                (result >= LABIAL_BESIDE_RESTS && result <= LABIAL_BESIDE_BEGINS));
     }
     free(packet);
 }
@@ -50,16 +51,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     labial_beside_t *player = (labial_beside_t *)malloc(sizeof *player);
     unsigned outputs, frames;
     uint32_t sample = 0, rate;
-    uint8_t *memory, *values;
+    uint8_t *memory, *values, *last;
+    int moves = 0; /* `last` is known */
     REQUIRE(player != NULL);
     outputs = size > 2 && data[0] ? data[0] : 1u;
     frames = size > 2 && data[1] ? data[1] : 1u;
     rate = size > 2 ? 1u + data[2] * 1009u : 1u;
     memory = (uint8_t *)malloc(LABIAL_BESIDE_SIZE(outputs, frames));
     values = (uint8_t *)malloc(outputs);
-    REQUIRE(memory != NULL && values != NULL);
+    last = (uint8_t *)malloc(outputs);
+    REQUIRE(memory != NULL && values != NULL && last != NULL);
     memset(player, 0x5a, sizeof *player);
     REQUIRE(labial_beside_init(player, outputs, rate, memory, LABIAL_BESIDE_SIZE(outputs, frames)) == 0);
+    for (frames = 0; frames < outputs; frames++)
+        REQUIRE(labial_beside_limit(player, frames, 1u + (rate + frames * 37u) % 255u) == 0);
     data += size > 2 ? 3 : size;
     size -= size > 2 ? 3 : size;
     while (size >= 5) {
@@ -71,12 +76,22 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             result = labial_beside_at(player, sample, values);
             REQUIRE(result == (player->known ? result & 1 : LABIAL_BESIDE_ERROR_STATE));
             REQUIRE(player->quiet <= LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE);
-            if (player->known && player->quiet == LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE)
-                REQUIRE(memcmp(values, memory, outputs) == 0);
+            for (frames = 0; frames < outputs && player->known; frames++) {
+                const int most = 1 + (int)((rate + frames * 37u) % 255u), moved = values[frames] - last[frames];
+                REQUIRE(!moves || (moved <= most && moved >= -most));
+                if (player->quiet == LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE) {
+                    const int left = memory[frames] - values[frames];
+                    REQUIRE(left == 0 || !moves || moved == (left > 0 ? most : -most));
+                }
+            }
+            moves = player->known > 0;
+            if (moves)
+                memcpy(last, values, outputs);
             data += 5;
             size -= 5;
         } else if (call == CANCEL) {
-            REQUIRE(labial_beside_cancel(player) == LABIAL_BESIDE_RESTS);
+            REQUIRE((data[0] & 64u ? labial_beside_begin(player, rate) : labial_beside_cancel(player)) ==
+                    LABIAL_BESIDE_RESTS);
             data++;
             size--;
         } else {
@@ -87,6 +102,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             size -= 3 + taken;
         }
     }
+    free(last);
     free(values);
     free(memory);
     free(player);

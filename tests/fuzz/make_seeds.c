@@ -136,31 +136,60 @@ static void put_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHAN
         fwrite(faps, sizeof *faps, LABIAL_CHANNELS, (FILE *)user);
 }
 
+/* An output that is within its ranges: every second one has a slew limit, the last one a deadband; the last two say where
+ * they are closed, and have a limit of acceleration. */
+static void put_output(FILE *file, int i)
+{
+    labial_rig_output_t output = { 0 };
+    output.weights[i] = 4096;
+    output.invert = (uint8_t)(i % 2);
+    output.contact = (uint8_t)(i / 2);
+    output.gain = 13430;
+    output.neutral = 300;
+    output.minimum = 260;
+    output.maximum = 380;
+    output.slew = 25 * (i % 2);
+    output.closed = 320 * (i / 2);
+    output.deadband = i == 3 ? 3 : 0;
+    output.acceleration = i > 1 ? 8 : 0;
+    fwrite(&output, offsetof(labial_rig_output_t, curve), 1, file);
+}
+
+static const labial_rig_curve_t curve = { 2, { { 260, 260, 1 << 19 }, { 320, 290, 3 << 19 } } };
+
+static void put_face_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    put((FILE *)user, frame % 7u == 6u ? 1 + frame % 6u : 15, 1);
+    put_frame(user, frame, faps);
+}
+
+/* A face of three of these outputs, the frames of the first stream, and another call after each six of them. */
+static void make_face(void)
+{
+    static const uint8_t curved_sound_ahead_rate[] = { 4, 15, 5, 49 };
+    static uint32_t workspace[CONFORMANCE_WORKSPACE / 4u];
+    static labial_t stream;
+    FILE *file = create("fuzz_face", "sentence");
+    for (int i = 1; i < OUTPUTS; i++)
+        put_output(file, i);
+    fwrite(&curve, sizeof curve, 1, file);
+    fwrite(curved_sound_ahead_rate, sizeof curved_sound_ahead_rate, 1, file);
+    REQUIRE(!conformance_play(&conformance_streams[0], CONFORMANCE_FILL, &stream, workspace, sizeof workspace,
+                              put_face_frame, file));
+    finish(file);
+}
+
 /* Outputs that are within their ranges, two with a slew limit, one with a deadband, two that say where they are closed,
  * two with a limit of acceleration, a curve for two; then the frames of the first stream, a sentence. */
 static void make_rig(void)
 {
-    static const labial_rig_curve_t curve = { 2, { { 260, 260, 1 << 19 }, { 320, 290, 3 << 19 } } };
     static const int32_t values[OUTPUTS] = { 300, 300, 300, 300 }, changes[OUTPUTS] = { 0, 0, 0, 0 };
     static const uint8_t curved_and_sound[] = { 6, 31, 0, 0 };
     static uint32_t workspace[CONFORMANCE_WORKSPACE / 4u];
     static labial_t stream;
     FILE *file = create("fuzz_rig", "sentence");
-    for (int i = 0; i < OUTPUTS; i++) {
-        labial_rig_output_t output = { 0 };
-        output.weights[i] = 4096;
-        output.invert = (uint8_t)(i % 2);
-        output.contact = (uint8_t)(i / 2);
-        output.gain = 13430;
-        output.neutral = 300;
-        output.minimum = 260;
-        output.maximum = 380;
-        output.slew = 25 * (i % 2);
-        output.closed = 320 * (i / 2);
-        output.deadband = i == 3 ? 3 : 0;
-        output.acceleration = i > 1 ? 8 : 0;
-        fwrite(&output, offsetof(labial_rig_output_t, curve), 1, file);
-    }
+    for (int i = 0; i < OUTPUTS; i++)
+        put_output(file, i);
     fwrite(&curve, sizeof curve, 1, file);
     fwrite(values, sizeof values, 1, file);
     fwrite(changes, sizeof changes, 1, file);
@@ -240,9 +269,10 @@ static void make_packets(void)
     uint32_t frame, i;
     put(file, 2u << 16 | 64u << 8 | 24u, 3); /* 24,217 samples per second */
     for (frame = 0; frame < 60; frame += 10) {
-        put(file, 0x011e00u, 3); /* mended, of 30 bytes */
+        put(file, 0x012000u, 3); /* mended, of 32 bytes */
         put(file, (uint32_t)LABIAL_BESIDE_FORMAT << 24 | (frame == 50u ? 1u << 16 : 0u) | 2u << 8 | 10u, 4);
         put(file, frame << 24, 4); /* low byte first */
+        put(file, frame < 40u ? 1u : 2u, 2);
         for (i = 0; i < 22; i++)
             put(file, frame * i, 1);
         for (i = 0; i < 10; i++) {
@@ -261,6 +291,7 @@ int main(int argc, char **argv)
     make_streams();
     make_blobs();
     make_rig();
+    make_face();
     make_packets();
     make_sounds();
     make_labels(argv[2]);

@@ -20,6 +20,7 @@ endif()
 # below ten bytes.
 set(fuzz_beside_longest 2048)
 set(fuzz_blob_longest 45056)
+set(fuzz_face_longest 2048)
 set(fuzz_hear_longest 2048)
 set(fuzz_names_longest 64)
 set(fuzz_rig_longest 1024)

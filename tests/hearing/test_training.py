@@ -181,4 +181,4 @@ def test_commands_say_what_they_need(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     """Without PyTorch."""
     monkeypatch.setitem(sys.modules, "torch", None)
     assert main(["train-hear", str(tmp_path), "-o", str(tmp_path / "a.npz")]) == 1
-    assert "training needs the package torch: install labial[hear]" in capsys.readouterr().err
+    assert "training needs the package torch: pip install '.[hear]'" in capsys.readouterr().err

@@ -8,7 +8,7 @@ compiled with sanitizers, and the C suites, the conformance streams and the devi
 first and then the fastest first, until one fails or hangs: then it is killed. A mutant whose optimised code equals that
 of the library is replaced by another. survivors.txt must list exactly those that survive, each with a reason; of those
 that are not equivalent at least 95 % must be killed. With --survivors only those in survivors.txt are tried, for
-instance after a new test for one of them. Needs gcc or clang with sanitizers, and cmocka.
+instance after a new test for one of them. Needs gcc or clang with sanitizers, cmocka and Unity.
 """
 
 from __future__ import annotations
@@ -74,8 +74,9 @@ def run(command: Sequence[object], **options: object) -> subprocess.CompletedPro
 class Bench:
     """The library and the tests, built once; mutants replace one object of the library."""
 
-    def __init__(self, folder: Path, compiler: str, cmocka: Sequence[str], suites: Sequence[str]) -> None:
+    def __init__(self, folder: Path, compiler: str, cmocka: Sequence[str], unity: Path, suites: Sequence[str]) -> None:
         self.folder, self.compiler, self.cmocka, self.suites = folder, compiler, list(cmocka), suites
+        self.unity = [f"-I{unity / 'src'}", "-include", "unity_on_board.h", unity / "src" / "unity.c"]
         self.sources = sorted(LIB.glob("*.c"))
         self.reference: Dict[str, bytes] = {}
         self.tests: List[Test] = []
@@ -122,8 +123,8 @@ class Bench:
             board = ['-DBOARD_NAME="host"', *(ROOT / "boards" / name for name in boards)]
             device = ROOT / "tests" / "device"
             programs["conformance"] = [ROOT / "tests/conformance/conformance.c", *streams, *board, *objects]
-            programs["device_tests"] = [*sorted(device.glob("test_*.c")), device / "device_tests.c",
-                                        f"-I{ROOT}/tests/setup/cmocka", *streams, *board, *objects]
+            programs["device_tests"] = [*sorted(device.glob("test_*.c")), device / "device_tests.c", device / "main.c",
+                                        *self.unity, *streams, *board, *objects]
         if self.suites:
             programs = {name: parts for name, parts in programs.items() if name in self.suites}
         for name, parts in programs.items():
@@ -219,6 +220,7 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="mutants at a time")
     parser.add_argument("--compiler", default=os.environ.get("CC", "cc"))
     parser.add_argument("--cmocka", nargs=2, metavar=("INCLUDE", "LIBRARY"), help="where cmocka is, if not installed")
+    parser.add_argument("--unity", type=Path, required=True, help="folder of Unity, which holds src/unity.c")
     parser.add_argument("--kinds", nargs="*", choices=KINDS, help="of changes, instead of all")
     parser.add_argument("--files", nargs="*", help="of lib/, instead of all")
     parser.add_argument("--suites", nargs="*", default=[], help="of tests/c, instead of all")
@@ -236,7 +238,7 @@ def main() -> int:
             print(f"{mutant.line}: {mutant.key}")
         return 0
     cmocka = [f"-I{options.cmocka[0]}", options.cmocka[1]] if options.cmocka else ["-lcmocka"]
-    bench = Bench(options.build.resolve(), options.compiler, cmocka, options.suites)
+    bench = Bench(options.build.resolve(), options.compiler, cmocka, options.unity, options.suites)
     verdicts = tried(bench, candidates, min(options.count, len(candidates)), options.jobs)
     survivors = [mutant for mutant, verdict in verdicts.items() if not verdict]
     unknown = [mutant for mutant in survivors if mutant.key not in known]

@@ -42,6 +42,7 @@ const feeds = {
     },
     "real time"(stream, phonemes, most) {
         const found = [];
+        stream.exact = true; // as phonemes come when they begin, each is late
         phonemes.forEach((phoneme) => {
             push(stream, phoneme);
             for (let ms = 0; ms < Math.min(phoneme.milliseconds, 5000); ms += 20) {
@@ -49,6 +50,7 @@ const feeds = {
                 if (frame) found.push(frame.slice());
             }
         });
+        stream.exact = false;
         return found;
     },
 };
@@ -76,6 +78,13 @@ function articulated(changes) {
         const frame = tick();
         if (frame) change();
         return frame;
+    };
+    const iterate = stream[Symbol.iterator].bind(stream);
+    stream[Symbol.iterator] = function* () {
+        for (const frame of iterate()) {
+            change();
+            yield frame;
+        }
     };
     return { stream, begin: () => ((begun = stream.number + 1), change()) };
 }

@@ -9,7 +9,7 @@ if(LABIAL_ANY_CLANG AND LABIAL_WASM_LINKER AND LABIAL_NODE)
     "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}/wasm" --build-generator "${CMAKE_GENERATOR}" --build-target npm
     --build-options "-DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/boards/toolchains/wasm.cmake"
       -DLABIAL_BUILD_TESTS=OFF -DLABIAL_BUILD_EXAMPLES=OFF "-DLABIAL_WERROR=${LABIAL_WERROR}")
-  set_tests_properties(npm_package PROPERTIES FIXTURES_SETUP npm TIMEOUT 300)
+  set_tests_properties(npm_package PROPERTIES LABELS web FIXTURES_SETUP npm RESOURCE_LOCK setup TIMEOUT 300)
   set(LABIAL_NPM_PACKAGE "${PROJECT_BINARY_DIR}/wasm/npm")
   add_subdirectory(npm)
 else()

@@ -17,8 +17,7 @@ static labial_phoneme_t phonemes[LABIAL_PHONEMES_MAX];
 static labial_component_t components[COMPONENTS];
 static uint8_t contexts[COMPONENTS * LABIAL_CLASSES_MAX];
 static int8_t shapes[COMPONENTS * LABIAL_CHANNELS], slopes[COMPONENTS * LABIAL_CHANNELS];
-static uint32_t kernels[LABIAL_PHONEMES_MAX * LABIAL_KERNEL_TAPS_MAX * 3];
-static int8_t last_kernels[LABIAL_PHONEMES_MAX * LABIAL_KERNEL_TAPS_MAX];
+static uint32_t kernels[LABIAL_PHONEMES_MAX * LABIAL_KERNEL_TAPS_MAX * LABIAL_KERNEL_WORDS(LABIAL_CHANNELS)];
 static uint16_t pair_keys[PAIRS];
 static int8_t pairs[PAIRS * 2 * LABIAL_CHANNELS];
 static int16_t floors[FLOORS * LABIAL_CHANNELS];
@@ -94,7 +93,6 @@ static void any_model(labial_model_t *object, int count)
     FILL(shapes);
     FILL(slopes);
     FILL(kernels);
-    FILL(last_kernels);
     FILL(pair_keys);
     FILL(pairs);
     FILL(floors);
@@ -111,13 +109,17 @@ static void any_model(labial_model_t *object, int count)
     object->shapes = shapes;
     object->slopes = OR_NULL(const int8_t *, slopes);
     object->kernels = kernels;
-    object->last_kernels = OR_NULL(const int8_t *, last_kernels);
     object->pair_keys = pair_keys;
     object->pairs = pairs;
     object->floors = floors;
     object->contacts = contacts;
-    object->protrusion = OR_NULL(const labial_protrusion_t *, &protrusion);
+    object->protrusion = &protrusion; /* needed where FAP 17 is computed of the corners */
     object->channels = channels;
+    /*@ loop unroll 13; */
+    for (i = 0; i < LABIAL_CHANNELS; i++)
+        object->sources[i] = (uint8_t)Frama_C_interval(0, LABIAL_CHANNELS - 1);
+    if (any_int)
+        object->sources[2] = LABIAL_FROM_CORNERS;
 }
 
 #endif

@@ -26,7 +26,8 @@
     X(kernel_behind, 0, LABIAL_KERNEL_TAPS_MAX - 1)                                                                    \
     X(floor_count, 0, ASSUMED_FLOORS)                                                                                  \
     X(pair_knots, 1, 2)                                                                                                \
-    X(pair_count, 0, 65535)
+    X(pair_count, 0, 65535)                                                                                            \
+    X(channel_count, 1, LABIAL_CHANNELS)
 
 /* The components of a phoneme lie within those of the model. */
 #define ASSUMED_OF_PHONEME(X)                                                                                          \

@@ -21,6 +21,10 @@ static void play(unsigned outputs, uint32_t size)
         if (any_int)
             labial_beside_at(OR_NULL(labial_beside_t *, &player), any_uint32, OR_NULL(uint8_t *, values));
         if (any_int)
+            labial_beside_limit(OR_NULL(labial_beside_t *, &player), any_unsigned, any_unsigned);
+        if (any_int)
+            labial_beside_begin(OR_NULL(labial_beside_t *, &player), any_uint32);
+        if (any_int)
             labial_beside_cancel(OR_NULL(labial_beside_t *, &player));
     }
 }
@@ -32,9 +36,11 @@ int main(void)
     labial_beside_feed(&player, packet, any_size);
     labial_beside_at(&player, any_uint32, values);
     labial_beside_cancel(&player);
-    labial_beside_init(&player, any_unsigned, any_uint32, memory, 2);
+    labial_beside_limit(&player, any_unsigned, any_unsigned);
+    labial_beside_begin(&player, any_uint32);
+    labial_beside_init(&player, any_unsigned, any_uint32, memory, 4);
     play(0, sizeof memory);
-    play(1, 4);
+    play(1, 6);
     play(1, LABIAL_BESIDE_SIZE(1, 64));
     play(3, LABIAL_BESIDE_SIZE(3, 17));
     play(6, sizeof memory);

@@ -23,11 +23,12 @@ int labial_model_check(const labial_model_t *model)
     int sum = model->format + model->frames_per_second + model->component_count + model->phoneme_count +
               model->class_count + model->state_count + model->predecessors + model->search_stride + model->silence +
               model->mixture_mean + model->kernel_taps + model->kernel_stride + model->kernel_behind +
-              model->floor_count + model->pair_knots + model->pair_count;
+              model->floor_count + model->pair_knots + model->pair_count + model->channel_count;
     sum += is_there(model->phonemes) + is_there(model->components) + is_there(model->contexts) +
-           is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) +
-           is_there(model->last_kernels) + is_there(model->pair_keys) + is_there(model->pairs) +
-           is_there(model->floors) + is_there(model->contacts) + is_there(model->protrusion);
+           is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) + is_there(model->pair_keys) +
+           is_there(model->pairs) + is_there(model->floors) + is_there(model->contacts) + is_there(model->protrusion);
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+        sum += model->sources[k];
     for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
         const labial_channel_t *channel = &model->channels[k];
         sum += channel->centre + channel->shape_scale + channel->slope_scale + channel->kernel_scale +

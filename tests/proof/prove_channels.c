@@ -1,7 +1,7 @@
 /*
  * Any marks, models, targets and contacts, any phase, with every stride and every number of frames that entered and that lie
  * beyond the last one; in a workspace that ends with that of the stride.
- * viterbi.c, trajectory.c and protrusion.c are not part of it; their stand-ins here give any of their results, and touch the ends of
+ * viterbi.c, trajectory.c and followers.c are not part of it; their stand-ins here give any of their results, and touch the ends of
  * what those read and write.
  */
 #include "any_model.h"
@@ -11,7 +11,7 @@
 
 #define MOST LABIAL_SEARCH_STRIDE_MAX
 
-static uint32_t workspace[LABIAL_WORKSPACE_SIZE(MOST) / 4];
+static uint32_t workspace[LABIAL_WORKSPACE_SIZE(MOST, LABIAL_CHANNELS) / 4];
 static labial_model_t model;
 static const labial_model_t *models[LABIAL_MODELS];
 
@@ -50,29 +50,31 @@ void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsi
 {
     /*@ assert place < places; */
     /*@ assert wanted <= places; */
-    motion[place * LABIAL_CHANNELS] = (int16_t)newest->q;
-    motion[(places - 1u) * LABIAL_CHANNELS] = (int16_t)newest[-(int)(ahead + wanted - 1u)].q;
+    motion[place] = (int16_t)newest->q;
+    motion[places - 1u] = (int16_t)newest[-(int)(ahead + wanted - 1u)].q;
 }
 
-void labial_protrusion_complete(const labial_model_t *any, int16_t motion[LABIAL_CHANNELS])
+void labial_followers_complete(const labial_model_t *any, const int16_t *motion, unsigned spacing,
+                               int16_t frame[LABIAL_CHANNELS])
 {
-    if (any->protrusion)
-        motion[0] = motion[LABIAL_CHANNELS - 1] = any_int16;
+    frame[0] = motion[0];
+    frame[LABIAL_CHANNELS - 1] = motion[(any->channel_count - 1u) * spacing];
 }
 
 /* A step with this many frames that entered; with more than the delay all that entered are as many. */
 static void step_with(int stride, int entered, int beyond)
 {
     labial_channels_t channels;
-    uint32_t *start = workspace + (sizeof workspace - LABIAL_WORKSPACE_SIZE((unsigned)stride)) / sizeof *workspace;
+    uint32_t *start =
+        workspace + (sizeof workspace - LABIAL_WORKSPACE_SIZE((unsigned)stride, LABIAL_CHANNELS)) / sizeof *workspace;
     int i;
-    labial_channels_init(&channels, (unsigned)stride, start);
+    labial_channels_init(&channels, (unsigned)stride, LABIAL_CHANNELS, start);
     FILL(workspace);
     for (i = 0; i < LABIAL_CHANNELS; i++)
         channels.progress[i].search.path[0] = (uint8_t)Frama_C_interval(0, LABIAL_STATES_MAX - 1);
     for (i = 0; i <= LABIAL_DELAY(stride); i++)
         channels.slots[i] = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
-    channels.full = any_uint8;
+    channels.stepping = (uint8_t)Frama_C_interval(0, LABIAL_CHANNELS);
     channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
     channels.entered = (uint8_t)Frama_C_interval(entered, entered > LABIAL_DELAY(stride) ? 255 : entered);
     channels.beyond = (uint8_t)beyond;
@@ -83,20 +85,20 @@ static void step_with(int stride, int entered, int beyond)
 static void pass(int stride)
 {
     labial_channels_t channels;
-    const int16_t *motion;
+    int16_t frame[LABIAL_CHANNELS];
     int i;
-    labial_channels_init(&channels, (unsigned)stride, workspace);
+    labial_channels_init(&channels, (unsigned)stride, LABIAL_CHANNELS, workspace);
     FILL(workspace);
     channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
     channels.entered = any_uint8;
     channels.beyond = (uint8_t)Frama_C_interval(0, LABIAL_DELAY(stride) - 1);
-    channels.full = any_uint8;
+    channels.stepping = (uint8_t)Frama_C_interval(0, LABIAL_CHANNELS);
+    channels.wide = any_uint8;
     for (i = 0; i <= LABIAL_DELAY(stride); i++)
         channels.slots[i] = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
     labial_channels_uses(&channels, any_unsigned);
-    motion = labial_channels_due(&channels, models);
-    if (motion)
-        channels.phase = (uint8_t)(motion[0] + motion[LABIAL_CHANNELS - 1] > 0 ? 0 : channels.phase);
+    if (labial_channels_due(&channels, models, frame))
+        channels.phase = (uint8_t)(frame[0] + frame[LABIAL_CHANNELS - 1] > 0 ? 0 : channels.phase);
     if (any_int)
         labial_channels_enter(&channels, models, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1))->marks = any_uint8;
     else

@@ -3,7 +3,6 @@
 #include "prove.h"
 
 static labial_phoneme_t phonemes[255];
-static labial_protrusion_t protrusion;
 
 int main(void)
 {
@@ -11,7 +10,6 @@ int main(void)
     FILL(phonemes);
     FILL(model);
     model.phonemes = phonemes;
-    model.protrusion = OR_NULL(const labial_protrusion_t *, &protrusion);
     labial_model_cost(0);
     return (int)labial_model_cost(&model);
 }

@@ -1,6 +1,6 @@
 /*
  * Any calls with any arguments, on a stream in any state that calls leave behind; any workspace, samples in blocks of up to
- * four. hear_convert.c, hear_features.c and hear_network.c are not part of it; their stand-ins give any of their results,
+ * four. fade.c, hear_convert.c, hear_features.c and hear_network.c are not part of it; their stand-ins give any of their results,
  * and touch the ends of what those read and write.
  */
 #include "hear_convert.h"
@@ -8,7 +8,7 @@
 #include "hear_network.h"
 #include "labial/hear.h"
 
-#include "prove.h"
+#include "any_fade.h"
 
 static labial_hear_t hear;
 static labial_hear_model_t model;
@@ -101,7 +101,12 @@ static void any_state(void)
     hear.hop = (uint8_t)Frama_C_interval(0, 1);
     hear.ended = (uint8_t)Frama_C_interval(0, 1);
     hear.busy = (uint8_t)Frama_C_interval(0, 1);
-    hear.fade = (uint8_t)Frama_C_interval(0, 8);
+    hear.exact = (uint8_t)Frama_C_interval(0, 1);
+    hear.loud = (uint8_t)Frama_C_interval(0, 1);
+    hear.silent = any_uint8;
+    hear.rest = (uint8_t)Frama_C_interval(0, 5);
+    hear.fade.step = any_uint16;
+    hear.fade.length = any_uint16;
     hear.shown = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_CLASSES_MAX - 1);
     hear.leader = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_CLASSES_MAX - 1);
     hear.held = (uint8_t)Frama_C_interval(0, 1);
@@ -113,8 +118,7 @@ static void any_state(void)
     hear.class_callback = OR_NULL(labial_hear_class_fn, on_class);
     FILL(hear.before);
     FILL(hear.now);
-    FILL(hear.pose);
-    FILL(hear.faded);
+    FILL(hear.fade.pose);
     FILL(hear.features);
     FILL(hear.window);
 }
@@ -130,6 +134,7 @@ static void misuse(void)
     labial_hear_push(NULL, NULL, any_size);
     labial_hear_end(NULL);
     labial_hear_cancel(NULL, any_uint32);
+    labial_hear_exact(NULL, any_int);
     labial_hear_restart(NULL);
     labial_hear_latency(NULL);
 }
@@ -152,6 +157,7 @@ static void use(void)
     any_state();
     labial_hear_end(&hear);
     any_state();
+    labial_hear_exact(&hear, any_int);
     labial_hear_restart(&hear);
     /*@ loop unroll 51; */
     for (frames = 0; frames <= 50; frames++) {

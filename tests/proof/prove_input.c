@@ -9,9 +9,9 @@
 
 static labial_model_t model;
 
-int labial_units_at_first(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
+uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
 {
-    return units->count > 0 && models[any_int ? 0 : LABIAL_MODELS - 1]->phonemes && any_int;
+    return units->count > 0 && models[any_int ? 0 : LABIAL_MODELS - 1]->phonemes ? any_uint32 : 0u;
 }
 
 int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
@@ -78,13 +78,14 @@ static void advance(int stride)
     stream.channels.stride = (uint8_t)stride;
     while (any_int) {
         stream.ended = (uint8_t)Frama_C_interval(0, 1);
-        stream.shown = (uint8_t)Frama_C_interval(0, 1);
         stream.pending = any_uint32;
         stream.units.count = any_uint8;
         stream.wanted = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
         stream.articulation = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
         if (any_int)
             select_halves(&stream, (unsigned)Frama_C_interval(1, 2));
+        stream.channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
+        select_ahead(&stream);
         take_frame(&stream);
         if (any_int) { /* as when it begins anew */
             stream.channels.entered = 0;

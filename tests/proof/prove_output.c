@@ -1,16 +1,10 @@
 /*
- * stream.c, one frame out: any motion and any pose, at every step of a fade, with every stride; and every step of easing over every
- * number of frames.
+ * stream.c, one frame out: any motion due or none, at any step of a way to it or to rest, with every stride. fade.c is proven
+ * on its own; its stand-in here leads anywhere.
  */
-#include "prove.h"
+#include "any_fade.h"
 #include "stream.c"
 #include "stream_channels.h"
-
-/* In the place of fixed.c, which does the same bit by bit (tests/c/test_fixed.c). */
-uint32_t labial_quotient(uint32_t a, uint32_t b)
-{
-    return a / b;
-}
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -21,11 +15,13 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 
 static void any_stream(labial_t *stream, int16_t *user)
 {
-    FILL(stream->pose);
-    FILL(stream->earlier);
-    FILL(stream->faded);
+    FILL(stream->fade.pose);
+    stream->fade.step = any_uint16;
+    stream->fade.length = any_uint16;
     stream->begun = (uint8_t)Frama_C_interval(0, 1);
-    stream->shown = (uint8_t)Frama_C_interval(0, 1);
+    stream->exact = (uint8_t)Frama_C_interval(0, 1);
+    stream->resting = (uint8_t)Frama_C_interval(0, 1);
+    stream->held = (uint8_t)Frama_C_interval(0, LABIAL_HOLD_TICKS);
     FILL(stream->begins);
     stream->frame = any_uint32;
     stream->pending = any_uint32;
@@ -33,38 +29,39 @@ static void any_stream(labial_t *stream, int16_t *user)
     stream->user = user;
 }
 
-static void deliver_one(int stride, int step)
+static void deliver_one(int stride)
 {
     labial_t stream;
     int16_t user = 0;
     any_stream(&stream, &user);
     stream.channels.stride = (uint8_t)stride;
     stream.channels.entered = any_uint8;
-    stream.fade_step = (uint8_t)step;
     deliver(&stream);
 }
 
-/* Over `least` to `most` frames. */
-static void ease_one(int least, int most)
+static void call_back_one(void)
 {
     labial_t stream;
     int16_t user = 0;
     any_stream(&stream, &user);
-    stream.ease_length = (uint16_t)Frama_C_interval(least, most);
-    stream.ease_step = (uint16_t)Frama_C_interval(0, most);
-    eased(&stream, stream.pose);
-    stream.ease_step = (uint16_t)Frama_C_interval(0, most - 1);
-    ease(&stream);
+    call_back(&stream, (unsigned)Frama_C_interval(0, 1));
+}
+
+static void rest_one(void)
+{
+    labial_t stream;
+    int16_t user = 0;
+    any_stream(&stream, &user);
+    rest(&stream);
+    any_stream(&stream, &user);
+    hold_or_rest(&stream);
 }
 
 int main(void)
 {
     for (int stride = 1; stride <= LABIAL_SEARCH_STRIDE_MAX; stride++)
-        for (int i = 0; i <= 8; i++)
-            deliver_one(stride, i);
-    /* In groups so small that EVA, which sees a step and a number of frames apart, sees how far their quotient goes. */
-    /*@ loop unroll 40; */
-    for (int i = 1; i <= 1000; i = i + i / 4 + 1)
-        ease_one(i, i + i / 4);
+        deliver_one(stride);
+    rest_one();
+    call_back_one();
     return 0;
 }

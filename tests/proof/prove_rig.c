@@ -3,6 +3,7 @@
 #include "labial/rig.h"
 
 #include "prove.h"
+#include "rig_parts.h"
 
 #define OUTPUTS 3
 #define FRAMES 65535
@@ -16,6 +17,7 @@ int main(void)
 {
     labial_rig_t rig;
     labial_rig_delay_t delay;
+    labial_sight_t sight;
     int16_t faps[LABIAL_CHANNELS];
     FILL(curve);
     for (unsigned i = 0; i < OUTPUTS; i++) {
@@ -33,6 +35,9 @@ int main(void)
     labial_rig_apply(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, faps), OR_NULL(int32_t *, values));
     labial_rig_apply_ahead(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, frames), any_uint16,
                            OR_NULL(int32_t *, values), OR_NULL(int32_t *, changes));
+    FILL(sight.wanted);
+    sight.count = 1u + any_unsigned % LABIAL_RIG_SIGHT;
+    labial_rig_step(&outputs[any_unsigned % OUTPUTS], &sight, any_uint32, any_int32, any_int32, any_int32);
     delay.frames = OR_NULL(int16_t *, frames);
     delay.ahead = (uint16_t)(any_uint16 & 0x7fffu); /* all that `frames` have room for */
     delay.held = any_uint16;

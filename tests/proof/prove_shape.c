@@ -29,6 +29,7 @@ static void take(void)
     uint8_t labels[2 * LABIAL_REACH + 1];
     int16_t target[LABIAL_CHANNELS];
     int i;
+    FILL(target); /* the workspace, which a reset sets to zero: EVA cannot tell that a model's channels were written */
     for (i = 0; i < LABIAL_CHANNELS; i++)
         shape.knots[0][i] = any_position();
     for (i = 0; i < LABIAL_CHANNELS; i++)

@@ -23,7 +23,7 @@ int main(void)
                               (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1),
                               (uint32_t)Frama_C_interval(0, LABIAL_DURATION_MAX), (uint32_t)Frama_C_interval(1, 250));
         labial_units_take(&units, models, any_int, &taken);
-        labial_units_at_first(&units, models);
+        labial_units_left(&units, models);
         labial_units_uses(&units, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1));
         labial_units_next(&units, models, any_int, &spoken);
         if (any_int)

@@ -24,11 +24,14 @@ void labial_channels_run_out(labial_channels_t *channels)
     channels->beyond = any_uint8;
 }
 
-const int16_t *labial_channels_due(const labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS])
+int labial_channels_due(const labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
+                        int16_t frame[LABIAL_CHANNELS])
 {
-    static int16_t motion[LABIAL_CHANNELS];
-    FILL(motion);
-    return channels->entered && any_int ? motion : (const int16_t *)0;
+    unsigned k;
+    (void)models;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        frame[k] = any_int16;
+    return channels->entered && any_int;
 }
 
 #endif

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import os
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
-from typing import Iterator, List
+from typing import Dict, Iterator, List, Set
 
 import pytest
 
@@ -28,18 +29,29 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "slow: takes long; runs where LABIAL_REQUIRE_ALL is set, as in .ci/run")
 
 
+def passed_modules(report: Path) -> Set[str]:
+    """The modules of which a report of another run, as pytest's --junitxml, has tests, all of them passed."""
+    passed: Dict[str, bool] = {}
+    for case in ElementTree.parse(report).getroot().iter("testcase"):
+        module = case.get("classname", "").rpartition(".")[2]
+        passed[module] = passed.get(module, True) and not len(case)
+    return {module for module, all_of_it in passed.items() if all_of_it}
+
+
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist looks at the groups
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
-    """Groups the tests of some modules (``--dist loadgroup``), and leaves the slow tests out, but where
-    LABIAL_REQUIRE_ALL is set in the environment."""
+    """Groups the tests of some modules (``--dist loadgroup``). Leaves the slow tests out, but where LABIAL_REQUIRE_ALL
+    is set in the environment; there LABIAL_PASSED may name the report of a run without them, whose passed modules are
+    left to it."""
     for item in items:
         if item.path.stem in TOGETHER:
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
-    if os.environ.get("LABIAL_REQUIRE_ALL", "").upper() in ("ON", "1", "TRUE", "YES"):
-        return
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    config.hook.pytest_deselected(items=slow)
-    items[:] = [item for item in items if not item.get_closest_marker("slow")]
+    every = os.environ.get("LABIAL_REQUIRE_ALL", "").upper() in ("ON", "1", "TRUE", "YES")
+    report = os.environ.get("LABIAL_PASSED", "")
+    passed = passed_modules(Path(report)) if every and report else set()
+    left_out = [item for item in items if (not every if item.get_closest_marker("slow") else item.path.stem in passed)]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in set(left_out)]
 
 
 @pytest.fixture(scope="module")

@@ -64,7 +64,7 @@ class Case(NamedTuple):
 def _train() -> None:
     labial.train.train = lambda *_, **__: random_model(2)  # type: ignore[attr-defined]
     labial.train.backed_off = lambda _: []  # type: ignore[attr-defined]
-    labial.corpus.read_corpora = lambda *_: []  # type: ignore[attr-defined]
+    labial.corpus.read_corpora = lambda *_, **options: []  # type: ignore[attr-defined]
 
 
 def _export() -> None:

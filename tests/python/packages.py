@@ -45,6 +45,27 @@ int main(void)
 """
 
 
+def attributions() -> Dict[str, str]:
+    """What redistribution of each bundled model must say, in single spaces: from the trained models and from the notice
+    of the dictionary, not from the headers that the packages' own notices are made of."""
+    from labial.hearing.model import load as load_hearing
+    from labial.tables.model import load
+    from labial.words.notice import NOTICE
+
+    found = {"words_en": NOTICE}
+    for path in (SOURCE / "export" / "models").glob("*.npz"):
+        if path.stem not in found:
+            reader = load_hearing if path.stem.startswith("hear_") else load
+            found[path.stem] = reader(path).attribution
+    assert all(found.values())
+    return {name: single_spaced(text) for name, text in found.items()}
+
+
+def single_spaced(text: str) -> str:
+    """`text` with one space in place of each stretch of white space."""
+    return " ".join(text.split())
+
+
 def warnings(language: str) -> List[str]:
     """The compiler options of cmake/LabialTarget.cmake for "c" or "c++", as errors."""
     text = (SOURCE / "cmake" / "LabialTarget.cmake").read_text(encoding="utf-8")
@@ -67,6 +88,12 @@ def run(*command: object, cwd: Optional[Path] = None, env: Optional[Dict[str, st
     return done.stdout if status == 0 else done.stdout + done.stderr
 
 
+def copy_sources(folder: Path) -> None:
+    """Copies the source tree to a new folder, without what was built or fetched in it."""
+    shutil.copytree(SOURCE, folder, symlinks=True,
+                    ignore=shutil.ignore_patterns("build", ".git", "__pycache__", "*.egg-info", ".venv"))
+
+
 def pack(*arguments: object, root: Path = SOURCE, status: int = 0) -> str:
     """Runs packaging/pack.py of the tree `root`."""
     return run(sys.executable, root / "packaging" / "pack.py", *arguments, env={"PYTHONDONTWRITEBYTECODE": "1"},
@@ -86,5 +113,5 @@ def _frames(folder: Path) -> str:
     run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}", folder / "expected.c", *sources,
         "-o", folder / "expected")
     frames = run(folder / "expected")
-    assert len(frames.splitlines()) == 20  # 400 ms
+    assert len(frames.splitlines()) == 20 + 12  # 400 ms, and the way to rest
     return frames

@@ -16,6 +16,10 @@ folder that is the page's own:
 
 A block whose first line is a comment that begins with a file's name is saved under that name before anything else;
 ``sh`` blocks excepted. Fences without a label and indented code are errors of the page, so that nothing escapes.
+
+Each block runs in a session of its own, for LONGEST seconds at most; then the whole session ends, and a process that
+the block left behind is an error. Of TOOLS a page sees only those that its blocks name, or the programs that these
+start. So a page that needs another one fails on every machine, not only on one that lacks it.
 """
 
 from __future__ import annotations
@@ -25,13 +29,20 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import tempfile
+import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Sequence, Set
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Set
 
 from packages import CC, CXX, SOURCE
+
+#: Seconds that a block may take, and that its processes have to end after it.
+LONGEST = 60.0
+GRACE = 2.0
 
 #: Labels of blocks that are only read.
 READ = ("text", "csharp", "gdscript", "unreal")
@@ -72,6 +83,8 @@ _NAME = re.compile(r"^(?:#|//|/\*|;|<!--)\s*((?:[\w.-]+/)*[\w-]+\.[A-Za-z]{1,6})
 _HEADING = re.compile(r"^#+ +(.*?) *#*$", re.MULTILINE)
 _MAIN = re.compile(r"^int main\(", re.MULTILINE)
 _COMMAND = re.compile(r"^\s*(?:\$ |sudo |(?:labial(?:-\w+)?|cmake|ctest|pip|pio|west|idf\.py|arduino-cli|cc|gcc|git) )")
+_WORD = re.compile(r"[\w./+-]+")
+_PROGRAM = (".py", ".sh", ".js", ".mjs")
 
 
 #: The address in each link and picture of a page.
@@ -153,37 +166,141 @@ def command(line: str) -> str:
     return re.sub(r"\s+#.*$", "", line)
 
 
+class Given(NamedTuple):
+    """What all pages are run with: libraries to link programs with, and a PATH without TOOLS."""
+
+    libraries: Sequence[str]
+    path: str
+
+
+def search_path() -> str:
+    """The folders of this build's programs, and those of PATH."""
+    listed = (os.environ.get(name, "") for name in ("LABIAL_PROGRAMS", "LABIAL_RIG_EXAMPLES", "PATH"))
+    return os.pathsep.join(filter(None, listed))
+
+
+def path_without_tools(folder: Path) -> str:
+    """The search path, with links in `folder` in the place of each of its folders that holds one of TOOLS."""
+    places: List[str] = []
+    for place in search_path().split(os.pathsep):
+        names = os.listdir(place) if os.path.isdir(place) else []
+        if TOOLS.keys().isdisjoint(names):
+            places.append(place)
+            continue
+        links = folder / str(len(places))
+        links.mkdir(parents=True)
+        for name in names:
+            if name not in TOOLS:
+                (links / name).symlink_to(Path(place) / name)
+        places.append(str(links))
+    return os.pathsep.join(places)
+
+
+def find_tool(tool: str) -> Optional[str]:
+    """Where one of TOOLS is, on PATH or in this build."""
+    return shutil.which(tool, path=search_path())
+
+
+def tools_of_program(path: Path, seen: Set[Path]) -> Set[str]:
+    """The TOOLS that a program names in quotes, or those that it imports from its folder; `seen` are done already."""
+    seen.add(path)
+    text = path.read_text(encoding="utf-8")
+    found = set(re.findall(r"[\"'`]([\w+-]+)[\"'`]", text)) & TOOLS.keys()
+    if path.suffix == ".sh":
+        found |= set(_WORD.findall(text)) & TOOLS.keys()
+    for name in re.findall(r"^(?:from|import) (\w+)", text, re.MULTILINE):
+        imported = path.with_name(name + ".py")
+        if imported.is_file() and imported not in seen:
+            found |= tools_of_program(imported, seen)
+    return found
+
+
+def in_session(session: int) -> Dict[int, str]:
+    """The processes of a session, each with its command line; none where there is no /proc."""
+    found: Dict[int, str] = {}
+    for path in Path("/proc").glob("[0-9]*"):
+        try:
+            state, _, _, its_session = (path / "stat").read_text(errors="replace").rpartition(")")[2].split()[:4]
+            if int(its_session) == session and state not in "ZX":
+                found[int(path.name)] = (path / "cmdline").read_text(errors="replace").replace("\0", " ").strip()
+        except OSError:  # it has ended
+            pass
+    return found
+
+
+def end_session(session: int, grace: float) -> List[str]:
+    """Ends the processes of a session; the command lines of those that were there `grace` seconds later."""
+    until = time.monotonic() + grace
+    while (left := in_session(session)) and time.monotonic() < until:
+        time.sleep(0.02)
+    for kill, process in ((os.killpg, session), *((os.kill, process) for process in left)):
+        try:
+            kill(process, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    return list(left.values())
+
+
 class Runner:
     """Does what the blocks of one page say.
 
     Args:
         page: the page.
         folder: its folder, which exists.
-        objects: compiled library and bundled models, to link programs with.
+        given: what all pages are run with.
         not_run: commands, whole lines of ``sh`` blocks, that are passed over.
     """
 
-    def __init__(self, page: Path, folder: Path, objects: Sequence[Path], not_run: Sequence[str] = ()) -> None:
+    def __init__(self, page: Path, folder: Path, given: Given, not_run: Sequence[str] = ()) -> None:
         self._page = page
         self._folder = folder
-        self._objects = [str(path) for path in objects]
+        self._libraries = given.libraries
         self._not_run = set(not_run)
-        self._env = self._environment(folder.with_name(folder.name + "-bin"))
+        self._blocks = parse(page)
+        self._bin = folder.with_name(folder.name + "-bin")
+        self._env = self._environment(given.path)
 
-    def _environment(self, wrappers: Path) -> Mapping[str, str]:
-        wrappers.mkdir()
+    def _environment(self, path: str) -> Mapping[str, str]:
+        self._bin.mkdir()
         for name, arguments in (("labial", " -m labial"), ("python3", ""), ("python", "")):
-            (wrappers / name).write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
-            (wrappers / name).chmod(0o755)
-        listed = (os.environ.get(name, "") for name in ("LABIAL_PROGRAMS", "LABIAL_RIG_EXAMPLES", "PATH"))
-        folders = [str(wrappers), *listed]
-        path = os.pathsep.join(folder for folder in folders if folder)
-        return {**os.environ, "PATH": path, "LABIAL": str(SOURCE), "PYTHONPATH": str(SOURCE / "export"),
-                "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1", "HOME": str(self._folder)}
+            (self._bin / name).write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
+            (self._bin / name).chmod(0o755)
+        return {**os.environ, "PATH": f"{self._bin}{os.pathsep}{path}", "LABIAL": str(SOURCE),
+                "PYTHONPATH": str(SOURCE / "export"), "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1",
+                "HOME": str(self._folder)}
+
+    def tools(self) -> Dict[str, int]:
+        """The TOOLS that the page needs, each with the line of the block that first does."""
+        found: Dict[str, int] = {}
+        for block in self._blocks:
+            for tool in self._tools_of(block):
+                found.setdefault(tool, block.line)
+        return found
+
+    def _tools_of(self, block: Block) -> Set[str]:
+        if block.label == "js":
+            return {"node"}
+        if block.label == "python":
+            return set(re.findall(r"[\"']([\w+-]+)[\"']", block.text)) & TOOLS.keys()
+        if block.label != "sh":
+            return set()
+        words = _WORD.findall(re.sub(r'"?\$LABIAL"?/', "", self._script(block)))
+        found = set(words) & TOOLS.keys()
+        for program in {SOURCE / word for word in words if word.endswith(_PROGRAM) and (SOURCE / word).is_file()}:
+            found |= tools_of_program(program, set())
+        return found
+
+    def _require_tools(self) -> None:
+        for tool, line in self.tools().items():
+            place = find_tool(tool)
+            if not place:
+                raise MissingTool(f"{self._page.name}:{line} needs {tool}: {TOOLS[tool]}")
+            (self._bin / tool).symlink_to(place)
 
     def run(self) -> int:
         """Runs every block; the number of commands, programs and files that were checked."""
-        blocks = parse(self._page)
+        self._require_tools()
+        blocks = self._blocks
         for i, block in enumerate(blocks):
             if block.name:
                 path = self._folder / block.name
@@ -197,22 +314,30 @@ class Runner:
         return sum(block.label not in READ for block in blocks)
 
     def _call(self, command: Sequence[str], text: Optional[str] = None) -> None:
-        try:
-            done = subprocess.run(list(command), cwd=self._folder, env=dict(self._env), timeout=300, check=False,
-                                  input=text, stdin=None if text else subprocess.DEVNULL, capture_output=True,
-                                  encoding="utf-8", errors="replace")
-        except subprocess.TimeoutExpired:
-            raise PageError("not done after 300 s") from None
-        if done.returncode:
-            raise PageError(f"status {done.returncode}\n{text or ' '.join(command)}\n{done.stdout}{done.stderr}")
+        with tempfile.TemporaryFile() as output:  # not a pipe, which a process that stays behind would keep open
+            child = subprocess.Popen(list(command), cwd=self._folder, env=dict(self._env), stdout=output,
+                                     stderr=subprocess.STDOUT, stdin=subprocess.PIPE if text else subprocess.DEVNULL,
+                                     start_new_session=True)
+            problems: List[str] = []
+            try:
+                child.communicate(text.encode() if text else None, timeout=LONGEST)
+                if child.returncode:
+                    problems.append(f"status {child.returncode}")
+                problems += [f"left running: {process}" for process in end_session(child.pid, GRACE)]
+            except subprocess.TimeoutExpired:
+                problems.append(f"not done after {LONGEST:.0f} s")
+                end_session(child.pid, 0.0)
+                child.wait()
+            if problems:
+                output.seek(0)
+                problems += [text or " ".join(command), output.read().decode("utf-8", "replace")]
+                raise PageError("\n".join(problems))
+
+    def _script(self, block: Block) -> str:
+        return "\n".join(":" if self._is_passed_over(line) else line for line in block.text.splitlines()) + "\n"
 
     def _sh(self, block: Block, later: Sequence[Block]) -> None:
-        lines = [":" if self._is_passed_over(line) else line for line in block.text.splitlines()]
-        script = "\n".join(lines) + "\n"
-        for tool in re.findall(r"[\w./+-]+", script):
-            if tool in TOOLS and not shutil.which(tool, path=self._env["PATH"]):
-                raise MissingTool(f"{self._page.name}:{block.line} needs {tool}: {TOOLS[tool]}")
-        self._call(["sh", "-eu", "-c", script])
+        self._call(["sh", "-eu", "-c", self._script(block)])
 
     def _is_passed_over(self, line: str) -> bool:
         words = line.split()
@@ -230,7 +355,7 @@ class Runner:
             others = [other for other in sorted(self._folder.glob(f"*{suffix}"))
                       if other != path and not _MAIN.search(other.read_text(encoding="utf-8"))]
             tail = ["-x", "none"] if "-x" in compiler else []
-            self._call([*compiler, *options, name, *(str(other) for other in others), *tail, *self._objects, "-lm",
+            self._call([*compiler, *options, name, *(str(other) for other in others), *tail, *self._libraries, "-lm",
                         "-o", target])
         if not block.name:
             path.unlink()
@@ -258,8 +383,6 @@ class Runner:
             self._call([sys.executable, "-"], block.text)
 
     def _js(self, block: Block, later: Sequence[Block]) -> None:
-        if not shutil.which("node", path=self._env["PATH"]):
-            raise MissingTool(f"{self._page.name}:{block.line} needs node: {TOOLS['node']}")
         path = self._folder / f"block-{block.line}.mjs"  # which says that it is a module
         path.write_text(block.text, encoding="utf-8")
         self._call(["node", "--check", path.name])

@@ -157,7 +157,7 @@ def lips_of(heard: Dict[str, Any], model: str) -> np.ndarray:
         recorded, rate = recorded[: len(recorded) // 2 * 2].reshape(-1, 2).mean(axis=1), rate // 2
     samples = np.clip(np.round(recorded), -32768, 32767).astype(np.int16)
     trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
-    return opening(integer.hear(quantise(trained, f"hear_{model}"), samples, rate).faps)
+    return opening(integer.delivered(quantise(trained, f"hear_{model}"), samples, rate).faps)
 
 
 @pytest.mark.parametrize(("kind", "rate", "model"), [

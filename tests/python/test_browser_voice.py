@@ -124,7 +124,7 @@ def page(folder: Path, browser: Browser) -> Iterator[Page]:
 def expected() -> np.ndarray:
     """(T, 13) FAPs of all that is told, known from the beginning."""
     messages = elevenlabs.messages(TEXT)
-    return np.array(labial.render(labial.read_timings(messages, source="elevenlabs")))
+    return np.array(labial.render(labial.read_timings(messages, source="elevenlabs"), exact=True))
 
 
 def test_client_in_node(folder: Path) -> None:

@@ -60,7 +60,7 @@ def heard() -> List[int]:
     sound = np.where(i % 400 < 200, i * i % 8191, -(i * i % 8191)).astype(np.int16)
     models = ((name, load(SOURCE / "export" / "models" / f"{name}.npz")) for name in ("hear_small", "hear_large"))
     return [value for name, model in models
-            for value in integer.hear(quantise(model, name), sound).faps.ravel().tolist()]  # fmt: skip
+            for value in integer.delivered(quantise(model, name), sound).faps.ravel().tolist()]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from labial.__main__ import main
+from labial.reference.fade import EASE
 from test_see import data_of
 
 PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
@@ -88,9 +89,11 @@ def opening(frame: List[int]) -> int:
 
 
 def test_frames_last_as_long_as_the_timings(data: Dict[str, Any]) -> None:
-    """No frame is lost or added, not even where one model hands over to the other or both run side by side."""
+    """No frame is lost or added, not even where one model hands over to the other or both run side by side; then the
+    mouth comes to rest."""
     total = flite_milliseconds("sentence.flite") + lab_milliseconds() + flite_milliseconds("laughing.flite")
-    assert len(data["frames"]) == int(total * data["fps"] / 1000 + 0.5)
+    assert len(data["frames"]) == int(total * data["fps"] / 1000 + 0.5) + EASE
+    assert any(data["frames"][-EASE - 1]) and not any(data["frames"][-1])
 
 
 def test_frames_are_13_integers_that_move(data: Dict[str, Any]) -> None:
@@ -107,13 +110,13 @@ def test_frames_are_13_integers_that_move(data: Dict[str, Any]) -> None:
 
 
 def test_phonemes_tile_the_frames(data: Dict[str, Any]) -> None:
-    """Phonemes follow each other from the first frame to the last: speech, laughter, and both."""
+    """Phonemes follow each other from the first frame to the way to rest: speech, laughter, and both."""
     at = 0
     for phoneme in data["phonemes"]:
         assert phoneme["start_frame"] == at and phoneme["frames"] >= 1 and phoneme["label"]
         assert phoneme["kind"] in ("speech", "laughing", "laughter", "silence")
         at += phoneme["frames"]
-    assert at == len(data["frames"])
+    assert at == len(data["frames"]) - EASE
     kinds = [phoneme["kind"] for phoneme in data["phonemes"] if phoneme["kind"] != "silence"]
     order = [kind for kind, before in zip(kinds, [None, *kinds]) if kind != before]
     assert order == ["speech", "laughter", "speech", "laughing", "laughter", "laughing", "speech"]
@@ -171,7 +174,7 @@ def test_sound_is_that_of_the_timings(data: Dict[str, Any]) -> None:
     sound = base64.b64decode(content)
     assert kind == "data:audio/flac;base64" and sound == (DEMO / "speech.flac").read_bytes() and len(sound) <= 400_000
     samples, rate = soundfile.read(io.BytesIO(sound))
-    assert abs(len(samples) / rate - len(data["frames"]) / data["fps"]) < 1 / data["fps"]
+    assert abs(len(samples) / rate - (len(data["frames"]) - EASE) / data["fps"]) < 1 / data["fps"]
 
     def level(phoneme: Dict[str, Any]) -> float:
         first, count = (int(phoneme[key] * rate / data["fps"]) for key in ("start_frame", "frames"))

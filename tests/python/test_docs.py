@@ -2,20 +2,36 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import sys
+import time
 from pathlib import Path
 from typing import Dict, List
 
 import numpy as np
 import pytest
 
+import pages
 from labial.corpus.folder import read_frames
 from labial.files.faps import FAP_COLUMNS
 from models import write_motion
-from packages import CC, SOURCE, run
-from pages import EXTERNAL, LINK, Block, MissingTool, PageError, Runner, command, headings, parse
+from packages import SOURCE, copy_sources
+from pages import (
+    EXTERNAL,
+    LINK,
+    Block,
+    Given,
+    MissingTool,
+    PageError,
+    Runner,
+    command,
+    find_tool,
+    headings,
+    parse,
+    path_without_tools,
+)
 from test_record import seen
 from test_see import wav
 
@@ -27,10 +43,12 @@ SLOW = ("README.md", "arduino.md", "browser.md", "kiosk.md", "packages.md", "por
 #: Lines of pages that are not run, and why.
 NOT_RUN: Dict[str, Dict[str, str]] = {
     "README.md": {
+        "cmake --workflow --preset demo": ".ci/bare runs it",
         "cmake --workflow --preset test": "this test is a part of it",
         "cmake --workflow --preset bench": "needs every board's tools; a workflow of its own",
         "pip install '.[train,evaluate]'": "fetches; test_wheel.py installs the package without",
-        "labial evaluate CORPUS --splits 20 -o report/": "takes too long; test_evaluate.py runs it on less",
+        "labial evaluate export/corpora/grid_s1 --splits 20 -o report/":
+            "takes too long; test_evaluate.py runs it on less",
     },
     "arduino.md": {
         "sudo apt-get install -y python3-venv build-essential gcc-avr avr-libc avrdude": "installs",
@@ -44,10 +62,28 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         "labial export hear.npz --name hear_mine -o .": "likewise",
         'sh "$LABIAL/export/hearing/train.sh" talkers/ lj/ kathleen/ out/': "takes hours and needs speech",
     },
+    "install.md": {
+        "sudo apt-get install -y build-essential cmake python3-venv flite flite1-dev": "installs",
+        "python3 -m venv ~/labial-venv": "what it makes is there already, with the tests' own packages",
+        ". ~/labial-venv/bin/activate": "likewise",
+        "pip install '.[tools]'": "fetches; test_wheel.py installs the package without",
+    },
     "method.md": {
         'labial train "$LABIAL/export/corpora/grid_s1" --method paper -o paper.npz': "takes a minute",
         'python -m labial.evaluate.side_by_side "$LABIAL/examples/demo/sentence.flite" published=paper.npz '
         "Labial=speech_en -o sentence.svg": "needs the model above; test_side_by_side.py draws others",
+        'cmake -S "$LABIAL" -B letter -D LABIAL_METHOD=paper -D LABIAL_BUILD_TESTS=OFF':
+            "test_published_device.py has such a library",
+        "cmake --build letter --target labial-python": "likewise",
+        "LABIAL_RUNTIME=letter/flat/labial_runtime.so labial check paper.npz --predecessors 13 phones.lab":
+            "needs the model above; test_published_device.py checks others",
+        'git clone -q "$LABIAL" copy': "needs the model above and a board's tools",
+        "labial export paper.npz --name speech_en --predecessors 13 -o copy/lib/models": "likewise",
+        "cd copy": "likewise",
+        "cmake --preset m0 -D LABIAL_METHOD=paper -D LABIAL_BUILD_BENCH=ON -D LABIAL_BUILD_TESTS=OFF": "likewise",
+        "cmake --build --preset m0 --target run_bench_speech": "likewise",
+        'python -m labial.evaluate.departures "$LABIAL/export/corpora/grid_s1" --splits 2 -o departures.md':
+            "takes minutes; test_departures.py runs it on less",
     },
     "python.md": {
         "pip install .": "fetches what builds it; test_wheel.py installs the package without",
@@ -62,9 +98,12 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     },
     "reproduction.md": {
         "python3 -m venv build/reproduce && build/reproduce/bin/pip install -r export/requirements-reproduce.txt":
-            "fetches; what it installs is in the tests' environment",
-        "build/reproduce/bin/python export/reproduce.py": "takes minutes; test_reproduce.py runs its parts",
-        "labial synth paper.npz phones.lab -o frames.csv": "training takes a minute; test_paper_model.py has a model",
+            "takes minutes; test_reproduce.py runs it",
+        "build/reproduce/bin/python export/reproduce.py": "likewise",
+        "labial train export/corpora/grid_s1 --method paper -o paper.npz": "takes a minute",
+        "labial synth paper.npz examples/demo/sentence.flite -o frames.csv":
+            "needs the model above; test_paper_model.py has another",
+        "labial laughter-corpus LAUGHTER": "takes half a minute; test_laughter_corpus.py makes a smaller one",
         "python -m labial.evaluate.choices export/corpora/grid_s1 --splits 4 -o speech.md":
             "takes minutes; test_choices.py runs it on less",
         "python -m labial.evaluate.choices LAUGHTER --kind laughter --splits 2 -o laughter.md": "likewise",
@@ -81,13 +120,12 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
 
 
 @pytest.fixture(scope="session")
-def objects(tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
-    """The library and the bundled models, compiled."""
-    folder = tmp_path_factory.mktemp("objects")
-    sources = [*(SOURCE / "lib").glob("*.c"), *(SOURCE / "lib" / "models").glob("*.c"),
-               *(SOURCE / "lib" / "words").glob("*.c")]
-    run(CC, "-std=c99", "-O1", f"-I{SOURCE / 'include'}", "-c", *sources, cwd=folder)
-    return sorted(folder.glob("*.o"))
+def given(tmp_path_factory: pytest.TempPathFactory) -> Given:
+    """The library and all bundled models, and a PATH without tools."""
+    libraries = os.environ.get("LABIAL_LIBRARIES")
+    if not libraries:
+        pytest.skip("LABIAL_LIBRARIES names no build of the library and its models")
+    return Given(libraries.split(os.pathsep), path_without_tools(tmp_path_factory.mktemp("path")))
 
 
 def table_rows_amiss(text: str) -> List[int]:
@@ -127,22 +165,18 @@ def test_every_row_of_a_table_has_the_cells_of_its_header(page: Path) -> None:
 
 
 def prepare(page: Path, folder: Path) -> None:
-    """What a page expects to find: README.md the source tree and its reader's corpus, record.md recordings, arduino.md
-    a recording and the folder into which `labial` was installed."""
-    if page.name != "README.md":
-        folder.mkdir()
-        if page.name == "record.md":
-            write_recordings(folder)
-        if page.name == "arduino.md":
-            shutil.copyfile(SOURCE / "examples" / "talk" / "talk.wav", folder / "talk.wav")
-            (folder / "tools" / "bin").mkdir(parents=True)
-            (folder / "tools" / "bin" / "labial").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m labial "$@"\n')
-            (folder / "tools" / "bin" / "labial").chmod(0o755)
+    """Makes what a page's reader has before its first command, or makes with commands that are not run: for README.md
+    the source tree, for record.md recordings, for arduino.md the folder into which `labial` was installed."""
+    if page.name == "README.md":
+        copy_sources(folder)
         return
-    unwanted = shutil.ignore_patterns("build", ".git", "__pycache__", "*.egg-info", ".venv")
-    shutil.copytree(SOURCE, folder, ignore=unwanted)
-    write_corpus(folder / "CORPUS")
-    shutil.copyfile(folder / "CORPUS" / "a0.lab", folder / "phones.lab")
+    folder.mkdir()
+    if page.name == "record.md":
+        write_recordings(folder)
+    if page.name == "arduino.md":
+        (folder / "tools" / "bin").mkdir(parents=True)
+        (folder / "tools" / "bin" / "labial").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m labial "$@"\n')
+        (folder / "tools" / "bin" / "labial").chmod(0o755)
 
 
 def write_corpus(folder: Path) -> None:
@@ -180,12 +214,12 @@ def write_recordings(folder: Path) -> None:
 
 @pytest.mark.parametrize("page", [pytest.param(page, marks=[pytest.mark.slow] if page.name in SLOW else [])
                                   for page in PAGES], ids=lambda page: page.name)
-def test_page_works(page: Path, tmp_path: Path, objects: List[Path]) -> None:
+def test_page_works(page: Path, tmp_path: Path, given: Given) -> None:
     """A command with a wrong option, a program that does not compile, a step that was forgotten."""
     folder = tmp_path / "page"
     prepare(page, folder)
     try:
-        checked = Runner(page, folder, objects, list(NOT_RUN.get(page.name, {}))).run()
+        checked = Runner(page, folder, given, list(NOT_RUN.get(page.name, {}))).run()
     except MissingTool as missing:
         pytest.skip(str(missing))
     except PageError as error:
@@ -200,6 +234,24 @@ def test_passed_over_lines_are_there() -> None:
     for name, lines in NOT_RUN.items():
         text = paths[name].read_text(encoding="utf-8").splitlines()
         assert set(lines) <= {command(line) for line in text}, name
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.name != "install.md"], ids=lambda page: page.name)
+def test_pages_say_where_their_commands_come_from(page: Path) -> None:
+    """A page that uses `$LABIAL`, pip or one of Labial's programs, and does not lead to how they are installed."""
+    text = page.read_text(encoding="utf-8")
+    if re.search(r"\$LABIAL\b|pip install|^import labial$|^(python -m )?labial[ .-]", text, re.MULTILINE):
+        assert any(address.endswith("install.md") for address in LINK.findall(text))
+
+
+def test_every_extra_is_installed_somewhere() -> None:
+    """An extra that a reader cannot find."""
+    page = (SOURCE / "docs" / "install.md").read_text(encoding="utf-8")
+    extras = re.search(r"^\[project\.optional-dependencies\]\n(.*?)\n\n", (SOURCE / "pyproject.toml").read_text(
+        encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    assert extras
+    for name in re.findall(r"^(\w+) = ", extras[1], re.MULTILINE):
+        assert f"| `pip install '.[{name}]'` |" in page, name
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -218,11 +270,11 @@ def test_links_lead_somewhere(page: Path) -> None:
 # ---- The checks themselves -----------------------------------------------------------------------------------------
 
 
-def check(tmp_path: Path, text: str, objects: List[Path]) -> int:
+def check(tmp_path: Path, text: str, given: Given) -> int:
     page = tmp_path / "page.md"
+    (tmp_path / "page").mkdir(parents=True)
     page.write_text(text)
-    (tmp_path / "page").mkdir()
-    return Runner(page, tmp_path / "page", objects).run()
+    return Runner(page, tmp_path / "page", given).run()
 
 
 GOOD = """\
@@ -268,8 +320,8 @@ CONFIG_LABIAL=y
 """
 
 
-def test_good_page_passes(tmp_path: Path, objects: List[Path]) -> None:
-    assert check(tmp_path, GOOD, objects) == 7
+def test_good_page_passes(tmp_path: Path, given: Given) -> None:
+    assert check(tmp_path, GOOD, given) == 7
     assert (tmp_path / "page" / "a" / "face.toml").read_text().startswith("# a/face.toml")
     assert "pio" in EXTERNAL
 
@@ -296,9 +348,9 @@ def test_good_page_passes(tmp_path: Path, objects: List[Path]) -> None:
     ("```ini\n[a\n```\n", "page.md:2"),
     ("```toml\n# ../x.toml\n```\n", "outside"),
 ])  # fmt: skip
-def test_bad_page_fails(tmp_path: Path, objects: List[Path], text: str, complaint: str) -> None:
+def test_bad_page_fails(tmp_path: Path, given: Given, text: str, complaint: str) -> None:
     with pytest.raises((PageError, MissingTool)) as raised:
-        check(tmp_path, text, objects)
+        check(tmp_path, text, given)
     if raised.type is MissingTool:
         pytest.skip(str(raised.value))
     assert complaint in str(raised.value)
@@ -311,10 +363,76 @@ def test_headings_are_addressed_as_on_the_web(tmp_path: Path) -> None:
     assert LINK.findall("[a](b.md#c), ![d](e.svg) and [f]( g)") == ["b.md#c", "e.svg"]
 
 
-def test_missing_tool_is_told(tmp_path: Path, objects: List[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_each_hidden_tool_is_named_at_once(page: Path, tmp_path: Path, given: Given,
+                                           monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page that would fail or wait where a tool is missing. That it names all tools that it needs is what
+    test_page_works shows, since the page sees no others there."""
+    for tool in Runner(page, tmp_path / "page", given).tools():
+        folder = tmp_path / f"without {tool}"
+        monkeypatch.setattr(pages, "find_tool", lambda name, hidden=tool: None if name == hidden else "/bin/sh")
+        with pytest.raises(MissingTool, match=rf"{page.name}:\d+ needs {re.escape(tool)}: "):
+            Runner(page, folder, given).run()
+        assert not folder.exists()  # it ran nothing
+
+
+def test_missing_tool_is_told(tmp_path: Path, given: Given, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda *_, **__: None)
-    with pytest.raises(MissingTool, match="flite"):
-        check(tmp_path, "```sh\nflite --help | cat\n```\n", objects)
+    with pytest.raises(MissingTool, match="page.md:2 needs flite"):
+        check(tmp_path, "```sh\nflite --help | cat\n```\n", given)
+
+
+def test_a_page_sees_only_tools_that_it_names(tmp_path: Path, given: Given) -> None:
+    """Would catch a tool that is hidden nowhere: cmake is here on every machine."""
+    assert find_tool("cmake")
+    check(tmp_path / "named", "```sh\ncmake --version\n```\n", given)
+    with pytest.raises(PageError, match="status 127"):
+        check(tmp_path / "not_named", "```sh\nname=cma\n${name}ke --version\n```\n", given)
+
+
+def test_tools_of_programs_are_found(tmp_path: Path, given: Given, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In what a block starts, and in what that imports; not in what a page passes over."""
+    page = tmp_path / "page.md"
+    page.write_text('```sh\npython3 "$LABIAL/a b/c.py"\nsh $LABIAL/d.sh\npio run flite\n```\n```js\n```\n')
+    monkeypatch.setattr(pages, "SOURCE", tmp_path)
+    (tmp_path / "d.sh").write_text("valgrind ./x\n")
+    assert set(Runner(page, tmp_path / "1", given).tools()) == {"valgrind", "node"}
+    page.write_text('```sh\npython3 "$LABIAL/c.py" --port 0\n```\n```python\nrun(["simavr"])  # not espeak-ng\n```\n')
+    (tmp_path / "c.py").write_text('import e\n\nrun("flite", "-v", "clang++")\n')
+    (tmp_path / "e.py").write_text("from c import run\n\nrun('qemu-system-arm')\n")
+    assert Runner(page, tmp_path / "2", given).tools() == {"flite": 2, "qemu-system-arm": 2, "simavr": 5}
+
+
+def has_ended(process: str) -> bool:
+    """Whether a process has ended, within two seconds; who inherited it may not have noticed."""
+    for _ in range(40):
+        try:
+            if Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] in "ZX":
+                return True
+        except FileNotFoundError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+@pytest.mark.parametrize("first", ["true", "set -m"], ids=["same group", "own group"])
+def test_a_process_that_a_block_leaves_is_an_error(first: str, tmp_path: Path, given: Given) -> None:
+    """And is ended, even one that holds what the block prints to."""
+    with pytest.raises(PageError, match="page.md:2: left running: sleep 600"):
+        check(tmp_path, f"```sh\n{first}\nsleep 600 &\necho $! > left\n```\n", given)
+    assert has_ended((tmp_path / "page" / "left").read_text().strip())
+
+
+def test_a_process_may_end_after_its_block(tmp_path: Path, given: Given) -> None:
+    check(tmp_path, "```sh\nsleep 0.3 &\n```\n", given)
+
+
+def test_a_block_that_hangs_is_ended(tmp_path: Path, given: Given, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pages, "LONGEST", 1.0)
+    began = time.monotonic()
+    with pytest.raises(PageError, match="page.md:2: not done after 1 s"):
+        check(tmp_path, "```sh\nsleep 600 &\necho $! > left\nwait\n```\n", given)
+    assert time.monotonic() - began < 10 and has_ended((tmp_path / "page" / "left").read_text().strip())
 
 
 def test_names_of_blocks(tmp_path: Path) -> None:

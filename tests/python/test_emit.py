@@ -106,7 +106,7 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     """Tables of another version must not be linked by accident."""
     emit.write(quantise(random_model(2), "some_model"), tmp_path)
     header = tmp_path / "some_model.h"
-    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 5", "LABIAL_MODEL_FORMAT != 4"))
+    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 6", "LABIAL_MODEL_FORMAT != 5"))
     said = run(CC, "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only", tmp_path / "some_model.c", status=1)
     assert "run labial export again" in said
 
@@ -149,6 +149,7 @@ int main(void)
     static labial_t stream;
     unsigned phoneme, ms;
     if (labial_init(&stream, &some_model, workspace, sizeof workspace, on_frame, NULL) != LABIAL_OK) return 4;
+    labial_exact(&stream, 1);
     while (scanf("%u %u", &phoneme, &ms) == 2) {
         while (labial_push(&stream, phoneme, ms) == LABIAL_ERROR_FULL) labial_tick(&stream);
     }
@@ -177,17 +178,18 @@ int main(void)
     printf("%u %u %u %u %u ", (unsigned)SOME_MODEL_WORKSPACE_SIZE, (unsigned)labial_workspace_size(&some_model),
            (unsigned)(sizeof(labial_emission_t) + sizeof(labial_state_t)), (unsigned)sizeof(labial_phoneme_t),
            (unsigned)sizeof(labial_component_t));
-    printf("%u %u %u %u", (unsigned)offsetof(labial_model_t, pair_count) + 2, POINTERS(labial_model_t, phonemes),
+    printf("%u %u %u %u", (unsigned)offsetof(labial_model_t, sources) + LABIAL_CHANNELS,
+           POINTERS(labial_model_t, phonemes),
            (unsigned)offsetof(labial_channel_t, contact_weight) + 1, POINTERS(labial_channel_t, emissions));
     return 0;
 }
 """)
     said = run(build(tmp_path, "main.c", "some_model.c"))
     *sizes, head, pointers, channel_head, channel_pointers = map(int, said.split())
-    assert sizes == [workspace_bytes(model.search_stride)] * 2 + [12, 6, 6]
+    assert sizes == [workspace_bytes(model.search_stride, len(model.centre))] * 2 + [12, 6, 6]
 
     def on_32_bits(head: int, pointers: int) -> int:
         return (head + 3) // 4 * 4 + 4 * pointers
 
-    descriptors = CHANNELS * on_32_bits(channel_head, channel_pointers) + on_32_bits(head, pointers)
+    descriptors = len(model.centre) * on_32_bits(channel_head, channel_pointers) + on_32_bits(head, pointers)
     assert emit.table_bytes(model)["descriptors"] == descriptors

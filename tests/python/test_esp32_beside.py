@@ -35,12 +35,15 @@ HELD, EASED = 5, 6  #: calls, as in labial/beside.h
 
 
 @pytest.fixture()
-def board(tmp_path: Path) -> ctypes.CDLL:
-    """mouth.c as it is compiled for an ESP32, with the stubs, whose assertions end the process."""
+def board(request: pytest.FixtureRequest, tmp_path: Path) -> ctypes.CDLL:
+    """mouth.c as it is compiled for an ESP32, with the stubs, whose assertions end the process; for a servo without a
+    limit of speed, or with that of the parameter."""
     library = tmp_path / "mouth.so"
     (tmp_path / "none.c").write_text("void lips_render_step(void);\nvoid lips_render_step(void)\n{\n}\n")
-    subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES, str(EXAMPLE / "mouth.c"),
-                    str(SOURCE / "lib" / "beside.c"), str(STUBS / "host.c"), str(tmp_path / "none.c"), "-o",
+    subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES,
+                    *getattr(request, "param", ["-DMOUTH_CHANGE=500"]), str(EXAMPLE / "mouth.c"),
+                    str(SOURCE / "lib" / "beside.c"), str(SOURCE / "lib" / "clock.c"), str(STUBS / "host.c"),
+                    str(tmp_path / "none.c"), "-o",
                     str(library)], check=True, timeout=120)
     loaded = ctypes.CDLL(str(library))
     loaded.mouth_receive.restype = ctypes.c_int64
@@ -58,7 +61,7 @@ def shown(board: ctypes.CDLL, now: int) -> Tuple[int, int]:
 
 def send(board: ctypes.CDLL, sample: int) -> List[int]:
     """Packets of a word whose sound begins with a sample; the bytes of its frames."""
-    lips, rows = labial.Beside(labial.Rig.of(read(str(JAW), "jaw"))), []
+    lips, rows = labial.Beside(labial.Rig.of(read(str(JAW), "jaw")), session=1), []
     for packet in lips.packets(labial.render(HELLO), sample=sample, rate=RATE):
         assert board.mouth_packet(packet.data, len(packet.data)) == 0
         rows += [row[0] for row in parse(packet.data).frames]
@@ -106,7 +109,27 @@ def test_other_sound_and_cancel(board: ctypes.CDLL) -> None:
     assert [shown(board, 2000 * MS + k * FRAME) for k in range(1, 20)] == [(1, row) for row in again[1:20]]
     assert board.mouth_begin(0) < 0
     board.mouth_playing(0, BLOCK, 0)
-    assert shown(board, 0)[0] < 0
+    assert [shown(board, k * FRAME) for k in range(HELD + EASED)][-1] == (0, 0), "at rest"
+
+
+@pytest.mark.parametrize("board", [[]], indirect=True)
+def test_the_servo_has_time(board: ctypes.CDLL) -> None:
+    """Catches a servo that jumps after lost packets, when sound was dropped, or when a connection begins."""
+    assert board.mouth_begin(RATE) == 0
+    lips, found, now = labial.Beside(labial.Rig.of(read(str(JAW), "jaw"))), [], 0
+    packets = lips.packets(labial.render(HELLO * 2), sample=0, rate=RATE)
+    for number, packet in enumerate(packets):
+        if number % 4 != 3:
+            assert board.mouth_packet(packet.data, len(packet.data)) == 0
+    for step in range(150):
+        now = step * FRAME
+        if step in (0, 60, 90):
+            board.mouth_playing(board.mouth_receive(100 * FRAME), 30 * RATE // 50, now)
+        if step == 100:
+            assert board.mouth_begin(2 * RATE) == 0
+        found.append(shown(board, now)[1])
+    steps = [abs(after - before) for before, after in zip([0, *found], found)]
+    assert max(found) > 150 and max(steps) == 51 and found[-1] == 0, "100 of 500 us"
 
 
 def test_the_servo_follows(board: ctypes.CDLL) -> None:

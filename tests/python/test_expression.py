@@ -31,21 +31,21 @@ def sequence(phonemes: list, frames: np.ndarray, length: int) -> Recording:
 
 
 def test_floors_are_the_mean_pose_of_closures() -> None:
-    """B closes firmly (to 40) half of the time, hardly (to -60) otherwise; vowels hang at -300, nothing below. The
-    loosest tenth does not count; those of a recording that counts three times count three times."""
+    """B closes firmly (to 40) three times in ten, hardly (to -60) otherwise; vowels hang at -300, nothing below. The
+    firmer half counts; those of a recording that counts three times count three times."""
     b, vowel = SPEECH.phonemes.index("B"), SPEECH.phonemes.index("AA")
     lower = FAP_NUMBERS.index(52)
     frames = np.full((200, CHANNELS), -300.0)
     for i in range(10):  # vowels and closures of ten frames each in turn; contact in the middle of the closure
-        frames[20 * i + 15, lower] = 40.0 if i % 2 else -60.0
+        frames[20 * i + 15, lower] = 40.0 if i % 4 == 1 else -60.0
     found, contact = floors([sequence([vowel, b] * 10, frames, 10)], SPEECH, 50)
     assert contact[b, lower] and not contact[b, FAP_NUMBERS.index(3)] and not contact[vowel].any()
-    assert np.isclose(found[b, lower], (5 * 40.0 + 4 * -60.0) / 9)
+    assert np.isclose(found[b, lower], (3 * 40.0 + 2 * -60.0) / 5)
     assert np.array_equal(found[b], found[SPEECH.phonemes.index("P")])
-    other = np.where(frames > -300, 100.0, frames)
+    other = np.where(frames > 0, 20.0, frames)  # three of ten
     heavy = dataclasses.replace(sequence([vowel, b] * 10, other, 10), weight=np.full(frames.shape, 3.0))
     both, _ = floors([sequence([vowel, b] * 10, frames, 10), heavy], SPEECH, 50)
-    assert np.isclose(both[b, lower], (5 * 40.0 + 3 * -60.0 + 30 * 100.0) / 38)
+    assert np.isclose(both[b, lower], (3 * 40.0 + 9 * 20.0 + 4 * -60.0) / 16)
     ignored = dataclasses.replace(heavy, weight=np.zeros(frames.shape))
     assert np.array_equal(floors([sequence([vowel, b] * 10, frames, 10), ignored], SPEECH, 50)[0], found)
     assert (found[vowel] == -300.0).all() and found[b, FAP_NUMBERS.index(3)] == -300.0

@@ -16,9 +16,10 @@ import pytest
 
 from labial.__main__ import main
 from labial.errors import ModelError
+from labial.files.faps import SIDES
 from labial.hearing import convert, emit, integer, network
 from labial.hearing import features as front
-from labial.hearing.model import HearingModel, is_hearing, load, save
+from labial.hearing.model import HearingModel, is_hearing, load, save, with_even_sides
 from labial.hearing.plans import CLASSES, CLOSED, PLANS, Memory, class_of
 from labial.hearing.quantise import quantise, rounded
 from labial.tables.model import load as load_speech
@@ -256,17 +257,39 @@ def test_any_model_gives_the_exporters_bits_in_c(tmp_path: Path, name: str) -> N
     tables = quantise(random_model(units, memories, classes, seed=3), "some_model")
     emit.write(tables, tmp_path)
     (tmp_path / "program.c").write_text(PROGRAM)
-    library = sorted(map(str, (SOURCE / "lib").glob("hear*.c"))) + [str(SOURCE / "lib/fixed.c")]
+    library = sorted(map(str, (SOURCE / "lib").glob("hear*.c"))) + [
+        str(SOURCE / "lib" / name) for name in ("fade.c", "fixed.c")]
     subprocess.run([CC, *STRICT, "-fsanitize=undefined", "-fno-sanitize-recover", f"-DRATE={rate}",
                     f"-I{SOURCE / 'include'}", f"-I{tmp_path}", str(tmp_path / "program.c"),
                     str(tmp_path / "some_model.c"), *library, "-o", str(tmp_path / "program")], check=True)
     sound = voice(1.3, seed=2, rate=rate)
     sound[len(sound) // 2 :] = np.clip(20 * sound[len(sound) // 2 :].astype(int), -32768, 32767)
     done = subprocess.run([tmp_path / "program"], input=sound.astype("<i2").tobytes(), capture_output=True, check=True)
-    wanted = integer.hear(tables, sound, rate)
+    wanted = integer.delivered(tables, sound, rate)
     assert np.array_equal(np.array(done.stdout.split(), dtype=int).reshape(-1, 13), wanted.faps)
     told = [[*map(int, line.split()[:3]), line.split()[3]] for line in done.stderr.decode().splitlines()]
     assert told == [[*row, tables.classes[row[0]]] for row in hears.stretches(wanted.scores)]
+
+
+def test_what_is_delivered_rests_and_loses_nothing_of_the_sound() -> None:
+    """From the sound's first frame to its last one it is what the network tells, however long the silence before and
+    after; catches a face that leaves rest too late, or comes to rest in a gap of speech. Then it comes to rest."""
+    units, memories, classes, _ = MODELS["small"]
+    tables = quantise(random_model(units, memories, classes, seed=3), "some_model")
+    sound = voice(1.2, seed=4)
+    sound[9600:11200] = 7  # a gap of 100 ms
+    for before, after in ((8000, 8000), (2560, 1600), (0, 0)):
+        whole = np.concatenate([np.zeros(before, np.int16), sound, np.zeros(after, np.int16)])
+        heard, told = integer.hear(tables, whole).faps, integer.delivered(tables, whole).faps
+        first, last = before // 320, (before + len(sound)) // 320
+        begin = first if before > 2600 else max(first, 8)
+        assert np.array_equal(told[begin:last], heard[begin:last])
+        assert np.abs(heard[:first]).max(initial=1) > 0 and not told[: max(first - 5, 0)].any()
+        assert not told[last + 2 + 5 : len(heard)].any() and np.abs(told[-1]).max() <= 8
+        assert np.array_equal(integer.delivered(tables, whole, exact=True).faps, told[: len(heard)])
+    share = np.array([25, 92, 189, 304, 425, 540, 637, 704]) / 729  # of the first eight frames, worked by hand
+    assert np.abs(told[:8] - heard[:8] * share[:, None] * np.minimum(1, [[0.104], [0.352], [0.648], [0.896], [1], [1],
+                                                                         [1], [1]])).max() <= 1.5
 
 
 def test_tables_and_fixtures_are_written(tmp_path: Path) -> None:
@@ -396,3 +419,16 @@ def test_export_writes_a_model_of_hearing(tmp_path: Path, capsys: pytest.Capture
     assert "flash" in capsys.readouterr().out
     assert main(["export", str(tmp_path / "hear.npz"), "--name", "ears", "--blob", "-o", str(tmp_path / "d")]) == 1
     assert "not for a model of hearing" in capsys.readouterr().err
+
+
+def test_both_sides_are_their_mean() -> None:
+    """Would catch a mean of rows that forgets their scales, or sides that differ after it."""
+    model = random_model(8, (Memory(2, 1, 1),), seed=5)
+    even = with_even_sides(replace(model, fap_scale=np.linspace(40, 90, 13, dtype=np.float32)))
+    heard = np.random.default_rng(2).normal(0, 1, (50, 48)).astype(np.float32)
+    before = network.run(replace(model, fap_scale=np.linspace(40, 90, 13, dtype=np.float32)), heard).faps
+    after = network.run(even, heard).faps
+    for left, right in SIDES:
+        np.testing.assert_allclose(after[:, left], (before[:, left] + before[:, right]) / 2, atol=1e-2)
+        for name in ("fap_weight", "fap_bias", "fap_mean", "fap_scale", "closed"):
+            np.testing.assert_array_equal(getattr(even, name)[left], getattr(even, name)[right])

@@ -16,6 +16,7 @@ from labial.__main__ import main
 from labial.files.faps import CHANNELS
 from labial.files.frames import at_rate, count_at, sampled, spans, spans_told
 from labial.reference import stream
+from labial.reference.fade import delivered
 from labial.reference.synthesis import synthesise
 from labial.reference.tables import ExportedTables, FloatTables, Tables
 from labial.rig.animation import FORMATS
@@ -92,7 +93,7 @@ def test_files_do_not_show_the_parts(tmp_path: Path) -> None:
     phonemes = drawn_streams(model, 1, 800, 3)[0]
     assert sum(length for _, length in phonemes) * 50 > 1000 * stream.PART  # two parts
     (tmp_path / "a.lab").write_text(lab((model.phonemes[phoneme], length) for phoneme, length in phonemes))
-    frames = synthesise(model, phonemes)
+    frames = delivered(synthesise(model, phonemes))
     for name in ("csv", "fap", "livelink", "vrm"):
         given = [str(tmp_path / "a.lab"), "-o", str(tmp_path / name), "--to", name]
         assert main(["synth", "speech_en", *given]) == 0

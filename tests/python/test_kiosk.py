@@ -310,7 +310,7 @@ def test_the_element_by_itself(browser: Browser, address: str) -> None:
       return [wanted, found];
     })()""")
     wanted, found = map(np.array, streamed)
-    assert len(wanted) == 65 and np.array_equal(wanted, found)
+    assert len(wanted) == 65 + 12 and np.array_equal(wanted, found)
     jumped = page.evaluate("""(() => {
       const track = labial.render(lab), found = [];
       face.track = track;

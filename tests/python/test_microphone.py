@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import labial
+from labial.program import run
 from runtime import needs_runtime
 from test_hearing import voice
 from test_runtime_hearing import write_wav
@@ -21,6 +22,11 @@ from test_runtime_hearing import write_wav
 pytestmark = needs_runtime
 
 SOUND = voice(0.6)
+
+
+def command(arguments: List[str]) -> int:
+    """The program's exit status."""
+    return run("follow", lambda: follow.main(arguments))
 
 
 def wanted() -> List[List[int]]:
@@ -41,11 +47,11 @@ def test_a_file_in_place_of_the_microphone(tmp_path: Path, capsys: pytest.Captur
     """Catches another rate, a channel of two, and the bar of another motion."""
     stereo = np.stack([SOUND, SOUND], axis=1)
     path = write_wav(tmp_path / "a.wav", stereo)
-    assert follow.main(["--sound", str(path), "--to", "jsonl"]) == 0
+    assert command(["--sound", str(path), "--to", "jsonl"]) == 0
     assert shown(capsys.readouterr().out) == wanted()
-    assert follow.main(["--sound", str(path)]) == 0
+    assert command(["--sound", str(path)]) == 0
     bars = capsys.readouterr().out.rstrip("\n").split("\r")[1:]
-    assert len(bars) == 30 and len({len(item) for item in bars}) == 1
+    assert len(bars) == len(wanted()) == 30 + 12 and len({len(item) for item in bars}) == 1
     for item, faps in zip(bars, wanted()):
         assert item.count("#") == min(max(round(-(faps[3] + faps[4]) / 15), 0), 40)
 
@@ -90,14 +96,14 @@ def test_sounddevice(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixt
     module.RawInputStream = RawInputStream  # type: ignore[attr-defined]
     module.PortAudioError = type("PortAudioError", (Exception,), {})  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "sounddevice", module)
-    assert follow.main(["--to", "jsonl"]) == 0
+    assert command(["--to", "jsonl"]) == 0
     told = capsys.readouterr()
     found = shown(told.out)
     assert 20 < len(found) < 30 and found == wanted()[: len(found)]
-    assert told.err == "this computer is too slow: sound was lost\n"
+    assert told.err == "follow: this computer is too slow: sound was lost\n"
     assert opened == [160, "closed"]
-    assert follow.main([]) == 1
-    assert "follow.py: the microphone: Error querying device -1\n" in capsys.readouterr().err
+    assert command([]) == 1
+    assert "follow: the microphone: Error querying device -1\n" in capsys.readouterr().err
 
 
 @pytest.mark.skipif(os.name != "posix", reason="a script in place of arecord")
@@ -110,19 +116,22 @@ def test_arecord(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest
     program.chmod(0o755)
     monkeypatch.setitem(sys.modules, "sounddevice", None)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-    assert follow.main(["--to", "jsonl"]) == 0
+    assert command(["--to", "jsonl"]) == 0
     assert shown(capsys.readouterr().out) == wanted()
     program.write_text("#!/bin/sh\nexit 1\n")
-    assert follow.main([]) == 1
-    assert "follow.py: arecord cannot record" in capsys.readouterr().err
+    assert command([]) == 1
+    assert "follow: arecord cannot record" in capsys.readouterr().err
     monkeypatch.setenv("PATH", str(tmp_path / "none"))
-    assert follow.main([]) == 1
-    assert "neither sounddevice" in capsys.readouterr().err
+    assert command([]) == 1
+    told = capsys.readouterr().err
+    assert told == ("follow: the microphone needs sounddevice or arecord: pip install sounddevice, "
+                    "or apt-get install alsa-utils\n")
 
 
 @pytest.mark.parametrize(("sound", "message"), [
     (None, "No such file"),
-    (b"text", "follow.py: "),
+    (b"a text and no sound", "a.wav: file does not start with RIFF id"),
+    (b"", "a.wav: the file is cut off"),
     (8, "8 bits per sample, not 16"),
     (11025, "11025 samples per second"),
 ])
@@ -133,5 +142,6 @@ def test_wrong_files_are_named(sound: Any, message: str, tmp_path: Path, capsys:
         path.write_bytes(sound)
     elif sound:
         write_wav(path, np.zeros(99, np.int16), 16000 if sound == 8 else sound, 1 if sound == 8 else 2)
-    assert follow.main(["--sound", str(path)]) == 1
-    assert message in capsys.readouterr().err
+    assert command(["--sound", str(path)]) == 1
+    told = capsys.readouterr().err
+    assert message in told and told.startswith("follow: ") and told.count("\n") == 1

@@ -73,10 +73,10 @@ def test_says_that_a_model_is_of_another_format(tmp_path: Path) -> None:
     """Whoever has a file of another version is told so, and not that an array is missing in it."""
     path = tmp_path / "model.npz"
     save(random_model(1), path)
-    members = {**members_of(path), "model.json": b'{"format": 5}'}
+    members = {**members_of(path), "model.json": b'{"format": 6}'}
     del members["emission_mean.npy"]
     path.write_bytes(archive(members))
-    with pytest.raises(ModelError, match="format 5, but this version of labial reads formats 3 and 4"):
+    with pytest.raises(ModelError, match="format 6, but this version of labial reads formats 3 to 5"):
         load(path)
 
 
@@ -88,7 +88,7 @@ def test_a_model_of_format_3_is_read(tmp_path: Path) -> None:
     names = {"viseme_class": "phoneme_class", "emission_mean": "decode_mean", "emission_variance": "decode_variance"}
     members = {name[: -len(".npy")]: content for name, content in members_of(path).items() if name.endswith(".npy")}
     former.write_bytes(archive({
-        "model.json": members_of(path)["model.json"].replace(b'"format": 4', b'"format": 3'),
+        "model.json": members_of(path)["model.json"].replace(b'"format": 5', b'"format": 3'),
         **{f"{names.get(name, name)}.npy": content for name, content in members.items()}}))
     save(load(former), former)
     assert former.read_bytes() == path.read_bytes()

@@ -167,7 +167,7 @@ def test_the_mouth_rests() -> None:
     for part in (slice(0, 5), slice(50, 88), slice(130, None)):
         assert max(column[part].max() for column in paused["vrm"].values()) <= 0.06
         assert max(column[part].max() for key, column in paused["oculus"].items() if key not in ("sil", "PP")) <= 0.06
-        assert paused["oculus"]["sil"][part].min() >= 0.86 and paused["arkit"]["jawOpen"][part].max() <= 0.05
+        assert paused["oculus"]["sil"][part].min() >= 0.85 and paused["arkit"]["jawOpen"][part].max() <= 0.05
         for key, column in paused["arkit"].items():  # the corners of a recorded mouth wander, its lips do not part
             assert column[part].max() <= (0.3 if key.startswith(("mouthSmile", "mouthStretch")) else 0.06), key
 

@@ -63,7 +63,7 @@ def test_frames_are_the_exporters(tmp_path: Path) -> None:
     assert len(found) == len(sounds)
     for (model, rate, sound), (frames, segments, latency) in zip(sounds, found):
         trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
-        heard = integer.hear(quantise(trained, f"hear_{model}"), sound, rate)
+        heard = integer.delivered(quantise(trained, f"hear_{model}"), sound, rate)
         assert frames == heard.faps.tolist(), (model, rate)
         rows = [
             (trained.classes[shown], first / 50, (first + length) / 50)

@@ -45,7 +45,7 @@ def test_limits_are_the_librarys() -> None:
     models that the library refuses, or another motion."""
     headers = ("model.h", "config.h", "labial.h", "names.h", "rig.h")
     sources = [SOURCE / "include" / "labial" / name for name in headers]
-    sources += [SOURCE / "lib" / name for name in ("shape.c", "viterbi.c")]
+    sources += [SOURCE / "lib" / name for name in ("shape.c", "viterbi.h")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
     pattern = r"^(?:#define )? *(?:LABIAL_)?(\w+)(?: =)? \(?(-?(?:0x[0-9a-f]+|\d+))u?\)?[,\s]"
     defined = {name: int(value, 0) for name, value in re.findall(pattern, text, re.M)}

@@ -40,19 +40,21 @@ def script() -> List[Tuple[str, int, int]]:
 
 CLOSURES = [(begin, end) for label, begin, end in script() if label in ("P", "B", "M")]
 SPEECH_END = max(end for label, _, end in script() if label.isupper())
-FRAMES = script()[-1][2]
+EASE = 12  # of the way to rest, after the last phoneme
+FRAMES = script()[-1][2] + EASE
 
 
 def test_script_is_found() -> None:
     """The tests below would say nothing about a script that they cannot read."""
-    assert len(script()) == 34 + 23 and len(CLOSURES) == 6 and SPEECH_END == 187 and FRAMES == 314
+    assert len(script()) == 34 + 23 and len(CLOSURES) == 6 and SPEECH_END == 187 and FRAMES == 314 + EASE
 
 
 def test_jaw_opens_wide_and_closes() -> None:
     """The default gain must use the servo's range, and p, b, m must close a mouth that has nothing but a jaw."""
     rows = np.array([[int(x) for x in line.split(",")] for line in output("jaw")])
-    assert rows[:, 0].tolist() == list(range(FRAMES))
+    assert rows[:, 0].tolist() == list(range(len(rows))) and FRAMES < len(rows) < FRAMES + 40
     pulse = rows[:, 1]
+    assert pulse[-1] == 1400
     assert pulse.min() >= 1400 and pulse.max() <= 1900 and pulse.max() >= 1800
     for begin, end in CLOSURES:
         assert pulse[begin:end].min() < 1400 + 0.2 * 500
@@ -60,14 +62,20 @@ def test_jaw_opens_wide_and_closes() -> None:
 
 
 def test_servos_are_written_to_the_chip() -> None:
-    """Set-up in the order the chip needs; then 20 bytes per frame, within each servo's limits and its slew."""
+    """Set-up in the order the chip needs; servo after servo, half a second each; then 20 bytes per frame, within each
+    servo's limits and its slew, and rest at the end."""
     rig = read(SOURCE / "examples" / "faces" / "servos.toml", "servos")
     outputs = convert(rig)
     lines = [[int(x, 16) for x in line.split()] for line in output("servos")]
     assert lines[:3] == [[0x00, 0x10], [0xFE, rig.unit.prescale], [0x00, 0x20]]
-    frames = np.array(lines[3:])
-    assert frames.shape == (FRAMES, 1 + 4 * len(outputs)) and (frames[:, 0] == 0x06).all()
-    pairs = frames[:, 1:].reshape(FRAMES, len(outputs), 4)
+    start, lines = lines[3:3 + 25 * len(outputs)], lines[3 + 25 * len(outputs):]
+    assert [len(line) for line in start] == [1 + 4 * min(1 + tick // 25, 5) for tick in range(1, 126)]
+    begin = next(number for number, line in enumerate(lines) if line != start[-1])
+    frames = np.array(lines)
+    assert frames.shape[1] == 1 + 4 * len(outputs) and (frames[:, 0] == 0x06).all()
+    assert all(line == start[-1][:len(line)] for line in start) and lines[-1] == start[-1]
+    assert FRAMES <= len(frames) < FRAMES + 60
+    pairs = frames[:, 1:].reshape(len(frames), len(outputs), 4)
     assert (pairs[:, :, :2] == 0).all()
     ticks = pairs[:, :, 2] + 256 * pairs[:, :, 3]
     for column, servo in zip(ticks.T, outputs):
@@ -76,7 +84,7 @@ def test_servos_are_written_to_the_chip() -> None:
         if servo.slew:
             assert np.abs(np.diff(column)).max() <= servo.slew
     # The corners are mirror images: in the laugh one goes up as the other goes down.
-    left, right = ticks[SPEECH_END + 10:, 3], ticks[SPEECH_END + 10:, 4]
+    left, right = ticks[begin + SPEECH_END + 10:begin + FRAMES - 20, 3:].T
     assert left.min() > outputs[3].neutral and right.max() < outputs[4].neutral
 
 
@@ -109,7 +117,8 @@ def test_pictures_are_chosen() -> None:
     assert animation.attrib["dur"] == f"{20 * FRAMES}ms"
     for begin, end in CLOSURES:
         assert "p b m" in {names[number] for number in shown[begin:end]}
-    assert {names[number] for number in shown[SPEECH_END + 15:]} <= {"smile", "laugh"}
+    assert {names[number] for number in shown[SPEECH_END + 15:-EASE]} <= {"smile", "laugh"}
+    assert names[shown[-1]] == "rest"
     assert len(set(shown)) >= 7
     runs = np.diff(np.flatnonzero(np.diff(np.concatenate([[-1], shown, [-1]]))))
     assert runs[:-1].min() >= 2 and len(runs) < FRAMES / 4

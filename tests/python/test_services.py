@@ -179,6 +179,6 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     assert main(["timings", str(SAMPLES / "plain.json")]) == 0
     assert capsys.readouterr().out.splitlines()[1] == "0.1200 0.2000 M"
     assert main(["synth", str(model), str(SAMPLES / "azure.json"), "-o", str(tmp_path / "a.csv")]) == 0
-    assert len((tmp_path / "a.csv").read_text().splitlines()) == 1 + 47
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == 1 + 47 + 12
     assert main(["timings", str(SAMPLES / "azure.json"), "--from", "polly"]) == 1
     assert "no field 'type'" in capsys.readouterr().err

@@ -155,7 +155,7 @@ def test_what_every_corpus_leaves_out_is_learnt_with_a_warning(tmp_path) -> None
     addresses = SOURCE / "export" / "corpora" / "addresses"
     with pytest.warns(UserWarning, match="every corpus leaves out fap16, fap17, silences: learnt all the same"):
         (corpus,) = read_corpora([addresses])
-    assert all(not item.source.left_out and item.source.silences and item.source.weight == 1.25 for item in corpus)
+    assert all(not item.source.left_out and item.source.silences and item.source.weight == 2 for item in corpus)
     folder = tmp_path / "all"
     shutil.copytree(addresses, folder)
     (folder / "corpus.toml").unlink()
@@ -205,12 +205,13 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
                  "--jobs", "1"]  # fmt: skip
     assert main([*arguments, "--leave-out-talkers"]) == 0
     text = (report / "report.md").read_text()
-    assert "| method | x | y | mean | open_jaw |" in text and "x (2 episodes), y (2 episodes)" in text
+    assert "| method | x | y | mean | standard error | open_jaw |" in text and "x (2 episodes), y (2 episodes)" in text
     assert main([*arguments, "--splits", "1"]) == 0
     assert "4 episodes of further corpora" in (report / "report.md").read_text()
     assert main([*arguments[:2], *arguments[3:], "--leave-out-talkers"]) == 1
     assert "only one" in capsys.readouterr().err
     assert main([*arguments, "--leave-out-talkers", "--hold-out-words", "w"]) == 1
+    assert main([*arguments, "--first-corpus-alone"]) == 1
     (a, b) = read_corpora([first, second])
     asked = protocol.Options(methods="labial", leave_out_talkers=True)
     outcomes = protocol.evaluate(a, asked, further=b, progress=False)
@@ -220,6 +221,11 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     others = protocol.evaluate(a, replace(asked, talker_variance=1.0), further=b, progress=False)
     assert all(item.measures["labial"]["lips/mean"] > 0.9 for item in others)
     assert [item.measures["labial"] for item in others] != [item.measures["labial"] for item in outcomes]
+    # Trained on the first corpus alone: as if there were no other talker than the one who is judged.
+    alone = protocol.evaluate(a, replace(asked, first_corpus_alone=True), further=b, progress=False)
+    (only,) = protocol.evaluate(a, asked, further=[item for item in b if item.source.talker == "x"], progress=False)
+    found = [one.measures["labial"]["lips/mean"] for one in (alone[0], only, outcomes[0])]
+    assert found[0] == found[1] != found[2]
     assert np.allclose(lips(b[0].frames)[:, 4], -(b[0].frames[:, 3] + b[0].frames[:, 4]))
 
 

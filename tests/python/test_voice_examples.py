@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 import os
 import re
+import socket
 import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any, List
+from typing import Any, List, Tuple
 
 import follow_websocket
 import player
@@ -18,6 +19,7 @@ import stand_in
 import websockets
 
 import labial
+from labial.errors import LabialError
 from packages import SOURCE
 from runtime import needs_runtime
 
@@ -41,7 +43,8 @@ def test_lips_follow_a_websocket(monkeypatch: pytest.MonkeyPatch, capsys: pytest
         return time.monotonic() - began
 
     took = asyncio.run(run())
-    rows = [re.fullmatch(r" *(\d+) jaw (\S+) pucker (\S+)", line) for line in capsys.readouterr().out.splitlines()]
+    shown_lines = capsys.readouterr().out.splitlines()[1:]  # behind the port
+    rows = [re.fullmatch(r" *(\d+) jaw (\S+) pucker (\S+)", line) for line in shown_lines]
     shown = [(int(row[1]), float(row[2]), float(row[3])) for row in rows if row]
     assert len(shown) == len(rows) > 60 and took > len(rows) / 50 - 0.1
     with labial.Voice() as voice:
@@ -53,12 +56,108 @@ def test_lips_follow_a_websocket(monkeypatch: pytest.MonkeyPatch, capsys: pytest
     assert shown == expected and max(jaw for _, jaw, _ in shown) > 0.1
 
 
-def test_a_service_that_fails_ends_the_loop(tmp_path: Path) -> None:
-    """Without a server the client says so; it does not wait for ever."""
-    done = subprocess.run([sys.executable, str(EXAMPLES / "follow_websocket.py"), "hum", "ws://127.0.0.1:9"],
-                          capture_output=True, text=True, cwd=tmp_path, timeout=30,
-                          env={**os.environ, "PYTHONPATH": str(SOURCE / "export")})
-    assert done.returncode != 0 and "refused" in done.stderr.lower()
+def program(name: str, *arguments: str, **environment: str) -> subprocess.Popen:
+    """Starts an example."""
+    return subprocess.Popen([sys.executable, str(EXAMPLES / f"{name}.py"), *arguments], stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True,
+                            env={**os.environ, "PYTHONPATH": str(SOURCE / "export"), **environment})
+
+
+def ended(process: subprocess.Popen) -> Tuple[int, str, str]:
+    """Status, output and errors."""
+    with process:
+        out, err = process.communicate(timeout=40)
+    return process.returncode, out, err
+
+
+def test_a_service_that_is_not_there() -> None:
+    """The client says so in a line; it does not wait for ever."""
+    status, out, err = ended(program("follow_websocket", "hum", "ws://127.0.0.1:9"))
+    assert (status, out, err.count("\n")) == (1, "", 1)
+    assert err.startswith("follow_websocket: ws://127.0.0.1:9: ") and "refused" in err.lower()
+
+
+def test_a_service_that_dies() -> None:
+    """Catches a traceback, and frames that are not shown since their end is missing."""
+    with program("stand_in", "0") as service:
+        assert service.stdout
+        port = service.stdout.readline().split()[1]
+        client = program("follow_websocket", "Maybe people hum by the pool and hum again.", f"ws://127.0.0.1:{port}")
+        assert client.stdout
+        client.stdout.readline()
+        service.kill()
+    status, out, err = ended(client)
+    assert status == 1 and len(out.splitlines()) > 10
+    assert err.startswith(f"follow_websocket: ws://127.0.0.1:{port}: ConnectionClosed") and err.count("\n") == 1
+
+
+def test_a_service_that_sends_something_else() -> None:
+    """Catches a traceback for a message without sound, and for one that is no JSON."""
+    for message in ('{"word": 1}', "nothing", "[]"):
+        async def answer(socket: Any, message: str = message) -> None:
+            await socket.recv()
+            await socket.send(message)
+
+        async def run() -> None:
+            async with websockets.serve(answer, "127.0.0.1", 0) as service:
+                await follow_websocket.main("hum", f"ws://127.0.0.1:{service.sockets[0].getsockname()[1]}")
+
+        with pytest.raises(LabialError):
+            asyncio.run(run())
+
+
+@pytest.mark.parametrize("arguments", [["x"], ["65536"], ["1", "2"], ["-1"]])
+def test_a_stand_in_checks_its_port(arguments: List[str]) -> None:
+    assert ended(program("stand_in", *arguments)) == (2, "", "usage: stand_in [PORT]\n")
+
+
+def test_a_port_that_is_taken() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        status, out, err = ended(program("stand_in", str(port)))
+    assert (status, out, err.lower()) == (1, "", f"stand_in: port {port}: address already in use\n")
+
+
+def test_limits_of_the_stand_in(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Catches clients that are kept though they say nothing, texts without end, and a long word that stops others."""
+    monkeypatch.setattr(stand_in, "CLIENTS", 2)
+
+    async def run() -> None:
+        server = asyncio.create_task(stand_in.serve(0, patience=0.5))
+        while not (told := capsys.readouterr().out):
+            await asyncio.sleep(0.01)
+        address = f"ws://127.0.0.1:{told.split()[1]}"
+        async with websockets.connect(address) as first, websockets.connect(address) as second:
+            async with websockets.connect(address) as third:
+                with pytest.raises(websockets.ConnectionClosed, match="enough clients"):
+                    await third.recv()
+            await first.send("a" * 3900)
+            began = time.monotonic()
+            pong = await second.ping()
+            await asyncio.wait_for(pong, 5)
+            assert time.monotonic() - began < 1.0
+            with pytest.raises(websockets.ConnectionClosed):
+                await asyncio.wait_for(second.recv(), 5)
+        async with websockets.connect(address) as first:
+            await first.send("a" * 5000)
+            with pytest.raises(websockets.ConnectionClosed, match="1009"):
+                await asyncio.wait_for(first.recv(), 5)
+        server.cancel()
+
+    asyncio.run(run())
+
+
+@pytest.mark.parametrize(("name", "package"), [
+    ("follow_websocket", "websockets"), ("stand_in", "websockets"), ("pipecat_bot", "pipecat"),
+    ("livekit_agent", "livekit")])
+def test_without_its_package_an_example_says_what_to_install(name: str, package: str, tmp_path: Path) -> None:
+    """Catches a traceback. A module that cannot be found hides the package."""
+    (tmp_path / f"{package}.py").write_text(f"raise ModuleNotFoundError('No module', name='{package}')\n")
+    paths = os.pathsep.join((str(tmp_path), str(SOURCE / "export")))
+    arguments = {"stand_in": ["0"], "follow_websocket": ["hum"]}.get(name, [])
+    status, out, err = ended(program(name, *arguments, PYTHONPATH=paths))
+    assert (status, out) == (1, "")
+    assert err.startswith(f"{name}: this needs the package {package}: pip install {package}")
 
 
 def test_the_player_keeps_its_clock(monkeypatch: pytest.MonkeyPatch) -> None:

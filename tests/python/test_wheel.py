@@ -23,7 +23,7 @@ import pytest
 import wheels
 
 import labial
-from packages import CC, CMAKE, SOURCE, run
+from packages import CC, CMAKE, SOURCE, attributions, run, single_spaced
 from runtime import conformance_frames, conformance_scripts
 from scripts import digest
 
@@ -73,7 +73,7 @@ def build_wheel(folder: Path, env: Dict[str, str]) -> subprocess.CompletedProces
     unwanted = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
     for name in ("include", "lib", "flat", "cmake", "export/labial", "export/models"):
         shutil.copytree(SOURCE / name, tree / name, ignore=unwanted)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "README.md", "LICENSE", "NOTICE"):
         shutil.copyfile(SOURCE / name, tree / name)
     (tree / "export" / "labial" / "__pycache__").mkdir()
     (tree / "export" / "labial" / "__pycache__" / "left.pyc").touch()
@@ -118,7 +118,12 @@ def test_wheel_serves_every_python(wheel: Path) -> None:
     wanted |= {f"labial/models/{path.name}" for path in (SOURCE / "export" / "models").glob("*.npz")}
     rest = {name for name in names if ".dist-info/" not in name} - wanted
     assert rest == {"labial/core/labial_runtime.so"} and wanted <= set(names)
-    assert f"labial-{labial.__version__}.dist-info/licenses/LICENSE" in names
+    carried = ""
+    for name in ("LICENSE", "NOTICE"):
+        carried += zipfile.ZipFile(wheel).read(f"labial-{labial.__version__}.dist-info/licenses/{name}").decode()
+    assert "MIT License" in carried
+    for name, text in attributions().items():
+        assert text in single_spaced(carried), name
 
 
 def test_installed_wheel_plays_the_conformance_streams(installed: Path, tmp_path: Path) -> None:
@@ -131,7 +136,8 @@ def test_installed_wheel_needs_nothing(installed: Path, tmp_path: Path) -> None:
     (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n")
     program = ("import sys, labial\n"
                "motion = labial.render(labial.read_timings('word.lab'))\n"
-               "assert len(motion) == 15 and all(len(frame) == 13 for frame in motion) and isinstance(motion, list)\n"
+               "assert len(motion) == 15 + 12 and {len(frame) for frame in motion} == {13}\n"
+               "assert isinstance(motion, list)\n"
                "assert 'numpy' not in sys.modules\n")
     if sys.version_info >= (3, 11):  # before that the package asks for a TOML parser, which is not installed here
         program += "assert labial.Frame(0, motion[5]).rig('arkit')['jawOpen'] > 0\n"
@@ -139,7 +145,8 @@ def test_installed_wheel_needs_nothing(installed: Path, tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     done = call([installed.with_name("labial"), "synth", "x.npz", "word.lab"], {"PATH": ""}, tmp_path)
     assert done.returncode == 1
-    assert done.stderr == "labial: labial synth needs the package numpy: install labial[tools]\n"
+    assert done.stderr == ("labial: labial synth needs the package numpy: "
+                           "pip install '.[tools]' in Labial's folder (docs/install.md)\n")
     done = call([installed.with_name("labial"), "--version"], {"PATH": ""}, tmp_path)
     assert (done.returncode, done.stdout) == (0, f"labial {labial.__version__}\n")
 
@@ -148,8 +155,8 @@ def test_installed_exporter_brings_the_library(installed: Path, tmp_path: Path) 
     """With numpy, ``labial check`` has the library that came with the package, ``labial bake`` has its models."""
     env = {"PATH": "", "OPENBLAS_NUM_THREADS": "1",
            "PYTHONPATH": os.pathsep.join((sysconfig.get_path("purelib"), sysconfig.get_path("platlib")))}
-    (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n0.3 0.38 B\n0.38 0.55 EY\n0.55 0.62 B\n0.62 0.8 IY\n"
-                                       "0.8 1 SIL\n")
+    (tmp_path / "word.lab").write_text("0 0.1 SIL\n0.1 0.2 M\n0.2 0.4 AY\n0.4 0.5 HH\n0.5 0.6 AH\n0.6 0.7 L\n"
+                                       "0.7 0.9 OW\n0.9 1 SIL\n")
     done = call([installed.with_name("labial"), "check", SOURCE / "export" / "models" / "speech_en.npz", "word.lab"],
                 env, tmp_path)
     assert done.returncode == 0, done.stderr

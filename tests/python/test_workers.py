@@ -97,7 +97,7 @@ from labial.train.workers import Workers
 def train(*_, jobs, engine, **__):
     with Workers(jobs, False, engine) as workers:
         workers.run("the work", getattr(working, sys.argv[1]), range(4))
-labial.train.train, labial.corpus.read_corpora = train, lambda *_: []
+labial.train.train, labial.corpus.read_corpora = train, lambda *_, **options: []
 sys.exit(main(["train", "corpus", "-o", "m.npz", "--quiet", *sys.argv[2:]]))
 """
 WORK = """

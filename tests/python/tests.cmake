@@ -16,7 +16,7 @@ if(Python3_Interpreter_FOUND)
 endif()
 if(NOT have_pip)
   labial_left_out("The Python tests are left out, they need Python 3.9 or later with venv and pip: "
-                  "install the Debian packages python3 and python3-venv.")
+                  "install the Debian packages python3 and python3-venv, or connect to the network.")
   labial_disabled_test(pytest)
   labial_disabled_test(ruff)
   return()
@@ -47,17 +47,18 @@ endif()
 
 option(LABIAL_TRACKING "Track a face with MediaPipe in the tests, which fetches 300 MB" "${LABIAL_REQUIRE_ALL}")
 
-# A test and not a part of the build, so that the C suites run where the packages cannot be had.
+# A test and not a part of the build, so that the C suites run where the packages cannot be had. The lock `setup` lets
+# them run beside what prepares other tests, one of which mostly waits for the network.
 set(environment "${PROJECT_BINARY_DIR}/python")
 set(python "${environment}/bin/python")
 add_test(NAME python_environment COMMAND "${CMAKE_COMMAND}" -D "PYTHON=${Python3_EXECUTABLE}"
   -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt" -D "DIRECTORY=${environment}"
   -D "PIP_WHEEL=${pip_wheel}" -P "${LABIAL_TEST_SETUP}/python_environment.cmake")
-set_tests_properties(python_environment PROPERTIES FIXTURES_SETUP python TIMEOUT 1800)
+set_tests_properties(python_environment PROPERTIES FIXTURES_SETUP python RESOURCE_LOCK setup TIMEOUT 1800)
 
 add_test(NAME ruff WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
   COMMAND "${python}" -m ruff check --no-cache bench examples export packaging tests)
-set_tests_properties(ruff PROPERTIES FIXTURES_REQUIRED python)
+set_tests_properties(ruff PROPERTIES LABELS sources FIXTURES_REQUIRED python)
 
 # What may import what, and types: pyproject.toml. Neither tool runs on the oldest Python.
 if(Python3_VERSION VERSION_GREATER_EQUAL 3.10)
@@ -65,28 +66,38 @@ if(Python3_VERSION VERSION_GREATER_EQUAL 3.10)
     COMMAND "${environment}/bin/lint-imports" --no-cache)
   add_test(NAME types WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
     COMMAND "${python}" -m mypy --cache-dir "${PROJECT_BINARY_DIR}/mypy")
-  set_tests_properties(imports types PROPERTIES FIXTURES_REQUIRED python
+  set_tests_properties(imports types PROPERTIES LABELS sources FIXTURES_REQUIRED python
     ENVIRONMENT "PYTHONPATH=${PROJECT_SOURCE_DIR}/export;PYTHONDONTWRITEBYTECODE=1")
 endif()
 
 # That the oldest Python has what the package uses.
 add_test(NAME oldest_python WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
   COMMAND "${environment}/bin/vermin" --target=3.9- --violations --no-tips export/labial)
-set_tests_properties(oldest_python PROPERTIES FIXTURES_REQUIRED python)
+set_tests_properties(oldest_python PROPERTIES LABELS sources FIXTURES_REQUIRED python)
 
+set(libraries "")
+foreach(model IN LISTS LABIAL_BUNDLED_MODELS LABIAL_HEARING_MODELS LABIAL_WORDS)
+  list(APPEND libraries "$<TARGET_FILE:labial_${model}>")
+endforeach()
+list(JOIN libraries ":" libraries)
 set(variables
   "PYTHONPATH=${PROJECT_SOURCE_DIR}/export"
-  PYTHONDONTWRITEBYTECODE=1
+  "PYTHONPYCACHEPREFIX=${PROJECT_BINARY_DIR}/pycache" # nothing compiled beside the sources
+  "MPLCONFIGDIR=${PROJECT_BINARY_DIR}/matplotlib"
   OMP_NUM_THREADS=1 # the tests themselves run in parallel
   "LABIAL_SOURCE=${PROJECT_SOURCE_DIR}"
   "LABIAL_CC=${CMAKE_C_COMPILER}"
   "LABIAL_CXX=${LABIAL_CXX}"
-  "LABIAL_CMAKE=${CMAKE_COMMAND}")
+  "LABIAL_CMAKE=${CMAKE_COMMAND}"
+  "LABIAL_LIBRARIES=${libraries}:$<TARGET_FILE:labial>")
 if(LABIAL_REQUIRE_ALL)
   list(APPEND variables LABIAL_REQUIRE_ALL=ON)
 endif()
 if(LABIAL_SPTK)
   list(APPEND variables "LABIAL_SPTK=${LABIAL_SPTK}")
+endif()
+if(LABIAL_UNITY_SOURCE)
+  list(APPEND variables "LABIAL_UNITY_SOURCE=${LABIAL_UNITY_SOURCE}")
 endif()
 if(TARGET labial-say)
   list(APPEND variables "LABIAL_SAY=$<TARGET_FILE:labial-say>" "LABIAL_HEAR=$<TARGET_FILE:labial-hear>"
@@ -94,7 +105,8 @@ if(TARGET labial-say)
     "LABIAL_PROGRAMS=$<TARGET_FILE_DIR:labial-say>:$<TARGET_FILE_DIR:labial-demo>:$<TARGET_FILE_DIR:labial-bench>")
 endif()
 if(TARGET labial-python)
-  list(APPEND variables "LABIAL_RUNTIME=$<TARGET_FILE:labial-python>")
+  list(APPEND variables "LABIAL_RUNTIME=$<TARGET_FILE:labial-python>"
+    "LABIAL_RUNTIME_PAPER=$<TARGET_FILE:labial-python-paper>")
 endif()
 if(TARGET labial-rig-jaw)
   list(APPEND variables "LABIAL_RIG_EXAMPLES=$<TARGET_FILE_DIR:labial-rig-jaw>")
@@ -110,8 +122,9 @@ if(LABIAL_NPM_PACKAGE)
 endif()
 add_test(NAME pytest WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
   COMMAND "${python}" -m pytest -p no:cacheprovider -n 2 --dist loadgroup -ra --durations=10
-    --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/python")
-set_tests_properties(pytest PROPERTIES FIXTURES_REQUIRED "python;npm" PROCESSORS 2 TIMEOUT 1800 ENVIRONMENT "${variables}")
+    "--junitxml=${PROJECT_BINARY_DIR}/pytest.xml" --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/python")
+set_tests_properties(pytest PROPERTIES LABELS python FIXTURES_REQUIRED "python;npm" PROCESSORS 2 TIMEOUT 1800
+  ENVIRONMENT "${variables}")
 if(LABIAL_REQUIRE_ALL)
   set_tests_properties(pytest PROPERTIES FAIL_REGULAR_EXPRESSION "[0-9]+ skipped")
 else()
@@ -154,7 +167,7 @@ else()
   add_test(NAME tracking_environment COMMAND "${CMAKE_COMMAND}" -D "PYTHON=${Python3_EXECUTABLE}"
     -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/tracking/requirements.txt" -D "DIRECTORY=${environment}"
     -D "PIP_WHEEL=${pip_wheel}" -P "${LABIAL_TEST_SETUP}/python_environment.cmake")
-  set_tests_properties(tracking_environment PROPERTIES FIXTURES_SETUP tracking TIMEOUT 1800)
+  set_tests_properties(tracking_environment PROPERTIES FIXTURES_SETUP tracking RESOURCE_LOCK setup TIMEOUT 1800)
   add_test(NAME tracking WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
     COMMAND "${environment}/bin/python" -m pytest -p no:cacheprovider
       --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/tracking")

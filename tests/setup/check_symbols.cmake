@@ -4,13 +4,13 @@
 #
 # - every global symbol matches NAMES, so that a program's own names are safe;
 # - .data, .bss and common are empty: the library has no state, its tables stay in flash;
-# - nothing is called but memcpy, memmove, memset and the compiler's own helpers.
+# - nothing is called but memcpy, memmove, memset, memcmp and the compiler's own helpers.
 cmake_minimum_required(VERSION 3.22...3.31)
 
 # Functions that compilers call implicitly: division and shifts, stack protection, checked copies, position
 # independence.
-set(helpers "memcpy|memmove|memset|__mem(cpy|move|set)_chk|__aeabi_[a-z0-9_]+|__[a-z]+[sdt]i[23]")
-string(APPEND helpers "|__stack_chk_(fail|guard)|_GLOBAL_OFFSET_TABLE_")
+set(helpers "memcpy|memmove|memset|memcmp|__mem(cpy|move|set)_chk|__aeabi_[a-z0-9_]+|__[a-z]+[sdt]i[23]")
+string(APPEND helpers "|__gnu_thumb1_case_[a-z]+|__stack_chk_(fail|guard)|_GLOBAL_OFFSET_TABLE_")
 
 execute_process(COMMAND "${NM}" --format=sysv "${LIBRARY}" OUTPUT_VARIABLE table RESULT_VARIABLE failed)
 if(failed)

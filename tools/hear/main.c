@@ -39,7 +39,7 @@ static const hear_model_t models[] = { LABIAL_BUNDLED_HEARING };
 typedef struct {
     const char *sound;
     unsigned to, model, rate, channels;
-    int to_given, classes;
+    int to_given, classes, exact;
 } options_t;
 
 typedef struct {
@@ -64,6 +64,7 @@ static const char usage_begin[] =
     "  -               samples from standard input, 16 bits, low byte first\n"
     "  --rate RATE     with -: samples per second (16000)\n"
     "  --channels N    with -: 1, or 2, of which the mean is heard (1)\n"
+    "  --exact         exactly the frames of the sound: the face does not come to rest after the last one\n"
     "  --classes       not motion but a .lab file: the phonemes that stand for the lip shapes heard, with their "
     "times\n";
 
@@ -127,6 +128,8 @@ static int read_options(int argc, char **argv, options_t *options)
             result = read_number("--channels is 1 or 2, not", value, 2, &options->channels);
         } else if (strcmp(argv[i], "--classes") == 0) {
             options->classes = 1;
+        } else if (strcmp(argv[i], "--exact") == 0) {
+            options->exact = 1;
         } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
             result = wrong_usage("unknown option", argv[i]);
         } else if (options->sound) {
@@ -222,6 +225,7 @@ static int run(hear_t *hear, const options_t *options)
                        hear->wav.channels, labial_result_text(result));
         return failed(hear, why);
     }
+    (void)labial_hear_exact(&hear->stream, options->exact);
     hear->classes = options->classes;
     if (hear->classes) {
         (void)labial_hear_classes(&hear->stream, on_class);
@@ -262,7 +266,7 @@ int main(int argc, char **argv)
         printf("labial-hear %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
         return 0;
     }
-    options_t options = { NULL, 0, default_model(), 0, 0, 0, 0 };
+    options_t options = { NULL, 0, default_model(), 0, 0, 0, 0, 0 };
     const int result = read_options(argc, argv, &options);
     if (result != 0)
         return result;

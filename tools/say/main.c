@@ -18,6 +18,7 @@
 typedef struct {
     unsigned from, to, labels, model;
     unsigned articulation; /* percent */
+    int exact;
     const char *tier;
 } options_t;
 
@@ -41,7 +42,8 @@ static const char usage_middle[] =
     "                  and mary, elsewhere ARPABET (default). Unknown ones move as the nearest, with one warning "
     "each\n"
     "  --articulation PERCENT\n"
-    "                  how far the mouth moves, 0 to 200: 50 is a mumble, 130 a shout (100)\n";
+    "                  how far the mouth moves, 0 to 200: 50 is a mumble, 130 a shout (100)\n"
+    "  --exact         exactly the frames of the phonemes: the face does not come to rest after the last one\n";
 
 static const char usage_end[] =
     "  --help          print this and exit\n"
@@ -109,6 +111,8 @@ static int read_options(int argc, char **argv, options_t *options)
             result = read_choice("--labels", value, label_set_name, &options->labels);
         } else if ((value = option_value("--articulation", argc, argv, &i)) != NULL) {
             result = read_percent(value, &options->articulation);
+        } else if (strcmp(argv[i], "--exact") == 0) {
+            options->exact = 1;
         } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
             result = read_choice("--model", value, mouth_voice_name, &options->model);
         } else {
@@ -172,6 +176,7 @@ static int run(say_t *say, const options_t *options)
     if (mouth_init(&say->mouth, "labial-say", &mouth_voices[options->model], stdout, options->to) != 0)
         return EXIT_INPUT;
     (void)labial_articulation(&say->mouth.stream, options->articulation);
+    (void)labial_exact(&say->mouth.stream, options->exact);
     say->labels = label_sets[options->labels].labels;
     if (read_timings(say, options) == 0)
         return mouth_end(&say->mouth) == 0 ? 0 : EXIT_INPUT;
@@ -189,7 +194,7 @@ int main(int argc, char **argv)
         printf("labial-say %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
         return 0;
     }
-    options_t options = { 0, 0, 0, 0, 100, NULL };
+    options_t options = { 0, 0, 0, 0, 100, 0, NULL };
     const int result = read_options(argc, argv, &options);
     if (result != 0)
         return result;

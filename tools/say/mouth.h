@@ -31,7 +31,7 @@ typedef struct {
     const mouth_voice_t *voice; /* whose phonemes labels name */
     const mouth_voice_t *current;
     labial_t stream;
-    uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX) / 4u]; /* for any model */
+    uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4u]; /* for any model */
     frames_t frames;
     uint32_t laughs; /* so far: each has its own number as seed */
     unsigned unknown_count;

@@ -52,7 +52,7 @@ export class Hearing {
     #pose = new Float32Array(CHANNELS);
     #weights = {};
 
-    constructor(tools, labial, wasm, { sampleRate, channels, output, context, tap, delay }) {
+    constructor(tools, labial, wasm, { sampleRate, channels, output, context, tap, delay, exact }) {
         const memory = new tools.Memory(wasm.memory, wasm.__heap_base.value);
         this.#tools = tools;
         this.#labial = labial;
@@ -73,6 +73,7 @@ export class Hearing {
             const [rate, count] = [sampleRate, channels].map(tools.shown);
             throw labial.failure(result, `${rate} samples per second, channels: ${count}`);
         }
+        if (exact) wasm.ears_exact(this.#at, 1);
         for (let at; (at = wasm.hearing_class(0, this.#names.length)); ) this.#names.push(memory.text(at));
         this.#latency = wasm.ears_latency(this.#at) / sampleRate;
         this.#delay = tap ? tools.amount(delay ?? this.#latency + 0.08, "delay") : 0;

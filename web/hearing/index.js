@@ -10,7 +10,7 @@ const compiled = {};
 /** What to hear with `tools`, which are labial's: its own sources would be another copy. */
 export async function hear(tools, labial, source, options = {}) {
     const { LabialError, shown, unpack } = tools;
-    const { model = "small", output = "faps", channels = 1, delay, play } = options;
+    const { model = "small", output = "faps", channels = 1, delay, play, exact } = options;
     labial.checkOutput(output);
     if (!Object.hasOwn(MODELS, model)) {
         throw new LabialError(`${shown(model)} is no model of hearing: ${Object.keys(MODELS).join(", ")}`);
@@ -24,7 +24,7 @@ export async function hear(tools, labial, source, options = {}) {
     const listened = source == null ? null : await tap(tools, context, source, play);
     try {
         const sampleRate = listened?.sampleRate ?? options.sampleRate;
-        const settings = { sampleRate, channels: listened ? 1 : channels, output, context, tap: listened, delay };
+        const settings = { sampleRate, channels: listened ? 1 : channels, output, context, tap: listened, delay, exact };
         return new Hearing(tools, labial, wasm, settings);
     } catch (error) {
         listened?.close();

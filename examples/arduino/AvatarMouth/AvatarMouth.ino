@@ -7,61 +7,57 @@
 #include <M5Unified.h>
 
 #include <Avatar.h>
-#include <labial/rig.h>
+#include <labial/face.h>
 
 #include "talk_phonemes.h"
 
 // The mouth's opening, in thousandths: closed and wide open.
 static const labial_rig_output_t opening = LABIAL_RIG_JAW(0, 1000);
 static const labial_rig_t mouth = { &opening, 1 };
-static int32_t thousandths;
 
 static m5avatar::Avatar avatar;
-static labial_t face;
+static labial_face_t face;
+static int32_t room[LABIAL_FACE_SIZE(1, 0) / 4];
+static labial_t stream;
 static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
 static uint32_t nextPhoneme = 0;
-static uint32_t nextFrame = 0;
 static bool talking = false;
-
-static void onFrame(void *, uint32_t, const int16_t faps[LABIAL_CHANNELS])
-{
-    labial_rig_apply(&mouth, faps, &thousandths);
-    avatar.setMouthOpenRatio((float)thousandths / 1000.0f);
-}
 
 // Accepts one frame, and delivers the one accepted `delay` frames ago.
 static void nextTick()
 {
-    talking = talk_phonemes_feed(&face, &nextPhoneme) == LABIAL_OK && labial_tick(&face) != LABIAL_DONE;
+    talking = talk_phonemes_feed(&stream, &nextPhoneme) == LABIAL_OK && labial_tick(&stream) != LABIAL_DONE;
 }
 
-// Takes up as many frames as the first one waits for, which is then shown at once: start your sound at the end of this.
+// Takes up as many frames as the first one waits for, which is then shown in the next period: start your sound at the end
+// of this.
 static void talk()
 {
     nextPhoneme = 0;
     talking = true;
-    for (unsigned ahead = labial_latency(&face).delay; ahead > 0 && talking; ahead--)
+    for (unsigned ahead = labial_latency(&stream).delay; ahead > 0 && talking; ahead--)
         nextTick();
-    nextFrame = (uint32_t)millis();
 }
 
 void setup()
 {
     M5.begin();
     avatar.init();
-    labial_rig_rest(&mouth, &thousandths);
-    if (labial_init(&face, &speech_en, workspace, sizeof workspace, onFrame, NULL) == LABIAL_OK)
+    if (labial_face_init(&face, &mouth, SPEECH_EN_FPS, 0, room, sizeof room) == LABIAL_OK &&
+        labial_init(&stream, &speech_en, workspace, sizeof workspace, labial_face_frame, &face) == LABIAL_OK)
         talk();
 }
 
 void loop()
 {
     M5.update();
-    if (!talking) {
-        if (M5.BtnA.wasPressed() && labial_restart(&face) == LABIAL_OK)
-            talk();
-    } else if ((int32_t)((uint32_t)millis() - nextFrame) >= 0) {
-        nextFrame += 1000 / SPEECH_EN_FPS;
-        nextTick();
+    if (!talking && M5.BtnA.wasPressed() && labial_restart(&stream) == LABIAL_OK)
+        talk();
+    if (labial_face_due(&face, (uint32_t)millis())) {
+        int32_t thousandths;
+        if (talking)
+            nextTick();
+        labial_face_tick(&face, &thousandths);
+        avatar.setMouthOpenRatio((float)thousandths / 1000.0f);
     }
 }

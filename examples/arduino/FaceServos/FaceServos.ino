@@ -14,7 +14,7 @@
  * It speaks at reset, and again whenever the button is pressed.
  */
 #include <Wire.h>
-#include <labial/rig.h>
+#include <labial/face.h>
 
 #include "dfplayer.h"
 #include "servos.h"
@@ -26,14 +26,16 @@ static const int sclPin = 22;
 static const int playerRxPin = 16; // not connected
 static const int playerTxPin = 17;
 static const int buttonPin = 0;
-static const uint32_t framePeriod = 1000 / SPEECH_EN_FPS; // milliseconds
 static const uint32_t commandTime = DFPLAYER_COMMAND_SIZE * 10ul * 1000ul / DFPLAYER_BAUD + 1;
 
-static labial_t face;
-static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
+static labial_face_t face;
+static int32_t room[LABIAL_FACE_SIZE(SERVOS_OUTPUTS, 0) / 4];
 static int32_t ticks[SERVOS_OUTPUTS]; // of each servo's pulse
+static labial_t stream;
+static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
 static uint32_t nextPhoneme = TALK_PHONEMES_PHONEMES;
-static uint32_t nextFrame = 0;
+static uint32_t heard = 0; // when the sound is, milliseconds
+static bool ready = false; // the player has read its card
 static bool talking = false;
 
 static void setRegister(uint8_t number, uint8_t value)
@@ -52,11 +54,12 @@ static void beginServos()
     delay(1);                // until the oscillator runs
 }
 
+// A channel has no pulses before its first value: so the servos are attached one by one.
 static void showServos()
 {
     Wire.beginTransmission(pca9685);
     Wire.write(0x06); // LED0_ON_L: the pulses begin at tick 0 and end at their length
-    for (unsigned i = 0; i < SERVOS_OUTPUTS; i++) {
+    for (unsigned i = 0; i < labial_face_attached(&face); i++) {
         Wire.write(0);
         Wire.write(0);
         Wire.write((uint8_t)(ticks[i] & 0xff));
@@ -65,18 +68,12 @@ static void showServos()
     Wire.endTransmission();
 }
 
-static void onFrame(void *, uint32_t, const int16_t faps[LABIAL_CHANNELS])
-{
-    labial_rig_apply(&servos, faps, ticks);
-    showServos();
-}
-
 // Takes one frame up, and delivers the one of `delay` frames ago.
 static void nextTick()
 {
-    int result = talk_phonemes_feed(&face, &nextPhoneme);
+    int result = talk_phonemes_feed(&stream, &nextPhoneme);
     if (result == LABIAL_OK)
-        result = labial_tick(&face);
+        result = labial_tick(&stream);
     if (result < 0)
         Serial.println(labial_result_text(result));
     talking = result >= 0 && result != LABIAL_DONE;
@@ -87,11 +84,11 @@ static void talk()
 {
     uint8_t command[DFPLAYER_COMMAND_SIZE];
     dfplayer_play(command, 1, 1); // 01/001.wav on the module's card
-    nextFrame = (uint32_t)millis() + commandTime + DFPLAYER_DELAY_MS;
+    heard = (uint32_t)millis() + commandTime + DFPLAYER_DELAY_MS;
     Serial2.write(command, sizeof command);
     nextPhoneme = 0;
     talking = true;
-    for (unsigned ahead = labial_latency(&face).delay; ahead > 0 && talking; ahead--)
+    for (unsigned ahead = labial_latency(&stream).delay; ahead > 0 && talking; ahead--)
         nextTick();
 }
 
@@ -102,22 +99,27 @@ void setup()
     pinMode(buttonPin, INPUT_PULLUP);
     Wire.begin(sdaPin, sclPin, 400000);
     beginServos();
-    labial_rig_rest(&servos, ticks);
-    showServos();
-    const int result = labial_init(&face, &speech_en, workspace, sizeof workspace, onFrame, NULL);
+    int result = labial_face_init(&face, &servos, SPEECH_EN_FPS, 0, room, sizeof room);
+    if (result == LABIAL_OK)
+        result = labial_init(&stream, &speech_en, workspace, sizeof workspace, labial_face_frame, &face);
     if (result != LABIAL_OK)
         Serial.println(labial_result_text(result));
-    delay(DFPLAYER_READY_MS);
-    talk();
+    labial_face_soft_start(&face, 25); // half a second for each servo
 }
 
 void loop()
 {
-    if (!talking) {
-        if (digitalRead(buttonPin) == LOW && labial_restart(&face) == LABIAL_OK)
-            talk();
-    } else if ((int32_t)((uint32_t)millis() - nextFrame) >= 0) {
-        nextFrame += framePeriod;
-        nextTick();
+    const uint32_t now = (uint32_t)millis();
+    if (!ready && now >= DFPLAYER_READY_MS) {
+        ready = true;
+        talk();
+    } else if (ready && !talking && digitalRead(buttonPin) == LOW && labial_restart(&stream) == LABIAL_OK) {
+        talk();
+    }
+    if (labial_face_due(&face, now)) {
+        if (talking && (int32_t)(now - heard) >= 0)
+            nextTick();
+        labial_face_tick(&face, ticks);
+        showServos();
     }
 }

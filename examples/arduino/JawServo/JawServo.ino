@@ -8,35 +8,34 @@
  * A servo at pin 9. Boards of the ESP32 family use the library ESP32Servo: replace Servo.h by ESP32Servo.h.
  */
 #include <Servo.h>
-#include <labial/rig.h>
+#include <labial/face.h>
 #include <speech_en.h>
 
-// What your jaw needs: the servo's angles with the mouth closed and wide open, in degrees.
+// What your jaw needs: the servo's angles with the mouth closed and wide open, and how far it gets in 20 ms, in degrees.
 static const int closedAngle = 80;
 static const int openAngle = 110;
+static const int speed = 10;
 static const int servoPin = 9;
 
+// Frames that are known before one is shown, so that the servo closes in time; the mouth is 80 ms later.
+static const unsigned ahead = 4;
+
 // The jaw follows the opening of the lips, for m, b and p must close a mouth that has nothing but a jaw.
-static const labial_rig_output_t jaw = LABIAL_RIG_JAW(closedAngle, openAngle);
+static const labial_rig_output_t jaw = LABIAL_RIG_SERVO(closedAngle, openAngle, speed);
 static const labial_rig_t rig = { &jaw, 1 };
-static int32_t angle;
 
 static Servo servo;
-static labial_t face;
+static bool attached = false;
+static labial_face_t face;
+static int32_t room[LABIAL_FACE_SIZE(1, ahead) / 4];
+static labial_t stream;
 static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
-static uint32_t nextFrame = 0;
 
 // The word that is being read, and the phoneme that waits for its milliseconds.
 static char word[16];
 static uint8_t length = 0;
 static int phoneme = LABIAL_ERROR_NAME;
 static bool speaking = false;
-
-static void onFrame(void *, uint32_t, const int16_t faps[LABIAL_CHANNELS])
-{
-    labial_rig_apply(&rig, faps, &angle);
-    servo.write((int)angle);
-}
 
 // Ends the word: a number is the milliseconds of the phoneme before it, anything else a phoneme's name.
 static void takeWord()
@@ -45,7 +44,7 @@ static void takeWord()
         return;
     word[length] = '\0';
     if (word[0] >= '0' && word[0] <= '9' && phoneme >= 0) {
-        const int result = labial_push(&face, (unsigned)phoneme, (uint32_t)atol(word));
+        const int result = labial_push(&stream, (unsigned)phoneme, (uint32_t)atol(word));
         if (result < 0)
             Serial.println(labial_result_text(result));
         speaking = true;
@@ -58,28 +57,38 @@ static void takeWord()
     length = 0;
 }
 
+// The first angle is that of rest. Libraries for some boards keep it from before attach(), those for others take it after.
+static void show(int32_t angle)
+{
+    servo.write((int)angle);
+    if (!attached) {
+        servo.attach(servoPin);
+        servo.write((int)angle);
+        attached = true;
+    }
+}
+
 void setup()
 {
     Serial.begin(115200);
-    servo.attach(servoPin);
-    labial_rig_rest(&rig, &angle);
-    servo.write((int)angle);
-    const int result = labial_init(&face, &speech_en, workspace, sizeof workspace, onFrame, NULL);
+    int result = labial_face_init(&face, &rig, SPEECH_EN_FPS, ahead, room, sizeof room);
+    if (result == LABIAL_OK)
+        result = labial_init(&stream, &speech_en, workspace, sizeof workspace, labial_face_frame, &face);
     while (result != LABIAL_OK) {
         Serial.println(labial_result_text(result));
         delay(1000);
     }
-    nextFrame = (uint32_t)millis();
+    labial_face_soft_start(&face, 25); // half a second to get to rest
 }
 
 void loop()
 {
-    while (Serial.available() > 0 && labial_room(&face) > 0) {
+    while (Serial.available() > 0 && labial_room(&stream) > 0) {
         const char c = (char)Serial.read();
         if (c == ' ' || c == '\r' || c == '\n') {
             takeWord();
             if (c == '\n' && speaking) { // nothing follows, so the last phonemes need not wait for what does
-                labial_end(&face);
+                labial_end(&stream);
                 speaking = false;
             }
         } else if (length < sizeof word - 1) {
@@ -87,9 +96,11 @@ void loop()
         }
     }
 
-    if ((int32_t)((uint32_t)millis() - nextFrame) >= 0) {
-        nextFrame += 1000 / SPEECH_EN_FPS;
-        if (labial_tick(&face) == LABIAL_DONE)
-            labial_restart(&face); // ready for the next sentence
+    if (labial_face_due(&face, (uint32_t)millis())) {
+        int32_t angle;
+        if (labial_tick(&stream) == LABIAL_DONE)
+            labial_restart(&stream); // ready for the next sentence
+        labial_face_tick(&face, &angle);
+        show(angle);
     }
 }

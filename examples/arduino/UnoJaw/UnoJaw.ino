@@ -47,9 +47,9 @@ void setup()
 {
     Serial.begin(DFPLAYER_BAUD);
     pinMode(buttonPin, INPUT_PULLUP);
-    servo.attach(servoPin);
     talk_begin(&player);
-    showFrame(talk_next(&player));
+    showFrame(talk_next(&player)); // before attach(), so that the first pulse is that of rest
+    servo.attach(servoPin);
     delay(DFPLAYER_READY_MS);
     talk();
 }

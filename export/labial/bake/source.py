@@ -31,8 +31,6 @@ RATE = 50
 _LONGEST = 1_000_000
 #: Shortest pause in which a track may be cut, seconds, and the largest change between still frames, FAP units.
 PAUSE, _STILL = 0.4, 1.0
-#: Milliseconds of silence at the end of baked motion. In a long pause a mouth comes to rest within 16 frames.
-REST = 500
 
 
 @dataclass(frozen=True)
@@ -58,22 +56,14 @@ class Source:
 
 
 def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
-    """The model, what the model is called, and the phonemes of timings or of a sound, to rest at the end. Raises
-    DataError."""
+    """The model, what the model is called, and the phonemes of timings or of a sound. Raises DataError."""
     if source.has_frames:
         raise DataError(source.path, None, "holds frames, which have no phonemes; --as track takes frames")
     segments = _heard(source) if source.is_sound else _timed(source)
     name = source.model or BY_KIND[phone_set_of(segments, source.labels).kind]
     model = load(name)
     found = phoneme_segments(source.path, segments, phone_set(model), False, source.labels)
-    return model, Path(name).stem, _rested(stream_of(found, model, 0), model)
-
-
-def _rested(phonemes: Stream, model: Model) -> Stream:
-    """Phonemes that end with at least `REST` of silence: the mouth comes to rest after a tightly cut sound."""
-    silence = model.phonemes.index(model.silence)
-    last = phonemes[-1][1] if phonemes and phonemes[-1][0] == silence else 0
-    return [*(phonemes[:-1] if last else phonemes), (silence, max(last, REST))]
+    return model, Path(name).stem, stream_of(found, model, 0)
 
 
 def _timed(source: Source) -> List[SourceSegment]:
@@ -99,8 +89,8 @@ class Motion(NamedTuple):
 
 
 def read_track(source: Source) -> Motion:
-    """The motion of a file of frames, of timings or of a sound. Pauses are silences; of frames those stretches in which
-    they hardly move."""
+    """The motion of a file of frames, of timings or of a sound; but for frames it begins and ends at rest. Pauses are
+    silences; of frames those stretches in which they hardly move."""
     if source.has_frames:
         if source.text is not None or source.model:
             raise LabialError(f"{source.path}: frames need neither a text nor a model")
@@ -109,6 +99,7 @@ def read_track(source: Source) -> Motion:
         still = np.abs(np.diff(frames, axis=0)).max(axis=1, initial=0.0) < _STILL
         return Motion(frames, _long(np.append(still, False)))
     from labial.reference import stream, synthesis
+    from labial.reference.fade import delivered
     from labial.reference.tables import ExportedTables
     from labial.tables.quantise import quantise
 
@@ -119,6 +110,7 @@ def read_track(source: Source) -> Motion:
         frames = synthesis.synthesise(model, phonemes)
     else:  # on the integer tables, so that choices at near ties are those of a board
         frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
+    frames = delivered(frames)
     frames = _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
     silence = model.phonemes.index(model.silence)
     ends = np.cumsum([milliseconds for _, milliseconds in phonemes]) * RATE / 1000.0

@@ -67,8 +67,8 @@ class FaceMesh:
     def __init__(self) -> None:
         """Raises LabialError where this MediaPipe has none."""
         if not hasattr(mediapipe, "solutions"):
-            raise LabialError("this MediaPipe brings no face model: give --task face_landmarker.task, or install "
-                              "mediapipe==0.10.21 (Python 3.9 to 3.12)")
+            raise LabialError("this MediaPipe brings no face model: give --task face_landmarker.task, or type "
+                              "pip install mediapipe==0.10.21 (Python 3.9 to 3.12)")
         self._mesh = mediapipe.solutions.face_mesh.FaceMesh(max_num_faces=MOST_FACES, refine_landmarks=True)
 
     def find(self, _: float, picture: np.ndarray) -> Faces:

@@ -27,6 +27,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          help="train without the episodes that hold these words, judge these words' frames alone")
     command.add_argument("--leave-out-talkers", action="store_true", help="train without each talker of the second "
                          "and further corpora in turn, judge that talker, in place of random splits")
+    command.add_argument("--first-corpus-alone", action="store_true", help="with --leave-out-talkers: train Labial's "
+                         "models on the first corpus alone, as all other methods")
     add_talker_variance(command)
     add_quiet(command)
 
@@ -40,8 +42,11 @@ def run(options: argparse.Namespace) -> int:
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
     if words and options.leave_out_talkers:
         raise LabialError("--hold-out-words and --leave-out-talkers do not go together")
+    if options.first_corpus_alone and not options.leave_out_talkers:
+        raise LabialError("--first-corpus-alone needs --leave-out-talkers")
     asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
-                    options.leave_out_talkers, options.talker_variance)
+                    options.leave_out_talkers, talker_variance=options.talker_variance,
+                    first_corpus_alone=options.first_corpus_alone)
     for path in evaluated(options.corpus, options.output, asked, jobs=options.jobs, engine=options.engine,
                           progress=shows_progress(options)):
         print(path)

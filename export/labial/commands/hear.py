@@ -28,11 +28,13 @@ _BLOCK = 640
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """A sound, and the format of the frames."""
     command.add_argument("sound", metavar="SOUND", help="speech: a WAV file; a file of another format, if "
-                         "labial[align] is installed; or - for 16-bit samples from standard input, low byte first")
+                         "the extra align is installed; or - for 16-bit samples from standard input, low byte first")
     command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     add_format(command)
     command.add_argument("--model", choices=("small", "large"), default="small",
                          help="the network: small, or large, which is better and costs half as much again (small)")
+    command.add_argument("--exact", action="store_true",
+                         help="exactly the frames of the sound: the face does not come to rest after the last one")
     command.add_argument("--rate", type=functools.partial(whole, 1, 1_000_000), metavar="RATE",
                          help=f"with -: samples per second, one of {', '.join(map(str, _RATES))} (16000)")
     command.add_argument("--channels", type=functools.partial(whole, 1, 2), metavar="N",
@@ -51,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     if options.sound != "-" and (options.rate or options.channels):
         raise LabialError("--rate and --channels go with -, a sound from standard input")
     rate, channels, blocks = _sound(options)
-    with Hearing(rate, channels, model=f"hear_{options.model}") as hearing:
+    with Hearing(rate, channels, model=f"hear_{options.model}", exact=options.exact) as hearing:
         parts = _parts(hearing, blocks)
         count = 0
         if options.to == "fap":  # whose head has the number of frames

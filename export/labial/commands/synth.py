@@ -27,6 +27,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_labels(command)
     command.add_argument("--articulation", type=functools.partial(whole, 0, ARTICULATION_MAX), metavar="PERCENT",
                          default=100, help="how far the mouth moves: 50 is a mumble, 130 a shout (100)")
+    command.add_argument("--exact", action="store_true",
+                         help="exactly the frames of the phonemes: the face does not come to rest after the last one")
     command.add_argument("--whole", action="store_true",
                          help="search and solve the whole utterance at once, in place of unit by unit (models of "
                          "--method paper) or as the run-time does (all others)")
@@ -36,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     """Writes the frames."""
     from labial.files.frames import at_rate, count_at
     from labial.files.outputs import check, writing
-    from labial.reference.synthesis import frames_of, in_parts
+    from labial.reference.synthesis import delivered
     from labial.tables.model import load
     from labial.tables.phones import read_stream
 
@@ -44,9 +46,11 @@ def run(options: argparse.Namespace) -> int:
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source)
     form = format_of(options)
-    count, fps, name = frames_of(model, phonemes), options.fps or model.fps, Path(options.model).stem
-    motion = in_parts(model, phonemes, whole=options.whole, articulation=options.articulation)
-    parts = at_rate(motion, count, model.fps, fps)
+    fps, name = options.fps or model.fps, Path(options.model).stem
+    frames = list(delivered(model, phonemes, whole=options.whole, articulation=options.articulation,
+                            exact=options.exact))  # all of them: some formats tell their number first
+    count = sum(map(len, frames))
+    parts = at_rate(frames, count, model.fps, fps)
     opened: ContextManager[Any] = writing(options.output, "ascii") if options.output else nullcontext(sys.stdout)
     with opened as out:
         form.write(out, parts, fps, name, count_at(count, model.fps, fps))

@@ -35,6 +35,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          f"share a state of the decoded path ({SEARCH_STRIDE}); 1 decodes every frame, as --method "
                          "paper always does")
     add_talker_variance(command)
+    command.add_argument("--asymmetric", action="store_true", help="--method labial: learn each side of the mouth by "
+                         "itself, as --method paper always does, instead of the mean of both")
     command.add_argument("--normalise", action="store_true", help="--method paper: divide features by their standard "
                          "deviations before they are clustered, as --method labial always does; the text does not")
     command.add_argument("--seed", type=seed, default=0)
@@ -62,11 +64,13 @@ def run(options: argparse.Namespace) -> int:
     own = _labials_own(options)
     check_options(kind=options.kind, method=options.method, fps=options.fps, codebook=options.codebook,
                   components=options.components, jobs=options.jobs, engine=options.engine, **own)
-    episodes = [episode for corpus in read_corpora(options.corpus, options.kind) for episode in corpus]
+    corpora = read_corpora(options.corpus, options.kind,
+                           even_sides=options.method == "labial" and not options.asymmetric)
+    episodes = [episode for corpus in corpora for episode in corpus]
     model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
                   engine=options.engine, progress=shows_progress(options), attribution=options.attribution,
-                  normalise=options.normalise, **own)
+                  normalise=options.normalise, symmetric=not options.asymmetric, **own)
     save(model, options.output)
     for line in [*without_apex(episodes), *backed_off(model)]:
         print(line)

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any, Dict, Optional, Sequence, Tuple
 
 from labial import __version__
-from labial.errors import LabialError, StreamError
+from labial.errors import LabialError, StreamError, pip
 
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 3
+_INTERFACE = 4
 
 #: Results of include/labial/labial.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
@@ -35,7 +35,8 @@ LAUGH_FULL = 256
 
 _POINTER, _NUMBER, _TEXT = c_void_p, c_uint32, c_char_p
 _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
-    "flat_interface": (_NUMBER, ()), "flat_version": (_TEXT, ()), "result_text": (_TEXT, (c_int,)),
+    "flat_interface": (_NUMBER, ()), "flat_version": (_TEXT, ()), "flat_method": (_TEXT, ()),
+    "result_text": (_TEXT, (c_int,)),
     "mouth_size": (_NUMBER, ()), "blob_size": (_NUMBER, ()), "laugh_size": (_NUMBER, ()), "timings_size": (_NUMBER, ()),
     "rig_output_size": (_NUMBER, ()), "rig_curve_size": (_NUMBER, ()),
     "bundled_name": (_TEXT, (_NUMBER,)), "bundled_model": (_POINTER, (_NUMBER,)),
@@ -49,7 +50,8 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "mouth_push": (c_int, (_POINTER, _NUMBER, _NUMBER)), "mouth_room": (_NUMBER, (_POINTER,)),
     "mouth_end": (c_int, (_POINTER,)), "mouth_cancel": (c_int, (_POINTER, _NUMBER)),
     "mouth_restart": (c_int, (_POINTER,)), "mouth_articulation": (c_int, (_POINTER, _NUMBER)),
-    "mouth_run": (c_int, (_POINTER, _POINTER, _NUMBER)),
+    "mouth_run": (c_int, (_POINTER, _POINTER, _NUMBER)), "mouth_exact": (c_int, (_POINTER, _NUMBER)),
+    "mouth_moved": (_NUMBER, (_POINTER,)),
     "mouth_tick": (c_int, (_POINTER,)), "mouth_faps": (POINTER(c_int16), (_POINTER,)),
     "mouth_state": (c_int, (_POINTER,)), "mouth_held": (_NUMBER, (_POINTER,)),
     "mouth_milliseconds": (_NUMBER, (_POINTER,)), "mouth_waiting": (_NUMBER, (_POINTER,)),
@@ -71,6 +73,13 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "ears_end": (c_int, (_POINTER, _POINTER, _POINTER, _NUMBER)),
     "ears_cancel": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
     "ears_stretches": (_NUMBER, (_POINTER,)), "ears_restart": (c_int, (_POINTER,)),
+    "ears_exact": (c_int, (_POINTER, _NUMBER)),
+    "servos_size": (_NUMBER, (_NUMBER, _NUMBER)), "servos_init": (c_int, (_POINTER, _POINTER, _NUMBER, _NUMBER)),
+    "servos_frame": (None, (_POINTER, _POINTER)), "servos_values": (c_int, (_POINTER, _POINTER)),
+    "servos_tick": (c_int, (_POINTER, _POINTER)), "servos_play": (c_int, (_POINTER,)),
+    "servos_skip": (c_int, (_POINTER, _NUMBER)), "servos_cancel": (c_int, (_POINTER,)),
+    "servos_soft_start": (c_int, (_POINTER, _NUMBER)), "servos_attached": (_NUMBER, (_POINTER,)),
+    "servos_place": (c_int, (_POINTER, _POINTER)),
     "words_stream_size": (_NUMBER, ()), "words_own_size": (_NUMBER, (_NUMBER,)),
     "words_own": (_POINTER, (_POINTER, _NUMBER, _POINTER)), "words_label": (_TEXT, (_NUMBER,)),
     "words_read": (c_int, (_POINTER, _TEXT, _NUMBER, _POINTER)),
@@ -111,8 +120,14 @@ def library_path() -> Path:
     for found in (*folder.glob("labial_runtime.*"), *latest):
         if found.suffix in (".so", ".dll", ".dylib"):
             return found
-    raise LabialError("the run-time is not compiled: install the package with pip, build the source tree with CMake, "
-                      f"or name a build of it in the environment variable {VARIABLE}")
+    raise LabialError(f"the run-time is not compiled: {pip()}, or build the source tree with CMake, or name a build of "
+                      f"it in the environment variable {VARIABLE}")
+
+
+def method() -> str:
+    """The method that the library is built for: "labial", or "paper" for the published one to the letter."""
+    text: bytes = library().flat_method()
+    return text.decode("ascii")
 
 
 def sentence(result: int) -> str:

@@ -14,6 +14,7 @@ from labial.corpus.episode import Episode
 from labial.corpus.folder import read_folder
 from labial.corpus.iemocap import read_iemocap
 from labial.corpus.phonesets import PHONE_SETS
+from labial.corpus.sides import with_even_sides
 from labial.corpus.talkers import brought_together, with_something_left, with_sources
 from labial.errors import DataError, LabialError
 from labial.files.frames import sampled
@@ -53,10 +54,15 @@ def read_corpus(path: Union[str, os.PathLike[str]], kind: str = "speech") -> Lis
     return with_sources(path, episodes)
 
 
-def read_corpora(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech") -> List[List[Episode]]:
+def read_corpora(
+    paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech", *, even_sides: bool = False
+) -> List[List[Episode]]:
     """Reads several corpora as :func:`read_corpus` does, and brings every recording's mean and scale, channel by
-    channel, to those of the first. Includes what every corpus excludes, with a warning."""
+    channel, to those of the first; with `even_sides` those of the mean of both sides of the mouth. Includes what every
+    corpus excludes, with a warning."""
     corpora = with_something_left([read_corpus(path, kind) for path in paths])
+    if even_sides:
+        corpora = [with_even_sides(corpus) for corpus in corpora]
     return brought_together(corpora, PHONE_SETS[kind].silence)
 
 

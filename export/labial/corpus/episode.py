@@ -36,6 +36,7 @@ class Source:
     left_out: FrozenSet[int] = frozenset()  #: channels that are not learnt from
     silences: bool = True  #: whether silences are
     scales: FrozenSet[int] = frozenset()  #: channels whose standard deviation all corpora take from this one
+    stretch: Tuple[float, ...] = ()  #: what each channel's motion was multiplied by to bring talkers together; (): 1
 
 
 @dataclass(frozen=True)

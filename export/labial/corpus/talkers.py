@@ -188,7 +188,8 @@ def _brought(
     own_mean, own_deviation = own
     moves = own_deviation > 1e-9
     scale = np.where(moves, deviation / np.where(moves, own_deviation, 1.0), 1.0)
-    return replace(item, frames=mean + (item.frames - own_mean) * scale)
+    source = replace(item.source, stretch=tuple(float(factor) for factor in scale))
+    return replace(item, frames=mean + (item.frames - own_mean) * scale, source=source)
 
 
 def _moments(frames: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:

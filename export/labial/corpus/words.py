@@ -14,7 +14,7 @@ from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optiona
 
 from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read
 from labial.corpus.phonesets import SPEECH
-from labial.errors import LabialError, needs
+from labial.errors import LabialError, apt, missing, needs
 
 #: The language of the library's tables.
 ENGLISH = "en"
@@ -161,7 +161,7 @@ def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
         return []
     program = shutil.which("espeak-ng")
     if program is None:
-        raise LabialError(f"the language {language!r:.40} needs espeak-ng: install the program of that name")
+        raise missing(f"the language {language!r:.40}", "espeak-ng", apt("espeak-ng"))
     if not re.fullmatch(r"[a-z][\w+-]*(?:/[\w+-]+)*", language):
         raise LabialError(f"{language!r:.40} is no language of espeak-ng")
     lines = _ipa(program, words, language)

@@ -1,7 +1,8 @@
 """Compares an exported model, run by the C library, with the reference, within the limits below.
 
 A model of the published method is compared with that method, unit by unit. The device differs from it by design: it
-must equal the reference on its own tables; the distance from the published method is reported, not judged.
+must equal the reference on its own tables; the distance from the published method is reported, not judged. A library
+that is built to the letter (LABIAL_METHOD of lib/CMakeLists.txt) must equal the published method on its own tables.
 """
 
 from __future__ import annotations
@@ -13,17 +14,21 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from labial.core.library import method
+from labial.errors import ModelError
 from labial.evaluate.loss import Deviation, channel_extent, deviation
 from labial.files.faps import CHANNELS, FAP_NAMES
+from labial.reference import published
+from labial.reference.fade import delivered
 from labial.reference.stream import synthesise as as_device
-from labial.reference.synthesis import is_published, synthesise
+from labial.reference.synthesis import frames_of, is_published, synthesise
 from labial.reference.tables import ExportedTables
 from labial.runtime.models import Model as DeviceModel
 from labial.runtime.stream import Stream as DeviceStream
+from labial.tables.followers import solved
 from labial.tables.layout import blob
 from labial.tables.model import Model
 from labial.tables.phones import Stream
-from labial.tables.protrusion import solved
 from labial.tables.quantise import ExportedModel
 
 #: Against float64 on the same tables, after rounding to whole FAP units.
@@ -90,10 +95,10 @@ def device_model(exported: ExportedModel) -> DeviceModel:
 
 
 def device_frames(exported: ExportedModel, streams: Sequence[Sequence[Tuple[int, int]]]) -> List[np.ndarray]:
-    """The library's frames, (T, 13) int64, of each stream of (phoneme number, milliseconds)."""
+    """The library's frames, (T, 13) int64, of each stream of (phoneme number, milliseconds) alone."""
     model, frames = device_model(exported), []
     for phonemes in streams:
-        with DeviceStream(model) as stream:
+        with DeviceStream(model, exact=True) as stream:
             for number, milliseconds in phonemes:
                 stream.push(number, milliseconds)
             stream.end()
@@ -104,23 +109,34 @@ def device_frames(exported: ExportedModel, streams: Sequence[Sequence[Tuple[int,
 def _of_kept_transitions(model: Model, exported: ExportedModel) -> Model:
     """The model with only its exported transitions; `labial export` reports the loss of dropping the others."""
     kept = np.ones(model.log_transition.shape, dtype=bool)
-    kept[solved(exported.protrusion is not None)] = np.isfinite(exported.dense_transitions())
+    kept[solved(exported.source)] = np.isfinite(exported.dense_transitions())
     return replace(model, log_transition=np.where(kept, model.log_transition, -np.inf))
 
 
 def compare(model: Model, exported: ExportedModel, streams: Sequence[Stream]) -> Comparison:
-    """Runs `streams` through the library and through both references."""
+    """Runs `streams` through the library and through both references. Raises ModelError for a model of Labial's method
+    and a library of the published one."""
+    to_the_letter = method() == "paper"
+    if to_the_letter and not is_published(model):
+        raise ModelError("the run-time is built for the published method (LABIAL_METHOD=paper), and the model is not: "
+                         "train it by --method paper")
     frames = np.concatenate(device_frames(exported, streams))
     tables = ExportedTables(exported)
+    as_built = published.synthesise if to_the_letter else as_device
     ideal = model if is_published(model) else _of_kept_transitions(model, exported)
-    same = np.concatenate([as_device(tables, stream) for stream in streams])
+    same = np.concatenate([as_built(tables, stream) for stream in streams])
     wanted = np.concatenate([synthesise(ideal, stream) for stream in streams])
-    difference = frames - np.floor(same + 0.5)
+    lengths = np.cumsum([frames_of(model, stream) for stream in streams])[:-1]
+
+    def from_rest(motion: np.ndarray) -> np.ndarray:
+        return np.concatenate([delivered(part, exact=True) for part in np.split(motion, lengths)])
+
+    difference = frames - np.floor(from_rest(same) + 0.5)
     return Comparison(
         frames=len(frames),
         tables_largest=np.abs(difference).max(axis=0),
         tables_rms=np.sqrt(np.mean(difference**2, axis=0)),
-        model_rms=np.sqrt(np.mean((frames - wanted) ** 2, axis=0)),
+        model_rms=np.sqrt(np.mean((frames - from_rest(wanted)) ** 2, axis=0)),
         extent=channel_extent(model, wanted),
-        by_design=deviation(model, streams, wanted, same),
+        by_design=deviation(model, streams, wanted, same, as_built),
     )

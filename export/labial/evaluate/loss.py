@@ -4,7 +4,7 @@ method."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Sequence
+from typing import Callable, Optional, Sequence
 
 import numpy as np
 
@@ -13,15 +13,15 @@ from labial.reference.published import path_cost, viterbi
 from labial.reference.stream import aims
 from labial.reference.stream import synthesise as as_device
 from labial.reference.synthesis import is_published, synthesise
-from labial.reference.tables import ExportedTables, FloatTables
+from labial.reference.tables import ExportedTables, FloatTables, Tables
 from labial.reference.trajectory import WINDOW
 from labial.reference.viterbi import block_ends, looked_at
 from labial.tables import emit
 from labial.tables.fixed import COST_SCALE, LEAP, SEARCHED, WEIGHT_MIN, weight_value
+from labial.tables.followers import solved
 from labial.tables.layout import table_bytes
 from labial.tables.model import Model
 from labial.tables.phones import Stream
-from labial.tables.protrusion import solved
 from labial.tables.quantise import ExportedModel
 
 
@@ -30,9 +30,12 @@ class Deviation:
     """The run-time's deviation from the published method by design: RMS over all channels, FAP units."""
 
     total: float  #: on the exported tables
-    trained: float  #: on the float tables
+    trained: float  #: on the float tables; 0 of a library that is built to the letter
 
     def __str__(self) -> str:
+        if not self.trained:
+            return (f"The device differs from the published method by {self.total:.1f} FAP units RMS: it is that "
+                    f"method, and its tables are integers.")
         return (f"The device differs from the published method by {self.total:.1f} FAP units RMS, by design: it "
                 f"decides on states as the frames arrive and solves a window of them, without beginning anew at each "
                 f"unit ({self.trained:.1f} on the trained tables), and its own tables soften the stiffness of states "
@@ -86,22 +89,27 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
     )
 
 
-def deviation(model: Model, streams: Sequence[Stream], published: np.ndarray, found: np.ndarray
-              ) -> Optional[Deviation]:
+def deviation(
+    model: Model,
+    streams: Sequence[Stream],
+    published: np.ndarray,
+    found: np.ndarray,
+    as_built: Callable[[Tables, Stream], np.ndarray] = as_device,
+) -> Optional[Deviation]:
     """The deviation over `streams`, of which `published` (T, 13) is the float model's motion, by the reference of its
-    method, and `found` (T, 13) that of the exported tables, FAP. None for a model that is not of the published method.
-    """
+    method, and `found` (T, 13) that of the exported tables, FAP; `as_built` is the reference
+    of the run-time's method. None for a model that is not of the published method."""
     if not is_published(model):
         return None
     tables = FloatTables(model)
-    trained = np.concatenate([as_device(tables, stream) for stream in streams])
+    trained = np.concatenate([as_built(tables, stream) for stream in streams])
     total, on_trained = (float(np.sqrt(np.mean((motion - published) ** 2))) for motion in (found, trained))
     return Deviation(total, on_trained)
 
 
 def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
     """(1, 13) nats per state by which the exported tables' path is less likely than the best, by the float tables; 0
-    where FAP 17 has no states."""
+    in those that follow others."""
     wanted, _, _ = aims(ideal, stream)
     given, _, ends = aims(tables, stream)
     taken = tables.search(given, ends)
@@ -118,10 +126,10 @@ def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.
     return lost
 
 
-def workspace_bytes(stride: int) -> int:
+def workspace_bytes(stride: int, channels: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
-    progress = 40 + 8 * (WINDOW + 1) + (3 + SEARCHED + 3) // 4 * 4
-    return CHANNELS * progress + (stride * (32 + 2 * CHANNELS) + 3) // 4 * 4
+    progress = 44 + 8 * (WINDOW + 1) + (3 + SEARCHED + 3) // 4 * 4
+    return channels * progress + (stride * (32 + 2 * channels) + 3) // 4 * 4
 
 
 def memory(exported: ExportedModel) -> str:
@@ -130,14 +138,14 @@ def memory(exported: ExportedModel) -> str:
     lines = [f"{'flash, ' + name:<32}{size:>8} bytes" for name, size in tables.items()]
     lines.append(f"{'flash, model':<32}{sum(tables.values()):>8} bytes")
     lines.append(f"{'flash, names, if used':<32}{emit.names_bytes(exported):>8} bytes")
-    lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.search_stride):>8} bytes")
+    lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.search_stride, len(exported.centre)):>8} bytes")
     return "\n".join(lines)
 
 
 def loosened(model: Model, exported: ExportedModel) -> int:
     """States whose delta-delta weight is less of what holds them than trained by more than codes are rounded."""
     trained = model.state_precision[..., 2] / (model.state_precision[..., 0] + model.state_anchor)
-    trained = trained[solved(exported.protrusion is not None)]
+    trained = trained[solved(exported.source)]
     kept = weight_value(exported.state_weight[..., 1]) / weight_value(exported.state_hold)
     return int((kept < 0.85 * trained).sum())
 
@@ -148,7 +156,7 @@ def quantisation(loss: Loss, model: Model, exported: ExportedModel) -> str:
     lines = [f"{title:<32}{'rms':>8}{'max':>8}{'% of range':>12}{'nats per state':>15}"]
     for k, name in enumerate(FAP_NAMES):
         lines.append(f"{name:<32}{loss.rms[k]:>8.3f}{loss.largest[k]:>8.2f}{loss.share[k]:>12.2f}{loss.path[k]:>15.3f}")
-    possible = int(np.isfinite(model.log_transition[solved(exported.protrusion is not None)]).sum())
+    possible = int(np.isfinite(model.log_transition[solved(exported.source)]).sum())
     kept = int(np.isfinite(exported.dense_transitions()).sum())
     lines.append(f"transitions kept: {kept} of {possible}; the state paths lose {loss.path.mean():.3f} nats per state "
                  "on average")

@@ -24,7 +24,7 @@ import soxr
 
 from labial.corpus.phonesets import SPEECH
 from labial.corpus.timings import PathLike
-from labial.errors import LabialError, needs
+from labial.errors import LabialError, apt, missing, needs
 from labial.files.faps import CHANNELS
 from labial.hearing.features import RATE, frames_of
 from labial.hearing.targets import FRAME_MS, closed_pose, durations, frames
@@ -54,7 +54,7 @@ def method(name: str, npm: Optional[PathLike]) -> Callable[[np.ndarray], np.ndar
     package = PACKAGES[name]
     node = shutil.which("node")
     if node is None:
-        raise LabialError(f"{name} needs node: install it (Debian: apt install nodejs)")
+        raise missing(name, "node", apt("nodejs"))
     if npm is None:
         raise LabialError(f"{name} is an npm package: npm install --prefix FOLDER {package}, and then --npm FOLDER")
     modules = Path(npm).resolve() / "node_modules"

@@ -52,7 +52,8 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Ou
     phone_set = PHONE_SETS[options.kind]
     learnt = [corpus[i] for i in split.training]
     training = Training(learnt, phone_set, options.fps, options.seed + split.number, unseen_words=bool(split.words),
-                        added=[corpus[i].episode for i in split.added], talker_variance=options.talker_variance)
+                        added=[] if options.first_corpus_alone else [corpus[i].episode for i in split.added],
+                        talker_variance=options.talker_variance)
     masks = judged_frames([corpus[i] for i in split.test], phone_set, split.words or ())
     judged = [(i, mask) for i, mask in zip(split.test, masks) if mask.any()]
     if not judged:
@@ -90,10 +91,10 @@ def evaluate(
     episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
     engine: Optional[str] = None, progress: bool = True, folder: Optional[Path] = None,
 ) -> List[Outcome]:
-    """All splits of `episodes` in order; Labial's models are trained on `further` ones, too; if the options say so,
-    each of their talkers in turn is left out and judged. The outcomes do not depend on `jobs`, the number of processes,
-    nor on `engine` (:class:`labial.train.workers.Workers`). Finished splits are stored in `folder`, that of the report,
-    and reused from there (:mod:`labial.evaluate.kept`)."""
+    """All splits of `episodes` in order; Labial's models are trained on `further` ones, too, unless the options
+    say otherwise. With `leave_out_talkers` each talker of `further` in turn is left out and judged. The outcomes do not
+    depend on `jobs`, the number of processes, nor on `engine` (:class:`labial.train.workers.Workers`). Finished splits
+    are stored in `folder`, that of the report, and reused from there (:mod:`labial.evaluate.kept`)."""
     phone_set = PHONE_SETS[options.kind]
     corpus = utterances(episodes, phone_set, options.fps)
     first = len(corpus)

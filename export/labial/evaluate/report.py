@@ -79,8 +79,9 @@ units, and the original, are measured at the same frames.""",
 
 _NOTE_TALKERS = """\
 Correlation with the talker who was left out: mean over open_jaw, lower_t_midlip_o, raise_b_midlip_o,
-stretch_l_cornerlip_o and openness, each over all judged frames; then each of these, mean over the talkers. Every
-recording's mean and scale are brought to the first corpus's, those of the talker who is judged too."""
+stretch_l_cornerlip_o and openness, each over all judged frames; the mean of the talkers and its standard error; then
+each of these five, mean over the talkers. Every recording's mean and scale are brought to the first corpus's, those of
+the talker who is judged too."""
 
 _SYNTHETIC = """\
 **Synthetic data.** Nobody laughed: `labial laughter-corpus` computed the motion that all methods are trained on and
@@ -154,13 +155,16 @@ def markdown_table(
 
 
 def talkers_table(outcomes: Sequence[Outcome], methods: Sequence[str]) -> str:
-    """Methods down; the correlation with each talker left out, their mean, and that of each of the LIPS across."""
+    """Methods down; the correlation with each talker left out, their mean and its standard error, and the mean of each
+    of the LIPS across."""
     talkers = [item.split.talker for item in outcomes]
-    rows = [f"| method | {' | '.join([*talkers, 'mean', *LIPS])} |", "|---" * (len(talkers) + len(LIPS) + 2) + "|"]
+    columns = [*talkers, "mean", "standard error", *LIPS]
+    rows = [f"| method | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|"]
     for method in methods:
         each = [item.measures[method]["lips/mean"] for item in outcomes]
+        error = np.std(each, ddof=1) / np.sqrt(len(each)) if len(each) > 1 else np.nan
         apart = [np.mean([item.measures[method][f"lips/{name}"] for item in outcomes]) for name in LIPS]
-        cells = " | ".join(f"{value:.3f}" for value in [*each, np.mean(each), *apart])
+        cells = " | ".join(f"{value:.3f}" for value in [*each, np.mean(each), error, *apart])
         rows.append(f"| {title(method)} | {cells} |")
     return "\n".join(rows)
 
@@ -170,10 +174,10 @@ def _heading(outcomes: Sequence[Outcome], options: Options) -> str:
     first = outcomes[0].split
     if options.leave_out_talkers:
         talkers = ", ".join(f"{item.split.talker} ({len(item.split.test)} episodes)" for item in outcomes)
+        others = "" if options.first_corpus_alone else ", Labial's models on those of the other talkers too"
         return (f"Each talker in turn left out and judged: {talkers}; {len(first.training)} episodes of the first "
-                f"corpus trained on, Labial's models on those of the other talkers too; {frames} frames judged per "
-                f"talker, silence excluded, {options.fps} frames per second. Mean (standard deviation) over the "
-                f"talkers.")
+                f"corpus trained on{others}; {frames} frames judged per talker, silence excluded, {options.fps} frames "
+                f"per second. Mean (standard deviation) over the talkers.")
     part = f"{len(first.training)} episodes trained on, {len(first.test)} held out"
     if options.held_out:
         part += f"; judged on the words {', '.join(sorted(set(options.held_out)))}, which no training episode holds"

@@ -39,6 +39,7 @@ class Options:
     held_out: Tuple[str, ...] = ()
     leave_out_talkers: bool = False  #: in place of random splits
     talker_variance: Optional[float] = None  #: of Labial's models: talkers as random effects
+    first_corpus_alone: bool = False  #: Labial's models learn from the first corpus alone, as all other methods do
     synthetic: bool = False  #: the motion was computed, not recorded; every table and plot says so
 
 

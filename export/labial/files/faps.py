@@ -27,3 +27,6 @@ FAP_COLUMNS = tuple(f"fap{number}" for number in FAP_NUMBERS)
 
 #: Channels of a frame.
 CHANNELS = len(FAP_NUMBERS)
+
+#: Channels of the left and of the right side of the mouth that belong together.
+SIDES = tuple((FAP_NUMBERS.index(left), FAP_NUMBERS.index(left + 1)) for left in (53, 55, 57, 59))

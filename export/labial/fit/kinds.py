@@ -17,7 +17,7 @@ from labial.fit.landmarks import plain
 from labial.fit.solve import FEATURES, Wishes
 
 #: What raises the lower lip further than the jaw carries it while the upper lip stays: f and v. Weight per FAP / 1024.
-_TO_THE_TEETH = {"jaw": 4.3, "lower_lip": -4.3, "upper_lip": 4.3, "offset": -0.25}
+_TO_THE_TEETH = {"jaw": 4.3, "lower_lip": -4.3, "upper_lip": 6.0, "offset": -0.28}
 #: A somewhat open mouth that is not round, in which a tongue shows: TH, DD, kk, nn.
 _TONGUE = {"lower_lip": 1.5, "jaw": -0.8, "push_t_lip": -4.0, "spread": 4.0, "offset": -0.12}
 

@@ -64,12 +64,13 @@ def read_sentences(path: Union[str, os.PathLike[str]] = SENTENCES, laughs: Seque
             begin = timings[-1][2]
         if not timings:
             continue
-        frames = np.asarray(render([(label, round(1000.0 * (end - begin))) for label, begin, end in timings]))
+        lengths = [(label, round(1000.0 * (end - begin))) for label, begin, end in timings]
+        frames = np.asarray(render(lengths, exact=True))
         for label, start, end in timings:
             phonemes.append((label, first + max(int((start - _AROUND) * _FPS), 0),
                              first + min(int((end + _AROUND) * _FPS) + 1, len(frames))))
         parts.append(frames)
         first += len(frames)
     for intensity in laughs:
-        parts.append(np.asarray(render([(f"<laugh:{intensity:g}>", 2000), ("SIL", 200)])))
+        parts.append(np.asarray(render([(f"<laugh:{intensity:g}>", 2000), ("SIL", 200)], exact=True)))
     return Motion(np.concatenate(parts).astype(np.float64), phonemes)

@@ -14,7 +14,7 @@ from typing import Any, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import LabialError
+from labial.errors import LabialError, apt, missing
 
 #: Values of espeak-ng's speak_lib.h.
 _SYNCHRONOUS, _PHONEME_EVENTS, _IPA, _DONT_EXIT = 2, 0x1, 0x2, 0x8000
@@ -144,8 +144,8 @@ def _library() -> Tuple[Any, int]:
     try:
         library = ctypes.CDLL(name)
     except OSError:
-        raise LabialError("there is no espeak-ng: install it (Debian: apt install libespeak-ng1)") from None
+        raise missing("this voice", "espeak-ng", apt("libespeak-ng1")) from None
     rate = int(library.espeak_Initialize(_SYNCHRONOUS, 0, None, _PHONEME_EVENTS | _IPA | _DONT_EXIT))
     if rate <= 0:
-        raise LabialError("espeak-ng finds no data: install it (Debian: apt install espeak-ng-data)")
+        raise missing("espeak-ng", "its data", apt("espeak-ng-data"))
     return library, rate

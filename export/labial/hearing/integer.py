@@ -27,6 +27,7 @@ from labial.hearing.features import (
 )  # fmt: skip
 from labial.hearing.network import SMOOTHING, Heard
 from labial.hearing.quantise import Dense, HearingTables
+from labial.reference.fade import EASE, FADE, NEAR
 
 #: log2 is in 1/256; the level in 1/64 of the sum of the bands' log2.
 LOG = 256
@@ -35,6 +36,9 @@ LEVEL_ONE = 64 * BANDS * LOG
 FIRST_BIN, LAST_BIN = 2, 121
 #: Points of the transform: pairs of samples.
 COUNT = WINDOW // 2
+
+#: The largest difference of samples in silence, the silent frames before a frame that rests, and frames to rest.
+SILENT, SILENT_BEFORE, RESTING = 32, 2, 5
 
 
 def sine_table() -> np.ndarray:
@@ -221,7 +225,13 @@ def poses(tables: HearingTables, head: np.ndarray) -> np.ndarray:
 
 
 def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
-    """Scores (T, C) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end."""
+    """Scores (T, C) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end: what the
+    network tells, under way."""
+    return _heard(tables, sound, rate)[0]
+
+
+def _heard(tables: HearingTables, sound: np.ndarray, rate: int) -> Tuple[Heard, np.ndarray]:
+    """The same, and the poses (T, 13) in Q4."""
     samples = convert(np.asarray(sound), rate)
     count = frames_of(len(samples))
     known = count + SMOOTHING
@@ -231,4 +241,54 @@ def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
     pose = poses(tables, head)
     before = np.concatenate([pose[:1], pose])[:count]
     smooth = (before + 2 * pose[:count] + pose[1:known] + 2) >> 2
-    return Heard(head[:count, : len(tables.classes)], (smooth + 8) >> 4)
+    return Heard(head[:count, : len(tables.classes)], (smooth + 8) >> 4), smooth
+
+
+# ---- Beginning, silence and end -------------------------------------------------------------------------------------
+
+
+def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: bool = False) -> Heard:
+    """The same as a stream delivers it: it fades in from rest, rests in silence and, unless it is to be `exact`, at the
+    end, for which frames are added to the FAPs."""
+    heard, pose = _heard(tables, sound, rate)
+    pose = _faded(_resting(pose, silence(convert(np.asarray(sound), rate)), tables.ahead + SMOOTHING))
+    if len(pose) and not exact and np.abs(pose[-1]).max() > round(16 * NEAR):
+        pose = np.concatenate([pose, pose[-1] + ((-pose[-1] * _eases(EASE, EASE)[:, None] + 8192) >> 14)])
+    return Heard(heard.scores, (pose + 8) >> 4)
+
+
+def silence(samples: np.ndarray) -> np.ndarray:
+    """(T,) bool: which frames of a sound (M,) at 16 kHz are silent, by either half's span."""
+    count = frames_of(len(samples))
+    halves = np.pad(samples, (0, count * FRAME - len(samples))).reshape(count, HOPS, HOP)
+    result: np.ndarray = (np.ptp(halves, axis=2) <= SILENT).all(axis=1) if count else np.zeros(0, dtype=bool)
+    return result
+
+
+def _resting(pose: np.ndarray, silent: np.ndarray, ahead: int) -> np.ndarray:
+    """Poses (T, 13), Q4, that come to rest where a frame, SILENT_BEFORE before it and `ahead` after it are `silent`
+    (T,), as all are before the first and after the last."""
+    padded = np.concatenate([np.ones(SILENT_BEFORE, dtype=bool), silent, np.ones(ahead, dtype=bool)])
+    span = SILENT_BEFORE + 1 + ahead
+    still = [padded[t : t + span].all() for t in range(len(pose))]
+    eases, rest, shares = [0, *_eases(RESTING, RESTING)], RESTING, []
+    for rests in still:
+        rest = min(rest + 1, RESTING) if rests else max(rest - 1, 0)
+        shares.append(eases[RESTING - rest])
+    result: np.ndarray = (pose * np.array(shares, dtype=np.int64).reshape(-1, 1) + 8192) >> 14
+    return result
+
+
+def _faded(pose: np.ndarray) -> np.ndarray:
+    """Poses (T, 13) that begin at rest."""
+    result = pose.copy()
+    eases = _eases(FADE, FADE + 1)[: len(pose)]
+    result[: len(eases)] = (pose[: len(eases)] * eases[:, None] + 8192) >> 14
+    return result
+
+
+def _eases(count: int, length: int) -> np.ndarray:
+    """(count,) the first steps of a transition of `length` steps, 3 s^2 - 2 s^3, Q14 (``labial_ease``)."""
+    share = (np.arange(1, count + 1) << 14) // length
+    result: np.ndarray = ((share * share >> 14) * ((3 << 14) - 2 * share)) >> 14
+    return result

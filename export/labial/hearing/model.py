@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, BinaryIO, Dict, List, Tuple, Union
 
 import numpy as np
 
 from labial.errors import ModelError
 from labial.files.arrays import ArrayError, array, read_zip, write_model
-from labial.files.faps import CHANNELS
+from labial.files.faps import CHANNELS, SIDES
 from labial.hearing.features import BANDS, HOPS
 from labial.hearing.plans import Memory, Plan
 
@@ -190,3 +190,17 @@ def _texts(data: bytes) -> Dict[str, Any]:
     _expect(isinstance(text["training"], dict), "model.json: training is not an object")
     values = {name: text[name] for name in _TEXT}
     return {**values, "classes": tuple(classes), "memories": tuple(Memory(*row) for row in memories)}
+
+
+def with_even_sides(model: HearingModel) -> HearingModel:
+    """The model with both sides of the mouth at the mean of what it has for each of them, exactly: the mean of two
+    linear outputs is one, which both sides have."""
+    made = {name: getattr(model, name).copy() for name in ("fap_weight", "fap_bias", "fap_mean", "fap_scale", "closed")}
+    scale = made["fap_scale"]
+    for pair in map(list, SIDES):
+        share = scale[pair] / scale[pair].sum()
+        for name in ("fap_weight", "fap_bias"):
+            made[name][pair] = share @ made[name][pair]
+        for name in ("fap_mean", "fap_scale", "closed"):
+            made[name][pair] = made[name][pair].mean()
+    return replace(model, **made)

@@ -45,7 +45,7 @@ def durations(segments: Sequence[Segment], speed: float = 1.0) -> List[Tuple[str
 
 def frames(timings: Sequence[Tuple[str, int]], count: int) -> np.ndarray:
     """(`count`, 13) float32 FAP units: Labial's frames of the bundled model. Silence follows the last phoneme."""
-    rendered = np.array(render([*timings, (SPEECH.silence, FRAME_MS * (count + 1))]), dtype=np.float32)
+    rendered = np.array(render([*timings, (SPEECH.silence, FRAME_MS * (count + 1))], exact=True), dtype=np.float32)
     return rendered.reshape(-1, CHANNELS)[:count]
 
 

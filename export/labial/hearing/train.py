@@ -23,7 +23,7 @@ from labial.hearing.augment import augmented, noises, white
 from labial.hearing.choose import Choice, choose
 from labial.hearing.features import BANDS, FLOOR, HOPS, normalise
 from labial.hearing.learner import Learner, model_of, restore
-from labial.hearing.model import HearingModel, save
+from labial.hearing.model import HearingModel, save, with_even_sides
 from labial.hearing.plans import CLASSES, CLOSED, PLANS
 from labial.hearing.prepared import Prepared
 
@@ -186,7 +186,8 @@ def finished(
     del about["attribution"]
 
     def made(edges: Tuple[float, float]) -> HearingModel:
-        return model_of(state.learner, data.mean, data.scale, targets.closed_pose(), edges, options.attribution, about)
+        return with_even_sides(
+            model_of(state.learner, data.mean, data.scale, targets.closed_pose(), edges, options.attribution, about))
 
     choice = choose(made((-1.0, 1.0)), [item.part(held=True) for item in folders], data.shares)
     about["held_out"] = choice.figures()

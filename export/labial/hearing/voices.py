@@ -19,7 +19,7 @@ import numpy as np
 
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import SPEECH
-from labial.errors import LabialError
+from labial.errors import LabialError, apt, missing
 from labial.hearing.espeak import Speaker
 
 #: Seconds after which a program that speaks one text, or all of them, is ended.
@@ -106,7 +106,7 @@ _KINDS: Dict[str, Callable[[str, Sequence[str], float, float], Iterator[Spoken]]
 def _program(name: str) -> str:
     found = shutil.which(name)
     if found is None:
-        raise LabialError(f"there is no {name}: install it (Debian: apt install {name})")
+        raise missing("this voice", name, apt(name))
     return found
 
 

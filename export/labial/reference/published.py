@@ -15,7 +15,7 @@ import numpy as np
 from labial.files.faps import CHANNELS
 from labial.reference import stream
 from labial.reference.stream import targets
-from labial.reference.tables import Equation, FloatTables
+from labial.reference.tables import Equation, Tables
 from labial.reference.units import frame_counts
 
 #: Most frames that are decoded at once, and most that two pieces share.
@@ -74,7 +74,7 @@ def pieces(frames: Sequence[int], boundary: Sequence[bool], least: int = 1) -> L
     return result
 
 
-def synthesise(tables: FloatTables, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False) -> np.ndarray:
+def synthesise(tables: Tables, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds, decoded unit by
     unit, or with `whole` the utterance at once."""
     stream.check(tables, phonemes)
@@ -91,7 +91,7 @@ def synthesise(tables: FloatTables, phonemes: Sequence[Tuple[int, int]], *, whol
     return tables.complete(join(cut, motion))
 
 
-def decode(tables: FloatTables, target: np.ndarray) -> np.ndarray:
+def decode(tables: Tables, target: np.ndarray) -> np.ndarray:
     """(T, C) int64: the most probable state path for targets (T, C), a state for every stride's frames; the search
     sees the target of the middle frame, or of the later of two."""
     seen = target[looked_at(len(target), tables.stride)]

@@ -1,4 +1,5 @@
-"""The whole reference: phonemes and durations in, frames out (``lib/stream.c``)."""
+"""The whole reference: phonemes and durations in, motion out (``lib/stream.c``). How a stream's frames begin and end at
+rest is in :mod:`labial.reference.fade`; what is measured and trained on is motion that is under way."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ from typing import Iterator, Sequence, Tuple
 import numpy as np
 
 from labial.reference import published, stream
+from labial.reference.fade import delivered_in_parts
 from labial.reference.tables import FloatTables
 from labial.reference.units import frame_counts
 from labial.tables.model import Model
@@ -32,14 +33,19 @@ def synthesise(
     return stream.synthesise(FloatTables(model), phonemes, articulation=articulation)
 
 
-def in_parts(
-    model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False, articulation: int = 100
+def delivered(
+    model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False, articulation: int = 100,
+    exact: bool = False
 ) -> Iterator[np.ndarray]:
-    """The frames of :func:`synthesise` in parts (n, 13): for Labial's models as they are computed, else all at once."""
-    if whole or is_published(model):
+    """The motion of :func:`synthesise` as a stream delivers it, in parts (n, 13) as they are computed: it begins at
+    rest and, unless it is to be `exact`, ends there (:mod:`labial.reference.fade`). That of a model of the published
+    method is as it was published, all at once."""
+    if is_published(model):
         yield synthesise(model, phonemes, whole=whole, articulation=articulation)
-    else:
-        yield from stream.in_parts(FloatTables(model), phonemes, articulation=articulation)
+        return
+    parts = (iter([synthesise(model, phonemes, whole=True, articulation=articulation)]) if whole
+             else stream.in_parts(FloatTables(model), phonemes, articulation=articulation))
+    yield from delivered_in_parts(parts, exact)
 
 
 def frames_of(model: Model, phonemes: Sequence[Tuple[int, int]]) -> int:

@@ -2,7 +2,7 @@
 
 Positions are FAP units as float64 with :class:`FloatTables`, integers in 1/16 FAP unit relative to each channel's
 centre with :class:`ExportedTables`; costs are nats or 1/32 nat. Only `to_fap`, `equation` and `complete` leave these
-units. C channels are searched and solved: the 13 of a frame, or 12 where FAP 17 is computed of the corners.
+units. C channels are searched and solved, those of a frame that do not follow others.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Optional, Union
 import numpy as np
 
 from labial.reference.contact import FRAMES, PARTED
-from labial.reference.protrusion import complete, in_integers, interpolated
+from labial.reference.followers import complete, in_integers, interpolated
 from labial.reference.shape import ShapeTables, choose, pairs_beside, shapes
 from labial.reference.viterbi import LAG, Chains, decode, normal_chains
 from labial.tables.fixed import (
@@ -29,8 +29,8 @@ from labial.tables.fixed import (
     weight_value,
     z_cost,
 )
+from labial.tables.followers import solved
 from labial.tables.model import Model
-from labial.tables.protrusion import solved
 from labial.tables.quantise import ExportedModel
 
 
@@ -58,7 +58,7 @@ class FloatTables:
         self.boundary = np.asarray(model.boundary, dtype=bool)
         self.viseme_class = np.asarray(model.viseme_class)
         self.lags = np.asarray(model.kernel_lag, dtype=np.int64)
-        self.solved = solved(len(model.protrusion) > 0)  #: (C,) the channels of a frame
+        self.solved = solved(model.source)  #: (C,) the channels of a frame
         own = self.solved
         self.floor = np.asarray(model.floor)[:, own]  #: (P, C)
         self.contact = np.asarray(model.contact)[:, own]  #: (P, C) bool
@@ -118,9 +118,8 @@ class FloatTables:
     def complete(self, motion: np.ndarray) -> np.ndarray:
         """(T, 13) frames of the motion (T, C) that was solved, FAP."""
         model = self.model
-        if not len(model.protrusion):
-            return motion
-        return complete(motion, lambda corners: interpolated(corners, model.protrusion_range, model.protrusion))
+        return complete(motion, model.source,
+                        lambda corners: interpolated(corners, model.protrusion_range, model.protrusion))
 
     @staticmethod
     def to_fap(positions: np.ndarray) -> np.ndarray:
@@ -142,7 +141,7 @@ class ExportedTables:
         self.viseme_class = exported.viseme_class
         taps = exported.kernels.shape[1]
         self.lags = (np.arange(taps) - exported.kernel_behind) * exported.kernel_stride
-        self.solved = solved(exported.protrusion is not None)
+        self.solved = solved(exported.source)
         self._channel = np.arange(len(self.solved))
         self.floor = exported.floors[exported.floor]
         self.contact = ((exported.contacts[exported.floor][:, None] >> self._channel) & 1).astype(bool)
@@ -235,14 +234,13 @@ class ExportedTables:
     def complete(self, motion: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.complete`; FAP 17 is the library's integers."""
         table = self.exported.protrusion
-        if table is None:
-            return motion
 
         def computed(corners: np.ndarray) -> np.ndarray:
+            assert table is not None
             rounded = np.floor(16.0 * corners + 0.5).astype(np.int64)
             return in_integers(rounded, int(table[0]), int(table[1]), table[2:]) / 16.0
 
-        return complete(motion, computed)
+        return complete(motion, self.exported.source, computed)
 
     def to_fap(self, positions: np.ndarray) -> np.ndarray:
         """Positions in FAP units."""

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import os
+import secrets
 import struct
 from array import array
 from itertools import chain
-from typing import Iterable, List, NamedTuple, Union
+from typing import Iterable, List, NamedTuple, Optional, Union
 
 from labial.core.numbers import whole
 from labial.errors import LabialError
@@ -16,9 +17,11 @@ from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
 
 #: LABIAL_BESIDE_FORMAT and LABIAL_BESIDE_RATE of include/labial/beside.h.
-FORMAT, RATE = 1, 50
+FORMAT, RATE = 2, 50
 #: Most outputs, and frames of a packet.
 MOST = 255
+#: How many sessions there are.
+SESSIONS = 65536
 #: Largest difference of an output's limits for which the toy's sums stay below 2^31.
 SPAN_MAX = 8_000_000
 
@@ -47,10 +50,12 @@ class Beside:
     Args:
         rig: a :class:`labial.Rig` of this connection, the path of a description, or the name of a built-in rig; of 1 to
         255 outputs. frames: of a packet, 1 to 255. repeat: how many frames of the packets before are in each packet
-        once more, for transports that lose messages; with `frames` together at most 255.
+        once more, for transports that lose messages; with `frames` together at most 255. session: 0 to 65535, by which
+        the toy tells these packets from those of the session before; drawn at random without it.
     """
 
-    def __init__(self, rig: Union[Rig, str, os.PathLike[str]], *, frames: int = 10, repeat: int = 0) -> None:
+    def __init__(self, rig: Union[Rig, str, os.PathLike[str]], *, frames: int = 10, repeat: int = 0,
+                 session: Optional[int] = None) -> None:
         self._rig = rig if isinstance(rig, Rig) else Rig(rig)
         self._frames, self._repeat = whole(frames, "a number of frames"), whole(repeat, "a number of repeated frames")
         if self._frames < 1 or self._repeat < 0 or self._frames + self._repeat > MOST:
@@ -61,6 +66,9 @@ class Beside:
             if high - low > SPAN_MAX:
                 raise LabialError(f"{self._rig.name}: the limits of {name} are more than {SPAN_MAX} apart, too far for "
                                   "bytes")
+        self._session = secrets.randbelow(SESSIONS) if session is None else whole(session, "a session")
+        if not 0 <= self._session < SESSIONS:
+            raise LabialError(f"a session is 0 to {SESSIONS - 1}, not {session}")
         self._rest = self._bytes(self._rig.resting)
         self._rows: List[bytes] = []  # those that wait, behind those that are repeated
         self._sent = 0  # of these rows, how many are repeated
@@ -70,6 +78,11 @@ class Beside:
     def rig(self) -> Rig:
         """The rig of this connection."""
         return self._rig
+
+    @property
+    def session(self) -> int:
+        """The number of this session."""
+        return self._session
 
     @property
     def frame(self) -> int:
@@ -146,7 +159,8 @@ class Beside:
         return Packet(first, data)
 
     def _packet(self, cancels: int, first: int, rows: List[bytes]) -> bytes:
-        head = struct.pack("<4BI", FORMAT, cancels, len(self._rig.outputs), len(rows), first & 0xFFFFFFFF)
+        head = struct.pack("<4BIH", FORMAT, cancels, len(self._rig.outputs), len(rows), first & 0xFFFFFFFF,
+                           self._session)
         return b"".join(chain((head, self._rest), rows))
 
 

@@ -58,16 +58,19 @@ class Hearing:
                 show(frame)
 
     Frame k shows the lips in the 20 ms of sound that begin at 20 k ms, and is known :attr:`latency` later. The sound
-    should be speech alone; its level does not matter down to peaks of 1/100 of full scale.
+    should be speech alone; its level does not matter down to peaks of 1/100 of full scale. The face begins and ends at
+    rest, and is there in silence.
 
     Calls from several threads wait for each other, as those of :class:`labial.Stream`. Closing frees the memory.
 
     Args:
         rate: samples per second: 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. channels: 1 or 2, of which
-        the mean is heard. model: the name of a model, "hear_small" or "hear_large".
+        the mean is heard. model: the name of a model, "hear_small" or "hear_large". exact: the end returns the frames
+        of the sound alone, without the 12 in which the face comes to rest.
     """
 
-    def __init__(self, rate: int = 16000, channels: int = 1, *, model: str = "hear_small") -> None:
+    def __init__(self, rate: int = 16000, channels: int = 1, *, model: str = "hear_small",
+                 exact: bool = False) -> None:
         core, names = library(), models()
         if model not in names:
             raise LabialError(f"{model!r} is no model of hearing: {', '.join(names) or 'there is none'}")
@@ -81,6 +84,7 @@ class Hearing:
             raise LabialError(f"a rate of {rate} and {channels} channels are not supported")
         checked(core.ears_init(self._address, core.hearing_model(number), self._rate, self._channels),
                 f"{rate} samples per second, channels: {channels}")
+        checked(core.ears_exact(self._address, bool(exact)))
         self._number = 0  # of the next frame
         self._part = b""  # the beginning of a sample whose end has not come
         self._shown: List[Shown] = []
@@ -107,7 +111,7 @@ class Hearing:
 
     @alone
     def end(self) -> List[Frame]:
-        """No more sound will come: returns the frames that are still to come."""
+        """No more sound will come: returns the frames that are still to come, and the way to rest."""
         self._open()
         self._part = b""
         return self._called(self._library.ears_end, _LAST)

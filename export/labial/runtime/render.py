@@ -22,15 +22,16 @@ _LAUGH = re.compile(r"<laugh(?:[: ]\s*([^\s>]+))?>")
 
 
 def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter: Optional[Model] = None,
-           labels: str = "auto", nearest: bool = False) -> List[Tuple[int, ...]]:
+           labels: str = "auto", nearest: bool = False, exact: bool = False) -> List[Tuple[int, ...]]:
     """All frames of an utterance at once: T tuples of 13 ints, FAP units, ``model.fps`` frames per second.
 
     `timings` are pairs of a phoneme, by label or number, and its milliseconds; the label ``<laugh>`` or ``<laugh:0.7>``
-    is a laugh of that intensity. The other arguments, and the frames, are those of :class:`labial.Stream`.
+    is a laugh of that intensity. The other arguments, and the frames, are those of :class:`labial.Stream`: they begin
+    and end at rest, for which as a rule 12 follow those of the timings unless they are to be `exact`.
     ``numpy.array(frames, "int16")`` makes an array (T, 13) of them. Raises LabialError, with the number of the timing
     from 1, and TypeError for anything but timings.
     """
-    with Stream(model, laughter=laughter, labels=labels, nearest=nearest) as stream:
+    with Stream(model, laughter=laughter, labels=labels, nearest=nearest, exact=exact) as stream:
         for place, timing in enumerate(timings, 1):
             _push(stream, place, timing)
         stream.end()

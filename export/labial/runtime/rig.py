@@ -24,6 +24,23 @@ if TYPE_CHECKING:
 Values = Dict[str, Union[int, float]]
 
 
+def _whole_faps(faps: Iterable[int]) -> array[int]:
+    try:
+        return array("h", faps)
+    except OverflowError:
+        raise LabialError("a FAP is beyond 16 bits") from None
+    except TypeError:
+        raise TypeError("FAPs are whole numbers") from None
+
+
+def one_frame(faps: Iterable[int]) -> array[int]:
+    """The 13 FAPs of a frame as 16-bit integers. Raises LabialError for others than 13, and for FAPs beyond that."""
+    numbers = _whole_faps(faps)
+    if len(numbers) != CHANNELS:
+        raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
+    return numbers
+
+
 class Rig:
     """A rig of one face: servos, blendshapes, or features of a drawn mouth.
 
@@ -111,15 +128,7 @@ class Rig:
         """Applies one frame of 13 FAPs, integers of 16 bits; returns the values. `following` are the FAPs of the frames
         after it, one frame after the other: with them a servo with a `closed` position starts early enough to be closed
         in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream."""
-        try:
-            numbers = array("h", faps)
-            ahead = array("h", following)
-        except OverflowError:
-            raise LabialError("a FAP is beyond 16 bits") from None
-        except TypeError:
-            raise TypeError("FAPs are whole numbers") from None
-        if len(numbers) != CHANNELS:
-            raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
+        numbers, ahead = one_frame(faps), _whole_faps(following)
         if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
             raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
                               "numbers in all")

@@ -16,6 +16,7 @@ from labial.core.library import (
     ERROR_STATE,
     LAUGH_FULL,
     OK,
+    STARVED,
     checked,
     failure,
     library,
@@ -46,7 +47,9 @@ class Stream:
 
     Any number of phonemes can be pushed ahead: those that do not fit into the C library's queue wait here. Iterating
     yields frames as far as the phonemes go; iterate again after pushing more. :meth:`tick` is for programs that follow
-    a clock. Closing frees the memory, as leaving the ``with`` block does; every later call raises StreamError.
+    a clock. The first frames lead from the neutral face to the motion; after :meth:`end` the face comes to rest in 12
+    more frames than the phonemes have, unless it rests already. Closing frees the memory, as leaving the ``with`` block
+    does; every later call raises StreamError.
 
     Calls from several threads wait for each other. A call within a call of the same stream, such as by a signal handler
     that interrupts one, raises StreamError and changes nothing. After a fork the child has a copy of the stream; if
@@ -57,10 +60,11 @@ class Stream:
         laughter: the model of :meth:`laugh`; ``labial.laughter_synthetic`` without it.
         labels: the set of phoneme labels: "auto", "arpabet", "ipa" or "xsampa". nearest: unknown labels move like the
         nearest known ones, instead of raising StreamError.
+        exact: only the frames of the phonemes: the face stays as the last one leaves it, and where phonemes are late.
     """
 
     def __init__(self, model: Optional[Model] = None, *, laughter: Optional[Model] = None, labels: str = "auto",
-                 nearest: bool = False) -> None:
+                 nearest: bool = False, exact: bool = False) -> None:
         first = _a_model(bundled("speech_en") if model is None else model)
         self._laughter = _a_model(bundled("laughter_synthetic") if laughter is None else laughter)
         if not isinstance(labels, str) or labels not in LABELS:
@@ -75,6 +79,7 @@ class Stream:
         self._used = self._fed = 0  # items that the library has, and the place of the last one's model
         self._told = False  # whether the library knows that no more phonemes will come
         self._number = -1  # of the frame that was delivered last
+        self._starved = False
         self._faps = (ctypes.c_int16 * 13)()
         self._place_of_faps = ctypes.addressof(self._faps)
         self._library = library()
@@ -82,6 +87,8 @@ class Stream:
         self._address = ctypes.addressof(self._memory)
         self._current = self._place(first)
         checked(self._library.mouth_init(self._address, first.address), first.name)
+        self._exact = False
+        self.exact = exact
 
     # ---- Input
 
@@ -129,7 +136,7 @@ class Stream:
 
     @alone
     def end(self) -> None:
-        """No more phonemes will come."""
+        """No more phonemes will come: after the frames of the last one the face comes to rest."""
         self._open()
         self._ended = True
 
@@ -145,8 +152,8 @@ class Stream:
 
     @alone
     def restart(self) -> None:
-        """Continues a stream that is done or was cancelled: frame numbers continue, and frames fade in from the last
-        one. Raises StreamError while frames are still to come."""
+        """Continues a stream that has ended or was cancelled: frame numbers continue, and frames fade in from the last
+        one. Raises StreamError while frames of phonemes are still to come."""
         self._open()
         if self._waiting():
             raise failure(ERROR_STATE, "restart")
@@ -182,15 +189,20 @@ class Stream:
     @alone
     def tick(self) -> Optional[Frame]:
         """The next frame or None, once per frame period: None before the first frame (``latency.delay`` ticks), while
-        the stream waits for phonemes, and when it is done. After a wait, catch up by as many extra calls."""
+        the stream waits for phonemes, and when it is done. After a wait, catch up by an extra call for each tick that
+        was :attr:`starved`.
+
+        After five ticks without a frame or a push the face comes to rest in twelve more, unless the stream is exact:
+        these return frames with the number of the missing frame, which it then has itself.
+        """
         self._open()
         self._feed()
         result = checked(self._library.mouth_tick(self._address))
-        self._done = result == DONE
-        if result != OK:
+        self._done, self._starved = result == DONE, result == STARVED
+        self._number += result == OK
+        if not self._library.mouth_moved(self._address):
             return None
-        self._number += 1
-        return Frame(self._number, tuple(self._library.mouth_faps(self._address)[:13]))
+        return Frame(self._number + (result != OK), tuple(self._library.mouth_faps(self._address)[:13]))
 
     @alone
     def drain(self) -> array[int]:
@@ -206,6 +218,23 @@ class Stream:
     def done(self) -> bool:
         """Whether the stream has ended and every frame was delivered, as of the last call for a frame."""
         return self._done
+
+    @property
+    def exact(self) -> bool:
+        """Whether the stream has only the frames of its phonemes; may be set at any time, for later frames."""
+        return self._exact
+
+    @exact.setter
+    @alone
+    def exact(self, exact: bool) -> None:
+        self._open()
+        checked(self._library.mouth_exact(self._address, bool(exact)))
+        self._exact = bool(exact)
+
+    @property
+    def starved(self) -> bool:
+        """Whether the last :meth:`tick` waited for phonemes, after the first frame."""
+        return self._starved
 
     @property
     @alone

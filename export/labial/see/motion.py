@@ -63,12 +63,12 @@ def read_motion(
 def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[str]) -> Motion:
     """The motion of a model (a file, or a bundled one's name) that speaks phoneme timings of any format. Raises
     DataError."""
-    from labial.reference.synthesis import synthesise
+    from labial.reference.synthesis import delivered
     from labial.tables.model import load
     from labial.tables.phones import read_stream
 
     read = load(model)
-    frames = synthesise(read, read_stream(timings, read, labels, source))
+    frames = np.concatenate(list(delivered(read, read_stream(timings, read, labels, source))))
     return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames)
 
 

@@ -13,11 +13,20 @@ from labial import __version__
 from labial.corpus.aliases import LABEL_SETS
 from labial.errors import ModelError
 from labial.files.c import block_comment, check_name, constants_of, rows
-from labial.files.faps import CHANNELS, FAP_NAMES
+from labial.files.faps import FAP_NAMES
 from labial.files.outputs import folder
 from labial.tables.fixed import CONTACT_FRAMES
-from labial.tables.layout import Table, blob, channel_scalars, channel_tables, scalars, shared_tables, table_bytes
-from labial.tables.protrusion import solved
+from labial.tables.followers import solved
+from labial.tables.layout import (
+    Table,
+    blob,
+    channel_scalars,
+    channel_tables,
+    scalars,
+    shared_tables,
+    sources,
+    table_bytes,
+)
 from labial.tables.quantise import FORMAT, ExportedModel
 
 
@@ -77,7 +86,7 @@ extern "C" {{
 #define {upper}_FPS {model.fps}
 #define {upper}_PHONEMES {len(model.phonemes)}
 #define {upper}_STATES {model.transitions.shape[1]}
-#define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({model.search_stride})
+#define {upper}_WORKSPACE_SIZE LABIAL_WORKSPACE_SIZE({model.search_stride}, {len(model.centre)})
 
 /* Phoneme numbers. */
 enum {{
@@ -104,17 +113,17 @@ def source(model: ExportedModel) -> str:
     tables = shared_tables(model)
     parts.append("\n".join(_table(table) for table in tables if len(table.rows)))
     channels = []
-    for k, channel in enumerate(solved(model.protrusion is not None)):
+    for k, channel in enumerate(solved(model.source)):
         own = channel_tables(model, k)
         parts.append(f"\n/* {FAP_NAMES[channel]} */\n" + "".join(_table(table) for table in own))
         *scales, motion, motion2, firm = map(str, channel_scalars(model, k))
         members = [*scales, f"{{ {motion}, {motion2} }}", firm, *(table.name for table in own)]
         channels.append(f"    {{ {', '.join(members)} }}")
-    channels += channels[-1:] * (CHANNELS - len(channels))  # which must be there, and is not used
-    parts.append("\nstatic const labial_channel_t channels[LABIAL_CHANNELS] = {\n" + ",\n".join(channels) + "\n};\n")
+    parts.append(f"\nstatic const labial_channel_t channels[{len(channels)}] = {{\n" + ",\n".join(channels) + "\n};\n")
     counts = [*scalars(model), ("floor_count", len(model.floors) - 1, ""), ("pair_knots", model.pairs.shape[1], ""),
-              ("pair_count", len(model.pair_keys), "")]
+              ("pair_count", len(model.pair_keys), ""), ("channel_count", len(channels), "")]
     members = [f"    {value}, /* {name} */" for name, value, _ in counts]
+    members.append(f"    {{ {', '.join(map(str, sources(model)))} }}, /* sources */")
     members += [f"    {table.name}," if len(table.rows) else f"    NULL, /* {table.name} */" for table in tables]
     parts.append(f"\nconst labial_model_t {model.name} = {{\n" + "\n".join(members) + "\n    channels\n};\n")
     return "".join(parts)

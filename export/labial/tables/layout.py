@@ -14,8 +14,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from labial.errors import ModelError
-from labial.files.faps import CHANNELS
-from labial.tables.protrusion import VALUES
+from labial.tables.followers import FROM_CORNERS, IN_TABLES, VALUES, columns
 from labial.tables.quantise import FORMAT, ExportedModel
 
 
@@ -69,7 +68,6 @@ def shared_tables(model: ExportedModel) -> List[Table]:
         [model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor], axis=1
     )
     components = np.stack([model.cost, model.duration_mean, model.duration_gain], axis=1)
-    last = model.kernels[..., CHANNELS - 1 :]  # of none where FAP 17 is computed
     computed = np.zeros((0, 19), dtype=np.int64) if model.protrusion is None else model.protrusion[None]
     return [
         Table("phonemes", "labial_phoneme_t", "HBBBB", phonemes, "{ %d, %d, %d, %d, %d }"),
@@ -78,7 +76,6 @@ def shared_tables(model: ExportedModel) -> List[Table]:
         _flat("shapes", "int8_t", "b", model.shapes),
         _flat("slopes", "int8_t", "b", model.slopes),
         Table("kernels", "uint32_t", "I", _kernel_words(model.kernels), "0x%08xu"),
-        _flat("last_kernels", "int8_t", "b", last, "kernels"),
         _flat("pair_keys", "uint16_t", "H", model.pair_keys, "pairs"),
         _flat("pairs", "int8_t", "b", model.pairs),
         _flat("floors", "int16_t", "h", model.floors[1:]),  # the first is none at all
@@ -99,9 +96,10 @@ def _contexts(model: ExportedModel) -> Optional[np.ndarray]:
 
 
 def _kernel_words(kernels: np.ndarray) -> np.ndarray:
-    """(P L 3, 1) words of the first twelve channels of kernels (P, L, C), four to a word, each 128 more."""
+    """(P L W, 1) words of kernels (P, L, C), four channels to a word, each 128 more; zeros fill the last."""
     check_fits("kernels", "b", kernels.reshape(-1))
-    biased = kernels[..., : CHANNELS - 1].reshape(-1, 4) + 128
+    filled = np.pad(kernels, [(0, 0), (0, 0), (0, -kernels.shape[-1] % 4)])
+    biased = filled.reshape(-1, 4) + 128
     result: np.ndarray = (biased << np.array([0, 8, 16, 24])).sum(axis=1)[:, None]
     return result
 
@@ -159,13 +157,19 @@ def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
     return values
 
 
+def sources(model: ExportedModel) -> List[int]:
+    """`sources` of ``labial_model_t``."""
+    column = columns(model.source)
+    return [int(of) for of in np.where(column == FROM_CORNERS, IN_TABLES, column)]
+
+
 def table_bytes(model: ExportedModel) -> Dict[str, int]:
     """Flash bytes of each group of tables on a 32-bit target, without names."""
     sizes: Dict[str, int] = {}
     for table in _all_tables(model):
         group = table.group or table.name
         sizes[group] = sizes.get(group, 0) + table.size
-    return {**sizes, "descriptors": 32 * CHANNELS + 72}
+    return {**sizes, "descriptors": 32 * len(model.centre) + 84}
 
 
 def _all_tables(model: ExportedModel) -> List[Table]:
@@ -186,6 +190,7 @@ def blob(model: ExportedModel) -> bytes:
                 | (model.protrusion is not None) << 3)
     _, values, codes = zip(*scalars(model))
     head = struct.pack(f"<{''.join(codes)}BBH", *values, optional, len(model.floors) - 1, len(model.pair_keys))
+    head += bytes([len(model.centre), *sources(model), 0, 0])
     body = head + _packed(shared_tables(model))
     for k in range(len(model.centre)):
         body += struct.pack(f"<{CHANNEL_SCALARS}B", *channel_scalars(model, k), 0) + _packed(channel_tables(model, k))

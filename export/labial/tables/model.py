@@ -19,11 +19,11 @@ from labial.errors import ModelError
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS
 from labial.tables.bundled import model_file
-from labial.tables.protrusion import VALUES
+from labial.tables.followers import FAP_17, FROM_CORNERS, VALUES, every
 
 #: Version of the .npz layout, readable versions, and new names of arrays that were renamed in version 4.
-FORMAT = 4
-_FORMATS = (3, FORMAT)
+FORMAT = 5
+_FORMATS = (3, 4, FORMAT)
 _NAMES_SINCE = {"phoneme_class.npy": "viseme_class.npy", "decode_mean.npy": "emission_mean.npy",
                 "decode_variance.npy": "emission_variance.npy"}
 
@@ -45,12 +45,12 @@ _BOUNDS: Dict[str, Tuple[float, float]] = {
     "pair_key": (0, 65535), "pair_shape": _POSITION, "floor": _POSITION, "contact": (0, 1), "firm": (0, 1e15),
     "emission_mean": _POSITION, "emission_variance": _PRECISION, "state_mean": _POSITION, "state_precision": _PRECISION,
     "state_anchor": (0, 1e15), "log_transition": _LOGARITHM, "log_initial": _LOGARITHM, "protrusion": _POSITION,
-    "protrusion_range": _POSITION,
+    "protrusion_range": _POSITION, "source": (FROM_CORNERS, CHANNELS - 1),
 }  # fmt: skip
 #: Arrays of whole numbers; those that may hold -inf; and those from which others' sizes are taken, with their axes.
-_WHOLE = ("viseme_class", "boundary", "component_count", "kernel_lag", "pair_key", "contact")
-#: What is not there in most files.
-_OPTIONAL = ("protrusion", "protrusion_range")
+_WHOLE = ("viseme_class", "boundary", "component_count", "kernel_lag", "pair_key", "contact", "source")
+#: What is not there in some files.
+_OPTIONAL = ("protrusion", "protrusion_range", "source")
 _MAY_BE_NONE = ("floor", "log_transition", "log_initial")
 _AXES = {"component_count": 1, "kernel_lag": 1, "pair_key": 2, "pair_shape": 3, "log_previous": 2, "log_initial": 2,
          "protrusion": 1}
@@ -97,6 +97,8 @@ class Model:
     protrusion: np.ndarray = field(default_factory=lambda: np.zeros(0))  #: (17,) FAP 17, at even distances over the
     #: range (2,) of the mean of FAP 53 and 54, of which it is computed then and not a channel; else both (0,)
     protrusion_range: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    source: np.ndarray = field(default_factory=every)  #: (13,) int64, the channel of a frame that each one's motion is
+    #: (:mod:`labial.tables.followers`); what other arrays say of one that is not its own source counts for nothing
     aliases: Dict[str, str] = field(default_factory=dict)  #: labels of its own -> label in `phonemes`
     substitutes: Dict[str, str] = field(default_factory=dict)  #: phoneme without samples -> its substitute
     attribution: str = ""  #: attribution that redistribution requires
@@ -144,6 +146,7 @@ def check(model: Model) -> None:
     _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
     _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
     _expect(bool((np.diff(model.protrusion_range) > 0).all()), "protrusion_range does not ascend")
+    _check_source(np.asarray(model.source), computed=len(model.protrusion) > 0)
     lag = np.asarray(model.kernel_lag)
     _expect(len(lag) < 2 or (len(np.unique(np.diff(lag))) == 1 and lag[1] > lag[0]),
             "kernel lags are not evenly spaced and increasing")
@@ -152,6 +155,18 @@ def check(model: Model) -> None:
     for missing, label in model.substitutes.items():
         known = missing in model.phonemes and label in model.phonemes
         _expect(known, f"substitute {missing!r:.40} -> {label!r:.40} is not known")
+
+
+def _check_source(source: np.ndarray, *, computed: bool) -> None:
+    """Raises ModelError unless each channel is its own source, has the motion of one that is, or is FAP 17 of a model
+    that has a table of it."""
+    for channel, of in enumerate(source.tolist()):
+        if of == FROM_CORNERS:
+            _expect(channel == FAP_17, f"source[{channel}]: only FAP 17 can be computed of the corners")
+        else:
+            _expect(source[of] == of, f"source[{channel}] is {of}, a channel that follows another")
+    _expect(computed == (source[FAP_17] == FROM_CORNERS),
+            "source and protrusion contradict each other on whether FAP 17 is computed of the corners")
 
 
 def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
@@ -196,6 +211,7 @@ def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
         "log_initial": (CHANNELS, q),
         "protrusion": (computed,),
         "protrusion_range": (2 if computed else 0,),
+        "source": (CHANNELS,),
     }
 
 
@@ -235,6 +251,8 @@ def load(path: Union[str, os.PathLike[str]]) -> Model:
                     continue
                 _expect(member in members, f"not a labial model: it holds no {member}")
                 values[item.name] = array(item.name, members[member])
+        if "source" not in values and len(values.get("protrusion", ())):  # before format 5
+            values["source"] = np.where(every() == FAP_17, FROM_CORNERS, every())
         return Model(**values)
     except OSError as error:
         raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
@@ -254,7 +272,7 @@ def _texts(data: bytes) -> Dict[str, Any]:
         raise ModelError(f"model.json: not JSON ({problem[:80]})") from None
     _expect(isinstance(text, dict), "model.json: not an object")
     _expect(text.get("format") in _FORMATS, f"format {text.get('format')!r:.40}, but this version of labial reads "
-            f"formats {' and '.join(map(str, _FORMATS))}")
+            f"formats {_FORMATS[0]} to {FORMAT}")
     for name in _TEXT:
         _expect(name in text, f"model.json: no {name}")
     for name in ("kind", "method", "silence", "attribution"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
@@ -29,12 +29,12 @@ from labial.tables.fixed import (
     weight_code_below,
     weight_value,
 )
+from labial.tables.followers import every, integer_range, solved
 from labial.tables.model import Model
 from labial.tables.phones import phone_set
-from labial.tables.protrusion import integer_range, solved
 
 #: Version of the format.
-FORMAT = 5
+FORMAT = 6
 
 #: The library's limits.
 LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
@@ -49,9 +49,8 @@ _DURATION_DEVIATION_MIN = 0.003
 @dataclass(frozen=True)
 class ExportedModel:
     """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, K predecessors, L taps, C
-    channels, 12 of those of a frame where FAP 17 is computed (:func:`labial.tables.protrusion.solved`), else 13; all
-    arrays int64 that fit the C types; `contexts`, `slopes` and `protrusion` are None where the model has no use for
-    them."""
+    channels, those of a frame that are their own `source` (:func:`labial.tables.followers.solved`); all arrays int64
+    that fit the C types; `contexts`, `slopes` and `protrusion` are None where the model has no use for them."""
 
     name: str
     kind: str
@@ -100,6 +99,7 @@ class ExportedModel:
     search_stride: int
     transitions: np.ndarray  #: (C, Q, K), predecessor | cost << 8
     protrusion: Optional[np.ndarray] = None  #: (19,) low, gain and values of ``labial_protrusion_t``
+    source: np.ndarray = field(default_factory=every)  #: (13,) as of :class:`labial.tables.model.Model`
 
     def means(self) -> np.ndarray:
         """(C, Q, 3) the states' means of m, delta and delta-delta, in positions."""
@@ -139,7 +139,7 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
     pairs, pair_scale = _steps(model.pair_shape, 65535, "pair_shape")
     pair_keys = np.asarray(model.pair_key, dtype=np.int64) @ np.array([256, 128, 1])
     order = np.argsort(pair_keys)
-    channels = solved(len(model.protrusion) > 0)
+    channels = solved(model.source)
     floor, floors, contacts = _floors(model, centre, channels)
     positions = _positions(
         model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
@@ -196,6 +196,7 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
         search_stride=model.search_stride,
         transitions=_transitions(model, predecessors),
         protrusion=_protrusion(model),
+        source=np.asarray(model.source),
     )
     own: Dict[str, Any] = {member: np.take(getattr(exported, member), channels, axis=axis)
                            for member, axis in _AXIS_OF_CHANNELS.items() if getattr(exported, member) is not None}

@@ -15,12 +15,14 @@ from threadpoolctl import threadpool_limits
 
 from labial.corpus.episode import Episode
 from labial.corpus.phonesets import PHONE_SETS
+from labial.corpus.sides import with_even_sides
 from labial.corpus.talkers import brought_to
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.reference.contact import FRAMES
 from labial.reference.shape import ShapeTables, choose
 from labial.tables.amplitude import mean_pose, widened
+from labial.tables.followers import is_symmetric
 from labial.tables.model import Model
 from labial.train.kernels import Kernels, Regression, code_of, columns_alike, targets_without_floors
 from labial.train.recordings import Recording, occurrences, recordings, with_pauses_cut
@@ -71,6 +73,8 @@ def _material(model: Model, corpus: Sequence[Episode], about: Dict[str, np.ndarr
     talkers = sorted({item.source.talker for item in corpus})
     if len(talkers) > 1:
         raise LabialError(f"a model is adapted to one talker, but there are {', '.join(talkers)}")
+    if is_symmetric(model.source):
+        corpus = with_even_sides(corpus)
     scaled = brought_to(corpus, phone_set.silence, mean_pose(model), about["deviation"])
     silence, ahead = phone_set.phonemes.index(phone_set.silence), max(int(model.kernel_lag.max(initial=0)), FRAMES)
     return [counted_once(with_pauses_cut(item, silence, ahead, model.fps))
@@ -81,7 +85,7 @@ def _deviation(
     model: Model, material: List[Recording], about: Dict[str, np.ndarray], order: np.ndarray
 ) -> Kernels:
     """The deviation to add to the model, with pairs in ascending `order` (R,)."""
-    plain = widened(model, 1.0 / about["gain"], about["middle"])
+    plain = widened(model, 1.0 / about["gain"], about["middle"], contacts=False)
     silence = model.phonemes.index(model.silence)
     key = model.pair_key[order]
     tables = ShapeTables(**{name: getattr(plain, name) for name in ShapeTables.__dataclass_fields__})

@@ -6,11 +6,11 @@ goes far in a few phonemes, in which widening about the mean would exceed human 
 
 from __future__ import annotations
 
-from typing import List, Sequence, Tuple
+from typing import Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
-from labial.files.faps import FAP_NUMBERS
+from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
 from labial.tables.amplitude import widened
@@ -24,8 +24,15 @@ from labial.train.workers import Workers
 AMPLITUDE = 0.84
 CORNERS = 0.86
 
-#: The same where talkers are random effects: what they share rounds and spreads the lips less than each of them does.
-SHARED_CORNERS = 0.95
+#: The same where talkers are random effects: the mean over talkers, each in his own units and on his own phonemes.
+SHARED = 1.0
+
+#: So many frames tell half of what a talker's recordings can tell of the scale that talkers share.
+HALF = 500.0
+
+#: Episodes of a talker for measuring it, and the range of gains where talkers are random effects.
+OF_TALKER = 25
+SHARED_GAINS = (0.25, 6.0)
 
 #: Episodes for measuring it.
 EPISODES = 160
@@ -38,11 +45,11 @@ LARGEST_GAIN = 3.0
 
 
 def gains(
-    model: Model, material: Sequence[Recording], workers: Workers, corners: float = CORNERS
+    model: Model, material: Sequence[Recording], workers: Workers
 ) -> Tuple[np.ndarray, np.ndarray]:
     """The gain of each channel (13,), with which the model's motion outside silence reaches AMPLITUDE, in the corners
-    `corners`, and the pose (13,), FAP, about which it is to be widened."""
-    goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), corners, AMPLITUDE)
+    CORNERS, and the pose (13,), FAP, about which it is to be widened."""
+    goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS, AMPLITUDE)
     items = chosen(material)
     silence = model.phonemes.index(model.silence)
     sounding = np.concatenate([item.phoneme_at() != silence for item in items])
@@ -60,6 +67,56 @@ def gains(
         wanted = np.clip(gain * goal / np.maximum(reached, 1e-9), 1.0, LARGEST_GAIN)
         gain = np.where(taught, wanted, 1.0)
     return gain, middle
+
+
+def shared_gains(
+    model: Model, material: Sequence[Recording], workers: Workers, counts: Mapping[str, float]
+) -> Tuple[np.ndarray, np.ndarray]:
+    """The gain of each channel (13,) with which the model moves SHARED times as far as talkers do, and the pose (13,),
+    FAP, about which it is to be widened. How far is the standard deviation within utterances, outside silence; the
+    model's on a talker's phonemes is divided by his own in his own units, and the quotients' geometric mean is taken
+    over talkers, who count by `counts` and, the less there is of them, the less."""
+    silence = model.phonemes.index(model.silence)
+    items: List[Recording] = []
+    for talker in dict.fromkeys(item.talker for item in material):
+        own = [item for item in material if item.talker == talker]
+        items += [own[i] for i in np.unique(np.linspace(0, len(own) - 1, min(len(own), OF_TALKER)).round().astype(int))]
+    names = [item.talker for item in items]
+    learnt = [(item.phoneme_at() != silence)[:, None] & (item.weights > 0) for item in items]
+    frames, every = np.concatenate([item.frames for item in items]), np.concatenate(learnt)
+    middle = np.array([np.mean(np.percentile(values[of], RANGE)) if of.any() else 0.0
+                       for values, of in zip(frames.T, every.T)])
+    human = within([item.frames * item.own_scale for item in items], learnt, names)
+    gain = np.ones(CHANNELS)
+    for _ in range(3):  # states and floors reduce the effect of a gain, so that one step is not enough
+        current = widened(model, gain, middle, contacts=False)
+        motion = workers.run("amplitude", motion_of, [(current, item) for item in items])
+        made = within(motion, learnt, names)
+        total = np.zeros(CHANNELS)
+        weight = np.zeros(CHANNELS)
+        for talker, (of_human, amount) in human.items():
+            shown = np.maximum(made[talker][0], 1e-9) / np.maximum(of_human, 1e-9)
+            weighs = np.where(of_human > 0, counts[talker] * amount / (amount + HALF), 0.0)
+            total += weighs * np.log(np.clip(shown, 0.05, 20.0))
+            weight += weighs
+        reached = np.exp(total / np.maximum(weight, 1e-9))
+        gain = np.where(weight > 0, np.clip(gain * SHARED / reached, *SHARED_GAINS), 1.0)
+    return gain, middle
+
+
+def within(
+    motion: Sequence[np.ndarray], learnt: Sequence[np.ndarray], names: Sequence[str]
+) -> Dict[str, Tuple[np.ndarray, np.ndarray]]:
+    """By talker, the standard deviations (13,) of his utterances' motion (T, 13) about their means, of the values that
+    `learnt` (T, 13) selects, and how many (13,) they are."""
+    squares: Dict[str, np.ndarray] = {}
+    amounts: Dict[str, np.ndarray] = {}
+    for frames, of, name in zip(motion, learnt, names):
+        count = of.sum(axis=0)
+        mean = (frames * of).sum(axis=0) / np.maximum(count, 1)
+        squares[name] = squares.get(name, 0.0) + (((frames - mean) * of) ** 2).sum(axis=0)
+        amounts[name] = amounts.get(name, 0.0) + count
+    return {name: (np.sqrt(squares[name] / np.maximum(amounts[name], 1)), amounts[name]) for name in squares}
 
 
 def deviation_of(frames: np.ndarray, learnt: np.ndarray) -> np.ndarray:

@@ -11,19 +11,21 @@ from threadpoolctl import threadpool_limits
 from labial.corpus.apex import told
 from labial.corpus.episode import Episode
 from labial.corpus.phonesets import PHONE_SETS, PhoneSet
+from labial.corpus.sides import with_even_sides
 from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_COLUMNS
 from labial.reference.contact import FRAMES, raised
 from labial.reference.shape import ShapeTables, choose
 from labial.tables.amplitude import widened
+from labial.tables.followers import FAP_17, columns, every, mirrored, solved
 from labial.tables.model import Model
 from labial.tables.quantise import LIMITS
 from labial.train.adapt import about_talkers
 from labial.train.closures import FIRMNESS, floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.context import fit_context
-from labial.train.expression import CORNERS, SHARED_CORNERS, deviation_of, gains
+from labial.train.expression import deviation_of, gains, shared_gains
 from labial.train.kernels import (
     PAIR_KNOTS,
     REACH,
@@ -63,6 +65,17 @@ class _Setting:
     penalties: Penalties
     scales: Scales
     talker_variance: Optional[float]  #: variance of talkers as random effects; None: talkers are not distinguished
+    symmetric: bool  #: whether both sides of the mouth move alike
+
+    @property
+    def source(self) -> np.ndarray:
+        """(13,) int64: the model's, as long as FAP 17 is a channel."""
+        return mirrored() if self.symmetric else every()
+
+    @property
+    def computing(self) -> bool:
+        """Whether FAP 17 is to be computed of the corners if it can be."""
+        return self.talker_variance is not None or self.tracking
 
     @property
     def tracking(self) -> bool:
@@ -179,6 +192,7 @@ def _stretches(
 def _setting(
     kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], seed: int, look_ahead: float,
     search_stride: int, divide: Division, normalise: bool, talker_variance: Optional[float] = None,
+    symmetric: bool = True,
 ) -> _Setting:
     if kind not in KINDS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
@@ -201,7 +215,7 @@ def _setting(
     talker_variance = talker_variance if extended else None
     return _Setting(PHONE_SETS[kind], extended, fps, codebook, components, seed, look_ahead,
                     search_stride if extended else 1, divide, extended or normalise, penalties_of(talker_variance),
-                    SCALES if kind == "laughter" else Scales(), talker_variance)
+                    SCALES if kind == "laughter" else Scales(), talker_variance, symmetric and extended)
 
 
 def check_options(*, kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], jobs: int,
@@ -299,31 +313,45 @@ def _fit_shapes(
 def _fit_states(
     setting: _Setting, material: Sequence[Recording], shaped: _Shapes, workers: Workers
 ) -> StateTables:
-    """Codebooks, and beyond the published method states matched to what is decoded from the targets."""
+    """Codebooks, and beyond the published method states matched to what is decoded from the targets. Those of channels
+    that follow others are theirs."""
+    own = solved(setting.source)
+    if setting.computing:  # FAP 17 takes no turn
+        own = np.concatenate([own[own != FAP_17], [FAP_17]])
+    states = _fit_solved(setting, material, shaped, workers, own)
+    place = np.argsort(own)[columns(setting.source)]
+    tables = {name: getattr(states, name)[place] for name in StateTables.__dataclass_fields__ if name != "stride"}
+    return replace(states, **tables)
+
+
+def _fit_solved(
+    setting: _Setting, material: Sequence[Recording], shaped: _Shapes, workers: Workers, own: np.ndarray
+) -> StateTables:
+    """The states of the channels `own` (C,), in the order in which they take turns in the run-time."""
     starts = [_unit_starts(item, setting.boundary) for item in material]
-    targets = shaped.targets
-    if targets is not None and setting.tracking:
-        aimed = [replace(item, frames=target) for item, target in zip(material, targets)]
+    if shaped.targets is not None and setting.tracking:
+        aimed = [replace(item, frames=target) for item, target in zip(material, shaped.targets)]
         chains = [ChannelTask(motion, _stretches(aimed, starts, c)[0], begins, setting.codebook, setting.stride,
                               setting.divide)
-                  for c in range(CHANNELS) for motion, begins in [_stretches(material, starts, c)]]
+                  for c in own for motion, begins in [_stretches(material, starts, c)]]
         states = chain_tables(workers.run("codebooks", chain, chains), setting.stride)
     else:
         motion = [(*_stretches(material, starts, c), setting.codebook, setting.stride, setting.divide,
-                   setting.normalised) for c in range(CHANNELS)]
+                   setting.normalised) for c in own]
         states = codebook_tables(workers.run("codebooks", _channel, motion), setting.stride)
-    if targets is None:
+    if shaped.targets is None:
         return states
+    targets = [target[:, own] for target in shaped.targets]
     ends = [_unit_ends(item, setting.boundary) for item in material]
     batches = [slice(first, first + BATCH) for first in range(0, len(material), BATCH)]
     decoded = workers.run("matched states", _decode, [(targets[batch], ends[batch], states) for batch in batches])
     counts = [item.rest == 0 if shaped.contact[setting.silence].any() else np.ones(len(item.frames), dtype=bool)
               for item in material]  # not where targets rest and people part their lips
-    weights = [np.broadcast_to(1.0 * of[:, None], item.frames.shape) if item.weight is None  # without memory for each
-               else item.weight * of[:, None] for of, item in zip(counts, material)]
+    weights = [np.broadcast_to(1.0 * of[:, None], (len(of), len(own))) if item.weight is None  # without memory for each
+               else item.weight[:, own] * of[:, None] for of, item in zip(counts, material)]
     paths = [path for batch in decoded for path in batch]
     match = balance_states if setting.tracking else match_states
-    return match(states, paths, targets, [item.frames for item in material], weights, setting.scales)
+    return match(states, paths, targets, [item.frames[:, own] for item in material], weights, setting.scales)
 
 
 def _training(
@@ -353,7 +381,7 @@ def _model(
 ) -> Model:
     phone_set, kernels, tables = setting.phone_set, shaped.kernels, shaped.kernels.tables
     hold = np.median(states.state_precision[..., 0] + states.state_anchor, axis=1)
-    return Model(
+    model = Model(
         kind=phone_set.kind,
         method="labial" if setting.extended else "paper",
         fps=setting.fps,
@@ -390,6 +418,9 @@ def _model(
         attribution=attribution,
         training=training,
     )
+    same = {name: getattr(model, name)[..., setting.source]  # but for rounding, where both sides learnt the same
+            for name in ("shape", "slope", "kernel", "pair_shape", "floor", "contact", "firm")}
+    return replace(model, **same, source=setting.source)
 
 
 def train(
@@ -410,6 +441,7 @@ def train(
     divide: Division = lbg,
     normalise: bool = False,
     talker_variance: Optional[float] = None,
+    symmetric: bool = True,
 ) -> Model:
     """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
 
@@ -418,17 +450,20 @@ def train(
     temporal kernels reach into what follows, seconds; less makes a stream's frames earlier. `search_stride` is how many
     frames share a state of the decoded path. The published method has neither; its features are clustered as they are,
     unless `normalise` divides each by its standard deviation, as Labial's always are. `talker_variance` makes talkers
-    random effects (:mod:`labial.train.talkers`), in place of their corpora's weights. `divide` computes the codebooks'
-    cells; with more than one job it must be a module-level function. `attribution` is stored in the model:
+    random effects (:mod:`labial.train.talkers`), in place of their corpora's weights. `symmetric` is that both sides of
+    the mouth move alike, as the mean of those recorded; the published method learns each side. `divide` computes the
+    codebooks' cells; with more than one job it must be a module-level function. `attribution` is stored in the model:
     redistribution requires it. The same arguments give the same model, whatever `jobs`, the number of processes, and
     `engine` are (:class:`labial.train.workers.Workers`). The model records the substitutes of phonemes
     (:func:`backed_off`), the corpus's counts and all options.
     """
     setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide, normalise,
-                       talker_variance)
+                       talker_variance, symmetric)
     check_jobs(jobs)
     if not corpus:
         raise LabialError("the corpus is empty")
+    if setting.symmetric:
+        corpus = with_even_sides(corpus)
     material, talkers = _material(corpus, setting)
     items = occurrences(material, setting.phone_set)
     counts = np.bincount(items.phoneme[items.learnt], minlength=len(setting.phone_set.phonemes))
@@ -439,13 +474,13 @@ def train(
         model = _model(setting, shaped, states, plan, attribution, _training(setting, material, counts, plan))
         if not setting.extended:
             return model
-        corners = CORNERS if setting.talker_variance is None else SHARED_CORNERS
-        gain, middle = gains(model, material, workers, corners)
+        gain, middle = (gains(model, material, workers) if setting.talker_variance is None
+                        else shared_gains(model, material, workers, talkers))
         if setting.talker_variance is not None:
             about = about_talkers(setting.talker_variance, _deviation(material, setting.silence), gain, middle)
             model = replace(model, training={**model.training, "talkers": about})
-        model = widened(model, gain, middle)
-        return model if setting.talker_variance is None else with_protrusion(model, material, workers)
+        model = widened(model, gain, middle, contacts=setting.talker_variance is None)
+        return with_protrusion(model, material, workers) if setting.computing else model
 
 
 def without_apex(corpus: Sequence[Episode]) -> List[str]:

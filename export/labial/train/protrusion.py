@@ -14,10 +14,9 @@ import numpy as np
 from scipy.optimize import brentq
 from sklearn.isotonic import IsotonicRegression
 
-from labial.files.faps import FAP_NUMBERS
-from labial.reference.protrusion import CORNERS, interpolated
+from labial.reference.followers import interpolated
+from labial.tables.followers import CORNERS, FAP_17, FROM_CORNERS, VALUES
 from labial.tables.model import Model
-from labial.tables.protrusion import VALUES
 from labial.train.expression import AMPLITUDE, chosen, motion_of
 from labial.train.recordings import Recording
 from labial.train.workers import Workers
@@ -30,8 +29,6 @@ RANGE = (0.1, 99.9)
 
 #: How far the table is stretched at most.
 STRETCH = (0.5, 2.0)
-
-_FAP_17 = FAP_NUMBERS.index(17)
 
 
 def table(corners: np.ndarray, protrusion: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -51,21 +48,25 @@ def table(corners: np.ndarray, protrusion: np.ndarray) -> Tuple[np.ndarray, np.n
 
 def with_protrusion(model: Model, material: Sequence[Recording], workers: Workers) -> Model:
     """The model with FAP 17 computed of its corners, or as it is where `material` does not tell how."""
-    needed = [_FAP_17, *CORNERS]
+    needed = [FAP_17, *CORNERS]
     teaching = [item for item in material if (item.weights[:, needed] > 0).all(axis=1).any()]
     frames = [item.frames[(item.weights[:, needed] > 0).all(axis=1)] for item in teaching]
     if not frames:
         return model
     human = np.concatenate(frames)
     mean = human[:, CORNERS].mean(axis=1)
-    if min(mean.std(), human[:, _FAP_17].std()) < 1e-6:
+    if min(mean.std(), human[:, FAP_17].std()) < 1e-6:
         return model
-    ends, values = table(mean, human[:, _FAP_17])
+    ends, values = table(mean, human[:, FAP_17])
     told = interpolated(human[:, CORNERS], ends, values)
-    if not np.corrcoef(told, human[:, _FAP_17])[0, 1] >= LEAST:
+    if not np.corrcoef(told, human[:, FAP_17])[0, 1] >= LEAST:
         return model
     own = _stretched(model, chosen(teaching), workers, ends, values)
-    return model if own is None else replace(model, protrusion=np.round(values, 3), protrusion_range=np.round(own, 3))
+    if own is None:
+        return model
+    source = model.source.copy()
+    source[FAP_17] = FROM_CORNERS
+    return replace(model, protrusion=np.round(values, 3), protrusion_range=np.round(own, 3), source=source)
 
 
 def _stretched(
@@ -74,10 +75,10 @@ def _stretched(
     """The range (2,) over which the model's FAP 17 moves by AMPLITUDE of the recordings', outside silence; it is
     stretched about the mean of the model's corners."""
     silence = model.phonemes.index(model.silence)
-    learnt = np.concatenate([(item.phoneme_at() != silence) & (item.weights[:, _FAP_17] > 0) for item in material])
+    learnt = np.concatenate([(item.phoneme_at() != silence) & (item.weights[:, FAP_17] > 0) for item in material])
     if not learnt.any():
         return None
-    human = np.concatenate([item.frames[:, _FAP_17] for item in material])[learnt]
+    human = np.concatenate([item.frames[:, FAP_17] for item in material])[learnt]
     motion = workers.run("protrusion", motion_of, [(model, item) for item in material])
     made = np.concatenate(motion)[learnt][:, CORNERS]
     middle = made.mean()

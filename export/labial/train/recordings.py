@@ -31,6 +31,12 @@ class Recording:
     weight: Optional[np.ndarray] = None  #: (T, 13) weight of each value; None: 1 everywhere
     resting: Optional[np.ndarray] = None  #: (T,) int64, progress to rest in pauses; None: 0 everywhere
     talker: str = ""
+    stretch: Optional[np.ndarray] = None  #: (13,) what his motion was multiplied by; None: 1
+
+    @property
+    def own_scale(self) -> np.ndarray:
+        """(13,) what brings the motion back to the talker's own scale."""
+        return np.ones(self.frames.shape[1]) if self.stretch is None else 1.0 / np.maximum(self.stretch, 1e-9)
 
     @property
     def rest(self) -> np.ndarray:
@@ -83,6 +89,7 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
                 frames=resampled.motion,
                 weight=_weights(episode.source, np.repeat(phoneme, length) == silence),
                 talker=episode.source.talker,
+                stretch=np.array(episode.source.stretch) if episode.source.stretch else None,
             )
         )
     if not result:

@@ -14,7 +14,6 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
-from labial.files.faps import CHANNELS
 from labial.reference import viterbi
 from labial.train.codebook import VARIANCE_FLOOR, Codebook, features, transitions
 
@@ -41,15 +40,15 @@ class Scales:
 
 @dataclass(frozen=True)
 class StateTables:
-    """The tables of all channels for decoding and for equation 3; see labial.tables.model."""
+    """The tables of C channels for decoding and for equation 3; see labial.tables.model."""
 
-    emission_mean: np.ndarray  #: (13, Q) FAP
-    emission_variance: np.ndarray  #: (13, Q) FAP^2
-    state_mean: np.ndarray  #: (13, Q, 3)
-    state_precision: np.ndarray  #: (13, Q, 3)
-    state_anchor: np.ndarray  #: (13, Q)
-    log_transition: np.ndarray  #: (13, Q, Q)
-    log_initial: np.ndarray  #: (13, Q)
+    emission_mean: np.ndarray  #: (C, Q) FAP
+    emission_variance: np.ndarray  #: (C, Q) FAP^2
+    state_mean: np.ndarray  #: (C, Q, 3)
+    state_precision: np.ndarray  #: (C, Q, 3)
+    state_anchor: np.ndarray  #: (C, Q)
+    log_transition: np.ndarray  #: (C, Q, Q)
+    log_initial: np.ndarray  #: (C, Q)
     stride: int  #: frames from one state of a path to the next
 
 
@@ -70,7 +69,7 @@ def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
 
 
 def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: StateTables) -> List[np.ndarray]:
-    """(T, 13) int64 each: the state paths of utterances as in the run-time, for targets (T, 13) and the frames (T,)
+    """(T, C) int64 each: the state paths of utterances as in the run-time, for targets (T, C) and the frames (T,)
     that end units."""
     hidden = tables.emission_mean, tables.emission_variance, tables.log_transition, tables.log_initial
     return viterbi.decode(viterbi.normal_chains(*hidden), targets, ends, tables.stride)
@@ -111,7 +110,7 @@ def decoded_channel(
     human: Sequence[np.ndarray],
     weights: Sequence[np.ndarray],
 ) -> DecodedChannel:
-    """One channel of decoded paths, targets, human motion and its weights (T, 13); copies are made of this one only."""
+    """One channel of decoded paths, targets, human motion and its weights (T, C); copies are made of this one only."""
     states, target, motion, weight = (np.concatenate([item[:, channel] for item in items])
                                       for items in (paths, targets, human, weights))
     rows = np.concatenate([features(item[:, channel]) for item in human])
@@ -130,13 +129,13 @@ def match_states(
     weights: Sequence[np.ndarray],
     scales: Scales,
 ) -> StateTables:
-    """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, 13) of targets and
-    human motion (T, 13) in FAP, whose values count by `weights` (T, 13). The emissions of the search are unchanged."""
-    size = tables.emission_mean.shape[1]
-    mean = np.empty((CHANNELS, size, 3))
-    variance = np.empty((CHANNELS, size, 3))
-    anchor = np.empty((CHANNELS, size))
-    for channel in range(CHANNELS):
+    """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, C) of targets and
+    human motion (T, C) in FAP, whose values count by `weights` (T, C). The emissions of the search are unchanged."""
+    count, size = tables.emission_mean.shape
+    mean = np.empty((count, size, 3))
+    variance = np.empty((count, size, 3))
+    anchor = np.empty((count, size))
+    for channel in range(count):
         own = decoded_channel(tables, channel, paths, targets, human, weights)
         mean[channel], variance[channel] = own.mean, np.maximum(own.variance, own.floor)
         _, residual = state_moments(own.motion - own.target, own.weight, own.states, np.zeros(size))
@@ -153,7 +152,7 @@ def match_states(
         # paths change in every frame, and codebooks count all pairs that lie a stride apart.
         log_transition=np.stack([
             transitions([item[viterbi.block_ends(len(item), tables.stride, k), k] for item in paths], size)
-            for k in range(CHANNELS)
+            for k in range(count)
         ]),
         log_initial=tables.log_initial,
         stride=tables.stride,
@@ -161,7 +160,7 @@ def match_states(
 
 
 def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Holds (13, Q, 3) precisions and (13, Q) anchors within DYNAMIC_RANGE, channel by channel.
+    """Holds (C, Q, 3) precisions and (C, Q) anchors within DYNAMIC_RANGE, channel by channel.
 
     A frame's diagonal element is static + anchor and at most delta / 2 + 6 delta-delta. Either part of a state is
     scaled down where it exceeds half of DYNAMIC_RANGE times the channel's least static + anchor.

@@ -13,7 +13,6 @@ from typing import List, Sequence
 
 import numpy as np
 
-from labial.files.faps import CHANNELS
 from labial.train.codebook import VARIANCE_FLOOR, Codebook, Division, features, initials, transitions
 from labial.train.states import (
     PRIOR_FRAMES,
@@ -102,10 +101,10 @@ def balance_states(
     With m the mean of a state's human frames, y a human frame and x its target, the anchor has the share b of what
     holds a frame that makes y - m - b (x - m) least in squares; the hold is the inverse of that remainder's variance.
     """
-    size = tables.emission_mean.shape[1]
-    mean, precision = np.empty((CHANNELS, size, 3)), np.empty((CHANNELS, size, 3))
-    anchor = np.empty((CHANNELS, size))
-    for channel in range(CHANNELS):
+    count, size = tables.emission_mean.shape
+    mean, precision = np.empty((count, size, 3)), np.empty((count, size, 3))
+    anchor = np.empty((count, size))
+    for channel in range(count):
         own = decoded_channel(tables, channel, paths, targets, human, weights)
         mean[channel] = own.mean
         held = own.mean[own.states, 0]

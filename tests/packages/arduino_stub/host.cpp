@@ -98,12 +98,13 @@ void HardwareSerial::println(int value)
 
 uint8_t Servo::attach(int pin)
 {
+    printf("attach %lu %d\n", now, pin);
     return (uint8_t)pin;
 }
 
 void Servo::write(int angle)
 {
-    printf("servo %d\n", angle);
+    printf("servo %lu %d\n", now, angle);
 }
 
 void Servo::writeMicroseconds(int pulse)

@@ -1,0 +1,11 @@
+# cmake -P must_fail.cmake COMMAND...: passes if the command does not, or does not end within ten seconds.
+set(command "")
+math(EXPR last "${CMAKE_ARGC} - 1")
+foreach(index RANGE 3 ${last})
+  list(APPEND command "${CMAKE_ARGV${index}}")
+endforeach()
+execute_process(COMMAND ${command} TIMEOUT 10 RESULT_VARIABLE status)
+if(status EQUAL 0)
+  message(FATAL_ERROR "It passed; it had to fail.")
+endif()
+message(STATUS "It failed, as it had to: ${status}")

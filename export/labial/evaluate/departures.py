@@ -1,0 +1,160 @@
+"""Where Labial's method leaves the published one: a trained model with each departure taken back, on held-out data.
+
+    python -m labial.evaluate.departures CORPUS [--kind laughter] [--splits N] [--jobs N] -o TABLE.md
+
+Each departure is taken back alone and nothing is trained again, so that a row tells what the others do without it.
+docs/method.md, Where the default leaves the paper, has the figures.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from labial.corpus import read_corpus
+from labial.corpus.phonesets import PHONE_SETS
+from labial.defaults import FPS, KINDS
+from labial.errors import LabialError
+from labial.evaluate.choices import COLUMNS
+from labial.evaluate.material import Timeline, Utterance, utterances
+from labial.evaluate.measures import Judge, judged_frames
+from labial.evaluate.splits import Split, make_splits
+from labial.evaluate.training import Training
+from labial.files.arguments import positive, seed
+from labial.files.faps import CHANNELS
+from labial.files.outputs import check, writing
+from labial.reference import published, stream
+from labial.reference.tables import FloatTables
+from labial.tables.model import Model
+from labial.train.workers import Workers
+
+
+def _as_the_run_time(model: Model, timeline: Timeline) -> np.ndarray:
+    """(T, 13) FAP, as the device does it."""
+    return stream.synthesise(FloatTables(model), timeline.stream)
+
+
+def _over_all_states(model: Model, timeline: Timeline) -> np.ndarray:
+    """The same, with each unit searched as a whole over all states."""
+    states = model.log_initial.shape[1]
+    return stream.synthesise(FloatTables(model), timeline.stream, lag=max(timeline.frames, 1), searched=states)
+
+
+def _solved_at_once(model: Model, timeline: Timeline) -> np.ndarray:
+    """The same, with equation 3 solved for the whole utterance."""
+    return stream.synthesise(FloatTables(model), timeline.stream, whole=True)
+
+
+def _unit_by_unit(model: Model, timeline: Timeline) -> np.ndarray:
+    """The same, with units that are searched, solved and joined as published."""
+    tables = FloatTables(model)
+    counts = timeline.length.tolist()
+    target, contact, _ = stream.aims(tables, timeline.stream)
+    cut = published.pieces(counts, model.boundary[timeline.phoneme].tolist())
+    motion = []
+    for piece in cut:
+        frames = slice(piece.begin, piece.end)
+        path = published.decode(tables, target[frames])
+        motion.append(published.solve(tables.equation(path, target[frames], contact[frames])))
+    return tables.complete(published.join(cut, motion))
+
+
+def _without_kernels(model: Model) -> Model:
+    return replace(model, kernel=np.zeros((len(model.phonemes), 0, CHANNELS)), kernel_lag=np.zeros(0, dtype=np.int64))
+
+
+def _without_pairs(model: Model) -> Model:
+    return replace(model, pair_key=model.pair_key[:0], pair_shape=model.pair_shape[:0])
+
+
+def _without_contexts(model: Model) -> Model:
+    none = np.zeros((len(model.log_weight), 0))
+    return replace(model, log_previous=none, log_next=none)
+
+
+def _without_floors(model: Model) -> Model:
+    return replace(model, floor=np.full_like(model.floor, -np.inf), contact=np.zeros_like(model.contact))
+
+
+@dataclass(frozen=True)
+class Departure:
+    """A departure and how it is taken back."""
+
+    title: str
+    back: Callable[[Model], Model] = lambda model: model
+    synthesise: Callable[[Model, Timeline], np.ndarray] = _as_the_run_time
+
+
+#: In the order in which a frame passes through them; the first row takes nothing back.
+DEPARTURES = (
+    Departure("nothing: Labial, float64"),
+    Departure("context", _without_contexts),
+    Departure("mean of the components: the best one alone", lambda model: replace(model, soft=False)),
+    Departure("slopes of durations", lambda model: replace(model, slope=np.zeros_like(model.slope))),
+    Departure("pairs", _without_pairs),
+    Departure("temporal kernels", _without_kernels),
+    Departure("floors, contact and rest", _without_floors),
+    Departure("anchors", lambda model: replace(model, state_anchor=np.zeros_like(model.state_anchor))),
+    Departure("search of eight states, decided at once: whole units, all states", synthesise=_over_all_states),
+    Departure("window of the solution: whole utterances", synthesise=_solved_at_once),
+    Departure("continuous operation: units searched, solved and joined as published", synthesise=_unit_by_unit),
+)
+
+
+def run_split(task: Tuple[List[Utterance], Split, str, int]) -> List[Dict[str, float]]:
+    """The measures of every departure on one split, and those of the published method."""
+    corpus, split, kind, first_seed = task
+    phone_set = PHONE_SETS[kind]
+    training = Training([corpus[i] for i in split.training], phone_set, FPS, first_seed + split.number)
+    test = [corpus[i] for i in split.test]
+    judge = Judge(test, judged_frames(test, phone_set, ()), training.scale, phone_set, FPS)
+    model, paper = training.model("labial"), FloatTables(training.model("paper"))
+    motions = [[item.synthesise(item.back(model), one.timeline) for one in test] for item in DEPARTURES]
+    motions.append([published.synthesise(paper, one.timeline.stream) for one in test])
+    return [judge.measure(motion) for motion in motions]
+
+
+def table(outcomes: Sequence[Sequence[Dict[str, float]]]) -> str:
+    """Markdown: departures down, means over the splits across."""
+    rows = ["| taken back | " + " | ".join(name for name, _ in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
+    for index, title in enumerate([item.title for item in DEPARTURES] + ["everything: the published method"]):
+        values = [np.mean([split[index][measure] for split in outcomes]) for _, measure in COLUMNS]
+        rows.append(f"| {title} | " + " | ".join(f"{value:.4f}" if i == 0 else f"{value:.3f}"
+                                                 for i, value in enumerate(values)) + " |")
+    return "\n".join(rows) + "\n"
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    """The command line; see the module."""
+    parser = argparse.ArgumentParser(prog="python -m labial.evaluate.departures", description=__doc__.split("\n")[0])
+    parser.add_argument("corpus", help="a corpus, as for labial train")
+    parser.add_argument("--kind", choices=KINDS, default=KINDS[0])
+    parser.add_argument("--splits", type=positive, default=2, help="random 80/20 splits by episode (2)")
+    parser.add_argument("--seed", type=seed, default=0)
+    parser.add_argument("--jobs", type=positive, default=2, help="splits at a time (2); the result is the same")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="TABLE.md")
+    options = parser.parse_args(arguments)
+    try:
+        check(options.output)
+        corpus = utterances(read_corpus(options.corpus, options.kind), PHONE_SETS[options.kind], FPS)
+        splits = make_splits(corpus, options.splits, options.seed)
+        with Workers(options.jobs, sys.stderr.isatty(), None) as workers:
+            outcomes = workers.run("splits", run_split, [(corpus, split, options.kind, options.seed)
+                                                         for split in splits])
+        text = table(outcomes)
+        with writing(options.output, "utf-8") as out:
+            out.write(text)
+    except (LabialError, OSError) as error:
+        print(f"departures: {error}", file=sys.stderr)
+        return 1
+    print(text, end="")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

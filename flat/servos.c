@@ -1,0 +1,62 @@
+/*
+ * servos.c - faces without structures (servos.h).
+ */
+#include "servos.h"
+
+uint32_t servos_size(unsigned outputs, unsigned ahead)
+{
+    return (uint32_t)(sizeof(servos_t) + LABIAL_FACE_SIZE(outputs, ahead));
+}
+
+int servos_init(servos_t *servos, const labial_rig_output_t *outputs, unsigned count, unsigned ahead)
+{
+    servos->rig.outputs = outputs;
+    servos->rig.count = (uint16_t)count;
+    return labial_face_init(&servos->face, &servos->rig, 50, ahead, (int32_t *)(servos + 1),
+                            LABIAL_FACE_SIZE(count, ahead));
+}
+
+void servos_frame(servos_t *servos, const int16_t *faps)
+{
+    labial_face_frame(&servos->face, 0, faps);
+}
+
+int servos_values(servos_t *servos, const int32_t *wanted)
+{
+    return labial_face_values(&servos->face, wanted);
+}
+
+int servos_tick(servos_t *servos, int32_t *values)
+{
+    return labial_face_tick(&servos->face, values);
+}
+
+int servos_play(servos_t *servos)
+{
+    return labial_face_play(&servos->face);
+}
+
+int servos_skip(servos_t *servos, unsigned count)
+{
+    return labial_face_skip(&servos->face, count);
+}
+
+int servos_cancel(servos_t *servos)
+{
+    return labial_face_cancel(&servos->face);
+}
+
+int servos_soft_start(servos_t *servos, unsigned ticks)
+{
+    return labial_face_soft_start(&servos->face, ticks);
+}
+
+unsigned servos_attached(const servos_t *servos)
+{
+    return labial_face_attached(&servos->face);
+}
+
+int servos_place(servos_t *servos, const int32_t *values)
+{
+    return labial_face_place(&servos->face, values);
+}

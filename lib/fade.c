@@ -1,0 +1,69 @@
+/*
+ * fade.c - the way of a delivered pose to another one (fade.h).
+ */
+#include "fade.h"
+
+#include <string.h>
+
+#include "fixed.h"
+
+unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
+{
+    uint32_t frames;
+    if (milliseconds > LABIAL_DURATION_MAX)
+        milliseconds = LABIAL_DURATION_MAX;
+    frames = labial_quotient(milliseconds * frames_per_second + 999u, 1000u);
+    return (unsigned)(frames < 1u ? 1u : frames < 1000u ? frames : 1000u);
+}
+
+void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)
+{
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        fade->earlier[k] = (int16_t)(goes_on && fade->step == 0 ? fade->pose[k] - fade->earlier[k] : 0);
+        fade->from[k] = fade->pose[k];
+    }
+    fade->step = 1;
+    fade->length = (uint16_t)length;
+}
+
+void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
+{
+    const unsigned step = fade->step, halvings = step < 15u ? step : 15u;
+    const int is_on_way = step > 0 && step < fade->length;
+    const int32_t share = is_on_way ? labial_ease(step, fade->length) : 0;
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const int32_t aim = motion ? motion[k] : 0;
+        if (is_on_way) {
+            const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
+            fade->pose[k] = (int16_t)labial_clamp(from + (((aim - from) * share + 8192) >> 14), INT16_MAX);
+        } else {
+            fade->earlier[k] = fade->pose[k];
+            fade->pose[k] = (int16_t)aim;
+        }
+    }
+    fade->step = (uint16_t)(is_on_way ? step + 1u : 0u);
+}
+
+void labial_fade_stand(labial_fade_t *fade)
+{
+    memcpy(fade->earlier, fade->pose, sizeof fade->earlier);
+    fade->step = 0;
+}
+
+int labial_fade_rests(const labial_fade_t *fade)
+{
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        if (fade->pose[k] > LABIAL_AT_REST || fade->pose[k] < -LABIAL_AT_REST)
+            return 0;
+    return 1;
+}
+
+void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS])
+{
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        faps[k] = (int16_t)((fade->pose[k] + 8) >> 4);
+}

@@ -1,0 +1,37 @@
+/*
+ * fade.h - the way of a delivered pose to another one: to motion that begins anew, or to rest.
+ *
+ * Where e is the way's step of its length, the pose is from + (aim - from) (3 e^2 - 2 e^3), and the aim itself with the
+ * last step. A way to motion begins with a pose that moves: `from` goes on as far as the last frame moved it, half as
+ * far with each frame. A way to rest begins with a pose that stands still, so that it never leads away from rest.
+ */
+#ifndef LABIAL_FADE_H
+#define LABIAL_FADE_H
+
+#include "labial/labial.h"
+
+/* Steps of a way to motion that begins anew: the motion itself is reached with the last one. */
+#define LABIAL_FADE_STEPS 9u
+
+/* A pose is at rest when no channel is farther from the neutral face than this: 8 FAP units, Q4. */
+#define LABIAL_AT_REST 128
+
+/* Frames of an easing over `milliseconds`, rounded up: at least one, and 1,000 at most. */
+unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
+
+/* Begins a way of 1 to 65535 steps from the pose that was delivered last, which goes on moving or stands still. */
+void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on);
+
+/* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. A null pointer is the neutral face. */
+void labial_fade_to(labial_fade_t *fade, const int16_t *motion);
+
+/* The pose that was delivered last stays where it is: no way leads on. */
+void labial_fade_stand(labial_fade_t *fade);
+
+/* Whether the pose that was delivered last is at rest. */
+int labial_fade_rests(const labial_fade_t *fade);
+
+/* That pose in whole FAP units. */
+void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS]);
+
+#endif

@@ -1,0 +1,278 @@
+"""labial.Face: servos that come to rest whatever becomes of their source, as the C library moves them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import zlib
+from pathlib import Path
+from typing import Dict, List, NamedTuple, Optional
+
+import pytest
+
+import labial
+from labial.errors import LabialError
+from packages import SOURCE
+from runtime import needs_runtime
+
+JAW = '[output.jaw]\nfrom = "opening"\nclosed = 1400\nfull = 1900\nslew = 60\nacceleration = 20\n'
+HOLD, EASE = 5, 6
+REST = [0] * 13
+
+
+@pytest.fixture
+def face(tmp_path: Path) -> labial.Face:
+    return face_of(tmp_path, JAW)
+
+
+def face_of(folder: Path, description: str, ahead: int = 0) -> labial.Face:
+    (folder / "face.toml").write_text(description)
+    return labial.Face(str(folder / "face.toml"), ahead=ahead)
+
+
+@needs_runtime
+def test_it_rests_after_its_source(face: labial.Face) -> None:
+    """No pulse changes by more than its limits, whatever the frames do, and the last one is that of rest."""
+    assert face.rests and face.tick() == {"jaw": 1400}
+    wide = [0, 0, 0, 0, -600, *[0] * 8]
+    pulses = [1400, 1400]
+    for frame in [wide] * 20 + [REST] + [wide] * 7:
+        face.frame(frame)
+        assert not face.rests
+        pulses.append(int(face.tick()["jaw"]))
+    late = 0
+    while not face.rests:
+        pulses.append(int(face.tick()["jaw"]))
+        late += 1
+    assert pulses[-1] == 1400 and max(pulses) == 1900 and HOLD + EASE < late < 40
+    steps = [after - before for before, after in zip(pulses, pulses[1:])]
+    assert max(map(abs, steps)) <= 60
+    assert max(abs(after - before) for before, after in zip(steps, steps[1:])) <= 20
+
+
+@needs_runtime
+def test_it_looks_ahead_as_a_rig(tmp_path: Path) -> None:
+    """With every frame in time the values are those of Rig.ahead(), as much later as it looks ahead."""
+    motion = labial.render([("SIL", 100), ("M", 80), ("AA", 200), ("P", 90), ("AY", 180), ("SIL", 300)])
+    face = face_of(tmp_path, JAW, ahead=10)
+    expected = list(labial.Rig(str(tmp_path / "face.toml")).ahead(motion, 10))
+    shown = []
+    for number, row in enumerate([*motion, *[None] * 10]):
+        if row is not None:
+            face.frame(labial.Frame(number, tuple(row)) if number % 2 else row)
+        shown.append(face.tick())
+    assert shown[10:] == expected
+
+
+@needs_runtime
+def test_values_are_limited_too(tmp_path: Path) -> None:
+    face = face_of(tmp_path, JAW.replace("acceleration = 20\n", ""))
+    pulses: List[float] = []
+    for wanted in (1900, 1e300, -math.inf):
+        face.values({"jaw": wanted})
+        pulses.append(face.tick()["jaw"])
+    assert pulses == [1460, 1520, 1460]
+    weights = labial.Face("arkit")
+    weights.values({name: 0.25 for name in weights.rig.outputs})
+    assert set(weights.tick().values()) == {0.25}
+
+
+@needs_runtime
+def test_skip_passes_over_what_is_late(tmp_path: Path) -> None:
+    face = face_of(tmp_path, JAW.replace("slew = 60\nacceleration = 20\n", ""), ahead=5)
+    for wanted in range(1500, 1506):
+        face.values({"jaw": wanted})
+    assert face.tick() == {"jaw": 1500}
+    face.skip()
+    assert face.tick() == {"jaw": 1502}
+    face.skip(2)
+    assert face.tick() == {"jaw": 1505}
+    face.skip(10**9)
+    assert face.tick() == {"jaw": 1505}
+
+
+@needs_runtime
+def test_cancel_drops_what_waits(tmp_path: Path) -> None:
+    face = face_of(tmp_path, JAW, ahead=3)
+    for _ in range(4):
+        face.frame([0, 0, 0, 0, -600, *[0] * 8])
+    face.tick()
+    face.cancel()
+    pulses = [face.tick()["jaw"] for _ in range(30)]
+    assert max(pulses) <= 1460 and pulses[-1] == 1400 and face.rests
+
+
+@needs_runtime
+def test_soft_start_and_place(tmp_path: Path) -> None:
+    face = face_of(tmp_path, JAW + JAW.replace("jaw", "chin"))
+    assert face.attached == ("jaw", "chin")
+    face.soft_start(2)
+    attached = []
+    for _ in range(4):
+        attached.append(face.attached)
+        face.tick()
+    assert attached == [("jaw",), ("jaw",), ("jaw", "chin"), ("jaw", "chin")]
+    face.place({"jaw": 1500, "chin": 1400})
+    assert not face.rests
+    assert face.tick() == {"jaw": 1480, "chin": 1400}
+
+
+@needs_runtime
+def test_what_is_wrong_is_said(face: labial.Face) -> None:
+    """Nothing of it changes the face."""
+    for frame, wrong in (([0] * 12, "13 FAPs, not 12"), ([70000] + [0] * 12, "16 bits")):
+        with pytest.raises(LabialError, match=wrong):
+            face.frame(frame)
+    for values, wrong in (({}, "not none"), ({"jaw": 1, "lip": 2}, "not jaw, lip"),
+                          ({"jaw": math.nan}, "not a number")):
+        with pytest.raises(LabialError, match=wrong):
+            face.values(values)
+        with pytest.raises(LabialError, match=wrong):
+            face.place(values)
+    for ahead in (-1, 1001):
+        with pytest.raises(LabialError, match="0 to 1,000 frames ahead"):
+            labial.Face(face.rig, ahead=ahead)
+    for ticks in (0, 256):
+        with pytest.raises(LabialError, match="1 to 255 ticks"):
+            face.soft_start(ticks)
+    with pytest.raises(TypeError, match="a number of frames is a whole number"):
+        labial.Face(face.rig, ahead=1.5)  # type: ignore[arg-type]
+    assert face.rests and face.tick() == {"jaw": 1400} and "jaw" in repr(face)
+
+
+# ---- The face of the boards, written anew ----------------------------------------------------------------------------
+
+AHEAD, SIGHT = 6, 32
+
+
+class Servo(NamedTuple):
+    """An output of tests/device/face_works.c; weights in 1/4096, the gain in 1/65536."""
+
+    weights: Dict[int, int]
+    invert: bool
+    closed: Optional[int]
+    gain: int
+    neutral: int
+    minimum: int
+    maximum: int
+    slew: int = 0
+    deadband: int = 0
+    acceleration: int = 0
+
+    @property
+    def rest(self) -> int:
+        return self.neutral if self.closed is None else self.closed
+
+    def limited(self, value: int) -> int:
+        return max(self.minimum, min(value, self.maximum))
+
+    def meant(self, faps: List[int]) -> int:
+        move = (sum(weight * faps[place] for place, weight in self.weights.items()) * self.gain + (1 << 27)) >> 28
+        value = self.limited(self.neutral + (-move if self.invert else move))
+        if self.closed is not None:
+            contact = max(0, min(136 + faps[3] + faps[4], 64))
+            value = math.floor(value + (self.closed - value) * contact / 64 + 0.5)
+        return value
+
+    def next(self, last: int, change: int, sight: List[int], deadband: int) -> int:
+        """The value after `last`, which came by `change`, with what is wanted from now on in sight."""
+        if not self.acceleration:
+            wanted = sight[0]
+            if self.closed is not None and self.slew and self.closed in sight:
+                room = self.slew * sight.index(self.closed)
+                wanted = max(self.closed - room, min(wanted, self.closed + room))
+            step = wanted - last if abs(wanted - last) >= deadband else 0
+            return last + (max(-self.slew, min(step, self.slew)) if self.slew else step)
+        speed = min(self.slew, SIGHT * self.acceleration)
+        sign = -1 if last < self.rest else 1
+        least, most = sorted((sign * change - self.acceleration, sign * change + self.acceleration))
+        least, most = max(least, -speed), min(most, speed)
+        step = sign * (sight[0] - last)
+        step = max(least, min(0 if abs(step) < deadband else step, most))
+        while step > least and not self.stops(sign, last, step, sight[:SIGHT], speed):
+            step -= 1
+        while step < most and not self.stops(-sign, last, -step, sight[:SIGHT], speed):
+            step += 1
+        return self.limited(last + sign * step)
+
+    def stops(self, sign: int, value: int, step: int, sight: List[int], speed: int) -> bool:
+        """Whether it can brake from a step so that it is never further, in that direction, than it can still come back
+        from in time for each frame in sight."""
+        value, frames = sign * value, [max(sign * wanted, sign * self.rest) for wanted in sight]
+        rooms = [0]
+        for k in range(len(frames)):
+            rooms.append(rooms[-1] + min(speed, (k + 1) * self.acceleration))
+        for k in itertools.count():
+            value += step
+            first = min(k, len(frames) - 1)
+            if value > min(wanted + rooms[j] for j, wanted in enumerate(frames[first:])):
+                return False
+            if k + 1 >= len(frames) and step <= 0:
+                return True
+            step = max(step - self.acceleration, -speed)
+        raise AssertionError
+
+
+SERVOS = (Servo({3: -4096, 4: -4096}, False, 5600, 2000 * 65536 // 600, 5600, 5600, 7600, slew=240),
+          Servo({4: -4096}, False, 5600, 218453, 5600, 5600, 7600, slew=360, acceleration=120),
+          Servo({0: 3277, 5: 4096, 6: 4096, 11: 4096, 12: 4096}, True, None, 136533, 6000, 5200, 7120, deadband=24))
+
+
+def test_what_boards_move() -> None:
+    """Catches a number in tests/device/face_works.c that the library itself made."""
+    seed, moved, now = 1, bytearray(), 0
+    due = shown_at = None
+    waiting: List[List[int]] = []
+    wanted, values, changes = [servo.rest for servo in SERVOS], [servo.rest for servo in SERVOS], [0, 0, 0]
+    plays, waited, quiet, ticks = False, 0, HOLD + EASE, 0
+
+    def draw(below: int) -> int:
+        nonlocal seed
+        seed = (seed * 1664525 + 1013904223) % 2**32
+        return (seed >> 8) % below
+
+    for call in range(1000):
+        what = draw(60)
+        if what == 0:
+            waiting, waited, quiet = [], 0, max(quiet, HOLD)
+        for _ in range(draw(12) if what == 1 else 0 if what == 2 or call % 250 > 200 else 1):
+            if draw(4):
+                touches, faps = draw(3), [draw(301) - 150 for _ in range(13)]
+                faps[4] = faps[4] - 300 if touches else 0
+                frame = [servo.meant(faps) for servo in SERVOS]
+            else:
+                frame = [servo.limited(5000 + draw(3001)) for servo in SERVOS]
+            waiting = [*waiting, frame][-AHEAD - 1:]
+        now += 15 + draw(11) + (draw(200) if what == 3 else 0)
+        while due is None or now >= due:
+            if shown_at is None or due is None:
+                due, shown_at = now, now - 20
+            due += 20
+            moves = now - shown_at >= 10
+            shown_at = now if moves else shown_at
+            result = 0
+            if waiting and (plays or len(waiting) > AHEAD or waited >= AHEAD):
+                wanted, *waiting = waiting
+                plays, quiet, waited = True, 0, 0
+            else:
+                plays, quiet = False, min(quiet + 1, HOLD + EASE)
+                result, waited = (1, waited + 1) if waiting else (3, 0)
+                if quiet > HOLD:
+                    for k, servo in enumerate(SERVOS):
+                        start = min(wanted[k], values[k], key=lambda value, rest=servo.rest: abs(value - rest))
+                        step = abs(servo.rest - start) // (HOLD + EASE + 1 - quiet)
+                        wanted[k] = start + (step if start < servo.rest else -step)
+            for k, servo in enumerate(SERVOS):
+                rests = quiet == HOLD + EASE or ticks < 10 * (k + 1)
+                sight = [servo.rest] if rests else [wanted[k], *(row[k] for row in waiting if plays)]
+                if moves:
+                    value = servo.next(values[k], changes[k], sight, 0 if rests else servo.deadband)
+                    values[k], changes[k] = value, value - values[k]
+                if result == 3 and (quiet < HOLD + EASE or values[k] != servo.rest or changes[k]):
+                    result = 2
+            ticks += 1
+            moved += bytes([result, *(byte for value in values for byte in (value & 255, value >> 8)),
+                            min(1 + ticks // 10, 3)])
+    device = (SOURCE / "tests" / "device" / "face_works.c").read_text(encoding="utf-8")
+    assert f"#define MOVED {zlib.crc32(moved):#010x}u\n" in device
+    assert {0, 1, 2, 3} == set(moved[::8])
