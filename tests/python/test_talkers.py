@@ -20,7 +20,7 @@ from labial.train import train
 from labial.train.recordings import recordings
 from models import write_episode, write_motion
 from packages import SOURCE
-from test_train import OPTIONS, episode
+from test_train import OPTIONS, episode, symmetric
 
 TOML = """weight = 3
 leave_out = ["fap16", "fap17"]
@@ -190,7 +190,7 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     def write(folder: Path, seeds) -> Path:
         folder.mkdir()
         for seed in seeds:
-            write_episode(folder, replace(episode(seed), name=f"e{seed:02}"))
+            write_episode(folder, replace(symmetric(episode(seed)), name=f"e{seed:02}"))
         return folder
 
     first, second = write(tmp_path / "one", range(12)), write(tmp_path / "two", range(12, 16))

@@ -46,6 +46,13 @@ def episode(seed: int, pause: float = 0.0) -> Episode:
     return Episode(f"e{seed}", times, frames + rng.normal(0, 2, frames.shape), tuple(segments))
 
 
+def symmetric(item: Episode) -> Episode:
+    """The same with both sides of the mouth as the left one moves, which is what `labial` learns unless told otherwise."""
+    frames = item.frames.copy()
+    frames[:, 6::2] = frames[:, 5::2]
+    return replace(item, frames=frames)
+
+
 @pytest.fixture(scope="module")
 def corpus():
     return [episode(seed) for seed in range(24)]

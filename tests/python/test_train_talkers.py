@@ -12,15 +12,18 @@ import pytest
 
 from labial.__main__ import main
 from labial.corpus import Source
+from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
+from labial.tables.followers import solved
 from labial.tables.model import load, save
 from labial.train import adapted, train
+from labial.train.expression import motion_of
 from labial.train.kernels import Penalties, _design, fit_kernels, regression
-from labial.train.recordings import Recording
+from labial.train.recordings import Recording, recordings
 from labial.train.talkers import SHARED, fit_talkers, weights_of
 from packages import SOURCE
 from test_kernels import CLASS, FPS, PHONEMES, choice_of, episode, tables
-from test_train import OPTIONS, motion_error
+from test_train import OPTIONS, motion_error, symmetric
 from test_train import episode as spoken
 
 CORPORA = SOURCE / "export" / "corpora"
@@ -121,7 +124,7 @@ def two_talkers(talkers: str = "xy") -> list:
     result = []
     for number, talker in enumerate(talkers):
         sign = np.random.default_rng(number).choice([1.0, -1.0], 13, p=[0.6, 0.4]) if number else np.ones(13)
-        result += [replace(item, frames=item.frames * sign, source=Source(talker=talker, recording=talker))
+        result += [symmetric(replace(item, frames=item.frames * sign, source=Source(talker=talker, recording=talker)))
                    for item in map(spoken, range(100 * number, 100 * number + 6))]
     return result
 
@@ -144,7 +147,23 @@ def test_a_model_is_adapted_to_a_talker(shared, tmp_path) -> None:
     np.testing.assert_allclose(mixed.pair_shape, mine.pair_shape[order], atol=1e-9)
     np.testing.assert_allclose(mixed.kernel, mine.kernel, atol=1e-9)
     save(mine, tmp_path / "mine.npz")
-    assert load(tmp_path / "mine.npz").training["talkers"] == shared.training["talkers"]
+    kept, before = load(tmp_path / "mine.npz").training["talkers"], shared.training["talkers"]
+    assert all(kept[name] == before[name] for name in ("variance", "deviation", "middle"))
+    again = adapted(mine, own[:4])  # what was learnt of him once is not learnt twice
+    assert motion_error(again, own[4]) < 1.1 * motion_error(mine, own[4])
+
+
+def test_an_adapted_model_moves_as_far_as_its_talker(shared, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Catches the scale of the talkers who taught the shared model, and one that a second widening multiplies.
+    monkeypatch.setattr("labial.train.adapt.HALF", 0.0)  # or seconds of him would count for little
+    own = [item for item in two_talkers() if item.source.talker == "y"]
+    channels = solved(shared.source)
+    for scale in (0.5, 1.5):
+        scaled = [replace(item, frames=item.frames * scale) for item in own]
+        model = adapted(shared, scaled[:4])
+        (human,) = recordings(scaled[5:], SPEECH, FPS)
+        reached = motion_of((model, human))[:, channels].std(axis=0) / human.frames[:, channels].std(axis=0)
+        assert 0.8 < np.median(reached) < 1.25 and 0.6 < reached.min() and reached.max() < 1.7
 
 
 def test_what_cannot_be_adapted_is_refused(shared) -> None:

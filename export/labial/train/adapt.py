@@ -2,7 +2,8 @@
 
 The model is one that was trained with talkers as random effects (:mod:`labial.train.talkers`). Its kernels, shapes,
 slopes and pairs are b; those of the talker are b + u, with u by its posterior mean given his motion and the variance of
-talkers. Everything else of the model, its mixtures, floors and states, stays.
+talkers. How far they move is measured on him anew, in his own units. Everything else of the model, its mixtures, floors
+and states, stays.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from labial.reference.shape import ShapeTables, choose
 from labial.tables.amplitude import mean_pose, widened
 from labial.tables.followers import is_symmetric
 from labial.tables.model import Model
+from labial.train.expression import HALF, shared_gains
 from labial.train.kernels import Kernels, Regression, code_of, columns_alike, targets_without_floors
 from labial.train.recordings import Recording, occurrences, recordings, with_pauses_cut
 from labial.train.talkers import (
@@ -34,6 +36,7 @@ from labial.train.talkers import (
     equations_of,
     penalties_of,
 )
+from labial.train.workers import Workers
 
 #: A model's statistics of its training talkers; (13,) each but the variance.
 KEYS = ("variance", "deviation", "gain", "middle")
@@ -84,12 +87,11 @@ def _material(model: Model, corpus: Sequence[Episode], about: Dict[str, np.ndarr
 def _deviation(
     model: Model, material: List[Recording], about: Dict[str, np.ndarray], order: np.ndarray
 ) -> Kernels:
-    """The deviation to add to the model, with pairs in ascending `order` (R,)."""
-    plain = widened(model, 1.0 / about["gain"], about["middle"], contacts=False)
+    """The deviation to add to the model, which is not widened, with pairs in ascending `order` (R,)."""
     silence = model.phonemes.index(model.silence)
     key = model.pair_key[order]
-    tables = ShapeTables(**{name: getattr(plain, name) for name in ShapeTables.__dataclass_fields__})
-    shared = Kernels(plain.kernel, plain.kernel_lag, tables, key, plain.pair_shape[order])
+    tables = ShapeTables(**{name: getattr(model, name) for name in ShapeTables.__dataclass_fields__})
+    shared = Kernels(model.kernel, model.kernel_lag, tables, key, model.pair_shape[order])
     items = occurrences(material, PHONE_SETS[model.kind])
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
     asked = Regression(
@@ -105,7 +107,17 @@ def _deviation(
     for channels in columns_alike(left):
         if channels[0] in equations:
             own[:, channels] = deviation_of(equations, channels, covariance, zero)
-    return asked.kernels(own * about["gain"], zero[0])
+    return asked.kernels(own, zero[0])
+
+
+def _gain(plain: Model, material: List[Recording], about: Dict[str, np.ndarray]) -> np.ndarray:
+    """The gain (13,) with which the talker's model moves as far as he does: measured on him and, the less there is of
+    him, the nearer to that of the model's talkers."""
+    (talker,) = {item.talker for item in material}
+    with Workers(1, progress=False) as workers:
+        own, _ = shared_gains(plain, material, workers, {talker: 1.0})
+    frames = sum(len(item.frames) for item in material)
+    return np.asarray(about["gain"] * (own / about["gain"]) ** (frames / (frames + HALF)))
 
 
 def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> Model:
@@ -118,15 +130,24 @@ def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> M
     material = _material(model, corpus, about)
     order = np.argsort(code_of(model.pair_key[:, 0], model.pair_key[:, 1], model.pair_key[:, 2], len(model.phonemes)))
     with threadpool_limits(1):  # the same bits for any number of cores
-        own = _deviation(model, material, about, order)
-    back = np.argsort(order)
+        plain = widened(model, 1.0 / about["gain"], about["middle"], contacts=False)
+        own = _deviation(plain, material, about, order)
+        back = np.argsort(order)
+        plain = replace(
+            plain,
+            shape=plain.shape + own.tables.shape,
+            slope=plain.slope + own.tables.slope,
+            kernel=plain.kernel + own.kernel,
+            pair_shape=plain.pair_shape + own.pair_shape[back],
+        )
+        gain = _gain(plain, material, about)
     frames = sum(len(item.frames) for item in material)
     return replace(
-        model,
-        shape=model.shape + own.tables.shape,
-        slope=model.slope + own.tables.slope,
-        kernel=model.kernel + own.kernel,
-        pair_shape=model.pair_shape + own.pair_shape[back],
+        widened(plain, gain, about["middle"], contacts=False),
         attribution=" ".join(filter(None, [model.attribution, attribution])),
-        training={**model.training, "adapted": {"episodes": len(material), "frames": frames}},
+        training={
+            **model.training,
+            "adapted": {"episodes": len(material), "frames": frames},
+            "talkers": {**model.training["talkers"], "gain": gain.tolist()},
+        },
     )
