@@ -21,7 +21,10 @@
 #define TOLERANCE (8.0 + 1.6)
 #define FADED_TOLERANCE (TOLERANCE + 6.0)
 
-static fixture_model_t plain, rich, laugh, slow, computed, computed_slow, mirrored, crossed, narrow;
+static fixture_model_t plain, rich, laugh, slow, computed, computed_slow, mirrored, crossed;
+#if LABIAL_MODELS > 1
+static fixture_model_t narrow;
+#endif
 static fixture_phoneme_t input[COUNT];
 static const labial_model_t *models[2];
 static double wanted[MAX_FRAMES][LABIAL_CHANNELS];

@@ -147,7 +147,7 @@ def test_weights_are_those_of_python(tmp_path: Path) -> None:
     assert all(found["refused"]) and len(found["refused"]) == len(wrong), found["refused"]
     rig = labial.Rig(paths[0])
     faps = [found["faps"][at : at + CHANNELS] for at in range(0, len(found["faps"]), CHANNELS)]
-    assert found["track"] == found["stream"] == [rig.apply(frame) for frame in faps] and len(faps) == 20
+    assert found["track"] == found["stream"] == [rig.apply(frame) for frame in faps] and len(faps) == 20 + 12  # at rest
     assert found["between"] == found["track"][5] and found["names"] == [paths[0].stem, list(rig.outputs)]
 
 
