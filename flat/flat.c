@@ -257,9 +257,9 @@ int mouth_run(mouth_t *mouth, int16_t *out, unsigned count)
 
 /* ---- Laughs ------------------------------------------------------------------------------------------------------ */
 
-int laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
+int laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
 {
-    return labial_laugh_begin(laugh, milliseconds, intensity, seed);
+    return labial_laugh_init(laugh, milliseconds, intensity, seed);
 }
 
 int laugh_next(labial_laugh_t *laugh, uint32_t *out)

@@ -99,7 +99,7 @@ FLAT(mouth_delay) unsigned mouth_delay(const mouth_t *mouth);
 FLAT(mouth_run) int mouth_run(mouth_t *mouth, int16_t *out, unsigned count);
 
 /* A laugh; laugh_next() writes a phoneme and its milliseconds. */
-FLAT(laugh_begin) int laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
+FLAT(laugh_init) int laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
 FLAT(laugh_next) int laugh_next(labial_laugh_t *laugh, uint32_t *out);
 
 FLAT(blend) int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out);

@@ -97,7 +97,7 @@ static unsigned leaf_of(const view_t *view, const uint8_t *node)
 }
 
 /* Changes labels where the word is an exception. */
-static void patch(const labial_words_t *tables, const labial_words_letter_t *letters, unsigned count, uint8_t *labels)
+static void patch(const labial_words_model_t *tables, const labial_words_letter_t *letters, unsigned count, uint8_t *labels)
 {
     const uint8_t *entry, *end;
     uint32_t hash = 2166136261u;
@@ -131,7 +131,7 @@ void labial_words_append(labial_word_t *word, unsigned phoneme, unsigned charact
     added->first = (uint8_t)first;
 }
 
-void labial_words_spell(const labial_words_t *tables, const labial_words_letter_t *letters, unsigned count,
+void labial_words_spell(const labial_words_model_t *tables, const labial_words_letter_t *letters, unsigned count,
                         labial_word_t *word)
 {
     uint8_t labels[LABIAL_WORDS_LETTERS];
@@ -158,7 +158,7 @@ void labial_words_spell(const labial_words_t *tables, const labial_words_letter_
         }
 }
 
-const char *labial_words_label(const labial_words_t *tables, unsigned phoneme)
+const char *labial_words_label(const labial_words_model_t *tables, unsigned phoneme)
 {
     const char *label;
     if (!tables || phoneme >= tables->phoneme_count)

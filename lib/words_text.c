@@ -64,7 +64,7 @@ typedef struct {
 } place_t;
 
 typedef struct {
-    const labial_words_t *tables;
+    const labial_words_model_t *tables;
     labial_word_t *word;
     place_t here;
 } reading_t;
@@ -483,7 +483,7 @@ static void read_sign(reading_t *reading)
     }
 }
 
-int labial_words_read(const labial_words_t *tables, const labial_words_own_t *own, const char *text, size_t size,
+int labial_words_read(const labial_words_model_t *tables, const labial_words_own_t *own, const char *text, size_t size,
                       labial_word_t *word)
 {
     reading_t reading;

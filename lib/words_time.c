@@ -33,12 +33,12 @@ static const uint16_t consonant_factors[] = { 300, 261, 225, 243, 353, 279 };
 
 /* ---- Weights ---------------------------------------------------------------------------------------------------- */
 
-static unsigned class_of(const labial_words_t *tables, const labial_word_t *word, unsigned place)
+static unsigned class_of(const labial_words_model_t *tables, const labial_word_t *word, unsigned place)
 {
     return tables->classes[word->phonemes[place].phoneme];
 }
 
-uint32_t labial_words_weight(const labial_words_t *tables, const labial_word_t *word, unsigned place, unsigned pause)
+uint32_t labial_words_weight(const labial_words_model_t *tables, const labial_word_t *word, unsigned place, unsigned pause)
 {
     const unsigned own = class_of(tables, word, place);
     unsigned first = place, end = place + 1u, before = NONE, after = NONE, vowel_count = 0, vowels_left = 0,
@@ -78,7 +78,7 @@ uint32_t labial_words_weight(const labial_words_t *tables, const labial_word_t *
 }
 
 /* The weights of all phonemes from `first` to before `end`. */
-static uint32_t weigh_words(const labial_words_t *tables, const labial_word_t *word, unsigned first, unsigned end,
+static uint32_t weigh_words(const labial_words_model_t *tables, const labial_word_t *word, unsigned first, unsigned end,
                             unsigned pause)
 {
     uint32_t sum = 0;
@@ -87,7 +87,7 @@ static uint32_t weigh_words(const labial_words_t *tables, const labial_word_t *w
     return sum;
 }
 
-uint32_t labial_words_length(const labial_words_t *tables, const labial_word_t *word)
+uint32_t labial_words_length(const labial_words_model_t *tables, const labial_word_t *word)
 {
     if (!tables || !word)
         return 0;
@@ -117,7 +117,7 @@ static int are_equal(uint32_t start, const uint32_t *ends, unsigned count)
 
 /* Where the characters of each phoneme end: those of a character share its time, and characters without a phoneme
  * belong to the one before. */
-static void reach_characters(const labial_words_t *tables, labial_words_span_t *span, const uint32_t *ends)
+static void reach_characters(const labial_words_model_t *tables, labial_words_span_t *span, const uint32_t *ends)
 {
     const labial_word_t *const word = &span->word;
     uint32_t begin = 0;
@@ -141,7 +141,7 @@ static void reach_characters(const labial_words_t *tables, labial_words_span_t *
 
 /* ---- The stream ------------------------------------------------------------------------------------------------- */
 
-int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tables, const labial_words_own_t *own,
+int labial_words_init(labial_words_t *stream, const labial_words_model_t *tables, const labial_words_own_t *own,
                        int32_t offset)
 {
     if (!stream)
@@ -158,14 +158,14 @@ int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tabl
 }
 
 /* A time of the voice with the offset, from 0 to the latest one. */
-static uint32_t shifted(const labial_words_stream_t *stream, uint32_t time)
+static uint32_t shifted(const labial_words_t *stream, uint32_t time)
 {
     const int64_t moved = (int64_t)time + stream->offset;
     return moved < 0 ? 0u : moved > 0xffffffff ? 0xffffffffu : (uint32_t)moved;
 }
 
 /* Begins with the word that waits, up to `limit`, where the next one begins. */
-static void speak(labial_words_stream_t *stream, uint32_t limit)
+static void speak(labial_words_t *stream, uint32_t limit)
 {
     const labial_words_span_t *const span = &stream->spans[stream->held];
     const labial_word_t *const word = &span->word;
@@ -197,7 +197,7 @@ static void speak(labial_words_stream_t *stream, uint32_t limit)
 }
 
 /* Takes a word; with the ends of its characters unless `ends` is null. */
-static int take(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end,
+static int take(labial_words_t *stream, const char *text, size_t size, uint32_t start, uint32_t end,
                 const uint32_t *ends, unsigned count)
 {
     labial_words_span_t *span, *before;
@@ -238,12 +238,12 @@ static int take(labial_words_stream_t *stream, const char *text, size_t size, ui
     return LABIAL_OK;
 }
 
-int labial_words_say(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end)
+int labial_words_push(labial_words_t *stream, const char *text, size_t size, uint32_t start, uint32_t end)
 {
     return take(stream, text, size, start, end, NULL, 0);
 }
 
-int labial_words_say_characters(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start,
+int labial_words_push_characters(labial_words_t *stream, const char *text, size_t size, uint32_t start,
                                 const uint32_t *ends, unsigned count)
 {
     unsigned i;
@@ -257,7 +257,7 @@ int labial_words_say_characters(labial_words_stream_t *stream, const char *text,
     return take(stream, text, size, start, ends[count - 1u], ends, count);
 }
 
-int labial_words_flush(labial_words_stream_t *stream)
+int labial_words_end(labial_words_t *stream)
 {
     if (!stream)
         return LABIAL_ERROR_NULL;
@@ -271,7 +271,7 @@ int labial_words_flush(labial_words_stream_t *stream)
 }
 
 /* When the next phoneme of the word being spoken ends, from the word's beginning on; moves `reached` behind it. */
-static uint32_t boundary(const labial_words_stream_t *stream, uint32_t *reached)
+static uint32_t boundary(const labial_words_t *stream, uint32_t *reached)
 {
     const labial_words_span_t *const span = &stream->spans[stream->held ^ 1u];
     const uint32_t length = stream->until - stream->start;
@@ -289,7 +289,7 @@ static uint32_t boundary(const labial_words_stream_t *stream, uint32_t *reached)
     return end;
 }
 
-int labial_words_next(labial_words_stream_t *stream, unsigned *phoneme, uint32_t *milliseconds)
+int labial_words_next(labial_words_t *stream, unsigned *phoneme, uint32_t *milliseconds)
 {
     uint32_t end, reached = 0;
     if (!stream || !phoneme || !milliseconds)

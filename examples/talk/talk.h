@@ -38,7 +38,7 @@ static const uint8_t talk_bytes[168] LABIAL_PLAYER_FLASH = {
 /* Goes to the beginning. */
 static inline void talk_begin(labial_player_t *player)
 {
-    labial_player_begin(player, talk_bytes, TALK_FRAMES);
+    labial_player_init(player, talk_bytes, TALK_FRAMES);
 }
 
 /* The next frame, every 20 ms, or NULL when the motion is over. */

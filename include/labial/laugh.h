@@ -7,7 +7,7 @@
  *     labial_laugh_t laugh;
  *     unsigned phoneme;
  *     uint32_t milliseconds;
- *     labial_laugh_begin(&laugh, 1800, LABIAL_LAUGH_FULL / 2, seed);
+ *     labial_laugh_init(&laugh, 1800, LABIAL_LAUGH_FULL / 2, seed);
  *     while (labial_laugh_next(&laugh, &phoneme, &milliseconds) == LABIAL_OK)
  *         labial_push(&stream, phoneme, milliseconds);        // while labial_room() > 0
  *
@@ -83,7 +83,7 @@ typedef struct {
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_DURATION.
  */
-int labial_laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
+int labial_laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
 
 /*
  * Yields the next phoneme and its duration, at least 20 ms unless the whole laugh is shorter; together the phonemes

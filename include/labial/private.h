@@ -151,6 +151,12 @@ typedef struct {
     int16_t from[LABIAL_CHANNELS];    /* where the way begins */
 } labial_fade_t;
 
+/* How far the mouth moves (articulation.h), percent. */
+typedef struct {
+    uint8_t wanted;
+    uint8_t present; /* of the latest frame */
+} labial_articulation_t;
+
 #define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
 /* The stream's state (stream.c). Small members come first, where small instructions reach them. */
@@ -162,8 +168,7 @@ typedef struct {
     uint8_t exact;        /* the face rests only after a cancel */
     uint8_t resting;      /* the face is at rest or on its way there: motion fades in from it */
     uint8_t held;         /* ticks without a frame since the last frame or push, up to as many as the face is held */
-    uint8_t wanted;       /* articulation, percent */
-    uint8_t articulation; /* of the latest frame */
+    labial_articulation_t articulation;
     uint32_t frame;       /* number of the next frame */
     uint32_t pending;     /* frames pushed and not yet delivered */
     uint32_t

@@ -2,17 +2,17 @@
  * labial/words.h - English words and their times to phonemes and theirs, for voices that tell when each word or each
  * character is spoken, but not its phonemes. Optional: a program that does not call it links nothing of it.
  *
- *     static labial_words_stream_t words;
+ *     static labial_words_t words;
  *     unsigned phoneme;
  *     uint32_t milliseconds;
  *
- *     labial_words_begin(&words, &words_en, NULL, 0);      // tables: lib/words/words_en.h
- *     labial_words_say(&words, "Hello", 5, 120, 480);      // from 120 to 480 ms
+ *     labial_words_init(&words, &words_en, NULL, 0);      // tables: lib/words/words_en.h
+ *     labial_words_push(&words, "Hello", 5, 120, 480);      // from 120 to 480 ms
  *     while (labial_words_next(&words, &phoneme, &milliseconds) == LABIAL_OK)
  *         labial_push(&stream, phoneme, milliseconds);     // while labial_room() > 0
- *     labial_words_say(&words, "world.", 6, 500, 930);
+ *     labial_words_push(&words, "world.", 6, 500, 930);
  *     ...
- *     labial_words_flush(&words);                          // the last word; then take its phonemes as well
+ *     labial_words_end(&words);                          // the last word; then take its phonemes as well
  *
  * Phonemes are numbered as in the bundled speech model: silence, then ARPABET in the order of the alphabet. For a model
  * with other phonemes, look each label (labial_words_label()) up in its names once.
@@ -89,7 +89,7 @@ typedef struct {
     const uint8_t *milliseconds; /* their mean durations */
     const uint8_t *classes;      /* 1 for vowels, 2 for voiceless consonants, 0 for others */
     uint8_t filler[2];           /* phonemes that alternate in unknown words */
-} labial_words_t;
+} labial_words_model_t;
 
 /* A word of the caller's own and its phonemes; numbers beyond the tables' count as silence. The word is compared with
  * each stretch of a text between blanks and punctuation other than apostrophes, small and capital letters of ASCII
@@ -138,7 +138,7 @@ typedef struct {
 
 /* Words in time on their way to phonemes. Private; it may be moved or copied between calls. */
 typedef struct {
-    const labial_words_t *tables;
+    const labial_words_model_t *tables;
     const labial_words_own_t *own;
     int32_t offset;            /* milliseconds, added to all times */
     uint32_t latest;           /* beginning of the word that came last */
@@ -150,7 +150,7 @@ typedef struct {
     uint8_t held;              /* which of `spans` waits; the other one is being spoken */
     uint8_t paused;            /* behind the word being spoken there is a pause */
     labial_words_span_t spans[2];
-} labial_words_stream_t;
+} labial_words_t;
 
 /*
  * Reads a text of `size` bytes of UTF-8: a word, or all between two blanks. `own` may be null.
@@ -158,14 +158,14 @@ typedef struct {
  * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for tables of
  * another format.
  */
-int labial_words_read(const labial_words_t *tables, const labial_words_own_t *own, const char *text, size_t size,
+int labial_words_read(const labial_words_model_t *tables, const labial_words_own_t *own, const char *text, size_t size,
                       labial_word_t *word);
 
 /* The label of a phoneme in ARPABET, "" for numbers beyond the last and null tables. */
-const char *labial_words_label(const labial_words_t *tables, unsigned phoneme);
+const char *labial_words_label(const labial_words_model_t *tables, unsigned phoneme);
 
 /* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
-uint32_t labial_words_length(const labial_words_t *tables, const labial_word_t *word);
+uint32_t labial_words_length(const labial_words_model_t *tables, const labial_word_t *word);
 
 /*
  * Prepares a stream. `offset` milliseconds are added to all times: with a voice that reports its words too early, a
@@ -174,13 +174,13 @@ uint32_t labial_words_length(const labial_words_t *tables, const labial_word_t *
  * The tables and the caller's own words must stay where they are. Returns LABIAL_OK, LABIAL_ERROR_NULL or
  * LABIAL_ERROR_VERSION.
  */
-int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tables, const labial_words_own_t *own,
+int labial_words_init(labial_words_t *stream, const labial_words_model_t *tables, const labial_words_own_t *own,
                        int32_t offset);
 
 /*
  * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END.
  * How a word ends depends on what follows, so that each word's phonemes come with the next word or with
- * labial_words_flush(). A gap under LABIAL_WORDS_PAUSE belongs to the word before it, a longer one is silence. A word
+ * labial_words_end(). A gap under LABIAL_WORDS_PAUSE belongs to the word before it, a longer one is silence. A word
  * that ends after the next one begins is cut off there. A text that is silent leaves its time to what is beside it.
  *
  * Take all that labial_words_next() has first. Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL,
@@ -188,31 +188,31 @@ int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tabl
  * before `start`, or `start` before that of an earlier word) or LABIAL_ERROR_DURATION (longer than
  * LABIAL_DURATION_MAX).
  */
-int labial_words_say(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end);
+int labial_words_push(labial_words_t *stream, const char *text, size_t size, uint32_t start, uint32_t end);
 
 /*
  * The same where the end of each of the text's `count` characters (code points) is known; the first one begins at
  * `start` and the word ends with the last. The boundaries between phonemes are then half way between those of their
- * characters and those of labial_words_say(); where all characters last equally long, as of voices that only share out
- * the time of a word, they are those of labial_words_say().
+ * characters and those of labial_words_push(); where all characters last equally long, as of voices that only share out
+ * the time of a word, they are those of labial_words_push().
  *
- * Returns as labial_words_say(): LABIAL_ERROR_WORD also where `count` is 0, more than LABIAL_WORDS_CHARACTERS or not
+ * Returns as labial_words_push(): LABIAL_ERROR_WORD also where `count` is 0, more than LABIAL_WORDS_CHARACTERS or not
  * the text's number of characters, and where a character ends before the one before it.
  */
-int labial_words_say_characters(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start,
+int labial_words_push_characters(labial_words_t *stream, const char *text, size_t size, uint32_t start,
                                 const uint32_t *ends, unsigned count);
 
 /* No word follows for now: the last one ends where it said. Words may follow nevertheless. Returns as
- * labial_words_say(). */
-int labial_words_flush(labial_words_stream_t *stream);
+ * labial_words_push(). */
+int labial_words_end(labial_words_t *stream);
 
 /*
  * The next phoneme and its duration, silences included; as labial_push() takes them, and without gaps from 0 on.
  *
- * Returns LABIAL_OK, LABIAL_WAITING where there is none until the next word or labial_words_flush(), LABIAL_DONE where
+ * Returns LABIAL_OK, LABIAL_WAITING where there is none until the next word or labial_words_end(), LABIAL_DONE where
  * all words are through, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
-int labial_words_next(labial_words_stream_t *stream, unsigned *phoneme, uint32_t *milliseconds);
+int labial_words_next(labial_words_t *stream, unsigned *phoneme, uint32_t *milliseconds);
 
 #ifdef __cplusplus
 }

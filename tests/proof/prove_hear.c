@@ -21,7 +21,7 @@ int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t rate)
     convert->spacing = (uint8_t)Frama_C_interval(16, 48);
     convert->step = (uint16_t)Frama_C_interval(240, 480);
     labial_hear_convert_reset(convert);
-    return any_int ? LABIAL_OK : LABIAL_ERROR_SOUND;
+    return any_int ? LABIAL_OK : LABIAL_ERROR_SAMPLE_RATE;
 }
 
 void labial_hear_convert_reset(labial_hear_convert_t *convert)

@@ -206,9 +206,9 @@ class Player:
         for number, row in enumerate(frames, first):
             if self.now <= number < self.now + self.room and not self.frames.get(number, (b"", False))[1]:
                 self.frames[number] = (row, False)
-        return 3 if begins and before is not None else 2 if cancels else 0
+        return 5 if begins and before is not None else 4 if cancels else 0
 
-    def at(self, sample: int) -> bool:
+    def at(self, sample: int) -> int:
         frame = sample * 50 // self.rate
         if frame <= self.now - self.room:
             self.frames.clear()
@@ -225,7 +225,7 @@ class Player:
         moves = [int((to - value) / left) for value, to in zip(self.pose, goal)]
         self.pose = bytes(value + min(max(move, -most), most)
                           for value, move, most in zip(self.pose, moves, self.limits))
-        return self.quiet <= self.HOLD
+        return 0 if self.quiet <= self.HOLD else 2
 
 
 def test_what_boards_show() -> None:
@@ -250,9 +250,9 @@ def test_what_boards_show() -> None:
         for call in range(3000):
             if draw(4) == 0 or call == 0:
                 shown.append(player.feed(*packet(frame)))
-            speaks = player.at(sample)
+            result = player.at(sample)
             unit = 1900 - (3300 * player.pose[0] + 127) // 255
-            shown += bytes([speaks, *player.pose, unit >> 4 & 255])
+            shown += bytes([result, *player.pose, unit >> 4 & 255])
             if draw(50) == 0:
                 sample += draw(3) * rate
                 frame += draw(100)

@@ -1,7 +1,7 @@
 // One pair of ears: sound in, frames for every moment of it out.
 
 const CHANNELS = 13;
-/** Frames per second, LABIAL_HEAR_RATE. */
+/** Frames per second, LABIAL_HEAR_FPS. */
 const RATE = 50;
 /** Samples that are heard in one call, and the frames for which a call has room: the end and a cancel deliver fewer. */
 const PIECE = 4096;

@@ -23,9 +23,9 @@ export class Line {
         this.#numbers = numbers;
         this.#known = lexicon.known(own, numbers, []);
         this.#table = lexicon.table(this.#known);
-        this.#size = lexicon.wasm.words_stream_size() + 8; // and a phoneme with its milliseconds
+        this.#size = lexicon.wasm.words_size() + 8; // and a phoneme with its milliseconds
         this.#at = lexicon.memory.take(this.#size);
-        lexicon.check(lexicon.wasm.words_begin(this.#at, this.#table.place, milliseconds));
+        lexicon.check(lexicon.wasm.words_init(this.#at, this.#table.place, milliseconds));
     }
 
     /** A word { text, start, end, ends }; the end may be null, `ends` are those of its characters or undefined. */
@@ -36,19 +36,19 @@ export class Line {
         const spelt = ends?.length > 0 && ends.length <= CHARACTERS_MAX && ends.length === [...text].length;
         this.#lexicon.withText(text, (place, size) => {
             if (!spelt) {
-                this.#lexicon.check(wasm.words_say(at, place, size, start, end ?? NO_END), text);
+                this.#lexicon.check(wasm.words_push(at, place, size, start, end ?? NO_END), text);
                 return;
             }
             this.#lexicon.withBytes(4 * ends.length, (list) => {
                 memory.int32(list, ends.length).set(ends);
-                this.#lexicon.check(wasm.words_say_characters(at, place, size, start, list, ends.length), text);
+                this.#lexicon.check(wasm.words_push_characters(at, place, size, start, list, ends.length), text);
             });
         });
     }
 
     /** No word follows for now. */
     flush() {
-        this.#lexicon.check(this.#lexicon.wasm.words_flush(this.#collect()));
+        this.#lexicon.check(this.#lexicon.wasm.words_end(this.#collect()));
     }
 
     /** The segments that are known. */

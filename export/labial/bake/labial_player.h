@@ -39,7 +39,7 @@ typedef struct {
 } labial_player_t;
 
 /* Goes to the beginning of `frames` consecutive frames at `bytes`. */
-static inline void labial_player_begin(labial_player_t *player, const uint8_t *bytes, size_t frames)
+static inline void labial_player_init(labial_player_t *player, const uint8_t *bytes, size_t frames)
 {
     player->next = bytes;
     player->left = frames;

@@ -127,7 +127,7 @@ def _whole(name: str, data: np.ndarray) -> str:
 /* Goes to the beginning. */
 static inline void {name}_begin(labial_player_t *player)
 {{
-    labial_player_begin(player, {name}_bytes, {name.upper()}_FRAMES);
+    labial_player_init(player, {name}_bytes, {name.upper()}_FRAMES);
 }}
 """
 
@@ -140,7 +140,7 @@ def _in_parts(name: str, data: np.ndarray, cut: Sequence[Part]) -> str:
 
 """ for number, item in enumerate(values))
     begins = "".join(f"""    case {number}:
-        labial_player_begin(player, {name}_bytes_{number}, {part.end - part.begin}u);
+        labial_player_init(player, {name}_bytes_{number}, {part.end - part.begin}u);
         break;
 """ for number, part in enumerate(cut))
     times = "".join(f"    case {number}:\n        return {part.begin * 1000 // RATE}ul;\n"
@@ -153,7 +153,7 @@ static inline void {name}_begin(labial_player_t *player, unsigned part)
 {{
     switch (part) {{
 {begins}    default:
-        labial_player_begin(player, {name}_bytes_0, 0u);
+        labial_player_init(player, {name}_bytes_0, 0u);
         break;
     }}
 }}

@@ -23,7 +23,7 @@ _INTERFACE = 4
 
 #: Results of include/labial/labial.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
-ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_RATE, ERROR_NAME = -5, -6, -7, -9, -11
+ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -9, -11
 
 #: LABIAL_DURATION_MAX: the longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
@@ -56,7 +56,7 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "mouth_state": (c_int, (_POINTER,)), "mouth_held": (_NUMBER, (_POINTER,)),
     "mouth_milliseconds": (_NUMBER, (_POINTER,)), "mouth_waiting": (_NUMBER, (_POINTER,)),
     "mouth_delay": (_NUMBER, (_POINTER,)),
-    "laugh_begin": (c_int, (_POINTER, _NUMBER, _NUMBER, _NUMBER)), "laugh_next": (c_int, (_POINTER, _POINTER)),
+    "laugh_init": (c_int, (_POINTER, _NUMBER, _NUMBER, _NUMBER)), "laugh_next": (c_int, (_POINTER, _POINTER)),
     "rig_output": (None, (_POINTER, _POINTER, _POINTER)), "rig_check": (c_int, (_POINTER, _NUMBER)),
     "rig_rest": (c_int, (_POINTER, _NUMBER, _POINTER)),
     "rig_apply": (c_int, (_POINTER, _NUMBER, _POINTER, _NUMBER, _POINTER, _POINTER)),
@@ -80,13 +80,13 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "servos_skip": (c_int, (_POINTER, _NUMBER)), "servos_cancel": (c_int, (_POINTER,)),
     "servos_soft_start": (c_int, (_POINTER, _NUMBER)), "servos_attached": (_NUMBER, (_POINTER,)),
     "servos_place": (c_int, (_POINTER, _POINTER)),
-    "words_stream_size": (_NUMBER, ()), "words_own_size": (_NUMBER, (_NUMBER,)),
+    "words_size": (_NUMBER, ()), "words_own_size": (_NUMBER, (_NUMBER,)),
     "words_own": (_POINTER, (_POINTER, _NUMBER, _POINTER)), "words_label": (_TEXT, (_NUMBER,)),
     "words_read": (c_int, (_POINTER, _TEXT, _NUMBER, _POINTER)),
-    "words_begin": (c_int, (_POINTER, _POINTER, c_int32)),
-    "words_say": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _NUMBER)),
-    "words_say_characters": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _POINTER, _NUMBER)),
-    "words_flush": (c_int, (_POINTER,)), "words_next": (c_int, (_POINTER, _POINTER)),
+    "words_init": (c_int, (_POINTER, _POINTER, c_int32)),
+    "words_push": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _NUMBER)),
+    "words_push_characters": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _POINTER, _NUMBER)),
+    "words_end": (c_int, (_POINTER,)), "words_next": (c_int, (_POINTER, _POINTER)),
 }  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from labial.files.faps import CHANNELS
 from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
 
-#: LABIAL_BESIDE_FORMAT and LABIAL_BESIDE_RATE of include/labial/beside.h.
+#: LABIAL_BESIDE_FORMAT and LABIAL_BESIDE_FPS of include/labial/beside.h.
 FORMAT, RATE = 2, 50
 #: Most outputs, and frames of a packet.
 MOST = 255

@@ -16,7 +16,7 @@ from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
 from labial.runtime.frame import Frame
 
-#: Frames per second, LABIAL_HEAR_RATE.
+#: Frames per second, LABIAL_HEAR_FPS.
 FPS = 50
 #: Bytes of a sample.
 _SAMPLE = 2

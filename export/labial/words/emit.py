@@ -45,7 +45,7 @@ extern "C" {{
 #endif
 
 /* The tables, {packed.size + len(MILLISECONDS) + len(CLASSES)} bytes and the structure that points to them. */
-extern const labial_words_t {name};
+extern const labial_words_model_t {name};
 
 #ifdef __cplusplus
 }}
@@ -69,7 +69,7 @@ def source(packed: PackedWords, name: str) -> str:
     members = ["LABIAL_WORDS_FORMAT", str(len(PHONEMES)), f"{packed.multiplier}u", "roots", "bases", "leaves", "labels",
                "trees", "buckets", "patches", "phonemes", "milliseconds", "classes",
                f"{{ {', '.join(str(PHONEMES.index(label)) for label in FILLER)} }}"]
-    parts.append(f"\nconst labial_words_t {name} = {{\n" + ",\n".join(f"    {member}" for member in members) + "\n};\n")
+    parts.append(f"\nconst labial_words_model_t {name} = {{\n" + ",\n".join(f"    {member}" for member in members) + "\n};\n")
     return "".join(parts)
 
 
