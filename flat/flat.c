@@ -342,8 +342,7 @@ const char *timings_suffix(unsigned format)
 int timings_init(labial_timings_t *timings, unsigned format, const char *tier, unsigned tier_number)
 {
     const int result = labial_timings_init(timings, (labial_timings_format_t)format);
-    timings->tier = tier;
-    timings->tier_number = tier_number;
+    (void)labial_timings_tier(timings, tier, tier_number);
     return result;
 }
 
@@ -387,12 +386,12 @@ const char *timings_word(const labial_timings_t *timings)
 
 const char *timings_message(const labial_timings_t *timings)
 {
-    return timings->message;
+    return labial_timings_message(timings);
 }
 
 uint32_t timings_line(const labial_timings_t *timings)
 {
-    return timings->line;
+    return labial_timings_line(timings);
 }
 
 /* ---- Faces ------------------------------------------------------------------------------------------------------- */

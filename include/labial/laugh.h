@@ -20,6 +20,8 @@
 
 #include <stdint.h>
 
+#include "labial/result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -62,24 +64,13 @@ enum {
     LABIAL_LAUGH_PHONEMES
 };
 
-/* A laugh in progress, in the caller's memory. Its members are private; it may be moved or copied between calls. */
-typedef struct {
-    uint32_t left;         /* milliseconds to come */
-    uint32_t tail;         /* of them, the silence at the end */
-    uint32_t random;       /* state of the random numbers, never 0 */
-    uint16_t intensity;    /* 0 .. LABIAL_LAUGH_FULL */
-    uint16_t durations[6]; /* of the phonemes that are decided, milliseconds */
-    uint8_t phonemes[6];
-    uint8_t first, count;             /* of these, the next one and how many there are */
-    uint8_t pulses;                   /* to come in the current train */
-    uint8_t kind, vowel;              /* of these pulses */
-    uint8_t train_loudness, loudness; /* of the current train's first and of its next pulse, 255 the intensity's own */
-    uint8_t dither;                   /* between two grades, 1/256 */
-} labial_laugh_t;
+/* A laugh in progress; its members are private. It may be moved or copied between calls. */
+typedef struct labial_laugh labial_laugh_t;
 
 /*
- * Begins a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts
- * as that). Each `seed` gives a different laugh. Below about half a second it is a single breath or pulse.
+ * Prepares a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts
+ * as that). Each `seed` gives a different laugh. Below about half a second it is a single breath or pulse. A
+ * laugh that is to be dropped is just prepared anew.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_DURATION.
  */
@@ -92,6 +83,22 @@ int labial_laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned int
  * Returns LABIAL_OK, LABIAL_DONE after the last one (nothing is written), or LABIAL_ERROR_NULL.
  */
 int labial_laugh_next(labial_laugh_t *laugh, unsigned *phoneme, uint32_t *milliseconds);
+
+/* ---- Private ------------------------------------------------------------------------------------------------------ */
+
+struct labial_laugh {
+    uint32_t left;         /* milliseconds to come */
+    uint32_t tail;         /* of them, the silence at the end */
+    uint32_t random;       /* state of the random numbers, never 0 */
+    uint16_t intensity;    /* 0 .. LABIAL_LAUGH_FULL */
+    uint16_t durations[6]; /* of the phonemes that are decided, milliseconds */
+    uint8_t phonemes[6];
+    uint8_t first, count;             /* of these, the next one and how many there are */
+    uint8_t pulses;                   /* to come in the current train */
+    uint8_t kind, vowel;              /* of these pulses */
+    uint8_t train_loudness, loudness; /* of the current train's first and of its next pulse, 255 the intensity's own */
+    uint8_t dither;                   /* between two grades, 1/256 */
+};
 
 #ifdef __cplusplus
 }

@@ -6,20 +6,20 @@
  *     unsigned phoneme;
  *     uint32_t milliseconds;
  *
- *     labial_words_init(&words, &words_en, NULL, 0);      // tables: lib/words/words_en.h
- *     labial_words_push(&words, "Hello", 5, 120, 480);      // from 120 to 480 ms
+ *     labial_words_init(&words, &words_en, NULL, 0);      // the model: lib/words/words_en.h
+ *     labial_words_push(&words, "Hello", 5, 120, 480);    // from 120 to 480 ms
  *     while (labial_words_next(&words, &phoneme, &milliseconds) == LABIAL_OK)
- *         labial_push(&stream, phoneme, milliseconds);     // while labial_room() > 0
+ *         labial_push(&stream, phoneme, milliseconds);    // while labial_room() > 0
  *     labial_words_push(&words, "world.", 6, 500, 930);
  *     ...
- *     labial_words_end(&words);                          // the last word; then take its phonemes as well
+ *     labial_words_end(&words);                           // that was the last word; then take its phonemes as well
  *
  * Phonemes are numbered as in the bundled speech model: silence, then ARPABET in the order of the alphabet. For a model
  * with other phonemes, look each label (labial_words_label()) up in its names once.
  *
- * The tables are those of one language, and these rules are for English: other languages in Latin letters are read as
- * if they were English; where a voice reports phonemes or visemes, use these. The tables are trusted, as compiled-in
- * models are. Texts, times and the order of calls are not trusted.
+ * The model is that of one language, and these rules are for English: other languages in Latin letters are read as if
+ * they were English; where a voice reports phonemes or visemes, use these. The model is trusted, as those of motion are.
+ * Texts, times and the order of calls are not trusted.
  *
  * What is read
  * - Letters: through decision trees (docs/words.md), in parts of at most LABIAL_WORDS_LETTERS. Letters of Latin-1 and
@@ -44,12 +44,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "labial/labial.h"
+#include "labial/result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Format of the tables; a file of another format does not compile. */
-#define LABIAL_WORDS_FORMAT 1
+/* Format of a model; a file of another format does not compile. */
+#define LABIAL_WORDS_FORMAT 2
 
 /* Letters that are read together; longer words are read in parts. */
 #define LABIAL_WORDS_LETTERS 32
@@ -91,7 +94,7 @@ typedef struct {
     uint8_t filler[2];           /* phonemes that alternate in unknown words */
 } labial_words_model_t;
 
-/* A word of the caller's own and its phonemes; numbers beyond the tables' count as silence. The word is compared with
+/* A word of the caller's own and its phonemes; numbers beyond the model's count as silence. The word is compared with
  * each stretch of a text between blanks and punctuation other than apostrophes, small and capital letters of ASCII
  * being the same. */
 typedef struct {
@@ -127,54 +130,32 @@ typedef struct {
     labial_words_phoneme_t phonemes[LABIAL_WORDS_PHONEMES];
 } labial_word_t;
 
-/* A word with its time. Private. */
-typedef struct {
-    labial_word_t word;
-    uint32_t start, end;                   /* milliseconds */
-    uint8_t open;                          /* the end is not known */
-    uint8_t spelt;                         /* `reach` holds */
-    uint16_t reach[LABIAL_WORDS_PHONEMES]; /* where a phoneme's characters end, milliseconds from the start */
-} labial_words_span_t;
-
-/* Words in time on their way to phonemes. Private; it may be moved or copied between calls. */
-typedef struct {
-    const labial_words_model_t *tables;
-    const labial_words_own_t *own;
-    int32_t offset;            /* milliseconds, added to all times */
-    uint32_t latest;           /* beginning of the word that came last */
-    uint32_t time;             /* up to which there are phonemes */
-    uint32_t start, until;     /* of the word being spoken */
-    uint32_t weight, reached;  /* of all its phonemes, and of those before the next one */
-    uint8_t place;             /* its next phoneme */
-    uint8_t speaking, holding; /* whether there is a word being spoken, and one that waits for the next */
-    uint8_t held;              /* which of `spans` waits; the other one is being spoken */
-    uint8_t paused;            /* behind the word being spoken there is a pause */
-    labial_words_span_t spans[2];
-} labial_words_t;
+/* Words in time on their way to phonemes; the members are private. It may be moved or copied between calls. */
+typedef struct labial_words labial_words_t;
 
 /*
  * Reads a text of `size` bytes of UTF-8: a word, or all between two blanks. `own` may be null.
  *
- * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for tables of
+ * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for a model of
  * another format.
  */
-int labial_words_read(const labial_words_model_t *tables, const labial_words_own_t *own, const char *text, size_t size,
+int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
                       labial_word_t *word);
 
-/* The label of a phoneme in ARPABET, "" for numbers beyond the last and null tables. */
-const char *labial_words_label(const labial_words_model_t *tables, unsigned phoneme);
+/* The label of a phoneme in ARPABET, "" for numbers beyond the last and a null model. */
+const char *labial_words_label(const labial_words_model_t *model, unsigned phoneme);
 
 /* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
-uint32_t labial_words_length(const labial_words_model_t *tables, const labial_word_t *word);
+uint32_t labial_words_length(const labial_words_model_t *model, const labial_word_t *word);
 
 /*
  * Prepares a stream. `offset` milliseconds are added to all times: with a voice that reports its words too early, a
  * positive number; too late, a negative one. What it moves before the beginning is cut off.
  *
- * The tables and the caller's own words must stay where they are. Returns LABIAL_OK, LABIAL_ERROR_NULL or
+ * The model and the caller's own words must stay where they are. Returns LABIAL_OK, LABIAL_ERROR_NULL or
  * LABIAL_ERROR_VERSION.
  */
-int labial_words_init(labial_words_t *stream, const labial_words_model_t *tables, const labial_words_own_t *own,
+int labial_words_init(labial_words_t *stream, const labial_words_model_t *model, const labial_words_own_t *own,
                        int32_t offset);
 
 /*
@@ -184,7 +165,7 @@ int labial_words_init(labial_words_t *stream, const labial_words_model_t *tables
  * that ends after the next one begins is cut off there. A text that is silent leaves its time to what is beside it.
  *
  * Take all that labial_words_next() has first. Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL,
- * LABIAL_ERROR_STATE (not prepared), LABIAL_ERROR_FULL (there are phonemes to be taken), LABIAL_ERROR_WORD (`end`
+ * LABIAL_ERROR_STATE (not prepared, or after labial_words_end()), LABIAL_ERROR_FULL (there are phonemes to be taken), LABIAL_ERROR_WORD (`end`
  * before `start`, or `start` before that of an earlier word) or LABIAL_ERROR_DURATION (longer than
  * LABIAL_DURATION_MAX).
  */
@@ -202,17 +183,67 @@ int labial_words_push(labial_words_t *stream, const char *text, size_t size, uin
 int labial_words_push_characters(labial_words_t *stream, const char *text, size_t size, uint32_t start,
                                 const uint32_t *ends, unsigned count);
 
-/* No word follows for now: the last one ends where it said. Words may follow nevertheless. Returns as
- * labial_words_push(). */
+/*
+ * No more words will come: the last one ends where it said.
+ *
+ * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
 int labial_words_end(labial_words_t *stream);
 
 /*
  * The next phoneme and its duration, silences included; as labial_push() takes them, and without gaps from 0 on.
  *
- * Returns LABIAL_OK, LABIAL_WAITING where there is none until the next word or labial_words_end(), LABIAL_DONE where
- * all words are through, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ * Returns LABIAL_OK, LABIAL_WAITING where there is none until the next word or labial_words_end(), LABIAL_DONE after
+ * it when all words are through, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_words_next(labial_words_t *stream, unsigned *phoneme, uint32_t *milliseconds);
+
+/*
+ * Drops the phonemes that were not taken; no more words will come. The face comes to rest by labial_cancel().
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_words_cancel(labial_words_t *stream);
+
+/*
+ * Continues after labial_words_end() or labial_words_cancel(): words of the same sound may follow, whose phonemes begin
+ * where the last one that was taken ended. For another sound, whose times begin with 0, labial_words_init() it is.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (unless words have ended, and while there are phonemes to be
+ * taken).
+ */
+int labial_words_restart(labial_words_t *stream);
+
+/* What was pushed and not yet taken: milliseconds and phonemes. `frames` are 0, and so is the delay: how long a word waits
+ * depends on when the next one comes. All zero for a null or unprepared stream. */
+labial_latency_t labial_words_latency(const labial_words_t *stream);
+
+/* ---- Private ------------------------------------------------------------------------------------------------------ */
+
+/* A word with its time. */
+struct labial_words_span {
+    labial_word_t word;
+    uint32_t start, end;                   /* milliseconds */
+    uint8_t open;                          /* the end is not known */
+    uint8_t spelt;                         /* `reach` holds */
+    uint16_t reach[LABIAL_WORDS_PHONEMES]; /* where a phoneme's characters end, milliseconds from the start */
+};
+
+struct labial_words {
+    const labial_words_model_t *model;
+    const labial_words_own_t *own;
+    int32_t offset;            /* milliseconds, added to all times */
+    uint32_t latest;           /* beginning of the word that came last */
+    uint32_t time;             /* up to which there are phonemes */
+    uint32_t start, until;     /* of the word being spoken */
+    uint32_t weight, reached;  /* of all its phonemes, and of those before the next one */
+    uint8_t place;             /* its next phoneme */
+    uint8_t speaking, holding; /* whether there is a word being spoken, and one that waits for the next */
+    uint8_t held;              /* which of `spans` waits; the other one is being spoken */
+    uint8_t paused;            /* behind the word being spoken there is a pause */
+    uint8_t ended;             /* no word follows */
+    struct labial_words_span spans[2];
+};
 
 #ifdef __cplusplus
 }

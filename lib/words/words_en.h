@@ -32,7 +32,7 @@
 
 #include "labial/words.h"
 
-#if LABIAL_WORDS_FORMAT != 1
+#if LABIAL_WORDS_FORMAT != 2
 #error "words_en was exported for another version of Labial: run labial export again."
 #endif
 

@@ -450,6 +450,7 @@ static struct {
     uint8_t marks[ALL]; /* 1 waits, 2 shown */
     int64_t now;
     unsigned quiet;
+    int left; /* calls in which it comes to rest */
     uint8_t pose[OUTPUTS], goal[OUTPUTS], limits[OUTPUTS];
 } plain;
 
@@ -475,20 +476,23 @@ static int plain_at(int64_t sample, int64_t rate, uint8_t values[OUTPUTS])
     if (frame == plain.now && plain.marks[frame] == 1) {
         plain.marks[frame] = 2;
         plain.quiet = 0;
+        plain.left = EASE;
         for (unsigned i = 0; i < OUTPUTS; i++)
             plain.goal[i] = value_of((uint64_t)frame, i);
     } else {
-        plain.quiet = plain.quiet < HOLD + EASE ? plain.quiet + 1 : plain.quiet;
+        plain.quiet++;
     }
     for (unsigned i = 0; i < OUTPUTS; i++) {
-        const int left = HOLD + EASE + 1 - (int)plain.quiet, most = plain.limits[i];
+        const int most = plain.limits[i];
         int move = plain.goal[i] - plain.pose[i];
         if (plain.quiet > HOLD)
-            move = (at_rest[i] - plain.pose[i]) / left;
+            move = (at_rest[i] - plain.pose[i]) / (plain.left > 1 ? plain.left : 1);
         plain.pose[i] = (uint8_t)(plain.pose[i] + (move > most ? most : move < -most ? -most : move));
     }
+    if (plain.quiet > HOLD)
+        plain.left--;
     memcpy(values, plain.pose, OUTPUTS);
-    return plain.quiet <= HOLD;
+    return plain.quiet <= HOLD ? LABIAL_OK : LABIAL_STARVED;
 }
 
 /* Catches any other difference, with packets and clocks of all kinds. */
@@ -500,7 +504,7 @@ TEST_AFTER(begin, random_packets_and_clocks)
         const unsigned loses = draw(30);
         assert_int_equal(labial_beside_init(&player, OUTPUTS, (uint32_t)rate, memory, sizeof memory), 0);
         memset(&plain, 0, sizeof plain);
-        plain.quiet = HOLD + EASE;
+        plain.quiet = HOLD;
         memcpy(plain.pose, at_rest, OUTPUTS);
         for (unsigned i = 0; i < OUTPUTS; i++) {
             plain.limits[i] = (uint8_t)(1 + draw(255));
@@ -526,8 +530,14 @@ TEST_AFTER(begin, random_packets_and_clocks)
                 if (draw(2))
                     sample = sent * rate / 50; /* what it had is dropped */
             }
-            const int speaks = plain_at(sample, rate, wanted);
-            assert_int_equal(labial_beside_tick(&player, (uint32_t)sample, values), speaks);
+            if (!draw(200)) { /* by the player itself */
+                const uint32_t frames = draw(3) ? draw(20) : LABIAL_CANCEL_MAX + draw(2);
+                plain_feed(1, 0, 0);
+                plain.left = frames > LABIAL_CANCEL_MAX ? (int)LABIAL_CANCEL_MAX : (int)frames;
+                assert_int_equal(labial_beside_cancel(&player, frames > 0 ? frames * 20 - draw(20) : 0), LABIAL_OK);
+            }
+            const int result = plain_at(sample, rate, wanted);
+            assert_int_equal(labial_beside_tick(&player, (uint32_t)sample, values), result);
             assert_memory_equal(values, wanted, OUTPUTS);
             switch (draw(40)) {
             case 0:

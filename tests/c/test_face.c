@@ -593,7 +593,7 @@ static void model_cancel(uint32_t ms)
     if (model.silent < HOLD)
         model.silent = HOLD;
     if (model.left > 0)
-        model.left = ms == 0 ? 1 : (long)limited((double)((ms + 19) / 20), 1, 1000);
+        model.left = (long)limited(ceil(ms / 20.0), 1, 1000);
 }
 
 static void model_skip(unsigned count)

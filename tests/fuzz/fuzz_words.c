@@ -67,8 +67,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         data += 4 + length;
         size -= 4 + length;
     }
-    REQUIRE(labial_words_end(&words) == LABIAL_OK);
-    take(&words);
+    REQUIRE((offset & 1 ? labial_words_cancel(&words) : labial_words_end(&words)) == LABIAL_OK);
+    REQUIRE(take(&words) == 0 || !(offset & 1));
     REQUIRE(labial_words_next(&words, &(unsigned){ 0 }, &(uint32_t){ 0 }) == LABIAL_DONE);
+    REQUIRE(labial_words_latency(&words).milliseconds == 0 && labial_words_latency(&words).phonemes == 0);
+    REQUIRE(labial_words_restart(&words) == LABIAL_OK);
     return 0;
 }

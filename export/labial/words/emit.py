@@ -15,7 +15,7 @@ from labial.words.times import CLASSES, MILLISECONDS
 #: What alternates in words that cannot be read: it moves the lips and closes nothing.
 FILLER = ("AH", "L")
 #: LABIAL_WORDS_FORMAT of include/labial/words.h.
-FORMAT = 1
+FORMAT = 2
 
 
 def _table(kind: str, name: str, values: Iterable[object]) -> str:
