@@ -101,7 +101,7 @@ unsigned model_silence(const labial_model_t *model)
     return model->silence;
 }
 
-unsigned model_rate(const labial_model_t *model)
+unsigned model_fps(const labial_model_t *model)
 {
     return model->frames_per_second;
 }

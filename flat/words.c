@@ -61,7 +61,7 @@ int words_init(labial_words_t *stream, const labial_words_own_t *own, int32_t of
 
 void words_pronounce(labial_words_t *stream, const labial_words_own_t *own)
 {
-    stream->own = own;
+    (void)labial_words_pronounce(stream, own);
 }
 
 int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end)
@@ -78,6 +78,11 @@ int words_push_characters(labial_words_t *stream, const char *text, uint32_t siz
 int words_end(labial_words_t *stream)
 {
     return labial_words_end(stream);
+}
+
+int words_restart(labial_words_t *stream)
+{
+    return labial_words_restart(stream);
 }
 
 int words_next(labial_words_t *stream, uint32_t *out)

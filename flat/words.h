@@ -33,6 +33,7 @@ FLAT(words_push_characters)
 int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start,
                          const uint32_t *ends, unsigned count);
 FLAT(words_end) int words_end(labial_words_t *stream);
+FLAT(words_restart) int words_restart(labial_words_t *stream);
 FLAT(words_next) int words_next(labial_words_t *stream, uint32_t *out);
 
 #endif

@@ -157,6 +157,20 @@ int labial_words_init(labial_words_t *stream, const labial_words_model_t *model,
     return LABIAL_OK;
 }
 
+/* LABIAL_OK for a stream that was prepared, else the error that every call on it returns. */
+static int usable(const labial_words_t *stream)
+{
+    return !stream ? LABIAL_ERROR_NULL : stream->model ? LABIAL_OK : LABIAL_ERROR_STATE;
+}
+
+int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own)
+{
+    const int result = usable(stream);
+    if (result == LABIAL_OK)
+        stream->own = own;
+    return result;
+}
+
 /* A time of the voice with the offset, from 0 to the latest one. */
 static uint32_t shifted(const labial_words_t *stream, uint32_t time)
 {
@@ -255,12 +269,6 @@ int labial_words_push_characters(labial_words_t *stream, const char *text, size_
         if (ends[i] < (i > 0u ? ends[i - 1u] : start))
             return LABIAL_ERROR_WORD;
     return take(stream, text, size, start, ends[count - 1u], ends, count);
-}
-
-/* LABIAL_OK for a stream that was prepared, else the error that every call on it returns. */
-static int usable(const labial_words_t *stream)
-{
-    return !stream ? LABIAL_ERROR_NULL : stream->model ? LABIAL_OK : LABIAL_ERROR_STATE;
 }
 
 int labial_words_end(labial_words_t *stream)

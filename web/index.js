@@ -40,7 +40,7 @@ export class Model {
         this.names = names;
         this.phonemes = wasm.model_phonemes(at);
         this.silence = wasm.model_silence(at);
-        this.rate = wasm.model_rate(at);
+        this.rate = wasm.model_fps(at);
         this.stride = wasm.model_stride(at);
         Object.freeze(this);
     }

@@ -106,9 +106,9 @@ export class Stream {
         this.#closed = true;
     }
 
-    cancel(milliseconds = 0) {
+    cancel(milliseconds = 200) {
         const at = this.#open();
-        const whole = Math.round(Math.min(amount(milliseconds, "milliseconds"), DURATION_MAX));
+        const whole = Math.ceil(Math.min(amount(milliseconds, "milliseconds"), DURATION_MAX));
         this.#check(this.#labial.wasm.mouth_cancel(at, whole));
         this.#waiting.length = this.#head = this.#refused = 0;
         this.#closed = this.#ended = true;

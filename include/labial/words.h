@@ -158,6 +158,10 @@ uint32_t labial_words_length(const labial_words_model_t *model, const labial_wor
 int labial_words_init(labial_words_t *stream, const labial_words_model_t *model, const labial_words_own_t *own,
                        int32_t offset);
 
+/* Other words of the caller's own, for the words that follow; null for none. Returns LABIAL_OK, LABIAL_ERROR_NULL or
+ * LABIAL_ERROR_STATE. */
+int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own);
+
 /*
  * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END.
  * How a word ends depends on what follows, so that each word's phonemes come with the next word or with

@@ -390,6 +390,8 @@ TEST(misuse_is_an_error)
     assert_int_equal(labial_words_end(&none), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_end(NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_cancel(&none), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_pronounce(&none, NULL), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_pronounce(NULL, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_cancel(NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_restart(&none), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_restart(NULL), LABIAL_ERROR_NULL);

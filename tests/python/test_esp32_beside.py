@@ -62,7 +62,7 @@ def shown(board: ctypes.CDLL, now: int) -> Tuple[int, int]:
 def send(board: ctypes.CDLL, sample: int) -> List[int]:
     """Packets of a word whose sound begins with a sample; the bytes of its frames."""
     lips, rows = labial.Beside(labial.Rig.of(read(str(JAW), "jaw")), session=1), []
-    for packet in lips.packets(labial.render(HELLO), sample=sample, rate=RATE):
+    for packet in lips.packets(labial.render(HELLO), sample=sample, sample_rate=RATE):
         assert board.mouth_packet(packet.data, len(packet.data)) == 0
         rows += [row[0] for row in parse(packet.data).frames]
     return rows
@@ -117,7 +117,7 @@ def test_the_servo_has_time(board: ctypes.CDLL) -> None:
     """Catches a servo that jumps after lost packets, when sound was dropped, or when a connection begins."""
     assert board.mouth_begin(RATE) == 0
     lips, found, now = labial.Beside(labial.Rig.of(read(str(JAW), "jaw"))), [], 0
-    packets = lips.packets(labial.render(HELLO * 2), sample=0, rate=RATE)
+    packets = lips.packets(labial.render(HELLO * 2), sample=0, sample_rate=RATE)
     for number, packet in enumerate(packets):
         if number % 4 != 3:
             assert board.mouth_packet(packet.data, len(packet.data)) == 0
@@ -252,7 +252,7 @@ def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_pa
             voice.handle_opus(b"opus%d" % k)
         words = [(word, 100 + 400 * k, 450 + 400 * k) for k, word in enumerate(text.split())]
         motion = labial.render(labial.word_timings(words))
-        rows = labial.Beside(EXAMPLE / "face.toml").packets(motion, sample=0, rate=RATE)
+        rows = labial.Beside(EXAMPLE / "face.toml").packets(motion, sample=0, sample_rate=RATE)
         frames = b"".join(b"".join(parse(packet.data).frames) for packet in rows)
         wanted.update({sounds * 3 + k: frames[k : k + 1] for k in range(len(frames))})
         for packet in voice.queue[:sent]:

@@ -302,13 +302,13 @@ def test_c_shares_time_as_the_reference_does(trained: tables.WordTables) -> None
     stream, moment, got, expected = WordStream(), 0, [], []
     for word in given:
         length = numbers.randint(200, 900)
-        stream.say(word, moment, moment + length)
+        stream.push(word, moment, moment + length)
         got += stream.take()
         heard = decoder.phonemes(trained, word)
         ends = times.ends(times.weights(heard, word == given[-1]), length)
         expected += [(dictionary.PHONEMES[p], end - start) for p, start, end in zip(heard, [0, *ends], ends)]
         moment += length
-    stream.flush()
+    stream.end()
     assert got + stream.take() == expected
 
 

@@ -46,9 +46,14 @@ export class Line {
         });
     }
 
-    /** No word follows for now. */
-    flush() {
+    /** No more words will come. */
+    end() {
         this.#lexicon.check(this.#lexicon.wasm.words_end(this.#collect()));
+    }
+
+    /** Words may follow after the end, in the same sound. */
+    restart() {
+        this.#lexicon.check(this.#lexicon.wasm.words_restart(this.#collect()));
     }
 
     /** The segments that are known. */
@@ -105,13 +110,17 @@ export class WordStream {
         abandoned.register(this, this.#line, this);
     }
 
-    say(word) {
+    push(word) {
         this.#line.add(inMilliseconds(this.#lexicon, word, this.#place + 1));
         this.#place++;
     }
 
-    flush() {
-        this.#line.flush();
+    end() {
+        this.#line.end();
+    }
+
+    restart() {
+        this.#line.restart();
     }
 
     take() {
@@ -142,7 +151,7 @@ export function segmentsOf(lexicon, words, { own, numbers, offset }) {
     const line = new Line(lexicon, { own: known, offset });
     try {
         for (const word of words) line.add(word);
-        line.flush();
+        line.end();
         return line.take();
     } finally {
         line.free();

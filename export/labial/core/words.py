@@ -91,19 +91,19 @@ class WordStream:
         self._own, self._block = own, memory(library().words_size())
         checked(library().words_init(self._block, own.place if own else None, offset))
 
-    def say(self, text: str, start: int, end: Optional[int]) -> None:
+    def push(self, text: str, start: int, end: Optional[int]) -> None:
         """A word from `start` to `end`, None where that is not known."""
         data = _encoded(text)
         checked(library().words_push(self._block, data, len(data), start, _NO_END if end is None else end), text)
 
-    def say_characters(self, text: str, start: int, ends: Sequence[int]) -> None:
+    def push_characters(self, text: str, start: int, ends: Sequence[int]) -> None:
         """A word and the end of each of its characters."""
         data = _encoded(text)
         times = (ctypes.c_uint32 * max(1, len(ends)))(*ends)
         checked(library().words_push_characters(self._block, data, len(data), start, times, len(ends)), text)
 
-    def flush(self) -> None:
-        """No word follows for now."""
+    def end(self) -> None:
+        """No more words will come."""
         checked(library().words_end(self._block))
 
     def take(self) -> List[Tuple[str, int]]:

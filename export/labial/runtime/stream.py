@@ -142,8 +142,8 @@ class Stream:
 
     @alone
     def cancel(self, milliseconds: float = 200) -> None:
-        """Drops everything that is not yet delivered, and eases back to the neutral face, in at most 1,000 frames; then
-        the stream is done."""
+        """Drops everything that is not yet delivered, and eases back to the neutral face over so many milliseconds,
+        rounded up to whole frames, 1 to 1,000; then the stream is done."""
         self._open()
         length = math.ceil(duration(milliseconds))
         checked(self._library.mouth_cancel(self._address, length))
