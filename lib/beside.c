@@ -14,7 +14,7 @@
 /* The most samples per second: times LABIAL_BESIDE_FPS they have 32 bits. */
 #define SAMPLE_RATE_MOST UINT32_C(50000000)
 
-#define FRAME_MS (1000u / LABIAL_BESIDE_FPS)
+#define BESIDE_FRAME_MS (1000u / LABIAL_BESIDE_FPS)
 
 /* Marks. */
 #define MARK_EMPTY 0u
@@ -227,10 +227,10 @@ int labial_beside_cancel(labial_beside_t *player, uint32_t milliseconds)
         return LABIAL_ERROR_NULL;
     if (player->outputs == 0)
         return LABIAL_ERROR_STATE;
-    if (milliseconds > LABIAL_CANCEL_MAX * FRAME_MS)
-        milliseconds = LABIAL_CANCEL_MAX * FRAME_MS;
+    if (milliseconds > LABIAL_CANCEL_MAX * BESIDE_FRAME_MS)
+        milliseconds = LABIAL_CANCEL_MAX * BESIDE_FRAME_MS;
     drop_frames(player);
-    player->left = (uint16_t)(milliseconds > 0u ? (milliseconds + FRAME_MS - 1u) / FRAME_MS : 1u);
+    player->left = (uint16_t)(milliseconds > 0u ? (milliseconds + BESIDE_FRAME_MS - 1u) / BESIDE_FRAME_MS : 1u);
     return LABIAL_OK;
 }
 

@@ -20,7 +20,7 @@
 
 #define HEARING 0x48454152u /* "HEAR" */
 
-#define FRAME_MS (1000u / LABIAL_HEAR_FPS)
+#define HEAR_FRAME_MS (1000u / LABIAL_HEAR_FPS)
 
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
 static int usable(const labial_hear_t *hear)
@@ -250,13 +250,13 @@ labial_latency_t labial_hear_latency(const labial_hear_t *hear)
         const uint32_t stride = hear->convert.spacing * 10u, step = hear->convert.step;
         const uint32_t frame = labial_quotient(2u * LABIAL_HEAR_HOP_ * step, stride); /* samples */
         latency.frames = hear->sounding;
-        latency.milliseconds = hear->sounding * FRAME_MS;
+        latency.milliseconds = hear->sounding * HEAR_FRAME_MS;
         latency.delay = hear->network.model->ahead + 2u;
         /* The last converted sample comes one step before the frames' end, and needs `reach` samples after the one on
          * its left. */
         latency.delay_milliseconds =
-            latency.delay * FRAME_MS +
-            labial_quotient((hear->convert.reach + 1u - labial_quotient(step + stride - 1u, stride)) * FRAME_MS + frame - 1u,
+            latency.delay * HEAR_FRAME_MS +
+            labial_quotient((hear->convert.reach + 1u - labial_quotient(step + stride - 1u, stride)) * HEAR_FRAME_MS + frame - 1u,
                             frame);
     }
     return latency;

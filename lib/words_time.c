@@ -158,14 +158,14 @@ int labial_words_init(labial_words_t *stream, const labial_words_model_t *model,
 }
 
 /* LABIAL_OK for a stream that was prepared, else the error that every call on it returns. */
-static int usable(const labial_words_t *stream)
+static int words_status(const labial_words_t *stream)
 {
     return !stream ? LABIAL_ERROR_NULL : stream->model ? LABIAL_OK : LABIAL_ERROR_STATE;
 }
 
 int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own)
 {
-    const int result = usable(stream);
+    const int result = words_status(stream);
     if (result == LABIAL_OK)
         stream->own = own;
     return result;
@@ -273,7 +273,7 @@ int labial_words_push_characters(labial_words_t *stream, const char *text, size_
 
 int labial_words_end(labial_words_t *stream)
 {
-    const int result = usable(stream);
+    const int result = words_status(stream);
     if (result == LABIAL_OK)
         stream->ended = 1;
     return result;
@@ -281,7 +281,7 @@ int labial_words_end(labial_words_t *stream)
 
 int labial_words_cancel(labial_words_t *stream)
 {
-    const int result = usable(stream);
+    const int result = words_status(stream);
     if (result == LABIAL_OK) {
         stream->speaking = stream->holding = 0;
         stream->latest = 0;
@@ -292,7 +292,7 @@ int labial_words_cancel(labial_words_t *stream)
 
 int labial_words_restart(labial_words_t *stream)
 {
-    const int result = usable(stream);
+    const int result = words_status(stream);
     if (result != LABIAL_OK)
         return result;
     if (!stream->ended || stream->holding || (stream->speaking && stream->reached < stream->weight))
@@ -305,7 +305,7 @@ labial_latency_t labial_words_latency(const labial_words_t *stream)
 {
     labial_latency_t latency = { 0, 0, 0, 0, 0 };
     uint32_t end;
-    if (usable(stream) != LABIAL_OK)
+    if (words_status(stream) != LABIAL_OK)
         return latency;
     end = stream->time;
     if (stream->speaking) {

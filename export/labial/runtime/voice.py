@@ -7,7 +7,7 @@ import math
 from typing import Any, AsyncIterator, Callable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
-from labial.core.library import DURATION_MAX, ERROR_STATE
+from labial.core.library import CANCEL_MAX, DURATION_MAX, ERROR_STATE
 from labial.core.numbers import duration, number
 from labial.corpus.messages import Messages
 from labial.corpus.words import ENGLISH, pronunciation
