@@ -78,8 +78,7 @@ static int taken(const ears_t *ears, int result)
 
 int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_per_second, unsigned channels)
 {
-    const int result =
-        labial_hear_init(&ears->hear, model, samples_per_second, channels, ears->workspace,
+    const int result = labial_hear_init(&ears->hear, model, samples_per_second, channels, ears->workspace,
                                         sizeof ears->workspace, take_frame, ears);
     take_to(ears, NULL, NULL, 0);
     return result == LABIAL_OK ? labial_hear_classes(&ears->hear, take_stretch) : result;

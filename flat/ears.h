@@ -29,8 +29,8 @@ FLAT(hearing_model) const labial_hear_model_t *hearing_model(unsigned number);
 FLAT(hearing_classes) unsigned hearing_classes(unsigned number);
 FLAT(hearing_class) const char *hearing_class(unsigned number, unsigned shown);
 
-FLAT(ears_init) int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_per_second,
-                              unsigned channels);
+FLAT(ears_init)
+int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_per_second, unsigned channels);
 
 /* Milliseconds from the begin of a frame until it is known. */
 FLAT(ears_latency) uint32_t ears_latency(const ears_t *ears);

@@ -69,8 +69,8 @@ int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t
     return labial_words_push(stream, text, size, start, end);
 }
 
-int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start,
-                         const uint32_t *ends, unsigned count)
+int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, const uint32_t *ends,
+                          unsigned count)
 {
     return labial_words_push_characters(stream, text, size, start, ends, count);
 }

@@ -30,8 +30,8 @@ FLAT(words_pronounce) void words_pronounce(labial_words_t *stream, const labial_
 FLAT(words_push)
 int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end);
 FLAT(words_push_characters)
-int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start,
-                         const uint32_t *ends, unsigned count);
+int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, const uint32_t *ends,
+                          unsigned count);
 FLAT(words_end) int words_end(labial_words_t *stream);
 FLAT(words_restart) int words_restart(labial_words_t *stream);
 FLAT(words_next) int words_next(labial_words_t *stream, uint32_t *out);

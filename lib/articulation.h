@@ -21,8 +21,9 @@ static inline void labial_articulation_set(labial_articulation_t *articulation, 
 /* Moves on by a frame. */
 static inline void labial_articulation_step(labial_articulation_t *articulation)
 {
-    articulation->present = (uint8_t)(articulation->present + labial_clamp((int32_t)articulation->wanted - articulation->present,
-                                                                           LABIAL_ARTICULATION_STEP));
+    articulation->present =
+        (uint8_t)(articulation->present +
+                  labial_clamp((int32_t)articulation->wanted - articulation->present, LABIAL_ARTICULATION_STEP));
 }
 
 /* The present one in 1/LABIAL_GAIN_ONE, rounded: times 2.56, which is 5243 / 2^11. */

@@ -34,7 +34,8 @@ void labial_clock_play(labial_clock_t *clock, int64_t first, uint32_t count, int
         clock->fraction = 0;
     }
     lasts = (uint64_t)count * CLOCK_SECOND + clock->fraction;
-    clock->silent = clock_within(clock->silent + (int64_t)(lasts / clock->samples_per_second), now, now + LABIAL_CLOCK_AHEAD);
+    clock->silent =
+        clock_within(clock->silent + (int64_t)(lasts / clock->samples_per_second), now, now + LABIAL_CLOCK_AHEAD);
     clock->fraction = (uint32_t)(lasts % clock->samples_per_second);
     if (first < 0) {
         clock->first = clock->end;
@@ -58,7 +59,8 @@ int64_t labial_clock_at(const labial_clock_t *clock, int64_t now, int64_t *sampl
     int64_t left = 0, at = clock->end;
     now = clock_within(now, -LABIAL_CLOCK_MAX, LABIAL_CLOCK_MAX);
     if (clock->plays) {
-        left = clock_within(clock->silent - now, 0, LABIAL_CLOCK_AHEAD) * (int64_t)clock->samples_per_second / (int64_t)CLOCK_SECOND;
+        left = clock_within(clock->silent - now, 0, LABIAL_CLOCK_AHEAD) * (int64_t)clock->samples_per_second /
+               (int64_t)CLOCK_SECOND;
         at = clock->end - left > clock->first ? clock->end - left : clock->first;
     }
     *sample = at == clock->end && at > 0 ? at - 1 : at; /* the next one has not begun */

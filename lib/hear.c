@@ -96,20 +96,24 @@ static int hear_sample(labial_hear_t *hear, int16_t sample)
     return !heads || deliver_heads(hear, heads);
 }
 
-/* Hears a sample of sound at the stream's rate. */
+/* The same for a sample of the sound, not of the silence that follows it. */
+static int hear_sound(labial_hear_t *hear, int16_t sample)
+{
+    hear->sounding += !labial_hear_features_begun(&hear->features);
+    return hear_sample(hear, sample);
+}
+
+/* Hears a sample at the sound's rate. */
 static int hear_at_rate(labial_hear_t *hear, int32_t sample)
 {
     int16_t out[LABIAL_HEAR_CONVERTED_MAX];
-    unsigned i, count = 1;
+    unsigned i, count;
     if (hear->convert.reach == 0)
-        out[0] = (int16_t)sample;
-    else
-        count = labial_hear_convert(&hear->convert, sample, out);
-    for (i = 0; i < count; i++) {
-        hear->sounding += !labial_hear_features_begun(&hear->features);
-        if (!hear_sample(hear, out[i]))
+        return hear_sound(hear, (int16_t)sample);
+    count = labial_hear_convert(&hear->convert, sample, out);
+    for (i = 0; i < count; i++)
+        if (!hear_sound(hear, out[i]))
             return 0;
-    }
     return 1;
 }
 
@@ -256,7 +260,8 @@ labial_latency_t labial_hear_latency(const labial_hear_t *hear)
          * its left. */
         latency.delay_milliseconds =
             latency.delay * HEAR_FRAME_MS +
-            labial_quotient((hear->convert.reach + 1u - labial_quotient(step + stride - 1u, stride)) * HEAR_FRAME_MS + frame - 1u,
+            labial_quotient((hear->convert.reach + 1u - labial_quotient(step + stride - 1u, stride)) * HEAR_FRAME_MS +
+                                frame - 1u,
                             frame);
     }
     return latency;

@@ -97,7 +97,8 @@ static unsigned leaf_of(const view_t *view, const uint8_t *node)
 }
 
 /* Changes labels where the word is an exception. */
-static void patch(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count, uint8_t *labels)
+static void patch(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
+                  uint8_t *labels)
 {
     const uint8_t *entry, *end;
     uint32_t hash = 2166136261u;

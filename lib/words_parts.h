@@ -22,6 +22,7 @@ void labial_words_spell(const labial_words_model_t *model, const labial_words_le
 void labial_words_append(labial_word_t *word, unsigned phoneme, unsigned character, unsigned first);
 
 /* The weight of a phoneme among those of its word, at most 2^16; `pause` says that a pause follows the last one. */
-uint32_t labial_words_weight(const labial_words_model_t *model, const labial_word_t *word, unsigned place, unsigned pause);
+uint32_t labial_words_weight(const labial_words_model_t *model, const labial_word_t *word, unsigned place,
+                             unsigned pause);
 
 #endif

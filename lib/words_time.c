@@ -38,7 +38,8 @@ static unsigned class_of(const labial_words_model_t *model, const labial_word_t 
     return model->classes[word->phonemes[place].phoneme];
 }
 
-uint32_t labial_words_weight(const labial_words_model_t *model, const labial_word_t *word, unsigned place, unsigned pause)
+uint32_t labial_words_weight(const labial_words_model_t *model, const labial_word_t *word, unsigned place,
+                             unsigned pause)
 {
     const unsigned own = class_of(model, word, place);
     unsigned first = place, end = place + 1u, before = NONE, after = NONE, vowel_count = 0, vowels_left = 0,
@@ -142,7 +143,7 @@ static void reach_characters(const labial_words_model_t *model, struct labial_wo
 /* ---- The stream ------------------------------------------------------------------------------------------------- */
 
 int labial_words_init(labial_words_t *stream, const labial_words_model_t *model, const labial_words_own_t *own,
-                       int32_t offset)
+                      int32_t offset)
 {
     if (!stream)
         return LABIAL_ERROR_NULL;
@@ -186,8 +187,7 @@ static void speak(labial_words_t *stream, uint32_t limit)
     const uint32_t room = limit - span->start;
     uint32_t end = span->end;
     if (span->open) {
-        const uint32_t usual =
-            word->kind == LABIAL_WORDS_READ ? labial_words_length(stream->model, word) : 2u * FILLER;
+        const uint32_t usual = word->kind == LABIAL_WORDS_READ ? labial_words_length(stream->model, word) : 2u * FILLER;
         end = room <= usual / 4u * STRETCHED ? limit : span->start + usual;
     }
     if (end > limit || limit - end < LABIAL_WORDS_PAUSE)
@@ -258,7 +258,7 @@ int labial_words_push(labial_words_t *stream, const char *text, size_t size, uin
 }
 
 int labial_words_push_characters(labial_words_t *stream, const char *text, size_t size, uint32_t start,
-                                const uint32_t *ends, unsigned count)
+                                 const uint32_t *ends, unsigned count)
 {
     unsigned i;
     if (!ends)

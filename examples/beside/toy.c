@@ -114,8 +114,7 @@ static void take_message(void)
     take(data, size);
     if (head[0] == 'R' && size == 4 && rate == 0) {
         rate = data[0] | (uint32_t)data[1] << 8 | (uint32_t)data[2] << 16 | (uint32_t)data[3] << 24;
-        if (rate < 8000 || rate > 48000 ||
-            labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) != LABIAL_OK)
+        if (rate < 8000 || rate > 48000 || labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) != LABIAL_OK)
             fail("the server", "it sends sound of an unknown rate");
         for (unsigned i = 0; i < OUTPUTS; i++)
             (void)labial_beside_limit(&lips, i, limits[i]);

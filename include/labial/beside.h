@@ -178,9 +178,9 @@ struct labial_beside {
     uint16_t frames;  /* that the ring holds, a power of two */
     uint16_t session; /* of the latest packet */
     uint32_t samples_per_second;
-    uint32_t now;     /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
-    uint32_t sample;  /* a sample at most a second before the last one that was told, */
-    uint32_t frame;   /* and the frame that begins with it */
+    uint32_t now;    /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
+    uint32_t sample; /* a sample at most a second before the last one that was told, */
+    uint32_t frame;  /* and the frame that begins with it */
     uint8_t
         *memory; /* the caller's: the face at rest, as it is shown, the frame that it approaches, limits, the ring */
 };

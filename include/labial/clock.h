@@ -74,10 +74,10 @@ int64_t labial_clock_at(const labial_clock_t *clock, int64_t now, int64_t *sampl
 
 struct labial_clock {
     uint32_t samples_per_second; /* 0 before labial_clock_init() */
-    uint32_t fraction;  /* of the microsecond `silent`, in parts of the rate */
-    int64_t first, end; /* the latest samples that were given with numbers that follow each other */
-    int64_t silent;     /* when they will have been heard */
-    uint8_t plays;      /* something was given, and not stopped */
+    uint32_t fraction;           /* of the microsecond `silent`, in parts of the rate */
+    int64_t first, end;          /* the latest samples that were given with numbers that follow each other */
+    int64_t silent;              /* when they will have been heard */
+    uint8_t plays;               /* something was given, and not stopped */
 };
 
 #ifdef __cplusplus

@@ -31,7 +31,7 @@ typedef struct {
     uint8_t loud;    /* the frame has sound */
     uint16_t filled; /* samples of the window */
     int32_t level;
-    int16_t bands[LABIAL_HEAR_INPUTS]; /* features of the frame, Q9 */
+    int16_t bands[LABIAL_HEAR_INPUTS];                    /* features of the frame, Q9 */
     int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_]; /* samples that a window shares with the next one */
     int16_t window[LABIAL_HEAR_WINDOW_]; /* samples, then their spectrum, then what layers of the network put out */
 } labial_hear_features_t;

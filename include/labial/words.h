@@ -156,7 +156,7 @@ uint32_t labial_words_length(const labial_words_model_t *model, const labial_wor
  * LABIAL_ERROR_VERSION.
  */
 int labial_words_init(labial_words_t *stream, const labial_words_model_t *model, const labial_words_own_t *own,
-                       int32_t offset);
+                      int32_t offset);
 
 /* Other words of the caller's own, for the words that follow; null for none. Returns LABIAL_OK, LABIAL_ERROR_NULL or
  * LABIAL_ERROR_STATE. */
@@ -185,7 +185,7 @@ int labial_words_push(labial_words_t *stream, const char *text, size_t size, uin
  * the text's number of characters, and where a character ends before the one before it.
  */
 int labial_words_push_characters(labial_words_t *stream, const char *text, size_t size, uint32_t start,
-                                const uint32_t *ends, unsigned count);
+                                 const uint32_t *ends, unsigned count);
 
 /*
  * No more words will come: the last one ends where it said.

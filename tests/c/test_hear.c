@@ -280,9 +280,8 @@ TEST(a_cancel_eases_to_the_neutral_face)
     static const struct {
         uint32_t milliseconds;
         unsigned frames;
-    } eases[] = {
-        { 0, 1 }, { 1, 1 }, { 20, 1 }, { 21, 2 }, { 200, 10 }, { 1000, 50 }, { 20000, 1000 }, { UINT32_MAX, 1000 }
-    };
+    } eases[] = { { 0, 1 },    { 1, 1 },     { 20, 1 },       { 21, 2 },
+                  { 200, 10 }, { 1000, 50 }, { 20000, 1000 }, { UINT32_MAX, 1000 } };
     unsigned i, f, k;
     make_sound(3, 8000, 1);
     for (i = 0; i < sizeof eases / sizeof eases[0]; i++) {
@@ -355,7 +354,8 @@ static unsigned articulate(unsigned percent, uint32_t after, int16_t frames[FRAM
         scale[k] = (int16_t)(hear_fixture.scale[k] % 200);
     model.scale = scale;
     begin(16000, 1);
-    assert_int_equal(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user), LABIAL_OK);
+    assert_int_equal(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user),
+                     LABIAL_OK);
     labial_hear_exact(&hear, 1);
     make_sound(3, 16000, 1);
     assert_int_equal(labial_hear_push(&hear, samples, after), LABIAL_OK);
@@ -391,8 +391,8 @@ TEST(articulation_is_a_factor)
 /* Would catch closed lips that are pressed together, or apart, by a shout. */
 TEST(closed_lips_stay_closed)
 {
-    static const int16_t zero[LABIAL_CHANNELS], ones[LABIAL_CHANNELS] = { 160, 160, 160, 160, 160, 160, 160,
-                                                                         160, 160, 160, 160, 160, 160 };
+    static const int16_t zero[LABIAL_CHANNELS],
+        ones[LABIAL_CHANNELS] = { 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160 };
     static const int32_t gains[] = { 0, 128, 256, 300, 512 };
     labial_hear_model_t model = hear_fixture;
     int16_t heads[HEAR_FIXTURE_CLASSES + LABIAL_CHANNELS] = { 0 }, pose[LABIAL_CHANNELS];
@@ -570,9 +570,9 @@ static void begin_anew(void)
 {
     if (--anew > 0)
         return;
-    assert_int_equal(labial_hear_init(&hear, with ? &hear_fixture : NULL, 24000, 1, workspace, sizeof workspace,
-                                      on_new_frame, NULL),
-                     with ? LABIAL_OK : LABIAL_ERROR_NULL);
+    assert_int_equal(
+        labial_hear_init(&hear, with ? &hear_fixture : NULL, 24000, 1, workspace, sizeof workspace, on_new_frame, NULL),
+        with ? LABIAL_OK : LABIAL_ERROR_NULL);
     again++;
     if (with > 1)
         assert_int_equal(labial_hear_push(&hear, samples, 9600), LABIAL_OK);

@@ -10,29 +10,13 @@
 
 #define UNKNOWN "unknown result"
 
-static const int codes[] = { LABIAL_OK,
-                             LABIAL_WAITING,
-                             LABIAL_STARVED,
-                             LABIAL_DONE,
-                             LABIAL_CANCELLED,
-                             LABIAL_NEW_SESSION,
-                             LABIAL_ERROR_NULL,
-                             LABIAL_ERROR_VERSION,
-                             LABIAL_ERROR_MODEL,
-                             LABIAL_ERROR_WORKSPACE,
-                             LABIAL_ERROR_STATE,
-                             LABIAL_ERROR_PHONEME,
-                             LABIAL_ERROR_DURATION,
-                             LABIAL_ERROR_FULL,
-                             LABIAL_ERROR_FRAME_RATE,
-                             LABIAL_ERROR_MODELS,
-                             LABIAL_ERROR_NAME,
-                             LABIAL_ERROR_RIG,
-                             LABIAL_ERROR_TIMINGS,
-                             LABIAL_ERROR_SAMPLE_RATE,
-                             LABIAL_ERROR_WORD,
-                             LABIAL_ERROR_RANGE,
-                             LABIAL_ERROR_PACKET };
+static const int codes[] = {
+    LABIAL_OK,           LABIAL_WAITING,       LABIAL_STARVED,        LABIAL_DONE,          LABIAL_CANCELLED,
+    LABIAL_NEW_SESSION,  LABIAL_ERROR_NULL,    LABIAL_ERROR_VERSION,  LABIAL_ERROR_MODEL,   LABIAL_ERROR_WORKSPACE,
+    LABIAL_ERROR_STATE,  LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION, LABIAL_ERROR_FULL,    LABIAL_ERROR_FRAME_RATE,
+    LABIAL_ERROR_MODELS, LABIAL_ERROR_NAME,    LABIAL_ERROR_RIG,      LABIAL_ERROR_TIMINGS, LABIAL_ERROR_SAMPLE_RATE,
+    LABIAL_ERROR_WORD,   LABIAL_ERROR_RANGE,   LABIAL_ERROR_PACKET
+};
 
 #define CODES (sizeof codes / sizeof codes[0])
 

@@ -133,8 +133,8 @@ static void feed(void)
         day.laughs += (unsigned)day.laughing;
         if (day.laughing)
             assert_int_equal(labial_laugh_init(&day.laugh, fixture_below(&day.random, 6000),
-                                                fixture_below(&day.random, LABIAL_LAUGH_FULL + 1u),
-                                                fixture_random(&day.random)),
+                                               fixture_below(&day.random, LABIAL_LAUGH_FULL + 1u),
+                                               fixture_random(&day.random)),
                              LABIAL_OK);
         return;
     }

@@ -68,8 +68,8 @@ static void read_text(const char *text, size_t length, labial_timings_format_t f
             add_timing(found, &timing);
     }
     if (result < 0)
-        (void)snprintf(found->text, sizeof found->text, "refused: %lu: %s", (unsigned long)labial_timings_line(&timings),
-                       labial_timings_message(&timings));
+        (void)snprintf(found->text, sizeof found->text, "refused: %lu: %s",
+                       (unsigned long)labial_timings_line(&timings), labial_timings_message(&timings));
     if (result < 0 && (labial_timings_next(&timings, "0", 1, &used, &timing) != result ||
                        labial_timings_end(&timings, &timing) != result))
         (void)snprintf(found->text, sizeof found->text, "read on after an error");

@@ -36,12 +36,10 @@ static void feed(labial_beside_t *player, const uint8_t *data, size_t size, unsi
         REQUIRE(frames > 0);
         size = LABIAL_BESIDE_HEAD + (packet[3] + 1u) * outputs;
         result = labial_beside_push(player, packet, size);
-        REQUIRE((result == (cancels ? LABIAL_CANCELLED : LABIAL_OK) || result == LABIAL_NEW_SESSION) &&
-                player->known);
+        REQUIRE((result == (cancels ? LABIAL_CANCELLED : LABIAL_OK) || result == LABIAL_NEW_SESSION) && player->known);
     } else {
         result = labial_beside_push(player, packet, size);
-        REQUIRE(result == LABIAL_ERROR_PACKET ||
-                (result >= LABIAL_OK && result <= LABIAL_NEW_SESSION));
+        REQUIRE(result == LABIAL_ERROR_PACKET || (result >= LABIAL_OK && result <= LABIAL_NEW_SESSION));
     }
     free(packet);
 }
@@ -91,8 +89,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             data += 5;
             size -= 5;
         } else if (call == CANCEL) {
-            REQUIRE((data[0] & 64u ? labial_beside_restart(player, rate) : labial_beside_cancel(player, data[0] * data[0] * 10u)) ==
-                    LABIAL_OK);
+            REQUIRE((data[0] & 64u ? labial_beside_restart(player, rate)
+                                   : labial_beside_cancel(player, data[0] * data[0] * 10u)) == LABIAL_OK);
             data++;
             size--;
         } else {

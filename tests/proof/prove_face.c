@@ -3,7 +3,7 @@
  * their own; what stands for them here reads what they may read, and returns anything. */
 #include "labial/face.h"
 
-#include "prove.h"
+#include "any_fade.h"
 #include "rig_parts.h"
 
 #define OUTPUTS 3
