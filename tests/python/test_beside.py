@@ -118,7 +118,7 @@ def test_repeated_frames_make_up_for_a_lost_packet() -> None:
     """Catches repeats that are not the frames before, and ones across a gap."""
     motion = labial.render(HELLO)
     lips = labial.Beside(FACE, frames=5, repeat=5)
-    first, second = lips.packets(motion, sample=0, sample_rate=16000), lips.packets(motion, sample=32000, sample_rate=16000)
+    first, second = (lips.packets(motion, sample=sample, sample_rate=16000) for sample in (0, 32000))
     wanted = expected(motion)
     for start, packets in ((0, first), (100, second)):
         assert [packet.frame for packet in packets] == list(range(start, start + len(motion), 5))

@@ -94,8 +94,8 @@ class Beside:
         return self._packet(0, self._next, [])
 
     def at(self, sample: int, sample_rate: int) -> None:
-        """The next frame is the one that is nearest to sample number `sample` of `sample_rate` a second. Raises LabialError
-        while frames wait, and for numbers out of range."""
+        """The next frame is the one that is nearest to sample number `sample` of `sample_rate` a second. Raises
+        LabialError while frames wait, and for numbers out of range."""
         if len(self._rows) > self._sent:
             raise LabialError("frames wait: flush them first")
         number = _frame_at(sample, sample_rate)

@@ -96,8 +96,8 @@ class Face:
 
     @alone
     def cancel(self, milliseconds: float = 200) -> None:
-        """Drops the frames that wait, where the sound stops; the servos go to rest in so many milliseconds, at most 1,000
-        frames, or as their limits allow."""
+        """Drops the frames that wait, where the sound stops; the servos go to rest over so many milliseconds, rounded
+        up to whole frames, 1 to 1,000, or as their limits allow."""
         length = math.ceil(duration(milliseconds))
         checked(self._library.servos_cancel(self._address, length), "cancel")
 

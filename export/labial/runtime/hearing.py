@@ -64,9 +64,9 @@ class Hearing:
     Calls from several threads wait for each other, as those of :class:`labial.Stream`. Closing frees the memory.
 
     Args:
-        sample_rate: samples per second: 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. channels: 1 or 2, of which
-        the mean is heard. model: the name of a model, "hear_small" or "hear_large". exact: the end returns the frames
-        of the sound alone, without the 12 in which the face comes to rest.
+        sample_rate: samples per second: 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. channels: 1 or 2, of
+        which the mean is heard. model: the name of a model, "hear_small" or "hear_large". exact: the end returns the
+        frames of the sound alone, without the 12 in which the face comes to rest.
     """
 
     def __init__(self, sample_rate: int = 16000, channels: int = 1, *, model: str = "hear_small",

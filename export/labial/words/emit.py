@@ -69,7 +69,8 @@ def source(packed: PackedWords, name: str) -> str:
     members = ["LABIAL_WORDS_FORMAT", str(len(PHONEMES)), f"{packed.multiplier}u", "roots", "bases", "leaves", "labels",
                "trees", "buckets", "patches", "phonemes", "milliseconds", "classes",
                f"{{ {', '.join(str(PHONEMES.index(label)) for label in FILLER)} }}"]
-    parts.append(f"\nconst labial_words_model_t {name} = {{\n" + ",\n".join(f"    {member}" for member in members) + "\n};\n")
+    listed = ",\n".join(f"    {member}" for member in members)
+    parts.append(f"\nconst labial_words_model_t {name} = {{\n{listed}\n}};\n")
     return "".join(parts)
 
 
