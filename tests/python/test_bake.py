@@ -264,14 +264,14 @@ int main(void)
     whole_init(&player);
     for (part = 0; part < CUT_PARTS; part++) {
         const uint8_t *frame;
-        cut_begin(&parts, part);
+        cut_init(&parts, part);
         printf("%lu", (unsigned long)cut_milliseconds(part));
         for (frame = cut_next(&parts); frame != NULL; frame = cut_next(&parts))
             if (whole_next(&player) == NULL || cut_jaw(frame) != whole_jaw(player.next - WHOLE_OUTPUTS))
                 printf(" differs");
         printf("\\n");
     }
-    cut_begin(&parts, CUT_PARTS);
+    cut_init(&parts, CUT_PARTS);
     printf("%lu %d %d\\n", (unsigned long)cut_milliseconds(CUT_PARTS), whole_next(&player) != NULL,
            cut_next(&parts) != NULL);
     return 0;

@@ -128,10 +128,10 @@ def test_cancel_and_restart() -> None:
 
 
 @pytest.mark.parametrize("given, error, message", [
-    ({"rate": 11025}, StreamError, "11025 samples per second, channels: 1: the sound's rate"),
+    ({"sample_rate": 11025}, StreamError, "11025 samples per second, channels: 1: sound of so many"),
     ({"channels": 3}, StreamError, "channels: 3"),
-    ({"rate": -1}, LabialError, "not supported"),
-    ({"rate": "x"}, TypeError, "a rate"),
+    ({"sample_rate": -1}, LabialError, "not supported"),
+    ({"sample_rate": "x"}, TypeError, "a sample rate"),
     ({"model": "speech_en"}, LabialError, "'speech_en' is no model of hearing: hear_small"),
 ])
 def test_wrong_arguments_are_refused(given: Any, error: type, message: str) -> None:
