@@ -171,6 +171,22 @@ test("a cancel eases from what is shown, and what follows a restart fades in", a
     assert.deepEqual(rows(fresh), [new Array(13).fill(0)]);
 });
 
+test("articulation is a factor, and a cancel takes its time", async () => {
+    const sound = voice(1);
+    const frames = await heard([sound]);
+    const one = await labial.hear(null, { sampleRate: RATE });
+    one.articulation(50);
+    one.push(sound);
+    one.end();
+    rows(one).slice(8, 40).forEach((faps, i) => {
+        faps.forEach((value, k) => assert.ok(Math.abs(2 * value - frames[i + 8][k]) <= 2));
+    });
+    for (const wrong of [-1, NaN, 201, "much"]) assert.throws(() => one.articulation(wrong));
+    const other = await labial.hear(null, { sampleRate: RATE });
+    other.cancel(1e7, 0);
+    assert.equal(rows(other).length, 1000);
+});
+
 test("stretches of lip classes follow each other, with labels that speech has", async () => {
     const one = await labial.hear(null, { sampleRate: RATE });
     one.push(voice(3), 2);
