@@ -55,16 +55,17 @@ static void multiply(const labial_hear_dense_t *layer, unsigned rows, unsigned c
 
 /* The memory of a block over its former rows and the present one, `y`, which takes the place of the oldest. Adds the
  * sums to `x`, or to what x was `behind` frames ago. */
-static void remember(labial_hear_t *hear, unsigned number, unsigned behind, int16_t *rows, int16_t *x, const int16_t *y)
+static void remember(labial_hear_network_t *network, unsigned number, unsigned behind, int16_t *rows, int16_t *x,
+                     const int16_t *y)
 {
-    const labial_hear_block_t *const block = &hear->model->block[number];
-    const unsigned units = hear->model->units, last = (unsigned)block->past + block->ahead;
+    const labial_hear_block_t *const block = &network->model->block[number];
+    const unsigned units = network->model->units, last = (unsigned)block->past + block->ahead;
     const unsigned held_rows = last * block->dilation;
-    int16_t *oldest = rows + hear->at[number] * units, *input = rows + (held_rows + hear->skip[number]) * units;
+    int16_t *oldest = rows + network->at[number] * units, *input = rows + (held_rows + network->skip[number]) * units;
     const int16_t *row[LABIAL_HEAR_TAPS_MAX];
     const int8_t *w = block->taps;
     unsigned c, k, at;
-    for (k = 0, at = hear->at[number]; k < last; k++) {
+    for (k = 0, at = network->at[number]; k < last; k++) {
         row[k] = rows + at * units;
         at += block->dilation;
         if (at >= held_rows)
@@ -85,43 +86,49 @@ static void remember(labial_hear_t *hear, unsigned number, unsigned behind, int1
         }
         x[c] = held(sum);
     }
-    if (++hear->at[number] == held_rows)
-        hear->at[number] = 0;
-    if (++hear->skip[number] >= behind)
-        hear->skip[number] = 0;
+    if (++network->at[number] == held_rows)
+        network->at[number] = 0;
+    if (++network->skip[number] >= behind)
+        network->skip[number] = 0;
 }
 
-void labial_hear_network_reset(labial_hear_t *hear)
+uint32_t labial_hear_workspace_size(const labial_hear_model_t *model)
 {
-    memset(hear->at, 0, sizeof hear->at);
-    memset(hear->skip, 0, sizeof hear->skip);
-    memset(hear->rows, 0, labial_hear_workspace_size(hear->model));
-    hear->taken = 0;
+    return model ? LABIAL_HEAR_WORKSPACE_SIZE((uint32_t)model->units, model->rows) : 0;
 }
 
-const int16_t *labial_hear_network(labial_hear_t *hear)
+void labial_hear_network_reset(labial_hear_network_t *network)
 {
-    const labial_hear_model_t *const model = hear->model;
+    memset(network->at, 0, sizeof network->at);
+    memset(network->skip, 0, sizeof network->skip);
+    memset(network->rows, 0, labial_hear_workspace_size(network->model));
+    network->taken = 0;
+}
+
+const int16_t *labial_hear_network(labial_hear_network_t *network, const int16_t features[LABIAL_HEAR_INPUTS],
+                                   int16_t scratch[LABIAL_HEAR_SCRATCH])
+{
+    const labial_hear_model_t *const model = network->model;
     const unsigned units = model->units;
-    int16_t *const x = hear->window, *const y = x + LABIAL_HEAR_UNITS_MAX, *rows = hear->rows;
+    int16_t *const x = scratch, *const y = x + LABIAL_HEAR_UNITS_MAX, *rows = network->rows;
     unsigned b, begins = 0; /* the first frame for which the block has an input */
-    for (b = 0; b < model->blocks && hear->taken >= begins; b++) {
+    for (b = 0; b < model->blocks && network->taken >= begins; b++) {
         const labial_hear_block_t *const block = &model->block[b];
         const unsigned behind = (unsigned)block->ahead * block->dilation;
         if (b == 0u) {
-            multiply(&block->dense, units, LABIAL_HEAR_INPUTS, hear->features, y, 0);
+            multiply(&block->dense, units, LABIAL_HEAR_INPUTS, features, y, 0);
             memset(x, 0, units * sizeof *x); /* its input is not added */
-            remember(hear, b, 0, rows, x, y);
+            remember(network, b, 0, rows, x, y);
         } else {
             multiply(&block->dense, units, units, x, y, 0);
-            remember(hear, b, behind, rows, x, y);
+            remember(network, b, behind, rows, x, y);
             rows += behind * units;
         }
         rows += ((unsigned)block->past + block->ahead) * block->dilation * units;
         begins += behind;
     }
-    if (hear->taken < begins) {
-        hear->taken++;
+    if (network->taken < begins) {
+        network->taken++;
         return NULL;
     }
     multiply(&model->last, units, units, x, y, 0);
@@ -138,8 +145,10 @@ unsigned labial_hear_leader(const labial_hear_model_t *model, const int16_t *hea
     return leader;
 }
 
-void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, int16_t pose[LABIAL_CHANNELS])
+void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, int32_t gain,
+                      int16_t pose[LABIAL_CHANNELS])
 {
+    const int32_t closing = gain < 256 ? gain : 256;
     int32_t rival = -32768, over, share, value;
     unsigned k;
     for (k = 0; k < model->classes; k++)
@@ -153,7 +162,8 @@ void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, in
     heads += model->classes;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         value = model->mean[k] + ((heads[k] * model->scale[k]) >> 9);
-        value += ((model->closed[k] - value) * share) >> 8;
+        value = (value * gain + 128) >> 8;
+        value += ((((model->closed[k] * closing + 128) >> 8) - value) * share) >> 8;
         pose[k] = (int16_t)labial_clamp(value, INT16_MAX);
     }
 }

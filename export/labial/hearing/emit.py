@@ -54,7 +54,7 @@ def convert_table() -> str:
                       for rate, way in RATES.items())
     return _table_header("hear_convert_table", "the rates of sound, and the filter that converts them.", "\n".join([
         "/* Samples on each side that the filter takes; grid points between them; tenths between converted ones. */\n"
-        "static const struct {\n    uint32_t rate;\n    uint8_t reach, spacing;\n    uint16_t step;\n"
+        "static const struct {\n    uint32_t samples_per_second;\n    uint8_t reach, spacing;\n    uint16_t step;\n"
         f"}} conversions[{len(RATES)}] = {{\n{ways}\n}};\n",
         "/* The filter from its middle on, Q15, and zeros after it. */\n"
         + _array("int16_t", "filter", integer.tap_table()),
