@@ -47,11 +47,11 @@ static void age(labial_search_t *search, int is_first)
 }
 
 /* The least of a cost and of that of entering state `i` of a window by a transition; stores the predecessor. */
-static inline uint32_t cross(labial_search_t *search, unsigned transition, unsigned i, uint32_t least)
+static inline uint32_t cross(labial_search_t *search, const labial_transition_t *transition, unsigned i, uint32_t least)
 {
-    const unsigned predecessor = (transition & 255u) - search->first;
+    const unsigned predecessor = (unsigned)transition->predecessor - search->first;
     if (predecessor < LABIAL_SEARCHED) { /* in the window, as all are where there are fewer states */
-        const uint32_t score = search->scores[predecessor] + (transition >> 8);
+        const uint32_t score = (uint32_t)search->scores[predecessor] + transition->cost;
         if (score < least) {
 #if LABIAL_LAG > 0
             search->back[0][i] = (uint8_t)predecessor;
@@ -65,20 +65,20 @@ static inline uint32_t cross(labial_search_t *search, unsigned transition, unsig
 }
 
 /* The least cost of entering state `i` of a window, by its transitions or from the best state. */
-static inline uint32_t enter(labial_search_t *search, const uint16_t *transition, const uint16_t *const end, unsigned i)
+static inline uint32_t enter(labial_search_t *search, const labial_transition_t *transition,
+                             const labial_transition_t *const end, unsigned i)
 {
     uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
 #if LABIAL_LAG > 0
     search->back[0][i] = search->best;
 #endif
-    for (; end - transition >= 4; transition += 4) {
-        least = cross(search, transition[0], i, least);
-        least = cross(search, transition[1], i, least);
-        least = cross(search, transition[2], i, least);
-        least = cross(search, transition[3], i, least);
-    }
-    for (; transition < end; transition++)
-        least = cross(search, *transition, i, least);
+    do {
+        least = cross(search, transition, i, least);
+        least = cross(search, transition + 1, i, least);
+        least = cross(search, transition + 2, i, least);
+        least = cross(search, transition + 3, i, least);
+        transition += 4;
+    } while (transition < end);
     return least;
 }
 
@@ -86,9 +86,9 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
                          labial_search_t *search)
 {
     const unsigned first = first_of_window(model, channel, position), size = searched(model);
-    const unsigned predecessors = model->predecessors;
+    const unsigned into = 4u * model->predecessor_fours; /* each state */
     const labial_emission_t *state = channel->emissions + first;
-    const uint16_t *transition = channel->transitions + (size_t)first * predecessors;
+    const labial_transition_t *transition = channel->transitions + (size_t)first * into;
     uint32_t costs[LABIAL_SEARCHED], least = UINT32_MAX;
     unsigned i, best = 0;
 
@@ -98,7 +98,7 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
             costs[i] = channel->initials[first + i];
     else
         for (i = 0; i < size; i++) {
-            const uint16_t *const end = transition + predecessors;
+            const labial_transition_t *const end = transition + into;
             costs[i] = enter(search, transition, end, i);
             transition = end;
         }
