@@ -13,44 +13,44 @@
 #include <string.h>
 
 #include "fixed.h"
+#include "hear_sums.h"
 
 static int16_t held(int32_t value)
 {
     return (int16_t)(value < -32768 ? -32768 : value > 32767 ? 32767 : value);
 }
 
+/* A row's value: its sum and bias, at the scale of activations. */
+static int16_t row_value(int32_t sum, int32_t bias, unsigned shift, int32_t least)
+{
+    const int32_t value = (sum + (((2 * bias + 1) * (1 << shift)) >> 1)) >> shift; /* half of one rounds */
+    return held(value < least ? least : value);
+}
+
 /* y = W x + b for `rows` rows, rounded up to fours, of `columns`; negative values become `least`, if that is 0. */
 static void multiply(const labial_hear_dense_t *layer, unsigned rows, unsigned columns, const int16_t *x, int16_t *y,
                      int32_t least)
 {
-    const int8_t *w = layer->weights;
-    unsigned r, i;
-    for (r = 0; r < rows; r += 4u) {
-        const int16_t *p;
-        int32_t sums[4] = { 0, 0, 0, 0 };
-        int32_t a = 0, b = 0, c = 0, d = 0;
-        for (p = x; p < x + columns; p += 2, w += 8) { /* columns come in fours */
-            int32_t value = p[0];
-            a += w[0] * value;
-            b += w[1] * value;
-            c += w[2] * value;
-            d += w[3] * value;
-            value = p[1];
-            a += w[4] * value;
-            b += w[5] * value;
-            c += w[6] * value;
-            d += w[7] * value;
-        }
-        sums[0] = a;
-        sums[1] = b;
-        sums[2] = c;
-        sums[3] = d;
-        for (i = 0; i < 4u; i++) {
-            const int32_t one = 1 << layer->shifts[r + i];
-            const int32_t value = (sums[i] + layer->biases[r + i] * one + (one >> 1)) >> layer->shifts[r + i];
-            y[r + i] = held(value < least ? least : value);
-        }
+    const int8_t *weights = layer->weights;
+    const int16_t *biases = layer->biases;
+    const uint8_t *shifts = layer->shifts;
+    const int16_t *const end = y + rows;
+    for (; y < end; y += 4, biases += 4, shifts += 4, weights += 4u * columns) {
+        int32_t sums[4];
+        labial_hear_sums(weights, x, columns, sums);
+        y[0] = row_value(sums[0], biases[0], shifts[0], least);
+        y[1] = row_value(sums[1], biases[1], shifts[1], least);
+        y[2] = row_value(sums[2], biases[2], shifts[2], least);
+        y[3] = row_value(sums[3], biases[3], shifts[3], least);
     }
+}
+
+/* Adds a sum to the input of a unit, which waits in `waiting` until the sum is known. */
+static void add_input(int32_t sum, int16_t *waiting, int16_t *x)
+{
+    sum += *waiting;
+    *waiting = *x;
+    *x = held(sum);
 }
 
 /* The memory of a block over its former rows and the present one, `y`, which takes the place of the oldest. Adds the
@@ -59,32 +59,32 @@ static void remember(labial_hear_network_t *network, unsigned number, unsigned b
                      const int16_t *y)
 {
     const labial_hear_block_t *const block = &network->model->block[number];
-    const unsigned units = network->model->units, last = (unsigned)block->past + block->ahead;
-    const unsigned held_rows = last * block->dilation;
-    int16_t *oldest = rows + network->at[number] * units, *input = rows + (held_rows + network->skip[number]) * units;
+    const unsigned units = network->model->units, taps = (unsigned)block->past + block->ahead + 1u;
+    const unsigned held_rows = (taps - 1u) * block->dilation;
+    int16_t *const oldest = rows + network->at[number] * units;
+    int16_t *const waiting = behind > 0u ? rows + (held_rows + network->skip[number]) * units : x;
     const int16_t *row[LABIAL_HEAR_TAPS_MAX];
     const int8_t *w = block->taps;
     unsigned c, k, at;
-    for (k = 0, at = network->at[number]; k < last; k++) {
+    for (k = 0, at = network->at[number]; k < taps - 1u; k++) {
         row[k] = rows + at * units;
         at += block->dilation;
         if (at >= held_rows)
             at -= held_rows;
     }
-    for (c = 0; c < units; c++) {
-        const unsigned shift = block->shifts[c];
-        int32_t sum = (1 << shift) >> 1;
-        for (k = 0; k < last; k++)
-            sum += *w++ * row[k][c];
-        sum = (sum + *w++ * y[c]) >> shift;
-        oldest[c] = y[c];
-        if (behind > 0u) {
-            sum += input[c];
-            input[c] = x[c];
-        } else {
-            sum += x[c];
+    row[k] = y;
+    for (c = 0; c < units; c += 2u, w += 2u * taps) { /* units come in fours */
+        const unsigned shift = block->shifts[c], next_shift = block->shifts[c + 1u];
+        int32_t sum = (1 << shift) >> 1, next_sum = (1 << next_shift) >> 1;
+        for (k = 0; k < taps; k++) {
+            const int16_t *const at_unit = row[k] + c;
+            sum += w[k] * at_unit[0];
+            next_sum += w[taps + k] * at_unit[1];
         }
-        x[c] = held(sum);
+        oldest[c] = y[c];
+        oldest[c + 1u] = y[c + 1u];
+        add_input(sum >> shift, waiting + c, x + c);
+        add_input(next_sum >> next_shift, waiting + c + 1u, x + c + 1u);
     }
     if (++network->at[number] == held_rows)
         network->at[number] = 0;

@@ -50,6 +50,7 @@ typedef struct {
 /* State of the search of one channel (viterbi.c). */
 typedef struct {
     uint8_t first; /* state of the window */
+    uint8_t count; /* states of the window; after the end of a unit it is the best one alone */
     uint8_t best;  /* state, counted from the first */
     uint8_t scores[LABIAL_SEARCHED];
     uint8_t path[LABIAL_LAG + 1]; /* states of the last steps, the latest first */
