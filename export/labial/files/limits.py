@@ -42,10 +42,14 @@ AVATAR_SHAPES, AVATAR_VERTICES, AVATAR_TRIANGLES = 1_000, 1_000_000, 500_000
 #: Largest coordinate of a vertex, in the file's unit.
 AVATAR_COORDINATE = 1e6
 
+#: Most outputs of a rig, and of one that is drawn.
+OUTPUTS, DRAWN = 256, 64
+
 #: Most bytes of a sound, or of an avatar, in a page: there it is a third longer, and Firefox stops at 32 MB.
 PAGE = 24_000_000
-#: Most seconds of a sound, whatever its file's size: a sound of 1 MB may last for days.
-SOUND_SECONDS = 14_400
+#: Most bytes of a sound's samples, of 16 bits or floats: hours. A sound has at most `SPARE` bytes of them, and
+#: `SOUND_RATIO` per byte of its file: four times as many as the best coder of speech makes of it.
+SOUND, SOUND_RATIO = 1_000_000_000, 100
 #: Samples per second, and channels, of a sound that is read.
 SOUND_RATES, SOUND_CHANNELS = (1_000, 768_000), 64
 
@@ -56,6 +60,21 @@ def refuse(path: PathLike, what: str, size: float, most: float, unit: str = "byt
         raise DataError(path, None, f"{what} {size:,.0f} {unit}, more than the {most:,.0f} that are read")
 
 
-def unpacked(packed: int, most: int) -> int:
-    """Most bytes that an archive of `packed` bytes may hold, where `most` is the limit of its kind."""
-    return min(most, SPARE + RATIO * packed)
+class Samples:
+    """Counts the samples of a sound while it is read."""
+
+    def __init__(self, path: PathLike, rate: int) -> None:
+        """Of floats of 4 bytes, `rate` per second."""
+        self._path, self._rate, self._count = path, rate, 0
+        self._most = unpacked(os.path.getsize(path), SOUND, SOUND_RATIO) // 4
+
+    def add(self, count: int) -> None:
+        """Raises DataError where the samples are too many for the size of the file."""
+        self._count += count
+        if self._count > self._most:
+            refuse(self._path, "it lasts at least", self._count / self._rate, self._most / self._rate, "seconds")
+
+
+def unpacked(packed: int, most: int, ratio: int = RATIO) -> int:
+    """Most bytes that a file of `packed` bytes may hold, where `most` is the limit of its kind."""
+    return min(most, SPARE + ratio * packed)

@@ -13,12 +13,12 @@ import json
 import math
 import os
 import struct
+from itertools import chain
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, NoReturn, Optional, Tuple, Union
 
 import numpy as np
 
-from labial.errors import DataError
 from labial.files import limits
 from labial.files.grammar import read_bytes
 
@@ -52,10 +52,9 @@ class Gltf:
         self._transforms: Dict[int, np.ndarray] = {}
         limits.refuse(path, "it has", len(self.nodes), limits.AVATAR_NODES, "nodes")
         self._parents = self._tree()
-        uses = self._all_uses() if everything else self._uses_of_shapes()
-        limits.refuse(path, "its accessors unpack to",
-                      sum(self._count(number) * self._width(number) for number in uses) * _DECODED,
-                      limits.AVATAR_UNPACKED)
+        uses = chain(self._uses_of_shapes(), self._all_uses() if everything else ())
+        size = sum(self._count(number) * self._width(number) for number in uses) * _DECODED
+        limits.refuse(path, "its accessors unpack to", size, limits.AVATAR_UNPACKED)
 
     def _objects(self, key: str) -> List[Dict[str, Any]]:
         return objects(self.document, key)
@@ -107,7 +106,7 @@ class Gltf:
 
     def _uses_of_shapes(self) -> Iterator[int]:
         """The accessors of which :mod:`labial.fit.avatar` makes arrays, each as often as it does, and twice where the
-        array has 8 bytes a number."""
+        array has 8 bytes a number. A shape without vertices counts like one that moves all of them."""
         made = 2 + 5 * any(name in (self.document.get("extensions") or {}) for name in ("VRM", "VRMC_vrm"))
         for mesh in self.meshes:
             for part in objects(mesh, "primitives"):
