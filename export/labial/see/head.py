@@ -12,7 +12,9 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy as np
 
 from labial.errors import DataError, LabialError
+from labial.files import limits
 from labial.files.frames import even
+from labial.files.grammar import read_bytes
 from labial.fit.avatar import read as read_avatar
 from labial.fit.judge import matrix, opening
 from labial.fit.kinds import KINDS, kind_of, known
@@ -22,7 +24,7 @@ from labial.fit.write import output_name
 from labial.rig.animation import face, outputs
 from labial.rig.description import Rig, read
 from labial.see.motion import Motion
-from labial.see.page import LARGEST_SOUND, script_data
+from labial.see.page import script_data
 
 PathLike = Union[str, os.PathLike[str]]
 
@@ -104,15 +106,14 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
     Raises DataError for a file that cannot be used and LabialError for an avatar that no rig moves.
     """
     where = os.fspath(avatar)
-    found = read_head(read_avatar(avatar), where, {})
+    found = read_head(read_avatar(avatar, everything=True), where, {})
     chosen, used = _shapes(found, rig)
-    size = os.path.getsize(avatar)
-    content = Path(avatar).read_bytes()
+    content = read_bytes(avatar)
     if content[:4] != b"glTF":
         raise DataError(where, None, "a page takes a .glb or .vrm, in which everything is in one file")
-    if size > LARGEST_SOUND:
-        raise DataError(where, None, f"a page takes an avatar of {LARGEST_SOUND // 1_000_000} MB at most, and this one "
-                                     f"has {size / 1e6:.1f} MB")
+    if len(content) > limits.PAGE:
+        raise DataError(where, None, f"a page takes an avatar of {limits.PAGE // 1_000_000} MB at most, and this one "
+                                     f"has {len(content) / 1e6:.1f} MB")
     try:
         fps, frames = even(motion.times, motion.frames)
     except ValueError as error:
