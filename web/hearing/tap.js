@@ -43,7 +43,7 @@ export async function tap({ LabialError }, context, source, play = !isNode(sourc
 /** The processor's own file. A bundler that does not emit it, as esbuild and rollup, leaves its text. */
 async function addProcessor(LabialError, context) {
     try {
-        return await context.audioWorklet.addModule(new URL("./worklet.js", import.meta.url));
+        return await context.audioWorklet.addModule(new URL("./worklet.js?no-inline", import.meta.url));
     } catch {
         const { default: text } = await import("./worklet-text.js");
         const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
