@@ -229,7 +229,8 @@ test("misuse is told", async () => {
 });
 
 test("the package has these files, and CommonJS hears as well", async () => {
-    const files = "LICENSE README.md hearing.js index.cjs index.d.cts index.d.ts index.js large.js package.json small.js tap.js";
+    const files = "LICENSE README.md hearing.js hearing.js.map index.d.ts index.js index.js.map labial-tap-text.js labial-tap.js " +
+        "labial-tap.js.map large.js package.json small.js tap.js tap.js.map";
     assert.equal(readdirSync(`${folder}-hearing`).sort().join(" "), files);
     for (const name of ["small", "large"]) {
         const text = readFileSync(`${folder}-hearing/${name}.js`, "utf8");

@@ -43,14 +43,14 @@ export async function tap({ LabialError }, context, source, play = !isNode(sourc
 /** The processor's own file. A bundler that does not emit it, as esbuild and rollup, leaves its text. */
 async function addProcessor(LabialError, context) {
     try {
-        return await context.audioWorklet.addModule(new URL("./worklet.js?no-inline", import.meta.url));
+        return await context.audioWorklet.addModule(new URL("./labial-tap.js?no-inline", import.meta.url));
     } catch {
-        const { default: text } = await import("./worklet-text.js");
+        const { default: text } = await import("./labial-tap-text.js");
         const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
         try {
             return await context.audioWorklet.addModule(address);
         } catch (error) {
-            throw Object.assign(new LabialError("the page can load neither labial-hearing's worklet.js nor its copy: serve " +
+            throw Object.assign(new LabialError("the page can load neither labial-hearing's labial-tap.js nor its copy: serve " +
                 "that file, or allow script-src blob:"), { cause: error });
         } finally {
             URL.revokeObjectURL(address);
