@@ -84,7 +84,7 @@ export class LabialFace extends LabialMouth {
         const at = this.position;
         const line = this.#lines.find(({ start, end }) => start <= at && at < end) ?? null;
         if (line !== this.#line) this.#write(line);
-        const said = line ? line.words.findLast(({ start }) => start <= at) : null;
+        const said = line?.words.length > 1 ? line.words.findLast(({ start }) => start <= at) : null;
         if (said === this.#said) return;
         this.#said = said;
         this.#spans.forEach((span, i) => {
@@ -93,6 +93,11 @@ export class LabialFace extends LabialMouth {
             this.#spans[i] = Object.assign(document.createElement(wanted), { textContent: span.textContent });
             span.replaceWith(this.#spans[i]);
         });
+    }
+
+    cancel(milliseconds) {
+        this.words = null;
+        return super.cancel(milliseconds);
     }
 
     #write(line) {

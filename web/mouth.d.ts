@@ -19,6 +19,8 @@ export function mouthShape(faps: ArrayLike<number>): MouthShape;
 export function createMouth(place: Element | ShadowRoot): (faps: ArrayLike<number>) => void;
 /** The same with a whole face around it. */
 export function createFace(place: Element | ShadowRoot): (faps: ArrayLike<number>) => void;
+/** What the face's mouth draws of a frame: it smiles a little at rest, and in f and v teeth show. */
+export function faceFrame(faps: ArrayLike<number>): number[];
 /** Appends the SVG elements of a markup that has no text. */
 export function build(place: Element | ShadowRoot, markup: string): void;
 /** The moment to draw, where the clock says `next` and a sound is heard at `heard`: never farther than half a period away. */

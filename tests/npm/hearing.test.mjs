@@ -247,7 +247,7 @@ test("the package has these files, and CommonJS hears as well", async () => {
 test("types and what a hearing has are the same", async () => {
     const types = source("web/index.d.ts").match(/export class Hearing<[^]*?\n\}/)[0];
     const typed = new Set([...types.matchAll(/^    (?:readonly )?(\w+)[(:]/gm)].map(([, name]) => name));
-    typed.delete("constructor");
+    for (const inherited of ["constructor", "addEventListener", "removeEventListener"]) typed.delete(inherited);
     const one = await labial.hear(null, { sampleRate: RATE });
     const own = Object.getOwnPropertyNames(Object.getPrototypeOf(one)).filter((name) => name !== "constructor");
     assert.deepEqual([...typed].sort(), own.sort());

@@ -5,7 +5,7 @@ import { pathToFileURL } from "node:url";
 import test from "node:test";
 import { Labial, folder, source } from "./setup.mjs";
 
-const { CHANNELS, follow, mouthShape } = await import(pathToFileURL(`${folder}/mouth.js`));
+const { CHANNELS, faceFrame, follow, mouthShape } = await import(pathToFileURL(`${folder}/mouth.js`));
 const { LabialMouth } = await import(pathToFileURL(`${folder}/labial-mouth.js`));
 const labial = await Labial.load();
 
@@ -21,6 +21,20 @@ test("lips are drawn closed in p, b, m and at rest, and open in vowels", () => {
         const own = gaps.slice(Math.round(start * track.rate), Math.round(end * track.rate));
         if (["P", "B", "M"].includes(label)) assert.ok(Math.min(...own) < LINE, `${label} at ${start}: ${own}`);
         if (["AA", "AE", "AY"].includes(label)) assert.ok(Math.max(...own) > 4 * LINE, `${label} at ${start}: ${own}`);
+    }
+});
+
+test("of a face, lips close in p, b, m, and teeth stand on the lower lip in f and v", () => {
+    const teeth = (faps) => faceFrame(faps)[3] - faps[3];
+    assert.equal(teeth(new Array(13).fill(0)), 0);
+    const words = "B IY F AA R . F AY V . M AH M . P AA P . AA V ER".split(" ");
+    const segments = words.map((label, i) => ({ start: 0.12 * i, end: 0.12 * i + 0.12, label: label === "." ? "" : label }));
+    const track = labial.render(segments);
+    for (const { start, end, label } of segments) {
+        const frames = Array.from({ length: 7 }, (_, i) => track.at(start + (end - start) * i / 6).slice());
+        const gaps = frames.map((faps) => mouthShape(faceFrame(faps)).gap);
+        if (["P", "B", "M"].includes(label)) assert.ok(Math.min(...gaps) < LINE, `${label}: ${gaps}`);
+        if (["F", "V"].includes(label)) assert.ok(Math.min(...frames.map(teeth)) < -100, `${label} at ${start}`);
     }
 });
 

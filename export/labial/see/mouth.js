@@ -288,11 +288,14 @@ function headShape(jaw) {
   };
 }
 
-/** What the face's mouth draws of a frame. At rest it smiles a little. Where the lower lip rises and the upper one does not
- * come down to it, as in f and v, the upper teeth stand on the lower lip. */
-function faceFrame(faps) {
-  const frame = Array.from(faps), teeth = clamp((faps[4] - 15) / 40, 0, 1) * clamp(1 - faps[3] / 40, 0, 1);
-  frame[3] -= 260 * teeth; frame[7] -= 210 * teeth; frame[8] -= 210 * teeth;
+/** What the face's mouth draws of a frame. At rest it smiles a little. In f and v upper teeth stand on the lower lip: lips are
+ * near each other, but the upper one has not come down as in p, b and m (FAP 51 is above 80 there and below 20 here), and
+ * the jaw is not at rest. Then the upper lip is drawn higher, so that the teeth are seen. */
+export function faceFrame(faps) {
+  const frame = Array.from(faps), [jaw, , , top, bottom] = frame;
+  const near = 170 + top + bottom, teeth = clamp(near / 80, 0, 1) * clamp((70 - top) / 50, 0, 1) * clamp((jaw - 40) / 80, 0, 1);
+  const lift = (80 + clamp(near, 0, 220)) * teeth;
+  frame[3] -= lift; frame[7] -= 0.75 * lift; frame[8] -= 0.75 * lift;
   for (const corner of [11, 12]) frame[corner] += 70;
   return frame;
 }
