@@ -226,7 +226,7 @@ const FACE = `<svg viewBox="-300 -455 600 640" aria-hidden="true" class="labial-
     <g clip-path="url(#opening)">
       <path class="tongue" data-part="tongue" d="M-60 90C-66 30-42 0-3 6C42 0 66 30 60 90Z"/>
       <path class="teeth under" data-move="jaw" d="M-52 60V17Q0 4 52 17V60Z"/>
-      <path class="teeth" d="M-74-60V-9Q-44 12 0 13Q44 12 74-9V-60Z"/>
+      <path class="teeth" d="M-82-60V0Q-46 12 0 13Q46 12 82 0V-60Z"/>
     </g>
     <path class="upper" data-d="upperLip"/>
     <path class="lower" data-d="lowerLip"/>
