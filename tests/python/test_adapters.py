@@ -98,8 +98,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], s
         sound.setparams((1, 2, 16000, 0, "NONE", ""))
         sound.writeframes((3000 * np.sin(np.arange(16000 * SECONDS) / 8)).astype("<i2").tobytes())
     imports = {"three": "three/build/three.module.js", "three/addons/": "three/examples/jsm/",
-               "@pixiv/three-vrm": "@pixiv/three-vrm/lib/three-vrm.module.js", "labial": "labial/index.js", "labial/": "labial/",
-               "labial-words": "labial-words/index.js",
+               "@pixiv/three-vrm": "@pixiv/three-vrm/lib/three-vrm.module.js", "labial": "labial/index.js",
+               "labial/": "labial/", "labial-words": "labial-words/index.js",
                "@met4citizen/talkinghead": "@met4citizen/talkinghead/modules/talkinghead.mjs"}
     numbers = iter(range(1000))
 

@@ -1,5 +1,5 @@
-"""The packages on pages with a strict policy, loaded twice, and the drawn face: as a visitor, a screen reader and a keyboard
-find it."""
+"""The packages on pages with a strict policy, loaded twice, and the drawn face: as a visitor, a screen reader and a
+keyboard find it."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def opened(folder: Path, browser: Browser) -> Iterator[Any]:
 
 
 def test_strict_policies_and_two_copies(opened: Any) -> None:
-    """Catches markup from text, styles in the markup, an AudioWorklet from a blob, and an element that is defined twice."""
+    """Catches markup from text, styles in it, an AudioWorklet from a blob, and an element that is defined twice."""
     page = opened("strict")
     heard = page.evaluate("""(async () => {
         const labial = await load(), context = new AudioContext();
@@ -90,7 +90,7 @@ def test_strict_policies_and_two_copies(opened: Any) -> None:
     assert page.evaluate(paths.format("labial-mouth")) > 15 and page.evaluate(paths.format("labial-face")) > 15
     assert page.evaluate("face instanceof LabialFace && customElements.get('labial-face') === LabialFace")
     assert page.evaluate("getComputedStyle(face.shadowRoot.querySelector('.teeth')).fill") != "rgb(0, 0, 0)"
-    assert [error for error in page.errors() if "data:" not in error] == []  # the icon is data, which the policy refuses
+    assert [error for error in page.errors() if "data:" not in error] == []  # the icon is data, which is refused
 
 
 def test_without_webassembly_the_policy_is_named(opened: Any) -> None:
@@ -147,7 +147,8 @@ def test_captions_follow_the_words(opened: Any) -> None:
     page = opened("strict")
     seen = page.evaluate("""(async () => {
         const labial = await load(), seen = [];
-        const words = "Tap my mouth. I will laugh.".split(" ").map((text, i) => ({ text, start: 0.1 * i, end: 0.1 * i + 0.1 }));
+        const words = "Tap my mouth. I will laugh.".split(" ")
+            .map((text, i) => ({ text, start: 0.1 * i, end: 0.1 * i + 0.1 }));
         const track = labial.render([{ start: 0, end: 2.5, label: "AA" }]);
         const over = new Promise((resolve) => { face.onended = resolve; face.addEventListener("ended", resolve); });
         face.words = words;

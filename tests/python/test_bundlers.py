@@ -1,5 +1,5 @@
-"""The npm packages as projects use them: bundled by vite, esbuild, webpack, rollup and Parcel as these come, or not at all; in
-pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are labial-say's.
+"""The npm packages as projects use them: bundled by vite, esbuild, webpack, rollup and Parcel as these come, or not at
+all; in pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are labial-say's.
 And their types."""
 
 from __future__ import annotations
@@ -85,8 +85,7 @@ def bundle(request: pytest.FixtureRequest, app: Path, tmp_path_factory: pytest.T
 
 
 def results(browser: Browser, folder: Path, found: bool) -> Any:
-    """What the page of `folder` finds in each place; `found`, whether labial-hearing's AudioWorklet is a file of its own
-    there."""
+    """What the page of `folder` finds in each place; `found`, whether labial-hearing's AudioWorklet is a file there."""
     with served(folder) as site:
         page = browser.page(f"{site}/index.html")
         page.wait_for("Object.keys(window.results ?? {}).length === 7")
@@ -234,15 +233,11 @@ def test_types_allow_and_refuse(project: Path, module: str) -> None:
 @pytest.mark.parametrize("framework", ["react", "vue"])
 def test_elements_of_frameworks(project: Path, framework: str) -> None:
     """The hooks of docs/frameworks.md, and elements in JSX and templates: catches a property that nothing types."""
-    blocks = [block for block in parse(SOURCE / "docs" / "frameworks.md") if (block.name or "").startswith(f"{framework}-")]
-    files = []
-    for block in blocks:
-        assert block.name is not None
-        if not block.name.endswith((".ts", ".tsx")):
-            continue
-        files.append(block.name)
-        (project / block.name).write_text(block.text)
+    blocks = {block.name: block.text for block in parse(SOURCE / "docs" / "frameworks.md") if block.name}
+    files = [name for name in blocks if name.startswith(f"{framework}-")]
     assert files
+    for name in files:
+        (project / name).write_text(blocks[name])
     options: Dict[str, object] = {"jsx": "react-jsx", "moduleResolution": "bundler", "types": []}
     assert compiled(project, [*files, *_wrong(project, framework)], "esnext", **options) == ""
 

@@ -56,8 +56,8 @@ def stand_in(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("core", [True, False])
 def test_everything_is_in_the_page(tmp_path: Path, frames: Path, avatar: Path, stand_in: Path, core: bool) -> None:
-    """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside; before 0.172
-    three had no three.core.js."""
+    """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside. Before
+    0.172 three had no three.core.js."""
     out = tmp_path / "page.html"
     if not core:
         (stand_in / "build" / "three.core.js").unlink()

@@ -41,7 +41,8 @@ WATCH = """(() => {
 #: How far the drawn contours are from those of the library's frames, at the best moment not more than a frame before or
 #: behind what is heard, `late` seconds later than that; drawing units, for each drawing.
 COMPARE = """(async (frames, drawings, late) => {
-  const {faceFrame, mouthShape} = await import("labial/mouth.js"), numbers = path => path.match(/-?[0-9.]+/g).map(Number);
+  const {faceFrame, mouthShape} = await import("labial/mouth.js");
+  const numbers = path => path.match(/-?[0-9.]+/g).map(Number);
   const frame = at => {
     const place = Math.min(Math.max(at / PERIOD, 0), frames.length - 1), i = Math.floor(place);
     return frames[i].map((value, c) => value + ((frames[i + 1] ?? frames[i])[c] - value) * (place - i));

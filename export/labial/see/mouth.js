@@ -185,7 +185,7 @@ export function createMouth(place) {
 }
 
 /* The whole face: flat, in the mouth's drawing units. Lids, brows and gaze are moved by FACE_STYLE and by the frame. */
-const FACE = `<svg viewBox="-300 -455 600 640" aria-hidden="true" class="labial-face">
+const FACE = `<svg viewBox="-300 -455 600 690" aria-hidden="true" class="labial-face">
   <defs>
     <linearGradient id="backdrop" x2="0" y2="1"><stop class="top"/><stop offset="1" class="bottom"/></linearGradient>
     <clipPath id="opening"><path data-d="inner"/></clipPath>
@@ -204,21 +204,21 @@ const FACE = `<svg viewBox="-300 -455 600 640" aria-hidden="true" class="labial-
   </g>
   <path class="hair" d="M-238-150C-262-330-150-428 4-428C160-428 262-330 238-150C232-196 222-232 204-262C150-262 84-290 40-334C-20-280-130-262-200-270C-222-236-232-200-238-150Z"/>
   <g clip-path="url(#left)">
-    <ellipse class="white" cx="96" cy="-178" rx="42" ry="38"/>
+    <ellipse class="white" cx="96" cy="-178" rx="41" ry="37"/>
     <g class="gaze"><circle class="iris" cx="96" cy="-178" r="27"/><circle class="pupil" cx="96" cy="-178" r="15"/><circle class="light" cx="105" cy="-189" r="8"/></g>
     <path class="skin" data-part="cheek" d="M36-60V-134Q96-148 156-134V-60Z"/>
     <path class="skin" d="M36-300V-196Q96-216 156-196V-300Z"/>
     <path class="skin lid" d="M36-320V-150Q96-134 156-150V-320Z"/>
   </g>
   <g clip-path="url(#right)">
-    <ellipse class="white" cx="-96" cy="-178" rx="42" ry="38"/>
+    <ellipse class="white" cx="-96" cy="-178" rx="41" ry="37"/>
     <g class="gaze"><circle class="iris" cx="-96" cy="-178" r="27"/><circle class="pupil" cx="-96" cy="-178" r="15"/><circle class="light" cx="-87" cy="-189" r="8"/></g>
     <path class="skin" data-part="cheek" d="M-156-60V-134Q-96-148 -36-134V-60Z"/>
     <path class="skin" d="M-156-300V-196Q-96-216 -36-196V-300Z"/>
     <path class="skin lid" d="M-156-320V-150Q-96-134 -36-150V-320Z"/>
   </g>
   <path class="lash" d="M54-182Q62-206 96-207Q130-206 138-182M-54-182Q-62-206-96-207Q-130-206-138-182"/>
-  <path class="brow" data-part="brow" d="M58-250Q98-272 142-248M-58-250Q-98-272-142-248"/>
+  <path class="brow" data-part="brow" d="M58-246Q98-268 142-244M-58-246Q-98-268-142-244"/>
   <path class="nose" d="M-20-92Q0-76 20-92"/>
   <g transform="scale(1.2)">
     <path class="crease" data-d="crease"/>
