@@ -123,8 +123,8 @@ def test_screen_readers_and_keyboards_find_the_face(opened: Any) -> None:
 def test_eyes_blink_unless_motion_is_to_be_reduced(opened: Any) -> None:
     """Lids that come down, and none that do for a visitor who wants it still. And a colour of its own in the dark."""
     page = opened("strict")
-    lids = "[...face.shadowRoot.querySelectorAll('.lid, .gaze')].flatMap((one) => one.getAnimations()).length"
-    assert page.evaluate(lids) == 4
+    lids = "[...face.shadowRoot.querySelectorAll('.lid, .lash, .gaze')].flatMap((one) => one.getAnimations()).length"
+    assert page.evaluate(lids) == 5
     down = page.evaluate("""(() => {
         const [lid] = face.shadowRoot.querySelectorAll(".lid"), [blink] = lid.getAnimations(), found = [];
         blink.pause();

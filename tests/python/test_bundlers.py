@@ -1,6 +1,6 @@
 """The npm packages as projects use them: bundled by vite, esbuild, webpack, rollup and Parcel as these come, or not at
-all; in pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are labial-say's.
-And their types."""
+all; in pages, workers and AudioWorklets of Chromium and in two versions of node. Everywhere the frames are
+labial-say's. And their types."""
 
 from __future__ import annotations
 

@@ -265,17 +265,22 @@ const FACE_STYLE = `
 .labial-face .shine { stroke: #fff; stroke-width: 5; opacity: .2 }
 .labial-face .line { stroke: #3a0f14; stroke-width: 3 }
 .labial-face .lid { transform: translateY(-90px); animation: labial-blink 11s infinite }
+.labial-face .lash { transform-origin: 0 -176px; animation: labial-lash 11s infinite }
 .labial-face .gaze { animation: labial-gaze 17s infinite }
 @keyframes labial-blink {
   0%, 26.6%, 28.8%, 61%, 63.2%, 64%, 66.2%, 100% { transform: translateY(-90px) }
   27.5%, 61.9%, 64.9% { transform: none }
+}
+@keyframes labial-lash {
+  0%, 26.6%, 28.8%, 61%, 63.2%, 64%, 66.2%, 100% { transform: none }
+  27.5%, 61.9%, 64.9% { transform: scaleY(-.8) }
 }
 @keyframes labial-gaze {
   0%, 31%, 43%, 70%, 82%, 100% { transform: none }
   31.8%, 42.2% { transform: translate(7px, 1px) }
   70.8%, 81.2% { transform: translate(-6px, -2px) }
 }
-@media (prefers-reduced-motion: reduce) { .labial-face :is(.lid, .gaze) { animation: none } }
+@media (prefers-reduced-motion: reduce) { .labial-face :is(.lid, .lash, .gaze) { animation: none } }
 `;
 
 /** The head's outline and what shows of the lips' surroundings, for a jaw that is `jaw` units down. */
@@ -311,7 +316,8 @@ export function createFace(place) {
   };
   const shapes = all("[data-d]"), [jaws, brows, cheeks, tongue] =
     ["[data-move=jaw]", "[data-part=brow]", "[data-part=cheek]", "[data-part=tongue]"].map(all);
-  for (const part of all(".lid, .gaze")) part.style.animationDelay = `${-drawings * 3.7 % 11}s`; /* not all faces at once */
+  const delay = `${-drawings * 3.7 % 11}s`; /* not all faces blink at once */
+  for (const part of all(".lid, .lash, .gaze")) part.style.animationDelay = delay;
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   let lift = 0;
   return faps => {
