@@ -214,6 +214,10 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     /** The sound of a source in step with the lips, to be connected where `play` is false; null for a sound that is
      * pushed. */
     readonly sound: Dom<"AudioNode"> | null;
+    /** "ended": the element or the node that is heard has played to its end. "lost": the stream has lost its sound, since
+     * the microphone was unplugged or forbidden, or the connection closed. Both when the sound before that was heard. */
+    addEventListener(type: "ended" | "lost", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
+    removeEventListener(type: "ended" | "lost", listener: (event: { readonly type: string }) => void): void;
     /** Lets go of the source. A hearing with a source stays until then. */
     close(): void;
 }
@@ -381,6 +385,9 @@ export class Voice<O extends Output = "faps"> {
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;
+    /** "ended": all of the utterance was shown, after finish(). */
+    addEventListener(type: "ended", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
+    removeEventListener(type: "ended", listener: (event: { readonly type: string }) => void): void;
     /** Frees the memory at once; otherwise the garbage collector does. */
     close(): void;
 }

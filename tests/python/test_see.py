@@ -223,7 +223,7 @@ def test_player_requests_nothing() -> None:
                                           "img-src data:; media-src data:")  # fmt: skip
     drawing = MOUTH.read_text(encoding="utf-8")
     assert "</script" not in drawing and "<!--" not in drawing
-    for part in (text, drawing):
+    for part in (text, drawing.replace("http://www.w3.org/2000/svg", "")):  # a name, which nothing fetches
         assert not re.search(r"https?://|@import|\bfetch\(|XMLHttpRequest|WebSocket|sendBeacon|\bimport\b", part)
 
 

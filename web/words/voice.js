@@ -22,7 +22,8 @@ const DURATION_MAX = 3600000;
 const FADE_MAX = 1000;
 const NEUTRAL = new Array(CHANNELS).fill(0);
 
-export class Voice {
+/** Tells as an event "ended" that all of an utterance was shown. */
+export class Voice extends EventTarget {
     #tools;
     #labial;
     #output;
@@ -47,8 +48,10 @@ export class Voice {
     #step = 0;
     #steps = 0;
     #frame; // what at() returns
+    #told = false; // that it has ended
 
     constructor(lexicon, formats, options = {}) {
+        super();
         const { tools, labial } = lexicon;
         const { format = "auto", output = "faps", model = "speech", labels = "auto", unknown = "error" } = options;
         const { own, numbers, offset = 0, clock, context } = options;
@@ -270,6 +273,9 @@ export class Voice {
             this.#shown = this.#faded(this.#made());
             frames.push(take(this.#shown));
         }
+        const done = this.done && !this.#cancelled;
+        if (done && !this.#told) this.dispatchEvent(new Event("ended"));
+        this.#told = done;
         return frames;
     }
 

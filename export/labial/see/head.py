@@ -33,12 +33,13 @@ _RIGHT, _LEAST = (0.8, 1.25), 2.0
 PLAYER = Path(__file__).with_name("head.html")
 #: Modules of the npm package three, their names on a page, and their names for each other.
 _THREE: Dict[str, str] = {
-    "labial-core": "build/three.core.js",
     "three": "build/three.module.js",
     "labial-gltf": "examples/jsm/loaders/GLTFLoader.js",
     "labial-buffers": "examples/jsm/utils/BufferGeometryUtils.js",
     "labial-skeletons": "examples/jsm/utils/SkeletonUtils.js",
 }
+#: A part of `three` from 0.172 on.
+_CORE = {"labial-core": "build/three.core.js"}
 _IMPORTS = {"./three.core.js": "labial-core", "../utils/BufferGeometryUtils.js": "labial-buffers",
             "../utils/SkeletonUtils.js": "labial-skeletons"}
 
@@ -59,7 +60,8 @@ def find_three(given: Optional[PathLike]) -> Path:
 def _imports(three: Path) -> str:
     """An import map whose modules are data: no network."""
     modules = {}
-    for name, file in _THREE.items():
+    core = {name: file for name, file in _CORE.items() if (three / file).is_file()}
+    for name, file in {**core, **_THREE}.items():
         text = (three / file).read_text(encoding="utf-8")
         for path, other in _IMPORTS.items():
             for quote in "\"'":
