@@ -191,7 +191,7 @@ export class Hearing {
         return context && context.currentTime - (context.outputLatency || context.baseLatency || 0);
     }
 
-    get rate() {
+    get fps() {
         return RATE;
     }
 
