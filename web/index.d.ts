@@ -44,7 +44,7 @@ export interface Model {
     /** The number of silence. */
     readonly silence: number;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
 }
 
 export interface StreamOptions<O extends Output = Output> {
@@ -101,7 +101,7 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     /** When that frame is due, seconds after the first. */
     readonly time: number;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** The model of the next push. */
     readonly model: Model;
     /** The stream was ended or cancelled, and every frame was delivered. */
@@ -115,12 +115,12 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     free(): void;
 }
 
-/** The motion of a whole utterance. Frame k is due k / rate seconds after the sound begins. It begins and ends at rest, as
+/** The motion of a whole utterance. Frame k is due k / fps seconds after the sound begins. It begins and ends at rest, as
  * a rule 12 frames after the last segment, unless it was to be exact. */
 export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly output: O;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** Number of frames. */
     readonly length: number;
     /** Seconds. */
@@ -201,7 +201,7 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     /** The time that is heard now; null without an AudioContext. */
     readonly now: number | null;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** Seconds from a frame's begin in the sound until it is known: 0.12. */
     readonly latency: number;
     /** Seconds by which the sound of a source is played later, so that lips are known by then; 0 for a sound that is
@@ -340,7 +340,7 @@ export interface VoiceOptions<O extends Output = Output> extends WordOptions {
 }
 
 /** Lips that follow a voice whose words or phonemes become known while it is heard. Times of what is told are seconds
- * from the beginning of the utterance, all others those of the clock. A frame is due when number / rate seconds of the
+ * from the beginning of the utterance, all others those of the clock. A frame is due when number / fps seconds of the
  * sound were heard; it is final once it was shown. */
 export class Voice<O extends Output = "faps"> {
     #private;
@@ -381,7 +381,7 @@ export class Voice<O extends Output = "faps"> {
     /** The time that is heard now; null while nothing is heard. Throws without a clock. */
     readonly now: number | null;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;

@@ -40,7 +40,7 @@ export class Model {
         this.names = names;
         this.phonemes = wasm.model_phonemes(at);
         this.silence = wasm.model_silence(at);
-        this.rate = wasm.model_fps(at);
+        this.fps = wasm.model_fps(at);
         this.stride = wasm.model_stride(at);
         Object.freeze(this);
     }
@@ -119,7 +119,7 @@ export class Labial {
         this.checkOutput(output);
         const stream = new Stream(this, options);
         try {
-            return new Track(this, output, stream.model.rate, speak(stream, segments));
+            return new Track(this, output, stream.model.fps, speak(stream, segments));
         } finally {
             stream.free();
         }

@@ -8,7 +8,7 @@ class TrackPlayer {
 
     constructor(track) {
         this.#track = track;
-        this.period = 1 / track.rate;
+        this.period = 1 / track.fps;
     }
 
     at(seconds) {
@@ -47,7 +47,7 @@ class StreamPlayer {
 
     constructor(stream) {
         this.#stream = stream;
-        this.period = 1 / stream.rate;
+        this.period = 1 / stream.fps;
     }
 
     /** Ticks until the due frame is ready, or until none comes; then the last one stays. */
@@ -85,7 +85,7 @@ class HearingPlayer {
 
     constructor(hearing) {
         this.#hearing = hearing;
-        this.period = 1 / hearing.rate;
+        this.period = 1 / hearing.fps;
     }
 
     at(seconds) {
@@ -113,7 +113,7 @@ class VoicePlayer {
     constructor(voice) {
         this.#voice = voice;
         this.#clock = voice.clock !== null;
-        this.period = 1 / voice.rate;
+        this.period = 1 / voice.fps;
     }
 
     at(seconds) {

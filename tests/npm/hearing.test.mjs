@@ -73,7 +73,7 @@ test("models, outputs and rates", async () => {
 test("a frame is known after the latency, and the iterator waits for it", async () => {
     const sound = voice(1);
     const one = await labial.hear(null, { sampleRate: RATE });
-    assert.ok(one.latency > 0.1 && one.latency < 0.2 && one.delay === 0 && one.rate === 50 && one.now === null);
+    assert.ok(one.latency > 0.1 && one.latency < 0.2 && one.delay === 0 && one.fps === 50 && one.now === null);
     assert.equal(one.number, -1);
     const needed = Math.round(one.latency * RATE);
     one.push(sound.subarray(0, needed - 1));

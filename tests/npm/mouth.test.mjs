@@ -27,7 +27,7 @@ test("lips are drawn closed in p, b, m and at rest, and open in vowels", () => {
     const gaps = Array.from(track, (faps) => mouthShape(faps).gap);
     assert.equal(mouthShape(new Array(13).fill(0)).gap, 0);
     for (const { start, end, label } of segments) {
-        const own = gaps.slice(Math.round(start * track.rate), Math.round(end * track.rate));
+        const own = gaps.slice(Math.round(start * track.fps), Math.round(end * track.fps));
         if (["P", "B", "M"].includes(label)) assert.ok(Math.min(...own) < LINE, `${label} at ${start}: ${own}`);
         if (["AA", "AE", "AY"].includes(label)) assert.ok(Math.max(...own) > 4 * LINE, `${label} at ${start}: ${own}`);
     }

@@ -55,7 +55,7 @@ test("a clock that was not given is asked for, and a time stands for it", async 
     assert.throws(() => voice.at(), { name: "LabialError" });
     assert.equal(voice.number, -1);
     assert.equal(voice.played(0.5).length, 26);
-    assert.deepEqual([voice.number, voice.time, voice.rate, voice.done], [25, 0.5, 50, false]);
+    assert.deepEqual([voice.number, voice.time, voice.fps, voice.done], [25, 0.5, 50, false]);
 });
 
 test("at() is the frame that played() returned last, in one object", async () => {

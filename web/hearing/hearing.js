@@ -194,7 +194,7 @@ export class Hearing extends EventTarget {
         return context && context.currentTime - (context.outputLatency || context.baseLatency || 0);
     }
 
-    get rate() {
+    get fps() {
         return RATE;
     }
 

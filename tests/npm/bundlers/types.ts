@@ -35,7 +35,7 @@ labial.convert(between, "arkitt");
 // @ts-expect-error no output has this name
 labial.stream({ output: "vrmm" });
 // @ts-expect-error null until it is loaded
-labial.models.laughter.rate;
+labial.models.laughter.fps;
 
 const mine = labial.rig<"beak" | "brow">({});
 const beak: number | undefined = labial.stream({ output: mine }).tick()?.beak;
