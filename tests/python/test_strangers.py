@@ -14,6 +14,7 @@ import signal
 import struct
 import sys
 import time
+import warnings
 import zipfile
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple, Union
@@ -26,6 +27,7 @@ from labial.__main__ import main
 from labial.files import limits
 from labial.files.frames import CSV_HEAD
 from labial.tables.model import save
+from labial.tables.phones import read_stream
 from models import random_model, write_motion
 from runtime import needs_runtime
 from test_head_page import stand_in  # noqa: F401, a fixture
@@ -493,6 +495,17 @@ def test_timings(tmp_path: Path, told: Told, name: str) -> None:
     (tmp_path / file).write_bytes(content)
     said = told("timings", file)
     assert said.startswith(file) and message in said, said
+
+
+@pytest.mark.parametrize(("hours", "said"), [(1, False), (20, True)])
+def test_motion_of_hours_is_told(tmp_path: Path, hours: int, said: bool) -> None:
+    """A small file may ask for a day of motion: whoever waits for it is told why."""
+    model = random_model(1)
+    (tmp_path / "a.lab").write_text("".join(f"{3600 * n} {3600 * (n + 1)} SIL\n" for n in range(hours)))
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        read_stream(tmp_path / "a.lab", model)
+    assert ["a.lab: its motion lasts 20.0 hours" in str(item.message) for item in found] == [True] * said
 
 
 # ---- Sounds ----------------------------------------------------------------------------------------------------------

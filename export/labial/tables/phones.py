@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -13,6 +14,8 @@ from labial.corpus.phonesets import AUTO, PhoneSet, aliases_for
 from labial.corpus.timings import phoneme_segments
 from labial.tables.model import Model
 
+#: Seconds of motion from which on a warning says why a command takes long.
+_LONG = 3600.0
 #: A phoneme stream: (phoneme number, milliseconds) pairs.
 Stream = List[Tuple[int, int]]
 
@@ -40,6 +43,9 @@ def read_stream(
     unknown labels become the nearest phoneme, with one warning each.
     """
     segments = read_timings(path, source)
+    if segments[-1].end > _LONG:
+        warnings.warn(f"{os.fspath(path)}: its motion lasts {segments[-1].end / 3600:.1f} hours, which takes time and "
+                      "memory", stacklevel=2)
     return stream_of(phoneme_segments(path, segments, phone_set(model), False, labels), model, 0)
 
 
