@@ -230,14 +230,25 @@ def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
     return _heard(tables, sound, rate)[0]
 
 
+def hear_energies(tables: HearingTables, energies: np.ndarray, count: int) -> Heard:
+    """The same for the first `count` frames of log2 energies (n, 24) in 1/256, int64, which reach as far as the network
+    looks ahead and smoothing waits for."""
+    return _of_energies(tables, energies, count)[0]
+
+
 def _heard(tables: HearingTables, sound: np.ndarray, rate: int) -> Tuple[Heard, np.ndarray]:
-    """The same, and the poses (T, 13) in Q4."""
+    """What the network tells of a sound, and the poses (T, 13) in Q4."""
     samples = convert(np.asarray(sound), rate)
     count = frames_of(len(samples))
+    frames = count + SMOOTHING + tables.ahead
+    padded = np.concatenate([samples, np.zeros(frames * FRAME - len(samples), dtype=np.int64)])
+    return _of_energies(tables, log_energies(padded), count)
+
+
+def _of_energies(tables: HearingTables, energies: np.ndarray, count: int) -> Tuple[Heard, np.ndarray]:
     known = count + SMOOTHING
-    padded = np.concatenate([samples, np.zeros((known + tables.ahead) * FRAME - len(samples), dtype=np.int64)])
-    heard = normalise(log_energies(padded)).reshape(known + tables.ahead, HOPS * BANDS)
-    head = heads(tables, heard)[:known]
+    features = normalise(energies).reshape(len(energies) // HOPS, HOPS * BANDS)
+    head = heads(tables, features)[:known]
     pose = poses(tables, head)
     before = np.concatenate([pose[:1], pose])[:count]
     smooth = (before + 2 * pose[:count] + pose[1:known] + 2) >> 2
