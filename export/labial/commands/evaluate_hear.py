@@ -17,17 +17,17 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     """A model, and the sounds, conditions and methods to judge."""
     command.add_argument("model", metavar="HEAR.npz")
     command.add_argument("folder", nargs="*", metavar="FOLDER", help="speech, as for train-hear")
-    command.add_argument("--lips", nargs="+", action="append", metavar="CORPUS", help="judge by lips that were measured "
-                         "in video: corpora, as for train, with the sound beside each episode or with energies.npz; "
-                         "once more for another group of them")
+    command.add_argument("--lips", nargs="+", action="append", metavar="CORPUS", help="judge by lips that were "
+                         "measured in video: corpora, as for train, with the sound beside each episode or with "
+                         "energies.npz; once more for another group of them")
     command.add_argument("-o", "--output", metavar="TABLE.md", help="standard output without it")
     command.add_argument("--voices", nargs="*", metavar="VOICE", help="synthesisers' voices that say the bundled "
                          "sentences, as for speech-corpus (four that no bundled network was trained on)")
     command.add_argument("--conditions", metavar="A,B,...", help="of clean, -40 dBFS, white noise 20 dB and so on; all "
                          "of them by default")
     command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness, \"loudness and "
-                         "crossings\" (these; with --lips phonemes instead of the last), and other projects: wawa-lipsync, \"wawa-lipsync unsmoothed\", "
-                         "headaudio, pocketsphinx")
+                         "crossings\" (these; with --lips phonemes in place of the last), and other projects: "
+                         "wawa-lipsync, \"wawa-lipsync unsmoothed\", headaudio, pocketsphinx")
     command.add_argument("--npm", metavar="FOLDER", help="where npm installed wawa-lipsync and @met4citizen/headaudio")
     command.add_argument("--most", type=positive, help="clips of each folder (all)")
     command.add_argument("--cache", metavar="FOLDER", help="for alignments")
