@@ -2,7 +2,7 @@
  * board_words.c - what reading words costs on a board: prints names and numbers, one pair a line.
  *
  * BENCH_WORDS of bench_words.h are common words of English. What is counted, in instructions: every call of
- * labial_words_read(); and for every word, with its times, labial_words_say() and all labial_words_next() up to the next
+ * labial_words_read(); and for every word, with its times, labial_words_push() and all labial_words_next() up to the next
  * word. The stack is that of all of these.
  */
 #include "bench_words.h"
@@ -11,7 +11,7 @@
 #include "words_en.h"
 
 static const char *const words[] = { BENCH_WORDS };
-static labial_words_stream_t stream;
+static labial_words_t stream;
 static labial_word_t word;
 static uint32_t phonemes, checksum;
 
@@ -38,7 +38,7 @@ int main(void)
 {
     uint32_t number, time = 0, reading = 0, reading_worst = 0, saying = 0, saying_worst = 0, deepest;
     board_stack_paint();
-    if (labial_words_begin(&stream, &words_en, NULL, 0) != LABIAL_OK)
+    if (labial_words_init(&stream, &words_en, NULL, 0) != LABIAL_OK)
         return 1;
     for (number = 0; number < sizeof words / sizeof words[0]; number++) {
         const char *const text = words[number];
@@ -53,7 +53,7 @@ int main(void)
         reading += taken;
         reading_worst = taken > reading_worst ? taken : reading_worst;
         board_count_start();
-        labial_words_say(&stream, text, size, time, time + 40u * size);
+        labial_words_push(&stream, text, size, time, time + 40u * size);
         take();
         taken = board_count();
         if (taken == BOARD_COUNT_OVERFLOW)
@@ -62,7 +62,7 @@ int main(void)
         saying_worst = taken > saying_worst ? taken : saying_worst;
         time += 50u * size + (number % 10u < 9u ? 0u : 200u); /* a gap that is bridged, and a pause every ten words */
     }
-    labial_words_flush(&stream);
+    labial_words_end(&stream);
     take();
     deepest = board_stack_depth();
 

@@ -17,7 +17,7 @@ import numpy as np
 
 import labial
 
-#: Intensities of `labial_laugh_begin()`, of LABIAL_LAUGH_FULL at most.
+#: Intensities of `labial_laugh_init()`, of LABIAL_LAUGH_FULL at most.
 INTENSITIES, FULL = (0, 64, 128, 192, 256), 256
 SECONDS = 3.0
 SEEDS = range(1, 13)

@@ -76,17 +76,17 @@ static int taken(const ears_t *ears, int result)
     return result == LABIAL_OK ? (int)ears->frame_count : result;
 }
 
-int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t rate, unsigned channels)
+int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_per_second, unsigned channels)
 {
-    const int result =
-        labial_hear_init(&ears->hear, model, rate, channels, ears->workspace, sizeof ears->workspace, take_frame, ears);
+    const int result = labial_hear_init(&ears->hear, model, samples_per_second, channels, ears->workspace,
+                                        sizeof ears->workspace, take_frame, ears);
     take_to(ears, NULL, NULL, 0);
     return result == LABIAL_OK ? labial_hear_classes(&ears->hear, take_stretch) : result;
 }
 
 uint32_t ears_latency(const ears_t *ears)
 {
-    return labial_hear_latency(&ears->hear);
+    return labial_hear_latency(&ears->hear).delay_milliseconds;
 }
 
 int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint32_t *stretches, uint32_t room)
@@ -120,4 +120,9 @@ int ears_restart(ears_t *ears)
 int ears_exact(ears_t *ears, unsigned exact)
 {
     return labial_hear_exact(&ears->hear, exact != 0);
+}
+
+int ears_articulation(ears_t *ears, unsigned percent)
+{
+    return labial_hear_articulation(&ears->hear, percent);
 }

@@ -29,7 +29,10 @@ FLAT(hearing_model) const labial_hear_model_t *hearing_model(unsigned number);
 FLAT(hearing_classes) unsigned hearing_classes(unsigned number);
 FLAT(hearing_class) const char *hearing_class(unsigned number, unsigned shown);
 
-FLAT(ears_init) int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t rate, unsigned channels);
+FLAT(ears_init)
+int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_per_second, unsigned channels);
+
+/* Milliseconds from the begin of a frame until it is known. */
 FLAT(ears_latency) uint32_t ears_latency(const ears_t *ears);
 
 /* These write the frames that they deliver to `faps`, 13 numbers each, and the stretches of one class to `stretches`,
@@ -42,6 +45,7 @@ FLAT(ears_cancel)
 int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint32_t *stretches, uint32_t room);
 FLAT(ears_stretches) uint32_t ears_stretches(const ears_t *ears);
 FLAT(ears_exact) int ears_exact(ears_t *ears, unsigned exact);
+FLAT(ears_articulation) int ears_articulation(ears_t *ears, unsigned percent);
 FLAT(ears_restart) int ears_restart(ears_t *ears);
 
 #endif

@@ -101,7 +101,7 @@ unsigned model_silence(const labial_model_t *model)
     return model->silence;
 }
 
-unsigned model_rate(const labial_model_t *model)
+unsigned model_fps(const labial_model_t *model)
 {
     return model->frames_per_second;
 }
@@ -257,9 +257,9 @@ int mouth_run(mouth_t *mouth, int16_t *out, unsigned count)
 
 /* ---- Laughs ------------------------------------------------------------------------------------------------------ */
 
-int laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
+int laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
 {
-    return labial_laugh_begin(laugh, milliseconds, intensity, seed);
+    return labial_laugh_init(laugh, milliseconds, intensity, seed);
 }
 
 int laugh_next(labial_laugh_t *laugh, uint32_t *out)
@@ -342,8 +342,7 @@ const char *timings_suffix(unsigned format)
 int timings_init(labial_timings_t *timings, unsigned format, const char *tier, unsigned tier_number)
 {
     const int result = labial_timings_init(timings, (labial_timings_format_t)format);
-    timings->tier = tier;
-    timings->tier_number = tier_number;
+    (void)labial_timings_tier(timings, tier, tier_number);
     return result;
 }
 
@@ -387,12 +386,12 @@ const char *timings_word(const labial_timings_t *timings)
 
 const char *timings_message(const labial_timings_t *timings)
 {
-    return timings->message;
+    return labial_timings_message(timings);
 }
 
 uint32_t timings_line(const labial_timings_t *timings)
 {
-    return timings->line;
+    return labial_timings_line(timings);
 }
 
 /* ---- Faces ------------------------------------------------------------------------------------------------------- */

@@ -17,7 +17,7 @@
 #include "labial/timings.h"
 
 /* Version of this interface; the Python package refuses a library of another one. */
-#define FLAT_INTERFACE 4
+#define FLAT_INTERFACE 5
 
 #ifdef __wasm__
 #define FLAT(name) __attribute__((export_name(#name)))
@@ -60,7 +60,7 @@ FLAT(bundled_names) const labial_names_t *bundled_names(unsigned number);
 /* Of a model: phonemes, the number of its silence, frames per second, frames that share a step of the search. */
 FLAT(model_phonemes) unsigned model_phonemes(const labial_model_t *model);
 FLAT(model_silence) unsigned model_silence(const labial_model_t *model);
-FLAT(model_rate) unsigned model_rate(const labial_model_t *model);
+FLAT(model_fps) unsigned model_fps(const labial_model_t *model);
 FLAT(model_stride) unsigned model_stride(const labial_model_t *model);
 FLAT(model_load) int model_load(labial_blob_t *blob, const void *data, uint32_t size);
 
@@ -99,7 +99,7 @@ FLAT(mouth_delay) unsigned mouth_delay(const mouth_t *mouth);
 FLAT(mouth_run) int mouth_run(mouth_t *mouth, int16_t *out, unsigned count);
 
 /* A laugh; laugh_next() writes a phoneme and its milliseconds. */
-FLAT(laugh_begin) int laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
+FLAT(laugh_init) int laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
 FLAT(laugh_next) int laugh_next(labial_laugh_t *laugh, uint32_t *out);
 
 FLAT(blend) int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out);

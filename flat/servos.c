@@ -41,9 +41,9 @@ int servos_skip(servos_t *servos, unsigned count)
     return labial_face_skip(&servos->face, count);
 }
 
-int servos_cancel(servos_t *servos)
+int servos_cancel(servos_t *servos, uint32_t milliseconds)
 {
-    return labial_face_cancel(&servos->face);
+    return labial_face_cancel(&servos->face, milliseconds);
 }
 
 int servos_soft_start(servos_t *servos, unsigned ticks)

@@ -25,7 +25,7 @@ FLAT(servos_values) int servos_values(servos_t *servos, const int32_t *wanted);
 FLAT(servos_tick) int servos_tick(servos_t *servos, int32_t *values);
 FLAT(servos_play) int servos_play(servos_t *servos);
 FLAT(servos_skip) int servos_skip(servos_t *servos, unsigned count);
-FLAT(servos_cancel) int servos_cancel(servos_t *servos);
+FLAT(servos_cancel) int servos_cancel(servos_t *servos, uint32_t milliseconds);
 FLAT(servos_soft_start) int servos_soft_start(servos_t *servos, unsigned ticks);
 FLAT(servos_attached) unsigned servos_attached(const servos_t *servos);
 FLAT(servos_place) int servos_place(servos_t *servos, const int32_t *values);

@@ -7,9 +7,9 @@
 
 #include "words_en.h"
 
-uint32_t words_stream_size(void)
+uint32_t words_size(void)
 {
-    return sizeof(labial_words_stream_t);
+    return sizeof(labial_words_t);
 }
 
 uint32_t words_own_size(unsigned count)
@@ -54,33 +54,38 @@ int words_read(const labial_words_own_t *own, const char *text, uint32_t size, u
     return word.kind;
 }
 
-int words_begin(labial_words_stream_t *stream, const labial_words_own_t *own, int32_t offset)
+int words_init(labial_words_t *stream, const labial_words_own_t *own, int32_t offset)
 {
-    return labial_words_begin(stream, &words_en, own, offset);
+    return labial_words_init(stream, &words_en, own, offset);
 }
 
-void words_pronounce(labial_words_stream_t *stream, const labial_words_own_t *own)
+void words_pronounce(labial_words_t *stream, const labial_words_own_t *own)
 {
-    stream->own = own;
+    (void)labial_words_pronounce(stream, own);
 }
 
-int words_say(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end)
+int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end)
 {
-    return labial_words_say(stream, text, size, start, end);
+    return labial_words_push(stream, text, size, start, end);
 }
 
-int words_say_characters(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start,
-                         const uint32_t *ends, unsigned count)
+int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, const uint32_t *ends,
+                          unsigned count)
 {
-    return labial_words_say_characters(stream, text, size, start, ends, count);
+    return labial_words_push_characters(stream, text, size, start, ends, count);
 }
 
-int words_flush(labial_words_stream_t *stream)
+int words_end(labial_words_t *stream)
 {
-    return labial_words_flush(stream);
+    return labial_words_end(stream);
 }
 
-int words_next(labial_words_stream_t *stream, uint32_t *out)
+int words_restart(labial_words_t *stream)
+{
+    return labial_words_restart(stream);
+}
+
+int words_next(labial_words_t *stream, uint32_t *out)
 {
     unsigned phoneme = 0;
     const int result = labial_words_next(stream, &phoneme, &out[1]);

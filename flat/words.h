@@ -9,7 +9,7 @@
 #include "labial/words.h"
 
 /* Bytes of a stream of words, and of `count` words of the caller's own. */
-FLAT(words_stream_size) uint32_t words_stream_size(void);
+FLAT(words_size) uint32_t words_size(void);
 FLAT(words_own_size) uint32_t words_own_size(unsigned count);
 
 /* Words of the caller's own from `packed`, which must stay where it is: of each the text, NUL, the number of its
@@ -24,15 +24,16 @@ FLAT(words_label) const char *words_label(unsigned phoneme);
 FLAT(words_read) int words_read(const labial_words_own_t *own, const char *text, uint32_t size, uint8_t *out);
 
 /* A stream of words; words_next() writes a phoneme and its milliseconds. */
-FLAT(words_begin) int words_begin(labial_words_stream_t *stream, const labial_words_own_t *own, int32_t offset);
+FLAT(words_init) int words_init(labial_words_t *stream, const labial_words_own_t *own, int32_t offset);
 /* Other words of the caller's own, for the words that follow. */
-FLAT(words_pronounce) void words_pronounce(labial_words_stream_t *stream, const labial_words_own_t *own);
-FLAT(words_say)
-int words_say(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end);
-FLAT(words_say_characters)
-int words_say_characters(labial_words_stream_t *stream, const char *text, uint32_t size, uint32_t start,
-                         const uint32_t *ends, unsigned count);
-FLAT(words_flush) int words_flush(labial_words_stream_t *stream);
-FLAT(words_next) int words_next(labial_words_stream_t *stream, uint32_t *out);
+FLAT(words_pronounce) void words_pronounce(labial_words_t *stream, const labial_words_own_t *own);
+FLAT(words_push)
+int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end);
+FLAT(words_push_characters)
+int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, const uint32_t *ends,
+                          unsigned count);
+FLAT(words_end) int words_end(labial_words_t *stream);
+FLAT(words_restart) int words_restart(labial_words_t *stream);
+FLAT(words_next) int words_next(labial_words_t *stream, uint32_t *out);
 
 #endif

@@ -74,7 +74,7 @@ static const void *table(reader_t *reader, uint32_t count, uint32_t size)
     return start;
 }
 
-static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessors, labial_channel_t *channel)
+static void read_channel(reader_t *reader, uint32_t states, uint32_t transitions, labial_channel_t *channel)
 {
     const uint8_t *scales = (const uint8_t *)table(reader, 8u, 2u);
     if (!scales)
@@ -89,7 +89,7 @@ static void read_channel(reader_t *reader, uint32_t states, uint32_t predecessor
     channel->contact_weight = scales[14];
     channel->emissions = (const labial_emission_t *)table(reader, states, sizeof(labial_emission_t));
     channel->states = (const labial_state_t *)table(reader, states, sizeof(labial_state_t));
-    channel->transitions = (const uint16_t *)table(reader, states * predecessors, 2u);
+    channel->transitions = (const labial_transition_t *)table(reader, transitions, sizeof(labial_transition_t));
     channel->initials = (const uint8_t *)table(reader, states, 1u);
 }
 
@@ -119,7 +119,7 @@ static void read_tables(reader_t *reader, unsigned optional, labial_model_t *mod
     if (optional & HAS_PROTRUSION)
         model->protrusion = (const labial_protrusion_t *)table(reader, 1u, sizeof(labial_protrusion_t));
     for (k = 0; k < width; k++)
-        read_channel(reader, model->state_count, model->predecessors, &channels[k]);
+        read_channel(reader, model->state_count, 4u * model->state_count * model->predecessor_fours, &channels[k]);
     model->channels = channels;
 }
 
@@ -151,7 +151,7 @@ int labial_model_load(labial_blob_t *blob, const void *data, size_t size)
     model->phoneme_count = header[18];
     model->class_count = header[19];
     model->state_count = header[20];
-    model->predecessors = header[21];
+    model->predecessor_fours = header[21];
     model->search_stride = header[22];
     model->silence = header[23];
     model->mixture_mean = header[24];

@@ -12,19 +12,21 @@ static int64_t clock_within(int64_t value, int64_t least, int64_t most)
     return value < least ? least : value > most ? most : value;
 }
 
-int labial_clock_init(labial_clock_t *clock, uint32_t rate)
+int labial_clock_init(labial_clock_t *clock, uint32_t samples_per_second)
 {
+    if (!clock)
+        return LABIAL_ERROR_NULL;
     memset(clock, 0, sizeof *clock);
-    if (rate == 0 || rate > LABIAL_CLOCK_RATE_MAX)
-        return -1;
-    clock->rate = rate;
-    return 0;
+    if (samples_per_second == 0 || samples_per_second > LABIAL_CLOCK_SAMPLE_RATE_MAX)
+        return LABIAL_ERROR_SAMPLE_RATE;
+    clock->samples_per_second = samples_per_second;
+    return LABIAL_OK;
 }
 
 void labial_clock_play(labial_clock_t *clock, int64_t first, uint32_t count, int64_t now)
 {
     uint64_t lasts;
-    if (clock->rate == 0 || count == 0)
+    if (clock->samples_per_second == 0 || count == 0)
         return;
     now = clock_within(now, -LABIAL_CLOCK_MAX, LABIAL_CLOCK_MAX);
     if (!clock->plays || clock->silent < now) {
@@ -32,8 +34,9 @@ void labial_clock_play(labial_clock_t *clock, int64_t first, uint32_t count, int
         clock->fraction = 0;
     }
     lasts = (uint64_t)count * CLOCK_SECOND + clock->fraction;
-    clock->silent = clock_within(clock->silent + (int64_t)(lasts / clock->rate), now, now + LABIAL_CLOCK_AHEAD);
-    clock->fraction = (uint32_t)(lasts % clock->rate);
+    clock->silent =
+        clock_within(clock->silent + (int64_t)(lasts / clock->samples_per_second), now, now + LABIAL_CLOCK_AHEAD);
+    clock->fraction = (uint32_t)(lasts % clock->samples_per_second);
     if (first < 0) {
         clock->first = clock->end;
     } else {
@@ -56,7 +59,8 @@ int64_t labial_clock_at(const labial_clock_t *clock, int64_t now, int64_t *sampl
     int64_t left = 0, at = clock->end;
     now = clock_within(now, -LABIAL_CLOCK_MAX, LABIAL_CLOCK_MAX);
     if (clock->plays) {
-        left = clock_within(clock->silent - now, 0, LABIAL_CLOCK_AHEAD) * (int64_t)clock->rate / (int64_t)CLOCK_SECOND;
+        left = clock_within(clock->silent - now, 0, LABIAL_CLOCK_AHEAD) * (int64_t)clock->samples_per_second /
+               (int64_t)CLOCK_SECOND;
         at = clock->end - left > clock->first ? clock->end - left : clock->first;
     }
     *sample = at == clock->end && at > 0 ? at - 1 : at; /* the next one has not begun */

@@ -14,7 +14,7 @@ enum {
     PER_COMPARISON = 20, /* of a binary search */
     PER_SEARCH = 300,    /* of one channel */
     PER_STATE = 130,     /* that is searched */
-    PER_TRANSITION = 18, /* into such a state */
+    PER_TRANSITION = 12, /* into such a state */
     PER_LAG = 60,        /* frame of the lag, in one channel */
     PER_ROW = 650,       /* of equation 3 */
     PER_STEP_BACK = 32   /* of the backward pass */
@@ -50,7 +50,7 @@ static uint32_t selection(const labial_model_t *model)
 static uint32_t channel_step(const labial_model_t *model, uint32_t stride)
 {
     const uint32_t steps = (LABIAL_PIECE + stride - 1u) / stride;
-    return steps * (PER_SEARCH + model->state_count * (PER_STATE + (uint32_t)model->predecessors * PER_TRANSITION)) +
+    return steps * (PER_SEARCH + model->state_count * (PER_STATE + 4u * model->predecessor_fours * PER_TRANSITION)) +
            LABIAL_PIECE * (PER_ROW + PER_STEP_BACK);
 }
 
@@ -62,7 +62,7 @@ static uint32_t channel_step(const labial_model_t *model, uint32_t stride)
 {
     const uint32_t states = model->state_count < LABIAL_SEARCHED ? model->state_count : LABIAL_SEARCHED;
     return PER_SEARCH + comparisons(model->state_count) * PER_COMPARISON + LABIAL_LAG * PER_LAG +
-           states * (PER_STATE + (uint32_t)model->predecessors * PER_TRANSITION) + (stride + 1u) * PER_ROW +
+           states * (PER_STATE + 4u * model->predecessor_fours * PER_TRANSITION) + (stride + 1u) * PER_ROW +
            (LABIAL_WINDOW + 1u + stride) * PER_STEP_BACK;
 }
 

@@ -8,10 +8,12 @@
 
 #include <string.h>
 
+#include "fade.h"
 #include "fixed.h"
 #include "rig_parts.h"
 
-#define FACE_QUIET_MOST (LABIAL_FACE_HOLD + LABIAL_FACE_EASE)
+/* Ticks without a frame when the outputs go to rest. */
+#define FACE_QUIET_MOST (LABIAL_FACE_HOLD + 1)
 
 #define FACE_TIMES_HALF UINT32_C(0x80000000) /* differences from here on are negative */
 
@@ -66,14 +68,16 @@ int labial_face_init(labial_face_t *face, const labial_rig_t *rig, unsigned fram
         return LABIAL_ERROR_NULL;
     if (rig->count == 0)
         return LABIAL_ERROR_RIG;
-    if (frames_per_second == 0 || frames_per_second > 1000u || ahead > LABIAL_FACE_AHEAD_MAX)
-        return LABIAL_ERROR_RATE;
+    if (frames_per_second == 0 || frames_per_second > 1000u)
+        return LABIAL_ERROR_FRAME_RATE;
+    if (ahead > LABIAL_FACE_AHEAD_MAX)
+        return LABIAL_ERROR_RANGE;
     if (size < 4u * (uint32_t)rig->count * (ahead + ROW_FRAMES + 1u)) /* below 2^32 */
         return LABIAL_ERROR_WORKSPACE;
     face->rig = rig;
     face->memory = memory;
     face->ahead = (uint16_t)ahead;
-    face->rate = (uint16_t)frames_per_second;
+    face->frames_per_second = (uint16_t)frames_per_second;
     face->attached = rig->count;
     face->quiet = FACE_QUIET_MOST;
     for (i = 0; i < rig->count; i++) {
@@ -112,7 +116,7 @@ int labial_face_due(labial_face_t *face, uint32_t milliseconds)
     uint32_t late, period;
     if (face_status(face) != LABIAL_OK)
         return 0;
-    period = labial_quotient(1000u + face->part, face->rate);
+    period = labial_quotient(1000u + face->part, face->frames_per_second);
     late = milliseconds - face->next;
     if (face->timed && late >= FACE_TIMES_HALF && 0u - late <= period + 1u) /* the last one was longer, if anything */
         return 0;
@@ -121,7 +125,7 @@ int labial_face_due(labial_face_t *face, uint32_t milliseconds)
         face->next = milliseconds;
         face->moved = milliseconds - period;
     }
-    face->part = (uint16_t)(1000u + face->part - period * face->rate);
+    face->part = (uint16_t)(1000u + face->part - period * face->frames_per_second);
     face->next += period;
     face->passes = milliseconds - face->moved < (period + 1u) / 2u;
     if (!face->passes)
@@ -160,15 +164,19 @@ static int face_look(labial_face_t *face)
         face_drop_first(face);
         face->plays = 1;
         face->quiet = 0;
+        face->easing = LABIAL_FACE_EASE;
         face->waited = 0;
         return LABIAL_OK;
     }
     face->plays = 0;
     if (face->quiet < FACE_QUIET_MOST)
         face->quiet++;
-    for (i = 0; i < face->rig->count && face->quiet > LABIAL_FACE_HOLD; i++)
-        wanted[i] = face_step(labial_rig_resting(&face->rig->outputs[i]), wanted[i], face_row(face, ROW_VALUE)[i],
-                              FACE_QUIET_MOST + 1u - face->quiet);
+    if (face->quiet == FACE_QUIET_MOST && face->easing > 0) {
+        for (i = 0; i < face->rig->count; i++)
+            wanted[i] = face_step(labial_rig_resting(&face->rig->outputs[i]), wanted[i], face_row(face, ROW_VALUE)[i],
+                                  face->easing);
+        face->easing--;
+    }
     if (face->held > 0) {
         face->waited++;
         return LABIAL_WAITING;
@@ -210,7 +218,7 @@ int labial_face_tick(labial_face_t *face, int32_t *values)
         const labial_rig_output_t *const output = &face->rig->outputs[i];
         int32_t *const value = face_row(face, ROW_VALUE) + i, *const change = face_row(face, ROW_CHANGE) + i;
         const int32_t rest = labial_rig_resting(output);
-        const int rests = face->quiet == FACE_QUIET_MOST || i >= face->attached;
+        const int rests = face->easing == 0 || i >= face->attached;
         if (!face->passes) {
             const int32_t last = *value;
             const uint32_t touch = face_see(face, i, rests ? rest : face_row(face, ROW_WANTED)[i],
@@ -219,7 +227,7 @@ int labial_face_tick(labial_face_t *face, int32_t *values)
             *change = labial_sub(*value, last);
         }
         values[i] = *value;
-        if (result == LABIAL_DONE && (face->quiet < FACE_QUIET_MOST || *value != rest || *change != 0))
+        if (result == LABIAL_DONE && (face->easing > 0 || *value != rest || *change != 0))
             result = LABIAL_STARVED;
     }
     face->passes = 0;
@@ -247,13 +255,15 @@ int labial_face_skip(labial_face_t *face, unsigned count)
     return result;
 }
 
-int labial_face_cancel(labial_face_t *face)
+int labial_face_cancel(labial_face_t *face, uint32_t milliseconds)
 {
     const int result = face_status(face);
     if (result == LABIAL_OK) {
         face->held = face->waited = 0;
         if (face->quiet < LABIAL_FACE_HOLD)
             face->quiet = LABIAL_FACE_HOLD;
+        if (face->easing > 0)
+            face->easing = (uint16_t)labial_fade_frames(milliseconds, face->frames_per_second);
     }
     return result;
 }

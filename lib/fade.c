@@ -13,7 +13,7 @@ unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
     if (milliseconds > LABIAL_DURATION_MAX)
         milliseconds = LABIAL_DURATION_MAX;
     frames = labial_quotient(milliseconds * frames_per_second + 999u, 1000u);
-    return (unsigned)(frames < 1u ? 1u : frames < 1000u ? frames : 1000u);
+    return (unsigned)(frames < 1u ? 1u : frames < LABIAL_CANCEL_MAX ? frames : LABIAL_CANCEL_MAX);
 }
 
 void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)

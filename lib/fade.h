@@ -16,7 +16,7 @@
 /* A pose is at rest when no channel is farther from the neutral face than this: 8 FAP units, Q4. */
 #define LABIAL_AT_REST 128
 
-/* Frames of an easing over `milliseconds`, rounded up: at least one, and 1,000 at most. */
+/* Frames of a cancel over `milliseconds` (labial/result.h). */
 unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
 
 /* Begins a way of 1 to 65535 steps from the pose that was delivered last, which goes on moving or stands still. */

@@ -11,18 +11,18 @@
 #include "fixed.h"
 #include "hear_convert_table.h"
 
-int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t rate)
+int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t samples_per_second)
 {
     unsigned i;
     for (i = 0; i < sizeof conversions / sizeof conversions[0]; i++)
-        if (conversions[i].rate == rate) {
+        if (conversions[i].samples_per_second == samples_per_second) {
             convert->reach = conversions[i].reach;
             convert->spacing = conversions[i].spacing;
             convert->step = conversions[i].step;
             labial_hear_convert_reset(convert);
             return LABIAL_OK;
         }
-    return LABIAL_ERROR_SOUND;
+    return LABIAL_ERROR_SAMPLE_RATE;
 }
 
 void labial_hear_convert_reset(labial_hear_convert_t *convert)

@@ -9,8 +9,8 @@
 /* Samples at 16 kHz that a sample of the sound can complete, at most. */
 #define LABIAL_HEAR_CONVERTED_MAX 2
 
-/* Prepares the conversion from `rate`, with zeros as the samples before. Returns LABIAL_OK or LABIAL_ERROR_SOUND. */
-int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t rate);
+/* Prepares the conversion from so many samples per second, with zeros as the samples before. Returns LABIAL_OK or LABIAL_ERROR_SAMPLE_RATE. */
+int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t samples_per_second);
 
 /* Begins again with zeros as the samples before. */
 void labial_hear_convert_reset(labial_hear_convert_t *convert);

@@ -9,7 +9,7 @@
 
 /* Samples on each side that the filter takes; grid points between them; tenths between converted ones. */
 static const struct {
-    uint32_t rate;
+    uint32_t samples_per_second;
     uint8_t reach, spacing;
     uint16_t step;
 } conversions[8] = {

@@ -7,6 +7,9 @@
  * The samples of a window take 14 bits, whatever their level. A constant that is taken off them changes no bin of a
  * band: the Hann window has no share of it beyond the bin of 62.5 Hz. The transform divides by its number of points, so
  * that no modulus grows: 2^14 sqrt 2 for a sample pair is its bound throughout.
+ *
+ * The window's samples, its spectrum and what layers of the network put out share their memory, since each is done with
+ * before the next one begins; only the samples that the next window needs are kept aside.
  */
 #include "hear_features.h"
 
@@ -16,6 +19,9 @@
 #include "hear_features_table.h"
 
 #define PAIRS (LABIAL_HEAR_WINDOW_ / 2)
+
+/* Sound that stays within this span for a frame is silent. */
+#define SILENT_SPAN 32
 
 /* Bins from FIRST_BIN to LAST_BIN belong to bands. */
 #define FIRST_BIN 2u
@@ -208,4 +214,45 @@ void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int32_t *level, i
             relative = FEATURE_MOST;
         features[b] = (int16_t)((relative + FEATURE_OFFSET) >> 1);
     }
+}
+
+/* ---- Samples to windows ------------------------------------------------------------------------------------------- */
+
+/* Whether the samples that a window has beyond the one before it are silent. */
+static int is_silent(const int16_t *window)
+{
+    int32_t least = window[LABIAL_HEAR_SHARED], most = least;
+    unsigned i;
+    for (i = LABIAL_HEAR_SHARED + 1u; i < LABIAL_HEAR_WINDOW_; i++) {
+        least = window[i] < least ? window[i] : least;
+        most = window[i] > most ? window[i] : most;
+    }
+    return most - least <= SILENT_SPAN;
+}
+
+void labial_hear_features_reset(labial_hear_features_t *features)
+{
+    features->hop = 0;
+    features->filled = LABIAL_HEAR_SHARED;
+    features->level = LABIAL_HEAR_LEVEL_LEAST;
+    memset(features->tail, 0, sizeof features->tail);
+}
+
+int labial_hear_features_take(labial_hear_features_t *features, int16_t sample)
+{
+    int16_t *const window = features->window;
+    if (features->filled == LABIAL_HEAR_SHARED) {
+        memcpy(window, features->tail, sizeof features->tail);
+        features->loud &= features->hop;
+    }
+    window[features->filled++] = sample;
+    if (features->filled < LABIAL_HEAR_WINDOW_)
+        return 0;
+    if (!is_silent(window))
+        features->loud = 1;
+    memcpy(features->tail, window + LABIAL_HEAR_HOP_, sizeof features->tail);
+    labial_hear_features(window, &features->level, features->bands + features->hop * LABIAL_HEAR_BANDS);
+    features->filled = LABIAL_HEAR_SHARED;
+    features->hop ^= 1u;
+    return features->hop == 0;
 }

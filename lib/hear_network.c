@@ -13,115 +13,122 @@
 #include <string.h>
 
 #include "fixed.h"
+#include "hear_sums.h"
 
 static int16_t held(int32_t value)
 {
     return (int16_t)(value < -32768 ? -32768 : value > 32767 ? 32767 : value);
 }
 
+/* A row's value: its sum and bias, at the scale of activations. */
+static int16_t row_value(int32_t sum, int32_t bias, unsigned shift, int32_t least)
+{
+    const int32_t value = (sum + (((2 * bias + 1) * (1 << shift)) >> 1)) >> shift; /* half of one rounds */
+    return held(value < least ? least : value);
+}
+
 /* y = W x + b for `rows` rows, rounded up to fours, of `columns`; negative values become `least`, if that is 0. */
 static void multiply(const labial_hear_dense_t *layer, unsigned rows, unsigned columns, const int16_t *x, int16_t *y,
                      int32_t least)
 {
-    const int8_t *w = layer->weights;
-    unsigned r, i;
-    for (r = 0; r < rows; r += 4u) {
-        const int16_t *p;
-        int32_t sums[4] = { 0, 0, 0, 0 };
-        int32_t a = 0, b = 0, c = 0, d = 0;
-        for (p = x; p < x + columns; p += 2, w += 8) { /* columns come in fours */
-            int32_t value = p[0];
-            a += w[0] * value;
-            b += w[1] * value;
-            c += w[2] * value;
-            d += w[3] * value;
-            value = p[1];
-            a += w[4] * value;
-            b += w[5] * value;
-            c += w[6] * value;
-            d += w[7] * value;
-        }
-        sums[0] = a;
-        sums[1] = b;
-        sums[2] = c;
-        sums[3] = d;
-        for (i = 0; i < 4u; i++) {
-            const int32_t one = 1 << layer->shifts[r + i];
-            const int32_t value = (sums[i] + layer->biases[r + i] * one + (one >> 1)) >> layer->shifts[r + i];
-            y[r + i] = held(value < least ? least : value);
-        }
+    const int8_t *weights = layer->weights;
+    const int16_t *biases = layer->biases;
+    const uint8_t *shifts = layer->shifts;
+    const int16_t *const end = y + rows;
+    for (; y < end; y += 4, biases += 4, shifts += 4, weights += 4u * columns) {
+        int32_t sums[4];
+        labial_hear_sums(weights, x, columns, sums);
+        y[0] = row_value(sums[0], biases[0], shifts[0], least);
+        y[1] = row_value(sums[1], biases[1], shifts[1], least);
+        y[2] = row_value(sums[2], biases[2], shifts[2], least);
+        y[3] = row_value(sums[3], biases[3], shifts[3], least);
     }
+}
+
+/* Adds a sum to the input of a unit, which waits in `waiting` until the sum is known. */
+static void add_input(int32_t sum, int16_t *waiting, int16_t *x)
+{
+    sum += *waiting;
+    *waiting = *x;
+    *x = held(sum);
 }
 
 /* The memory of a block over its former rows and the present one, `y`, which takes the place of the oldest. Adds the
  * sums to `x`, or to what x was `behind` frames ago. */
-static void remember(labial_hear_t *hear, unsigned number, unsigned behind, int16_t *rows, int16_t *x, const int16_t *y)
+static void remember(labial_hear_network_t *network, unsigned number, unsigned behind, int16_t *rows, int16_t *x,
+                     const int16_t *y)
 {
-    const labial_hear_block_t *const block = &hear->model->block[number];
-    const unsigned units = hear->model->units, last = (unsigned)block->past + block->ahead;
-    const unsigned held_rows = last * block->dilation;
-    int16_t *oldest = rows + hear->at[number] * units, *input = rows + (held_rows + hear->skip[number]) * units;
+    const labial_hear_block_t *const block = &network->model->block[number];
+    const unsigned units = network->model->units, taps = (unsigned)block->past + block->ahead + 1u;
+    const unsigned held_rows = (taps - 1u) * block->dilation;
+    int16_t *const oldest = rows + network->at[number] * units;
+    int16_t *const waiting = behind > 0u ? rows + (held_rows + network->skip[number]) * units : x;
     const int16_t *row[LABIAL_HEAR_TAPS_MAX];
     const int8_t *w = block->taps;
     unsigned c, k, at;
-    for (k = 0, at = hear->at[number]; k < last; k++) {
+    for (k = 0, at = network->at[number]; k < taps - 1u; k++) {
         row[k] = rows + at * units;
         at += block->dilation;
         if (at >= held_rows)
             at -= held_rows;
     }
-    for (c = 0; c < units; c++) {
-        const unsigned shift = block->shifts[c];
-        int32_t sum = (1 << shift) >> 1;
-        for (k = 0; k < last; k++)
-            sum += *w++ * row[k][c];
-        sum = (sum + *w++ * y[c]) >> shift;
-        oldest[c] = y[c];
-        if (behind > 0u) {
-            sum += input[c];
-            input[c] = x[c];
-        } else {
-            sum += x[c];
+    row[k] = y;
+    for (c = 0; c < units; c += 2u, w += 2u * taps) { /* units come in fours */
+        const unsigned shift = block->shifts[c], next_shift = block->shifts[c + 1u];
+        int32_t sum = (1 << shift) >> 1, next_sum = (1 << next_shift) >> 1;
+        for (k = 0; k < taps; k++) {
+            const int16_t *const at_unit = row[k] + c;
+            sum += w[k] * at_unit[0];
+            next_sum += w[taps + k] * at_unit[1];
         }
-        x[c] = held(sum);
+        oldest[c] = y[c];
+        oldest[c + 1u] = y[c + 1u];
+        add_input(sum >> shift, waiting + c, x + c);
+        add_input(next_sum >> next_shift, waiting + c + 1u, x + c + 1u);
     }
-    if (++hear->at[number] == held_rows)
-        hear->at[number] = 0;
-    if (++hear->skip[number] >= behind)
-        hear->skip[number] = 0;
+    if (++network->at[number] == held_rows)
+        network->at[number] = 0;
+    if (++network->skip[number] >= behind)
+        network->skip[number] = 0;
 }
 
-void labial_hear_network_reset(labial_hear_t *hear)
+uint32_t labial_hear_workspace_size(const labial_hear_model_t *model)
 {
-    memset(hear->at, 0, sizeof hear->at);
-    memset(hear->skip, 0, sizeof hear->skip);
-    memset(hear->rows, 0, labial_hear_workspace_size(hear->model));
-    hear->taken = 0;
+    return model ? LABIAL_HEAR_WORKSPACE_SIZE((uint32_t)model->units, model->rows) : 0;
 }
 
-const int16_t *labial_hear_network(labial_hear_t *hear)
+void labial_hear_network_reset(labial_hear_network_t *network)
 {
-    const labial_hear_model_t *const model = hear->model;
+    memset(network->at, 0, sizeof network->at);
+    memset(network->skip, 0, sizeof network->skip);
+    memset(network->rows, 0, labial_hear_workspace_size(network->model));
+    network->taken = 0;
+}
+
+const int16_t *labial_hear_network(labial_hear_network_t *network, const int16_t features[LABIAL_HEAR_INPUTS],
+                                   int16_t scratch[LABIAL_HEAR_SCRATCH])
+{
+    const labial_hear_model_t *const model = network->model;
     const unsigned units = model->units;
-    int16_t *const x = hear->window, *const y = x + LABIAL_HEAR_UNITS_MAX, *rows = hear->rows;
+    int16_t *const x = scratch, *const y = x + LABIAL_HEAR_UNITS_MAX, *rows = network->rows;
     unsigned b, begins = 0; /* the first frame for which the block has an input */
-    for (b = 0; b < model->blocks && hear->taken >= begins; b++) {
+    for (b = 0; b < model->blocks && network->taken >= begins; b++) {
         const labial_hear_block_t *const block = &model->block[b];
         const unsigned behind = (unsigned)block->ahead * block->dilation;
         if (b == 0u) {
-            multiply(&block->dense, units, LABIAL_HEAR_INPUTS, hear->features, y, 0);
+            multiply(&block->dense, units, LABIAL_HEAR_INPUTS, features, y, 0);
             memset(x, 0, units * sizeof *x); /* its input is not added */
-            remember(hear, b, 0, rows, x, y);
+            remember(network, b, 0, rows, x, y);
         } else {
             multiply(&block->dense, units, units, x, y, 0);
-            remember(hear, b, behind, rows, x, y);
+            remember(network, b, behind, rows, x, y);
             rows += behind * units;
         }
         rows += ((unsigned)block->past + block->ahead) * block->dilation * units;
         begins += behind;
     }
-    if (hear->taken < begins) {
-        hear->taken++;
+    if (network->taken < begins) {
+        network->taken++;
         return NULL;
     }
     multiply(&model->last, units, units, x, y, 0);
@@ -138,8 +145,10 @@ unsigned labial_hear_leader(const labial_hear_model_t *model, const int16_t *hea
     return leader;
 }
 
-void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, int16_t pose[LABIAL_CHANNELS])
+void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, int32_t gain,
+                      int16_t pose[LABIAL_CHANNELS])
 {
+    const int32_t closing = gain < 256 ? gain : 256;
     int32_t rival = -32768, over, share, value;
     unsigned k;
     for (k = 0; k < model->classes; k++)
@@ -153,7 +162,8 @@ void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, in
     heads += model->classes;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         value = model->mean[k] + ((heads[k] * model->scale[k]) >> 9);
-        value += ((model->closed[k] - value) * share) >> 8;
+        value = (value * gain + 128) >> 8;
+        value += ((((model->closed[k] * closing + 128) >> 8) - value) * share) >> 8;
         pose[k] = (int16_t)labial_clamp(value, INT16_MAX);
     }
 }

@@ -210,7 +210,7 @@ static void compose(labial_laugh_t *laugh)
     }
 }
 
-int labial_laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
+int labial_laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
 {
     if (!laugh)
         return LABIAL_ERROR_NULL;

@@ -49,7 +49,7 @@ static int counts_are_sound(const labial_model_t *model)
            is_within(model->phoneme_count, 1, LABIAL_PHONEMES_MAX) &&
            is_within(model->class_count, 1, LABIAL_CLASSES_MAX) &&
            is_within(model->state_count, 1, LABIAL_STATES_MAX) &&
-           is_within(model->predecessors, 1, LABIAL_STATES_MAX) &&
+           is_within(model->predecessor_fours, 1, LABIAL_STATES_MAX / 4) &&
            is_within(model->search_stride, 1, LABIAL_SEARCH_STRIDE_MAX) && model->silence < model->phoneme_count &&
            model->mixture_mean <= 1;
 }
@@ -127,8 +127,8 @@ static int emissions_are_sound(const labial_model_t *model, const labial_channel
 static int transitions_are_sound(const labial_model_t *model, const labial_channel_t *channel)
 {
     unsigned i;
-    for (i = 0; i < (unsigned)model->state_count * model->predecessors; i++)
-        if ((channel->transitions[i] & 0xffu) >= model->state_count)
+    for (i = 0; i < 4u * model->state_count * model->predecessor_fours; i++)
+        if (channel->transitions[i].predecessor >= model->state_count)
             return 0;
     return 1;
 }

@@ -132,15 +132,16 @@ static unsigned place_at(const part_t *part, unsigned t)
 }
 
 /* The least cost of reaching a state by its transitions; UNREACHED where it has none from a state that is reached. */
-static uint32_t reach(const uint32_t *costs, const uint16_t *transition, unsigned predecessors, uint8_t *predecessor)
+static uint32_t reach(const uint32_t *costs, const labial_transition_t *transition, unsigned count,
+                      uint8_t *predecessor)
 {
     uint32_t least = UNREACHED;
     *predecessor = 0;
-    for (; predecessors > 0; predecessors--, transition++) {
-        const uint32_t cost = costs[*transition & 0xffu] + ((uint32_t)*transition >> 8);
+    for (; count > 0; count--, transition++) {
+        const uint32_t cost = costs[transition->predecessor] + transition->cost;
         if (cost < least) {
             least = cost;
-            *predecessor = (uint8_t)*transition;
+            *predecessor = transition->predecessor;
         }
     }
     return least;
@@ -153,6 +154,7 @@ static void search(const part_t *part, uint8_t path[LABIAL_PIECE])
     const labial_model_t *model = part->model;
     const labial_channel_t *channel = &model->channels[part->channel];
     const unsigned states = model->state_count, stride = part->channels->stride;
+    const unsigned into = 4u * model->predecessor_fours; /* each of them */
     labial_pieces_t *pieces = part->channels->pieces;
     uint32_t costs[2][LABIAL_STATES_MAX], *now = costs[0], *before = costs[1];
     unsigned steps = 0, begin, i, best;
@@ -163,9 +165,9 @@ static void search(const part_t *part, uint8_t path[LABIAL_PIECE])
         now = before;
         before = earlier;
         for (i = 0; i < states; i++) {
-            const uint32_t cost = steps == 0 ? channel->initials[i]
-                                             : reach(before, channel->transitions + (size_t)i * model->predecessors,
-                                                     model->predecessors, &pieces->back[steps][i]);
+            const uint32_t cost =
+                steps == 0 ? channel->initials[i]
+                           : reach(before, channel->transitions + (size_t)i * into, into, &pieces->back[steps][i]);
             now[i] = cost < UNREACHED ? cost + labial_viterbi_emission(&channel->emissions[i], position) : UNREACHED;
         }
     }

@@ -1,7 +1,7 @@
 /*
- * result.c - a description of each result (labial/labial.h).
+ * result.c - a description of each result (labial/result.h).
  */
-#include "labial/labial.h"
+#include "labial/result.h"
 
 const char *labial_result_text(int result)
 {

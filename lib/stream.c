@@ -14,6 +14,7 @@
  */
 #include <string.h>
 
+#include "articulation.h"
 #include "channels.h"
 #include "fade.h"
 #include "fixed.h"
@@ -23,9 +24,6 @@
 #include "unlocked.h"
 
 #define MAGIC 0x4c41424cu /* "LABL" */
-
-/* Percent by which the articulation changes from frame to frame, at most. */
-#define SLEW 10
 
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
@@ -72,12 +70,6 @@ static void select_ahead(labial_t *stream)
         select_halves(stream, left == 0 ? 2u : 1u);
 }
 
-/* Percent in 1/LABIAL_GAIN_ONE, rounded: times 2.56, which is 5243 / 2^11. */
-static int32_t gain_of(unsigned percent)
-{
-    return (int32_t)((percent * 5243u + 1024u) >> 11);
-}
-
 /* Stores a frame that was taken, and its target. */
 static void store(labial_t *stream, const labial_taken_t *taken)
 {
@@ -88,8 +80,7 @@ static void store(labial_t *stream, const labial_taken_t *taken)
     }
     frame->contacts = labial_shape_target(stream->models[taken->slot], &stream->shape, taken, frame->target);
     frame->marks = taken->marks;
-    stream->articulation =
-        (uint8_t)(stream->articulation + labial_clamp((int32_t)stream->wanted - stream->articulation, SLEW));
+    labial_articulation_step(&stream->articulation);
     if (taken->marks & LABIAL_BEGINS)
         stream->begins[0] |= 1u;
 }
@@ -182,7 +173,7 @@ static void reset_input(labial_t *stream)
     stream->pending = 0;
     stream->ended = stream->begun = stream->next.halves = 0;
     stream->held = 0;
-    stream->articulation = stream->wanted;
+    stream->articulation.present = stream->articulation.wanted;
 }
 
 int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, size_t size, labial_frame_fn callback,
@@ -201,7 +192,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     stream->models[0] = model;
     stream->callback = callback;
     stream->user = user;
-    stream->wanted = 100;
+    stream->articulation.wanted = 100;
     stream->resting = 1;
     labial_channels_init(&stream->channels, model->search_stride, width_of(model, size), workspace);
     stream->magic = MAGIC;
@@ -223,7 +214,7 @@ int labial_use(labial_t *stream, const labial_model_t *model)
         return LABIAL_ERROR_VERSION;
     if (model->frames_per_second != stream->models[stream->slot]->frames_per_second ||
         model->search_stride != stream->channels.stride)
-        return LABIAL_ERROR_RATE;
+        return LABIAL_ERROR_FRAME_RATE;
     if (model->channel_count > stream->channels.width)
         return LABIAL_ERROR_WORKSPACE;
     for (slot = LABIAL_MODELS; slot-- > 0;) {
@@ -294,7 +285,7 @@ int labial_tick(labial_t *stream)
         select_halves(stream, 2);
     result = take_frame(stream);
     if (result == LABIAL_OK) {
-        labial_channels_step(&stream->channels, stream->models, gain_of(stream->articulation));
+        labial_channels_step(&stream->channels, stream->models, labial_articulation_gain(&stream->articulation));
         if (!is_late)
             select_ahead(stream);
         is_due = deliver(stream);
@@ -350,17 +341,14 @@ int labial_exact(labial_t *stream, int exact)
 int labial_articulation(labial_t *stream, unsigned percent)
 {
     const int result = status(stream);
-    if (result != LABIAL_OK)
-        return result;
-    stream->wanted = (uint8_t)(percent < LABIAL_ARTICULATION_MAX ? percent : LABIAL_ARTICULATION_MAX);
-    if (stream->channels.entered == 0) /* nothing moves yet that could be jolted */
-        stream->articulation = stream->wanted;
-    return LABIAL_OK;
+    if (result == LABIAL_OK)
+        labial_articulation_set(&stream->articulation, percent, stream->channels.entered == 0);
+    return result;
 }
 
 labial_latency_t labial_latency(const labial_t *stream)
 {
-    labial_latency_t latency = { 0, 0, 0, 0 };
+    labial_latency_t latency = { 0, 0, 0, 0, 0 };
     if (status(stream) == LABIAL_OK) {
         const uint32_t rate = stream->models[stream->slot]->frames_per_second;
         const uint32_t seconds = labial_quotient(stream->pending, rate), rest = stream->pending - seconds * rate;
@@ -368,6 +356,7 @@ labial_latency_t labial_latency(const labial_t *stream)
         latency.frames = stream->pending;
         latency.phonemes = stream->units.count;
         latency.delay = LABIAL_DELAY((unsigned)stream->channels.stride);
+        latency.delay_milliseconds = labial_quotient(latency.delay * 1000u + rate / 2u, rate);
     }
     return latency;
 }

@@ -479,3 +479,27 @@ int labial_timings_end(labial_timings_t *timings, labial_timing_t *timing)
         *timing = timings->found;
     return result == LABIAL_WAITING ? LABIAL_DONE : result;
 }
+
+int labial_timings_tier(labial_timings_t *t, const char *name, uint32_t number)
+{
+    if (!t)
+        return LABIAL_ERROR_NULL;
+    t->tier = name;
+    t->tier_number = number;
+    return LABIAL_OK;
+}
+
+labial_timings_format_t labial_timings_format(const labial_timings_t *t)
+{
+    return t ? (labial_timings_format_t)t->format : LABIAL_TIMINGS_AUTO;
+}
+
+uint32_t labial_timings_line(const labial_timings_t *t)
+{
+    return t ? t->line : 0u;
+}
+
+const char *labial_timings_message(const labial_timings_t *t)
+{
+    return t ? t->message : "";
+}

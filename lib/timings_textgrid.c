@@ -83,7 +83,7 @@ static void trim_text(char *text)
 
 static int end_interval(labial_timings_t *t)
 {
-    labial_timings_grid_t *g = &t->grid;
+    struct labial_timings_grid *g = &t->grid;
     if (g->end < g->start)
         return labial_timings_malformed(t, "the interval '%' ends before its start", TEXT(t), 0, 0);
     if (g->wanted != WANTED)
@@ -97,7 +97,7 @@ static int end_interval(labial_timings_t *t)
 /* ---- The grammar ----------------------------------------------------------------------------------------------- */
 
 /* Behind an interval, a point, or a tier's header. */
-static void next_interval(labial_timings_grid_t *g)
+static void next_interval(struct labial_timings_grid *g)
 {
     if (g->intervals > 0u) {
         g->intervals--;
@@ -136,7 +136,7 @@ static int unexpected(labial_timings_t *t)
 
 static int text_token(labial_timings_t *t)
 {
-    labial_timings_grid_t *g = &t->grid;
+    struct labial_timings_grid *g = &t->grid;
     int result = LABIAL_WAITING;
     switch (g->expected) {
     case FILE_TYPE:
@@ -188,7 +188,7 @@ static int grid_time(labial_timings_t *t, uint64_t *time)
 
 static int number_token(labial_timings_t *t)
 {
-    labial_timings_grid_t *g = &t->grid;
+    struct labial_timings_grid *g = &t->grid;
     uint64_t number;
     switch (g->expected) {
     case TIER_COUNT:
@@ -257,7 +257,7 @@ static int end_token(labial_timings_t *t, int (*token)(labial_timings_t *))
 
 int labial_timings_grid_put(labial_timings_t *t, unsigned char byte)
 {
-    labial_timings_grid_t *g = &t->grid;
+    struct labial_timings_grid *g = &t->grid;
     const int blank = byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
     int result = LABIAL_WAITING;
     if (g->lexer == QUOTE_IN_QUOTED) {
@@ -311,7 +311,7 @@ int labial_timings_grid_put(labial_timings_t *t, unsigned char byte)
 /* The text is to be given again, for the first tier. */
 static int grid_again(labial_timings_t *t)
 {
-    const labial_timings_grid_t none = { 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0 };
+    const struct labial_timings_grid none = { 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0 };
     t->grid = none;
     t->line = 1;
     t->mark = 0;
@@ -320,7 +320,7 @@ static int grid_again(labial_timings_t *t)
 
 int labial_timings_grid_end(labial_timings_t *t)
 {
-    const labial_timings_grid_t *g = &t->grid;
+    const struct labial_timings_grid *g = &t->grid;
     int result = LABIAL_WAITING;
     if (g->lexer == QUOTED || g->lexer == FLAG)
         return labial_timings_malformed(t, "the TextGrid ends within a text or flag", 0, 0, 0);

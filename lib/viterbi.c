@@ -47,11 +47,11 @@ static void age(labial_search_t *search, int is_first)
 }
 
 /* The least of a cost and of that of entering state `i` of a window by a transition; stores the predecessor. */
-static inline uint32_t cross(labial_search_t *search, unsigned transition, unsigned i, uint32_t least)
+static inline uint32_t cross(labial_search_t *search, const labial_transition_t *transition, unsigned i, uint32_t least)
 {
-    const unsigned predecessor = (transition & 255u) - search->first;
-    if (predecessor < LABIAL_SEARCHED) { /* in the window, as all are where there are fewer states */
-        const uint32_t score = search->scores[predecessor] + (transition >> 8);
+    const unsigned predecessor = (unsigned)transition->predecessor - search->first;
+    if (predecessor < search->count) {
+        const uint32_t score = (uint32_t)search->scores[predecessor] + transition->cost;
         if (score < least) {
 #if LABIAL_LAG > 0
             search->back[0][i] = (uint8_t)predecessor;
@@ -65,30 +65,48 @@ static inline uint32_t cross(labial_search_t *search, unsigned transition, unsig
 }
 
 /* The least cost of entering state `i` of a window, by its transitions or from the best state. */
-static inline uint32_t enter(labial_search_t *search, const uint16_t *transition, const uint16_t *const end, unsigned i)
+static inline uint32_t enter(labial_search_t *search, const labial_transition_t *transition,
+                             const labial_transition_t *const end, unsigned i)
 {
     uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
 #if LABIAL_LAG > 0
     search->back[0][i] = search->best;
 #endif
-    for (; end - transition >= 4; transition += 4) {
-        least = cross(search, transition[0], i, least);
-        least = cross(search, transition[1], i, least);
-        least = cross(search, transition[2], i, least);
-        least = cross(search, transition[3], i, least);
-    }
-    for (; transition < end; transition++)
-        least = cross(search, *transition, i, least);
+    do {
+        least = cross(search, transition, i, least);
+        least = cross(search, transition + 1, i, least);
+        least = cross(search, transition + 2, i, least);
+        least = cross(search, transition + 3, i, least);
+        transition += 4;
+    } while (transition < end);
     return least;
+}
+
+/* Finds the states of the undecided steps from state `best` of the latest; at the end of a unit they are decided. */
+static void trace(labial_search_t *search, unsigned best, int ends_unit)
+{
+#if LABIAL_LAG > 0
+    unsigned i;
+    for (i = 0; i < search->undecided; i++) {
+        best = search->back[i][best];
+        search->path[i + 1u] = (uint8_t)(search->firsts[i] + best);
+    }
+    if (ends_unit)
+        search->undecided = 0;
+#else
+    (void)search;
+    (void)best;
+    (void)ends_unit;
+#endif
 }
 
 void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position, unsigned marks,
                          labial_search_t *search)
 {
-    const unsigned first = first_of_window(model, channel, position), size = searched(model);
-    const unsigned predecessors = model->predecessors;
+    unsigned first = first_of_window(model, channel, position), size = searched(model);
+    const unsigned into = 4u * model->predecessor_fours; /* each state */
     const labial_emission_t *state = channel->emissions + first;
-    const uint16_t *transition = channel->transitions + (size_t)first * predecessors;
+    const labial_transition_t *transition = channel->transitions + (size_t)first * into;
     uint32_t costs[LABIAL_SEARCHED], least = UINT32_MAX;
     unsigned i, best = 0;
 
@@ -98,7 +116,7 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
             costs[i] = channel->initials[first + i];
     else
         for (i = 0; i < size; i++) {
-            const uint16_t *const end = transition + predecessors;
+            const labial_transition_t *const end = transition + into;
             costs[i] = enter(search, transition, end, i);
             transition = end;
         }
@@ -109,24 +127,19 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
             best = i;
         }
     }
-    search->first = (uint8_t)first;
-    search->best = (uint8_t)best;
     search->path[0] = (uint8_t)(first + best);
-    if (marks & LABIAL_UNIT_ENDS) {
-        memset(search->scores, (int)LABIAL_DEAD, sizeof search->scores);
-        search->scores[best] = 0;
-    } else {
-        for (i = 0; i < size; i++) {
-            const uint32_t above = costs[i] - least;
-            search->scores[i] = (uint8_t)(above < LABIAL_DEAD ? above : LABIAL_DEAD);
-        }
+    trace(search, best, (int)(marks & LABIAL_UNIT_ENDS));
+    if (marks & LABIAL_UNIT_ENDS) { /* the next step sees the best state alone */
+        first += best;
+        size = 1;
+        best = 0;
+        costs[0] = least;
     }
-#if LABIAL_LAG > 0
-    for (i = 0; i < search->undecided; i++) { /* trace back through the undecided steps */
-        best = search->back[i][best];
-        search->path[i + 1u] = (uint8_t)(search->firsts[i] + best);
+    search->first = (uint8_t)first;
+    search->count = (uint8_t)size;
+    search->best = (uint8_t)best;
+    for (i = 0; i < size; i++) {
+        const uint32_t above = costs[i] - least;
+        search->scores[i] = (uint8_t)(above < LABIAL_DEAD ? above : LABIAL_DEAD);
     }
-    if (marks & LABIAL_UNIT_ENDS)
-        search->undecided = 0;
-#endif
 }

@@ -97,16 +97,17 @@ static unsigned leaf_of(const view_t *view, const uint8_t *node)
 }
 
 /* Changes labels where the word is an exception. */
-static void patch(const labial_words_t *tables, const labial_words_letter_t *letters, unsigned count, uint8_t *labels)
+static void patch(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
+                  uint8_t *labels)
 {
     const uint8_t *entry, *end;
     uint32_t hash = 2166136261u;
     unsigned i;
     for (i = 0; i < count; i++)
         hash = (hash ^ letters[i].letter) * 16777619u;
-    hash *= tables->multiplier;
-    entry = tables->patches + tables->buckets[hash >> 24];
-    end = tables->patches + tables->buckets[(hash >> 24) + 1u];
+    hash *= model->multiplier;
+    entry = model->patches + model->buckets[hash >> 24];
+    end = model->patches + model->buckets[(hash >> 24) + 1u];
     while (entry < end) {
         const unsigned is_word = ((unsigned)entry[0] << 8 | entry[1]) == ((hash >> 8) & 0xffffu);
         unsigned change;
@@ -131,11 +132,11 @@ void labial_words_append(labial_word_t *word, unsigned phoneme, unsigned charact
     added->first = (uint8_t)first;
 }
 
-void labial_words_spell(const labial_words_t *tables, const labial_words_letter_t *letters, unsigned count,
+void labial_words_spell(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
                         labial_word_t *word)
 {
     uint8_t labels[LABIAL_WORDS_LETTERS];
-    view_t view = { tables->labels, letters, labels, count, 0, 0, 0 };
+    view_t view = { model->labels, letters, labels, count, 0, 0, 0 };
     unsigned place, first = 1, k;
     for (place = 0; place < count; place++) /* a group begins where the letter before is no vowel */
         view.left += has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
@@ -145,12 +146,12 @@ void labial_words_spell(const labial_words_t *tables, const labial_words_letter_
         view.left -= has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
         if (place + 1u < count && has_vowel(&view, place + 1u))
             view.right += place + 2u == count || !has_vowel(&view, place + 2u);
-        labels[place] = tables->leaves[tables->bases[letter] + leaf_of(&view, tables->trees + tables->roots[letter])];
+        labels[place] = model->leaves[model->bases[letter] + leaf_of(&view, model->trees + model->roots[letter])];
     }
-    patch(tables, letters, count, labels);
+    patch(model, letters, count, labels);
     for (place = 0; place < count; place++)
         for (k = 0; k < 2u; k++) {
-            const unsigned phoneme = tables->labels[2u * labels[place] + k] & ~VOWEL_LAST;
+            const unsigned phoneme = model->labels[2u * labels[place] + k] & ~VOWEL_LAST;
             if (phoneme == 0u)
                 continue;
             labial_words_append(word, phoneme, letters[place].character, first);
@@ -158,12 +159,12 @@ void labial_words_spell(const labial_words_t *tables, const labial_words_letter_
         }
 }
 
-const char *labial_words_label(const labial_words_t *tables, unsigned phoneme)
+const char *labial_words_label(const labial_words_model_t *model, unsigned phoneme)
 {
     const char *label;
-    if (!tables || phoneme >= tables->phoneme_count)
+    if (!model || phoneme >= model->phoneme_count)
         return "";
-    for (label = tables->phonemes; phoneme > 0u; label++)
+    for (label = model->phonemes; phoneme > 0u; label++)
         phoneme -= *label == '\0';
     return label;
 }

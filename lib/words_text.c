@@ -64,7 +64,7 @@ typedef struct {
 } place_t;
 
 typedef struct {
-    const labial_words_t *tables;
+    const labial_words_model_t *model;
     labial_word_t *word;
     place_t here;
 } reading_t;
@@ -181,7 +181,7 @@ static void say(reading_t *reading, const char *words, unsigned character)
             letters[count++].character = (uint8_t)character;
             continue;
         }
-        labial_words_spell(reading->tables, letters, count, reading->word);
+        labial_words_spell(reading->model, letters, count, reading->word);
         count = 0;
         if (*words == '\0')
             return;
@@ -417,7 +417,7 @@ static void read_letters(reading_t *reading)
         for (i = 0; i < run.count; i++)
             say_name(reading, run.letters[i]);
     } else {
-        labial_words_spell(reading->tables, run.letters, run.count, reading->word);
+        labial_words_spell(reading->model, run.letters, run.count, reading->word);
     }
 }
 
@@ -455,7 +455,7 @@ static int reads_own(reading_t *reading, const labial_words_own_t *own)
         length = reading->here.characters - first.characters + (reading->here.code == TEXT_END);
         for (k = 0; k < entry->count; k++)
             labial_words_append(reading->word,
-                                entry->phonemes[k] < reading->tables->phoneme_count ? entry->phonemes[k] : 0u,
+                                entry->phonemes[k] < reading->model->phoneme_count ? entry->phonemes[k] : 0u,
                                 first.characters - 1u + k * length / entry->count, k == 0u);
         return 1;
     }
@@ -483,19 +483,19 @@ static void read_sign(reading_t *reading)
     }
 }
 
-int labial_words_read(const labial_words_t *tables, const labial_words_own_t *own, const char *text, size_t size,
+int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
                       labial_word_t *word)
 {
     reading_t reading;
     place_t *const here = &reading.here;
     unsigned before = NOTHING, is_foreign = 0;
-    if (!tables || !text || !word)
+    if (!model || !text || !word)
         return LABIAL_ERROR_NULL;
-    if (tables->format != LABIAL_WORDS_FORMAT)
+    if (model->format != LABIAL_WORDS_FORMAT)
         return LABIAL_ERROR_VERSION;
     memset(&reading, 0, sizeof reading);
     memset(word, 0, sizeof *word);
-    reading.tables = tables;
+    reading.model = model;
     reading.word = word;
     here->text = (const unsigned char *)text;
     here->size = size;

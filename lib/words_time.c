@@ -33,33 +33,34 @@ static const uint16_t consonant_factors[] = { 300, 261, 225, 243, 353, 279 };
 
 /* ---- Weights ---------------------------------------------------------------------------------------------------- */
 
-static unsigned class_of(const labial_words_t *tables, const labial_word_t *word, unsigned place)
+static unsigned class_of(const labial_words_model_t *model, const labial_word_t *word, unsigned place)
 {
-    return tables->classes[word->phonemes[place].phoneme];
+    return model->classes[word->phonemes[place].phoneme];
 }
 
-uint32_t labial_words_weight(const labial_words_t *tables, const labial_word_t *word, unsigned place, unsigned pause)
+uint32_t labial_words_weight(const labial_words_model_t *model, const labial_word_t *word, unsigned place,
+                             unsigned pause)
 {
-    const unsigned own = class_of(tables, word, place);
+    const unsigned own = class_of(model, word, place);
     unsigned first = place, end = place + 1u, before = NONE, after = NONE, vowel_count = 0, vowels_left = 0,
              vowels_right = 0;
     unsigned holds, i;
     const uint16_t *factor = consonant_factors;
-    uint32_t weight = 64u * tables->milliseconds[word->phonemes[place].phoneme];
+    uint32_t weight = 64u * model->milliseconds[word->phonemes[place].phoneme];
     while (!word->phonemes[first].first)
         first--;
     while (end < word->count && !word->phonemes[end].first)
         end++;
     for (i = first; i < end; i++) {
-        const unsigned is_vowel = class_of(tables, word, i) == VOWEL;
+        const unsigned is_vowel = class_of(model, word, i) == VOWEL;
         vowel_count += is_vowel;
         vowels_left += is_vowel && i < place;
         vowels_right += is_vowel && i > place;
     }
     if (place > first)
-        before = class_of(tables, word, place - 1u);
+        before = class_of(model, word, place - 1u);
     if (place + 1u < end)
-        after = class_of(tables, word, place + 1u);
+        after = class_of(model, word, place + 1u);
     pause = pause && end == word->count && vowels_right == 0u;
     if (own == VOWEL) {
         holds = (vowel_count == 1u) | (unsigned)(vowel_count >= 3u) << 1 | (unsigned)(vowels_right == 0u) << 2 |
@@ -78,20 +79,20 @@ uint32_t labial_words_weight(const labial_words_t *tables, const labial_word_t *
 }
 
 /* The weights of all phonemes from `first` to before `end`. */
-static uint32_t weigh_words(const labial_words_t *tables, const labial_word_t *word, unsigned first, unsigned end,
+static uint32_t weigh_words(const labial_words_model_t *model, const labial_word_t *word, unsigned first, unsigned end,
                             unsigned pause)
 {
     uint32_t sum = 0;
     for (; first < end; first++)
-        sum += labial_words_weight(tables, word, first, pause);
+        sum += labial_words_weight(model, word, first, pause);
     return sum;
 }
 
-uint32_t labial_words_length(const labial_words_t *tables, const labial_word_t *word)
+uint32_t labial_words_length(const labial_words_model_t *model, const labial_word_t *word)
 {
-    if (!tables || !word)
+    if (!model || !word)
         return 0;
-    return (weigh_words(tables, word, 0, word->count, 0) + 32u) / 64u;
+    return (weigh_words(model, word, 0, word->count, 0) + 32u) / 64u;
 }
 
 /* value * part / whole, rounded; part <= whole. */
@@ -117,7 +118,7 @@ static int are_equal(uint32_t start, const uint32_t *ends, unsigned count)
 
 /* Where the characters of each phoneme end: those of a character share its time, and characters without a phoneme
  * belong to the one before. */
-static void reach_characters(const labial_words_t *tables, labial_words_span_t *span, const uint32_t *ends)
+static void reach_characters(const labial_words_model_t *model, struct labial_words_span *span, const uint32_t *ends)
 {
     const labial_word_t *const word = &span->word;
     uint32_t begin = 0;
@@ -128,10 +129,10 @@ static void reach_characters(const labial_words_t *tables, labial_words_span_t *
             end++;
         if (end < word->count)
             until = ends[word->phonemes[end].character - 1u] - span->start;
-        whole = weigh_words(tables, word, first, end, 0);
+        whole = weigh_words(model, word, first, end, 0);
         for (i = first; i < end; i++) {
             uint32_t reach;
-            part += labial_words_weight(tables, word, i, 0);
+            part += labial_words_weight(model, word, i, 0);
             reach = begin + portion(until - begin, part, whole);
             span->reach[i] = (uint16_t)(reach < 0xffffu ? reach : 0xffffu);
         }
@@ -141,39 +142,52 @@ static void reach_characters(const labial_words_t *tables, labial_words_span_t *
 
 /* ---- The stream ------------------------------------------------------------------------------------------------- */
 
-int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tables, const labial_words_own_t *own,
-                       int32_t offset)
+int labial_words_init(labial_words_t *stream, const labial_words_model_t *model, const labial_words_own_t *own,
+                      int32_t offset)
 {
     if (!stream)
         return LABIAL_ERROR_NULL;
     memset(stream, 0, sizeof *stream);
-    if (!tables)
+    if (!model)
         return LABIAL_ERROR_NULL;
-    if (tables->format != LABIAL_WORDS_FORMAT)
+    if (model->format != LABIAL_WORDS_FORMAT)
         return LABIAL_ERROR_VERSION;
-    stream->tables = tables;
+    stream->model = model;
     stream->own = own;
     stream->offset = offset;
     return LABIAL_OK;
 }
 
+/* LABIAL_OK for a stream that was prepared, else the error that every call on it returns. */
+static int words_status(const labial_words_t *stream)
+{
+    return !stream ? LABIAL_ERROR_NULL : stream->model ? LABIAL_OK : LABIAL_ERROR_STATE;
+}
+
+int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own)
+{
+    const int result = words_status(stream);
+    if (result == LABIAL_OK)
+        stream->own = own;
+    return result;
+}
+
 /* A time of the voice with the offset, from 0 to the latest one. */
-static uint32_t shifted(const labial_words_stream_t *stream, uint32_t time)
+static uint32_t shifted(const labial_words_t *stream, uint32_t time)
 {
     const int64_t moved = (int64_t)time + stream->offset;
     return moved < 0 ? 0u : moved > 0xffffffff ? 0xffffffffu : (uint32_t)moved;
 }
 
 /* Begins with the word that waits, up to `limit`, where the next one begins. */
-static void speak(labial_words_stream_t *stream, uint32_t limit)
+static void speak(labial_words_t *stream, uint32_t limit)
 {
-    const labial_words_span_t *const span = &stream->spans[stream->held];
+    const struct labial_words_span *const span = &stream->spans[stream->held];
     const labial_word_t *const word = &span->word;
     const uint32_t room = limit - span->start;
     uint32_t end = span->end;
     if (span->open) {
-        const uint32_t usual =
-            word->kind == LABIAL_WORDS_READ ? labial_words_length(stream->tables, word) : 2u * FILLER;
+        const uint32_t usual = word->kind == LABIAL_WORDS_READ ? labial_words_length(stream->model, word) : 2u * FILLER;
         end = room <= usual / 4u * STRETCHED ? limit : span->start + usual;
     }
     if (end > limit || limit - end < LABIAL_WORDS_PAUSE)
@@ -191,19 +205,19 @@ static void speak(labial_words_stream_t *stream, uint32_t limit)
     stream->place = 0;
     stream->reached = 0;
     if (word->kind == LABIAL_WORDS_READ)
-        stream->weight = weigh_words(stream->tables, word, 0, word->count, stream->paused);
+        stream->weight = weigh_words(stream->model, word, 0, word->count, stream->paused);
     else /* FILLER milliseconds each, more or less */
         stream->weight = 1u + (stream->until - stream->start) / (FILLER + FILLER / 2u);
 }
 
 /* Takes a word; with the ends of its characters unless `ends` is null. */
-static int take(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end,
+static int take(labial_words_t *stream, const char *text, size_t size, uint32_t start, uint32_t end,
                 const uint32_t *ends, unsigned count)
 {
-    labial_words_span_t *span, *before;
+    struct labial_words_span *span, *before;
     if (!stream || !text)
         return LABIAL_ERROR_NULL;
-    if (!stream->tables)
+    if (!stream->model || stream->ended)
         return LABIAL_ERROR_STATE;
     if (end < start || start < stream->latest)
         return LABIAL_ERROR_WORD;
@@ -213,7 +227,7 @@ static int take(labial_words_stream_t *stream, const char *text, size_t size, ui
         return LABIAL_ERROR_FULL;
     before = &stream->spans[stream->held];
     span = &stream->spans[stream->held ^ 1u];
-    (void)labial_words_read(stream->tables, stream->own, text, size, &span->word); /* its arguments were checked */
+    (void)labial_words_read(stream->model, stream->own, text, size, &span->word); /* its arguments were checked */
     if (ends && span->word.characters != count)
         return LABIAL_ERROR_WORD;
     stream->latest = start;
@@ -229,7 +243,7 @@ static int take(labial_words_stream_t *stream, const char *text, size_t size, ui
     span->open = end == LABIAL_WORDS_NO_END;
     span->spelt = ends && !are_equal(start, ends, count);
     if (span->spelt)
-        reach_characters(stream->tables, span, ends);
+        reach_characters(stream->model, span, ends);
     if (stream->holding)
         speak(stream, start);
     else
@@ -238,13 +252,13 @@ static int take(labial_words_stream_t *stream, const char *text, size_t size, ui
     return LABIAL_OK;
 }
 
-int labial_words_say(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end)
+int labial_words_push(labial_words_t *stream, const char *text, size_t size, uint32_t start, uint32_t end)
 {
     return take(stream, text, size, start, end, NULL, 0);
 }
 
-int labial_words_say_characters(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start,
-                                const uint32_t *ends, unsigned count)
+int labial_words_push_characters(labial_words_t *stream, const char *text, size_t size, uint32_t start,
+                                 const uint32_t *ends, unsigned count)
 {
     unsigned i;
     if (!ends)
@@ -257,30 +271,69 @@ int labial_words_say_characters(labial_words_stream_t *stream, const char *text,
     return take(stream, text, size, start, ends[count - 1u], ends, count);
 }
 
-int labial_words_flush(labial_words_stream_t *stream)
+int labial_words_end(labial_words_t *stream)
 {
-    if (!stream)
-        return LABIAL_ERROR_NULL;
-    if (!stream->tables)
+    const int result = words_status(stream);
+    if (result == LABIAL_OK)
+        stream->ended = 1;
+    return result;
+}
+
+int labial_words_cancel(labial_words_t *stream)
+{
+    const int result = words_status(stream);
+    if (result == LABIAL_OK) {
+        stream->speaking = stream->holding = 0;
+        stream->latest = 0;
+        stream->ended = 1;
+    }
+    return result;
+}
+
+int labial_words_restart(labial_words_t *stream)
+{
+    const int result = words_status(stream);
+    if (result != LABIAL_OK)
+        return result;
+    if (!stream->ended || stream->holding || (stream->speaking && stream->reached < stream->weight))
         return LABIAL_ERROR_STATE;
-    if (stream->speaking)
-        return LABIAL_ERROR_FULL;
-    if (stream->holding)
-        speak(stream, 0xffffffffu);
+    stream->speaking = stream->ended = 0;
     return LABIAL_OK;
 }
 
-/* When the next phoneme of the word being spoken ends, from the word's beginning on; moves `reached` behind it. */
-static uint32_t boundary(const labial_words_stream_t *stream, uint32_t *reached)
+labial_latency_t labial_words_latency(const labial_words_t *stream)
 {
-    const labial_words_span_t *const span = &stream->spans[stream->held ^ 1u];
+    labial_latency_t latency = { 0, 0, 0, 0, 0 };
+    uint32_t end;
+    if (words_status(stream) != LABIAL_OK)
+        return latency;
+    end = stream->time;
+    if (stream->speaking) {
+        const labial_word_t *const word = &stream->spans[stream->held ^ 1u].word;
+        end = stream->until;
+        latency.phonemes =
+            word->kind == LABIAL_WORDS_READ ? (unsigned)word->count - stream->place : stream->weight - stream->reached;
+    }
+    if (stream->holding) {
+        const struct labial_words_span *const span = &stream->spans[stream->held];
+        end = shifted(stream, span->open ? span->start : span->end);
+        latency.phonemes += span->word.count;
+    }
+    latency.milliseconds = end > stream->time ? end - stream->time : 0u;
+    return latency;
+}
+
+/* When the next phoneme of the word being spoken ends, from the word's beginning on; moves `reached` behind it. */
+static uint32_t boundary(const labial_words_t *stream, uint32_t *reached)
+{
+    const struct labial_words_span *const span = &stream->spans[stream->held ^ 1u];
     const uint32_t length = stream->until - stream->start;
     uint32_t end;
     if (span->word.kind != LABIAL_WORDS_READ) {
         *reached = stream->reached + 1u;
         return portion(length, *reached, stream->weight);
     }
-    *reached = stream->reached + labial_words_weight(stream->tables, &span->word, stream->place, stream->paused);
+    *reached = stream->reached + labial_words_weight(stream->model, &span->word, stream->place, stream->paused);
     end = portion(length, *reached, stream->weight);
     if (span->spelt && *reached < stream->weight) {
         const uint32_t reach = span->reach[stream->place];
@@ -289,26 +342,29 @@ static uint32_t boundary(const labial_words_stream_t *stream, uint32_t *reached)
     return end;
 }
 
-int labial_words_next(labial_words_stream_t *stream, unsigned *phoneme, uint32_t *milliseconds)
+int labial_words_next(labial_words_t *stream, unsigned *phoneme, uint32_t *milliseconds)
 {
     uint32_t end, reached = 0;
     if (!stream || !phoneme || !milliseconds)
         return LABIAL_ERROR_NULL;
-    if (!stream->tables)
+    if (!stream->model)
         return LABIAL_ERROR_STATE;
     do {
-        const labial_words_span_t *const span = &stream->spans[stream->held ^ 1u];
+        const struct labial_words_span *span;
         if (stream->speaking && stream->reached == stream->weight)
             stream->speaking = 0;
+        if (!stream->speaking && stream->holding && stream->ended)
+            speak(stream, 0xffffffffu);
         if (!stream->speaking)
-            return stream->holding ? LABIAL_WAITING : LABIAL_DONE;
+            return stream->ended ? LABIAL_DONE : LABIAL_WAITING;
+        span = &stream->spans[stream->held ^ 1u];
         reached = stream->reached;
         *phoneme = 0;
         end = stream->start;
         if (stream->time >= stream->start) {
             end += boundary(stream, &reached);
             *phoneme = span->word.kind == LABIAL_WORDS_READ ? span->word.phonemes[stream->place].phoneme
-                                                            : stream->tables->filler[stream->reached & 1u];
+                                                            : stream->model->filler[stream->reached & 1u];
         }
         if (end - stream->time > LABIAL_DURATION_MAX) {
             end = stream->time + LABIAL_DURATION_MAX;

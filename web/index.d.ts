@@ -80,7 +80,8 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     use(model: "speech" | "laughter" | Model): void;
     /** No more phonemes will come: after the frames of the last one the mouth comes to rest. */
     end(): void;
-    /** Drops what is not yet delivered and eases back to the neutral face; then the stream is done. */
+    /** Drops what is not yet delivered and eases back to the neutral face over so many milliseconds, by default 200,
+     * rounded up to whole frames, 1 to 1,000; then the stream is done. */
     cancel(milliseconds?: number): void;
     /** Continues a stream that was cancelled or that has ended and delivered the frames of all phonemes. */
     restart(): void;
@@ -175,11 +176,13 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     push(samples: Int16Array | Float32Array, time?: number): void;
     /** No more sound will come: the last frames and the way to rest follow. */
     end(): void;
-    /** Drops the frames after this time, by default now, and eases to the neutral face within so many milliseconds, at
-     * most 1,000. Sound of a source is silenced, and what comes of it is not heard. */
+    /** Drops the frames after this time, by default now, and eases to the neutral face over so many milliseconds, by
+     * default 200, rounded up to whole frames, 1 to 1,000. Sound of a source is silenced, and what comes of it is not heard. */
     cancel(milliseconds?: number, seconds?: number): void;
     /** Continues after end() or cancel(). */
     restart(): void;
+    /** How far the mouth moves, as a stream's: from the next frame that is heard it comes nearer to that. */
+    articulation(percent: number): void;
     /** The mouth at a time, by default now, interpolated between two frames; the last one that is known if it is too
      * early to know. The same object each time. Without an AudioContext the time must be given. */
     at(seconds?: number): O extends "faps" ? Float32Array : FrameOf<O>;
@@ -272,10 +275,12 @@ export class MessageReader {
 export class WordStream {
     #private;
     private constructor();
-    /** Adds a word. How it ends depends on what follows, so that its phonemes come with the next word or flush(). */
-    say(word: TimedWord): void;
-    /** No word follows for now: the last one ends where it said. Words may follow nevertheless. */
-    flush(): void;
+    /** Adds a word. How it ends depends on what follows, so that its phonemes come with the next word or end(). */
+    push(word: TimedWord): void;
+    /** No more words will come: the last one ends where it said. */
+    end(): void;
+    /** Continues after end(): words of the same sound may follow. */
+    restart(): void;
     /** The segments that became known since the last call; they follow each other without gaps, from 0 on. */
     take(): Segment[];
     /** Frees the memory at once; otherwise the garbage collector does. */
@@ -353,9 +358,9 @@ export class Voice<O extends Output = "faps"> {
     delay(seconds: number): void;
     /** Nothing more follows. */
     finish(): void;
-    /** Drops what is not yet shown and eases to the neutral face within so many seconds, by default 0.2. What is told of
-     * the cancelled utterance is ignored until begin(). */
-    cancel(seconds?: number): void;
+    /** Drops what is not yet shown and eases to the neutral face over so many milliseconds, by default 200, rounded up to
+     * whole frames, 1 to 1,000. What is told of the cancelled utterance is ignored until begin(). */
+    cancel(milliseconds?: number): void;
     /** The frames that became due since the last call, each a new object; usually none to three. More than a second after
      * the last call only the latest one is returned. */
     played(seconds?: number | null): FrameOf<O>[];

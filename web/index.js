@@ -40,7 +40,7 @@ export class Model {
         this.names = names;
         this.phonemes = wasm.model_phonemes(at);
         this.silence = wasm.model_silence(at);
-        this.rate = wasm.model_rate(at);
+        this.rate = wasm.model_fps(at);
         this.stride = wasm.model_stride(at);
         Object.freeze(this);
     }
@@ -291,7 +291,7 @@ export class Labial {
         const words = at + this.wasm.laugh_size();
         const level = share(intensity, "intensity");
         if (!Number.isInteger(seed)) throw new TypeError(`the seed is ${shown(seed)}, not a whole number`);
-        const result = this.wasm.laugh_begin(at, Math.min(milliseconds, 2 ** 32 - 1), level, seed >>> 0);
+        const result = this.wasm.laugh_init(at, Math.min(milliseconds, 2 ** 32 - 1), level, seed >>> 0);
         if (result < 0) throw this.failure(result, `${shown(seconds)} s`);
         const found = [];
         while (this.wasm.laugh_next(at, words) === 0) found.push(...this.memory.int32(words, 2));

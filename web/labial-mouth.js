@@ -126,7 +126,7 @@ class VoicePlayer {
 
     cancel(milliseconds) {
         this.#begin = Math.max(0, this.#voice.time);
-        this.#voice.cancel(milliseconds / 1000);
+        this.#voice.cancel(milliseconds);
         this.#cancelled = true;
     }
 }

@@ -12,7 +12,7 @@ export function tables(buffer, model) {
     const half = (offset) => view.getUint16(model + offset, true);
     const byte = (offset) => view.getUint8(model + offset);
     const components = half(4);
-    const [phonemes, classes, states, predecessors] = [6, 7, 8, 9].map(byte);
+    const [phonemes, classes, states, fours] = [6, 7, 8, 9].map(byte);
     const taps = byte(13);
     const floors = byte(16);
     const knots = byte(17);
@@ -31,7 +31,7 @@ export function tables(buffer, model) {
     for (let k = 0; k < channels; k++) {
         const at = view.getUint32(model + DESCRIPTORS, true) + 32 * k;
         add("scales", at, 1, 16);
-        [["emissions", 4], ["states", 8], ["transitions", 2 * predecessors], ["initials", 1]].forEach(
+        [["emissions", 4], ["states", 8], ["transitions", 8 * fours], ["initials", 1]].forEach(
             ([name, width], i) => add(name, view.getUint32(at + 16 + 4 * i, true), states, width),
         );
     }

@@ -13,7 +13,7 @@ const DONE = 3;
 const ERROR_STATE = -5;
 const ERROR_DURATION = -7;
 const ERROR_FULL = -8;
-const ERROR_RATE = -9;
+const ERROR_FRAME_RATE = -9;
 const ERROR_MODELS = -10;
 
 const abandoned = new FinalizationRegistry(({ memory, at, size }) => memory.release(at, size));
@@ -96,7 +96,7 @@ export class Stream {
         this.#open();
         const next = this.#modelOf(model);
         const first = this.#fed;
-        if (next.rate !== first.rate || next.stride !== first.stride) throw this.#labial.failure(ERROR_RATE);
+        if (next.rate !== first.rate || next.stride !== first.stride) throw this.#labial.failure(ERROR_FRAME_RATE);
         this.#models.add(next);
         this.#model = next;
     }
@@ -106,9 +106,9 @@ export class Stream {
         this.#closed = true;
     }
 
-    cancel(milliseconds = 0) {
+    cancel(milliseconds = 200) {
         const at = this.#open();
-        const whole = Math.round(Math.min(amount(milliseconds, "milliseconds"), DURATION_MAX));
+        const whole = Math.ceil(Math.min(amount(milliseconds, "milliseconds"), DURATION_MAX));
         this.#check(this.#labial.wasm.mouth_cancel(at, whole));
         this.#waiting.length = this.#head = this.#refused = 0;
         this.#closed = this.#ended = true;

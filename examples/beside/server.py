@@ -141,7 +141,7 @@ class Toy:
     async def _send_utterance(self, spoken: Spoken) -> None:
         """Sends sound in blocks, each after the packets of lips that begin before its end."""
         rate = self._service.rate
-        packets = self._lips.packets(labial.render(spoken.timings, exact=True), sample=self._sent, rate=rate)
+        packets = self._lips.packets(labial.render(spoken.timings, exact=True), sample=self._sent, sample_rate=rate)
         block = 2 * rate * BLOCK // 1000
         for start in range(0, len(spoken.sound), block):
             sound = spoken.sound[start : start + block].ljust(block, b"\0")  # whole frames, as of an Opus packet

@@ -114,8 +114,7 @@ static void take_message(void)
     take(data, size);
     if (head[0] == 'R' && size == 4 && rate == 0) {
         rate = data[0] | (uint32_t)data[1] << 8 | (uint32_t)data[2] << 16 | (uint32_t)data[3] << 24;
-        if (rate < 8000 || rate > 48000 ||
-            labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) != LABIAL_BESIDE_RESTS)
+        if (rate < 8000 || rate > 48000 || labial_beside_init(&lips, OUTPUTS, rate, memory, sizeof memory) != LABIAL_OK)
             fail("the server", "it sends sound of an unknown rate");
         for (unsigned i = 0; i < OUTPUTS; i++)
             (void)labial_beside_limit(&lips, i, limits[i]);
@@ -126,7 +125,7 @@ static void take_message(void)
     } else if (head[0] == 'E') {
         speaks -= !cancelling && speaks > 0;
     } else if (head[0] == 'L' && (lose == 0 || ++packets % lose != 0)) {
-        if (labial_beside_feed(&lips, data, size) == LABIAL_BESIDE_CANCELS) {
+        if (labial_beside_push(&lips, data, size) == LABIAL_CANCELLED) {
             heard = received;
             cancelling = 0;
         }
@@ -143,10 +142,10 @@ static void show(void)
         seed = seed * 1664525u + 1013904223u;
         sample += (seed >> 16) % (rate / 50) - rate / 100; /* up to 10 ms to either side */
     }
-    result = labial_beside_at(&lips, sample, values);
+    result = labial_beside_tick(&lips, sample, values);
     if (result < 0)
         return;
-    printf("%lu %d", (unsigned long)sample, result);
+    printf("%lu %d", (unsigned long)sample, result == LABIAL_OK);
     for (i = 0; i < OUTPUTS; i++)
         printf(" %d", values[i]);
     for (i = 0; i < OUTPUTS; i++)
@@ -205,7 +204,7 @@ int main(int argc, char **argv)
             give(line);
             speaks = 0;
             cancelling = 1; /* the loudspeaker falls silent now, and the mouth closes */
-            labial_beside_cancel(&lips);
+            labial_beside_cancel(&lips, 20u * LABIAL_BESIDE_EASE);
             for (i = 0; i < LABIAL_BESIDE_EASE; i++)
                 show();
         } else {

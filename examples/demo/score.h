@@ -36,7 +36,7 @@ typedef struct {
     uint64_t alone;     /* the words stop */
     uint64_t words;     /* they go on */
     uint64_t end;       /* has died away */
-    unsigned intensity; /* of labial_laugh_begin() */
+    unsigned intensity; /* of labial_laugh_init() */
 } score_laugh_t;
 
 /* Zero-initialise, fill with score_read(), release with score_release(). */

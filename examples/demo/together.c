@@ -76,8 +76,8 @@ static int next_to_laugh(together_t *t, unsigned *phoneme, uint32_t *millisecond
             t->laughed += *milliseconds;
             return LABIAL_OK;
         }
-        result = labial_laugh_begin(&t->generator, (uint32_t)(laugh->end - laugh->begin), laugh->intensity,
-                                    (uint32_t)t->next_laugh);
+        result = labial_laugh_init(&t->generator, (uint32_t)(laugh->end - laugh->begin), laugh->intensity,
+                                   (uint32_t)t->next_laugh);
         t->laughed = laugh->end;
         t->next_laugh++;
         if (result == LABIAL_OK)

@@ -61,6 +61,6 @@ async def send_lips(conn: Any, packet: bytes) -> None:
     frames = getattr(packet, "frames", ())
     sample = conn.lips_packets * FRAMES * RATE // 50
     conn.lips_packets += 1
-    for message in conn.lips.packets(frames, sample=sample, rate=RATE) if frames else ():
+    for message in conn.lips.packets(frames, sample=sample, sample_rate=RATE) if frames else ():
         data = base64.b64encode(message.data).decode("ascii")
         await conn.websocket.send(json.dumps({"type": "lips", "data": data, "session_id": conn.session_id}))

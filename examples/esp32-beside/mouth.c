@@ -26,13 +26,13 @@ int mouth_begin(uint32_t samples_per_second)
 {
     int result;
     portENTER_CRITICAL(&guard);
-    result = labial_beside_begin(&lips, samples_per_second);
-    if (result == LABIAL_BESIDE_ERROR_STATE) { /* the first one */
+    result = labial_beside_restart(&lips, samples_per_second);
+    if (result == LABIAL_ERROR_STATE) { /* the first one */
         result = labial_beside_init(&lips, MOUTH_OUTPUTS, samples_per_second, memory, sizeof memory);
         (void)labial_beside_limit(&lips, 0, LABIAL_BESIDE_CHANGE(MOUTH_CHANGE, MOUTH_AT_0, MOUTH_AT_255));
     }
-    if (labial_clock_init(&loudspeaker, result < 0 ? 0 : samples_per_second) != 0 && result >= 0)
-        result = LABIAL_BESIDE_ERROR_SIZE;
+    if (labial_clock_init(&loudspeaker, result < 0 ? 0 : samples_per_second) < 0 && result >= 0)
+        result = LABIAL_ERROR_SAMPLE_RATE;
     received = 0;
     portEXIT_CRITICAL(&guard);
     return result;
@@ -42,7 +42,7 @@ int mouth_packet(const void *packet, size_t size)
 {
     int result;
     portENTER_CRITICAL(&guard);
-    result = labial_beside_feed(&lips, packet, size);
+    result = labial_beside_push(&lips, packet, size);
     portEXIT_CRITICAL(&guard);
     return result;
 }
@@ -67,7 +67,7 @@ void mouth_playing(int64_t number, size_t count, int64_t now)
 void mouth_cancel(void)
 {
     portENTER_CRITICAL(&guard);
-    (void)labial_beside_cancel(&lips);
+    (void)labial_beside_cancel(&lips, MOUTH_EASE);
     labial_clock_stop(&loudspeaker);
     portEXIT_CRITICAL(&guard);
 }
@@ -78,7 +78,7 @@ int mouth_values(int64_t now, uint8_t values[MOUTH_OUTPUTS])
     int result;
     portENTER_CRITICAL(&guard);
     (void)labial_clock_at(&loudspeaker, now, &sample);
-    result = labial_beside_at(&lips, (uint32_t)sample, values);
+    result = labial_beside_tick(&lips, (uint32_t)sample, values);
     portEXIT_CRITICAL(&guard);
     return result;
 }

@@ -50,13 +50,19 @@ extern "C" {
 #define MOUTH_CHANGE 100
 #endif
 
+/* Milliseconds in which the mouth comes to rest when the loudspeaker is silenced. */
+#ifndef MOUTH_EASE
+#define MOUTH_EASE 120
+#endif
+
 /* What mouth_playing() is told of sound that did not come from the server: LABIAL_CLOCK_NONE. */
 #define MOUTH_NONE (-1)
 
-/* A connection begins, with sound of a rate; the mouth eases to rest from where it is. Returns 0, or a negative number for a rate that cannot be. */
-int mouth_begin(uint32_t rate);
+/* A connection begins, with sound of so many samples per second; the mouth eases to rest from where it is. Returns 0, or
+ * a negative number for a rate that cannot be (labial/result.h). */
+int mouth_begin(uint32_t samples_per_second);
 
-/* A packet of lips. Returns as labial_beside_feed(). */
+/* A packet of lips. Returns as labial_beside_push(). */
 int mouth_packet(const void *packet, size_t size);
 
 /* `count` samples, of two channels as many pairs, have arrived, whether they will be played or not. Returns the number
@@ -70,7 +76,7 @@ void mouth_playing(int64_t first, size_t count, int64_t now);
 /* The loudspeaker was silenced, and what it had not played was dropped: the mouth eases to rest. */
 void mouth_cancel(void);
 
-/* The values to show at the time `now`; call it every 20 ms. Returns as labial_beside_at(). */
+/* The values to show at the time `now`; call it every 20 ms. Returns as labial_beside_tick(). */
 int mouth_values(int64_t now, uint8_t values[MOUTH_OUTPUTS]);
 
 /* Moves a servo at a pin by the first value, every 20 ms. Returns 0 or an error of ESP-IDF. */

@@ -139,7 +139,7 @@ static int64_t due(int64_t now)
 {
     int64_t sample;
     const int64_t lead = LIPS_LEAD * MS, silence = labial_clock_at(&shared.clock, now + lead, &sample);
-    const int64_t per_frame = shared.rate / LABIAL_HEAR_RATE;
+    const int64_t per_frame = shared.rate / LABIAL_HEAR_FPS;
     if (silence < 0 || silence - lead > LIPS_GRACE * MS)
         return -1;
     if (sample >= shared.base)

@@ -7,7 +7,7 @@
 
 #include "labial_player.h"
 
-#if LABIAL_PLAYER_FORMAT != 1
+#if LABIAL_PLAYER_FORMAT != 2
 #error "talk was written for another version of Labial: run labial bake again."
 #endif
 
@@ -36,9 +36,9 @@ static const uint8_t talk_bytes[168] LABIAL_PLAYER_FLASH = {
 };
 
 /* Goes to the beginning. */
-static inline void talk_begin(labial_player_t *player)
+static inline void talk_init(labial_player_t *player)
 {
-    labial_player_begin(player, talk_bytes, TALK_FRAMES);
+    labial_player_init(player, talk_bytes, TALK_FRAMES);
 }
 
 /* The next frame, every 20 ms, or NULL when the motion is over. */

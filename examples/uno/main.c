@@ -80,7 +80,7 @@ static void talk(void)
         serial_write(command[i]);
     /* In the last of these periods the timer loads frame 0. */
     wait_for_period((uint16_t)(PERIODS(COMMAND_MS + DFPLAYER_DELAY_MS) - 2u));
-    talk_begin(&player);
+    talk_init(&player);
     while ((frame = talk_next(&player)) != NULL) {
         servo_show(talk_jaw(frame));
         wait_for_period(0);
@@ -89,7 +89,7 @@ static void talk(void)
 
 int main(void)
 {
-    talk_begin(&player);
+    talk_init(&player);
     servo_begin(talk_jaw(talk_next(&player)));
     PORTD |= _BV(PORTD2); /* holds pin 2 high while the button is open */
     serial_begin();

@@ -8,9 +8,9 @@
  *
  *     labial_beside_init(&lips, 1, 24000, memory, sizeof memory);
  *
- *     labial_beside_feed(&lips, packet, size);                // each packet, as it arrives
+ *     labial_beside_push(&lips, packet, size);                // each packet, as it arrives
  *
- *     if (labial_beside_at(&lips, sample, values) >= 0)       // every 20 ms
+ *     if (labial_beside_tick(&lips, sample, values) >= 0)     // every 20 ms
  *         set_servo(labial_beside_value(values[0], 1400, 1900));
  *
  * `sample` is the number of the sample that is heard now: the first sample of a session has the number 0, and each one
@@ -22,7 +22,7 @@
  *     1     1 to cancel, else 0
  *     2     outputs, 1 .. 255
  *     3     frames, 0 .. 255
- *     4..7  number of the first frame, modulo 2^32; frame k begins with sample k * rate / 50
+ *     4..7  number of the first frame, modulo 2^32; frame k begins with sample k * R / 50 at R samples per second
  *     8..9  the session: another number than that of the session before
  *     10    the face at rest, a byte for each output
  *     ..    the frames, a byte for each output of each
@@ -40,14 +40,16 @@
  * Packets are not trusted: with any bytes, of any size, and any sample number the library reads and writes only the
  * memory it was given. They have no key either: who can send to the player moves the face, within its limits. Let them
  * come through TLS or a network that you trust. Integers only, no allocation, no state but the structure and its memory,
- * the same bits on every target, also where an int has 16 bits: the files beside.h and beside.c need no other file of
- * the library. Calls on one player must not overlap; the structure may be moved between calls.
+ * the same bits on every target, also where an int has 16 bits: the files beside.h, beside.c and result.h need no
+ * other file of the library. Calls on one player must not overlap; the structure may be moved between calls.
  */
 #ifndef LABIAL_BESIDE_H
 #define LABIAL_BESIDE_H
 
 #include <stddef.h>
 #include <stdint.h>
+
+#include "labial/result.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -57,7 +59,7 @@ extern "C" {
 #define LABIAL_BESIDE_FORMAT 2
 
 /* Frames per second. */
-#define LABIAL_BESIDE_RATE 50u
+#define LABIAL_BESIDE_FPS 50u
 
 /* Bytes of a packet before the face at rest, and of the longest packet. */
 #define LABIAL_BESIDE_HEAD 10u
@@ -66,7 +68,7 @@ extern "C" {
 /* Most frames that a player keeps: 11 minutes. */
 #define LABIAL_BESIDE_FRAMES_MAX 32768u
 
-/* Calls of labial_beside_at() for which the last frame stays when no other comes, 1 .. 120: 100 ms. */
+/* Calls of labial_beside_tick() for which the last frame stays when no other comes, 1 .. 120: 100 ms. */
 #ifndef LABIAL_BESIDE_HOLD
 #define LABIAL_BESIDE_HOLD 5
 #endif
@@ -82,18 +84,6 @@ extern "C" {
 #if LABIAL_BESIDE_EASE < 1 || LABIAL_BESIDE_EASE > 120
 #error "LABIAL_BESIDE_EASE must be a number from 1 to 120."
 #endif
-
-/* What calls return. Errors are negative, and change nothing. */
-typedef enum {
-    LABIAL_BESIDE_RESTS = 0,       /* the face is at rest or on the way there; of a packet: it was accepted */
-    LABIAL_BESIDE_SPEAKS = 1,      /* the values are those of a frame, or on the way there */
-    LABIAL_BESIDE_CANCELS = 2,     /* the packet cancels: the program should drop the sound that it has not played */
-    LABIAL_BESIDE_BEGINS = 3,      /* and the packet is the first of another session, whose samples count from now on */
-    LABIAL_BESIDE_ERROR_NULL = -1, /* a pointer is null */
-    LABIAL_BESIDE_ERROR_STATE = -2, /* no packet was accepted yet, so that the face at rest is unknown */
-    LABIAL_BESIDE_ERROR_SIZE = -3,  /* a number is out of range, or there is memory for less than one frame */
-    LABIAL_BESIDE_ERROR_PACKET = -4 /* not a packet of this format for so many outputs */
-} labial_beside_result_t;
 
 /* A player; its members are private. */
 typedef struct labial_beside labial_beside_t;
@@ -112,60 +102,63 @@ typedef struct labial_beside labial_beside_t;
          : (unsigned)((change)*255L / LABIAL_BESIDE_SPAN_(at_0, at_255)))
 
 /*
- * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of `rate` samples per second, 1 ..
- * 50,000,000. `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest
+ * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of 1 .. 50,000,000 `samples_per_second`. `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest
  * power of two up to LABIAL_BESIDE_FRAMES_MAX. Where the outputs stand is not known: the first packet puts them at rest,
  * without a limit. Outputs have no limits until labial_beside_limit().
  *
- * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_SIZE.
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RANGE (outputs), LABIAL_ERROR_SAMPLE_RATE, or
+ * LABIAL_ERROR_WORKSPACE where there is memory for less than a frame.
  */
-int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t rate, void *memory, size_t size);
+int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t samples_per_second, void *memory,
+                       size_t size);
 
 /*
- * The largest change of an output, 0 .. outputs - 1, from one call of labial_beside_at() to the next: `most` steps of the
+ * The largest change of an output, 0 .. outputs - 1, from one call of labial_beside_tick() to the next: `most` steps of the
  * 255 between its ends, 1 .. 255. It is the servo's, and holds for every packet; give the server's description of the
  * face the same (`slew`), so that what it sends arrives unchanged.
  *
- * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL, LABIAL_BESIDE_ERROR_STATE (not initialised) or
- * LABIAL_BESIDE_ERROR_SIZE.
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised) or LABIAL_ERROR_RANGE.
  */
 int labial_beside_limit(labial_beside_t *player, unsigned output, unsigned most);
 
 /*
- * A connection begins, beside sound of `rate` samples per second: samples count from 0, and the next packet is the first
- * of its session. Frames are dropped; the face eases to rest from where it is, within its limits, which stay. A program
- * that is told of sessions by packets alone (LABIAL_BESIDE_BEGINS) does not need it.
+ * A connection begins, beside sound of so many samples per second: samples count from 0, and the next packet is the
+ * first of its session. Frames are dropped; the face eases to rest from where it is, within its limits, which stay. A program
+ * that is told of sessions by packets alone (LABIAL_NEW_SESSION) does not
+ * need it.
  *
- * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL, LABIAL_BESIDE_ERROR_STATE (not initialised) or
- * LABIAL_BESIDE_ERROR_SIZE.
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised) or LABIAL_ERROR_SAMPLE_RATE.
  */
-int labial_beside_begin(labial_beside_t *player, uint32_t rate);
+int labial_beside_restart(labial_beside_t *player, uint32_t samples_per_second);
 
 /*
  * Accepts a packet of `size` bytes, all of one message. Its frames replace earlier ones of the same numbers. Those that
  * were shown, whose time has passed, or for which the ring has no room yet are ignored.
  *
- * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_CANCELS, LABIAL_BESIDE_BEGINS, or with nothing changed LABIAL_BESIDE_ERROR_NULL,
- * LABIAL_BESIDE_ERROR_STATE (not initialised) or LABIAL_BESIDE_ERROR_PACKET.
+ * Returns LABIAL_OK; LABIAL_CANCELLED, after which the program drops the sound that it has not played;
+ * LABIAL_NEW_SESSION, after which it does the same and counts samples as this session does; or with nothing changed
+ * LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised) or LABIAL_ERROR_PACKET.
  */
-int labial_beside_feed(labial_beside_t *player, const void *packet, size_t size);
+int labial_beside_push(labial_beside_t *player, const void *packet, size_t size);
 
 /*
  * The values to show while sample number `sample` is heard, modulo 2^32. Call it every 20 ms, also in silence with a
  * number that stands still: as it eases by a step in each call, it needs no other clock. Numbers may skip any distance;
  * one that is less than the ring's length below the last is taken for jitter, one further below starts over from there.
  *
- * Returns LABIAL_BESIDE_SPEAKS or LABIAL_BESIDE_RESTS with the values of all outputs, 0 .. 255, in `values`; or
- * with nothing written LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_STATE.
+ * Returns with the values of all outputs, 0 .. 255, in `values` LABIAL_OK when they are those of a frame or on the way
+ * there, and LABIAL_STARVED when there is none and the face goes to rest or is there; or with nothing written
+ * LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (also before the first packet).
  */
-int labial_beside_at(labial_beside_t *player, uint32_t sample, uint8_t *values);
+int labial_beside_tick(labial_beside_t *player, uint32_t sample, uint8_t *values);
 
 /*
- * Drops all frames, because the program drops the sound that it has not played; the face eases to rest.
+ * Drops all frames, because the program drops the sound that it has not played; the face eases to rest over
+ * `milliseconds`, rounded up to whole frames, 1 .. LABIAL_CANCEL_MAX, or longer where a limit asks for it.
  *
- * Returns LABIAL_BESIDE_RESTS, LABIAL_BESIDE_ERROR_NULL or LABIAL_BESIDE_ERROR_STATE (not initialised).
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (not initialised).
  */
-int labial_beside_cancel(labial_beside_t *player);
+int labial_beside_cancel(labial_beside_t *player, uint32_t milliseconds);
 
 /*
  * A byte in the units of its output: at_0 for 0, at_255 for 255, in between at_0 + (at_255 - at_0) * byte / 255,
@@ -176,17 +169,18 @@ int32_t labial_beside_value(uint8_t byte, int32_t at_0, int32_t at_255);
 
 /* ---- Private ------------------------------------------------------------------------------------------------------ */
 
-/* 28 bytes where a pointer has 4. */
+/* 32 bytes where a pointer has 4. */
 struct labial_beside {
     uint8_t outputs;  /* 0 before labial_beside_init() */
     uint8_t known;    /* 0 nothing; 1 the face at rest; 2 also the session */
-    uint8_t quiet;    /* calls without a frame to show, up to LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE */
+    uint8_t quiet;    /* calls without a frame to show, up to LABIAL_BESIDE_HOLD + 1 */
+    uint16_t left;    /* calls in which the face then comes to rest, 1 and more */
     uint16_t frames;  /* that the ring holds, a power of two */
     uint16_t session; /* of the latest packet */
-    uint32_t rate;    /* samples per second */
-    uint32_t now;     /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
-    uint32_t sample;  /* a sample at most a second before the last one that was told, */
-    uint32_t frame;   /* and the frame that begins with it */
+    uint32_t samples_per_second;
+    uint32_t now;    /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
+    uint32_t sample; /* a sample at most a second before the last one that was told, */
+    uint32_t frame;  /* and the frame that begins with it */
     uint8_t
         *memory; /* the caller's: the face at rest, as it is shown, the frame that it approaches, limits, the ring */
 };

@@ -11,7 +11,7 @@
  *   bytes 4-7    size of the whole model in bytes, uint32
  *   bytes 8-11   CRC-32 (the one of zlib and PNG) of all that follows, uint32
  *   bytes 12-27  format, frames_per_second, component_count (uint16); phoneme_count, class_count, state_count,
- *                predecessors, search_stride, silence, mixture_mean, kernel_taps, kernel_stride, kernel_behind (uint8)
+ *                predecessor_fours, search_stride, silence, mixture_mean, kernel_taps, kernel_stride, kernel_behind (uint8)
  *   byte 28      which optional tables follow: 1 contexts, 2 slopes, 8 protrusion; 4: pairs have two knots
  *   byte 29      floor_count (uint8)
  *   bytes 30-31  pair_count (uint16)

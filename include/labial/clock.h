@@ -17,20 +17,22 @@
  * and never played, move nothing. Numbers and times have 64 bits, and do not wrap.
  *
  * Integers only, no allocation, no state but the structure, the same values on every target. Calls on one clock must not
- * overlap; the structure may be moved or copied between calls. The files clock.h and clock.c need no other file of the
- * library.
+ * overlap; the structure may be moved or copied between calls. The files clock.h, clock.c and result.h need no other file
+ * of the library.
  */
 #ifndef LABIAL_CLOCK_H
 #define LABIAL_CLOCK_H
 
 #include <stdint.h>
 
+#include "labial/result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* The highest rate of sound, samples per second. */
-#define LABIAL_CLOCK_RATE_MAX 1000000u
+/* The most samples per second. */
+#define LABIAL_CLOCK_SAMPLE_RATE_MAX 1000000u
 
 /* The number of a sound whose samples have none, such as a sound of the device's own. */
 #define LABIAL_CLOCK_NONE INT64_C(-1)
@@ -44,9 +46,9 @@ extern "C" {
 /* A clock; its members are private. All zero it is one that was not initialised. */
 typedef struct labial_clock labial_clock_t;
 
-/* Prepares a clock for sound of `rate` samples per second, 1 .. LABIAL_CLOCK_RATE_MAX, of which nothing was heard.
- * Returns 0, or -1 for another rate, with a clock that was not initialised. */
-int labial_clock_init(labial_clock_t *clock, uint32_t rate);
+/* Prepares a clock for sound of 1 .. LABIAL_CLOCK_SAMPLE_RATE_MAX samples per second, of which nothing was heard. Returns
+ * LABIAL_OK, LABIAL_ERROR_NULL, or LABIAL_ERROR_SAMPLE_RATE with a clock that is not initialised. */
+int labial_clock_init(labial_clock_t *clock, uint32_t samples_per_second);
 
 /*
  * `count` samples, of several channels as many tuples, are given to the loudspeaker at the time `now`. The first of them
@@ -71,11 +73,11 @@ int64_t labial_clock_at(const labial_clock_t *clock, int64_t now, int64_t *sampl
 /* ---- Private ------------------------------------------------------------------------------------------------------ */
 
 struct labial_clock {
-    uint32_t rate;      /* 0 before labial_clock_init() */
-    uint32_t fraction;  /* of the microsecond `silent`, in parts of the rate */
-    int64_t first, end; /* the latest samples that were given with numbers that follow each other */
-    int64_t silent;     /* when they will have been heard */
-    uint8_t plays;      /* something was given, and not stopped */
+    uint32_t samples_per_second; /* 0 before labial_clock_init() */
+    uint32_t fraction;           /* of the microsecond `silent`, in parts of the rate */
+    int64_t first, end;          /* the latest samples that were given with numbers that follow each other */
+    int64_t silent;              /* when they will have been heard */
+    uint8_t plays;               /* something was given, and not stopped */
 };
 
 #ifdef __cplusplus

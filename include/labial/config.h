@@ -60,6 +60,13 @@
 #define LABIAL_LOCKS 0
 #endif
 
+/* Who multiplies the weights of hearing, which takes about half of its time. 0: the library, on Arm cores that have
+ * DSP instructions with these. 1: the program, which defines labial_hear_sums() (labial/hear_model.h) for the vector
+ * instructions of another core. */
+#ifndef LABIAL_HEAR_SUMS
+#define LABIAL_HEAR_SUMS 0
+#endif
+
 /* These values do not compile: numbers out of range, sums without parentheses (which the macros would break apart), and
  * unsigned numbers. */
 #define LABIAL_IS_NUMBER_(x, least, most) (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
@@ -77,6 +84,9 @@
 #endif
 #if !LABIAL_IS_NUMBER_(LABIAL_LOCKS, 0, 2)
 #error "LABIAL_LOCKS must be a number from 0 to 2."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_HEAR_SUMS, 0, 1)
+#error "LABIAL_HEAR_SUMS must be a number from 0 to 1."
 #endif
 #if LABIAL_WINDOW + LABIAL_LAG > 55
 #error "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together."

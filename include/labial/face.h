@@ -24,7 +24,8 @@
  *   3. The changes of two successive ticks differ by no more than `acceleration`.
  *   4. When no frame comes any more, every output is at rest, exactly, at most
  *      ahead + LABIAL_FACE_HOLD + LABIAL_FACE_EASE + LABIAL_FACE_TRAVEL(range, slew, acceleration) ticks later, and
- *      labial_face_tick() returns LABIAL_DONE. Ticks that only catch up (labial_face_due()) do not count.
+ *      labial_face_tick() returns LABIAL_DONE; after a cancel, its own time stands for hold and ease. Ticks that only
+ *      catch up (labial_face_due()) do not count.
  *   5. Where one frame comes before each tick, none is lost: frame k is what the outputs are on the way to `ahead` ticks
  *      after it came.
  *
@@ -44,6 +45,7 @@
 
 #include "labial/face_private.h"
 #include "labial/labial.h"
+#include "labial/result.h"
 #include "labial/rig.h"
 
 #ifdef __cplusplus
@@ -74,7 +76,7 @@ extern "C" {
 #define LABIAL_FACE_AHEAD_MAX 1000u
 
 /* Bytes of memory of a face of so many outputs that looks `ahead` frames ahead, a constant expression when both are: 4 for
- * each output's value, its change, what is wanted of it, and each of ahead + 1 frames. labial_face_t has 36 more. */
+ * each output's value, its change, what is wanted of it, and each of ahead + 1 frames. labial_face_t has 40 more. */
 #define LABIAL_FACE_SIZE(outputs, ahead) ((size_t)4 * (size_t)(outputs) * ((size_t)(ahead) + 4u))
 
 /*
@@ -96,8 +98,8 @@ extern "C" {
  * `memory` of `size` bytes, at least LABIAL_FACE_SIZE(outputs, ahead), belongs to the face from now on, and the rig must
  * stay where it is.
  *
- * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RIG (no outputs), LABIAL_ERROR_RATE (frames per second or `ahead`)
- * or LABIAL_ERROR_WORKSPACE (memory). After an error the other calls return LABIAL_ERROR_STATE.
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RIG (no outputs), LABIAL_ERROR_FRAME_RATE, LABIAL_ERROR_RANGE
+ * (`ahead`) or LABIAL_ERROR_WORKSPACE (memory). After an error the other calls return LABIAL_ERROR_STATE.
  */
 int labial_face_init(labial_face_t *face, const labial_rig_t *rig, unsigned frames_per_second, unsigned ahead,
                      int32_t *memory, size_t size);
@@ -157,12 +159,13 @@ int labial_face_play(labial_face_t *face);
 int labial_face_skip(labial_face_t *face, unsigned count);
 
 /*
- * Drops the frames that wait; the outputs go to rest as above, without the hold. Call it with labial_cancel() where the
- * sound stops at once. The frames of a source that eases to rest itself are taken as any others.
+ * Drops the frames that wait; the outputs go to rest over `milliseconds`, rounded up to whole frames, 1 ..
+ * LABIAL_CANCEL_MAX, or longer where their limits need it. Call it with labial_cancel() where the sound stops at once. The
+ * frames of a source that eases to rest itself are taken as any others.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
-int labial_face_cancel(labial_face_t *face);
+int labial_face_cancel(labial_face_t *face, uint32_t milliseconds);
 
 /*
  * Begins a soft start: outputs are attached one after the other, `ticks` ticks apart, which is the time that one is given

@@ -31,14 +31,16 @@
 #include <stdint.h>
 
 #include "labial/hear_model.h"
+#include "labial/hear_private.h"
 #include "labial/labial.h"
+#include "labial/result.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* Frames per second. */
-#define LABIAL_HEAR_RATE 50
+#define LABIAL_HEAR_FPS 50
 
 /*
  * Receives a stretch of speech of one lip class: `shown` numbers the model's classes (NAME_CLASSES of its header),
@@ -46,54 +48,6 @@ extern "C" {
  * one ends. It is called after the last of these frames.
  */
 typedef void (*labial_hear_class_fn)(void *user, unsigned shown, uint32_t frame, uint32_t frames);
-
-/* ---- Private: the parts of a stream. ----------------------------------------------------------------------------- */
-
-#define LABIAL_HEAR_WINDOW_ 256 /* samples of a window */
-#define LABIAL_HEAR_HOP_ 160    /* from one window to the next */
-#define LABIAL_HEAR_TAPS_ 32    /* samples that the conversion of rates looks at */
-
-/* The conversion of rates. Times are in tenths of a point of the grid on which the filter lies. */
-typedef struct {
-    uint8_t reach;   /* samples that the filter takes on each side; 0 for 16 kHz, which is not converted */
-    uint8_t spacing; /* points from one sample to the next */
-    uint8_t at;      /* where the next sample goes */
-    uint16_t step;   /* from one converted sample to the next */
-    uint16_t phase;  /* from the latest sample of the filter's left half to the next converted sample */
-    int16_t past[2 * LABIAL_HEAR_TAPS_]; /* every sample twice, so that the latest are always in one piece */
-} labial_hear_convert_t;
-
-/* A stream. Its members are private. */
-typedef struct {
-    uint8_t channels, hop;
-    uint8_t ended, busy;                  /* no more sound is heard; a callback runs */
-    uint8_t exact;                        /* the end delivers no way to rest */
-    uint8_t loud, silent;                 /* the frame has sound; frames without before it, 255 for more */
-    uint8_t rest;                         /* how far the face has come to rest in silence */
-    uint8_t shown;                        /* the class of the last frame */
-    uint8_t held, leader;                 /* `now` is a pose; its class */
-    uint8_t at[LABIAL_HEAR_BLOCKS_MAX];   /* the oldest row of each block's memory */
-    uint8_t skip[LABIAL_HEAR_BLOCKS_MAX]; /* and of its former inputs */
-    uint16_t filled;                      /* samples of the window */
-    uint32_t magic;
-    uint32_t taken;    /* frames that the network has heard, at most those that it needs ahead */
-    uint32_t sounding; /* frames with sound, also in part, that are not yet delivered */
-    uint32_t frame;    /* the next frame */
-    uint32_t first;    /* of the class that is shown; the next frame if none is */
-    int32_t level;
-    const labial_hear_model_t *model;
-    int16_t *rows;
-    labial_frame_fn callback;
-    labial_hear_class_fn class_callback;
-    void *user;
-    int16_t before[LABIAL_CHANNELS]; /* the pose before `now`, Q4 */
-    int16_t now[LABIAL_CHANNELS];    /* the pose that is delivered next, before it is smoothed */
-    labial_fade_t fade;
-    int16_t features[LABIAL_HEAR_INPUTS];
-    int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_];
-    labial_hear_convert_t convert;
-    int16_t window[LABIAL_HEAR_WINDOW_]; /* samples, then their spectrum, then what layers put out */
-} labial_hear_t;
 
 /* ---- The calls ------------------------------------------------------------------------------------------------- */
 
@@ -105,18 +59,18 @@ typedef struct {
 uint32_t labial_hear_workspace_size(const labial_hear_model_t *model);
 
 /*
- * Prepares a stream and discards what it contained. `rate` is that of the sound in samples per second: 8000, 12000,
- * 16000, 22050, 24000, 32000, 44100 or 48000; `channels` is 1 or 2, of which the mean is heard.
+ * Prepares a stream and discards what it contained. The sound has 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000
+ * `samples_per_second`; `channels` is 1 or 2, of which the mean is heard.
  *
  * `workspace` must be aligned to four bytes and have labial_hear_workspace_size() bytes. It belongs to the stream, and
  * the model must stay where it is, until the stream is initialised again or no longer used. `callback` receives the
  * frames, with `user` as its first argument.
  *
- * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION, LABIAL_ERROR_SOUND (rate or channels) or
- * LABIAL_ERROR_WORKSPACE. After an error the stream is unusable until it is initialised successfully.
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION, LABIAL_ERROR_SAMPLE_RATE, LABIAL_ERROR_RANGE (channels)
+ * or LABIAL_ERROR_WORKSPACE. After an error the stream is unusable until it is initialised successfully.
  */
-int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint32_t rate, unsigned channels,
-                     void *workspace, size_t workspace_size, labial_frame_fn callback, void *user);
+int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint32_t samples_per_second,
+                     unsigned channels, void *workspace, size_t workspace_size, labial_frame_fn callback, void *user);
 
 /*
  * Also tells the lip classes to `callback`, with the same `user`; null for no longer. Their names are phonemes, so that
@@ -128,7 +82,9 @@ int labial_hear_classes(labial_hear_t *hear, labial_hear_class_fn callback);
 
 /*
  * Hears `count` samples, of two channels as many pairs, left first, and calls the callbacks for all frames that these
- * complete. A callback must not call functions that change the same stream; they return LABIAL_ERROR_STATE there.
+ * complete. In a callback, functions that change the same stream return LABIAL_ERROR_STATE, but for labial_hear_init():
+ * with it the stream begins anew, the call that the callback is in does nothing more, also with the rest of its sound,
+ * and returns LABIAL_OK.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (after labial_hear_end() or labial_hear_cancel()).
  */
@@ -152,8 +108,8 @@ int labial_hear_exact(labial_hear_t *hear, int exact);
 
 /*
  * Drops everything that is not yet delivered, and eases the last delivered frame back to the neutral face (all FAPs 0)
- * over `milliseconds`, rounded up to whole frames, at most 1,000. The callback receives these frames during the call; a
- * program shows one every 20 ms. With 0 one neutral frame follows.
+ * over `milliseconds`, rounded up to whole frames, 1 .. LABIAL_CANCEL_MAX. The callback receives these frames during the
+ * call; a program shows one every 20 ms.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
@@ -167,9 +123,18 @@ int labial_hear_cancel(labial_hear_t *hear, uint32_t milliseconds);
  */
 int labial_hear_restart(labial_hear_t *hear);
 
-/* Samples that must be pushed, from a frame's first sample on, until it is delivered; for two channels, pairs. 0 for a
- * null or uninitialised stream. */
-uint32_t labial_hear_latency(const labial_hear_t *hear);
+/*
+ * How far the mouth moves, as labial_articulation() says it: the poses that the network tells from now on come nearer to
+ * `percent`, by up to 10 each. Frames show that two frames later at the latest.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_hear_articulation(labial_hear_t *hear, unsigned percent);
+
+/* The stream's current latency; all zero for a null or uninitialised stream. `frames` are those with sound, also in part,
+ * that are not yet delivered; a frame is delivered with the sample that is `delay_milliseconds` after its first one, which
+ * at other rates than 16 kHz is up to a millisecond more than `delay` frames. */
+labial_latency_t labial_hear_latency(const labial_hear_t *hear);
 
 #ifdef __cplusplus
 }

@@ -20,6 +20,7 @@
 
 #include <stdint.h>
 
+#include "labial/config.h"
 #include "labial/model.h"
 
 #ifdef __cplusplus
@@ -27,7 +28,7 @@ extern "C" {
 #endif
 
 /* Version of this format. A generated model of another version does not compile. */
-#define LABIAL_HEAR_MODEL_FORMAT 1
+#define LABIAL_HEAR_MODEL_FORMAT 2
 
 /* What a frame of 20 ms hears: this many bands in each of its two hops. */
 #define LABIAL_HEAR_BANDS 24
@@ -40,8 +41,8 @@ extern "C" {
 #define LABIAL_HEAR_TAPS_MAX 16    /* taps of a block's memory */
 #define LABIAL_HEAR_ROWS_MAX 64    /* frames that a block's memory holds */
 
-/* W and b. Rows go in groups of four: of each column there are the group's four weights. The last group is filled up
- * with zeros. */
+/* W and b. Rows go in groups of four, a, b, c and d, of which the last is filled up with zeros. A group has eight
+ * weights for each pair of columns 0 and 1: a0 b0 a1 b1 c0 d0 c1 d1. The number of columns is a multiple of four. */
 typedef struct {
     const int8_t *weights;
     const int16_t *biases; /* of each row, also of those that fill up */
@@ -76,6 +77,16 @@ typedef struct {
     labial_hear_dense_t last;
     labial_hear_dense_t heads; /* rows of the classes, then of the 13 FAPs */
 } labial_hear_model_t;
+
+#if LABIAL_HEAR_SUMS
+/*
+ * Defined by the program. Sets sums[r] to the sum of row r's weights times `x` over all columns, for the four rows of
+ * a group: exactly, which takes less than 31 bits. `weights` are the group's 4 * `columns`, in the order above; `x`
+ * are `columns` activations; `columns` is a multiple of four, 4 .. LABIAL_HEAR_UNITS_MAX. Neither needs to be aligned
+ * beyond its type. labial_hear_push() and labial_hear_end() call this about a hundred times for each frame.
+ */
+void labial_hear_sums(const int8_t *weights, const int16_t *x, unsigned columns, int32_t sums[4]);
+#endif
 
 #ifdef __cplusplus
 }

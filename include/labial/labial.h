@@ -33,6 +33,7 @@
 #include "labial/config.h"
 #include "labial/model.h"
 #include "labial/private.h"
+#include "labial/result.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -51,39 +52,6 @@ extern "C" {
 
 /* Largest articulation, percent. */
 #define LABIAL_ARTICULATION_MAX 200u
-
-/* ---- Results. Zero is success, a positive value tells a stream's state, a negative one is an error. -------------- */
-
-#define LABIAL_RESULTS(X)                                                                                              \
-    X(LABIAL_OK, 0, "success")                                                                                         \
-    X(LABIAL_WAITING, 1, "the first frame is on its way or waits for phonemes")                                        \
-    X(LABIAL_STARVED, 2, "the next frame waits for more phonemes")                                                     \
-    X(LABIAL_DONE, 3, "the stream has ended and every frame was delivered")                                            \
-    X(LABIAL_ERROR_NULL, -1, "a pointer that is needed is null")                                                       \
-    X(LABIAL_ERROR_VERSION, -2, "the model is of another version: export its .npz again by labial export")             \
-    X(LABIAL_ERROR_MODEL, -3, "the model's tables are out of range")                                                   \
-    X(LABIAL_ERROR_WORKSPACE, -4, "the workspace is too small or not aligned to four bytes")                           \
-    X(LABIAL_ERROR_STATE, -5, "the call is not allowed now: not initialised, or a push after the end")                 \
-    X(LABIAL_ERROR_PHONEME, -6, "the model has no phoneme of this number")                                             \
-    X(LABIAL_ERROR_DURATION, -7, "the duration exceeds LABIAL_DURATION_MAX")                                           \
-    X(LABIAL_ERROR_FULL, -8, "the queue is full; tick and push again")                                                 \
-    X(LABIAL_ERROR_RATE, -9, "the model's frame rate or search stride is not the stream's")                            \
-    X(LABIAL_ERROR_MODELS, -10, "phonemes of LABIAL_MODELS other models are still to be played")                       \
-    X(LABIAL_ERROR_NAME, -11, "no phoneme of this name is known")                                                      \
-    X(LABIAL_ERROR_RIG, -12, "the rig has no output, or a value in its table is out of range")                         \
-    X(LABIAL_ERROR_TIMINGS, -13, "the timings are malformed; the parser's message says how")                           \
-    X(LABIAL_ERROR_SOUND, -14, "the sound's rate or number of channels is not supported")                              \
-    X(LABIAL_ERROR_WORD, -15, "a word or a character ends before it begins, or begins before an earlier one")
-
-typedef enum {
-#define LABIAL_RESULT_VALUE(name, value, text) name = value,
-    LABIAL_RESULTS(LABIAL_RESULT_VALUE)
-#undef LABIAL_RESULT_VALUE
-        LABIAL_RESULT_LAST_ = LABIAL_ERROR_WORD
-} labial_result_t;
-
-/* A description of any result, "unknown result" for other numbers. Linked only when used. */
-const char *labial_result_text(int result);
 
 /* ---- The stream ------------------------------------------------------------------------------------------------ */
 
@@ -153,7 +121,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
  * that of labial_init().
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
- * LABIAL_ERROR_RATE (frames per second and search stride are those of the stream's first model), LABIAL_ERROR_WORKSPACE
+ * LABIAL_ERROR_FRAME_RATE (frames per second and search stride are those of the stream's first model), LABIAL_ERROR_WORKSPACE
  * (the model has more channels than the workspace holds) or LABIAL_ERROR_MODELS.
  */
 int labial_use(labial_t *stream, const labial_model_t *model);
@@ -207,7 +175,7 @@ int labial_tick(labial_t *stream);
 
 /*
  * Drops everything that is not yet delivered, and eases the last delivered frame back to the neutral face over
- * `milliseconds`, rounded up to whole frames, at most 1,000; then the stream is done. With 0 one neutral frame follows.
+ * `milliseconds`, rounded up to whole frames, 1 .. LABIAL_CANCEL_MAX; then the stream is done.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
@@ -248,12 +216,14 @@ int labial_exact(labial_t *stream, int exact);
  */
 int labial_articulation(labial_t *stream, unsigned percent);
 
-/* The input that has been pushed and not yet delivered. */
+/* How much input a stream holds, and how late its output is. The same for phonemes, sound (labial/hear.h) and words
+ * (labial/words.h). */
 typedef struct {
-    uint32_t frames;       /* pushed and not yet delivered; those in which the face comes to rest do not count */
-    uint32_t milliseconds; /* the same as time, rounded to the nearest */
-    unsigned phonemes;     /* in the queue: pushed, with frames that are not yet accepted */
-    unsigned delay;        /* ticks from accepting a frame to delivering it: LABIAL_DELAY() */
+    uint32_t frames;             /* pushed and not yet delivered; those in which the face comes to rest do not count */
+    uint32_t milliseconds;       /* the same as time, rounded to the nearest */
+    unsigned phonemes;           /* in the queue: pushed, with frames that are not yet accepted */
+    unsigned delay;              /* frames from a frame's input to its output, of a stream LABIAL_DELAY(); constant */
+    uint32_t delay_milliseconds; /* the same as time */
 } labial_latency_t;
 
 /* The stream's current latency; all zero for a null or uninitialised stream. */

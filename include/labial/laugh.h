@@ -7,7 +7,7 @@
  *     labial_laugh_t laugh;
  *     unsigned phoneme;
  *     uint32_t milliseconds;
- *     labial_laugh_begin(&laugh, 1800, LABIAL_LAUGH_FULL / 2, seed);
+ *     labial_laugh_init(&laugh, 1800, LABIAL_LAUGH_FULL / 2, seed);
  *     while (labial_laugh_next(&laugh, &phoneme, &milliseconds) == LABIAL_OK)
  *         labial_push(&stream, phoneme, milliseconds);        // while labial_room() > 0
  *
@@ -19,6 +19,8 @@
 #define LABIAL_LAUGH_H
 
 #include <stdint.h>
+
+#include "labial/result.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -62,8 +64,29 @@ enum {
     LABIAL_LAUGH_PHONEMES
 };
 
-/* A laugh in progress, in the caller's memory. Its members are private; it may be moved or copied between calls. */
-typedef struct {
+/* A laugh in progress; its members are private. It may be moved or copied between calls. */
+typedef struct labial_laugh labial_laugh_t;
+
+/*
+ * Prepares a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts
+ * as that). Each `seed` gives a different laugh. Below about half a second it is a single breath or pulse. A
+ * laugh that is to be dropped is just prepared anew.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_DURATION.
+ */
+int labial_laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
+
+/*
+ * Yields the next phoneme and its duration, at least 20 ms unless the whole laugh is shorter; together the phonemes
+ * last exactly as long as requested.
+ *
+ * Returns LABIAL_OK, LABIAL_DONE after the last one (nothing is written), or LABIAL_ERROR_NULL.
+ */
+int labial_laugh_next(labial_laugh_t *laugh, unsigned *phoneme, uint32_t *milliseconds);
+
+/* ---- Private ------------------------------------------------------------------------------------------------------ */
+
+struct labial_laugh {
     uint32_t left;         /* milliseconds to come */
     uint32_t tail;         /* of them, the silence at the end */
     uint32_t random;       /* state of the random numbers, never 0 */
@@ -75,23 +98,7 @@ typedef struct {
     uint8_t kind, vowel;              /* of these pulses */
     uint8_t train_loudness, loudness; /* of the current train's first and of its next pulse, 255 the intensity's own */
     uint8_t dither;                   /* between two grades, 1/256 */
-} labial_laugh_t;
-
-/*
- * Begins a laugh of `milliseconds`, 0 to LABIAL_DURATION_MAX, and of `intensity`, 0 to LABIAL_LAUGH_FULL (more counts
- * as that). Each `seed` gives a different laugh. Below about half a second it is a single breath or pulse.
- *
- * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_DURATION.
- */
-int labial_laugh_begin(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
-
-/*
- * Yields the next phoneme and its duration, at least 20 ms unless the whole laugh is shorter; together the phonemes
- * last exactly as long as requested.
- *
- * Returns LABIAL_OK, LABIAL_DONE after the last one (nothing is written), or LABIAL_ERROR_NULL.
- */
-int labial_laugh_next(labial_laugh_t *laugh, unsigned *phoneme, uint32_t *milliseconds);
+};
 
 #ifdef __cplusplus
 }

@@ -32,7 +32,7 @@ extern "C" {
 
 /* Version of this format. A generated model of another version does not compile, and a blob of another version is
  * refused. */
-#define LABIAL_MODEL_FORMAT 6
+#define LABIAL_MODEL_FORMAT 7
 
 /* Channels of a frame: the 13 outer-lip, jaw and protrusion FAPs in the order of labial_fap_numbers (labial/faps.h). */
 #define LABIAL_CHANNELS 13
@@ -104,9 +104,14 @@ typedef struct {
     uint8_t weight[2]; /* a quarter of delta's; delta-delta's */
 } labial_state_t;
 
-/* One channel's scales and its hidden Markov model. States are sorted by their emissions' means. Each state has
- * `predecessors` transitions, in ascending order of the predecessor, the last one repeated where there are fewer. A
- * transition has its predecessor in the low byte and its cost in the high byte. */
+/* A transition into a state. */
+typedef struct {
+    uint8_t predecessor; /* a state */
+    uint8_t cost;
+} labial_transition_t;
+
+/* One channel's scales and its hidden Markov model. States are sorted by their emissions' means. Each state has 4 K
+ * transitions, in ascending order of the predecessor, the last one repeated where there are fewer. */
 typedef struct {
     int16_t centre;                     /* Q4 FAP: added to every position on output */
     uint16_t shape_scale;               /* positions per step of `shapes`, Q8; at most 32767 */
@@ -117,7 +122,7 @@ typedef struct {
     uint8_t contact_weight;             /* least `hold` of a frame in contact; 0 where there is none */
     const labial_emission_t *emissions; /* state_count */
     const labial_state_t *states;       /* state_count */
-    const uint16_t *transitions;        /* state_count x predecessors */
+    const labial_transition_t *transitions; /* state_count x 4 K */
     const uint8_t *initials;            /* state_count, cost of starting there */
 } labial_channel_t;
 
@@ -141,7 +146,7 @@ typedef struct {
     uint8_t phoneme_count;      /* P: 1 .. LABIAL_PHONEMES_MAX */
     uint8_t class_count;        /* V: 1 .. LABIAL_CLASSES_MAX */
     uint8_t state_count;        /* Q: 1 .. LABIAL_STATES_MAX */
-    uint8_t predecessors;       /* K: 1 .. LABIAL_STATES_MAX */
+    uint8_t predecessor_fours;  /* K: 1 .. LABIAL_STATES_MAX / 4; a state has four times as many transitions */
     uint8_t search_stride;      /* frames that share a state, 1 .. LABIAL_SEARCH_STRIDE_MAX; the search sees the target
                                  * of the middle one, or of the later of two */
     uint8_t silence;            /* the phoneme before the first, after the last, and in place of another model's; a long
@@ -193,9 +198,8 @@ int labial_model_check(const labial_model_t *model);
  * them. Where models change, a tick takes at most the sum of their costs, one for each run of a model's phonemes within
  * the latest `search_stride` frames.
  *
- * The bundled models cost about 31,000 and 26,000, and their ticks take 14,600 at most, 15,900 where models change with
- * every phoneme. A model that
- * labial_model_check() accepts can cost 180,000. So a program that plays foreign models compares this number with the
+ * The bundled models cost about 31,000 and 25,000, and their ticks take 14,300 at most, 15,700 where models change with
+ * every phoneme. A model that labial_model_check() accepts can cost 140,000. So a program that plays foreign models compares this number with the
  * instructions that its processor has for a frame:
  *
  *     if (labial_model_load(&blob, data, size) != LABIAL_OK || labial_model_cost(&blob.model) > 50000)

@@ -50,6 +50,7 @@ typedef struct {
 /* State of the search of one channel (viterbi.c). */
 typedef struct {
     uint8_t first; /* state of the window */
+    uint8_t count; /* states of the window; after the end of a unit it is the best one alone */
     uint8_t best;  /* state, counted from the first */
     uint8_t scores[LABIAL_SEARCHED];
     uint8_t path[LABIAL_LAG + 1]; /* states of the last steps, the latest first */
@@ -151,21 +152,26 @@ typedef struct {
     int16_t from[LABIAL_CHANNELS];    /* where the way begins */
 } labial_fade_t;
 
+/* How far the mouth moves (articulation.h), percent. */
+typedef struct {
+    uint8_t wanted;
+    uint8_t present; /* of the latest frame */
+} labial_articulation_t;
+
 #define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
 /* The stream's state (stream.c). Small members come first, where small instructions reach them. */
 typedef struct {
-    uint32_t magic;       /* set while the stream is initialised */
-    uint8_t slot;         /* model of the next push */
-    uint8_t ended;        /* no more phonemes will come */
-    uint8_t begun;        /* a frame was delivered since the stream was initialised or restarted */
-    uint8_t exact;        /* the face rests only after a cancel */
-    uint8_t resting;      /* the face is at rest or on its way there: motion fades in from it */
-    uint8_t held;         /* ticks without a frame since the last frame or push, up to as many as the face is held */
-    uint8_t wanted;       /* articulation, percent */
-    uint8_t articulation; /* of the latest frame */
-    uint32_t frame;       /* number of the next frame */
-    uint32_t pending;     /* frames pushed and not yet delivered */
+    uint32_t magic;  /* set while the stream is initialised */
+    uint8_t slot;    /* model of the next push */
+    uint8_t ended;   /* no more phonemes will come */
+    uint8_t begun;   /* a frame was delivered since the stream was initialised or restarted */
+    uint8_t exact;   /* the face rests only after a cancel */
+    uint8_t resting; /* the face is at rest or on its way there: motion fades in from it */
+    uint8_t held;    /* ticks without a frame since the last frame or push, up to as many as the face is held */
+    labial_articulation_t articulation;
+    uint32_t frame;   /* number of the next frame */
+    uint32_t pending; /* frames pushed and not yet delivered */
     uint32_t
         begins[LABIAL_BEGINS_WORDS_]; /* bit i: a solution begins with the frame that was taken i ticks ago; what was
                                             * taken before a cancel moves beyond the delay before a frame is due */

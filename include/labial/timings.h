@@ -36,6 +36,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "labial/result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -76,38 +78,8 @@ typedef struct {
     uint8_t xsampa;    /* 1 where labels are X-SAMPA by the format */
 } labial_timing_t;
 
-/* What a TextGrid needs beside the fields of a line. Private. */
-typedef struct {
-    uint8_t lexer, expected;   /* states */
-    uint8_t wanted;            /* what becomes of the current tier */
-    uint8_t cut;               /* the latest text was longer than a field */
-    uint8_t found, again;      /* the tier was met; it is the first one, which takes a second reading */
-    uint32_t number;           /* of the current interval tier, from 1 */
-    uint32_t tiers, intervals; /* still to come */
-    uint64_t start, end;       /* of the interval */
-} labial_timings_grid_t;
-
-/* A parser. Set what is said to be the caller's after labial_timings_init(), read `line` and `message` after an error;
- * the rest is private. */
-typedef struct {
-    uint32_t line;           /* being parsed, from 1; after an error the one that is wrong */
-    char message[256];       /* what is wrong, one line; empty before an error */
-    const char *tier;        /* caller's: the name of a TextGrid's tier; null for the rule above */
-    uint32_t tier_number;    /* caller's: or its place among the interval tiers, from 1: no timings where there are
-                                fewer; 0 without */
-    uint8_t format;          /* labial_timings_format_t */
-    uint8_t mark;            /* bytes of a byte order mark that were read */
-    uint8_t comment, marker; /* within a comment; between `<laugh` and `>` */
-    uint8_t heading;         /* mary: a line of # was seen; phseg: 1 the header, 2 the total */
-    uint8_t rows;            /* 1 after the first row of lab */
-    uint32_t count;          /* fields of the line that are complete */
-    uint32_t length;         /* of the field being read */
-    uint64_t origin;         /* what the times of the text count from */
-    uint64_t end;            /* where the latest phoneme ends */
-    labial_timing_t found;
-    labial_timings_grid_t grid;
-    char fields[5][LABIAL_TIMINGS_FIELD_MAX + 1]; /* the first four of the line, then the latest */
-} labial_timings_t;
+/* A parser; its members are private. Its structure may be moved or copied between calls. */
+typedef struct labial_timings labial_timings_t;
 
 /* The name of a format, what there is to say of it in a line, and how the names of its files end, in lower case, where
  * that tells it; null beyond the last. */
@@ -117,6 +89,14 @@ const char *labial_timings_format_suffix(unsigned format);
 
 /* Prepares a parser. Returns LABIAL_OK, or LABIAL_ERROR_NULL. */
 int labial_timings_init(labial_timings_t *timings, labial_timings_format_t format);
+
+/*
+ * Asks for a tier of a TextGrid, before the first byte: by its name, which must stay where it is, or by its number among
+ * the interval tiers, from 1, of which the text must have as many. Null and 0 mean the rule above.
+ *
+ * Returns LABIAL_OK, or LABIAL_ERROR_NULL for a null parser.
+ */
+int labial_timings_tier(labial_timings_t *timings, const char *name, uint32_t number);
 
 /*
  * Takes bytes of the text, up to the one that completes a timing: of `size` bytes, `*used` were taken.
@@ -135,6 +115,47 @@ int labial_timings_next(labial_timings_t *timings, const char *text, size_t size
  * TextGrid is read when it is known that there is no better one -, and errors as labial_timings_next() does.
  */
 int labial_timings_end(labial_timings_t *timings, labial_timing_t *timing);
+
+/* The format, which LABIAL_TIMINGS_AUTO becomes when it is known. LABIAL_TIMINGS_AUTO for a null parser. */
+labial_timings_format_t labial_timings_format(const labial_timings_t *timings);
+
+/* The line that is being parsed, from 1; after an error the one that is wrong. 0 for a null parser. */
+uint32_t labial_timings_line(const labial_timings_t *timings);
+
+/* What is wrong, one line that is valid until the parser is prepared anew; "" before an error. */
+const char *labial_timings_message(const labial_timings_t *timings);
+
+/* ---- Private ------------------------------------------------------------------------------------------------------ */
+
+/* What a TextGrid needs beside the fields of a line. */
+struct labial_timings_grid {
+    uint8_t lexer, expected;   /* states */
+    uint8_t wanted;            /* what becomes of the current tier */
+    uint8_t cut;               /* the latest text was longer than a field */
+    uint8_t found, again;      /* the tier was met; it is the first one, which takes a second reading */
+    uint32_t number;           /* of the current interval tier, from 1 */
+    uint32_t tiers, intervals; /* still to come */
+    uint64_t start, end;       /* of the interval */
+};
+
+struct labial_timings {
+    uint32_t line;           /* being parsed, from 1; after an error the one that is wrong */
+    char message[256];       /* what is wrong, one line; empty before an error */
+    const char *tier;        /* the name of the tier that is asked for, or null */
+    uint32_t tier_number;    /* or its number, or 0 */
+    uint8_t format;          /* labial_timings_format_t */
+    uint8_t mark;            /* bytes of a byte order mark that were read */
+    uint8_t comment, marker; /* within a comment; between `<laugh` and `>` */
+    uint8_t heading;         /* mary: a line of # was seen; phseg: 1 the header, 2 the total */
+    uint8_t rows;            /* 1 after the first row of lab */
+    uint32_t count;          /* fields of the line that are complete */
+    uint32_t length;         /* of the field being read */
+    uint64_t origin;         /* what the times of the text count from */
+    uint64_t end;            /* where the latest phoneme ends */
+    labial_timing_t found;
+    struct labial_timings_grid grid;
+    char fields[5][LABIAL_TIMINGS_FIELD_MAX + 1]; /* the first four of the line, then the latest */
+};
 
 #ifdef __cplusplus
 }

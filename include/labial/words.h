@@ -2,24 +2,24 @@
  * labial/words.h - English words and their times to phonemes and theirs, for voices that tell when each word or each
  * character is spoken, but not its phonemes. Optional: a program that does not call it links nothing of it.
  *
- *     static labial_words_stream_t words;
+ *     static labial_words_t words;
  *     unsigned phoneme;
  *     uint32_t milliseconds;
  *
- *     labial_words_begin(&words, &words_en, NULL, 0);      // tables: lib/words/words_en.h
- *     labial_words_say(&words, "Hello", 5, 120, 480);      // from 120 to 480 ms
+ *     labial_words_init(&words, &words_en, NULL, 0);      // the model: lib/words/words_en.h
+ *     labial_words_push(&words, "Hello", 5, 120, 480);    // from 120 to 480 ms
  *     while (labial_words_next(&words, &phoneme, &milliseconds) == LABIAL_OK)
- *         labial_push(&stream, phoneme, milliseconds);     // while labial_room() > 0
- *     labial_words_say(&words, "world.", 6, 500, 930);
+ *         labial_push(&stream, phoneme, milliseconds);    // while labial_room() > 0
+ *     labial_words_push(&words, "world.", 6, 500, 930);
  *     ...
- *     labial_words_flush(&words);                          // the last word; then take its phonemes as well
+ *     labial_words_end(&words);                           // that was the last word; then take its phonemes as well
  *
  * Phonemes are numbered as in the bundled speech model: silence, then ARPABET in the order of the alphabet. For a model
  * with other phonemes, look each label (labial_words_label()) up in its names once.
  *
- * The tables are those of one language, and these rules are for English: other languages in Latin letters are read as
- * if they were English; where a voice reports phonemes or visemes, use these. The tables are trusted, as compiled-in
- * models are. Texts, times and the order of calls are not trusted.
+ * The model is that of one language, and these rules are for English: other languages in Latin letters are read as if
+ * they were English; where a voice reports phonemes or visemes, use these. The model is trusted, as those of motion are.
+ * Texts, times and the order of calls are not trusted.
  *
  * What is read
  * - Letters: through decision trees (docs/words.md), in parts of at most LABIAL_WORDS_LETTERS. Letters of Latin-1 and
@@ -44,12 +44,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "labial/labial.h"
+#include "labial/result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Format of the tables; a file of another format does not compile. */
-#define LABIAL_WORDS_FORMAT 1
+/* Format of a model; a file of another format does not compile. */
+#define LABIAL_WORDS_FORMAT 2
 
 /* Letters that are read together; longer words are read in parts. */
 #define LABIAL_WORDS_LETTERS 32
@@ -89,9 +92,9 @@ typedef struct {
     const uint8_t *milliseconds; /* their mean durations */
     const uint8_t *classes;      /* 1 for vowels, 2 for voiceless consonants, 0 for others */
     uint8_t filler[2];           /* phonemes that alternate in unknown words */
-} labial_words_t;
+} labial_words_model_t;
 
-/* A word of the caller's own and its phonemes; numbers beyond the tables' count as silence. The word is compared with
+/* A word of the caller's own and its phonemes; numbers beyond the model's count as silence. The word is compared with
  * each stretch of a text between blanks and punctuation other than apostrophes, small and capital letters of ASCII
  * being the same. */
 typedef struct {
@@ -127,18 +130,111 @@ typedef struct {
     labial_words_phoneme_t phonemes[LABIAL_WORDS_PHONEMES];
 } labial_word_t;
 
-/* A word with its time. Private. */
-typedef struct {
+/* Words in time on their way to phonemes; the members are private. It may be moved or copied between calls. */
+typedef struct labial_words labial_words_t;
+
+/*
+ * Reads a text of `size` bytes of UTF-8: a word, or all between two blanks. `own` may be null.
+ *
+ * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for a model of
+ * another format.
+ */
+int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
+                      labial_word_t *word);
+
+/* The label of a phoneme in ARPABET, "" for numbers beyond the last and a null model. */
+const char *labial_words_label(const labial_words_model_t *model, unsigned phoneme);
+
+/* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
+uint32_t labial_words_length(const labial_words_model_t *model, const labial_word_t *word);
+
+/*
+ * Prepares a stream. `offset` milliseconds are added to all times: with a voice that reports its words too early, a
+ * positive number; too late, a negative one. What it moves before the beginning is cut off.
+ *
+ * The model and the caller's own words must stay where they are. Returns LABIAL_OK, LABIAL_ERROR_NULL or
+ * LABIAL_ERROR_VERSION.
+ */
+int labial_words_init(labial_words_t *stream, const labial_words_model_t *model, const labial_words_own_t *own,
+                      int32_t offset);
+
+/* Other words of the caller's own, for the words that follow; null for none. Returns LABIAL_OK, LABIAL_ERROR_NULL or
+ * LABIAL_ERROR_STATE. */
+int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own);
+
+/*
+ * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END.
+ * How a word ends depends on what follows, so that each word's phonemes come with the next word or with
+ * labial_words_end(). A gap under LABIAL_WORDS_PAUSE belongs to the word before it, a longer one is silence. A word
+ * that ends after the next one begins is cut off there. A text that is silent leaves its time to what is beside it.
+ *
+ * Take all that labial_words_next() has first. Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL,
+ * LABIAL_ERROR_STATE (not prepared, or after labial_words_end()), LABIAL_ERROR_FULL (there are phonemes to be taken), LABIAL_ERROR_WORD (`end`
+ * before `start`, or `start` before that of an earlier word) or LABIAL_ERROR_DURATION (longer than
+ * LABIAL_DURATION_MAX).
+ */
+int labial_words_push(labial_words_t *stream, const char *text, size_t size, uint32_t start, uint32_t end);
+
+/*
+ * The same where the end of each of the text's `count` characters (code points) is known; the first one begins at
+ * `start` and the word ends with the last. The boundaries between phonemes are then half way between those of their
+ * characters and those of labial_words_push(); where all characters last equally long, as of voices that only share out
+ * the time of a word, they are those of labial_words_push().
+ *
+ * Returns as labial_words_push(): LABIAL_ERROR_WORD also where `count` is 0, more than LABIAL_WORDS_CHARACTERS or not
+ * the text's number of characters, and where a character ends before the one before it.
+ */
+int labial_words_push_characters(labial_words_t *stream, const char *text, size_t size, uint32_t start,
+                                 const uint32_t *ends, unsigned count);
+
+/*
+ * No more words will come: the last one ends where it said.
+ *
+ * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_words_end(labial_words_t *stream);
+
+/*
+ * The next phoneme and its duration, silences included; as labial_push() takes them, and without gaps from 0 on.
+ *
+ * Returns LABIAL_OK, LABIAL_WAITING where there is none until the next word or labial_words_end(), LABIAL_DONE after
+ * it when all words are through, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_words_next(labial_words_t *stream, unsigned *phoneme, uint32_t *milliseconds);
+
+/*
+ * Drops the phonemes that were not taken; no more words will come. The face comes to rest by labial_cancel().
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_words_cancel(labial_words_t *stream);
+
+/*
+ * Continues after labial_words_end() or labial_words_cancel(): words of the same sound may follow, whose phonemes begin
+ * where the last one that was taken ended. For another sound, whose times begin with 0, labial_words_init() it is.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (unless words have ended, and while there are phonemes to be
+ * taken).
+ */
+int labial_words_restart(labial_words_t *stream);
+
+/* What was pushed and not yet taken: milliseconds and phonemes. `frames` are 0, and so is the delay: how long a word waits
+ * depends on when the next one comes. All zero for a null or unprepared stream. */
+labial_latency_t labial_words_latency(const labial_words_t *stream);
+
+/* ---- Private ------------------------------------------------------------------------------------------------------ */
+
+/* A word with its time. */
+struct labial_words_span {
     labial_word_t word;
     uint32_t start, end;                   /* milliseconds */
     uint8_t open;                          /* the end is not known */
     uint8_t spelt;                         /* `reach` holds */
     uint16_t reach[LABIAL_WORDS_PHONEMES]; /* where a phoneme's characters end, milliseconds from the start */
-} labial_words_span_t;
+};
 
-/* Words in time on their way to phonemes. Private; it may be moved or copied between calls. */
-typedef struct {
-    const labial_words_t *tables;
+struct labial_words {
+    const labial_words_model_t *model;
     const labial_words_own_t *own;
     int32_t offset;            /* milliseconds, added to all times */
     uint32_t latest;           /* beginning of the word that came last */
@@ -149,70 +245,9 @@ typedef struct {
     uint8_t speaking, holding; /* whether there is a word being spoken, and one that waits for the next */
     uint8_t held;              /* which of `spans` waits; the other one is being spoken */
     uint8_t paused;            /* behind the word being spoken there is a pause */
-    labial_words_span_t spans[2];
-} labial_words_stream_t;
-
-/*
- * Reads a text of `size` bytes of UTF-8: a word, or all between two blanks. `own` may be null.
- *
- * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for tables of
- * another format.
- */
-int labial_words_read(const labial_words_t *tables, const labial_words_own_t *own, const char *text, size_t size,
-                      labial_word_t *word);
-
-/* The label of a phoneme in ARPABET, "" for numbers beyond the last and null tables. */
-const char *labial_words_label(const labial_words_t *tables, unsigned phoneme);
-
-/* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
-uint32_t labial_words_length(const labial_words_t *tables, const labial_word_t *word);
-
-/*
- * Prepares a stream. `offset` milliseconds are added to all times: with a voice that reports its words too early, a
- * positive number; too late, a negative one. What it moves before the beginning is cut off.
- *
- * The tables and the caller's own words must stay where they are. Returns LABIAL_OK, LABIAL_ERROR_NULL or
- * LABIAL_ERROR_VERSION.
- */
-int labial_words_begin(labial_words_stream_t *stream, const labial_words_t *tables, const labial_words_own_t *own,
-                       int32_t offset);
-
-/*
- * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END.
- * How a word ends depends on what follows, so that each word's phonemes come with the next word or with
- * labial_words_flush(). A gap under LABIAL_WORDS_PAUSE belongs to the word before it, a longer one is silence. A word
- * that ends after the next one begins is cut off there. A text that is silent leaves its time to what is beside it.
- *
- * Take all that labial_words_next() has first. Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL,
- * LABIAL_ERROR_STATE (not prepared), LABIAL_ERROR_FULL (there are phonemes to be taken), LABIAL_ERROR_WORD (`end`
- * before `start`, or `start` before that of an earlier word) or LABIAL_ERROR_DURATION (longer than
- * LABIAL_DURATION_MAX).
- */
-int labial_words_say(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start, uint32_t end);
-
-/*
- * The same where the end of each of the text's `count` characters (code points) is known; the first one begins at
- * `start` and the word ends with the last. The boundaries between phonemes are then half way between those of their
- * characters and those of labial_words_say(); where all characters last equally long, as of voices that only share out
- * the time of a word, they are those of labial_words_say().
- *
- * Returns as labial_words_say(): LABIAL_ERROR_WORD also where `count` is 0, more than LABIAL_WORDS_CHARACTERS or not
- * the text's number of characters, and where a character ends before the one before it.
- */
-int labial_words_say_characters(labial_words_stream_t *stream, const char *text, size_t size, uint32_t start,
-                                const uint32_t *ends, unsigned count);
-
-/* No word follows for now: the last one ends where it said. Words may follow nevertheless. Returns as
- * labial_words_say(). */
-int labial_words_flush(labial_words_stream_t *stream);
-
-/*
- * The next phoneme and its duration, silences included; as labial_push() takes them, and without gaps from 0 on.
- *
- * Returns LABIAL_OK, LABIAL_WAITING where there is none until the next word or labial_words_flush(), LABIAL_DONE where
- * all words are through, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
- */
-int labial_words_next(labial_words_stream_t *stream, unsigned *phoneme, uint32_t *milliseconds);
+    uint8_t ended;             /* no word follows */
+    struct labial_words_span spans[2];
+};
 
 #ifdef __cplusplus
 }

@@ -10,7 +10,7 @@
 #include "labial/labial.h"
 #include "labial/names.h"
 
-#if LABIAL_MODEL_FORMAT != 6
+#if LABIAL_MODEL_FORMAT != 7
 #error "speech_en was exported for another version of Labial: run labial export again."
 #endif
 

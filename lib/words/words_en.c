@@ -1481,7 +1481,7 @@ static const uint8_t patches[4866] = {
     128, 102, 72, 168, 128, 67, 125, 14, 0, 3, 0, 4, 130, 165, 125, 214, 2, 32, 128, 102
 };
 
-const labial_words_t words_en = {
+const labial_words_model_t words_en = {
     LABIAL_WORDS_FORMAT,
     40,
     2654437567u,

@@ -32,7 +32,7 @@
 
 #include "labial/words.h"
 
-#if LABIAL_WORDS_FORMAT != 1
+#if LABIAL_WORDS_FORMAT != 2
 #error "words_en was exported for another version of Labial: run labial export again."
 #endif
 
@@ -41,7 +41,7 @@ extern "C" {
 #endif
 
 /* The tables, 38749 bytes and the structure that points to them. */
-extern const labial_words_t words_en;
+extern const labial_words_model_t words_en;
 
 #ifdef __cplusplus
 }

@@ -64,20 +64,20 @@ static int centre_of(unsigned channel)
 /* Every state is entered from itself and from those up to `reach` away, 1 or 3; those at the ends have fewer. */
 static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned reach)
 {
-    const unsigned predecessors = 2 * reach + 2; /* one at least is repeated */
+    const unsigned predecessors = 2 * reach + 2; /* 4 or 8: one at least is repeated */
     for (unsigned q = 0; q < count; q++) {
-        uint16_t *transitions = f->transitions[c] + q * predecessors;
+        labial_transition_t *transitions = f->transitions[c] + q * predecessors;
         unsigned n = 0;
         for (unsigned p = 0; p < count; p++) {
             const unsigned away = p > q ? p - q : q - p;
             const unsigned cost = away == 0 ? 4 : away == 1 ? 60 : 90;
             if (away <= reach)
-                transitions[n++] = (uint16_t)(p | cost << 8);
+                transitions[n++] = (labial_transition_t){ (uint8_t)p, (uint8_t)cost };
         }
         for (; n < predecessors; n++)
             transitions[n] = transitions[n - 1];
     }
-    f->model.predecessors = (uint8_t)predecessors;
+    f->model.predecessor_fours = (uint8_t)(predecessors / 4);
 }
 
 /* Puts the first `count` numbers in ascending order. */

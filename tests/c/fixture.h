@@ -58,7 +58,7 @@ typedef struct {
     labial_protrusion_t protrusion;
     labial_emission_t emissions[LABIAL_CHANNELS][LABIAL_STATES_MAX];
     labial_state_t states[LABIAL_CHANNELS][LABIAL_STATES_MAX];
-    uint16_t transitions[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];
+    labial_transition_t transitions[LABIAL_CHANNELS][LABIAL_STATES_MAX * FIXTURE_PREDECESSORS];
     uint8_t initials[LABIAL_CHANNELS][LABIAL_STATES_MAX];
 } fixture_model_t;
 

@@ -40,7 +40,7 @@ static void pad(writer_t *w)
         put(w, 0, 1);
 }
 
-static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned states, unsigned predecessors)
+static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned states, unsigned transitions)
 {
     put(w, (uint16_t)channel->centre, 2);
     put(w, channel->shape_scale, 2);
@@ -65,8 +65,10 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
         put_bytes(w, channel->states[q].weight, 2);
     }
     pad(w);
-    for (unsigned i = 0; i < states * predecessors; i++)
-        put(w, channel->transitions[i], 2);
+    for (unsigned i = 0; i < transitions; i++) {
+        put(w, channel->transitions[i].predecessor, 1);
+        put(w, channel->transitions[i].cost, 1);
+    }
     pad(w);
     put_bytes(w, channel->initials, states);
     pad(w);
@@ -88,7 +90,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
     put(&w, model->phoneme_count, 1);
     put(&w, model->class_count, 1);
     put(&w, model->state_count, 1);
-    put(&w, model->predecessors, 1);
+    put(&w, model->predecessor_fours, 1);
     put(&w, model->search_stride, 1);
     put(&w, model->silence, 1);
     put(&w, model->mixture_mean, 1);
@@ -145,7 +147,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
         pad(&w);
     }
     for (unsigned i = 0; i < channels; i++)
-        put_channel(&w, &model->channels[i], model->state_count, model->predecessors);
+        put_channel(&w, &model->channels[i], model->state_count, 4u * model->state_count * model->predecessor_fours);
     if (w.size <= room)
         fixture_seal(out, w.size);
     return w.size;

@@ -7,7 +7,7 @@
 
 #include "labial/hear.h"
 
-#if LABIAL_HEAR_MODEL_FORMAT != 1
+#if LABIAL_HEAR_MODEL_FORMAT != 2
 #error "hear_fixture was exported for another version of Labial: run labial export again."
 #endif
 

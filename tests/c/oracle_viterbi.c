@@ -48,10 +48,10 @@ static double through(const labial_model_t *model, const labial_channel_t *chann
     double cost = LEAP;
     if (before->cost[p] >= ORACLE_NONE || (before->ends_unit && p != before->best))
         return ORACLE_NONE;
-    for (unsigned i = 0; i < model->predecessors; i++) {
-        const unsigned transition = channel->transitions[q * model->predecessors + i];
-        if ((transition & 255u) == p && (double)(transition >> 8) < cost)
-            cost = (double)(transition >> 8);
+    for (unsigned i = 0; i < 4u * model->predecessor_fours; i++) {
+        const labial_transition_t *const transition = &channel->transitions[q * 4u * model->predecessor_fours + i];
+        if (transition->predecessor == p && transition->cost < cost)
+            cost = transition->cost;
     }
     return before->cost[p] + cost;
 }

@@ -53,7 +53,7 @@ static size_t make_packet(int cancels, unsigned outputs, unsigned count, uint64_
 
 static int feed(int cancels, unsigned count, uint64_t first)
 {
-    return labial_beside_feed(&player, packet, make_packet(cancels, OUTPUTS, count, first));
+    return labial_beside_push(&player, packet, make_packet(cancels, OUTPUTS, count, first));
 }
 
 SETUP(begin)
@@ -61,13 +61,13 @@ SETUP(begin)
     seed = 1;
     session = 0x1234;
     memset(memory, 0xa5, sizeof memory);
-    return labial_beside_init(&player, OUTPUTS, RATE, memory, sizeof memory) == LABIAL_BESIDE_RESTS ? 0 : -1;
+    return labial_beside_init(&player, OUTPUTS, RATE, memory, sizeof memory) == LABIAL_OK ? 0 : -1;
 }
 
 static void assert_shows(uint32_t sample, uint64_t frame)
 {
     uint8_t values[OUTPUTS];
-    assert_int_equal(labial_beside_at(&player, sample, values), LABIAL_BESIDE_SPEAKS);
+    assert_int_equal(labial_beside_tick(&player, sample, values), LABIAL_OK);
     for (unsigned i = 0; i < OUTPUTS; i++)
         assert_int_equal(values[i], value_of(frame, i));
 }
@@ -75,7 +75,7 @@ static void assert_shows(uint32_t sample, uint64_t frame)
 static void assert_rests(uint32_t sample)
 {
     uint8_t values[OUTPUTS];
-    assert_int_equal(labial_beside_at(&player, sample, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_tick(&player, sample, values), LABIAL_STARVED);
     assert_memory_equal(values, at_rest, OUTPUTS);
 }
 
@@ -88,12 +88,12 @@ TEST_AFTER(begin, frames_come_with_their_samples)
         const uint64_t rate = rates[r], most = (rate == 50 ? 3u : 1u) * (UINT64_C(1) << 33);
         uint64_t sample = 0;
         assert_int_equal(labial_beside_init(&player, OUTPUTS, rates[r], memory, sizeof memory), 0);
-        assert_int_equal(feed(0, 0, 0), LABIAL_BESIDE_RESTS);
+        assert_int_equal(feed(0, 0, 0), LABIAL_OK);
         while (sample < most) {
             const uint64_t frame = sample * 50 / rate, next = ((frame + 1) * rate + 49) / 50;
             uint8_t values[OUTPUTS];
-            (void)labial_beside_at(&player, (uint32_t)sample, values); /* so that the window is there */
-            assert_int_equal(feed(0, 2, frame), LABIAL_BESIDE_RESTS);
+            (void)labial_beside_tick(&player, (uint32_t)sample, values); /* so that the window is there */
+            assert_int_equal(feed(0, 2, frame), LABIAL_OK);
             assert_shows((uint32_t)(next - 1), frame);
             assert_shows((uint32_t)next, frame + 1);
             sample = next + draw(8) * (rate / 3) + draw(1000) + (draw(4) ? 0 : draw(1u << 24) * UINT64_C(100));
@@ -107,24 +107,24 @@ TEST_AFTER(begin, other_packets_are_refused)
     const size_t size = make_packet(0, OUTPUTS, 4, 0);
     uint8_t values[OUTPUTS], saved[64];
     labial_beside_t before;
-    assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_ERROR_STATE);
+    assert_int_equal(labial_beside_tick(&player, 0, values), LABIAL_ERROR_STATE);
     memcpy(saved, packet, size);
     before = player;
     for (size_t cut = 0; cut <= size + 3; cut++)
         if (cut != size)
-            assert_int_equal(labial_beside_feed(&player, packet, cut), LABIAL_BESIDE_ERROR_PACKET);
+            assert_int_equal(labial_beside_push(&player, packet, cut), LABIAL_ERROR_PACKET);
     static const uint8_t others[][2] = { { 0, 0 }, { 0, 1 }, { 0, 3 }, { 1, 2 }, { 1, 128 },
                                          { 2, 2 }, { 2, 4 }, { 3, 3 }, { 3, 5 } };
     for (unsigned i = 0; i < sizeof others / sizeof *others; i++) {
         memcpy(packet, saved, size);
         packet[others[i][0]] = others[i][1];
-        assert_int_equal(labial_beside_feed(&player, packet, size), LABIAL_BESIDE_ERROR_PACKET);
+        assert_int_equal(labial_beside_push(&player, packet, size), LABIAL_ERROR_PACKET);
     }
     assert_memory_equal(&player, &before, sizeof player);
     for (size_t i = 0; i < sizeof memory; i++)
         assert_int_equal(memory[i], i / OUTPUTS == 3 ? 255 : 0); /* no limits */
     memcpy(packet, saved, size);
-    assert_int_equal(labial_beside_feed(&player, packet, size), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_push(&player, packet, size), LABIAL_OK);
     assert_shows(0, 0);
 }
 
@@ -134,20 +134,20 @@ TEST(null_pointers_and_wrong_sizes_are_refused)
     uint8_t *const large = (uint8_t *)malloc(LABIAL_BESIDE_SIZE(1, 70000));
     assert_non_null(large);
     memset(&player, 0, sizeof player);
-    assert_int_equal(labial_beside_feed(&player, packet, 9), LABIAL_BESIDE_ERROR_STATE);
-    assert_int_equal(labial_beside_cancel(&player), LABIAL_BESIDE_ERROR_STATE);
-    assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_ERROR_STATE);
-    assert_int_equal(labial_beside_begin(&player, RATE), LABIAL_BESIDE_ERROR_STATE);
-    assert_int_equal(labial_beside_limit(&player, 0, 1), LABIAL_BESIDE_ERROR_STATE);
-    assert_int_equal(labial_beside_init(NULL, 1, RATE, memory, sizeof memory), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_init(&player, 1, RATE, NULL, sizeof memory), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_init(&player, 0, RATE, memory, sizeof memory), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_init(&player, 256, RATE, large, 70000), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_init(&player, 1, 0, memory, sizeof memory), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_init(&player, 1, 50000001, memory, sizeof memory), LABIAL_BESIDE_ERROR_SIZE);
+    assert_int_equal(labial_beside_push(&player, packet, 9), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_beside_cancel(&player, 120), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_beside_tick(&player, 0, values), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_beside_restart(&player, RATE), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_beside_limit(&player, 0, 1), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_beside_init(NULL, 1, RATE, memory, sizeof memory), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_init(&player, 1, RATE, NULL, sizeof memory), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_init(&player, 0, RATE, memory, sizeof memory), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_beside_init(&player, 256, RATE, large, 70000), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_beside_init(&player, 1, 0, memory, sizeof memory), LABIAL_ERROR_SAMPLE_RATE);
+    assert_int_equal(labial_beside_init(&player, 1, 50000001, memory, sizeof memory), LABIAL_ERROR_SAMPLE_RATE);
     assert_int_equal(labial_beside_init(&player, OUTPUTS, RATE, memory, LABIAL_BESIDE_SIZE(OUTPUTS, 1) - 1),
-                     LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_feed(&player, packet, 9), LABIAL_BESIDE_ERROR_STATE);
+                     LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_beside_push(&player, packet, 9), LABIAL_ERROR_STATE);
     assert_int_equal(labial_beside_init(&player, 255, RATE, large, 70000), 0);
     for (unsigned frames = 1; frames < 300; frames++) {
         assert_int_equal(labial_beside_init(&player, 1, RATE, large, LABIAL_BESIDE_SIZE(1, frames)), 0);
@@ -158,20 +158,20 @@ TEST(null_pointers_and_wrong_sizes_are_refused)
     }
     assert_int_equal(labial_beside_init(&player, 1, RATE, large, LABIAL_BESIDE_SIZE(1, 70000)), 0);
     assert_int_equal(player.frames, LABIAL_BESIDE_FRAMES_MAX);
-    assert_int_equal(labial_beside_feed(NULL, packet, 9), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_feed(&player, NULL, 9), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_cancel(NULL), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_begin(NULL, RATE), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_limit(NULL, 0, 1), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_begin(&player, 0), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_begin(&player, 50000001), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_begin(&player, 50000000), LABIAL_BESIDE_RESTS);
-    assert_int_equal(labial_beside_limit(&player, 1, 1), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_limit(&player, 0, 0), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_limit(&player, 0, 256), LABIAL_BESIDE_ERROR_SIZE);
-    assert_int_equal(labial_beside_limit(&player, 0, 255), LABIAL_BESIDE_RESTS);
-    assert_int_equal(labial_beside_at(NULL, 0, values), LABIAL_BESIDE_ERROR_NULL);
-    assert_int_equal(labial_beside_at(&player, 0, NULL), LABIAL_BESIDE_ERROR_NULL);
+    assert_int_equal(labial_beside_push(NULL, packet, 9), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_push(&player, NULL, 9), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_cancel(NULL, 0), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_restart(NULL, RATE), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_limit(NULL, 0, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_restart(&player, 0), LABIAL_ERROR_SAMPLE_RATE);
+    assert_int_equal(labial_beside_restart(&player, 50000001), LABIAL_ERROR_SAMPLE_RATE);
+    assert_int_equal(labial_beside_restart(&player, 50000000), LABIAL_OK);
+    assert_int_equal(labial_beside_limit(&player, 1, 1), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_beside_limit(&player, 0, 0), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_beside_limit(&player, 0, 256), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_beside_limit(&player, 0, 255), LABIAL_OK);
+    assert_int_equal(labial_beside_tick(NULL, 0, values), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_beside_tick(&player, 0, NULL), LABIAL_ERROR_NULL);
     free(large);
 }
 
@@ -191,7 +191,7 @@ TEST_AFTER(begin, the_face_eases_to_rest_without_frames)
         for (unsigned i = 0; i < OUTPUTS; i++)
             last[i] = value_of(29, i);
         for (unsigned k = 1; k <= EASE; k++) {
-            assert_int_equal(labial_beside_at(&player, (stops ? 29 : 30 + HOLD + k) * STEP, values), 0);
+            assert_int_equal(labial_beside_tick(&player, (stops ? 29 : 30 + HOLD + k) * STEP, values), LABIAL_STARVED);
             for (unsigned i = 0; i < OUTPUTS; i++) {
                 const double way = last[i] + (at_rest[i] - last[i]) * (double)k / EASE;
                 assert_true(fabs(values[i] - way) < 2);
@@ -212,11 +212,11 @@ TEST_AFTER(begin, a_cancel_drops_what_was_to_come)
     assert_int_equal(feed(0, 50, 0), 0);
     assert_shows(20 * STEP, 20);
     memcpy(earlier, memory + OUTPUTS, OUTPUTS);
-    assert_int_equal(feed(1, 0, 50), LABIAL_BESIDE_CANCELS);
+    assert_int_equal(feed(1, 0, 50), LABIAL_CANCELLED);
     assert_int_equal(feed(0, 10, 50), 0);
     assert_int_equal(feed(0, 20, 30), 0); /* late */
     for (unsigned k = 0; k < EASE; k++) {
-        assert_int_equal(labial_beside_at(&player, (21 + k) * STEP, values), LABIAL_BESIDE_RESTS); /* still plays */
+        assert_int_equal(labial_beside_tick(&player, (21 + k) * STEP, values), LABIAL_STARVED); /* still plays */
         assert_true(memcmp(values, earlier, OUTPUTS) != 0);
     }
     assert_rests(27 * STEP);
@@ -225,13 +225,13 @@ TEST_AFTER(begin, a_cancel_drops_what_was_to_come)
         assert_shows(k * STEP, k);
     assert_int_equal(feed(0, 10, 60), 0);
     assert_shows(60 * STEP, 60);
-    assert_int_equal(labial_beside_cancel(&player), 0); /* by the toy itself */
-    assert_int_equal(labial_beside_at(&player, 61 * STEP, values), LABIAL_BESIDE_RESTS);
-    assert_int_equal(labial_beside_cancel(&player), 0); /* while it eases, which goes on */
-    for (unsigned k = 2; k < EASE; k++)
-        assert_int_equal(labial_beside_at(&player, 61 * STEP, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_cancel(&player, 120), 0); /* by the toy itself */
+    assert_int_equal(labial_beside_tick(&player, 61 * STEP, values), LABIAL_STARVED);
+    assert_int_equal(labial_beside_cancel(&player, 40), 0); /* while it eases, which takes two frames from now on */
+    for (unsigned k = 1; k < 2; k++)
+        assert_int_equal(labial_beside_tick(&player, 61 * STEP, values), LABIAL_STARVED);
     assert_rests(61 * STEP);
-    assert_int_equal(feed(1, 1, 3), LABIAL_BESIDE_CANCELS); /* one of long ago moves no window */
+    assert_int_equal(feed(1, 1, 3), LABIAL_CANCELLED); /* one of long ago moves no window */
     assert_int_equal(feed(0, 1, 62), 0);
     assert_shows(62 * STEP, 62);
 }
@@ -245,23 +245,23 @@ TEST_AFTER(begin, a_clock_may_go_back)
     const uint32_t back = 0u - (uint32_t)((farthest + UINT64_C(1)) * 50 / RATE + 1);
     uint8_t values[OUTPUTS];
     assert_int_equal(feed(0, 10, 0), 0);
-    assert_int_equal(labial_beside_at(&player, 100 * STEP, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_tick(&player, 100 * STEP, values), LABIAL_STARVED);
     assert_int_equal(feed(0, 10, 100), 0);
-    assert_int_equal(labial_beside_at(&player, (100 - ROOM + 1) * STEP, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_tick(&player, (100 - ROOM + 1) * STEP, values), LABIAL_STARVED);
     assert_shows(100 * STEP, 100);
-    assert_int_equal(labial_beside_at(&player, (100 - ROOM) * STEP, values), LABIAL_BESIDE_SPEAKS); /* holds */
+    assert_int_equal(labial_beside_tick(&player, (100 - ROOM) * STEP, values), LABIAL_OK); /* holds */
     assert_int_equal(feed(0, 10, 100 - ROOM), 0);
     assert_shows((100 - ROOM) * STEP, 100 - ROOM);
     assert_int_equal(begin(NULL), 0);
     assert_int_equal(feed(0, 1, 0), 0);
     assert_shows(0, 0);
-    (void)labial_beside_at(&player, farthest, values);
+    (void)labial_beside_tick(&player, farthest, values);
     assert_int_equal(feed(0, 1, last), 0);
     assert_shows(farthest, last);
     assert_int_equal(begin(NULL), 0);
     assert_int_equal(feed(0, 1, 0), 0);
     assert_shows(0, 0);
-    (void)labial_beside_at(&player, farthest + 1, values);
+    (void)labial_beside_tick(&player, farthest + 1, values);
     assert_int_equal(feed(0, 1, back), 0);
     assert_shows(farthest + 1, back);
 }
@@ -271,12 +271,12 @@ TEST_AFTER(begin, a_later_packet_replaces_frames)
 {
     const size_t size = make_packet(0, OUTPUTS, 10, 0);
     uint8_t values[OUTPUTS];
-    assert_int_equal(labial_beside_feed(&player, packet, size), 0);
+    assert_int_equal(labial_beside_push(&player, packet, size), 0);
     assert_shows(0, 0);
     memset(packet + LABIAL_BESIDE_HEAD + OUTPUTS, 99, size - LABIAL_BESIDE_HEAD - OUTPUTS);
-    assert_int_equal(labial_beside_feed(&player, packet, size), 0);
+    assert_int_equal(labial_beside_push(&player, packet, size), 0);
     assert_shows(1, 0);
-    assert_int_equal(labial_beside_at(&player, STEP, values), LABIAL_BESIDE_SPEAKS);
+    assert_int_equal(labial_beside_tick(&player, STEP, values), LABIAL_OK);
     for (unsigned i = 0; i < OUTPUTS; i++)
         assert_int_equal(values[i], 99);
 }
@@ -286,9 +286,9 @@ TEST_AFTER(begin, a_cancel_far_ahead_heals)
 {
     assert_int_equal(feed(0, 50, 0), 0);
     assert_shows(0, 0);
-    assert_int_equal(feed(1, 0, 0x7ffffff0), LABIAL_BESIDE_CANCELS);
+    assert_int_equal(feed(1, 0, 0x7ffffff0), LABIAL_CANCELLED);
     uint8_t values[OUTPUTS];
-    assert_int_equal(labial_beside_at(&player, STEP, values), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_tick(&player, STEP, values), LABIAL_STARVED);
     assert_int_equal(feed(0, 50, 2), 0);
     assert_shows(2 * STEP, 2);
 }
@@ -302,8 +302,8 @@ TEST(a_cancel_reaches_across_the_end_of_numbers)
         uint8_t values[OUTPUTS];
         assert_int_equal(labial_beside_init(&player, OUTPUTS, 50, memory, sizeof memory), 0); /* a sample is a frame */
         assert_int_equal(feed(0, 0, 0), 0);
-        (void)labial_beside_at(&player, from[i], values);
-        assert_int_equal(feed(1, 0, to), LABIAL_BESIDE_CANCELS);
+        (void)labial_beside_tick(&player, from[i], values);
+        assert_int_equal(feed(1, 0, to), LABIAL_CANCELLED);
         if (ahead[i] < 0x80000000u) {
             assert_int_equal(feed(0, 1, to), 0);
             assert_shows(to, to);
@@ -332,19 +332,19 @@ TEST(a_session_begins_whatever_its_numbers)
         uint8_t values[OUTPUTS];
         assert_int_equal(begin(NULL), 0);
         session = 0x1280;
-        assert_int_equal(feed(0, 50, from), LABIAL_BESIDE_RESTS); /* also from the middle of one */
+        assert_int_equal(feed(0, 50, from), LABIAL_OK); /* also from the middle of one */
         for (unsigned k = 0; k < 20; k++)
             assert_shows((uint32_t)((from + k) * STEP), from + k);
         session = other[i / 64];
-        assert_int_equal(feed(0, 20, to), LABIAL_BESIDE_BEGINS);
-        assert_int_equal(feed(0, 10, to + 20), LABIAL_BESIDE_RESTS);
+        assert_int_equal(feed(0, 20, to), LABIAL_NEW_SESSION);
+        assert_int_equal(feed(0, 10, to + 20), LABIAL_OK);
         for (unsigned k = 0; k < 30; k++)
             assert_shows((uint32_t)((to + k) * STEP), to + k);
         session++;
-        assert_int_equal(feed(1, 0, 7), LABIAL_BESIDE_BEGINS); /* a cancel, too */
-        assert_int_equal(feed(1, 0, 7), LABIAL_BESIDE_CANCELS);
+        assert_int_equal(feed(1, 0, 7), LABIAL_NEW_SESSION); /* a cancel, too */
+        assert_int_equal(feed(1, 0, 7), LABIAL_CANCELLED);
         for (unsigned k = 0; k < EASE; k++) {
-            assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_RESTS);
+            assert_int_equal(labial_beside_tick(&player, 0, values), LABIAL_STARVED);
             assert_int_equal(memcmp(values, at_rest, OUTPUTS) == 0, k == EASE - 1);
         }
     }
@@ -355,24 +355,24 @@ TEST_AFTER(begin, a_connection_begins_with_other_numbers)
 {
     const uint32_t late = UINT32_C(2419200000); /* 14 hours at 48 kHz */
     uint8_t values[OUTPUTS];
-    assert_int_equal(labial_beside_begin(&player, RATE), LABIAL_BESIDE_RESTS);
-    assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_ERROR_STATE); /* nothing is known yet */
+    assert_int_equal(labial_beside_restart(&player, RATE), LABIAL_OK);
+    assert_int_equal(labial_beside_tick(&player, 0, values), LABIAL_ERROR_STATE); /* nothing is known yet */
     session = 0;
     assert_int_equal(feed(0, 0, 0), 0);
     assert_rests(0);
-    assert_int_equal(labial_beside_begin(&player, RATE), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_restart(&player, RATE), LABIAL_OK);
     assert_int_equal(feed(0, 10, late / STEP), 0);
     assert_shows(late, late / STEP);
     assert_int_equal(begin(NULL), 0);
     session = 0;
     assert_int_equal(feed(0, 10, late / STEP), 0);
     assert_shows(late, late / STEP);
-    assert_int_equal(labial_beside_begin(&player, 16000), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_restart(&player, 16000), LABIAL_OK);
     for (unsigned k = 0; k < EASE; k++) {
-        assert_int_equal(labial_beside_at(&player, 0, values), LABIAL_BESIDE_RESTS);
+        assert_int_equal(labial_beside_tick(&player, 0, values), LABIAL_STARVED);
         assert_int_equal(memcmp(values, at_rest, OUTPUTS) == 0, k == EASE - 1);
     }
-    assert_int_equal(feed(0, 10, 0), LABIAL_BESIDE_RESTS); /* of the same session, by chance */
+    assert_int_equal(feed(0, 10, 0), LABIAL_OK); /* of the same session, by chance */
     assert_shows(320, 1);
 }
 
@@ -385,28 +385,28 @@ TEST(no_value_changes_by_more_than_its_limit)
         uint8_t values[OUTPUTS], last[OUTPUTS];
         assert_int_equal(begin(NULL), 0);
         for (unsigned i = 0; i < OUTPUTS; i++)
-            assert_int_equal(labial_beside_limit(&player, i, limits[i]), LABIAL_BESIDE_RESTS);
+            assert_int_equal(labial_beside_limit(&player, i, limits[i]), LABIAL_OK);
         assert_int_equal(feed(0, 0, 0), 0);
         memcpy(last, at_rest, OUTPUTS);
         for (unsigned k = 0; k < 3000; k++) {
             if (draw(100) >= loses)
                 (void)feed(!draw(50), 1 + draw(20), k);
             session = (uint16_t)(session + !draw(200));
-            assert_true(labial_beside_at(&player, k * STEP, values) >= 0);
+            assert_true(labial_beside_tick(&player, k * STEP, values) >= 0);
             for (unsigned i = 0; i < OUTPUTS; i++)
                 assert_true(abs(values[i] - last[i]) <= limits[i]);
             memcpy(last, values, OUTPUTS);
         }
         for (unsigned k = 0; k < 1 + HOLD + EASE + 255; k++)
-            (void)labial_beside_at(&player, 3000 * STEP, values);
+            (void)labial_beside_tick(&player, 3000 * STEP, values);
         assert_memory_equal(values, at_rest, OUTPUTS);
     }
     assert_int_equal(begin(NULL), 0);
-    assert_int_equal(labial_beside_limit(&player, 0, 40), LABIAL_BESIDE_RESTS);
+    assert_int_equal(labial_beside_limit(&player, 0, 40), LABIAL_OK);
     assert_int_equal(feed(0, 1, 6), 0); /* a frame of 222, from 10 */
     uint8_t values[OUTPUTS];
     for (unsigned k = 0; k <= HOLD; k++) {
-        assert_int_equal(labial_beside_at(&player, 6 * STEP, values), LABIAL_BESIDE_SPEAKS);
+        assert_int_equal(labial_beside_tick(&player, 6 * STEP, values), LABIAL_OK);
         assert_int_equal(values[0], k < HOLD ? 50 + 40 * k : 222);
         assert_int_equal(values[1], value_of(6, 1));
     }
@@ -450,6 +450,7 @@ static struct {
     uint8_t marks[ALL]; /* 1 waits, 2 shown */
     int64_t now;
     unsigned quiet;
+    int left; /* calls in which it comes to rest */
     uint8_t pose[OUTPUTS], goal[OUTPUTS], limits[OUTPUTS];
 } plain;
 
@@ -475,20 +476,23 @@ static int plain_at(int64_t sample, int64_t rate, uint8_t values[OUTPUTS])
     if (frame == plain.now && plain.marks[frame] == 1) {
         plain.marks[frame] = 2;
         plain.quiet = 0;
+        plain.left = EASE;
         for (unsigned i = 0; i < OUTPUTS; i++)
             plain.goal[i] = value_of((uint64_t)frame, i);
     } else {
-        plain.quiet = plain.quiet < HOLD + EASE ? plain.quiet + 1 : plain.quiet;
+        plain.quiet++;
     }
     for (unsigned i = 0; i < OUTPUTS; i++) {
-        const int left = HOLD + EASE + 1 - (int)plain.quiet, most = plain.limits[i];
+        const int most = plain.limits[i];
         int move = plain.goal[i] - plain.pose[i];
         if (plain.quiet > HOLD)
-            move = (at_rest[i] - plain.pose[i]) / left;
+            move = (at_rest[i] - plain.pose[i]) / (plain.left > 1 ? plain.left : 1);
         plain.pose[i] = (uint8_t)(plain.pose[i] + (move > most ? most : move < -most ? -most : move));
     }
+    if (plain.quiet > HOLD)
+        plain.left--;
     memcpy(values, plain.pose, OUTPUTS);
-    return plain.quiet <= HOLD;
+    return plain.quiet <= HOLD ? LABIAL_OK : LABIAL_STARVED;
 }
 
 /* Catches any other difference, with packets and clocks of all kinds. */
@@ -500,7 +504,7 @@ TEST_AFTER(begin, random_packets_and_clocks)
         const unsigned loses = draw(30);
         assert_int_equal(labial_beside_init(&player, OUTPUTS, (uint32_t)rate, memory, sizeof memory), 0);
         memset(&plain, 0, sizeof plain);
-        plain.quiet = HOLD + EASE;
+        plain.quiet = HOLD;
         memcpy(plain.pose, at_rest, OUTPUTS);
         for (unsigned i = 0; i < OUTPUTS; i++) {
             plain.limits[i] = (uint8_t)(1 + draw(255));
@@ -522,12 +526,18 @@ TEST_AFTER(begin, random_packets_and_clocks)
             }
             if (!draw(400)) {
                 plain_feed(1, 0, sent);
-                assert_int_equal(feed(1, 0, (uint64_t)sent), LABIAL_BESIDE_CANCELS);
+                assert_int_equal(feed(1, 0, (uint64_t)sent), LABIAL_CANCELLED);
                 if (draw(2))
                     sample = sent * rate / 50; /* what it had is dropped */
             }
-            const int speaks = plain_at(sample, rate, wanted);
-            assert_int_equal(labial_beside_at(&player, (uint32_t)sample, values), speaks);
+            if (!draw(200)) { /* by the player itself */
+                const uint32_t frames = draw(3) ? draw(20) : LABIAL_CANCEL_MAX + draw(2);
+                plain_feed(1, 0, 0);
+                plain.left = frames > LABIAL_CANCEL_MAX ? (int)LABIAL_CANCEL_MAX : (int)frames;
+                assert_int_equal(labial_beside_cancel(&player, frames > 0 ? frames * 20 - draw(20) : 0), LABIAL_OK);
+            }
+            const int result = plain_at(sample, rate, wanted);
+            assert_int_equal(labial_beside_tick(&player, (uint32_t)sample, values), result);
             assert_memory_equal(values, wanted, OUTPUTS);
             switch (draw(40)) {
             case 0:

@@ -140,15 +140,16 @@ TEST(what_cannot_be)
     static const int64_t times[] = { INT64_MIN, -1, 0, 1, INT64_MAX };
     int64_t sample;
     memset(&clock, 0xff, sizeof clock);
-    assert_int_equal(labial_clock_init(&clock, 0), -1);
+    assert_int_equal(labial_clock_init(NULL, 44100), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_clock_init(&clock, 0), LABIAL_ERROR_SAMPLE_RATE);
     labial_clock_play(&clock, 0, 100, 0);
     assert_int_equal(labial_clock_at(&clock, 0, &sample), -1);
-    assert_int_equal(labial_clock_init(&clock, LABIAL_CLOCK_RATE_MAX + 1), -1);
+    assert_int_equal(labial_clock_init(&clock, LABIAL_CLOCK_SAMPLE_RATE_MAX + 1), LABIAL_ERROR_SAMPLE_RATE);
     labial_clock_play(&clock, 0, 100, 0);
     labial_clock_stop(&clock);
     assert_int_equal(labial_clock_at(&clock, 0, &sample), -1);
     for (unsigned i = 0; i < 125; i++) {
-        assert_int_equal(labial_clock_init(&clock, i % 2 ? 1 : LABIAL_CLOCK_RATE_MAX), 0);
+        assert_int_equal(labial_clock_init(&clock, i % 2 ? 1 : LABIAL_CLOCK_SAMPLE_RATE_MAX), 0);
         for (unsigned k = 0; k < 5; k++) {
             labial_clock_play(&clock, times[i % 5], UINT32_MAX - k, times[i / 5 % 5]);
             assert_true(labial_clock_at(&clock, times[i / 25], &sample) >= 0);

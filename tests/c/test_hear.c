@@ -4,18 +4,20 @@
  */
 #include "suite.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "fixture.h"
 #include "hear_fixture.h"
+#include "hear_network.h"
 #include "hear_sound.h"
 #include "hears.h"
 #include "labial/hear.h"
 
 #define HEARS (sizeof hears / sizeof hears[0])
 #define LONGEST 60000u
-#define FRAMES 200u
+#define FRAMES 1100u
 
 static labial_hear_t hear;
 static uint32_t workspace[HEAR_FIXTURE_WORKSPACE_SIZE / 4];
@@ -141,21 +143,30 @@ TEST(a_frame_is_known_when_latency_says)
     static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
     unsigned i;
     for (i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-        const uint32_t frame = rates[i] / LABIAL_HEAR_RATE;
-        uint32_t pushed, latency;
+        const uint32_t frame = rates[i] / LABIAL_HEAR_FPS;
+        uint32_t pushed, delay;
         begin(rates[i], 1);
-        latency = labial_hear_latency(&hear);
-        /* Three frames ahead, the frame itself, the next one, and the filter, less than a millisecond of which is
+        /* Three frames ahead, the frame itself, the next one; and the filter, less than a millisecond of which is
          * ahead. */
-        assert_true(latency > 5u * frame - 4u && latency < 5u * frame + rates[i] / 1000u);
-        for (pushed = 1; pushed < latency + 3u * frame; pushed++) {
+        assert_int_equal(labial_hear_latency(&hear).delay, 5);
+        delay = labial_hear_latency(&hear).delay_milliseconds;
+        assert_int_equal(delay, rates[i] == 16000u ? 100 : 101);
+        for (pushed = 1; pushed < 8u * frame; pushed++) {
+            const uint32_t heard = 1u + (pushed - 1u) / frame; /* but for the filter */
+            labial_latency_t latency;
             assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_OK);
-            assert_int_equal(frame_count, pushed < latency ? 0 : 1u + (pushed - latency) / frame);
+            latency = labial_hear_latency(&hear);
+            assert_true(frame_count == 0 || pushed * 1000u >= (delay - 1u + 20u * (frame_count - 1u)) * rates[i]);
+            assert_true(frame_count > 2 || pushed * 1000u < (delay + 20u * frame_count) * rates[i]);
+            assert_true(latency.frames + frame_count == heard || latency.frames + frame_count + 1u == heard);
+            assert_true(latency.milliseconds == 20u * latency.frames && latency.phonemes == 0);
         }
+        assert_true(frame_count >= 3);
+        labial_hear_end(&hear);
+        assert_int_equal(labial_hear_latency(&hear).frames, 0);
     }
     memset(&hear, 0, sizeof hear);
-    assert_int_equal(labial_hear_latency(&hear), 0);
-    assert_int_equal(labial_hear_latency(NULL), 0);
+    assert_true(labial_hear_latency(&hear).delay == 0 && labial_hear_latency(NULL).delay == 0);
 }
 
 /* Would catch a sound whose two channels do not count alike. */
@@ -269,9 +280,8 @@ TEST(a_cancel_eases_to_the_neutral_face)
     static const struct {
         uint32_t milliseconds;
         unsigned frames;
-    } eases[] = {
-        { 0, 1 }, { 1, 1 }, { 20, 1 }, { 21, 2 }, { 200, 10 }, { 1000, 50 }, { 5000, 50 }, { UINT32_MAX, 50 }
-    };
+    } eases[] = { { 0, 1 },    { 1, 1 },     { 20, 1 },       { 21, 2 },
+                  { 200, 10 }, { 1000, 50 }, { 20000, 1000 }, { UINT32_MAX, 1000 } };
     unsigned i, f, k;
     make_sound(3, 8000, 1);
     for (i = 0; i < sizeof eases / sizeof eases[0]; i++) {
@@ -332,6 +342,102 @@ TEST(a_restart_fades_and_then_hears_afresh)
     assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], before + count);
 }
 
+/* ---- Articulation -------------------------------------------------------------------------------------------------- */
+
+/* Frames of a sound at an articulation that is set before it, or after `after` samples of it. */
+static unsigned articulate(unsigned percent, uint32_t after, int16_t frames[FRAMES][LABIAL_CHANNELS])
+{
+    static labial_hear_model_t model;
+    static int16_t scale[LABIAL_CHANNELS]; /* so small that no pose is cut */
+    model = hear_fixture;
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+        scale[k] = (int16_t)(hear_fixture.scale[k] % 200);
+    model.scale = scale;
+    begin(16000, 1);
+    assert_int_equal(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user),
+                     LABIAL_OK);
+    labial_hear_exact(&hear, 1);
+    make_sound(3, 16000, 1);
+    assert_int_equal(labial_hear_push(&hear, samples, after), LABIAL_OK);
+    assert_int_equal(labial_hear_articulation(&hear, percent), LABIAL_OK);
+    assert_int_equal(labial_hear_push(&hear, samples + after, 16000 - after), LABIAL_OK);
+    labial_hear_end(&hear);
+    memcpy(frames, told, sizeof told);
+    return frame_count;
+}
+
+/* Would catch an articulation that is not a factor. That 100 percent change nothing, the exporter's frames show. */
+TEST(articulation_is_a_factor)
+{
+    static int16_t plain[FRAMES][LABIAL_CHANNELS], half[FRAMES][LABIAL_CHANNELS], most[FRAMES][LABIAL_CHANNELS],
+        beyond[FRAMES][LABIAL_CHANNELS], none[FRAMES][LABIAL_CHANNELS];
+    const unsigned count = articulate(100, 0, plain);
+    unsigned t, k, wider = 0;
+    assert_int_equal(articulate(50, 0, half), count);
+    assert_int_equal(articulate(LABIAL_ARTICULATION_MAX, 0, most), count);
+    assert_int_equal(articulate(UINT32_MAX, 0, beyond), count);
+    assert_memory_equal(most, beyond, count * sizeof most[0]);
+    assert_int_equal(articulate(0, 0, none), count);
+    for (t = 0; t < count; t++)
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const int far = abs(plain[t][k]);
+            assert_int_equal(none[t][k], 0);
+            assert_true(abs(2 * half[t][k] - plain[t][k]) <= 2);
+            wider += abs(most[t][k]) > far + far / 2; /* but where lips are closed */
+        }
+    assert_true(wider > count);
+}
+
+/* Would catch closed lips that are pressed together, or apart, by a shout. */
+TEST(closed_lips_stay_closed)
+{
+    static const int16_t zero[LABIAL_CHANNELS],
+        ones[LABIAL_CHANNELS] = { 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160 };
+    static const int32_t gains[] = { 0, 128, 256, 300, 512 };
+    labial_hear_model_t model = hear_fixture;
+    int16_t heads[HEAR_FIXTURE_CLASSES + LABIAL_CHANNELS] = { 0 }, pose[LABIAL_CHANNELS];
+    model.mean = zero;
+    model.scale = zero;
+    model.closed = ones;
+    for (unsigned i = 0; i < sizeof gains / sizeof gains[0]; i++) {
+        heads[HEAR_FIXTURE_M] = 32767; /* leads by far */
+        model.mean = zero;
+        labial_hear_pose(&model, heads, gains[i], pose);
+        assert_int_equal(pose[4], gains[i] < 256 ? 160 * gains[i] / 256 : 160);
+        heads[HEAR_FIXTURE_M] = -32767;
+        model.mean = ones;
+        labial_hear_pose(&model, heads, gains[i], pose);
+        assert_int_equal(pose[4], (160 * gains[i] + 128) / 256);
+    }
+}
+
+/* Would catch a jolt, and an articulation that a cancel or a restart forgets. */
+TEST(articulation_comes_nearer_by_ten)
+{
+    static int16_t plain[FRAMES][LABIAL_CHANNELS], less[FRAMES][LABIAL_CHANNELS];
+    const unsigned count = articulate(100, 0, plain);
+    unsigned t, k, before;
+    assert_int_equal(articulate(0, 8000, less), count);
+    for (before = 0; memcmp(plain[before], less[before], sizeof plain[0]) == 0; before++)
+        assert_true(before < count);
+    assert_true(before >= 18u && before <= 22u); /* 25 frames, of which five were not delivered */
+    for (t = before; t < count; t++)
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            const double share = t - before < 10u ? 1 - (t - before) / 10.0 : 0;
+            if (fabs(less[t][k] - plain[t][k] * share) > abs(plain[t][k]) * 0.12 + 12)
+                fail_msg("frame %u, channel %u: %d of %d", t, k, less[t][k], plain[t][k]);
+        }
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    frame_count = 0;
+    first_frame = count;
+    push_in_blocks(16000, 1, 16000);
+    labial_hear_cancel(&hear, 40);
+    assert_true(frame_count > 30u);
+    for (t = 0; t < frame_count; t++)
+        for (k = 0; k < LABIAL_CHANNELS; k++)
+            assert_int_equal(told[t][k], 0);
+}
+
 /* Would catch a class that is told when nobody asks. */
 TEST(classes_are_told_only_where_they_are_asked_for)
 {
@@ -383,11 +489,11 @@ TEST(wrong_arguments_are_refused)
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, size, NULL, NULL), LABIAL_ERROR_NULL);
     for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
         assert_int_equal(labial_hear_init(&hear, &hear_fixture, rates[i], 1, workspace, size, on_frame, NULL),
-                         LABIAL_ERROR_SOUND);
+                         LABIAL_ERROR_SAMPLE_RATE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 0, workspace, size, on_frame, NULL),
-                     LABIAL_ERROR_SOUND);
+                     LABIAL_ERROR_RANGE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 3, workspace, size, on_frame, NULL),
-                     LABIAL_ERROR_SOUND);
+                     LABIAL_ERROR_RANGE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, size - 1u, on_frame, NULL),
                      LABIAL_ERROR_WORKSPACE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, odd, size, on_frame, NULL),
@@ -400,11 +506,15 @@ TEST(wrong_arguments_are_refused)
     assert_int_equal(labial_hear_cancel(&hear, 0), LABIAL_ERROR_STATE);
     assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
     assert_int_equal(labial_hear_classes(&hear, NULL), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_hear_articulation(&hear, 100), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_ERROR_STATE);
     assert_int_equal(labial_hear_push(NULL, samples, 1), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_end(NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_cancel(NULL, 0), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_restart(NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_classes(NULL, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_articulation(NULL, 100), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_exact(NULL, 1), LABIAL_ERROR_NULL);
     begin(16000, 1);
     assert_int_equal(labial_hear_push(&hear, NULL, 1), LABIAL_ERROR_NULL);
 }
@@ -422,7 +532,7 @@ static void call_again(void *given, uint32_t frame, const int16_t faps[LABIAL_CH
     refused += labial_hear_cancel(&hear, 0) == LABIAL_ERROR_STATE;
     refused += labial_hear_restart(&hear) == LABIAL_ERROR_STATE;
     refused += labial_hear_classes(&hear, NULL) == LABIAL_ERROR_STATE;
-    refused += labial_hear_latency(&hear) == 5u * 320u;
+    refused += labial_hear_articulation(&hear, 50) == LABIAL_ERROR_STATE && labial_hear_latency(&hear).delay == 5;
 }
 
 static void call_again_for_class(void *given, unsigned shown, uint32_t frame, uint32_t frames)
@@ -443,6 +553,85 @@ TEST(callbacks_cannot_change_their_stream)
     assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
     assert_true(refused >= 6u * 4u);
     assert_int_equal(refused % 6u, 0);
+}
+
+/* A callback that initialises its stream anew, when `anew` frames or stretches were told, and pushes to it at once. */
+static unsigned anew, begun, again;
+static int with;
+
+static void on_new_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)given;
+    (void)faps;
+    assert_int_equal(frame, begun++);
+}
+
+static void begin_anew(void)
+{
+    if (--anew > 0)
+        return;
+    assert_int_equal(
+        labial_hear_init(&hear, with ? &hear_fixture : NULL, 24000, 1, workspace, sizeof workspace, on_new_frame, NULL),
+        with ? LABIAL_OK : LABIAL_ERROR_NULL);
+    again++;
+    if (with > 1)
+        assert_int_equal(labial_hear_push(&hear, samples, 9600), LABIAL_OK);
+}
+
+static void begin_anew_at_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)given;
+    (void)frame;
+    (void)faps;
+    begin_anew();
+}
+
+static void begin_anew_at_class(void *given, unsigned shown, uint32_t frame, uint32_t frames)
+{
+    (void)given;
+    (void)shown;
+    (void)frame;
+    (void)frames;
+    begin_anew();
+}
+
+static void keep_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)given;
+    (void)frame;
+    (void)faps;
+}
+
+/* Would catch a call that goes on with a stream that is another one by now: in a push, an end and a cancel, in both
+ * callbacks, with a stream that is good, used at once, or that could not be initialised. */
+TEST(a_callback_may_begin_anew)
+{
+    unsigned call, by_class;
+    make_sound(3, 16000, 1);
+    for (call = 0; call < 3; call++)
+        for (by_class = 0; by_class < 2; by_class++)
+            for (with = 0; with < 3; with++) {
+                const unsigned before = again;
+                int result;
+                begun = 0;
+                anew = 0;
+                assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace,
+                                                  by_class ? keep_frame : begin_anew_at_frame, NULL),
+                                 LABIAL_OK);
+                assert_int_equal(labial_hear_classes(&hear, by_class ? begin_anew_at_class : NULL), LABIAL_OK);
+                anew = call > 0 ? UINT32_MAX : 2;
+                assert_int_equal(labial_hear_push(&hear, samples, 8000), LABIAL_OK);
+                if (call > 0) {
+                    anew = 1;
+                    result = call == 1 ? labial_hear_end(&hear) : labial_hear_cancel(&hear, 100);
+                    assert_int_equal(result, LABIAL_OK);
+                }
+                assert_int_equal(again, before + 1u);
+                assert_int_equal(begun, with > 1 ? 15 : 0); /* 20 frames of 480, of which five are still to come */
+                assert_int_equal(labial_hear_push(&hear, samples, 9600), with ? LABIAL_OK : LABIAL_ERROR_STATE);
+                assert_int_equal(labial_hear_end(&hear), with ? LABIAL_OK : LABIAL_ERROR_STATE);
+                assert_true(with == 0 ? begun == 0 : begun >= 20u * (unsigned)with);
+            }
 }
 
 SUITE(NULL, NULL)

@@ -145,9 +145,9 @@ TEST(full_scale_is_held)
 
 TEST(other_rates_are_refused)
 {
-    assert_int_equal(labial_hear_convert_init(&convert, 0), LABIAL_ERROR_SOUND);
-    assert_int_equal(labial_hear_convert_init(&convert, 11025), LABIAL_ERROR_SOUND);
-    assert_int_equal(labial_hear_convert_init(&convert, 96000), LABIAL_ERROR_SOUND);
+    assert_int_equal(labial_hear_convert_init(&convert, 0), LABIAL_ERROR_SAMPLE_RATE);
+    assert_int_equal(labial_hear_convert_init(&convert, 11025), LABIAL_ERROR_SAMPLE_RATE);
+    assert_int_equal(labial_hear_convert_init(&convert, 96000), LABIAL_ERROR_SAMPLE_RATE);
 }
 
 SUITE(NULL, NULL)

@@ -26,7 +26,7 @@ static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
     uint32_t ms;
     sum.shortest = UINT32_MAX;
     memset(&laugh, 0xee, sizeof laugh);
-    assert_int_equal(labial_laugh_begin(&laugh, length, intensity, seed), LABIAL_OK);
+    assert_int_equal(labial_laugh_init(&laugh, length, intensity, seed), LABIAL_OK);
     for (;;) {
         moved = laugh;
         memset(&laugh, 0xdd, sizeof laugh);
@@ -73,7 +73,7 @@ TEST(no_phoneme_fills_the_rest)
 TEST(the_generators_state_is_never_none)
 {
     labial_laugh_t laugh;
-    assert_int_equal(labial_laugh_begin(&laugh, 5000, 128, 2342946167u), LABIAL_OK);
+    assert_int_equal(labial_laugh_init(&laugh, 5000, 128, 2342946167u), LABIAL_OK);
     assert_int_not_equal(laugh.random, 0);
 }
 
@@ -86,7 +86,7 @@ TEST(laughs_are_those_of_the_reference)
         labial_laugh_t laugh;
         unsigned phoneme;
         uint32_t count = 0, ms;
-        assert_int_equal(labial_laugh_begin(&laugh, laughs[i].milliseconds, laughs[i].intensity, laughs[i].seed),
+        assert_int_equal(labial_laugh_init(&laugh, laughs[i].milliseconds, laughs[i].intensity, laughs[i].seed),
                          LABIAL_OK);
         for (; labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK; count++) {
             assert_true(3u * count < sizeof bytes && ms < 65536u);
@@ -113,12 +113,12 @@ TEST(errors)
     labial_laugh_t laugh;
     unsigned phoneme = 99;
     uint32_t ms = 99;
-    assert_int_equal(labial_laugh_begin(NULL, 100, 1, 1), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_laugh_begin(&laugh, LABIAL_DURATION_MAX + 1u, 1, 1), LABIAL_ERROR_DURATION);
-    assert_int_equal(labial_laugh_begin(&laugh, 0, 1, 1), LABIAL_OK);
+    assert_int_equal(labial_laugh_init(NULL, 100, 1, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_laugh_init(&laugh, LABIAL_DURATION_MAX + 1u, 1, 1), LABIAL_ERROR_DURATION);
+    assert_int_equal(labial_laugh_init(&laugh, 0, 1, 1), LABIAL_OK);
     assert_int_equal(labial_laugh_next(&laugh, &phoneme, &ms), LABIAL_DONE);
     assert_true(phoneme == 99 && ms == 99);
-    assert_int_equal(labial_laugh_begin(&laugh, 100, 1, 1), LABIAL_OK);
+    assert_int_equal(labial_laugh_init(&laugh, 100, 1, 1), LABIAL_OK);
     assert_int_equal(labial_laugh_next(NULL, &phoneme, &ms), LABIAL_ERROR_NULL);
     assert_int_equal(labial_laugh_next(&laugh, NULL, &ms), LABIAL_ERROR_NULL);
     assert_int_equal(labial_laugh_next(&laugh, &phoneme, NULL), LABIAL_ERROR_NULL);
@@ -154,7 +154,7 @@ static seen_t laughed(unsigned intensity, uint32_t seed)
     int result;
     assert_int_equal(labial_init(&stream, &laughter_synthetic, workspace, sizeof workspace, see, &seen), 0);
     assert_int_equal(labial_exact(&stream, 1), LABIAL_OK);
-    assert_int_equal(labial_laugh_begin(&laugh, 3000, intensity, seed), LABIAL_OK);
+    assert_int_equal(labial_laugh_init(&laugh, 3000, intensity, seed), LABIAL_OK);
     while (labial_laugh_next(&laugh, &phoneme, &ms) == LABIAL_OK) {
         while (labial_room(&stream) == 0)
             assert_true(labial_tick(&stream) >= 0);
@@ -241,7 +241,7 @@ TEST(trains_are_as_long_as_intensity_and_chance_have_it)
         for (uint32_t seed = 0; seed < 300; seed++) {
             labial_laugh_t laugh;
             uint32_t x = (uint32_t)(((uint64_t)seed + 1u) * 2654435761u) + 8u;
-            assert_int_equal(labial_laugh_begin(&laugh, 5000, intensity, seed), LABIAL_OK);
+            assert_int_equal(labial_laugh_init(&laugh, 5000, intensity, seed), LABIAL_OK);
             x ^= x << 13;
             x ^= x >> 17;
             x ^= x << 5;
@@ -258,7 +258,7 @@ static unsigned grade_of_first(unsigned intensity, unsigned turn)
     labial_laugh_t laugh;
     unsigned phoneme;
     uint32_t ms;
-    assert_int_equal(labial_laugh_begin(&laugh, 5000, intensity, breath_first), LABIAL_OK);
+    assert_int_equal(labial_laugh_init(&laugh, 5000, intensity, breath_first), LABIAL_OK);
     laugh.dither = (uint8_t)turn;
     assert_int_equal(labial_laugh_next(&laugh, &phoneme, &ms), LABIAL_OK);
     if (phoneme == LABIAL_LAUGH_FRICATIVE)

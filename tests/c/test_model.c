@@ -44,7 +44,7 @@ TEST_AFTER(setup, refuses_null)
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         TRY(const labial_emission_t *, f.channels[c].emissions, NULL, LABIAL_ERROR_NULL);
         TRY(const labial_state_t *, f.channels[c].states, NULL, LABIAL_ERROR_NULL);
-        TRY(const uint16_t *, f.channels[c].transitions, NULL, LABIAL_ERROR_NULL);
+        TRY(const labial_transition_t *, f.channels[c].transitions, NULL, LABIAL_ERROR_NULL);
         TRY(const uint8_t *, f.channels[c].initials, NULL, LABIAL_ERROR_NULL);
     }
 }
@@ -118,8 +118,8 @@ TEST_AFTER(setup, refuses_counts_that_tables_contradict)
     ACCEPTED(uint8_t, f.model.class_count, FIXTURE_CLASSES);
     REFUSED(uint8_t, f.model.silence, FIXTURE_SPEECH_COUNT);
     ACCEPTED(uint8_t, f.model.silence, FIXTURE_SPEECH_COUNT - 1);
-    for (unsigned i = 1; i <= FIXTURE_PREDECESSORS; i++)
-        ACCEPTED(uint8_t, f.model.predecessors, (uint8_t)i); /* the same transitions, read as other states' */
+    for (unsigned i = 1; i <= FIXTURE_PREDECESSORS / 4; i++)
+        ACCEPTED(uint8_t, f.model.predecessor_fours, (uint8_t)i); /* the same transitions, read as other states' */
 }
 
 TEST_AFTER(setup, refuses_bad_phonemes)
@@ -139,19 +139,20 @@ TEST_AFTER(setup, refuses_bad_phonemes)
     ACCEPTED(uint8_t, f.phonemes[0].component_count, LABIAL_PHONEME_COMPONENTS_MAX);
 }
 
-/* The low byte of a transition is a state: would catch one that the model does not have, in any of the transitions.
+/* Would catch a predecessor that the model does not have, in any of the transitions.
  * Costs may be any. */
 TEST_AFTER(setup, refuses_bad_transitions)
 {
     const unsigned last = FIXTURE_SPEECH_STATES - 1;
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
         for (unsigned i = 0; i < FIXTURE_SPEECH_STATES * FIXTURE_PREDECESSORS; i++) {
-            REFUSED(uint16_t, f.transitions[c][i], last + 1);
-            REFUSED(uint16_t, f.transitions[c][i], 0x0a00 | 0xff);
-            REFUSED(uint16_t, f.transitions[c][i], 0x0a00 | (4 * last));
-            ACCEPTED(uint16_t, f.transitions[c][i], last);
-            ACCEPTED(uint16_t, f.transitions[c][i], 0xff00 | last);
-            ACCEPTED(uint16_t, f.transitions[c][i], 0xff00);
+            REFUSED(uint8_t, f.transitions[c][i].predecessor, last + 1);
+            REFUSED(uint8_t, f.transitions[c][i].predecessor, 0xff);
+            REFUSED(uint8_t, f.transitions[c][i].predecessor, 4 * last);
+            ACCEPTED(uint8_t, f.transitions[c][i].predecessor, last);
+            ACCEPTED(uint8_t, f.transitions[c][i].predecessor, 0);
+            ACCEPTED(uint8_t, f.transitions[c][i].cost, 0xff);
+            ACCEPTED(uint8_t, f.transitions[c][i].cost, 0);
         }
     }
 }
@@ -159,15 +160,15 @@ TEST_AFTER(setup, refuses_bad_transitions)
 /* Would catch a limit on transitions that is narrower than the largest model. */
 TEST_AFTER(setup, accepts_transitions_of_the_largest_model)
 {
-    static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+    static labial_transition_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
     fixture_slow(&f);
     for (unsigned i = 0; i < LABIAL_STATES_MAX * LABIAL_STATES_MAX; i++)
-        transitions[i] = (uint16_t)(0x0700 | i % LABIAL_STATES_MAX);
+        transitions[i] = (labial_transition_t){ (uint8_t)(i % LABIAL_STATES_MAX), 7 };
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         f.channels[c].transitions = transitions;
-    f.model.predecessors = LABIAL_STATES_MAX;
+    f.model.predecessor_fours = LABIAL_STATES_MAX / 4;
     assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
-    REFUSED(uint16_t, transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX - 1], 0x0700 | LABIAL_STATES_MAX);
+    REFUSED(uint8_t, transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX - 1].predecessor, LABIAL_STATES_MAX);
     REFUSED(uint8_t, f.model.state_count, LABIAL_STATES_MAX - 1);
 }
 

@@ -23,7 +23,7 @@ static int16_t floors[MANY * LABIAL_CHANNELS];
 static uint16_t contacts[MANY], pair_keys[65536];
 static labial_emission_t emissions[MANY];
 static labial_state_t states[MANY];
-static uint16_t transitions[MANY * MANY];
+static labial_transition_t transitions[MANY * MANY];
 static uint8_t initials[MANY];
 
 /* As little as there can be of everything. */
@@ -48,7 +48,7 @@ SETUP(setup)
     }
     model.format = LABIAL_MODEL_FORMAT;
     model.frames_per_second = model.component_count = 1;
-    model.phoneme_count = model.class_count = model.state_count = model.predecessors = model.search_stride = 1;
+    model.phoneme_count = model.class_count = model.state_count = model.predecessor_fours = model.search_stride = 1;
     model.pair_knots = 1;
     model.channel_count = LABIAL_CHANNELS;
     model.phonemes = phonemes;

@@ -6,29 +6,17 @@
 #include <limits.h>
 #include <string.h>
 
-#include "labial/labial.h"
+#include "labial/result.h"
 
 #define UNKNOWN "unknown result"
 
-static const int codes[] = { LABIAL_OK,
-                             LABIAL_WAITING,
-                             LABIAL_STARVED,
-                             LABIAL_DONE,
-                             LABIAL_ERROR_NULL,
-                             LABIAL_ERROR_VERSION,
-                             LABIAL_ERROR_MODEL,
-                             LABIAL_ERROR_WORKSPACE,
-                             LABIAL_ERROR_STATE,
-                             LABIAL_ERROR_PHONEME,
-                             LABIAL_ERROR_DURATION,
-                             LABIAL_ERROR_FULL,
-                             LABIAL_ERROR_RATE,
-                             LABIAL_ERROR_MODELS,
-                             LABIAL_ERROR_NAME,
-                             LABIAL_ERROR_RIG,
-                             LABIAL_ERROR_TIMINGS,
-                             LABIAL_ERROR_SOUND,
-                             LABIAL_ERROR_WORD };
+static const int codes[] = {
+    LABIAL_OK,           LABIAL_WAITING,       LABIAL_STARVED,        LABIAL_DONE,          LABIAL_CANCELLED,
+    LABIAL_NEW_SESSION,  LABIAL_ERROR_NULL,    LABIAL_ERROR_VERSION,  LABIAL_ERROR_MODEL,   LABIAL_ERROR_WORKSPACE,
+    LABIAL_ERROR_STATE,  LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION, LABIAL_ERROR_FULL,    LABIAL_ERROR_FRAME_RATE,
+    LABIAL_ERROR_MODELS, LABIAL_ERROR_NAME,    LABIAL_ERROR_RIG,      LABIAL_ERROR_TIMINGS, LABIAL_ERROR_SAMPLE_RATE,
+    LABIAL_ERROR_WORD,   LABIAL_ERROR_RANGE,   LABIAL_ERROR_PACKET
+};
 
 #define CODES (sizeof codes / sizeof codes[0])
 
@@ -36,10 +24,10 @@ static const int codes[] = { LABIAL_OK,
 TEST(zero_is_success_and_errors_are_negative)
 {
     assert_int_equal(LABIAL_OK, 0);
-    for (unsigned i = 1; i < 4; i++)
+    for (unsigned i = 1; i < 6; i++)
         assert_int_equal(codes[i], (int)i);
-    for (unsigned i = 4; i < CODES; i++)
-        assert_int_equal(codes[i], 3 - (int)i);
+    for (unsigned i = 6; i < CODES; i++)
+        assert_int_equal(codes[i], 5 - (int)i);
     assert_int_equal(LABIAL_RESULT_LAST_, codes[CODES - 1]);
 }
 
@@ -61,7 +49,7 @@ TEST(every_code_has_its_own_text)
 
 TEST(other_numbers_are_unknown)
 {
-    static const int others[] = { 4, 5, 6, 255, -16, -17, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
+    static const int others[] = { 6, 7, 8, 255, -18, -19, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
     for (unsigned i = 0; i < sizeof others / sizeof others[0]; i++)
         assert_string_equal(labial_result_text(others[i]), UNKNOWN);
 }

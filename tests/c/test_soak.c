@@ -132,9 +132,9 @@ static void feed(void)
         day.phonemes = day.laughing ? 0 : 1u + fixture_below(&day.random, 60);
         day.laughs += (unsigned)day.laughing;
         if (day.laughing)
-            assert_int_equal(labial_laugh_begin(&day.laugh, fixture_below(&day.random, 6000),
-                                                fixture_below(&day.random, LABIAL_LAUGH_FULL + 1u),
-                                                fixture_random(&day.random)),
+            assert_int_equal(labial_laugh_init(&day.laugh, fixture_below(&day.random, 6000),
+                                               fixture_below(&day.random, LABIAL_LAUGH_FULL + 1u),
+                                               fixture_random(&day.random)),
                              LABIAL_OK);
         return;
     }

@@ -126,7 +126,7 @@ static void push(actor_t *actor)
 static void use(actor_t *actor)
 {
     assert_int_equal(labial_use(&actor->stream, NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_use(&actor->stream, &other_rate.model), LABIAL_ERROR_RATE);
+    assert_int_equal(labial_use(&actor->stream, &other_rate.model), LABIAL_ERROR_FRAME_RATE);
 #if LABIAL_MODELS > 1
     assert_int_equal(labial_use(&actor->stream, &laugh.model), LABIAL_OK);
     assert_int_equal(labial_push(&actor->stream, FIXTURE_HA, 300), LABIAL_OK);

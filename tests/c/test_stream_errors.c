@@ -39,8 +39,8 @@ static void commit_errors(labial_t *stream, int ended)
         assert_int_equal(labial_end(stream), LABIAL_OK); /* "also when called again" */
         return;
     }
-    assert_int_equal(labial_use(stream, &other_rate.model), LABIAL_ERROR_RATE);
-    assert_int_equal(labial_use(stream, &slow.model), LABIAL_ERROR_RATE); /* of another stride */
+    assert_int_equal(labial_use(stream, &other_rate.model), LABIAL_ERROR_FRAME_RATE);
+    assert_int_equal(labial_use(stream, &slow.model), LABIAL_ERROR_FRAME_RATE); /* of another stride */
     assert_int_equal(labial_use(stream, &older.model), LABIAL_ERROR_VERSION);
     if (labial_room(stream) > 0) {
         assert_int_equal(labial_push(stream, FIXTURE_SPEECH_COUNT, 100), LABIAL_ERROR_PHONEME);

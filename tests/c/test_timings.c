@@ -68,8 +68,8 @@ static void read_text(const char *text, size_t length, labial_timings_format_t f
             add_timing(found, &timing);
     }
     if (result < 0)
-        (void)snprintf(found->text, sizeof found->text, "refused: %lu: %s", (unsigned long)timings.line,
-                       timings.message);
+        (void)snprintf(found->text, sizeof found->text, "refused: %lu: %s",
+                       (unsigned long)labial_timings_line(&timings), labial_timings_message(&timings));
     if (result < 0 && (labial_timings_next(&timings, "0", 1, &used, &timing) != result ||
                        labial_timings_end(&timings, &timing) != result))
         (void)snprintf(found->text, sizeof found->text, "read on after an error");
@@ -162,8 +162,7 @@ TEST(calls_do_as_the_header_says)
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         char label = '-';
         labial_timings_init(&timings, LABIAL_TIMINGS_TEXTGRID);
-        timings.tier = names[i];
-        timings.tier_number = numbers[i];
+        assert_int_equal(labial_timings_tier(&timings, names[i], numbers[i]), LABIAL_OK);
         const char *text = grid;
         for (size_t left = strlen(grid); left > 0; left -= used, text += used)
             if (labial_timings_next(&timings, text, left, &used, &timing) == LABIAL_OK)

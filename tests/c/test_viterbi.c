@@ -15,7 +15,7 @@
 
 static labial_model_t model;
 static labial_emission_t emissions[LABIAL_STATES_MAX];
-static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+static labial_transition_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
 static uint8_t initials[LABIAL_STATES_MAX];
 static labial_channel_t channel;
 static int32_t position[STEPS];
@@ -25,7 +25,7 @@ static oracle_step_t steps[STEPS];
  * least. The spread of positions and the gains decide how many states are dead. */
 static void make(fixture_random_t *random, unsigned states, uint32_t density, uint32_t spread, uint32_t gains)
 {
-    uint16_t lists[LABIAL_STATES_MAX][LABIAL_STATES_MAX];
+    labial_transition_t lists[LABIAL_STATES_MAX][LABIAL_STATES_MAX];
     unsigned counts[LABIAL_STATES_MAX], most = 0, p;
     for (unsigned q = 0; q < states; q++) {
         const int16_t mean = (int16_t)((int)fixture_below(random, 2 * spread + 1) - (int)spread);
@@ -38,15 +38,17 @@ static void make(fixture_random_t *random, unsigned states, uint32_t density, ui
         initials[q] = (uint8_t)fixture_below(random, 256);
         for (p = 0; p < states; p++)
             if (p == (q + 1) % states || fixture_below(random, 256) < density)
-                lists[q][n++] = (uint16_t)((fixture_below(random, 256) >> fixture_below(random, 6)) << 8 | p);
+                lists[q][n++] = (labial_transition_t){ (uint8_t)p, (uint8_t)(fixture_below(random, 256) >>
+                                                                             fixture_below(random, 6)) };
         counts[q] = n;
         most = n > most ? n : most;
     }
+    most = (most + 3u) / 4u * 4u;
     for (unsigned q = 0; q < states; q++)
         for (p = 0; p < most; p++)
             transitions[q * most + p] = lists[q][p < counts[q] ? p : counts[q] - 1];
     model.state_count = (uint8_t)states;
-    model.predecessors = (uint8_t)most;
+    model.predecessor_fours = (uint8_t)(most / 4u);
     channel.emissions = emissions;
     channel.transitions = transitions;
     channel.initials = initials;
@@ -77,10 +79,10 @@ static void exhaust(unsigned count, double *least)
         for (t = 0; t < count; t++) {
             const unsigned to = first[t] + place[t];
             unsigned way = 255; /* every state can be leapt into */
-            for (i = 0; t > 0 && i < model.predecessors; i++) {
-                const unsigned transition = transitions[to * model.predecessors + i];
-                if ((transition & 255u) == first[t - 1] + place[t - 1] && transition >> 8 < way)
-                    way = transition >> 8;
+            for (i = 0; t > 0 && i < 4u * model.predecessor_fours; i++) {
+                const labial_transition_t *const transition = &transitions[to * 4u * model.predecessor_fours + i];
+                if (transition->predecessor == first[t - 1] + place[t - 1] && transition->cost < way)
+                    way = transition->cost;
             }
             cost += (t > 0 ? way : 0) + oracle_emission(&emissions[to], position[t]);
         }
@@ -104,14 +106,15 @@ static void take_step(labial_search_t *search, unsigned t, unsigned begin, unsig
     steps[t].ends_unit = ends_unit;
 }
 
-/* The library's scores must be these costs, less the least of them; all but the best dead where a unit ends. */
+/* The library's scores must be these costs, less the least of them; where a unit ends the best state alone has one. */
 static void check_scores(const labial_search_t *search, const double *cost, int ends_unit, const char *what)
 {
     double least = ORACLE_NONE;
     for (unsigned q = 0; q < model.state_count; q++)
         least = cost[q] < least ? cost[q] : least;
-    for (unsigned i = 0; i < width(); i++) {
-        const double above = ends_unit && i != search->best ? 255.0 : cost[search->first + i] - least;
+    assert_int_equal(search->count, ends_unit ? 1 : width());
+    for (unsigned i = 0; i < search->count; i++) {
+        const double above = cost[search->first + i] - least;
         if ((double)search->scores[i] != (above < 255.0 ? above : 255.0))
             fail_msg("%s: state %u has a score of %u, not %g", what, search->first + i, search->scores[i], above);
     }
@@ -179,7 +182,7 @@ TEST(paths_are_those_of_the_dense_programme)
             spans[t] = 1 + fixture_below(&random, LABIAL_SEARCH_STRIDE_MAX);
             take_step(&search, t, begin, spans[t], fixture_below(&random, 10) == 0);
             check_scores(&search, steps[t].cost, steps[t].ends_unit, "dense");
-            assert_int_equal(search.first, steps[t].first);
+            assert_int_equal(search.first, steps[t].ends_unit ? steps[t].best : steps[t].first);
             leaps += t > begin && steps[t].from[steps[t].best] == steps[t - 1].best &&
                      steps[t].cost[steps[t].best] - steps[t - 1].cost[steps[t - 1].best] >= 255.0;
             units += (unsigned)steps[t].ends_unit;
@@ -196,14 +199,21 @@ TEST(paths_are_those_of_the_dense_programme)
 #endif
 }
 
-static void set_up_flat(unsigned states, unsigned predecessors)
+/* Every state is entered from `predecessor` at `cost`, in each of four transitions. */
+static void enter_from(unsigned state, unsigned predecessor, unsigned cost)
+{
+    for (unsigned i = 0; i < 4; i++)
+        transitions[4 * state + i] = (labial_transition_t){ (uint8_t)predecessor, (uint8_t)cost };
+}
+
+static void set_up_flat(unsigned states, unsigned fours)
 {
     memset(emissions, 0, sizeof emissions);
     memset(initials, 0, sizeof initials);
     for (unsigned q = 0; q < LABIAL_STATES_MAX; q++)
         emissions[q].gain = 0xf0; /* the least */
     model.state_count = (uint8_t)states;
-    model.predecessors = (uint8_t)predecessors;
+    model.predecessor_fours = (uint8_t)fours;
     channel.emissions = emissions;
     channel.transitions = transitions;
     channel.initials = initials;
@@ -224,7 +234,7 @@ TEST(the_window_lies_around_the_nearest_state)
     set_up_flat(20, 1);
     for (unsigned q = 0; q < 20; q++) {
         emissions[q].mean = (int16_t)(q < 9 ? 100 * (q + 1) : q < 12 ? 1000 : 100 * (q - 1));
-        transitions[q] = (uint16_t)q;
+        enter_from(q, q, 0);
     }
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         labial_search_t search;
@@ -247,10 +257,10 @@ TEST(a_leap_is_taken_where_no_edge_is_cheaper)
     unsigned i;
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         labial_search_t search;
-        set_up_flat(2, 2);
+        set_up_flat(2, 1);
         initials[1] = 10;
-        transitions[0] = transitions[1] = 7u << 8;
-        transitions[2] = transitions[3] = (uint16_t)((unsigned)cases[i].transition << 8 | 1u);
+        enter_from(0, 0, 7);
+        enter_from(1, 1, cases[i].transition);
         labial_viterbi_step(&model, &channel, 0, LABIAL_BEGINS, &search);
         labial_viterbi_step(&model, &channel, 0, 0, &search); /* state 0 costs 7 */
         assert_int_equal(search.scores[0], 0);
@@ -272,7 +282,7 @@ TEST(eight_bits_are_enough)
         emissions[q].mean = (int16_t)(q * 500 - 16000);
         emissions[q].gain = 0x0f; /* the largest */
         emissions[q].cost = initials[q] = 255;
-        transitions[q] = (uint16_t)(0xff00 | (LABIAL_STATES_MAX - 1 - q));
+        enter_from(q, LABIAL_STATES_MAX - 1 - q, 255);
     }
     for (unsigned t = 0; t < STEPS; t++)
         position[t] = t % 2 ? LABIAL_POSITION_MAX : -LABIAL_POSITION_MAX;
@@ -287,12 +297,12 @@ TEST(eight_bits_are_enough)
 TEST(ties_go_to_the_lower_state)
 {
     labial_search_t search;
-    set_up_flat(5, 5);
+    set_up_flat(5, 2);
     for (unsigned q = 0; q < 5; q++) {
         emissions[q].gain = fixture_gain_code(1850);
         emissions[q].cost = initials[q] = 7;
-        for (unsigned t = 0; t < 5; t++)
-            transitions[q * 5 + t] = (uint16_t)(9u << 8 | t);
+        for (unsigned t = 0; t < 8; t++)
+            transitions[q * 8 + t] = (labial_transition_t){ (uint8_t)(t < 5 ? t : 4), 9 };
     }
     for (unsigned t = 0; t < STEPS; t++)
         position[t] = 50;

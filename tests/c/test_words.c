@@ -159,7 +159,7 @@ static const char *answers(unsigned question, const char *text)
     static uint16_t roots[27], bases[27], buckets[257];
     static uint8_t trees[] = { 0, 0, 1, 0, 0, 0 };
     static labial_word_t word;
-    labial_words_t tables = words_en;
+    labial_words_model_t tables = words_en;
     unsigned i;
     for (i = 0; i < 27; i++) {
         roots[i] = 0;
@@ -226,7 +226,7 @@ TEST(patches_stay_within_the_word)
 {
     static uint16_t buckets[257];
     static uint8_t patches[6];
-    labial_words_t tables = words_en;
+    labial_words_model_t tables = words_en;
     labial_word_t word;
     uint32_t hash = ((2166136261u ^ 7u) * 16777619u ^ 15u) * 16777619u * words_en.multiplier; /* of "go" */
     unsigned i;
@@ -256,7 +256,7 @@ TEST(patches_stay_within_the_word)
 
 TEST(misuse_is_an_error)
 {
-    labial_words_t other = words_en;
+    labial_words_model_t other = words_en;
     labial_word_t word;
     assert_int_equal(labial_words_read(NULL, NULL, "a", 1, &word), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_read(&words_en, NULL, NULL, 1, &word), LABIAL_ERROR_NULL);

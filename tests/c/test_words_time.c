@@ -19,12 +19,12 @@ typedef struct {
     uint32_t lasts[1300];
 } spoken_t;
 
-static labial_words_stream_t stream;
+static labial_words_t stream;
 
 static void begin(int32_t offset)
 {
     memset(&stream, 0xa5, sizeof stream);
-    assert_int_equal(labial_words_begin(&stream, &words_en, NULL, offset), LABIAL_OK);
+    assert_int_equal(labial_words_init(&stream, &words_en, NULL, offset), LABIAL_OK);
 }
 
 /* Takes all phonemes that there are; returns what the last call did. */
@@ -46,14 +46,15 @@ static int take_all(spoken_t *spoken)
 /* Says a word and takes what comes of it. */
 static void say(spoken_t *spoken, const char *text, uint32_t start, uint32_t end)
 {
-    assert_int_equal(labial_words_say(&stream, text, strlen(text), start, end), LABIAL_OK);
+    assert_int_equal(labial_words_push(&stream, text, strlen(text), start, end), LABIAL_OK);
     assert_true(take_all(spoken) >= LABIAL_WAITING);
 }
 
 static void flush(spoken_t *spoken)
 {
-    assert_int_equal(labial_words_flush(&stream), LABIAL_OK);
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK);
     assert_int_equal(take_all(spoken), LABIAL_DONE);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
 }
 
 /* The end of what was spoken, and of its first `count` phonemes. */
@@ -185,7 +186,7 @@ TEST(silent_texts_leave_their_time)
     spoken_t spoken = { 0 };
     begin(0);
     say(&spoken, "[sighs]", 0, 300);
-    assert_int_equal(take_all(&spoken), LABIAL_DONE);
+    assert_int_equal(take_all(&spoken), LABIAL_WAITING);
     say(&spoken, "no", 400, 600);
     say(&spoken, "!", 500, 650);
     flush(&spoken);
@@ -246,7 +247,7 @@ static void shake(const uint32_t ends[5], uint32_t found[3])
 {
     spoken_t spoken = { 0 };
     begin(0);
-    assert_int_equal(labial_words_say_characters(&stream, "shake", 5, 0, ends, 5), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "shake", 5, 0, ends, 5), LABIAL_OK);
     flush(&spoken);
     assert_int_equal(spoken.count, 3);
     found[0] = until(&spoken, 1);
@@ -284,7 +285,7 @@ TEST(a_characters_phonemes_begin_with_it)
     say(&plain, "box", 0, 600);
     flush(&plain);
     begin(0);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
     flush(&spoken);
     assert_in_range(until(&spoken, 3), (until(&plain, 3) + within) / 2u - 1u, (until(&plain, 3) + within) / 2u + 1u);
 }
@@ -296,25 +297,25 @@ TEST(characters_of_several_phonemes_share_their_time)
     static const uint32_t box[3] = { 100, 200, 600 }, knee[4] = { 400, 500, 600, 700 }, slow[2] = { 90000, 100000 };
     spoken_t spoken = { 0 };
     begin(0);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
     flush(&spoken); /* B AA K S: the x has K and S */
     assert_int_equal(spoken.count, 4);
     assert_in_range(until(&spoken, 3), 290, 460);
     assert_int_equal(until(&spoken, 4), 600);
     spoken.count = 0;
     begin(0);
-    assert_int_equal(labial_words_say_characters(&stream, "knee", 4, 0, knee, 4), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "knee", 4, 0, knee, 4), LABIAL_OK);
     flush(&spoken);
     assert_int_equal(spoken.count, 2);
     assert_in_range(until(&spoken, 1), 300, 420); /* N has the k's time, too */
     spoken.count = 0;
     begin(0);
-    assert_int_equal(labial_words_say_characters(&stream, "go", 2, 0, slow, 2), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "go", 2, 0, slow, 2), LABIAL_OK);
     flush(&spoken);
     assert_int_equal(until(&spoken, 2), 100000);
     spoken.count = 0;
     begin(-200); /* the word begins before the sound, and loses a part */
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, box, 3), LABIAL_OK);
     flush(&spoken);
     assert_int_equal(until(&spoken, spoken.count), 400);
 }
@@ -327,32 +328,74 @@ TEST(characters_must_be_in_order)
     for (i = 0; i < 256; i++)
         same[i] = 500;
     begin(0);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, ends, 3), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 101, ends, 1), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, ends, 0), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, ends, 1), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say_characters(&stream, "a", 1, 0, open, 1), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, same, 256), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 0, NULL, 3), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_say_characters(NULL, "a", 1, 0, same, 1), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_say_characters(&stream, "box", 3, 500, same, 3), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, ends, 3), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 101, ends, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, ends, 0), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, ends, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push_characters(&stream, "a", 1, 0, open, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, same, 256), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, NULL, 3), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_push_characters(NULL, "a", 1, 0, same, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 500, same, 3), LABIAL_OK);
+}
+
+/* Would catch a word after the end, phonemes that the end or a cancel leaves behind, and times that begin anew. */
+TEST(words_end_and_go_on)
+{
+    spoken_t spoken = { 0 };
+    labial_latency_t latency;
+    begin(0);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE); /* they have not ended */
+    say(&spoken, "me", 100, 300);
+    latency = labial_words_latency(&stream);
+    assert_true(latency.milliseconds == 300 && latency.phonemes == 2 && latency.frames == 0 && latency.delay == 0);
+    assert_int_equal(labial_words_push(&stream, "box", 3, 300, 700), LABIAL_OK);
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK); /* before anything was taken */
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK);
+    latency = labial_words_latency(&stream);
+    assert_true(latency.milliseconds == 700 && latency.phonemes == 6);
+    assert_int_equal(labial_words_push(&stream, "me", 2, 800, 900), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE); /* there are phonemes to be taken */
+    assert_int_equal(take_all(&spoken), LABIAL_DONE);
+    assert_int_equal(until(&spoken, spoken.count), 700);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
+    say(&spoken, "me", 900, 1000);
+    say(&spoken, "box", 1000, 1300);
+    assert_int_equal(until(&spoken, spoken.count), 1000);
+    assert_int_equal(labial_words_cancel(&stream), LABIAL_OK);
+    latency = labial_words_latency(&stream);
+    assert_true(latency.milliseconds == 0 && latency.phonemes == 0);
+    assert_int_equal(take_all(&spoken), LABIAL_DONE);
+    assert_int_equal(until(&spoken, spoken.count), 1000);
+    assert_int_equal(labial_words_push(&stream, "me", 2, 1000, 1100), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
+    say(&spoken, "me", 950, 1200); /* before the word that was dropped, and in part before what was taken */
+    flush(&spoken);
+    assert_int_equal(until(&spoken, spoken.count), 1200);
 }
 
 TEST(misuse_is_an_error)
 {
-    labial_words_t other = words_en;
-    labial_words_stream_t none;
+    labial_words_model_t other = words_en;
+    labial_words_t none;
     unsigned phoneme;
     uint32_t milliseconds;
     spoken_t spoken = { 0 };
     memset(&none, 0, sizeof none);
     other.format++;
-    assert_int_equal(labial_words_begin(NULL, &words_en, NULL, 0), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_begin(&none, NULL, NULL, 0), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_begin(&none, &other, NULL, 0), LABIAL_ERROR_VERSION);
-    assert_int_equal(labial_words_say(&none, "a", 1, 0, 1), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_words_flush(&none), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_words_flush(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_init(NULL, &words_en, NULL, 0), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_init(&none, NULL, NULL, 0), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_init(&none, &other, NULL, 0), LABIAL_ERROR_VERSION);
+    assert_int_equal(labial_words_push(&none, "a", 1, 0, 1), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_end(&none), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_end(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_cancel(&none), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_pronounce(&none, NULL), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_pronounce(NULL, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_cancel(NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_restart(&none), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_restart(NULL), LABIAL_ERROR_NULL);
+    assert_true(labial_words_latency(&none).milliseconds == 0 && labial_words_latency(NULL).milliseconds == 0);
     assert_int_equal(labial_words_next(&none, &phoneme, &milliseconds), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_next(NULL, &phoneme, &milliseconds), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_length(NULL, &none.spans[0].word), 0);
@@ -360,21 +403,20 @@ TEST(misuse_is_an_error)
     begin(0);
     assert_int_equal(labial_words_next(&stream, NULL, &milliseconds), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_next(&stream, &phoneme, NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_next(&stream, &phoneme, &milliseconds), LABIAL_DONE);
-    assert_int_equal(labial_words_say(&stream, NULL, 1, 0, 1), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_say(NULL, "a", 1, 0, 1), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_words_say(&stream, "a", 1, 2, 1), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say(&stream, "a", 1, 0, LABIAL_DURATION_MAX + 1), LABIAL_ERROR_DURATION);
-    assert_int_equal(labial_words_say(&stream, "a", 1, 10, 10 + LABIAL_DURATION_MAX), LABIAL_OK);
     assert_int_equal(labial_words_next(&stream, &phoneme, &milliseconds), LABIAL_WAITING);
-    assert_int_equal(labial_words_say(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);
-    assert_int_equal(labial_words_say(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END), LABIAL_OK);
-    assert_int_equal(labial_words_say(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END),
+    assert_int_equal(labial_words_push(&stream, NULL, 1, 0, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_push(NULL, "a", 1, 0, 1), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_push(&stream, "a", 1, 2, 1), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push(&stream, "a", 1, 0, LABIAL_DURATION_MAX + 1), LABIAL_ERROR_DURATION);
+    assert_int_equal(labial_words_push(&stream, "a", 1, 10, 10 + LABIAL_DURATION_MAX), LABIAL_OK);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &milliseconds), LABIAL_WAITING);
+    assert_int_equal(labial_words_push(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END), LABIAL_OK);
+    assert_int_equal(labial_words_push(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END),
                      LABIAL_ERROR_FULL);
-    assert_int_equal(labial_words_flush(&stream), LABIAL_ERROR_FULL);
     assert_int_equal(take_all(&spoken), LABIAL_WAITING);
     assert_int_equal(until(&spoken, spoken.count), 149 + LABIAL_DURATION_MAX);
-    assert_int_equal(labial_words_say(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);
+    assert_int_equal(labial_words_push(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);
 }
 
 SUITE(NULL, NULL)

@@ -9,7 +9,7 @@
 #define OUTPUTS 3u
 #define AHEAD 6u
 #define CALLS 1000u
-#define MOVED 0x10a67726u
+#define MOVED 0x3ec3eb88u
 
 /* A servo that looks ahead, one with a limit of acceleration, and one without limits, in units of a Maestro. */
 static const labial_rig_output_t outputs[OUTPUTS] = {
@@ -62,7 +62,7 @@ int main(void)
     for (i = 0; i < CALLS; i++) {
         const uint32_t what = draw(60);
         if (what == 0)
-            labial_face_cancel(&face);
+            labial_face_cancel(&face, 181);
         for (k = what == 1 ? draw(12) : what == 2 || i % 250u > 200u ? 0 : 1; k > 0; k--)
             give();
         now += 15u + draw(11) + (what == 3 ? draw(200) : 0);

@@ -16,7 +16,7 @@ int main(void)
 #if defined(PLAYER)
     static labial_player_t player;
     const uint8_t *frame;
-    labial_player_begin(&player, bytes, given);
+    labial_player_init(&player, bytes, given);
     while ((frame = labial_player_next(&player, given)) != NULL)
         shown = labial_player_value(frame, given, limit, limit);
 #else

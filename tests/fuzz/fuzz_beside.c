@@ -35,13 +35,11 @@ static void feed(labial_beside_t *player, const uint8_t *data, size_t size, unsi
         packet[3] = (uint8_t)((size - LABIAL_BESIDE_HEAD) / outputs - 1u);
         REQUIRE(frames > 0);
         size = LABIAL_BESIDE_HEAD + (packet[3] + 1u) * outputs;
-        result = labial_beside_feed(player, packet, size);
-        REQUIRE((result == (cancels ? LABIAL_BESIDE_CANCELS : LABIAL_BESIDE_RESTS) || result == LABIAL_BESIDE_BEGINS) &&
-                player->known);
+        result = labial_beside_push(player, packet, size);
+        REQUIRE((result == (cancels ? LABIAL_CANCELLED : LABIAL_OK) || result == LABIAL_NEW_SESSION) && player->known);
     } else {
-        result = labial_beside_feed(player, packet, size);
-        REQUIRE(result == LABIAL_BESIDE_ERROR_PACKET ||
-                (result >= LABIAL_BESIDE_RESTS && result <= LABIAL_BESIDE_BEGINS));
+        result = labial_beside_push(player, packet, size);
+        REQUIRE(result == LABIAL_ERROR_PACKET || (result >= LABIAL_OK && result <= LABIAL_NEW_SESSION));
     }
     free(packet);
 }
@@ -70,16 +68,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     while (size >= 5) {
         const unsigned call = data[0] & 3u;
         if (call == AT) {
+            const unsigned wait = player->quiet == LABIAL_BESIDE_HOLD + 1 ? player->left : 0;
             int result;
             memcpy(&sample, data + 1, sizeof sample);
             memset(values, 0xa5, outputs);
-            result = labial_beside_at(player, sample, values);
-            REQUIRE(result == (player->known ? result & 1 : LABIAL_BESIDE_ERROR_STATE));
-            REQUIRE(player->quiet <= LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE);
+            result = labial_beside_tick(player, sample, values);
+            REQUIRE(result == (player->known ? result & LABIAL_STARVED : LABIAL_ERROR_STATE));
+            REQUIRE(player->quiet <= LABIAL_BESIDE_HOLD + 1 && player->left >= 1 && player->left <= LABIAL_CANCEL_MAX);
             for (frames = 0; frames < outputs && player->known; frames++) {
                 const int most = 1 + (int)((rate + frames * 37u) % 255u), moved = values[frames] - last[frames];
                 REQUIRE(!moves || (moved <= most && moved >= -most));
-                if (player->quiet == LABIAL_BESIDE_HOLD + LABIAL_BESIDE_EASE) {
+                if (player->quiet == LABIAL_BESIDE_HOLD + 1 && wait == 1) {
                     const int left = memory[frames] - values[frames];
                     REQUIRE(left == 0 || !moves || moved == (left > 0 ? most : -most));
                 }
@@ -90,8 +89,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             data += 5;
             size -= 5;
         } else if (call == CANCEL) {
-            REQUIRE((data[0] & 64u ? labial_beside_begin(player, rate) : labial_beside_cancel(player)) ==
-                    LABIAL_BESIDE_RESTS);
+            REQUIRE((data[0] & 64u ? labial_beside_restart(player, rate)
+                                   : labial_beside_cancel(player, data[0] * data[0] * 10u)) == LABIAL_OK);
             data++;
             size--;
         } else {

@@ -75,7 +75,7 @@ static void call(fuzz_t *fuzz, const uint8_t **data, size_t *left)
         REQUIRE(labial_face_values(&fuzz->face, numbers) == LABIAL_OK);
         break;
     case 1:
-        REQUIRE(labial_face_cancel(&fuzz->face) == LABIAL_OK);
+        REQUIRE(labial_face_cancel(&fuzz->face, kind * 3u) == LABIAL_OK);
         break;
     case 2:
         REQUIRE(labial_face_soft_start(&fuzz->face, kind) == LABIAL_OK);

@@ -143,7 +143,7 @@ static void use(watch_t *watch, unsigned choice)
         REQUIRE(result == LABIAL_ERROR_STATE);
     else if (model->search_stride != watch->first->search_stride ||
              model->frames_per_second != watch->first->frames_per_second)
-        REQUIRE(result == LABIAL_ERROR_RATE);
+        REQUIRE(result == LABIAL_ERROR_FRAME_RATE);
     else if (labial_workspace_size(model) > watch->room)
         REQUIRE(result == LABIAL_ERROR_WORKSPACE);
     else

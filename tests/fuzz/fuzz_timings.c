@@ -49,8 +49,7 @@ static uint64_t parse(const uint8_t *data, size_t size, labial_timings_format_t 
     int result = LABIAL_STARVED, readings = 0;
     REQUIRE(timings);
     labial_timings_init(timings, format);
-    timings->tier = tier;
-    timings->tier_number = number;
+    REQUIRE(labial_timings_tier(timings, tier, number) == LABIAL_OK);
     while (result == LABIAL_STARVED) {
         REQUIRE(readings++ < 2);
         result = LABIAL_WAITING;
@@ -71,7 +70,7 @@ static uint64_t parse(const uint8_t *data, size_t size, labial_timings_format_t 
         }
     }
     REQUIRE(result == LABIAL_DONE || result == LABIAL_ERROR_TIMINGS);
-    REQUIRE((timings->message[0] != '\0') == (result < 0));
+    REQUIRE((labial_timings_message(timings)[0] != '\0') == (result < 0));
     REQUIRE(memchr(timings->message, 0, sizeof timings->message) && !strpbrk(timings->message, "\r\n"));
     REQUIRE(timings->line >= 1 && timings->line <= size + 2);
     sum = sum * 31u + (result < 0 ? timings->line : 0u);

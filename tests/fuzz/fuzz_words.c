@@ -12,7 +12,7 @@
 #include "words_en.h"
 
 /* Takes all phonemes; returns by how much the time went on. */
-static uint64_t take(labial_words_stream_t *words)
+static uint64_t take(labial_words_t *words)
 {
     unsigned phoneme;
     uint32_t milliseconds;
@@ -31,11 +31,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static const uint8_t sounds[] = { 15, 34, 255 };
     static const labial_words_entry_t entry = { "go", sounds, sizeof sounds };
     static const labial_words_own_t own = { &entry, 1 };
-    labial_words_stream_t words;
+    labial_words_t words;
     uint32_t start = 0;
     uint64_t sum = 0;
     const int32_t offset = size > 0 ? (int8_t)data[0] : 0;
-    REQUIRE(labial_words_begin(&words, &words_en, &own, offset) == LABIAL_OK);
+    REQUIRE(labial_words_init(&words, &words_en, &own, offset) == LABIAL_OK);
     data += size > 0;
     size -= size > 0;
     while (size >= 4) {
@@ -56,9 +56,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             unsigned i;
             for (i = 0; i < word.characters; i++)
                 ends[i] = start + lasts * (i + 1u) * (data[3] % 7u + i) / (word.characters * (word.characters + 6u));
-            result = labial_words_say_characters(&words, text, length, start, ends, word.characters);
+            result = labial_words_push_characters(&words, text, length, start, ends, word.characters);
         } else {
-            result = labial_words_say(&words, text, length, start, kind == 0 ? LABIAL_WORDS_NO_END : start + lasts);
+            result = labial_words_push(&words, text, length, start, kind == 0 ? LABIAL_WORDS_NO_END : start + lasts);
         }
         REQUIRE(result == LABIAL_OK);
         free(text);
@@ -67,8 +67,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         data += 4 + length;
         size -= 4 + length;
     }
-    REQUIRE(labial_words_flush(&words) == LABIAL_OK);
-    take(&words);
+    REQUIRE((offset & 1 ? labial_words_cancel(&words) : labial_words_end(&words)) == LABIAL_OK);
+    REQUIRE(take(&words) == 0 || !(offset & 1));
     REQUIRE(labial_words_next(&words, &(unsigned){ 0 }, &(uint32_t){ 0 }) == LABIAL_DONE);
+    REQUIRE(labial_words_latency(&words).milliseconds == 0 && labial_words_latency(&words).phonemes == 0);
+    REQUIRE(labial_words_restart(&words) == LABIAL_OK);
     return 0;
 }

@@ -167,8 +167,24 @@ test("a cancel eases from what is shown, and what follows a restart fades in", a
     assert.deepEqual(again.slice(-30), frames.slice(-30), "and its lips are those of the sound");
     assert.ok(one.segments().every(({ start, end, label }) => start <= 5.4 || (start >= 5.4 && end > start && label)));
     const fresh = await labial.hear(null, { sampleRate: RATE });
-    fresh.cancel();
+    fresh.cancel(0);
     assert.deepEqual(rows(fresh), [new Array(13).fill(0)]);
+});
+
+test("articulation is a factor, and a cancel takes its time", async () => {
+    const sound = voice(1);
+    const frames = await heard([sound]);
+    const one = await labial.hear(null, { sampleRate: RATE });
+    one.articulation(50);
+    one.push(sound);
+    one.end();
+    rows(one).slice(8, 40).forEach((faps, i) => {
+        faps.forEach((value, k) => assert.ok(Math.abs(2 * value - frames[i + 8][k]) <= 2));
+    });
+    for (const wrong of [-1, NaN, 201, "much"]) assert.throws(() => one.articulation(wrong));
+    const other = await labial.hear(null, { sampleRate: RATE });
+    other.cancel(1e7, 0);
+    assert.equal(rows(other).length, 1000);
 });
 
 test("stretches of lip classes follow each other, with labels that speech has", async () => {
@@ -204,7 +220,7 @@ test("misuse is told", async () => {
     await assert.rejects((await Labial.load()).hear(), { name: "LabialError", message: /labial-hearing/ });
     const lazy = await Labial.load({ hearing: Promise.resolve({ default: await hearing() }) });
     assert.ok(await lazy.hear(null, { sampleRate: RATE }));
-    await assert.rejects(labial.hear(), { name: "LabialError", message: /^undefined samples per second.*rate/ });
+    await assert.rejects(labial.hear(), { name: "LabialError", message: /^undefined samples per second.*not supported/ });
     await assert.rejects(labial.hear(null, { sampleRate: 11025 }), LabialError);
     await assert.rejects(labial.hear(null, { sampleRate: RATE, channels: 3 }), LabialError);
     await assert.rejects(labial.hear(null, { sampleRate: RATE, channels: 2 ** 32 + 1 }), LabialError);

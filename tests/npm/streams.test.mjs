@@ -412,7 +412,7 @@ test("more than may wait is refused", () => {
     const stream = mouth.stream();
     assert.throws(() => {
         for (;;) stream.push("AA", 1);
-    }, { code: -8, message: "the queue is full; tick and push again" });
+    }, { code: -8, message: "the queue is full: take from it and push again" });
     stream.end();
     let frames = 0;
     while (!stream.done) frames += stream.tick() ? 1 : 0;

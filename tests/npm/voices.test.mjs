@@ -127,7 +127,7 @@ test("a cancelled voice eases although its sound has stopped, and an element may
     const voice = await told({ clock: element });
     assert.ok([...voice.at()].some(Boolean));
     Object.assign(element, { paused: true });
-    voice.cancel(0.1);
+    voice.cancel(100);
     const begin = performance.now();
     while (!voice.done && performance.now() - begin < 5000) {
         voice.at();
@@ -168,7 +168,7 @@ test("following yields every frame once, in time, and ends", async () => {
     const interrupted = await told({});
     interrupted.played(0.3);
     interrupted.finish();
-    interrupted.cancel(0.05);
+    interrupted.cancel(50);
     for await (const faps of interrupted.follow(() => 0.3)) assert.ok(faps);
     assert.ok(interrupted.done && interrupted.number >= 17);
     const stopped = await told({});

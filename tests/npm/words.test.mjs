@@ -51,21 +51,23 @@ test("a stream says what a list says, word by word", () => {
         const stream = words.stream(options);
         const found = [];
         SAID.forEach((word, i) => {
-            stream.say(word);
+            stream.push(word);
             const known = stream.take();
             assert.equal(known.length > 0, i > 0, "a word's phonemes come with the next one");
             found.push(...known);
         });
-        stream.flush();
+        stream.end();
         found.push(...stream.take());
         assert.deepEqual(found, words.wordTimings(SAID, options));
         assert.deepEqual(stream.take(), []);
-        stream.say({ text: "More", start: 4, end: 4.5 });
-        stream.flush();
+        assert.throws(() => stream.push(SAID[0]), { code: -5 });
+        stream.restart();
+        stream.push({ text: "More", start: 4, end: 4.5 });
+        stream.end();
         assert.match(labels(stream.take()), /^- M AO R$/);
         stream.free();
         stream.free();
-        for (const call of [() => stream.say(SAID[0]), () => stream.take(), () => stream.flush()]) {
+        for (const call of [() => stream.push(SAID[0]), () => stream.take(), () => stream.end(), () => stream.restart()]) {
             assert.throws(call, new LabialError("the stream of words was freed"));
         }
     }
@@ -73,11 +75,11 @@ test("a stream says what a list says, word by word", () => {
 
 test("words that nobody takes wait, and a refused one changes nothing", () => {
     const stream = words.stream();
-    for (const word of SAID) stream.say(word);
-    assert.throws(() => stream.say({ text: "late", start: 0 }), { code: -15, message: /^"late": / });
-    assert.throws(() => stream.say({ text: "long", start: 3, end: 9000 }), { code: -7 });
-    assert.throws(() => stream.say({ text: "ab", start: 3, ends: [4, 3.5] }), { code: -15 });
-    stream.flush();
+    for (const word of SAID) stream.push(word);
+    assert.throws(() => stream.push({ text: "late", start: 0 }), { code: -15, message: /^"late": / });
+    assert.throws(() => stream.push({ text: "long", start: 3, end: 9000 }), { code: -7 });
+    assert.throws(() => stream.push({ text: "ab", start: 3, ends: [4, 3.5] }), { code: -15 });
+    stream.end();
     assert.deepEqual(stream.take(), words.wordTimings(SAID));
 });
 
@@ -175,7 +177,7 @@ test("streams that nobody holds are given back", async () => {
     const own = Object.fromEntries(Array.from({ length: 300 }, (_, i) => [`word${i}`, "M AA"]));
     const use = () => {
         const stream = words.stream({ own, numbers });
-        for (const word of SAID) stream.say(word);
+        for (const word of SAID) stream.push(word);
     };
     for (let round = 0; round < 20; round++) {
         for (let i = 0; i < 100; i++) use();

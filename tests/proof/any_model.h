@@ -25,7 +25,7 @@ static uint16_t contacts[FLOORS];
 static labial_protrusion_t protrusion;
 static labial_emission_t emissions[LABIAL_STATES_MAX];
 static labial_state_t states[LABIAL_STATES_MAX];
-static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+static labial_transition_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
 static uint8_t initials[LABIAL_STATES_MAX];
 static labial_channel_t channels[LABIAL_CHANNELS];
 

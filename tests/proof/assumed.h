@@ -17,7 +17,7 @@
     X(phoneme_count, 1, LABIAL_PHONEMES_MAX)                                                                           \
     X(class_count, 1, LABIAL_CLASSES_MAX)                                                                              \
     X(state_count, 1, LABIAL_STATES_MAX)                                                                               \
-    X(predecessors, 1, LABIAL_STATES_MAX)                                                                              \
+    X(predecessor_fours, 1, LABIAL_STATES_MAX / 4)                                                                     \
     X(search_stride, 1, LABIAL_SEARCH_STRIDE_MAX)                                                                      \
     X(silence, 0, LABIAL_PHONEMES_MAX - 1)                                                                             \
     X(mixture_mean, 0, 1)                                                                                              \

@@ -11,21 +11,21 @@ static void play(unsigned outputs, uint32_t size)
 {
     labial_beside_t player;
     if (labial_beside_init(OR_NULL(labial_beside_t *, &player), outputs, any_uint32, OR_NULL(void *, memory), size) !=
-        LABIAL_BESIDE_RESTS)
+        LABIAL_OK)
         return;
     while (any_int) {
         if (any_int) {
             FILL(packet);
-            labial_beside_feed(OR_NULL(labial_beside_t *, &player), OR_NULL(const void *, packet), any_size);
+            labial_beside_push(OR_NULL(labial_beside_t *, &player), OR_NULL(const void *, packet), any_size);
         }
         if (any_int)
-            labial_beside_at(OR_NULL(labial_beside_t *, &player), any_uint32, OR_NULL(uint8_t *, values));
+            labial_beside_tick(OR_NULL(labial_beside_t *, &player), any_uint32, OR_NULL(uint8_t *, values));
         if (any_int)
             labial_beside_limit(OR_NULL(labial_beside_t *, &player), any_unsigned, any_unsigned);
         if (any_int)
-            labial_beside_begin(OR_NULL(labial_beside_t *, &player), any_uint32);
+            labial_beside_restart(OR_NULL(labial_beside_t *, &player), any_uint32);
         if (any_int)
-            labial_beside_cancel(OR_NULL(labial_beside_t *, &player));
+            labial_beside_cancel(OR_NULL(labial_beside_t *, &player), any_uint32);
     }
 }
 
@@ -33,11 +33,11 @@ int main(void)
 {
     static const labial_beside_t unprepared;
     labial_beside_t player = unprepared;
-    labial_beside_feed(&player, packet, any_size);
-    labial_beside_at(&player, any_uint32, values);
-    labial_beside_cancel(&player);
+    labial_beside_push(&player, packet, any_size);
+    labial_beside_tick(&player, any_uint32, values);
+    labial_beside_cancel(&player, any_uint32);
     labial_beside_limit(&player, any_unsigned, any_unsigned);
-    labial_beside_begin(&player, any_uint32);
+    labial_beside_restart(&player, any_uint32);
     labial_beside_init(&player, any_unsigned, any_uint32, memory, 4);
     play(0, sizeof memory);
     play(1, 6);

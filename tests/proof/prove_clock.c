@@ -9,6 +9,7 @@ int main(void)
 {
     labial_clock_t clock;
     int64_t sample;
+    labial_clock_init(NULL, any_uint32);
     labial_clock_init(&clock, any_uint32);
     while (any_int) {
         if (any_int)

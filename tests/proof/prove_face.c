@@ -3,7 +3,7 @@
  * their own; what stands for them here reads what they may read, and returns anything. */
 #include "labial/face.h"
 
-#include "prove.h"
+#include "any_fade.h"
 #include "rig_parts.h"
 
 #define OUTPUTS 3
@@ -66,7 +66,7 @@ static void call_anything(void)
         labial_face_skip(any, any_unsigned);
         break;
     case 3:
-        labial_face_cancel(any);
+        labial_face_cancel(any, any_uint32);
         break;
     case 4:
         labial_face_soft_start(any, any_unsigned);
@@ -89,7 +89,7 @@ static void begin(unsigned ahead)
     rig.count = (uint16_t)(1u + any_uint16 % OUTPUTS);
     labial_face_init(&face, &rig, 1u + any_uint16 % 1000u, ahead, memory, LABIAL_FACE_SIZE(OUTPUTS, ahead));
     /* Frames that wait, and where the first one lies, are bounded by these and by nothing that the prover knows. */
-    /*@ loop widen_hints "all", 0, 1, 5, 6, 1000, 1001; */
+    /*@ loop widen_hints "all", 0, 1, 5, 6, 7, 999, 1000, 1001; */
     while (any_int)
         call_anything();
 }

@@ -26,7 +26,8 @@ static uint8_t shifts[UNITS];
 static int16_t workspace[ROWS * UNITS];
 static labial_hear_block_t blocks[4];
 static labial_hear_model_t model;
-static labial_hear_t hear;
+static labial_hear_network_t network;
+static int16_t features[LABIAL_HEAR_INPUTS], scratch[LABIAL_HEAR_SCRATCH];
 
 /* Tables end where those of so many rows and columns do. */
 #define LAST(table, size) ((table) + (sizeof(table) / sizeof *(table) - (size)))
@@ -47,8 +48,8 @@ static void set_block(unsigned number, unsigned units, unsigned past, unsigned d
     block->past = (uint8_t)past;
     block->ahead = 1;
     block->dilation = (uint8_t)dilation;
-    hear.at[number] = (uint8_t)Frama_C_interval(0, (int)((past + 1u) * dilation) - 1);
-    hear.skip[number] = (uint8_t)Frama_C_interval(0, number > 0u ? (int)dilation - 1 : 0);
+    network.at[number] = (uint8_t)Frama_C_interval(0, (int)((past + 1u) * dilation) - 1);
+    network.skip[number] = (uint8_t)Frama_C_interval(0, number > 0u ? (int)dilation - 1 : 0);
 }
 
 static void set_model(unsigned units, unsigned count, unsigned ahead, unsigned rows)
@@ -63,20 +64,20 @@ static void set_model(unsigned units, unsigned count, unsigned ahead, unsigned r
     model.block = blocks;
     set_layer(&model.last, LAST(last_weights, units * units), units);
     set_layer(&model.heads, LAST(heads_weights, HEADS * units), HEADS);
-    hear.model = &model;
-    hear.rows = LAST(workspace, rows * units);
+    network.model = &model;
+    network.rows = LAST(workspace, rows * units);
 }
 
 /* A frame, and those before it. */
 static void take(void)
 {
     const int16_t *heads;
-    labial_hear_network_reset(&hear);
+    labial_hear_network_reset(&network);
     FILL(workspace);
-    FILL(hear.features);
-    FILL(hear.window);
-    hear.taken = (uint32_t)Frama_C_interval(0, model.ahead);
-    heads = labial_hear_network(&hear);
+    FILL(features);
+    FILL(scratch);
+    network.taken = (uint32_t)Frama_C_interval(0, model.ahead);
+    heads = labial_hear_network(&network, features, scratch);
     if (heads)
         any_int = heads[0] + heads[26 + LABIAL_CHANNELS - 1];
 }
@@ -95,12 +96,7 @@ static void pose(void)
     model.scale = positions[1];
     model.closed = positions[2];
     labial_hear_leader(&model, heads);
-    labial_hear_pose(&model, heads, found);
-}
-
-uint32_t labial_hear_workspace_size(const labial_hear_model_t *any)
-{
-    return LABIAL_HEAR_WORKSPACE_SIZE((uint32_t)any->units, any->rows);
+    labial_hear_pose(&model, heads, Frama_C_interval(0, 512), found);
 }
 
 int main(void)

@@ -80,8 +80,8 @@ static void advance(int stride)
         stream.ended = (uint8_t)Frama_C_interval(0, 1);
         stream.pending = any_uint32;
         stream.units.count = any_uint8;
-        stream.wanted = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
-        stream.articulation = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
+        stream.articulation.wanted = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
+        stream.articulation.present = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
         if (any_int)
             select_halves(&stream, (unsigned)Frama_C_interval(1, 2));
         stream.channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);

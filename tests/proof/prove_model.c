@@ -14,7 +14,7 @@ static int16_t floors[FLOORS * LABIAL_CHANNELS];
 static uint16_t contacts[FLOORS];
 static labial_emission_t emissions[LABIAL_STATES_MAX];
 static labial_state_t states[LABIAL_STATES_MAX];
-static uint16_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
+static labial_transition_t transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX];
 static uint32_t words[1];
 static labial_protrusion_t protrusion;
 static labial_channel_t channels[LABIAL_CHANNELS];
@@ -50,7 +50,7 @@ int main(void)
     for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
         channels[i].emissions = OR_NULL(const labial_emission_t *, emissions);
         channels[i].states = OR_NULL(const labial_state_t *, states);
-        channels[i].transitions = OR_NULL(const uint16_t *, transitions);
+        channels[i].transitions = OR_NULL(const labial_transition_t *, transitions);
         channels[i].initials = OR_NULL(const uint8_t *, bytes);
     }
     FILL(model);

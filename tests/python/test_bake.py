@@ -89,7 +89,7 @@ int main(void)
 {
     uint32_t next = 0;
     int result = labial_init(&stream, &speech_en, workspace, sizeof workspace, on_frame, NULL);
-    talk_begin(&player);
+    talk_init(&player);
     labial_rig_rest(&jaw, &pulse);
     while (result >= 0 && result != LABIAL_DONE) {
         result = talk_phonemes_feed(&stream, &next);
@@ -224,7 +224,7 @@ def test_avr_takes_what_fits(tmp_path: Path) -> None:
         assert main(["bake", str(tmp_path / f"{name}.csv"), "-o", str(tmp_path / f"{name}.h")]) == 0
         (tmp_path / f"{name}.c").write_text(f"""#include "{name}.h"
 labial_player_t player;
-int main(void) {{ {name}_begin(&player); return *{name}_next(&player); }}
+int main(void) {{ {name}_init(&player); return *{name}_next(&player); }}
 """)
     command = ["avr-gcc", "-mmcu=atmega1284p", "-std=c99", "-Os", *warnings("c")]
     assert "an array of an AVR holds 32767: bake it with --parts 655" in run(*command, "-c", "over.c", cwd=tmp_path,
@@ -261,17 +261,17 @@ static labial_player_t player, parts;
 int main(void)
 {
     unsigned part;
-    whole_begin(&player);
+    whole_init(&player);
     for (part = 0; part < CUT_PARTS; part++) {
         const uint8_t *frame;
-        cut_begin(&parts, part);
+        cut_init(&parts, part);
         printf("%lu", (unsigned long)cut_milliseconds(part));
         for (frame = cut_next(&parts); frame != NULL; frame = cut_next(&parts))
             if (whole_next(&player) == NULL || cut_jaw(frame) != whole_jaw(player.next - WHOLE_OUTPUTS))
                 printf(" differs");
         printf("\\n");
     }
-    cut_begin(&parts, CUT_PARTS);
+    cut_init(&parts, CUT_PARTS);
     printf("%lu %d %d\\n", (unsigned long)cut_milliseconds(CUT_PARTS), whole_next(&player) != NULL,
            cut_next(&parts) != NULL);
     return 0;

@@ -65,7 +65,7 @@ def test_packets_have_the_bytes_of_baked_motion() -> None:
     motion = labial.render(HELLO)
     wanted = expected(motion)
     lips = labial.Beside(FACE)
-    packets = lips.packets(motion, sample=48000, rate=24000)
+    packets = lips.packets(motion, sample=48000, sample_rate=24000)
     assert [packet.frame for packet in packets] == list(range(100, 100 + len(motion), 10))
     assert lips.frame == 100 + len(motion)
     found = []
@@ -87,7 +87,7 @@ def test_a_servo_with_a_limit_of_speed_sees_the_utterance(tmp_path: Path) -> Non
     slow.write_text('[output.jaw]\nfrom = "opening"\nclosed = 1400\nfull = 1900\nslew = 40\n', encoding="utf-8")
     motion = labial.render(HELLO)
     found = b"".join(b"".join(parse(packet.data).frames)
-                     for packet in labial.Beside(slow, frames=3).packets(motion, sample=0, rate=16000))
+                     for packet in labial.Beside(slow, frames=3).packets(motion, sample=0, sample_rate=16000))
     assert found == b"".join(expected(motion, slow))
     times = np.cumsum([0, *(length for _, length in HELLO)])
     assert min(found[times[5] // 20 : times[6] // 20]) == 0
@@ -118,7 +118,7 @@ def test_repeated_frames_make_up_for_a_lost_packet() -> None:
     """Catches repeats that are not the frames before, and ones across a gap."""
     motion = labial.render(HELLO)
     lips = labial.Beside(FACE, frames=5, repeat=5)
-    first, second = lips.packets(motion, sample=0, rate=16000), lips.packets(motion, sample=32000, rate=16000)
+    first, second = (lips.packets(motion, sample=sample, sample_rate=16000) for sample in (0, 32000))
     wanted = expected(motion)
     for start, packets in ((0, first), (100, second)):
         assert [packet.frame for packet in packets] == list(range(start, start + len(motion), 5))
@@ -137,7 +137,7 @@ def test_hello_and_cancel() -> None:
     lips.push(labial.render(HELLO)[:15])
     assert parse(lips.cancel(24000, 16000)) == (1, 75, 258, bytes([0, 128]), [])
     assert lips.flush() == [] and lips.rig.values == {"jaw": 1400, "upper_lip": 1500}
-    assert lips.packets([(0,) * 13] * 3, sample=24000 + 161, rate=16000)[0].frame == 76, "the nearest frame"
+    assert lips.packets([(0,) * 13] * 3, sample=24000 + 161, sample_rate=16000)[0].frame == 76, "the nearest frame"
     assert parse(lips.cancel(2**32 * 320, 16000)).first == 0, "modulo 2^32"
 
 
@@ -206,9 +206,9 @@ class Player:
         for number, row in enumerate(frames, first):
             if self.now <= number < self.now + self.room and not self.frames.get(number, (b"", False))[1]:
                 self.frames[number] = (row, False)
-        return 3 if begins and before is not None else 2 if cancels else 0
+        return 5 if begins and before is not None else 4 if cancels else 0
 
-    def at(self, sample: int) -> bool:
+    def at(self, sample: int) -> int:
         frame = sample * 50 // self.rate
         if frame <= self.now - self.room:
             self.frames.clear()
@@ -225,7 +225,7 @@ class Player:
         moves = [int((to - value) / left) for value, to in zip(self.pose, goal)]
         self.pose = bytes(value + min(max(move, -most), most)
                           for value, move, most in zip(self.pose, moves, self.limits))
-        return self.quiet <= self.HOLD
+        return 0 if self.quiet <= self.HOLD else 2
 
 
 def test_what_boards_show() -> None:
@@ -250,9 +250,9 @@ def test_what_boards_show() -> None:
         for call in range(3000):
             if draw(4) == 0 or call == 0:
                 shown.append(player.feed(*packet(frame)))
-            speaks = player.at(sample)
+            result = player.at(sample)
             unit = 1900 - (3300 * player.pose[0] + 127) // 255
-            shown += bytes([speaks, *player.pose, unit >> 4 & 255])
+            shown += bytes([result, *player.pose, unit >> 4 & 255])
             if draw(50) == 0:
                 sample += draw(3) * rate
                 frame += draw(100)

@@ -177,7 +177,7 @@ def test_page_of_the_manual_and_an_interruption(page: Page) -> None:
         page.wait_for("shown.length > 5 && Math.max(...shown) > 0.1 && shown.at(-1) === 0", 60)
         page.evaluate(f"hear({address!r}, {TEXT!r})")
         page.wait_for("Math.abs(face.faps[4]) > 100", 60)
-        begin = page.evaluate("context.suspend(), voice.cancel(0.2), performance.now()")
+        begin = page.evaluate("context.suspend(), voice.cancel(200), performance.now()")
         page.wait_for("voice.done")
         assert page.evaluate("performance.now()") - begin < 2000
         page.wait_for("!face.faps.some(Boolean)")

@@ -106,7 +106,7 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     """Tables of another version must not be linked by accident."""
     emit.write(quantise(random_model(2), "some_model"), tmp_path)
     header = tmp_path / "some_model.h"
-    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 6", "LABIAL_MODEL_FORMAT != 5"))
+    header.write_text(header.read_text().replace("LABIAL_MODEL_FORMAT != 7", "LABIAL_MODEL_FORMAT != 6"))
     said = run(CC, "-std=c99", f"-I{SOURCE / 'include'}", "-fsyntax-only", tmp_path / "some_model.c", status=1)
     assert "run labial export again" in said
 

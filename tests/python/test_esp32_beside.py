@@ -32,6 +32,7 @@ JAW = SOURCE / "examples" / "faces" / "jaw.toml"
 INCLUDES = [f"-I{SOURCE / 'include'}", f"-I{EXAMPLE}", f"-I{STUBS}"]
 RATE, BLOCK = 24000, 1440  # 60 ms
 HELD, EASED = 5, 6  #: calls, as in labial/beside.h
+OK, STARVED = 0, 2  #: of labial/result.h: lips of a frame, and the way to rest
 
 
 @pytest.fixture()
@@ -62,7 +63,7 @@ def shown(board: ctypes.CDLL, now: int) -> Tuple[int, int]:
 def send(board: ctypes.CDLL, sample: int) -> List[int]:
     """Packets of a word whose sound begins with a sample; the bytes of its frames."""
     lips, rows = labial.Beside(labial.Rig.of(read(str(JAW), "jaw")), session=1), []
-    for packet in lips.packets(labial.render(HELLO), sample=sample, rate=RATE):
+    for packet in lips.packets(labial.render(HELLO), sample=sample, sample_rate=RATE):
         assert board.mouth_packet(packet.data, len(packet.data)) == 0
         rows += [row[0] for row in parse(packet.data).frames]
     return rows
@@ -84,10 +85,10 @@ def test_in_step_with_the_loudspeaker(board: ctypes.CDLL) -> None:
         frame = 3 * played[step // 3] + step % 3
         if frame in (19, 20):
             frame = 27  # what is heard next waits in its first frame
-        assert shown(board, now) == (1, rows[frame]), step
+        assert shown(board, now) == (OK, rows[frame]), step
     silent = begun + 3 * len(played) * FRAME
     still = [shown(board, silent + k * FRAME + 5 * MS) for k in range(HELD + EASED)]
-    assert [speaks for speaks, _ in still] == [1] * HELD + [0] * EASED
+    assert [result for result, _ in still] == [OK] * HELD + [STARVED] * EASED
     assert still[HELD - 1][1] == rows[47] and still[-1][1] == 0
 
 
@@ -97,19 +98,19 @@ def test_other_sound_and_cancel(board: ctypes.CDLL) -> None:
     rows = send(board, 0)
     board.mouth_receive(20 * BLOCK)
     board.mouth_playing(-1, BLOCK * 4, 0)
-    assert [shown(board, k * FRAME)[0] for k in range(2, 12)][-3:] == [0] * 3
+    assert [shown(board, k * FRAME)[0] for k in range(2, 12)][-3:] == [STARVED] * 3
     board.mouth_playing(0, BLOCK * 8, 240 * MS)
-    assert shown(board, 240 * MS + 10 * FRAME) == (1, rows[10])
+    assert shown(board, 240 * MS + 10 * FRAME) == (OK, rows[10])
     board.mouth_cancel()
     eased = [shown(board, 250 * MS + (11 + k) * FRAME) for k in range(EASED)]
-    assert [speaks for speaks, _ in eased] == [0] * EASED and eased[-1][1] == 0
+    assert [result for result, _ in eased] == [STARVED] * EASED and eased[-1][1] == 0
     again = send(board, 20 * BLOCK)
     assert board.mouth_receive(8 * BLOCK) == 20 * BLOCK
     board.mouth_playing(20 * BLOCK, BLOCK * 8, 2000 * MS)
-    assert [shown(board, 2000 * MS + k * FRAME) for k in range(1, 20)] == [(1, row) for row in again[1:20]]
+    assert [shown(board, 2000 * MS + k * FRAME) for k in range(1, 20)] == [(OK, row) for row in again[1:20]]
     assert board.mouth_begin(0) < 0
     board.mouth_playing(0, BLOCK, 0)
-    assert [shown(board, k * FRAME) for k in range(HELD + EASED)][-1] == (0, 0), "at rest"
+    assert [shown(board, k * FRAME) for k in range(HELD + EASED)][-1] == (STARVED, 0), "at rest"
 
 
 @pytest.mark.parametrize("board", [[]], indirect=True)
@@ -117,7 +118,7 @@ def test_the_servo_has_time(board: ctypes.CDLL) -> None:
     """Catches a servo that jumps after lost packets, when sound was dropped, or when a connection begins."""
     assert board.mouth_begin(RATE) == 0
     lips, found, now = labial.Beside(labial.Rig.of(read(str(JAW), "jaw"))), [], 0
-    packets = lips.packets(labial.render(HELLO * 2), sample=0, rate=RATE)
+    packets = lips.packets(labial.render(HELLO * 2), sample=0, sample_rate=RATE)
     for number, packet in enumerate(packets):
         if number % 4 != 3:
             assert board.mouth_packet(packet.data, len(packet.data)) == 0
@@ -252,7 +253,7 @@ def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_pa
             voice.handle_opus(b"opus%d" % k)
         words = [(word, 100 + 400 * k, 450 + 400 * k) for k, word in enumerate(text.split())]
         motion = labial.render(labial.word_timings(words))
-        rows = labial.Beside(EXAMPLE / "face.toml").packets(motion, sample=0, rate=RATE)
+        rows = labial.Beside(EXAMPLE / "face.toml").packets(motion, sample=0, sample_rate=RATE)
         frames = b"".join(b"".join(parse(packet.data).frames) for packet in rows)
         wanted.update({sounds * 3 + k: frames[k : k + 1] for k in range(len(frames))})
         for packet in voice.queue[:sent]:

@@ -224,7 +224,7 @@ def test_what_boards_move() -> None:
     due = shown_at = None
     waiting: List[List[int]] = []
     wanted, values, changes = [servo.rest for servo in SERVOS], [servo.rest for servo in SERVOS], [0, 0, 0]
-    plays, waited, quiet, ticks = False, 0, HOLD + EASE, 0
+    plays, waited, quiet, left, ticks = False, 0, HOLD + 1, 0, 0
 
     def draw(below: int) -> int:
         nonlocal seed
@@ -235,6 +235,7 @@ def test_what_boards_move() -> None:
         what = draw(60)
         if what == 0:
             waiting, waited, quiet = [], 0, max(quiet, HOLD)
+            left = 10 if left else 0  # 181 ms
         for _ in range(draw(12) if what == 1 else 0 if what == 2 or call % 250 > 200 else 1):
             if draw(4):
                 touches, faps = draw(3), [draw(301) - 150 for _ in range(13)]
@@ -253,22 +254,23 @@ def test_what_boards_move() -> None:
             result = 0
             if waiting and (plays or len(waiting) > AHEAD or waited >= AHEAD):
                 wanted, *waiting = waiting
-                plays, quiet, waited = True, 0, 0
+                plays, quiet, left, waited = True, 0, EASE, 0
             else:
-                plays, quiet = False, min(quiet + 1, HOLD + EASE)
+                plays, quiet = False, min(quiet + 1, HOLD + 1)
                 result, waited = (1, waited + 1) if waiting else (3, 0)
-                if quiet > HOLD:
+                if quiet > HOLD and left:
                     for k, servo in enumerate(SERVOS):
                         start = min(wanted[k], values[k], key=lambda value, rest=servo.rest: abs(value - rest))
-                        step = abs(servo.rest - start) // (HOLD + EASE + 1 - quiet)
+                        step = abs(servo.rest - start) // left
                         wanted[k] = start + (step if start < servo.rest else -step)
+                    left -= 1
             for k, servo in enumerate(SERVOS):
-                rests = quiet == HOLD + EASE or ticks < 10 * (k + 1)
+                rests = left == 0 or ticks < 10 * (k + 1)
                 sight = [servo.rest] if rests else [wanted[k], *(row[k] for row in waiting if plays)]
                 if moves:
                     value = servo.next(values[k], changes[k], sight, 0 if rests else servo.deadband)
                     values[k], changes[k] = value, value - values[k]
-                if result == 3 and (quiet < HOLD + EASE or values[k] != servo.rest or changes[k]):
+                if result == 3 and (left or values[k] != servo.rest or changes[k]):
                     result = 2
             ticks += 1
             moved += bytes([result, *(byte for value in values for byte in (value & 255, value >> 8)),

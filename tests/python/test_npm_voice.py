@@ -63,7 +63,7 @@ def drawn_session(rng: random.Random) -> Dict[str, Any]:
             start = rng.random() * 3
             steps.append(["push", rng.choice(["m", "AA", "ʃ", "zz"]), start, start + rng.choice([0.1, 0.0004, -1])])
         elif kind < 0.7:
-            steps.append(rng.choice([["begin"], ["begin", moment + rng.random()], ["finish"], ["cancel", 0.15]]))
+            steps.append(rng.choice([["begin"], ["begin", moment + rng.random()], ["finish"], ["cancel", 150]]))
         else:
             moment += rng.choice([0.02, 0.033, 0.2, 0.5, 1.5, -0.1])
             steps.append(["played", rng.choice([moment, moment, moment, None])])

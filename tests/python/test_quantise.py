@@ -264,11 +264,12 @@ def test_substitutes_share_components() -> None:
 
 def test_keeps_the_asked_number_of_predecessors_and_always_the_state_itself() -> None:
     """Without its own state as predecessor a state could not be held."""
-    assert quantise(random_model(6), "model").transitions.shape == (13, 12, 4)  # the default
+    assert quantise(random_model(6), "model").transitions.shape == (13, 12, 4, 2)  # the default
     exported = quantise(random_model(6), "model", predecessors=5)
-    assert exported.transitions.shape == (13, 12, 5)
-    predecessor = exported.transitions & 255
-    assert (predecessor == np.arange(12)[:, None]).any(axis=2).all() and (np.diff(predecessor) > 0).all()
+    assert exported.transitions.shape == (13, 12, 8, 2)  # in fours
+    predecessor = exported.transitions[..., 0]
+    assert (predecessor == np.arange(12)[:, None]).any(axis=2).all() and (np.diff(predecessor[..., :5]) > 0).all()
+    assert (exported.transitions[..., 5:, :] == exported.transitions[..., 4:5, :]).all()
 
 
 def test_fewer_predecessors_than_asked_for_are_repeated() -> None:
@@ -289,7 +290,7 @@ def test_keeps_the_predecessors_that_are_used_most() -> None:
     with np.errstate(divide="ignore"):
         logs = np.broadcast_to(np.log(step), (13, 3, 3))
     exported = quantise(dataclasses.replace(model, log_transition=logs), "model", predecessors=2)
-    np.testing.assert_array_equal(exported.transitions[0, 2] & 255, [0, 2])
+    np.testing.assert_array_equal(exported.transitions[0, 2, :, 0], [0, 2, 2, 2])
 
 
 def test_quantisation_loss_is_small_where_paths_agree() -> None:

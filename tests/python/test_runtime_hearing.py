@@ -57,6 +57,26 @@ def test_frames_are_the_exporters(name: str, rate: int) -> None:
                                            for k, first, length in hears.stretches(heard.scores)]
 
 
+def test_articulation_and_a_slow_cancel() -> None:
+    """Catches an articulation that does not reach C, and frames of a cancel that have no room."""
+    sound = voice(1.0)
+    with labial.Hearing(exact=True) as hearing:
+        plain = np.array(numbers(list(hearing.frames([sound]))))
+        hearing.restart()
+        hearing.articulation(49.6)
+        half = np.array(numbers(list(hearing.frames([sound]))))[8:]
+        assert np.abs(2 * half - plain[8:]).max() <= 2 and np.abs(plain).max() > 50
+        hearing.restart()
+        hearing.articulation(0)
+        hearing.push(sound)
+        assert len(hearing.cancel(1000)) == 50
+        hearing.restart()
+        assert [len(hearing.cancel(length)) for length in (0, 19.5, 20.5, 10**6)] == [1, 1, 2, 1000]
+        for wrong in (-1, 201, float("nan")):
+            with pytest.raises(LabialError, match="not within 0 .. 200"):
+                hearing.articulation(wrong)
+
+
 def test_sound_comes_in_many_forms() -> None:
     """Catches bytes that are cut within a sample, and buffers whose items are taken for bytes."""
     sound = voice(0.5)
@@ -128,10 +148,10 @@ def test_cancel_and_restart() -> None:
 
 
 @pytest.mark.parametrize("given, error, message", [
-    ({"rate": 11025}, StreamError, "11025 samples per second, channels: 1: the sound's rate"),
+    ({"sample_rate": 11025}, StreamError, "11025 samples per second, channels: 1: sound of so many"),
     ({"channels": 3}, StreamError, "channels: 3"),
-    ({"rate": -1}, LabialError, "not supported"),
-    ({"rate": "x"}, TypeError, "a rate"),
+    ({"sample_rate": -1}, LabialError, "not supported"),
+    ({"sample_rate": "x"}, TypeError, "a sample rate"),
     ({"model": "speech_en"}, LabialError, "'speech_en' is no model of hearing: hear_small"),
 ])
 def test_wrong_arguments_are_refused(given: Any, error: type, message: str) -> None:

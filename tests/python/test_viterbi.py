@@ -182,7 +182,7 @@ def scalar_search(model: ExportedModel, channel: int, target: np.ndarray, ends: 
             else:
                 enter, origin[q] = 255, best
                 for edge in model.transitions[channel, q]:
-                    p, cost = int(edge) & 255, int(edge) >> 8
+                    p, cost = (int(value) for value in edge)
                     if p in scores and scores[p] + cost < enter:
                         enter, origin[q] = scores[p] + cost, p
             total[q] = enter + (z * z >> 7) + int(model.emission_cost[channel, q])

@@ -128,7 +128,7 @@ def test_cancel_is_a_streams() -> None:
         for sound in SOUNDS:
             voice.push(*sound)
         shown = played(voice, 0, 0.9)
-        voice.cancel(0.3)
+        voice.cancel(300)
         eased = played(voice, 0.92, 1.2)
         assert len(eased) == 15
         assert played(voice, 1.22, 1.4) == [(0,) * 13] * 10
@@ -168,14 +168,14 @@ def test_done() -> None:
         assert not voice.done
         voice.played(6.5)
         assert voice.done
-        voice.cancel(0.1)
+        voice.cancel(100)
         assert not voice.done
         voice.played(6.6)
         assert voice.done
     with labial.Voice() as voice:
         voice.say("hum", 0, 1)
         voice.played(0.2)
-        voice.cancel(0.1)
+        voice.cancel(100)
         voice.played(0.5)
         assert voice.done
 

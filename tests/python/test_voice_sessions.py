@@ -60,7 +60,7 @@ def drawn(seed: int) -> List[List[Any]]:
             now = round(now + draw.choice([0.013, 0.02, 0.1, 0.3, 0.3, 0.9, 1.5]), 4)
             steps.append(["played", now])
         elif kind < 0.9:
-            steps.append(["cancel", draw.choice([0.01, 0.1, 0.2, 0.5])])
+            steps.append(["cancel", draw.choice([10, 100, 200, 500])])
         elif kind < 0.96:
             origin = round(max(0.0, now + draw.uniform(-0.2, 0.5)), 3)
             steps.append(["begin", draw.choice([None, origin])])

@@ -119,7 +119,7 @@ def test_training_is_the_same_each_time(small: Path, tmp_path: Path, capsys: pyt
     known = dictionary.pronunciations(dictionary.read_dictionary(small))
     assert all(decoder.phonemes(found, word) in known[word] for word in found.exceptions)
     assert training.score(found, known)["phonemes"] > 90.0
-    (tmp_path / "main.c").write_text('#include "mine.h"\nint main(void) { return mine.format != 1; }\n')
+    (tmp_path / "main.c").write_text('#include "mine.h"\nint main(void) { return mine.format != LABIAL_WORDS_FORMAT; }\n')
     subprocess.run([CC, "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{SOURCE / 'include'}",
                     f"-I{tmp_path / 'a'}", tmp_path / "main.c", tmp_path / "a/mine.c", "-o", tmp_path / "main"],
                    check=True)
@@ -302,13 +302,13 @@ def test_c_shares_time_as_the_reference_does(trained: tables.WordTables) -> None
     stream, moment, got, expected = WordStream(), 0, [], []
     for word in given:
         length = numbers.randint(200, 900)
-        stream.say(word, moment, moment + length)
+        stream.push(word, moment, moment + length)
         got += stream.take()
         heard = decoder.phonemes(trained, word)
         ends = times.ends(times.weights(heard, word == given[-1]), length)
         expected += [(dictionary.PHONEMES[p], end - start) for p, start, end in zip(heard, [0, *ends], ends)]
         moment += length
-    stream.flush()
+    stream.end()
     assert got + stream.take() == expected
 
 

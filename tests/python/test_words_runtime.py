@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 import shutil
 import sys
 from typing import List, Tuple
@@ -41,6 +42,25 @@ def test_own_words_come_first() -> None:
         labial.phonemes("a", own=many)
 
 
+def test_seconds_are_told() -> None:
+    """Catches a warning where times are milliseconds, and none where they are seconds."""
+    with pytest.warns(UserWarning, match="no duration is longer than 0.3 ms: they are milliseconds"):
+        labial.word_timings([("Mama", 0.0, 0.3), ("may", 0.3, 0.5)])
+    with pytest.warns(UserWarning, match="milliseconds, not seconds"):
+        labial.word_timings([("one", 0.1, None), ("two", 0.4, None)])
+    with pytest.warns(UserWarning, match="no duration is longer than 0.2 ms"):
+        labial.character_timings("ab", [0.0, 0.2], [0.2, 0.3])
+    with pytest.warns(UserWarning, match="no duration is longer than 0.25 ms"):
+        labial.render([("M", 0.07), ("AA", 0.25)])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        labial.word_timings([("Mama", 0, 300), ("may", 300, 301)])
+        labial.word_timings([])
+        labial.character_timings("", [], [])
+        labial.render([("M", 4), ("AA", 5)])
+        labial.render([])
+
+
 def test_words_with_times_become_timings() -> None:
     """Silence until the first word; a gap under 150 ms belongs to the word before it, a longer one is silence."""
     timings = labial.word_timings([("Mama", 200, 500), ("may", 600.4, 800), ("go.", 1000, 1300)])
@@ -76,7 +96,7 @@ def test_wrong_types_are_errors() -> None:
     with pytest.raises(TypeError, match="a time is a number"):
         labial.word_timings([("a", "1", 2)])  # type: ignore[list-item]
     with pytest.raises(LabialError, match="an offset of inf ms"):
-        labial.word_timings([("a", 1, 2)], offset_ms=float("inf"))
+        labial.word_timings([("a", 1, 20)], offset_ms=float("inf"))
 
 
 def test_characters_with_times_become_timings() -> None:

@@ -52,6 +52,7 @@ labial_refused_limit(LABIAL_REACH 0 60 -DLABIAL_QUEUE=255)
 labial_refused_limit(LABIAL_QUEUE 2 255 -DLABIAL_REACH=0)
 labial_refused_limit(LABIAL_MODELS 1 255)
 labial_refused_limit(LABIAL_LOCKS 0 2)
+labial_refused_limit(LABIAL_HEAR_SUMS 0 1)
 labial_refused(labial_paper_2 "${CMAKE_C_COMPILER}" stream.c "LABIAL_PAPER must be a number from 0 to 1" -DLABIAL_PAPER=2)
 labial_refused(window_and_lag "${CMAKE_C_COMPILER}" stream.c
   "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together"

@@ -100,10 +100,10 @@ class Oracle:
     def finish(self) -> None:
         self.finished = True
 
-    def cancel(self, fade: float) -> None:
+    def cancel(self, milliseconds: float) -> None:
         self.utterances, self.cancelled, self.finished = [], True, False
         self.neutral = True
-        frames = max(1, math.ceil(fade * 50 - 1e-6))
+        frames = max(1, math.ceil(milliseconds / 20 - 1e-6))
         self.fade = (self.shown or (0,) * 13, 0, frames)
 
     def listens(self) -> bool:

@@ -22,7 +22,7 @@
 #define RATE_MAX 1000000
 
 /* Milliseconds of a frame; blocks of sound in a second, and room for a block of the highest rate with two channels. */
-#define FRAME_MS (1000 / LABIAL_HEAR_RATE)
+#define FRAME_MS (1000 / LABIAL_HEAR_FPS)
 #define BLOCKS_PER_SECOND 100
 #define BLOCK_MAX (2 * 48000 / BLOCKS_PER_SECOND)
 
@@ -232,7 +232,7 @@ static int run(hear_t *hear, const options_t *options)
         const int status = hear_all(hear);
         return status == 0 ? flush(hear) : status;
     }
-    frames_init(&hear->frames, stdout, options->to, model->name, LABIAL_HEAR_RATE);
+    frames_init(&hear->frames, stdout, options->to, model->name, LABIAL_HEAR_FPS);
     const int status = hear_all(hear);
     if (frames_finish(&hear->frames, status == 0) != 0 && status == 0)
         return failed(hear, "cannot write what was heard");

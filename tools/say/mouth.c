@@ -125,7 +125,7 @@ int mouth_laugh(mouth_t *mouth, const char *where, uint32_t milliseconds, unsign
     uint32_t length;
     if (use(mouth, where, &laughter) != 0)
         return -1;
-    const int result = labial_laugh_begin(&laugh, milliseconds, intensity, ++mouth->laughs);
+    const int result = labial_laugh_init(&laugh, milliseconds, intensity, ++mouth->laughs);
     if (result < 0)
         return failed(mouth, where, labial_result_text(result));
     while (labial_laugh_next(&laugh, &phoneme, &length) == LABIAL_OK)

@@ -16,7 +16,7 @@ enum { ENCODING_UNKNOWN, ENCODING_UTF8, ENCODING_UTF16_LE, ENCODING_UTF16_BE };
 
 static int malformed(timings_t *t, const char *message)
 {
-    t->line = t->parser.line;
+    t->line = labial_timings_line(&t->parser);
     t->message = message;
     return -1;
 }
@@ -29,11 +29,11 @@ static int hand_on(timings_t *t, const labial_timing_t *timing, const char *labe
     const timings_phoneme_t phoneme = { laugh < 0 ? label : NULL, (uint32_t)milliseconds, laugh, timing->xsampa };
     t->line = timing->line;
     if (milliseconds > LABIAL_DURATION_MAX) {
-        (void)snprintf(t->parser.message, sizeof t->parser.message, "'%s' is longer than an hour",
+        (void)snprintf(t->said, sizeof t->said, "'%s' is longer than an hour",
                        label       ? label
                        : laugh < 0 ? "silence"
                                    : "laugh");
-        t->message = t->parser.message;
+        t->message = t->said;
         return -1;
     }
     t->end = end;
@@ -62,7 +62,7 @@ static int parse(timings_t *t, const char *text, size_t size)
         if (found == LABIAL_OK)
             result = take(t, &timing);
         else if (found < 0)
-            result = malformed(t, t->parser.message);
+            result = malformed(t, labial_timings_message(&t->parser));
     }
     return result;
 }
@@ -72,7 +72,8 @@ static int parse(timings_t *t, const char *text, size_t size)
 static int put(timings_t *t, unsigned byte)
 {
     const char text = (char)byte;
-    if (t->parser.format == LABIAL_TIMINGS_AUTO || t->parser.format == LABIAL_TIMINGS_TEXTGRID) {
+    const labial_timings_format_t format = labial_timings_format(&t->parser);
+    if (format == LABIAL_TIMINGS_AUTO || format == LABIAL_TIMINGS_TEXTGRID) {
         char *kept = grow(t->kept, t->size, &t->room, 1);
         if (!kept)
             return malformed(t, "there is not enough memory for the text");
@@ -146,7 +147,7 @@ static int finish(timings_t *t)
         if (found == LABIAL_OK)
             result = take(t, &timing);
         else
-            result = found < 0 ? malformed(t, t->parser.message) : parse(t, t->kept, t->size);
+            result = found < 0 ? malformed(t, labial_timings_message(&t->parser)) : parse(t, t->kept, t->size);
     }
     return result;
 }
@@ -161,7 +162,7 @@ int timings_read(timings_t *t, FILE *in, labial_timings_format_t format, const c
     t->user = user;
     t->first = NO_BYTE;
     labial_timings_init(&t->parser, format);
-    t->parser.tier = tier;
+    (void)labial_timings_tier(&t->parser, tier, 0);
     while (result == 0 && (byte = getc(in)) != EOF)
         result = put_byte(t, (unsigned)byte);
     if (result == 0)

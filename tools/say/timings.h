@@ -24,6 +24,7 @@ typedef int (*timings_sink_t)(void *user, const timings_phoneme_t *phoneme);
 typedef struct {
     unsigned long line; /* of the phoneme, or that is wrong */
     const char *message;
+    char said[LABIAL_TIMINGS_LABEL_MAX + 32]; /* the message where it is not the parser's */
     labial_timings_t parser;
     timings_sink_t sink;
     void *user;

@@ -1,9 +1,9 @@
 // One pair of ears: sound in, frames for every moment of it out.
 
 const CHANNELS = 13;
-/** Frames per second, LABIAL_HEAR_RATE. */
+/** Frames per second, LABIAL_HEAR_FPS. */
 const RATE = 50;
-/** Samples that are heard in one call, and the frames for which a call has room: the end and a cancel deliver fewer. */
+/** Samples that are heard in one call, and the frames for which a call has room: the end delivers fewer. */
 const PIECE = 4096;
 const ROOM = 64;
 /** Most frames, and stretches of one class, that are kept for a program that does not take them: 87 minutes. */
@@ -16,8 +16,9 @@ const NEAR = 0.005;
 /** Silence that is heard after a sound and before the next one where they lie farther apart. Seconds. */
 const AFTER = 0.5;
 const BEFORE = 0.2;
-/** The longest easing, seconds. */
-const EASING_MOST = 1;
+/** LABIAL_CANCEL_MAX: the longest way to rest of a cancel, frames. */
+const CANCEL_MAX = 1000;
+const ARTICULATION_MAX = 200;
 const ERROR_STATE = -5;
 
 export class Hearing {
@@ -75,7 +76,7 @@ export class Hearing {
         }
         if (exact) wasm.ears_exact(this.#at, 1);
         for (let at; (at = wasm.hearing_class(0, this.#names.length)); ) this.#names.push(memory.text(at));
-        this.#latency = wasm.ears_latency(this.#at) / sampleRate;
+        this.#latency = wasm.ears_latency(this.#at) / 1000;
         this.#delay = tap ? tools.amount(delay ?? this.#latency + 0.08, "delay") : 0;
         tap?.start(this.#delay, (block, time) => this.#ended || this.#push(block, time));
     }
@@ -110,10 +111,10 @@ export class Hearing {
         this.#close(1);
     }
 
-    cancel(milliseconds = 0, seconds = this.now ?? this.time) {
+    cancel(milliseconds = 200, seconds = this.now ?? this.time) {
         this.#open();
-        const easing = Math.min(this.#tools.amount(milliseconds, "milliseconds") / 1000, EASING_MOST);
-        const steps = Math.max(1, Math.ceil(easing * RATE - 1e-6));
+        const length = Math.ceil((this.#tools.amount(milliseconds, "milliseconds") * RATE) / 1000 - 1e-6);
+        const steps = Math.max(1, Math.min(length, CANCEL_MAX));
         const place = this.#place(this.#moment(seconds));
         const pose = Array.from(this.#between(place));
         this.#heard += this.#check(this.#wasm.ears_cancel(this.#at, 0, 0, 0, 0));
@@ -123,7 +124,8 @@ export class Hearing {
         this.#anchors = this.#anchors.filter(({ frame }, i) => i === 0 || frame <= this.#count);
         this.#anchor(this.#count, Math.max(this.#due(this.#count), seconds));
         for (let step = 1; step <= steps; step++) {
-            const left = (1 + Math.cos((Math.PI * step) / steps)) / 2;
+            const way = step / steps;
+            const left = 1 - way * way * (3 - 2 * way);
             this.#keep(pose.map((value) => Math.round(value * left)));
         }
         this.#close(0);
@@ -136,6 +138,14 @@ export class Hearing {
         this.#pushed = 0;
         this.#ended = false;
         this.#volume(1);
+    }
+
+    articulation(percent) {
+        const at = this.#open();
+        if (this.#tools.amount(percent, "percent") > ARTICULATION_MAX) {
+            throw new RangeError(`percent is ${this.#tools.shown(percent)}, not from 0 to ${ARTICULATION_MAX}`);
+        }
+        this.#check(this.#wasm.ears_articulation(at, Math.round(percent)));
     }
 
     // ---- Out --------------------------------------------------------------------------------------------------------

@@ -23,9 +23,9 @@ export class Line {
         this.#numbers = numbers;
         this.#known = lexicon.known(own, numbers, []);
         this.#table = lexicon.table(this.#known);
-        this.#size = lexicon.wasm.words_stream_size() + 8; // and a phoneme with its milliseconds
+        this.#size = lexicon.wasm.words_size() + 8; // and a phoneme with its milliseconds
         this.#at = lexicon.memory.take(this.#size);
-        lexicon.check(lexicon.wasm.words_begin(this.#at, this.#table.place, milliseconds));
+        lexicon.check(lexicon.wasm.words_init(this.#at, this.#table.place, milliseconds));
     }
 
     /** A word { text, start, end, ends }; the end may be null, `ends` are those of its characters or undefined. */
@@ -36,19 +36,24 @@ export class Line {
         const spelt = ends?.length > 0 && ends.length <= CHARACTERS_MAX && ends.length === [...text].length;
         this.#lexicon.withText(text, (place, size) => {
             if (!spelt) {
-                this.#lexicon.check(wasm.words_say(at, place, size, start, end ?? NO_END), text);
+                this.#lexicon.check(wasm.words_push(at, place, size, start, end ?? NO_END), text);
                 return;
             }
             this.#lexicon.withBytes(4 * ends.length, (list) => {
                 memory.int32(list, ends.length).set(ends);
-                this.#lexicon.check(wasm.words_say_characters(at, place, size, start, list, ends.length), text);
+                this.#lexicon.check(wasm.words_push_characters(at, place, size, start, list, ends.length), text);
             });
         });
     }
 
-    /** No word follows for now. */
-    flush() {
-        this.#lexicon.check(this.#lexicon.wasm.words_flush(this.#collect()));
+    /** No more words will come. */
+    end() {
+        this.#lexicon.check(this.#lexicon.wasm.words_end(this.#collect()));
+    }
+
+    /** Words may follow after the end, in the same sound. */
+    restart() {
+        this.#lexicon.check(this.#lexicon.wasm.words_restart(this.#collect()));
     }
 
     /** The segments that are known. */
@@ -105,13 +110,17 @@ export class WordStream {
         abandoned.register(this, this.#line, this);
     }
 
-    say(word) {
+    push(word) {
         this.#line.add(inMilliseconds(this.#lexicon, word, this.#place + 1));
         this.#place++;
     }
 
-    flush() {
-        this.#line.flush();
+    end() {
+        this.#line.end();
+    }
+
+    restart() {
+        this.#line.restart();
     }
 
     take() {
@@ -142,7 +151,7 @@ export function segmentsOf(lexicon, words, { own, numbers, offset }) {
     const line = new Line(lexicon, { own: known, offset });
     try {
         for (const word of words) line.add(word);
-        line.flush();
+        line.end();
         return line.take();
     } finally {
         line.free();

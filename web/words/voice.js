@@ -123,10 +123,10 @@ export class Voice {
         this.#finished = true;
     }
 
-    cancel(fade = 0.2) {
+    cancel(milliseconds = 200) {
         this.#open();
-        const seconds = this.#tools.amount(fade, "the fade");
-        const steps = Math.ceil(((Math.min(seconds * 1000, DURATION_MAX) / 1000) * this.rate) - 1e-6);
+        const length = Math.min(this.#tools.amount(milliseconds, "milliseconds"), DURATION_MAX);
+        const steps = Math.ceil((length * this.rate) / 1000 - 1e-6);
         this.#timeline.clear();
         this.#cancelled = this.#changed = true;
         this.#dropStream();

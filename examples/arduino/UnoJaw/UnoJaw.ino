@@ -39,7 +39,7 @@ static void talk()
     dfplayer_play(command, 1, 1); // 01/001.wav on the module's card
     nextFrame = millis() + commandTime + DFPLAYER_DELAY_MS;
     Serial.write(command, sizeof command);
-    talk_begin(&player);
+    talk_init(&player);
     talking = true;
 }
 
@@ -47,7 +47,7 @@ void setup()
 {
     Serial.begin(DFPLAYER_BAUD);
     pinMode(buttonPin, INPUT_PULLUP);
-    talk_begin(&player);
+    talk_init(&player);
     showFrame(talk_next(&player)); // before attach(), so that the first pulse is that of rest
     servo.attach(servoPin);
     delay(DFPLAYER_READY_MS);

@@ -6,7 +6,7 @@
  *     #include "talk.h"                                  // labial bake talk.wav -o talk.h
  *     static labial_player_t player;
  *
- *     talk_begin(&player);                                // when the sound begins
+ *     talk_init(&player);                                // when the sound begins
  *     const uint8_t *frame = talk_next(&player);          // every 20 ms
  *     if (frame)                                         // NULL when the motion is over: the servo stays where it is
  *         servo.writeMicroseconds(talk_jaw(frame));
@@ -30,7 +30,7 @@
 #endif
 
 /* Version of the format of `labial bake`. Headers of another version do not compile. */
-#define LABIAL_PLAYER_FORMAT 1
+#define LABIAL_PLAYER_FORMAT 2
 
 /* The position in a track. The program owns it; it may be copied. */
 typedef struct {
@@ -39,7 +39,7 @@ typedef struct {
 } labial_player_t;
 
 /* Goes to the beginning of `frames` consecutive frames at `bytes`. */
-static inline void labial_player_begin(labial_player_t *player, const uint8_t *bytes, size_t frames)
+static inline void labial_player_init(labial_player_t *player, const uint8_t *bytes, size_t frames)
 {
     player->next = bytes;
     player->left = frames;

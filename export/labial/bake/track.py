@@ -19,7 +19,7 @@ from labial.rig.units import make_unit
 from labial.runtime.rig import Rig as Face
 
 #: LABIAL_PLAYER_FORMAT of labial_player.h.
-FORMAT = 1
+FORMAT = 2
 #: Largest difference of an output's limits, for which the player's sums stay below 2^31.
 SPAN_MAX = 8_000_000
 #: Most bytes of an array on an AVR, and of its flash that a pointer of 16 bits reaches.
@@ -125,9 +125,9 @@ def _whole(name: str, data: np.ndarray) -> str:
 }};
 
 /* Goes to the beginning. */
-static inline void {name}_begin(labial_player_t *player)
+static inline void {name}_init(labial_player_t *player)
 {{
-    labial_player_begin(player, {name}_bytes, {name.upper()}_FRAMES);
+    labial_player_init(player, {name}_bytes, {name.upper()}_FRAMES);
 }}
 """
 
@@ -140,7 +140,7 @@ def _in_parts(name: str, data: np.ndarray, cut: Sequence[Part]) -> str:
 
 """ for number, item in enumerate(values))
     begins = "".join(f"""    case {number}:
-        labial_player_begin(player, {name}_bytes_{number}, {part.end - part.begin}u);
+        labial_player_init(player, {name}_bytes_{number}, {part.end - part.begin}u);
         break;
 """ for number, part in enumerate(cut))
     times = "".join(f"    case {number}:\n        return {part.begin * 1000 // RATE}ul;\n"
@@ -149,11 +149,11 @@ def _in_parts(name: str, data: np.ndarray, cut: Sequence[Part]) -> str:
 #define {name.upper()}_PARTS {len(cut)}u
 
 {arrays}/* Goes to the beginning of a part, the first of which is 0; there is no frame in one that is not there. */
-static inline void {name}_begin(labial_player_t *player, unsigned part)
+static inline void {name}_init(labial_player_t *player, unsigned part)
 {{
     switch (part) {{
 {begins}    default:
-        labial_player_begin(player, {name}_bytes_0, 0u);
+        labial_player_init(player, {name}_bytes_0, 0u);
         break;
     }}
 }}

@@ -19,14 +19,16 @@ from labial.errors import LabialError, StreamError, pip
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 4
+_INTERFACE = 5
 
-#: Results of include/labial/labial.h that this package distinguishes.
+#: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
-ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_RATE, ERROR_NAME = -5, -6, -7, -9, -11
+ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -9, -11
 
 #: LABIAL_DURATION_MAX: the longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
+#: LABIAL_CANCEL_MAX: the longest way to rest of a cancel, frames.
+CANCEL_MAX = 1000
 #: LABIAL_ARTICULATION_MAX, percent.
 ARTICULATION_MAX = 200
 #: LABIAL_LAUGH_FULL.
@@ -42,7 +44,7 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "bundled_name": (_TEXT, (_NUMBER,)), "bundled_model": (_POINTER, (_NUMBER,)),
     "bundled_names": (_POINTER, (_NUMBER,)),
     "model_phonemes": (_NUMBER, (_POINTER,)), "model_silence": (_NUMBER, (_POINTER,)),
-    "model_rate": (_NUMBER, (_POINTER,)), "model_stride": (_NUMBER, (_POINTER,)),
+    "model_fps": (_NUMBER, (_POINTER,)), "model_stride": (_NUMBER, (_POINTER,)),
     "model_load": (c_int, (_POINTER, _POINTER, _NUMBER)),
     "label_at": (_TEXT, (_POINTER, _NUMBER)), "find": (c_int, (_POINTER, _NUMBER, _TEXT, _NUMBER)),
     "find_nearest": (c_int, (_POINTER, _NUMBER, _TEXT, _NUMBER, _NUMBER)),
@@ -56,7 +58,7 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "mouth_state": (c_int, (_POINTER,)), "mouth_held": (_NUMBER, (_POINTER,)),
     "mouth_milliseconds": (_NUMBER, (_POINTER,)), "mouth_waiting": (_NUMBER, (_POINTER,)),
     "mouth_delay": (_NUMBER, (_POINTER,)),
-    "laugh_begin": (c_int, (_POINTER, _NUMBER, _NUMBER, _NUMBER)), "laugh_next": (c_int, (_POINTER, _POINTER)),
+    "laugh_init": (c_int, (_POINTER, _NUMBER, _NUMBER, _NUMBER)), "laugh_next": (c_int, (_POINTER, _POINTER)),
     "rig_output": (None, (_POINTER, _POINTER, _POINTER)), "rig_check": (c_int, (_POINTER, _NUMBER)),
     "rig_rest": (c_int, (_POINTER, _NUMBER, _POINTER)),
     "rig_apply": (c_int, (_POINTER, _NUMBER, _POINTER, _NUMBER, _POINTER, _POINTER)),
@@ -73,20 +75,21 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "ears_end": (c_int, (_POINTER, _POINTER, _POINTER, _NUMBER)),
     "ears_cancel": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
     "ears_stretches": (_NUMBER, (_POINTER,)), "ears_restart": (c_int, (_POINTER,)),
-    "ears_exact": (c_int, (_POINTER, _NUMBER)),
+    "ears_exact": (c_int, (_POINTER, _NUMBER)), "ears_articulation": (c_int, (_POINTER, _NUMBER)),
     "servos_size": (_NUMBER, (_NUMBER, _NUMBER)), "servos_init": (c_int, (_POINTER, _POINTER, _NUMBER, _NUMBER)),
     "servos_frame": (None, (_POINTER, _POINTER)), "servos_values": (c_int, (_POINTER, _POINTER)),
     "servos_tick": (c_int, (_POINTER, _POINTER)), "servos_play": (c_int, (_POINTER,)),
-    "servos_skip": (c_int, (_POINTER, _NUMBER)), "servos_cancel": (c_int, (_POINTER,)),
+    "servos_skip": (c_int, (_POINTER, _NUMBER)), "servos_cancel": (c_int, (_POINTER, _NUMBER)),
     "servos_soft_start": (c_int, (_POINTER, _NUMBER)), "servos_attached": (_NUMBER, (_POINTER,)),
     "servos_place": (c_int, (_POINTER, _POINTER)),
-    "words_stream_size": (_NUMBER, ()), "words_own_size": (_NUMBER, (_NUMBER,)),
+    "words_size": (_NUMBER, ()), "words_own_size": (_NUMBER, (_NUMBER,)),
     "words_own": (_POINTER, (_POINTER, _NUMBER, _POINTER)), "words_label": (_TEXT, (_NUMBER,)),
     "words_read": (c_int, (_POINTER, _TEXT, _NUMBER, _POINTER)),
-    "words_begin": (c_int, (_POINTER, _POINTER, c_int32)),
-    "words_say": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _NUMBER)),
-    "words_say_characters": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _POINTER, _NUMBER)),
-    "words_flush": (c_int, (_POINTER,)), "words_next": (c_int, (_POINTER, _POINTER)),
+    "words_init": (c_int, (_POINTER, _POINTER, c_int32)),
+    "words_push": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _NUMBER)),
+    "words_push_characters": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _POINTER, _NUMBER)),
+    "words_end": (c_int, (_POINTER,)), "words_restart": (c_int, (_POINTER,)),
+    "words_next": (c_int, (_POINTER, _POINTER)),
 }  # fmt: skip
 
 

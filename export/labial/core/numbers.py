@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 import operator
+import warnings
 from typing import Any
 
 from labial.core.library import DURATION_MAX, ERROR_DURATION, failure
 from labial.errors import StreamError
+
+#: Milliseconds: no sound of speech is shorter.
+SHORTEST = 5.0
 
 
 def number(value: Any, what: str) -> float:
@@ -40,3 +44,10 @@ def duration(value: Any) -> float:
     if not found >= 0.0:
         raise StreamError(ERROR_DURATION, f"{found:g} ms: a duration is a number from 0 on")
     return found
+
+
+def expect_milliseconds(longest: float) -> None:
+    """Warns the caller of the function that calls this where the longest duration it was given is so short that all of
+    them must be seconds."""
+    if 0.0 < longest < SHORTEST:
+        warnings.warn(f"no duration is longer than {longest:g} ms: they are milliseconds, not seconds", stacklevel=3)

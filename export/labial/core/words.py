@@ -84,27 +84,27 @@ def read(text: str, own: Optional[OwnWords] = None) -> Spoken:
 class WordStream:
     """Words in time, in milliseconds, to phonemes; `offset` milliseconds are added to all times.
 
-    Raises StreamError where the library refuses a call (labial_words_say() in include/labial/words.h).
+    Raises StreamError where the library refuses a call (labial_words_push() in include/labial/words.h).
     """
 
     def __init__(self, own: Optional[OwnWords] = None, offset: int = 0) -> None:
-        self._own, self._block = own, memory(library().words_stream_size())
-        checked(library().words_begin(self._block, own.place if own else None, offset))
+        self._own, self._block = own, memory(library().words_size())
+        checked(library().words_init(self._block, own.place if own else None, offset))
 
-    def say(self, text: str, start: int, end: Optional[int]) -> None:
+    def push(self, text: str, start: int, end: Optional[int]) -> None:
         """A word from `start` to `end`, None where that is not known."""
         data = _encoded(text)
-        checked(library().words_say(self._block, data, len(data), start, _NO_END if end is None else end), text)
+        checked(library().words_push(self._block, data, len(data), start, _NO_END if end is None else end), text)
 
-    def say_characters(self, text: str, start: int, ends: Sequence[int]) -> None:
+    def push_characters(self, text: str, start: int, ends: Sequence[int]) -> None:
         """A word and the end of each of its characters."""
         data = _encoded(text)
         times = (ctypes.c_uint32 * max(1, len(ends)))(*ends)
-        checked(library().words_say_characters(self._block, data, len(data), start, times, len(ends)), text)
+        checked(library().words_push_characters(self._block, data, len(data), start, times, len(ends)), text)
 
-    def flush(self) -> None:
-        """No word follows for now."""
-        checked(library().words_flush(self._block))
+    def end(self) -> None:
+        """No more words will come."""
+        checked(library().words_end(self._block))
 
     def take(self) -> List[Tuple[str, int]]:
         """The phonemes that are known, with their milliseconds."""

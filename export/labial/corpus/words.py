@@ -73,11 +73,11 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
     found: List[Tuple[str, int]] = []
     for word in words:
         if word.ends and len(word.text) == len(word.ends) <= CHARACTERS_MAX:
-            stream.say_characters(word.text, word.start, word.ends)
+            stream.push_characters(word.text, word.start, word.ends)
         else:
-            stream.say(word.text, word.start, word.end)
+            stream.push(word.text, word.start, word.end)
         found += stream.take()
-    stream.flush()
+    stream.end()
     return found + stream.take()
 
 

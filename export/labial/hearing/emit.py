@@ -54,7 +54,7 @@ def convert_table() -> str:
                       for rate, way in RATES.items())
     return _table_header("hear_convert_table", "the rates of sound, and the filter that converts them.", "\n".join([
         "/* Samples on each side that the filter takes; grid points between them; tenths between converted ones. */\n"
-        "static const struct {\n    uint32_t rate;\n    uint8_t reach, spacing;\n    uint16_t step;\n"
+        "static const struct {\n    uint32_t samples_per_second;\n    uint8_t reach, spacing;\n    uint16_t step;\n"
         f"}} conversions[{len(RATES)}] = {{\n{ways}\n}};\n",
         "/* The filter from its middle on, Q15, and zeros after it. */\n"
         + _array("int16_t", "filter", integer.tap_table()),
@@ -81,11 +81,14 @@ def check_limits(tables: HearingTables) -> None:
 
 
 def grouped(dense: Dense) -> Dense:
-    """The layer with its rows filled up to fours, and its weights as a row for each group: column by column, four."""
+    """The layer with its rows filled up to fours, and its weights as a row for each group, in the order that
+    ``hear_model.h`` states: for each pair of columns those of the first two rows, then those of the other two."""
     count, columns = dense.weight.shape
     extra = -count % 4
-    weight = np.pad(dense.weight, ((0, extra), (0, 0))).reshape(-1, 4, columns).transpose(0, 2, 1)
-    return Dense(weight.reshape(-1, 4 * columns), np.pad(dense.bias, (0, extra)), np.pad(dense.shift, (0, extra)))
+    padded = np.pad(dense.weight, ((0, extra), (0, 0)))
+    parts = padded.reshape(-1, 2, 2, columns // 2, 2)  # groups, halves of them, their rows, pairs, their columns
+    weight = parts.transpose(0, 3, 1, 4, 2).reshape(-1, 4 * columns)
+    return Dense(weight, np.pad(dense.bias, (0, extra)), np.pad(dense.shift, (0, extra)))
 
 
 def _layer(name: str, dense: Dense) -> List[str]:

@@ -12,7 +12,7 @@ from labial.hearing.model import HearingModel
 from labial.hearing.plans import Memory
 
 #: LABIAL_HEAR_MODEL_FORMAT.
-FORMAT = 1
+FORMAT = 2
 #: One of an activation; of a position.
 ACTIVATION = 512
 POSITION = 16

@@ -16,7 +16,7 @@ from labial.files.faps import CHANNELS
 from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
 
-#: LABIAL_BESIDE_FORMAT and LABIAL_BESIDE_RATE of include/labial/beside.h.
+#: LABIAL_BESIDE_FORMAT and LABIAL_BESIDE_FPS of include/labial/beside.h.
 FORMAT, RATE = 2, 50
 #: Most outputs, and frames of a packet.
 MOST = 255
@@ -41,7 +41,7 @@ class Beside:
 
         lips = labial.Beside("face.toml")
         await socket.send(lips.hello())
-        for packet in lips.packets(labial.render(timings), sample=sent, rate=24000):
+        for packet in lips.packets(labial.render(timings), sample=sent, sample_rate=24000):
             await socket.send(packet.data)  # before the sound of the same time
 
     Samples are counted from the beginning of the connection, with everything that was sent, played or not. A frame's
@@ -93,12 +93,12 @@ class Beside:
         """The first message: the face at rest, and no frame."""
         return self._packet(0, self._next, [])
 
-    def at(self, sample: int, rate: int) -> None:
-        """The next frame is the one that is nearest to sample number `sample` of `rate` a second. Raises LabialError
-        while frames wait, and for numbers out of range."""
+    def at(self, sample: int, sample_rate: int) -> None:
+        """The next frame is the one that is nearest to sample number `sample` of `sample_rate` a second. Raises
+        LabialError while frames wait, and for numbers out of range."""
         if len(self._rows) > self._sent:
             raise LabialError("frames wait: flush them first")
-        number = _frame_at(sample, rate)
+        number = _frame_at(sample, sample_rate)
         if number != self._next:
             self._rows, self._sent = [], 0
         self._next = number
@@ -130,15 +130,15 @@ class Beside:
         waiting = len(self._rows) - self._sent
         return [self._pack(waiting)] if waiting else []
 
-    def packets(self, frames: Iterable[Faps], *, sample: int, rate: int) -> List[Packet]:
+    def packets(self, frames: Iterable[Faps], *, sample: int, sample_rate: int) -> List[Packet]:
         """An utterance whose sound begins with sample number `sample`: :meth:`at`, :meth:`push` and :meth:`flush`."""
-        self.at(sample, rate)
+        self.at(sample, sample_rate)
         return [*self.push(frames), *self.flush()]
 
-    def cancel(self, sample: int, rate: int) -> bytes:
+    def cancel(self, sample: int, sample_rate: int) -> bytes:
         """The message that makes all earlier frames void. `sample` is the number of the next sample that will be sent;
         the toy drops the sound that it has not played, and eases to rest."""
-        self._rows, self._sent, self._next = [], 0, _frame_at(sample, rate)
+        self._rows, self._sent, self._next = [], 0, _frame_at(sample, sample_rate)
         self._rig.rest()
         return self._packet(1, self._next, [])
 
@@ -164,8 +164,8 @@ class Beside:
         return b"".join(chain((head, self._rest), rows))
 
 
-def _frame_at(sample: int, rate: int) -> int:
-    number, per_second = whole(sample, "a sample's number"), whole(rate, "a rate")
+def _frame_at(sample: int, sample_rate: int) -> int:
+    number, per_second = whole(sample, "a sample's number"), whole(sample_rate, "a sample rate")
     if number < 0 or per_second < 1:
         raise LabialError(f"sample {number} at {per_second} a second is no time")
     return (2 * number * RATE + per_second) // (2 * per_second)

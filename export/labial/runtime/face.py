@@ -9,7 +9,7 @@ from typing import Iterable, Mapping, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import DONE, checked, library, memory
-from labial.core.numbers import number, whole
+from labial.core.numbers import duration, number, whole
 from labial.errors import LabialError
 from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig, Values, one_frame
@@ -95,9 +95,11 @@ class Face:
         checked(self._library.servos_skip(self._address, count), "skip")
 
     @alone
-    def cancel(self) -> None:
-        """Drops the frames that wait, where the sound stops; the servos go to rest."""
-        checked(self._library.servos_cancel(self._address), "cancel")
+    def cancel(self, milliseconds: float = 200) -> None:
+        """Drops the frames that wait, where the sound stops; the servos go to rest over so many milliseconds, rounded
+        up to whole frames, 1 to 1,000, or as their limits allow."""
+        length = math.ceil(duration(milliseconds))
+        checked(self._library.servos_cancel(self._address, length), "cancel")
 
     @alone
     def soft_start(self, ticks: int = 25) -> None:

@@ -10,17 +10,17 @@ from functools import cache
 from typing import Any, AsyncIterable, AsyncIterator, Iterable, Iterator, List, NamedTuple, Tuple, Union
 
 from labial.core.guard import Guard, alone
-from labial.core.library import ERROR_STATE, checked, library, memory
-from labial.core.numbers import duration, whole
+from labial.core.library import ARTICULATION_MAX, CANCEL_MAX, ERROR_STATE, checked, library, memory
+from labial.core.numbers import duration, number, whole
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
 from labial.runtime.frame import Frame
 
-#: Frames per second, LABIAL_HEAR_RATE.
+#: Frames per second, LABIAL_HEAR_FPS.
 FPS = 50
 #: Bytes of a sample.
 _SAMPLE = 2
-#: Most frames that the end, or a cancel, delivers.
+#: Most frames that the end delivers, and a cancel before it eases.
 _LAST = 64
 #: Samples that are heard in one call of C.
 _PIECE = 1 << 16
@@ -64,26 +64,26 @@ class Hearing:
     Calls from several threads wait for each other, as those of :class:`labial.Stream`. Closing frees the memory.
 
     Args:
-        rate: samples per second: 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. channels: 1 or 2, of which
-        the mean is heard. model: the name of a model, "hear_small" or "hear_large". exact: the end returns the frames
-        of the sound alone, without the 12 in which the face comes to rest.
+        sample_rate: samples per second: 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. channels: 1 or 2, of
+        which the mean is heard. model: the name of a model, "hear_small" or "hear_large". exact: the end returns the
+        frames of the sound alone, without the 12 in which the face comes to rest.
     """
 
-    def __init__(self, rate: int = 16000, channels: int = 1, *, model: str = "hear_small",
+    def __init__(self, sample_rate: int = 16000, channels: int = 1, *, model: str = "hear_small",
                  exact: bool = False) -> None:
         core, names = library(), models()
         if model not in names:
             raise LabialError(f"{model!r} is no model of hearing: {', '.join(names) or 'there is none'}")
-        self._rate, self._channels = whole(rate, "a rate"), whole(channels, "a number of channels")
+        self._sample_rate, self._channels = whole(sample_rate, "a sample rate"), whole(channels, "a number of channels")
         number = next(k for k in range(len(names)) if core.hearing_name(k).decode("ascii") == model)
         self._names = [core.hearing_class(number, k).decode("ascii") for k in range(core.hearing_classes(number))]
         self._library, self._guard = core, Guard()
         self._memory: Any = memory(core.ears_size())
         self._address = ctypes.addressof(self._memory)
-        if not (0 <= self._rate < 2**32 and 0 <= self._channels < 2**32):
-            raise LabialError(f"a rate of {rate} and {channels} channels are not supported")
-        checked(core.ears_init(self._address, core.hearing_model(number), self._rate, self._channels),
-                f"{rate} samples per second, channels: {channels}")
+        if not (0 <= self._sample_rate < 2**32 and 0 <= self._channels < 2**32):
+            raise LabialError(f"a rate of {sample_rate} and {channels} channels are not supported")
+        checked(core.ears_init(self._address, core.hearing_model(number), self._sample_rate, self._channels),
+                f"{sample_rate} samples per second, channels: {channels}")
         checked(core.ears_exact(self._address, bool(exact)))
         self._number = 0  # of the next frame
         self._part = b""  # the beginning of a sample whose end has not come
@@ -105,7 +105,7 @@ class Hearing:
         for first in range(0, len(samples), step):
             piece = samples[first : first + step]
             count = len(piece) // self._channels
-            room = count * FPS // self._rate + 2
+            room = count * FPS // self._sample_rate + 2
             frames += self._called(self._library.ears_push, room, piece.buffer_info()[0], count)
         return frames
 
@@ -118,11 +118,12 @@ class Hearing:
 
     @alone
     def cancel(self, milliseconds: float = 200) -> List[Frame]:
-        """Drops what is not yet delivered, and returns the frames of the way back to the neutral face, at most a
-        second."""
+        """Drops what is not yet delivered, and returns the frames of the way back to the neutral face, over so many
+        milliseconds, rounded up to whole frames, 1 to 1,000."""
         self._open()
         self._part = b""
-        return self._called(self._library.ears_cancel, _LAST, math.ceil(duration(milliseconds)))
+        length = math.ceil(duration(milliseconds))
+        return self._called(self._library.ears_cancel, min(length * FPS // 1000, CANCEL_MAX) + _LAST, length)
 
     @alone
     def restart(self) -> None:
@@ -130,6 +131,16 @@ class Hearing:
         last one. Raises StreamError before the end."""
         self._open()
         checked(self._library.ears_restart(self._address), "restart")
+
+    @alone
+    def articulation(self, percent: float) -> None:
+        """How far the mouth moves, 0 to 200 percent, as :meth:`labial.Stream.articulation`. Raises LabialError for a
+        number out of range."""
+        self._open()
+        wanted = number(percent, "an articulation")
+        if not 0.0 <= wanted <= ARTICULATION_MAX:
+            raise LabialError(f"an articulation of {wanted:g} is not within 0 .. {ARTICULATION_MAX}")
+        checked(self._library.ears_articulation(self._address, math.floor(wanted + 0.5)), "articulation")
 
     def frames(self, blocks: Iterable[Sound]) -> Iterator[Frame]:
         """The frames of all blocks, to their end."""
@@ -157,7 +168,7 @@ class Hearing:
     def latency(self) -> float:
         """Seconds from a frame's begin until it is known."""
         self._open()
-        return float(self._library.ears_latency(self._address)) / self._rate
+        return float(self._library.ears_latency(self._address)) / 1000.0
 
     @property
     def fps(self) -> int:

@@ -65,7 +65,7 @@ class Model:
 
     def _describe(self, address: int) -> None:
         core = library()
-        self.address, self.stride, self.fps = address, core.model_stride(address), core.model_rate(address)
+        self.address, self.stride, self.fps = address, core.model_stride(address), core.model_fps(address)
         self._count, self.silence = core.model_phonemes(address), core.model_silence(address)
         self._names: Optional[int] = None
         self.phonemes = ()

@@ -8,7 +8,7 @@ import os
 import re
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, TextIO, Tuple, Union
 
-from labial.core.numbers import duration
+from labial.core.numbers import duration, expect_milliseconds
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import Model
@@ -29,17 +29,20 @@ def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter
     is a laugh of that intensity. The other arguments, and the frames, are those of :class:`labial.Stream`: they begin
     and end at rest, for which as a rule 12 follow those of the timings unless they are to be `exact`.
     ``numpy.array(frames, "int16")`` makes an array (T, 13) of them. Raises LabialError, with the number of the timing
-    from 1, and TypeError for anything but timings.
+    from 1, and TypeError for anything but timings; warns where all durations are below 5 ms, as seconds are.
     """
     with Stream(model, laughter=laughter, labels=labels, nearest=nearest, exact=exact) as stream:
+        longest = 0.0
         for place, timing in enumerate(timings, 1):
-            _push(stream, place, timing)
+            longest = max(longest, _push(stream, place, timing))
         stream.end()
         frames = stream.drain()
+    expect_milliseconds(longest)
     return list(zip(*[iter(frames)] * CHANNELS))
 
 
-def _push(stream: Stream, place: int, timing: Any) -> None:
+def _push(stream: Stream, place: int, timing: Any) -> float:
+    """Pushes a timing; returns its milliseconds."""
     if not isinstance(timing, (tuple, list)) or len(timing) != 2:
         raise TypeError(f"timing {place} is no pair of a phoneme and milliseconds")
     phoneme, milliseconds = timing
@@ -52,6 +55,7 @@ def _push(stream: Stream, place: int, timing: Any) -> None:
     except (LabialError, TypeError) as error:
         error.args = (f"timing {place}: {error}",)
         raise
+    return float(milliseconds)
 
 
 def _intensity(text: Optional[str]) -> float:

@@ -12,7 +12,7 @@ from labial.core.library import (
     ARTICULATION_MAX,
     DONE,
     DURATION_MAX,
-    ERROR_RATE,
+    ERROR_FRAME_RATE,
     ERROR_STATE,
     LAUGH_FULL,
     OK,
@@ -120,7 +120,7 @@ class Stream:
             raise LabialError(f"{self._laughter.name} is no model of laughter")
         place = self._place(self._laughter)
         laugh, found = memory(self._library.laugh_size()), (ctypes.c_uint32 * 2)()
-        checked(self._library.laugh_begin(laugh, length, math.floor(loudness * LAUGH_FULL + 0.5), chosen))
+        checked(self._library.laugh_init(laugh, length, math.floor(loudness * LAUGH_FULL + 0.5), chosen))
         items = array("I")
         while self._library.laugh_next(laugh, found) == OK:
             items.extend((place, *found))
@@ -142,8 +142,8 @@ class Stream:
 
     @alone
     def cancel(self, milliseconds: float = 200) -> None:
-        """Drops everything that is not yet delivered, and eases back to the neutral face, in at most 1,000 frames; then
-        the stream is done."""
+        """Drops everything that is not yet delivered, and eases back to the neutral face over so many milliseconds,
+        rounded up to whole frames, 1 to 1,000; then the stream is done."""
         self._open()
         length = math.ceil(duration(milliseconds))
         checked(self._library.mouth_cancel(self._address, length))
@@ -278,7 +278,7 @@ class Stream:
         if model in self._models:
             return self._models.index(model)
         if self._models and (model.fps, model.stride) != (self._models[0].fps, self._models[0].stride):
-            raise failure(ERROR_RATE, model.name)
+            raise failure(ERROR_FRAME_RATE, model.name)
         self._models.append(model)
         return len(self._models) - 1
 

@@ -7,7 +7,7 @@ import math
 from typing import Any, AsyncIterator, Callable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
-from labial.core.library import DURATION_MAX, ERROR_STATE
+from labial.core.library import CANCEL_MAX, DURATION_MAX, ERROR_STATE
 from labial.core.numbers import duration, number
 from labial.corpus.messages import Messages
 from labial.corpus.words import ENGLISH, pronunciation
@@ -143,15 +143,15 @@ class Voice:
         self._finished = True
 
     @alone
-    def cancel(self, fade: float = 0.2) -> None:
-        """Drops all that is not shown yet, and eases to the neutral face in `fade` seconds. What is told of the
-        cancelled utterance is ignored until :meth:`begin`."""
+    def cancel(self, milliseconds: float = 200) -> None:
+        """Drops all that is not shown yet, and eases to the neutral face over so many milliseconds, rounded up to whole
+        frames, 1 to 1,000. What is told of the cancelled utterance is ignored until :meth:`begin`."""
         self._open()
-        steps = math.ceil(duration(number(fade, "a fade") * 1000.0) / 1000.0 * self.fps - 1e-6)
+        steps = math.ceil(duration(milliseconds) * self.fps / 1000.0 - 1e-6)
         self._timeline.clear()
         self._cancelled = self._changed = True
         self._drop_stream()
-        self._fade_from(_NEUTRAL, max(1, min(steps, 1000)))
+        self._fade_from(_NEUTRAL, max(1, min(steps, CANCEL_MAX)))
 
     # ---- What is shown
 

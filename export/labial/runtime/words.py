@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
-from labial.core.numbers import number, whole
+from labial.core.numbers import expect_milliseconds, number, whole
 from labial.corpus.words import (
     ENGLISH,
     LATEST,
@@ -45,14 +45,18 @@ def word_timings(timed: Iterable[TimedWord], *, offset_ms: float = 0,
     `timed` are words as they are written, punctuation included, with their beginnings and ends in milliseconds. An end
     may be None: then the word lasts until the next one, or as long as such a word usually does. `offset_ms` is added to
     all times: a positive number for a voice that reports its words too early. The other arguments are those of
-    :func:`labial.phonemes`. Raises LabialError, with the word, for words that are not in order.
+    :func:`labial.phonemes`. Raises LabialError, with the word, for words that are not in order; warns where all durations
+    are below 5 ms, as seconds are.
     """
-    found = []
+    found, longest, before = [], 0.0, 0.0
     for place, item in enumerate(timed, 1):
         if not isinstance(item, (tuple, list)) or len(item) != 3 or not isinstance(item[0], str):
             raise TypeError(f"word {place} is no text with its beginning and end in milliseconds")
         text, start, end = item
         found.append(Word(text, _time(start), None if end is None else _time(end)))
+        longest = max(longest, float(start) - before, 0.0 if end is None else float(end) - float(start))
+        before = float(start)
+    expect_milliseconds(longest)
     return timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
 
 
@@ -64,6 +68,7 @@ def character_timings(text: Union[str, Sequence[str]], starts: Sequence[float], 
     if not len(text) == len(starts) == len(ends):
         raise LabialError(f"{len(text)} characters have {len(starts)} beginnings and {len(ends)} ends")
     found = words_of_characters(list(text), [_time(time) for time in starts], [_time(time) for time in ends])
+    expect_milliseconds(max((float(end) - float(start) for start, end in zip(starts, ends)), default=0.0))
     return timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
 
 

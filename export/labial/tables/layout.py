@@ -115,7 +115,8 @@ def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
     return [
         Table(f"emissions_{k}", "labial_emission_t", "hBB", emissions, "{ %d, %d, %d }", "states"),
         Table(f"states_{k}", "labial_state_t", "hbbBBBB", states, "{ %d, { %d, %d }, %d, %d, { %d, %d } }", "states"),
-        _flat(f"transitions_{k}", "uint16_t", "H", model.transitions[k], "transitions"),
+        Table(f"transitions_{k}", "labial_transition_t", "BB", model.transitions[k].reshape(-1, 2), "{ %d, %d }",
+              "transitions"),
         _flat(f"initials_{k}", "uint8_t", "B", model.initial[k], "states"),
     ]
 
@@ -144,7 +145,7 @@ def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
         ("phoneme_count", len(model.phonemes), "B"),
         ("class_count", len(model.classes), "B"),
         ("state_count", model.transitions.shape[1], "B"),
-        ("predecessors", model.transitions.shape[2], "B"),
+        ("predecessor_fours", model.transitions.shape[2] // 4, "B"),
         ("search_stride", model.search_stride, "B"),
         ("silence", model.silence, "B"),
         ("mixture_mean", int(model.soft), "B"),

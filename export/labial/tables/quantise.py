@@ -34,7 +34,7 @@ from labial.tables.model import Model
 from labial.tables.phones import phone_set
 
 #: Version of the format.
-FORMAT = 6
+FORMAT = 7
 
 #: The library's limits.
 LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
@@ -48,7 +48,7 @@ _DURATION_DEVIATION_MIN = 0.003
 
 @dataclass(frozen=True)
 class ExportedModel:
-    """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, K predecessors, L taps, C
+    """The tables of ``labial_model_t``. P phonemes, N components, V classes, Q states, 4 K predecessors, L taps, C
     channels, those of a frame that are their own `source` (:func:`labial.tables.followers.solved`); all arrays int64
     that fit the C types; `contexts`, `slopes` and `protrusion` are None where the model has no use for them."""
 
@@ -97,7 +97,7 @@ class ExportedModel:
     state_share: np.ndarray  #: (C, Q) codes of the anchor's share of the hold
     state_weight: np.ndarray  #: (C, Q, 2) codes of a quarter of delta's and of delta-delta's weight
     search_stride: int
-    transitions: np.ndarray  #: (C, Q, K), predecessor | cost << 8
+    transitions: np.ndarray  #: (C, Q, 4 K, 2), predecessor and cost
     protrusion: Optional[np.ndarray] = None  #: (19,) low, gain and values of ``labial_protrusion_t``
     source: np.ndarray = field(default_factory=every)  #: (13,) as of :class:`labial.tables.model.Model`
 
@@ -109,8 +109,8 @@ class ExportedModel:
         """(C, Q, Q) costs [from, to], inf where there is none."""
         states = self.transitions.shape[1]
         dense = np.full((len(self.transitions), states, states), np.inf)
-        channel, to, _ = np.indices(self.transitions.shape)
-        np.minimum.at(dense, (channel, self.transitions & 255, to), self.transitions >> 8)
+        channel, to, _ = np.indices(self.transitions.shape[:3])
+        np.minimum.at(dense, (channel, self.transitions[..., 0], to), self.transitions[..., 1])
         return dense
 
 
@@ -338,11 +338,11 @@ def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
 
 
 def _transitions(model: Model, predecessors: int) -> np.ndarray:
-    """Transitions (13, Q, K): for each state its most frequent predecessors, including itself, in ascending order; the
-    last one is repeated where there are fewer."""
+    """Transitions (13, Q, 4 K, 2), predecessor and cost: for each state its most frequent predecessors, including
+    itself, in ascending order; the last one is repeated where there are fewer."""
     states = model.log_initial.shape[1]
     kept_count = min(predecessors, states)
-    kept_transitions = np.zeros((CHANNELS, states, kept_count), dtype=np.int64)
+    kept_transitions = np.zeros((CHANNELS, states, kept_count + -kept_count % 4, 2), dtype=np.int64)
     for k in range(CHANNELS):
         cost = np.minimum(np.rint(-COST_SCALE * model.log_transition[k]), 1e9)
         usage = _stationary(model.log_transition[k])[:, None] * np.exp(model.log_transition[k])
@@ -351,8 +351,8 @@ def _transitions(model: Model, predecessors: int) -> np.ndarray:
             kept = [int(p) for p in order[:kept_count] if cost[p, q] <= 255 or p == q]
             if q not in kept:
                 kept = kept[: kept_count - 1] + [q]
-            kept = sorted(kept) + [max(kept)] * (kept_count - len(kept))
-            kept_transitions[k, q] = [p | int(min(cost[p, q], 255)) << 8 for p in kept]
+            kept = sorted(kept) + [max(kept)] * (kept_transitions.shape[2] - len(kept))
+            kept_transitions[k, q] = [(p, min(cost[p, q], 255)) for p in kept]
     return kept_transitions
 
 

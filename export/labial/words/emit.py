@@ -15,7 +15,7 @@ from labial.words.times import CLASSES, MILLISECONDS
 #: What alternates in words that cannot be read: it moves the lips and closes nothing.
 FILLER = ("AH", "L")
 #: LABIAL_WORDS_FORMAT of include/labial/words.h.
-FORMAT = 1
+FORMAT = 2
 
 
 def _table(kind: str, name: str, values: Iterable[object]) -> str:
@@ -45,7 +45,7 @@ extern "C" {{
 #endif
 
 /* The tables, {packed.size + len(MILLISECONDS) + len(CLASSES)} bytes and the structure that points to them. */
-extern const labial_words_t {name};
+extern const labial_words_model_t {name};
 
 #ifdef __cplusplus
 }}
@@ -69,7 +69,8 @@ def source(packed: PackedWords, name: str) -> str:
     members = ["LABIAL_WORDS_FORMAT", str(len(PHONEMES)), f"{packed.multiplier}u", "roots", "bases", "leaves", "labels",
                "trees", "buckets", "patches", "phonemes", "milliseconds", "classes",
                f"{{ {', '.join(str(PHONEMES.index(label)) for label in FILLER)} }}"]
-    parts.append(f"\nconst labial_words_t {name} = {{\n" + ",\n".join(f"    {member}" for member in members) + "\n};\n")
+    listed = ",\n".join(f"    {member}" for member in members)
+    parts.append(f"\nconst labial_words_model_t {name} = {{\n{listed}\n}};\n")
     return "".join(parts)
 
 

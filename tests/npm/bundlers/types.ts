@@ -72,10 +72,10 @@ words.characterTimings(["m", "y"], new Float64Array(2), new Float64Array(2));
 const read: Segment[] = words.read([{ word: "go", start: 0, end: 1 }], { format: "words" });
 const live = words.stream({ own });
 const messages = words.reader({ format: "elevenlabs" });
-for (const { text, start, end } of messages.read({}).words) live.say({ text, start, end });
+for (const { text, start, end } of messages.read({}).words) live.push({ text, start, end });
 for (const { label, start, end } of live.take()) speaks.stream().push(label, 1000 * (end - start), { hint: "arpabet" });
 // @ts-expect-error a word has a beginning
-live.say({ text: "go" });
+live.push({ text: "go" });
 // @ts-expect-error phonemes are text
 words.phonemes("go", { own: { go: 5 } });
 // @ts-expect-error this is not the package labial-words
