@@ -77,6 +77,7 @@ class Hearing:
         self._sample_rate, self._channels = whole(sample_rate, "a sample rate"), whole(channels, "a number of channels")
         number = next(k for k in range(len(names)) if core.hearing_name(k).decode("ascii") == model)
         self._names = [core.hearing_class(number, k).decode("ascii") for k in range(core.hearing_classes(number))]
+        self._model = model
         self._library, self._guard = core, Guard()
         self._memory: Any = memory(core.ears_size())
         self._address = ctypes.addressof(self._memory)
@@ -131,6 +132,35 @@ class Hearing:
         last one. Raises StreamError before the end."""
         self._open()
         checked(self._library.ears_restart(self._address), "restart")
+
+    @property
+    @alone
+    def level(self) -> int:
+        """The level of the voice: 1/256 of log2, 85 for a decibel (``labial_hear_level()``). A sound begins at that of
+        the sound before. Set it before the first sound where it is known, such as from :meth:`measure`; then
+        StreamError is raised while a sound is heard, and for a level out of range."""
+        self._open()
+        return int(self._library.ears_level(self._address))
+
+    @level.setter
+    @alone
+    def level(self, level: int) -> None:
+        self._open()
+        value = whole(level, "a level")
+        checked(self._library.ears_set_level(self._address, min(max(value, 0), 2**31 - 1)), f"the level {level}")
+
+    def measure(self, blocks: Iterable[Sound]) -> int:
+        """The level of a sound that is there before it is heard, the largest one of its blocks, which should be of some
+        10 ms: hears all of it, and leaves the stream as if it had not, but for its level, which is now this one. To be
+        called before the first sound."""
+        with Hearing(self._sample_rate, self._channels, model=self._model) as other:
+            found = 0
+            for block in blocks:
+                other.push(block)
+                found = max(found, other.level)
+        if found:
+            self.level = found
+        return self.level
 
     @alone
     def articulation(self, percent: float) -> None:
