@@ -69,8 +69,8 @@ static const struct {
     { 16000, 1, 5, 960, 15, 2, 0x005571c2u, 0xea2ff683u },
 };
 
-/* The same of two sounds of 16 kHz, one after the other: the level that is set, 0 for none, numbers and samples of both;
- * levels when they were heard; frames, and CRC-32 of those of the second. */
+/* The same of two sounds of 16 kHz, one after the other: the level that is set, 0 for none, numbers and samples of
+ * both; levels when they were heard; frames, and CRC-32 of those of the second. */
 static const struct {
     uint32_t set, sound, samples, next, next_samples, level, next_level, frames, next_frames, next_crc;
 } hears_again[] = {

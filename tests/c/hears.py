@@ -107,8 +107,8 @@ AGAIN = ((0, 5, 8000, 6, 12000), (0, 6, 9001, 5, 7000), (4000, 5, 4000, 3, 8000)
 
 HEAD_AGAIN = """};
 
-/* The same of two sounds of 16 kHz, one after the other: the level that is set, 0 for none, numbers and samples of both;
- * levels when they were heard; frames, and CRC-32 of those of the second. */
+/* The same of two sounds of 16 kHz, one after the other: the level that is set, 0 for none, numbers and samples of
+ * both; levels when they were heard; frames, and CRC-32 of those of the second. */
 static const struct {
     uint32_t set, sound, samples, next, next_samples, level, next_level, frames, next_frames, next_crc;
 } hears_again[] = {

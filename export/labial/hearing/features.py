@@ -38,9 +38,9 @@ LOWEST, HIGHEST = 120.0, 7600.0
 FLOOR = 1.0
 LEVEL_LEAST = 13.0
 DECAY = 0.008
-#: log2 energies: the level before any sound; by how much it falls for each hop until a hop reaches it; how far below it,
-#: or above the noise, a hop is that begins a voice. Chosen on clips that the bundled networks learned, with noise 40 dB
-#: below the voice and without, at peaks of -6, -24 and -40 dB.
+#: log2 energies: the level before any sound; by how much it falls for each hop until a hop reaches it; how far below
+#: it, or above the noise, a hop is that begins a voice. Chosen on clips that the bundled networks learned, with noise 40
+#: dB below the voice and without, at peaks of -6, -24 and -40 dB.
 LEVEL_BEGIN = 26.0
 SEARCH = 0.03
 NEAR_LEVEL, RISE = 4.0, 3.0
@@ -104,8 +104,8 @@ def log_energies(sound: np.ndarray) -> np.ndarray:
 
 
 def levels(energies: np.ndarray, begin: float = LEVEL_BEGIN) -> np.ndarray:
-    """(n,) the level in each hop of a sound's log2 energies (n, 24). Without its samples a hop counts as sound unless it
-    is digital silence."""
+    """(n,) the level in each hop of a sound's log2 energies (n, 24). A hop counts as sound unless it is digital
+    silence; the library also calls steps of 32 silence."""
     mean = np.asarray(energies, dtype=np.float64).mean(axis=-1)
     level, waiting, fall = begin, True, SEARCH
     quietest, before = np.inf, np.inf

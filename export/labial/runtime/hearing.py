@@ -22,6 +22,8 @@ FPS = 50
 _SAMPLE = 2
 #: Most frames that the end delivers, and a cancel before it eases.
 _LAST = 64
+#: LABIAL_HEAR_LEVEL_MIN, and how often a second the level is looked at.
+_LEVEL_MIN, _LOOKS = 3328, 100
 #: Samples that are heard in one call of C.
 _PIECE = 1 << 16
 
@@ -137,8 +139,8 @@ class Hearing:
     @alone
     def level(self) -> int:
         """The level of the voice: 1/256 of log2, 85 for a decibel (``labial_hear_level()``). A sound begins at that of
-        the sound before. Set it before the first sound where it is known, such as from :meth:`measure`; then
-        StreamError is raised while a sound is heard, and for a level out of range."""
+        the sound before. Set it before a sound where it is known; StreamError is raised while one is heard, and
+        for a level out of range."""
         self._open()
         return int(self._library.ears_level(self._address))
 
@@ -149,18 +151,19 @@ class Hearing:
         value = whole(level, "a level")
         checked(self._library.ears_set_level(self._address, min(max(value, 0), 2**31 - 1)), f"the level {level}")
 
-    def measure(self, blocks: Iterable[Sound]) -> int:
-        """The level of a sound that is there before it is heard, the largest one of its blocks, which should be of some
-        10 ms: hears all of it, and leaves the stream as if it had not, but for its level, which is now this one. To be
-        called before the first sound."""
+    def measure(self, sound: Sound) -> int:
+        """Sets the level to the largest one of a whole sound that is there before it is heard, and returns it: so the
+        first word, too, is heard at its level. To be called before the first sound; it hears all of the sound, in
+        another stream."""
         with Hearing(self._sample_rate, self._channels, model=self._model) as other:
-            found = 0
-            for block in blocks:
-                other.push(block)
+            other.level = found = _LEVEL_MIN
+            samples = other._samples(sound)
+            step = self._sample_rate // _LOOKS * self._channels
+            for first in range(0, len(samples), step):
+                other.push(samples[first : first + step])
                 found = max(found, other.level)
-        if found:
-            self.level = found
-        return self.level
+        self.level = found
+        return found
 
     @alone
     def articulation(self, percent: float) -> None:
