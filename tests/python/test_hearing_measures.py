@@ -201,8 +201,8 @@ def test_the_command_judges(tmp_path: Path, capsys: pytest.CaptureFixture) -> No
     assert [row[:3] for row in rows[:3]] == [[f"{tmp_path.name}/speech", "clean", name]
                                              for name in ("network", "integers", "loudness")]
     assert len(rows) == 12 and rows[-1][:2] == ["espeak:en-us", "telephone"]
-    for network, integers in zip(rows[6::3], rows[7::3]):  # in speech: in silence the library rests
-        assert float(integers[4]) == pytest.approx(float(network[4]), abs=0.03)
+    for network, integers in zip(rows[6::3], rows[7::3]):  # in speech, where the library rests in pauses alone
+        assert float(integers[4]) == pytest.approx(float(network[4]), abs=0.06)
     for option, wrong, message in (("--methods", "network,magic", "--methods: 'magic' is not one of network"),
                                    ("--conditions", "dirty", "'dirty' is not one of clean")):
         assert main([*given, str(folder), option, wrong]) == 1 and message in capsys.readouterr().err

@@ -184,8 +184,9 @@ def table(rows: Sequence[Row]) -> str:
     lines = [f"| {' | '.join(COLUMNS)} |", f"|{'---|' * 3}{'---:|' * (len(COLUMNS) - 3)}"]
     for row in rows:
         f = row.figures
-        lines.append(f"| {row.sounds} | {row.condition} | {row.method} | {f.opening:.3f} | {f.speech:.3f} | "
-                     f"{row.tenth:.2f} | {f.channels:.3f} | {f.closed:.2f} | {f.false:.2f} | {f.jerk:.2f} | {row.delay} |")
+        cells = (f"{f.opening:.3f}", f"{f.speech:.3f}", f"{row.tenth:.2f}", f"{f.channels:.3f}", f"{f.closed:.2f}",
+                 f"{f.false:.2f}", f"{f.jerk:.2f}", str(row.delay))
+        lines.append(f"| {row.sounds} | {row.condition} | {row.method} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 

@@ -39,8 +39,8 @@ FLOOR = 1.0
 LEVEL_LEAST = 13.0
 DECAY = 0.008
 #: log2 energies: the level before any sound; by how much it falls for each hop until a hop reaches it; how far below
-#: it, or above the noise, a hop is that begins a voice. Chosen on clips that the bundled networks learned, with noise 40
-#: dB below the voice and without, at peaks of -6, -24 and -40 dB.
+#: it, or above the noise, a hop is that begins a voice. Chosen on clips that the bundled networks learned, with noise
+#: 40 dB below the voice and without, at peaks of -6, -24 and -40 dB.
 LEVEL_BEGIN = 26.0
 SEARCH = 0.03
 NEAR_LEVEL, RISE = 4.0, 3.0

@@ -215,7 +215,8 @@ def levels(energies: np.ndarray, silent: np.ndarray, begin: int) -> Levels:
 def normalise(energies: np.ndarray, level: np.ndarray) -> np.ndarray:
     """(n, 24) int64, features in Q9 of log2 energies (n, 24) at levels (n,), both in 1/256."""
     low, high = (round(end * LOG) for end in RANGE)
-    return (np.clip(energies - level[:, None], low, high) + round(OFFSET * LOG)) >> 1
+    result: np.ndarray = (np.clip(energies - level[:, None], low, high) + round(OFFSET * LOG)) >> 1
+    return result
 
 
 # ---- The network -----------------------------------------------------------------------------------------------------
