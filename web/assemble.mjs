@@ -1,11 +1,12 @@
 // Writes the generated files of the packages:
 //
 //     node assemble.mjs scripts FOLDER SCRIPT...      without comments and indentation, by a third smaller
+//     node assemble.mjs text FILE SCRIPT              a script's text as another script's default export
 //     node assemble.mjs data FILE WASM NOTICE         a file of bytes as a script's default export, below a notice
 //     node assemble.mjs model FILE WASM NAME NOTICE   the model that a module exports, as a binary one, in the same way
 //     node assemble.mjs faces FOLDER DESCRIPTION...   the types of all faces' weights
-//     node assemble.mjs commonjs FOLDER               index.cjs and *.d.cts, from what is in the folder by then
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+//     node assemble.mjs licence FILE LICENSE NOTICE NAME...   LICENSE, and NOTICE on the models of these names
+import { readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { constants, deflateRawSync } from "node:zlib";
 import { binary } from "./layout.mjs";
@@ -14,15 +15,41 @@ import { unpack } from "./unpack.js";
 const read = (path) => readFileSync(path, "utf8");
 
 /** A comment is what stands on lines of its own, or behind `;`, `,`, `{` or `)` and a blank up to the line's end, which no
- * text in these scripts has; index.d.ts keeps those that users need. A text of several lines stays as it is. */
+ * text in these scripts has; index.d.ts keeps those that users need. A text of several lines stays as it is. A source map
+ * has the script as it was written. */
 function scripts(folder, ...paths) {
     for (const path of paths) {
-        const code = read(path)
-            .replace(/^[ \t]*(\/\*\*[^]*?\*\/|\/\/.*)\n/gm, "")
-            .replace(/(?<=[;,{)]) (\/\/ .*|\/\*.*\*\/)$/gm, "")
-            .replace(/`[^`]*`|^\s+/gm, (found) => (found.startsWith("`") ? found : ""));
-        writeFileSync(join(folder, basename(path)), code);
+        const name = basename(path);
+        const written = read(path);
+        const marked = written.split("\n").map((line, i) => `${line}\0${i}`).join("\n"); // each line with its number
+        const kept = marked
+            .replace(/^[ \t]*(\/\*(?!!)[^]*?\*\/|\/\/.*?)\0\d+\n/gm, "")
+            .replace(/(?<=[;,{)]) (\/\/ .*?|\/\*.*\*\/)(?=\0)/gm, "")
+            .replace(/`[^`]*`|^\s+(?=\S)/gm, (found) => (found.startsWith("`") ? found : ""))
+            .split("\n").filter((line) => !/^\s*\0/.test(line));
+        const numbers = kept.map((line) => Number(line.split("\0")[1]));
+        const map = { version: 3, file: name, sources: [`source/${name}`], sourcesContent: [written], names: [],
+            mappings: numbers.map((line, i) => `AA${signed(line - (numbers[i - 1] ?? 0))}A`).join(";") };
+        const code = kept.map((line) => line.split("\0")[0]).join("\n");
+        writeFileSync(join(folder, name), `${code}\n//# sourceMappingURL=${name}.map\n`);
+        writeFileSync(join(folder, `${name}.map`), JSON.stringify(map));
     }
+}
+
+function text(file, script) {
+    const code = read(script).replace(/^\/\/# sourceMappingURL=.*\n/m, "");
+    writeFileSync(file, `export default ${JSON.stringify(code)};\n`);
+}
+
+/** A number of a source map: base64 digits of five bits, the lowest first, the sign in the lowest bit. */
+function signed(value) {
+    let text = "";
+    let rest = value < 0 ? (-value << 1) | 1 : value << 1;
+    do {
+        text += "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"[(rest & 31) | (rest > 31 ? 32 : 0)];
+        rest >>= 5;
+    } while (rest);
+    return text;
 }
 
 /** A raw deflate stream, split at multiples of 512 bytes where new codes save bytes: 1 % shorter than zlib's. */
@@ -64,37 +91,18 @@ function faces(folder, ...paths) {
         "\nexport type Face = keyof Faces;\n");
 }
 
-/** One script of the modules, each a function that returns what it exports. Node's require() cannot take an ES module before
- * version 20.19; a bundler never sees this file (the condition "module" in package.json). */
-function commonjs(folder) {
-    const done = new Map();
-    const add = (name) => {
-        if (done.has(name)) return;
-        const code = read(join(folder, `${name}.js`));
-        if (code.startsWith("/*!")) { // data, of which there is one copy
-            const path = `require("node:path").join(__dirname, "${name}.js")`;
-            done.set(name, `const in_${name} = require("node:fs").readFileSync(${path}, "utf8").split('export default "')[1].slice(0, -3);\n`);
-            return;
-        }
-        const exported = [];
-        const take = (all, from) => {
-            add(from);
-            return `const ${all} = in_${from};\n`;
-        };
-        const body = code
-            .replace(/^import (?:\* as )?(\w+|\{.*\}) from "\.\/(\w+)\.js";\n/gm, (_, all, from) => take(all, from))
-            .replace(/^export \{(.*)\};\n/gm, (_, names) => (exported.push(names), ""))
-            .replace(/^export (?=(?:async )?(?:const|class|function\*?) (\w+))/gm, (_, one) => (exported.push(one), ""));
-        if (/^(import|export)\b/m.test(body)) throw new Error(`${name}.js: an import or export that is not known`);
-        done.set(name, `const in_${name} = (() => {\n${body}return { ${exported.join(", ")} };\n})();\n`);
-    };
-    add("index");
-    writeFileSync(join(folder, "index.cjs"), `"use strict";\n${[...done.values()].join("")}module.exports = in_index;\n`);
-    for (const name of ["index", "faces"].filter((one) => existsSync(join(folder, `${one}.d.ts`)))) {
-        writeFileSync(join(folder, `${name}.d.cts`), read(join(folder, `${name}.d.ts`)).replaceAll('"./faces.js"', '"./faces.cjs"'));
-    }
+/** The code's licence, then the notices of the models and tables that are in a package, from NOTICE. */
+function licence(file, code, notice, ...names) {
+    const sections = new Map([...read(notice).matchAll(/^(\S.*):\n\n((?: {4}.*\n|\n)+)/gm)]
+        .flatMap(([, title, text]) => title.split(", ").map((name) => [name, text])));
+    const inside = [...new Set(names.map((name) => {
+        if (!sections.has(name)) throw new Error(`${notice}: nothing about ${name}`);
+        return sections.get(name);
+    }))];
+    const listed = `What the package contains besides that code: ${names.join(", ")}.\n\n`;
+    writeFileSync(file, `${read(code)}\n${listed}${inside.map((text) => text.trimEnd()).join("\n\n")}\n`);
 }
 
 const [, , what, ...rest] = process.argv;
 const data = (file, wasm, notice) => packed(file, readFileSync(wasm), notice);
-await { scripts, data, model, faces, commonjs }[what](...rest);
+await { scripts, text, data, model, faces, licence }[what](...rest);

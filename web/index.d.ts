@@ -44,7 +44,7 @@ export interface Model {
     /** The number of silence. */
     readonly silence: number;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
 }
 
 export interface StreamOptions<O extends Output = Output> {
@@ -101,7 +101,7 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     /** When that frame is due, seconds after the first. */
     readonly time: number;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** The model of the next push. */
     readonly model: Model;
     /** The stream was ended or cancelled, and every frame was delivered. */
@@ -115,12 +115,12 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     free(): void;
 }
 
-/** The motion of a whole utterance. Frame k is due k / rate seconds after the sound begins. It begins and ends at rest, as
+/** The motion of a whole utterance. Frame k is due k / fps seconds after the sound begins. It begins and ends at rest, as
  * a rule 12 frames after the last segment, unless it was to be exact. */
 export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly output: O;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** Number of frames. */
     readonly length: number;
     /** Seconds. */
@@ -201,7 +201,7 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     /** The time that is heard now; null without an AudioContext. */
     readonly now: number | null;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** Seconds from a frame's begin in the sound until it is known: 0.12. */
     readonly latency: number;
     /** Seconds by which the sound of a source is played later, so that lips are known by then; 0 for a sound that is
@@ -214,6 +214,10 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     /** The sound of a source in step with the lips, to be connected where `play` is false; null for a sound that is
      * pushed. */
     readonly sound: Dom<"AudioNode"> | null;
+    /** "ended": the element or the node that is heard has played to its end. "lost": the stream has lost its sound, since
+     * the microphone was unplugged or forbidden, or the connection closed. Both when the sound before that was heard. */
+    addEventListener(type: "ended" | "lost", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
+    removeEventListener(type: "ended" | "lost", listener: (event: { readonly type: string }) => void): void;
     /** Lets go of the source. A hearing with a source stays until then. */
     close(): void;
 }
@@ -336,7 +340,7 @@ export interface VoiceOptions<O extends Output = Output> extends WordOptions {
 }
 
 /** Lips that follow a voice whose words or phonemes become known while it is heard. Times of what is told are seconds
- * from the beginning of the utterance, all others those of the clock. A frame is due when number / rate seconds of the
+ * from the beginning of the utterance, all others those of the clock. A frame is due when number / fps seconds of the
  * sound were heard; it is final once it was shown. */
 export class Voice<O extends Output = "faps"> {
     #private;
@@ -377,10 +381,13 @@ export class Voice<O extends Output = "faps"> {
     /** The time that is heard now; null while nothing is heard. Throws without a clock. */
     readonly now: number | null;
     /** Frames per second. */
-    readonly rate: number;
+    readonly fps: number;
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;
+    /** "ended": all of the utterance was shown, after finish(). */
+    addEventListener(type: "ended", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
+    removeEventListener(type: "ended", listener: (event: { readonly type: string }) => void): void;
     /** Frees the memory at once; otherwise the garbage collector does. */
     close(): void;
 }

@@ -1,5 +1,5 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, allowed, amount, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
@@ -29,7 +29,7 @@ const LABEL_MAX = 256;
 /** Most bytes of a model. */
 const MODEL_MAX = 2 ** 26;
 /** What other packages take, since their own sources would be copies. */
-const TOOLS = { LabialError, Memory, amount, shown, unpack, timings };
+const TOOLS = { LabialError, Memory, allowed, amount, shown, unpack, timings };
 const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
 
 /** A model for streams, bundled or loaded. */
@@ -40,7 +40,7 @@ export class Model {
         this.names = names;
         this.phonemes = wasm.model_phonemes(at);
         this.silence = wasm.model_silence(at);
-        this.rate = wasm.model_fps(at);
+        this.fps = wasm.model_fps(at);
         this.stride = wasm.model_stride(at);
         Object.freeze(this);
     }
@@ -84,7 +84,7 @@ export class Labial {
     static async load(options = {}) {
         const { wasm, laughter } = options;
         const code = (await wasm) ?? unpack(speech);
-        const made = await WebAssembly.instantiate(code, {});
+        const made = await allowed(WebAssembly.instantiate(code, {}));
         const labial = new Labial(made.instance ?? made, options);
         if (laughter && typeof laughter !== "function") await labial.laughter();
         return labial;
@@ -119,7 +119,7 @@ export class Labial {
         this.checkOutput(output);
         const stream = new Stream(this, options);
         try {
-            return new Track(this, output, stream.model.rate, speak(stream, segments));
+            return new Track(this, output, stream.model.fps, speak(stream, segments));
         } finally {
             stream.free();
         }

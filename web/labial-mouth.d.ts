@@ -5,7 +5,10 @@ import type { Faps, Hearing, Stream, Track, Voice } from "./index.js";
  *
  * A source is a track, a stream, a hearing or a voice with the output "faps"; setting one starts it. With an audio element, the
  * drawn frame is within half a frame period of the sound, at any speed and, for a track, through jumps. After the sound's
- * end the source continues by the clock, and so does a source without a sound. */
+ * end the source continues by the clock, and so does a source without a sound.
+ *
+ * The event "ended" tells that the source has ended by itself and was drawn, "lost" that the stream that is heard has lost
+ * its sound: a microphone that was unplugged, a connection that closed. */
 export class LabialMouth extends HTMLElement {
     /** The sound to follow: the one that was set, else the element whose id the attribute `for` names. */
     get audio(): HTMLMediaElement | null;
@@ -22,6 +25,8 @@ export class LabialMouth extends HTMLElement {
     /** The voice that is followed and drawn: by its own clock, or, where it has none, by the sound to follow. */
     get voice(): Voice<"faps"> | null;
     set voice(voice: Voice<"faps"> | null);
+    /** Seconds of the source that are drawn. */
+    readonly position: number;
     /** The drawn frame: 13 FAPs, interpolated for a track. The same object each time. */
     readonly faps: Float32Array;
     /** Draws the given frame. Throws a TypeError unless there are 13 FAPs. */
@@ -30,6 +35,11 @@ export class LabialMouth extends HTMLElement {
      * when the face is at rest, or when another source is set. */
     cancel(milliseconds?: number): Promise<void>;
 }
+
+/** Adds a style to a shadow root. */
+export function adopt(root: ShadowRoot, style: string): void;
+/** Defines an element, unless there is one of this name. */
+export function define(name: string, element: CustomElementConstructor): void;
 
 declare global {
     interface HTMLElementTagNameMap {

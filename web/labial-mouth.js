@@ -8,7 +8,7 @@ class TrackPlayer {
 
     constructor(track) {
         this.#track = track;
-        this.period = 1 / track.rate;
+        this.period = 1 / track.fps;
     }
 
     at(seconds) {
@@ -47,7 +47,7 @@ class StreamPlayer {
 
     constructor(stream) {
         this.#stream = stream;
-        this.period = 1 / stream.rate;
+        this.period = 1 / stream.fps;
     }
 
     /** Ticks until the due frame is ready, or until none comes; then the last one stays. */
@@ -85,7 +85,7 @@ class HearingPlayer {
 
     constructor(hearing) {
         this.#hearing = hearing;
-        this.period = 1 / hearing.rate;
+        this.period = 1 / hearing.fps;
     }
 
     at(seconds) {
@@ -113,7 +113,7 @@ class VoicePlayer {
     constructor(voice) {
         this.#voice = voice;
         this.#clock = voice.clock !== null;
-        this.period = 1 / voice.rate;
+        this.period = 1 / voice.fps;
     }
 
     at(seconds) {
@@ -131,18 +131,22 @@ class VoicePlayer {
     }
 }
 
-const STYLE = ":host, div, svg { display: block } div, svg { width: 100%; height: 100% }";
-
 /** Node has no elements, but the module may be imported there. */
 const Base = globalThis.HTMLElement ?? class {};
 
 export class LabialMouth extends Base {
+    /** What draws, and the style of what is around it. */
+    static create = createMouth;
+    static style = ":host, div, svg { display: block } div, svg { width: 100%; height: 100% }";
+
     #draw;
     #faps = new Float32Array(CHANNELS.length);
     #source = null;
     #player = null;
     #audio = null;
     #position = 0; // seconds
+    #over = false; // the source was drawn to its end
+    #told = new AbortController(); // of the source's events
     #before = null; // when the last animation frame was, milliseconds
     #asked = 0; // the next animation frame
     #rest = null; // of a source that is cancelled: the promise of cancel() and what resolves it
@@ -150,9 +154,11 @@ export class LabialMouth extends Base {
     constructor() {
         super();
         const root = this.attachShadow({ mode: "open" });
-        root.innerHTML = `<style>${STYLE}</style><div></div>`;
-        this.#draw = createMouth(root.querySelector("div"));
-        this.show(this.#faps);
+        const place = document.createElement("div");
+        root.append(place);
+        adopt(root, new.target.style);
+        this.#draw = new.target.create(place);
+        this.#draw(this.#faps);
     }
 
     connectedCallback() {
@@ -171,6 +177,11 @@ export class LabialMouth extends Base {
 
     set audio(audio) {
         this.#audio = audio;
+    }
+
+    /** Seconds of the source that are drawn. */
+    get position() {
+        return this.#position;
     }
 
     get track() {
@@ -235,8 +246,14 @@ export class LabialMouth extends Base {
     #take(source, player) {
         this.#rested();
         this.#source = source || null;
+        this.#told.abort();
+        this.#told = new AbortController();
+        for (const type of ["ended", "lost"]) {
+            source?.addEventListener?.(type, () => this.dispatchEvent(new Event(type)), this.#told);
+        }
         this.#player = player || null;
         this.#position = 0;
+        this.#over = false;
         this.#before = null;
         if (!player) this.#halt();
         this.#ask();
@@ -265,7 +282,13 @@ export class LabialMouth extends Base {
         this.#position = this.#moment(audio, (now - (this.#before ?? now)) / 1000);
         this.#before = now;
         this.show(player.at(this.#position));
-        if (player.over(this.#position)) {
+        const over = player.over(this.#position);
+        if (over !== this.#over) {
+            this.#over = over;
+            if (over && !this.#rest) this.dispatchEvent(new Event("ended"));
+            if (player !== this.#player) return; // a listener has set another source
+        }
+        if (over) {
             if (this.#rest) this.#take(null, null);
             if (!audio) return;
         }
@@ -281,4 +304,16 @@ export class LabialMouth extends Base {
     }
 }
 
-globalThis.customElements?.define("labial-mouth", LabialMouth);
+/** Adds a style to a shadow root: a page may allow only style sheets of its own files, and scripts' sheets. */
+export function adopt(root, style) {
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync(style);
+    root.adoptedStyleSheets = [...root.adoptedStyleSheets, sheet];
+}
+
+/** Defines an element, unless a copy of the package, perhaps another version, has done so. */
+export function define(name, element) {
+    if (globalThis.customElements && !customElements.get(name)) customElements.define(name, element);
+}
+
+define("labial-mouth", LabialMouth);

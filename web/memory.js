@@ -21,6 +21,17 @@ export class LabialError extends Error {
     }
 }
 
+/** What is compiled or instantiated, or a LabialError that names what the page's policy lacks. */
+export async function allowed(made) {
+    try {
+        return await made;
+    } catch (error) {
+        if (!/unsafe-eval|wasm-eval|content.?security|\bCSP\b/i.test(error?.message)) throw error;
+        throw Object.assign(new LabialError("the page's content security policy forbids WebAssembly: " +
+            "add 'wasm-unsafe-eval' to its script-src"), { cause: error });
+    }
+}
+
 /** Pieces of linear memory, aligned to eight bytes: the first gap that is large enough, else more pages. */
 export class Memory {
     #memory;

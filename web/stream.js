@@ -96,7 +96,7 @@ export class Stream {
         this.#open();
         const next = this.#modelOf(model);
         const first = this.#fed;
-        if (next.rate !== first.rate || next.stride !== first.stride) throw this.#labial.failure(ERROR_FRAME_RATE);
+        if (next.fps !== first.fps || next.stride !== first.stride) throw this.#labial.failure(ERROR_FRAME_RATE);
         this.#models.add(next);
         this.#model = next;
     }
@@ -187,11 +187,11 @@ export class Stream {
     }
 
     get time() {
-        return this.#number / this.rate;
+        return this.#number / this.fps;
     }
 
-    get rate() {
-        return this.#fed.rate;
+    get fps() {
+        return this.#fed.fps;
     }
 
     get model() {
@@ -210,9 +210,9 @@ export class Stream {
         const at = this.#open();
         let waiting = 0;
         for (let i = this.#head; i < this.#waiting.length; i += 3) waiting += this.#waiting[i + 2];
-        const frames = this.#labial.wasm.mouth_held(at) + Math.round((waiting * this.rate) / 1000);
+        const frames = this.#labial.wasm.mouth_held(at) + Math.round((waiting * this.fps) / 1000);
         const delay = this.#labial.wasm.mouth_delay(at);
-        return { frames, milliseconds: Math.round((1000 * frames) / this.rate), delay };
+        return { frames, milliseconds: Math.round((1000 * frames) / this.fps), delay };
     }
 
     free() {

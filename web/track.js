@@ -11,13 +11,13 @@ export class Track {
     #between = new Float32Array(CHANNELS);
     #weights = {};
 
-    constructor(labial, output, rate, faps) {
+    constructor(labial, output, fps, faps) {
         this.#labial = labial;
         this.output = output;
-        this.rate = rate;
+        this.fps = fps;
         this.faps = faps;
         this.length = faps.length / CHANNELS;
-        this.duration = this.length / rate;
+        this.duration = this.length / fps;
     }
 
     at(seconds) {
@@ -26,7 +26,7 @@ export class Track {
         }
         const between = this.#between;
         const last = this.length - 1;
-        const place = Math.max(0, Math.min(last, seconds * this.rate));
+        const place = Math.max(0, Math.min(last, seconds * this.fps));
         const first = Math.floor(place);
         const from = CHANNELS * first;
         const to = CHANNELS * Math.min(last, first + 1);

@@ -1,4 +1,4 @@
-"""Draws mouth.webp, the moving mouth of README.md: the demo's sentence, drawn by the mouth of Labial's pages.
+"""Draws mouth.webp, the moving face of README.md: the demo's sentence, drawn by the face of Labial's pages.
 
     cmake --workflow --preset demo
     python3 docs/images/mouth.py build/demo/labial-demo.html docs/images/mouth.webp
@@ -21,7 +21,7 @@ from typing import List
 from PIL import Image
 
 #: Pixels of a frame, frames in a row of the picture that is cut up.
-WIDTH, HEIGHT, ROW = 240, 230, 10
+WIDTH, HEIGHT, ROW = 200, 230, 10
 
 #: Every second frame of 50 per second is shown; browsers show pictures for no less than 20 ms.
 STEP = 2
@@ -52,11 +52,17 @@ def picture(frames: List[List[int]], folder: Path) -> Image.Image:
 <style>body{{margin:0;width:{ROW * WIDTH}px;font-size:0}}
 div{{display:inline-block;width:{WIDTH}px;height:{HEIGHT}px}}</style>
 <body><script type="module">{MOUTH.read_text(encoding="utf-8")}
-for (const frame of {json.dumps(frames)}) {{
+{json.dumps(frames)}.forEach((frame, number, frames) => {{
   const place = document.createElement("div");
   document.body.append(place);
-  createMouth(place)(frame);
-}}
+  const draw = createFace(place);
+  frames.slice(0, number + 1).forEach(draw); // brows follow slowly
+  for (const animation of place.getAnimations({{ subtree: true }})) {{
+    animation.pause();
+    animation.currentTime = 2000 + {20 * STEP} * number; // it blinks in the second second
+    animation.effect.updateTiming({{ delay: 0 }});
+  }}
+}});
 </script>""", encoding="utf-8")
     drawn = folder / "mouths.png"
     subprocess.run([os.environ.get("LABIAL_CHROMIUM", "chromium"), "--headless=new", "--no-sandbox", "--disable-gpu",
@@ -76,7 +82,7 @@ def main(page: str, output: str) -> None:
     for number in range(len(frames)):
         left, top = number % ROW * WIDTH, number // ROW * HEIGHT
         pictures.append(sheet.crop((left, top, left + WIDTH, top + HEIGHT)))
-    pictures[0].save(output, save_all=True, append_images=pictures[1:], duration=20 * STEP, loop=0, quality=70,
+    pictures[0].save(output, save_all=True, append_images=pictures[1:], duration=20 * STEP, loop=0, quality=50,
                      method=6)  # fmt: skip
     print(f"{output}: {len(frames)} frames, {os.path.getsize(output)} bytes")
 

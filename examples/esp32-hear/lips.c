@@ -38,8 +38,8 @@ static uint32_t workspace[HEAR_SMALL_WORKSPACE_SIZE / 4];
 /* Shared. Hearing is ended where the sound is, and begins again with the next: from sample `base` on, frames are counted
  * from `base_frame`; those of the sound before end there. */
 static struct {
-    uint32_t rate;   /* 0 before lips_begin() */
-    uint32_t begins; /* calls of that */
+    uint32_t samples_per_second; /* 0 before lips_begin() */
+    uint32_t begins;             /* calls of that */
     unsigned channels;
     int64_t fed;         /* samples so far */
     uint32_t lasts;      /* the latest that were fed at once */
@@ -76,7 +76,7 @@ static void begin_hearing(void)
         SLEEP();
 }
 
-int lips_begin(uint32_t rate, unsigned channels)
+int lips_begin(uint32_t samples_per_second, unsigned channels)
 {
     begin_hearing();
     LOCK();
@@ -85,13 +85,13 @@ int lips_begin(uint32_t rate, unsigned channels)
     shared.begins = begins + 1;
     UNLOCK();
     const int result =
-        labial_hear_init(&hear, &hear_small, rate, channels, workspace, sizeof workspace, on_frame, NULL);
+        labial_hear_init(&hear, &hear_small, samples_per_second, channels, workspace, sizeof workspace, on_frame, NULL);
     if (result == LABIAL_OK) {
         (void)labial_hear_exact(&hear, 1); /* a frame for each 20 ms of the sound, and none that has no sound */
         LOCK();
-        shared.rate = rate;
+        shared.samples_per_second = samples_per_second;
         shared.channels = channels;
-        (void)labial_clock_init(&shared.clock, rate);
+        (void)labial_clock_init(&shared.clock, samples_per_second);
         UNLOCK();
     }
     atomic_flag_clear(&hears);
@@ -139,7 +139,7 @@ static int64_t due(int64_t now)
 {
     int64_t sample;
     const int64_t lead = LIPS_LEAD * MS, silence = labial_clock_at(&shared.clock, now + lead, &sample);
-    const int64_t per_frame = shared.rate / LABIAL_HEAR_FPS;
+    const int64_t per_frame = shared.samples_per_second / LABIAL_HEAR_FPS;
     if (silence < 0 || silence - lead > LIPS_GRACE * MS)
         return -1;
     if (sample >= shared.base)
@@ -161,7 +161,8 @@ static const int16_t *heard(int64_t frame)
 static void end_sound(int64_t now)
 {
     LOCK();
-    const int64_t fed = shared.fed, patience = shared.rate ? (int64_t)shared.lasts * 1000000 / shared.rate : 0;
+    const int64_t fed = shared.fed, per_second = shared.samples_per_second > 0 ? shared.samples_per_second : 1;
+    const int64_t patience = (int64_t)shared.lasts * 1000000 / per_second;
     const int waits = fed > shared.base && due(now) >= (int64_t)shared.known;
     UNLOCK();
     if (fed != seen_fed || !is_still) { /* `now` may be older than the sound; from the next call on it is not */

@@ -70,7 +70,7 @@ extern "C" {
 
 /* Prepares for sound of one rate and 1 or 2 channels, those of labial/hear.h; what was heard before is forgotten.
  * Returns as labial_hear_init() does. Until it succeeds the other functions do nothing, and the face is neutral. */
-int lips_begin(uint32_t rate, unsigned channels);
+int lips_begin(uint32_t samples_per_second, unsigned channels);
 
 /* Hears `count` samples of 16 bits, of two channels as many pairs, at any address. Returns the number of the first of
  * them since lips_begin(); the next ones follow it. */

@@ -1,15 +1,18 @@
 // A page that speaks, laughs when it is tapped, and can be interrupted at any moment.
 import { Labial } from "labial";
-import "labial/labial-mouth.js";
+import "labial/labial-face.js";
 
-
-const [face] = document.getElementsByTagName("labial-mouth");
+const [face] = document.getElementsByTagName("labial-face");
 const [voice] = document.getElementsByTagName("audio");
 const [status] = document.getElementsByTagName("p");
 const labial = await Labial.load({ laughter: () => import("labial-laughter") });
 const laughter = labial.stream();
 // What is said: a sound, the times of its phonemes, and who reads these. For a server's voice, change this line.
-const WORDS = { sound: "welcome.flac", timings: "welcome.lab", read: (text) => labial.read(text) };
+const WORDS = { sound: "welcome.flac", timings: "welcome.lab", read: (text) => labial.read(text), captions: [
+    { text: "Welcome!", start: 0.22 }, { text: "My name is Bobby.", start: 0.77, end: 2 },
+    { text: "Tap my mouth, and I will laugh.", start: 2.21, end: 4.12 },
+    { text: "Tap it while I am speaking, and I stop.", start: 4.21, end: 6.53 },
+] };
 let turn = 0; // whoever asked last has the mouth
 
 /** Interrupts what the mouth does. The result is that of `prepare`, once the mouth is at rest; null when somebody else
@@ -31,6 +34,7 @@ async function speak(words) {
     if (times === null) return;
     face.audio = voice;
     face.track = labial.render(words.read(times), { unknown: "nearest" });
+    face.words = words.captions;
     voice.src = words.sound;
     await voice.play();
 }

@@ -1,6 +1,6 @@
 // The page: speaks what is typed, with the lips in step.
 import { Labial } from "labial";
-import "labial/labial-mouth.js";
+import "labial/labial-face.js";
 import { load, speak, wav } from "./espeak.js";
 import { LANGUAGES } from "./languages.mjs";
 
@@ -14,6 +14,7 @@ language.onchange();
 const ready = Promise.all([Labial.load(), load()]);
 ready.then(() => { status.textContent = "Type something, and press Enter."; }, told);
 
+face.addEventListener("ended", () => { face.caption = ""; });
 form.onsubmit = (event) => {
     event.preventDefault();
     say(text.value).catch(told);
@@ -28,6 +29,7 @@ async function say(words) {
     voice.src = URL.createObjectURL(wav(samples, sampleRate));
     face.audio = voice;
     face.track = track;
+    face.caption = words;
     await voice.play();
 }
 

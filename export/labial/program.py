@@ -12,6 +12,9 @@ from typing import Callable, NoReturn
 
 from labial.errors import LabialError
 
+#: Characters of the beginning and of the end of a long message that are shown: names in a file may be of any length.
+_SHOWN = 1500, 400
+
 
 class Parser(argparse.ArgumentParser):
     """Prints an error in the arguments in one line, and ends with status 2."""
@@ -65,7 +68,9 @@ def run(name: str, main: Callable[[], int]) -> int:
 
 def complain(name: str, problem: object) -> None:
     """A line of the program `name` on standard error."""
-    print(f"{name}: {one_line(str(problem))}", file=sys.stderr, flush=True)
+    text, (begin, end) = one_line(str(problem)), _SHOWN
+    shown = text if len(text) <= begin + end else f"{text[:begin]} ... {text[-end:]}"
+    print(f"{name}: {shown}", file=sys.stderr, flush=True)
 
 
 def one_line(text: str) -> str:

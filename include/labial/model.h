@@ -113,17 +113,17 @@ typedef struct {
 /* One channel's scales and its hidden Markov model. States are sorted by their emissions' means. Each state has 4 K
  * transitions, in ascending order of the predecessor, the last one repeated where there are fewer. */
 typedef struct {
-    int16_t centre;                     /* Q4 FAP: added to every position on output */
-    uint16_t shape_scale;               /* positions per step of `shapes`, Q8; at most 32767 */
-    uint16_t slope_scale;               /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
-    uint16_t kernel_scale;              /* positions per step of `kernels`, Q8 */
-    uint16_t pair_scale;                /* positions per step of `pairs`, Q8 */
-    uint16_t motion_scale[2];           /* positions per frame, and per frame squared, per step of `motion`, Q8 */
-    uint8_t contact_weight;             /* least `hold` of a frame in contact; 0 where there is none */
-    const labial_emission_t *emissions; /* state_count */
-    const labial_state_t *states;       /* state_count */
+    int16_t centre;                         /* Q4 FAP: added to every position on output */
+    uint16_t shape_scale;                   /* positions per step of `shapes`, Q8; at most 32767 */
+    uint16_t slope_scale;                   /* positions per step of `slopes` and unit of z, Q8; at most 16383 */
+    uint16_t kernel_scale;                  /* positions per step of `kernels`, Q8 */
+    uint16_t pair_scale;                    /* positions per step of `pairs`, Q8 */
+    uint16_t motion_scale[2];               /* positions per frame, and per frame squared, per step of `motion`, Q8 */
+    uint8_t contact_weight;                 /* least `hold` of a frame in contact; 0 where there is none */
+    const labial_emission_t *emissions;     /* state_count */
+    const labial_state_t *states;           /* state_count */
     const labial_transition_t *transitions; /* state_count x 4 K */
-    const uint8_t *initials;            /* state_count, cost of starting there */
+    const uint8_t *initials;                /* state_count, cost of starting there */
 } labial_channel_t;
 
 /* FAP 17, protrusion of the top lip, over the mean of FAP 53 and 54, the corners: values from `low` on in 16 even
@@ -198,7 +198,7 @@ int labial_model_check(const labial_model_t *model);
  * them. Where models change, a tick takes at most the sum of their costs, one for each run of a model's phonemes within
  * the latest `search_stride` frames.
  *
- * The bundled models cost about 31,000 and 25,000, and their ticks take 14,300 at most, 15,700 where models change with
+ * The bundled models cost about 30,000 and 24,000, and their ticks take 14,200 at most, 15,500 where models change with
  * every phoneme. A model that labial_model_check() accepts can cost 140,000. So a program that plays foreign models compares this number with the
  * instructions that its processor has for a frame:
  *

@@ -21,6 +21,33 @@ uint32_t fixture_below(fixture_random_t *random, uint32_t limit)
     return (uint32_t)(((uint64_t)fixture_random(random) * limit) >> 32);
 }
 
+static struct {
+    uint32_t last;
+    unsigned long count;
+} seeds;
+
+uint32_t fixture_seed(uint32_t seed)
+{
+    seeds.last = seed;
+    seeds.count++;
+    return seed;
+}
+
+uint32_t fixture_seed_last(void)
+{
+    return seeds.last;
+}
+
+unsigned long fixture_seed_count(void)
+{
+    return seeds.count;
+}
+
+void fixture_seed_forget(void)
+{
+    seeds.count = 0;
+}
+
 /* ---- Models ---- */
 
 double fixture_weight_value(uint8_t code)
@@ -381,7 +408,7 @@ void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t 
 void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, uint32_t seed)
 {
     fixture_random_t random;
-    random.state = seed * 2654435761u + (uint32_t)kind + 1u;
+    random.state = fixture_seed(seed) * 2654435761u + (uint32_t)kind + 1u;
     for (size_t i = 0; i < count; i++) {
         fixture_phoneme_t *p = &out[i];
         p->model = 0;

@@ -29,6 +29,12 @@ typedef struct {
 uint32_t fixture_random(fixture_random_t *random);                /* 32 bits */
 uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit - 1 */
 
+/* Notes and returns a seed. What was noted last since a test began, and how often, goes with the test's failures. */
+uint32_t fixture_seed(uint32_t seed);
+uint32_t fixture_seed_last(void);
+unsigned long fixture_seed_count(void);
+void fixture_seed_forget(void);
+
 /* ---- Models ---- */
 
 #define FIXTURE_PHONEMES 8

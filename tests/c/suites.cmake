@@ -32,6 +32,20 @@ foreach(source IN LISTS suites)
   endif()
 endforeach()
 
+# What failures say: each line must be there, with all of its numbers.
+if(NOT LABIAL_CMOCKA_MISSING)
+  add_executable(suite_fails "${CMAKE_CURRENT_SOURCE_DIR}/c/messages/suite_fails.c")
+  add_dependencies(suites suite_fails)
+  target_link_libraries(suite_fails PRIVATE labial_test_helpers labial_cmocka)
+  labial_target(suite_fails)
+  set(said "frames.. . 0 is 950, not 800\n" "fap is -7, not 3\n" "most is 4294967295, not -1\n"
+    "frames.. is 950\n" "-frames.. is -950, not from -900 to 900\n" "frames.. is 950, not from -900 to 900\n"
+    "frames.. is 950, not 800 .seed 77.\n" "frames.. is 950, not 801\n")
+  list(JOIN said ".*" said)
+  add_test(NAME suite_fails COMMAND ${runner} $<TARGET_FILE:suite_fails>)
+  set_tests_properties(suite_fails PROPERTIES LABELS core PASS_REGULAR_EXPRESSION "${said}.*PASSED  . 1 test.*8 FAILED TEST")
+endif()
+
 if(NOT CMAKE_CROSSCOMPILING)
   if(LABIAL_INSTRUMENT STREQUAL "none")
     message(STATUS "Builds for other limits are left to the preset `sanitize`.")

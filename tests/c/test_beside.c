@@ -58,7 +58,7 @@ static int feed(int cancels, unsigned count, uint64_t first)
 
 SETUP(begin)
 {
-    seed = 1;
+    seed = fixture_seed(1);
     session = 0x1234;
     memset(memory, 0xa5, sizeof memory);
     return labial_beside_init(&player, OUTPUTS, RATE, memory, sizeof memory) == LABIAL_OK ? 0 : -1;

@@ -21,7 +21,7 @@ SETUP(setup)
 static void fill(uint32_t seed, int16_t low, uint16_t gain, uint32_t range)
 {
     fixture_random_t random;
-    random.state = seed;
+    random.state = fixture_seed(seed);
     table.low = low;
     table.gain = gain;
     for (unsigned i = 0; i < LABIAL_PROTRUSION_VALUES; i++)

@@ -26,7 +26,7 @@ static sum_t sum_of(uint32_t length, unsigned intensity, uint32_t seed)
     uint32_t ms;
     sum.shortest = UINT32_MAX;
     memset(&laugh, 0xee, sizeof laugh);
-    assert_int_equal(labial_laugh_init(&laugh, length, intensity, seed), LABIAL_OK);
+    assert_int_equal(labial_laugh_init(&laugh, length, intensity, fixture_seed(seed)), LABIAL_OK);
     for (;;) {
         moved = laugh;
         memset(&laugh, 0xdd, sizeof laugh);

@@ -1,6 +1,7 @@
 /*
  * conformance.c - an image that plays every stream, in every way of feeding it, and compares the digests of its frames
- * with those of vectors.c.
+ * with those of vectors.c. Where there is room for the frames themselves, CONFORMANCE_FRAMES names a file of them, and
+ * the image says which frame is the first that differs.
  */
 #include "board.h"
 #include "player.h"
@@ -8,11 +9,89 @@
 static labial_t stream;
 static uint32_t workspace[CONFORMANCE_WORKSPACE / 4];
 
-static int passes(const conformance_stream_t *script, conformance_feed_t feed)
+/* Frames that are alike, and how many. */
+typedef struct {
+    uint32_t count;
+    int16_t faps[LABIAL_CHANNELS];
+} run_t;
+
+#ifdef CONFORMANCE_FRAMES
+static const run_t runs[] = {
+#include CONFORMANCE_FRAMES
+};
+#else
+static const run_t runs[1] = { { 0, { 0 } } };
+#endif
+
+/* The frames of all streams, one after the other: the run of the next one, and how many of it were there before. */
+typedef struct {
+    unsigned run;
+    uint32_t before;
+} place_t;
+
+typedef struct {
+    conformance_digest_t digest;
+    place_t place;
+    uint32_t limit; /* frames that the stream has */
+    int differs;    /* the members below are those of the first difference */
+    uint32_t frame;
+    unsigned channel;
+    int found, wanted;
+} comparison_t;
+
+/* The frame at a place, which moves on. */
+static const int16_t *next(place_t *place)
 {
-    conformance_digest_t digest = { 0, 0 };
-    const char *complaint =
-        conformance_play(script, feed, &stream, workspace, sizeof workspace, conformance_digest, &digest);
+    const run_t *run = &runs[place->run];
+    if (++place->before == run->count) {
+        place->run++;
+        place->before = 0;
+    }
+    return run->faps;
+}
+
+static void compare(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    comparison_t *to = (comparison_t *)user;
+    int16_t found[LABIAL_CHANNELS];
+    unsigned k;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        found[k] = faps[k];
+#ifdef CONFORMANCE_SPOILED /* as if the library erred in one number */
+    found[3] = (int16_t)(found[3] + (frame == 5u));
+#endif
+    conformance_digest(&to->digest, frame, found);
+    if (sizeof runs > sizeof runs[0] && to->digest.frames <= to->limit) {
+        const int16_t *wanted = next(&to->place);
+        for (k = 0; k < LABIAL_CHANNELS && !to->differs; k++) {
+            if (found[k] == wanted[k])
+                continue;
+            to->differs = 1;
+            to->frame = frame;
+            to->channel = k;
+            to->found = found[k];
+            to->wanted = wanted[k];
+        }
+    }
+}
+
+static void print_difference(const comparison_t *of)
+{
+    board_print(", frame ");
+    board_print_unsigned(of->frame);
+    board_print(", channel ");
+    board_print_unsigned(of->channel);
+    board_print(" is ");
+    board_print_signed(of->found);
+    board_print(", not ");
+    board_print_signed(of->wanted);
+}
+
+static int passes(const conformance_stream_t *script, conformance_feed_t feed, place_t place)
+{
+    comparison_t comparison = { { 0, 0 }, place, script->frames, 0, 0, 0, 0, 0 };
+    const char *complaint = conformance_play(script, feed, &stream, workspace, sizeof workspace, compare, &comparison);
+    const conformance_digest_t digest = comparison.digest;
     const int same = digest.crc == script->digest && digest.frames == script->frames;
     board_print(script->name);
     board_print(", ");
@@ -27,6 +106,8 @@ static int passes(const conformance_stream_t *script, conformance_feed_t feed)
         board_print(" frames, ");
         board_print_hex(script->digest);
     }
+    if (comparison.differs)
+        print_difference(&comparison);
     if (complaint) {
         board_print(", ");
         board_print(complaint);
@@ -38,9 +119,14 @@ static int passes(const conformance_stream_t *script, conformance_feed_t feed)
 int main(void)
 {
     unsigned i, feed, failures = 0;
-    for (i = 0; i < conformance_stream_count; i++)
+    uint32_t frame;
+    place_t place = { 0, 0 };
+    for (i = 0; i < conformance_stream_count; i++) {
         for (feed = 0; feed < CONFORMANCE_FEEDS; feed++)
-            failures += !passes(&conformance_streams[i], (conformance_feed_t)feed);
+            failures += !passes(&conformance_streams[i], (conformance_feed_t)feed, place);
+        for (frame = 0; sizeof runs > sizeof runs[0] && frame < conformance_streams[i].frames; frame++)
+            (void)next(&place);
+    }
     board_print_unsigned(conformance_stream_count);
     board_print(" streams, ");
     board_print_unsigned(failures);

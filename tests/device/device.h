@@ -4,9 +4,8 @@
 #ifndef DEVICE_H
 #define DEVICE_H
 
-#include <unity.h>
-
 #include "board.h"
+#include "messages.h"
 #include "player.h"
 
 #define DEVICE_WORKSPACE CONFORMANCE_WORKSPACE

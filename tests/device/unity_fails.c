@@ -2,14 +2,13 @@
  * unity_fails.c - assertions that must fail and some that must hold, of each kind that the device tests use.
  *
  * Would catch a framework or a configuration of it that lets everything pass: numbers cut to fewer bits, a test that
- * fails but is not counted, failures that the status of the image does not show. With DEVICE_MUST_FAIL the image itself
- * must end in failure.
+ * fails but is not counted, failures that the status of the image does not show, messages that leave out what was
+ * compared. With DEVICE_MUST_FAIL the image itself must end in failure.
  */
 #include <stddef.h>
 
-#include <unity.h>
-
 #include "board.h"
+#include "messages.h"
 
 /* A test for each assertion, which does not hold. */
 #define FAILING(X)                                                                                                     \
@@ -17,7 +16,7 @@
     X(is_true, TEST_ASSERT_TRUE(1 > 2))                                                                                \
     X(is_true_with_message, TEST_ASSERT_TRUE_MESSAGE(1 > 2, "as wanted"))                                              \
     X(is_null, TEST_ASSERT_NULL(board_name))                                                                           \
-    X(is_signed, TEST_ASSERT_EQUAL_INT32(1, -1))                                                                       \
+    X(is_signed, TEST_ASSERT_EQUAL_INT32(1, 3 - 4))                                                                    \
     X(is_signed_of_32_bits, TEST_ASSERT_EQUAL_INT32(-2147483647, 2147483647))                                          \
     X(is_unsigned, TEST_ASSERT_EQUAL_UINT32(0, 0x80000000u))                                                           \
     X(is_unsigned_in_its_low_bits, TEST_ASSERT_EQUAL_UINT32(0xffffffffu, 0xfffffffeu))                                 \

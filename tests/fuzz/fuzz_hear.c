@@ -36,8 +36,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     told_t told = { 0, 0 };
     labial_hear_t *hear = (labial_hear_t *)malloc(sizeof *hear); /* so that the sanitizer sees their ends */
     void *workspace = malloc(HEAR_FIXTURE_WORKSPACE_SIZE);
-    uint32_t rate, channels, exact, heard = 0, before = 0;
-    int result, ended = 0;
+    uint32_t rate, channels, heard = 0, before = 0;
+    int result, ended = 0, exact;
     REQUIRE(hear != NULL && workspace != NULL);
     memset(hear, 0xa5, sizeof *hear);
     memset(workspace, 0x5a, HEAR_FIXTURE_WORKSPACE_SIZE);
@@ -45,11 +45,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         size = 0;
     rate = size ? rates[data[0] & 7u] : 16000;
     channels = size ? 1u + (data[0] >> 3 & 1u) : 1;
+    exact = size && (data[0] & 16u);
     result =
         labial_hear_init(hear, &hear_fixture, rate, channels, workspace, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &told);
-    exact = size ? data[0] >> 4 & 1u : 0;
     REQUIRE(result == LABIAL_OK && labial_hear_classes(hear, on_class) == LABIAL_OK);
-    REQUIRE(labial_hear_exact(hear, (int)exact) == LABIAL_OK);
+    REQUIRE(labial_hear_exact(hear, exact) == LABIAL_OK);
     if (size)
         data++, size--;
     while (size >= 2) {
@@ -60,12 +60,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         data += 2;
         size -= 2;
         if (call == 5u) {
-            REQUIRE(labial_hear_end(hear) == LABIAL_OK);
-            /* Frames of 20 ms, also in part, none lost; behind them a few more in which the face comes to rest. */
-            if (!ended) {
-                const uint32_t more = told.frames - before - (uint32_t)(((uint64_t)heard * 50u + rate - 1u) / rate);
-                REQUIRE(more <= (exact ? 0u : LABIAL_EASE_FRAMES));
-            }
+            const uint32_t frames = (uint32_t)(((uint64_t)heard * 50u + rate - 1u) / rate);
+            const uint32_t left = labial_hear_latency(hear).frames;
+            REQUIRE(ended || told.frames - before + left <= frames);
+            REQUIRE(labial_hear_end(hear) == LABIAL_OK && labial_hear_latency(hear).frames == 0);
+            /* Frames of 20 ms, also in part, none lost; and the way to rest. */
+            REQUIRE(ended || told.frames - before == frames ||
+                    (!exact && told.frames - before == frames + LABIAL_EASE_FRAMES));
+            REQUIRE(labial_hear_articulation(hear, (unsigned)bytes) == LABIAL_OK);
             ended = 1;
         } else if (call == 6u) {
             REQUIRE(labial_hear_cancel(hear, (uint32_t)bytes * 5u) == LABIAL_OK);

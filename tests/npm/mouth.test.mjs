@@ -5,9 +5,18 @@ import { pathToFileURL } from "node:url";
 import test from "node:test";
 import { Labial, folder, source } from "./setup.mjs";
 
-const { CHANNELS, follow, mouthShape } = await import(pathToFileURL(`${folder}/mouth.js`));
+const { CHANNELS, faceFrame, follow, mouthShape } = await import(pathToFileURL(`${folder}/mouth.js`));
 const { LabialMouth } = await import(pathToFileURL(`${folder}/labial-mouth.js`));
+const { attach } = await import(pathToFileURL(`${folder}/attach.js`));
 const labial = await Labial.load();
+
+/** A scene of three.js, as far as attach() looks: meshes with shapes of these names. */
+function scene(...meshes) {
+    const nodes = meshes.map((names) => ({
+        morphTargetDictionary: Object.fromEntries(names.map((name, i) => [name, i])), morphTargetInfluences: names.map(() => 0),
+    }));
+    return { nodes, traverse: (visit) => [{}, ...nodes].forEach(visit) };
+}
 
 /** The line that is drawn between closed lips, in drawing units. */
 const LINE = 1.8;
@@ -18,9 +27,23 @@ test("lips are drawn closed in p, b, m and at rest, and open in vowels", () => {
     const gaps = Array.from(track, (faps) => mouthShape(faps).gap);
     assert.equal(mouthShape(new Array(13).fill(0)).gap, 0);
     for (const { start, end, label } of segments) {
-        const own = gaps.slice(Math.round(start * track.rate), Math.round(end * track.rate));
+        const own = gaps.slice(Math.round(start * track.fps), Math.round(end * track.fps));
         if (["P", "B", "M"].includes(label)) assert.ok(Math.min(...own) < LINE, `${label} at ${start}: ${own}`);
         if (["AA", "AE", "AY"].includes(label)) assert.ok(Math.max(...own) > 4 * LINE, `${label} at ${start}: ${own}`);
+    }
+});
+
+test("of a face, lips close in p, b, m, and teeth stand on the lower lip in f and v", () => {
+    const teeth = (faps) => faceFrame(faps)[3] - faps[3];
+    assert.equal(teeth(new Array(13).fill(0)), 0);
+    const words = "B IY F AA R . F AY V . M AH M . P AA P . AA V ER".split(" ");
+    const segments = words.map((label, i) => ({ start: 0.12 * i, end: 0.12 * i + 0.12, label: label === "." ? "" : label }));
+    const track = labial.render(segments);
+    for (const { start, end, label } of segments) {
+        const frames = Array.from({ length: 7 }, (_, i) => track.at(start + (end - start) * i / 6).slice());
+        const gaps = frames.map((faps) => mouthShape(faceFrame(faps)).gap);
+        if (["P", "B", "M"].includes(label)) assert.ok(Math.min(...gaps) < LINE, `${label}: ${gaps}`);
+        if (["F", "V"].includes(label)) assert.ok(Math.min(...frames.map(teeth)) < -100, `${label} at ${start}`);
     }
 });
 
@@ -62,4 +85,37 @@ test("the element's types name what it has", () => {
     const own = Object.getOwnPropertyNames(LabialMouth.prototype);
     const ours = own.filter((name) => !["constructor", "connectedCallback", "disconnectedCallback"].includes(name));
     assert.deepEqual([...typed].sort(), ours.sort());
+});
+
+test("an avatar's shapes are found by all names that are known of them", () => {
+    const weights = { arkit: { jawOpen: 0.4, mouthSmileLeft: 0.2 }, oculus: { PP: 0.3, ih: 0.5 }, vrm: { aa: 0.6, ou: 0.1 } };
+    const cases = [
+        ["arkit", ["Head.JawOpen", "mouth_Close", "MouthFunnel", "mouthPucker", "mouthSmile_L", "aa"], [0.4, 0, 0, 0, 0.2, 0]],
+        ["oculus", "viseme_sil viseme_PP viseme_FF viseme_TH viseme_DD viseme_kk viseme_SS viseme_nn viseme_I".split(" "),
+            [0, 0.3, 0, 0, 0, 0, 0, 0, 0.5]],
+        ["vrm", ["Fcl_ALL_Joy", "Fcl_MTH_A", "Fcl_MTH_I", "Fcl_MTH_U"], [0, 0.6, 0, 0.1]],
+    ];
+    for (const [output, names, wanted] of cases) {
+        const found = scene(names, ["other", ...names]);
+        const head = attach(found);
+        assert.deepEqual([head.output, head.meshes], [output, found.nodes]);
+        head.show(weights[output]);
+        assert.deepEqual(found.nodes.map((mesh) => mesh.morphTargetInfluences), [wanted, [0, ...wanted]]);
+        head.rest();
+        assert.deepEqual(found.nodes[1].morphTargetInfluences, [0, ...wanted].fill(0));
+        head.source = labial.render([{ start: 0, end: 1, label: output === "oculus" ? "M" : "AA" }], { output });
+        head.update(0.5);
+        assert.ok(Math.max(...found.nodes[0].morphTargetInfluences) > 0.1, output);
+    }
+});
+
+test("what is no avatar, and one that nothing is known of, is an error", () => {
+    const errors = [[{}, TypeError, /^the avatar is none/], [scene(), undefined, /has no shapes/],
+        [scene(["smile", "beak"]), undefined, /neither ARKit's nor visemes: smile, beak; labial fit/]];
+    for (const [avatar, kind, message] of errors) assert.throws(() => attach(avatar), { message, ...(kind && { name: kind.name }) });
+    const head = attach(scene(["smile", "beak"]), { output: labial.rig({ labial: "rig", name: "bird", outputs: { beak: {
+        weights: new Array(13).fill(0), gain: 4096, neutral: 0, minimum: 0, maximum: 1000, invert: 0, contact: 0, closed: 0 } } }) });
+    head.show({ beak: 0.5, tail: 1 });
+    assert.deepEqual(head.meshes[0].morphTargetInfluences, [0, 0.5]);
+    assert.throws(() => { head.source = {}; }, { name: "TypeError", message: /^the source is none/ });
 });

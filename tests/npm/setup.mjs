@@ -37,6 +37,30 @@ export function vectors() {
     }));
 }
 
+/** The frames of a file such as tests/conformance/frames.txt, by the names that it has. */
+export function framesOf(path) {
+    const found = {};
+    let frames;
+    for (const line of source(path).trimEnd().split("\n")) {
+        const values = line.split(" ");
+        if (values[0] === "and") frames.push(...new Array(Number(values[1])).fill(frames.at(-1)));
+        else if (/^-?\d/.test(line)) frames.push(values.map(Number));
+        else frames = found[line] = [];
+    }
+    return found;
+}
+
+/** The first difference between frames, in a sentence; nothing for frames that are the same. */
+export function difference(found, wanted) {
+    for (let frame = 0; frame < Math.min(found.length, wanted.length); frame++) {
+        const channel = wanted[frame].findIndex((value, k) => found[frame][k] !== value);
+        if (channel >= 0) {
+            return `frame ${frame}, channel ${channel} is ${found[frame][channel]}, not ${wanted[frame][channel]}`;
+        }
+    }
+    return found.length === wanted.length ? "" : `${found.length} frames, not ${wanted.length}`;
+}
+
 /** A model of the library as a binary one. */
 export function binary(mouth, model) {
     if (model === mouth.models.laughter) return unpack(laughter);

@@ -373,7 +373,7 @@ test("a failed load of the laughter model can be tried again", async () => {
     const quiet = await Labial.load({ laughter: () => (online ? laughter : Promise.reject(new Error("offline"))) });
     await assert.rejects(quiet.laughter(), /offline/);
     online = true;
-    assert.equal((await quiet.laughter()).rate, 50);
+    assert.equal((await quiet.laughter()).fps, 50);
 });
 
 test("what unpacks the models undoes every kind of deflate's blocks, and names damage", () => {

@@ -3,10 +3,11 @@
 import assert from "node:assert/strict";
 import { pathToFileURL } from "node:url";
 import test from "node:test";
-import { Labial, LabialError, crc32, folder, source } from "./setup.mjs";
+import { Labial, LabialError, crc32, difference, folder, framesOf, source } from "./setup.mjs";
 
 const labial = await Labial.load({ words: () => import(pathToFileURL(`${folder}-words/index.js`)) });
 const { sessions } = JSON.parse(source("tests/voices/sessions.json"));
+const wanted = framesOf("tests/voices/frames.txt");
 
 /** The number of frames, the last one's number, and the CRC-32 of their FAPs. */
 function summary(frames, number) {
@@ -22,7 +23,7 @@ function* times([name, first, last, difference]) {
 for (const { name, options: { offset_ms: offset = 0, ...options } = {}, steps, shown } of sessions) {
     test(name, async () => {
         const voice = await labial.voice({ ...options, offset: offset / 1000 });
-        const found = [];
+        const [found, every] = [[], []];
         for (const [call, ...rest] of steps) {
             if (!call.startsWith("play")) {
                 voice[call](...rest.map((one) => one ?? undefined));
@@ -30,7 +31,9 @@ for (const { name, options: { offset_ms: offset = 0, ...options } = {}, steps, s
             }
             const frames = [...times([call, ...rest])].flatMap((seconds) => voice.played(seconds));
             found.push(summary(frames, voice.number));
+            every.push(...frames);
         }
+        assert.equal(difference(every, wanted[name]), "");
         assert.deepEqual(found, shown);
     });
 }
@@ -52,7 +55,7 @@ test("a clock that was not given is asked for, and a time stands for it", async 
     assert.throws(() => voice.at(), { name: "LabialError" });
     assert.equal(voice.number, -1);
     assert.equal(voice.played(0.5).length, 26);
-    assert.deepEqual([voice.number, voice.time, voice.rate, voice.done], [25, 0.5, 50, false]);
+    assert.deepEqual([voice.number, voice.time, voice.fps, voice.done], [25, 0.5, 50, false]);
 });
 
 test("at() is the frame that played() returned last, in one object", async () => {

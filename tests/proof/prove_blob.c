@@ -21,8 +21,8 @@ static int is_there(const void *table)
 int labial_model_check(const labial_model_t *model)
 {
     int sum = model->format + model->frames_per_second + model->component_count + model->phoneme_count +
-              model->class_count + model->state_count + model->predecessor_fours + model->search_stride + model->silence +
-              model->mixture_mean + model->kernel_taps + model->kernel_stride + model->kernel_behind +
+              model->class_count + model->state_count + model->predecessor_fours + model->search_stride +
+              model->silence + model->mixture_mean + model->kernel_taps + model->kernel_stride + model->kernel_behind +
               model->floor_count + model->pair_knots + model->pair_count + model->channel_count;
     sum += is_there(model->phonemes) + is_there(model->components) + is_there(model->contexts) +
            is_there(model->shapes) + is_there(model->slopes) + is_there(model->kernels) + is_there(model->pair_keys) +

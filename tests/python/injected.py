@@ -279,7 +279,9 @@ def faults(case: Case, new: Dict[str, bytes], mode: int, status: int, said: str)
     if status == 0 and kinds != {"new"} or status not in (0, 1):
         wrong.append(f"status {status}")
     said = "".join(line for line in said.splitlines(keepends=True) if not line.startswith("labial: warning: "))
-    if status == 1 and (said.count("\n") != 1 or "labial: out" not in said):
+    written = next(item for item in case.arguments if item.startswith("out"))
+    meant = [f"labial: {name}: " for name in (written, *(f"out/{name}" for name in case.targets))]
+    if status == 1 and (said.count("\n") != 1 or not said.startswith(tuple(meant))):
         wrong.append("says: " + said)
     if len(kinds) > 1 and not ("new" in said and "as before" in said):
         wrong.append("a part is new, and it does not say which: " + said)

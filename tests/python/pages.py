@@ -11,7 +11,8 @@ folder that is the page's own:
 - ``html``: a page, which an ``sh`` block below it looks at;
 - ``cmake``: a CMakeLists.txt, which an ``sh`` block below it hands to cmake;
 - ``toml``, ``ini``, ``json``, ``yaml``: parsed;
-- ``csharp``, ``gdscript``, ``unreal``: code for engines that no test has; only read;
+- ``ts``, ``tsx``: read here; test_bundlers.py compiles them;
+- ``csharp``, ``gdscript``, ``unreal``, ``svelte``, ``vue``: code for engines and compilers that no test has; only read;
 - ``text``: what programs print, drawings; no commands.
 
 A block whose first line is a comment that begins with a file's name is saved under that name before anything else;
@@ -45,8 +46,10 @@ LONGEST = 60.0
 GRACE = 2.0
 
 #: Labels of blocks that are only read.
-READ = ("text", "csharp", "gdscript", "unreal")
-LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "html", "toml", "ini", "json", "yaml", *READ)
+READ = ("text", "csharp", "gdscript", "unreal", "svelte", "vue")
+#: Labels of blocks that are compiled elsewhere.
+COMPILED = ("ts", "tsx")
+LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "html", "toml", "ini", "json", "yaml", *COMPILED, *READ)
 
 #: Tools that a page may use and a machine may lack, and what installs each.
 TOOLS: Dict[str, str] = {
@@ -307,11 +310,11 @@ class Runner:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(block.text, encoding="utf-8")
             try:
-                if block.label not in READ:
+                if block.label not in (*READ, *COMPILED):
                     getattr(self, f"_{block.label}")(block, blocks[i + 1 :])
             except PageError as error:
                 raise PageError(f"{self._page}:{block.line}: {error}") from None
-        return sum(block.label not in READ for block in blocks)
+        return sum(block.label not in (*READ, *COMPILED) for block in blocks)
 
     def _call(self, command: Sequence[str], text: Optional[str] = None) -> None:
         with tempfile.TemporaryFile() as output:  # not a pipe, which a process that stays behind would keep open

@@ -43,13 +43,15 @@ READ = """(meshes) => Object.fromEntries(Object.entries(meshes[0].morphTargetDic
     .map(([name, place]) => [name, meshes[0].morphTargetInfluences[place]]))"""
 
 
-def avatar() -> bytes:
-    """The made head on a body, with all shapes of a Ready Player Me avatar and teeth that have some of them."""
+def avatar(arkit: bool = True) -> bytes:
+    """The made head on a body, with all shapes of a Ready Player Me avatar, or its visemes alone, and teeth that have
+    some of them."""
     vertices, triangles, shapes = made_head()
     zero = np.zeros_like(vertices)
     visemes = {"viseme_" + name: zero for name in VISEMES}
     visemes["viseme_aa"] = 0.6 * shapes["jawOpen"]
-    document, binary = document_of(vertices, triangles, {**dict.fromkeys(APPLE, zero), **shapes, **visemes})
+    own = {**dict.fromkeys(APPLE, zero), **shapes} if arkit else {}
+    document, binary = document_of(vertices, triangles, {**own, **visemes})
     document["meshes"].append({**document["meshes"][0], "name": "teeth"})
     document["nodes"][0]["children"] = [1]
     document["nodes"].append({"mesh": 1, "name": "teeth"})
@@ -97,7 +99,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], s
         sound.writeframes((3000 * np.sin(np.arange(16000 * SECONDS) / 8)).astype("<i2").tobytes())
     imports = {"three": "three/build/three.module.js", "three/addons/": "three/examples/jsm/",
                "@pixiv/three-vrm": "@pixiv/three-vrm/lib/three-vrm.module.js", "labial": "labial/index.js",
-               "labial-words": "labial-words/index.js",
+               "labial/": "labial/", "labial-words": "labial-words/index.js",
                "@met4citizen/talkinghead": "@met4citizen/talkinghead/modules/talkinghead.mjs"}
     numbers = iter(range(1000))
 
@@ -136,24 +138,34 @@ def differ(seen: List[float], values: np.ndarray) -> float:
 def test_shapes_of_every_mesh(site: Any, browser: Browser) -> None:
     """A head and its teeth, by ARKit's names and by Ready Player Me's of visemes, at times that are looked at."""
     arkit, oculus = (expected(site.folder, face) for face in ("arkit", "oculus"))
+    (site.folder / "visemes.glb").write_bytes(avatar(arkit=False))
     page = browser.page(site("""
-        import * as avatar from "./readyplayerme.js";
-        import { readFrames, at } from "./frames.js";
-        import { show } from "./shapes.js";
+        import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+        import { head, labial } from "./head.js";
+        import { readFrames } from "./frames.js";
+        import { attach } from "labial/attach.js";
+        const other = attach((await new GLTFLoader().loadAsync("visemes.glb")).scene);
+        other.source = labial.render(labial.read(await (await fetch("hello.lab")).text()), { output: other.output });
+        window.outputs = [head.output, other.output];
         window.seen = [];
         for (let frame = 0; frame < 200; frame++) {
             const seconds = frame / 50;
-            avatar.draw(seconds);
-            const weights = avatar.meshes.map((mesh) => read([mesh]));
-            avatar.drawVisemes(seconds);
-            seen.push([seconds, ...weights, read(avatar.meshes)]);
+            head.update(seconds);
+            other.update(seconds);
+            seen.push([seconds, ...head.meshes.map((mesh) => read([mesh])), read(other.meshes)]);
         }
-        const frames = await readFrames("hello_arkit.jsonl", "arkit");
-        show(avatar.meshes, at(frames, 1.005));
-        window.file = [read(avatar.meshes).jawOpen, frames[50].jawOpen, at(frames, 1e9) === frames.at(-1)];
+        head.audio.currentTime = 0;
+        head.update();
+        head.source = null;
+        const rest = Math.max(...Object.values(read(head.meshes)));
+        const file = await readFrames("hello_arkit.jsonl", "arkit");
+        head.source = file;
+        head.update(1.005);
+        window.file = [read(head.meshes).jawOpen, file.frames[50].jawOpen, file.at(1e9) === file.frames.at(-1), rest];
         """))  # fmt: skip
     page.wait_for("window.file")
     assert page.errors() == []
+    assert page.evaluate("outputs") == ["arkit", "oculus"]
     seen = page.evaluate("seen")
     times = np.array([row[0] for row in seen])
     for name, values in arkit.items():
@@ -162,38 +174,41 @@ def test_shapes_of_every_mesh(site: Any, browser: Browser) -> None:
     for name, values in oculus.items():
         shape = "viseme_" + {"ih": "I", "oh": "O", "ou": "U"}.get(name, name)
         assert differ([row[3][shape] for row in seen], between(values, times)) <= 0.0015, name
-    drawn, frame, last = page.evaluate("file")
-    assert drawn == pytest.approx(frame) and drawn > 0 and last
+    drawn, frame, last, rest = page.evaluate("file")
+    assert drawn == pytest.approx(frame) and drawn > 0 and last and rest == 0
 
 
 def test_rig_of_ones_own(site: Any, browser: Browser) -> None:
-    """The file that `labial rig --json` writes, in the place of "arkit"."""
+    """The file that `labial rig --json` writes, in the place of "arkit", on the avatar's own shapes."""
     shutil.copyfile(description_of("arkit"), site.folder / "mine.toml")
     assert main(["rig", str(site.folder / "mine.toml"), "--json", "-o", str(site.folder)]) == 0
-    page = browser.page(site('import { track } from "./mine.js"; window.frames_ = [...track];'))
-    page.wait_for("!!window.frames_")
+    page = browser.page(site("""
+        import { head, track } from "./mine.js";
+        head.update(0.5);
+        Object.assign(window, { frames_: [...track], moved: read(head.meshes), wanted: track.at(0.5) });
+        """))  # fmt: skip
+    page.wait_for("!!window.moved")
     assert page.errors() == []
     drawn = page.evaluate("frames_")
     for name, values in expected(site.folder, "arkit").items():
         assert [frame[name] for frame in drawn] == values.tolist(), name
+        assert page.evaluate(f"moved.{name}") == pytest.approx(page.evaluate(f"wanted.{name}"))
 
 
 def test_vrm_moves(site: Any, browser: Browser) -> None:
     """Expressions move the mesh's own shapes by their shares."""
     page = browser.page(site("""
-        import { draw, vrm } from "./vrm.js";
-        const meshes = [];
-        vrm.scene.traverse((node) => node.morphTargetDictionary && meshes.push(node));
+        import { draw, head } from "./vrm.js";
         window.seen = [];
         for (let frame = 0; frame < 200; frame++) {
             const seconds = frame / 50;
             draw(seconds, 0.02);
-            seen.push([seconds, read(meshes)]);
+            seen.push([seconds, read(head.meshes)]);
         }
-        window.done = true;
+        window.done = head.output;
         """))  # fmt: skip
     page.wait_for("window.done")
-    assert page.errors() == []
+    assert page.errors() == [] and page.evaluate("done") == "vrm"
     seen = page.evaluate("seen")
     times = np.array([row[0] for row in seen])
     for name, values in expected(site.folder, "vrm").items():

@@ -130,6 +130,19 @@ def test_repeated_frames_make_up_for_a_lost_packet() -> None:
             assert [rows[start + k] for k in range(len(motion))] == wanted
 
 
+@pytest.mark.parametrize("repeat", [0, 1, 2, 3, 5, 40])
+def test_packets_repeat_as_many_frames_as_there_are(repeat: int) -> None:
+    """Also more than a packet has, from the first packet on; and on from where the one before ended."""
+    motion = labial.render(HELLO)[:24]
+    lips, wanted = labial.Beside(FACE, frames=2, repeat=repeat), expected(motion)
+    packets = lips.packets(motion[:12], sample=0, rate=16000)
+    packets += lips.packets(motion[12:], sample=16000 * 12 // 50, rate=16000)
+    assert [packet.frame for packet in packets] == list(range(0, 24, 2))
+    for packet in packets:
+        parsed, first = parse(packet.data), max(packet.frame - repeat, 0)
+        assert (parsed.first, parsed.frames) == (first, wanted[first : packet.frame + 2])
+
+
 def test_hello_and_cancel() -> None:
     """Catches a rest that is not the rig's, frames that survive a cancel, and numbers that begin again."""
     lips = labial.Beside(FACE, session=258)

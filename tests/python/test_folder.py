@@ -127,8 +127,8 @@ def test_archives_that_cannot_be_read(tmp_path, monkeypatch):
         out.writestr(".hidden.csv", "nothing")
         out.writestr("README.md", "nothing")
     assert len(read_corpus(tmp_path)) == 1
-    monkeypatch.setattr("labial.corpus.folder.LARGEST_PACKED", 100)
-    fails(lambda: read_corpus(tmp_path), archive, "more than 100 bytes")
+    monkeypatch.setattr("labial.files.limits.CORPUS", 100)
+    fails(lambda: read_corpus(tmp_path), archive, "more than the 100 that are read")
     monkeypatch.undo()
     archive.write_bytes(archive.read_bytes()[:200])
     fails(lambda: read_corpus(tmp_path), archive, "damaged")

@@ -54,9 +54,14 @@ def stand_in(tmp_path: Path) -> Path:
     return tmp_path / "three"
 
 
-def test_everything_is_in_the_page(tmp_path: Path, frames: Path, avatar: Path, stand_in: Path) -> None:
-    """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside."""
+@pytest.mark.parametrize("core", [True, False])
+def test_everything_is_in_the_page(tmp_path: Path, frames: Path, avatar: Path, stand_in: Path, core: bool) -> None:
+    """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside. Before
+    0.172 three had no three.core.js."""
     out = tmp_path / "page.html"
+    if not core:
+        (stand_in / "build" / "three.core.js").unlink()
+        (stand_in / "build" / "three.module.js").write_text("export const core = 1;")
     assert main(["page", str(frames), "--head", str(avatar), "--three", str(stand_in), "-o", str(out)]) == 0
     text = out.read_text(encoding="utf-8")
     data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])

@@ -22,6 +22,7 @@ from labial.files import outputs
 from labial.tables.model import save
 from models import random_model
 from packages import CC
+from runtime import needs_runtime
 from test_workers import folder as corpus  # noqa: F401, a fixture
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="files that are preloaded are those of Linux")
@@ -48,6 +49,72 @@ def test_interrupted_commands(tmp_path: Path, corpus: Path) -> None:  # noqa: F8
     found = injected(tmp_path, corpus, 20 if "LABIAL_REQUIRE_ALL" in os.environ else 3)
     assert {name.split(",")[0] for name in found} == set(COMMANDS) - {"check"}
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
+@needs_runtime
+@pytest.mark.parametrize("rounds", [2, pytest.param(100, marks=pytest.mark.slow)])
+def test_commands_killed_at_any_moment(tmp_path: Path, corpus: Path, rounds: int) -> None:  # noqa: F811
+    """Training, fitting, exporting and baking as they are, with SIGKILL: files are the old or the new ones, and the
+    next run removes what is left of those before."""
+    pytest.importorskip("sklearn")
+    (tmp_path / "corpus").mkdir()
+    for file in sorted(corpus.iterdir())[:6]:  # three episodes
+        shutil.copy(file, tmp_path / "corpus")
+    done = subprocess.run([sys.executable, HERE / "killed.py", tmp_path, str(rounds)], capture_output=True, text=True,
+                          check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert len(found) == 4 and {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
+#: Begins to write, says so, and waits.
+HOLDS = """
+import sys
+from labial.files import outputs
+with getattr(outputs, sys.argv[1])(sys.argv[2]) as made:
+    if sys.argv[1] == "folder":
+        (made / "a.txt").write_text("begun")
+    else:
+        made.write(b"begun"), made.flush()
+    print("begun", flush=True)
+    sys.stdin.readline()
+    if sys.argv[1] == "folder":
+        (made / "a.txt").write_text("whole")
+    else:
+        made.seek(0), made.write(b"whole")
+"""
+
+
+@pytest.mark.parametrize(("way", "target"), [("writing", "x/a.txt"), ("folder", "x"), ("folder", "x/new")])
+def test_what_dead_runs_left_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str, target: str) -> None:
+    """Those of a killed process go with the next run of the same output; those of one that runs stay until it ends,
+    and so do those of other outputs and other names."""
+    monkeypatch.chdir(tmp_path)
+    Path("x").mkdir()
+    kept = [".b.txt.01234567.part", ".a.txt.0123456.part", ".a.txt.01234567.part.old", ".x.0123456g.part"]
+    for name in kept:
+        Path("x", name).write_text("mine")
+    command = [sys.executable, "-c", HOLDS, way, target]
+    dead, runs = (subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) for _ in range(2))
+    assert dead.stdout.readline() == runs.stdout.readline() == b"begun\n"
+
+    def parts() -> int:
+        """How many temporary files and folders there are, but for those that must stay."""
+        return sum(path.name.endswith(".part") and path.name not in kept for path in tmp_path.rglob(".*"))
+
+    assert parts() == 2
+    dead.kill()
+    dead.wait()
+    assert parts() == 2
+    done = subprocess.run(command, input=b"\n", check=True, capture_output=True)
+    assert done.stdout == b"begun\n" and parts() == 1
+    out = Path(target) if way == "writing" else Path(target, "a.txt")
+    assert out.read_text() == "whole"
+    out.write_text("another")
+    runs.communicate(b"\n")
+    assert runs.returncode == (1 if target == "x/new" else 0) and parts() == 0
+    assert out.read_text() == ("another" if target == "x/new" else "whole")
+    assert {path.name for path in Path("x").iterdir()} >= set(kept)
 
 
 @pytest.fixture

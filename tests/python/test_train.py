@@ -47,7 +47,7 @@ def episode(seed: int, pause: float = 0.0) -> Episode:
 
 
 def symmetric(item: Episode) -> Episode:
-    """The same with both sides of the mouth as the left one moves, which is what `labial` learns unless told otherwise."""
+    """The same with both sides of the mouth as the left one moves, which is what `labial` learns by default."""
     frames = item.frames.copy()
     frames[:, 6::2] = frames[:, 5::2]
     return replace(item, frames=frames)

@@ -11,10 +11,11 @@ import pytest
 import labial
 from oracle import Oracle, Shown, sessions, summary, times
 from packages import SOURCE
-from regenerate_voices import SESSIONS
+from regenerate_voices import SESSIONS, frames_text
 from runtime import needs_runtime
 
 pytestmark = needs_runtime
+FRAMES = "\n" + (SOURCE / "tests" / "voices" / "frames.txt").read_text(encoding="utf-8")
 STORED = {session["name"]: session for session in sessions(SOURCE / "tests" / "voices" / "sessions.json")}
 
 
@@ -35,6 +36,7 @@ def test_sessions(name: str) -> None:
     expected = [oracle.run(step) for step in steps]
     shown = [summary(frames) for frames in expected if frames is not None]
     assert STORED[name] == json.loads(json.dumps({"name": name, **session, "shown": shown}))
+    assert f"\n{frames_text({name: expected})}" in FRAMES, "run regenerate_voices.py"
     with labial.Voice(**options) as voice:
         assert [follow(voice, step) for step in steps] == [frames or [] for frames in expected]
 

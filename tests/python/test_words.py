@@ -119,7 +119,8 @@ def test_training_is_the_same_each_time(small: Path, tmp_path: Path, capsys: pyt
     known = dictionary.pronunciations(dictionary.read_dictionary(small))
     assert all(decoder.phonemes(found, word) in known[word] for word in found.exceptions)
     assert training.score(found, known)["phonemes"] > 90.0
-    (tmp_path / "main.c").write_text('#include "mine.h"\nint main(void) { return mine.format != LABIAL_WORDS_FORMAT; }\n')
+    (tmp_path / "main.c").write_text('#include "mine.h"\n'
+                                     "int main(void) { return mine.format != LABIAL_WORDS_FORMAT; }\n")
     subprocess.run([CC, "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{SOURCE / 'include'}",
                     f"-I{tmp_path / 'a'}", tmp_path / "main.c", tmp_path / "a/mine.c", "-o", tmp_path / "main"],
                    check=True)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
 import shutil
 import sys
+import warnings
 from typing import List, Tuple
 
 import pytest

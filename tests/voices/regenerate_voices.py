@@ -1,4 +1,5 @@
-"""Writes ``sessions.json``: what happens in each session, and what :mod:`oracle` shows in it.
+"""Writes ``sessions.json``: what happens in each session, and what :mod:`oracle` shows in it; and ``frames.txt``, the
+frames of each session, written as those of ``tests/conformance`` are.
 
     PYTHONPATH=export:tests/voices LABIAL_RUNTIME=.../labial_runtime.so python3 tests/voices/regenerate_voices.py
 
@@ -9,11 +10,12 @@ After a step that plays, `shown` has the number of its frames, the last one's nu
 
 from __future__ import annotations
 
+import itertools
 import json
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
-from oracle import Oracle, summary
+from oracle import Oracle, Shown, summary
 
 SERVICES = Path(__file__).parents[1] / "python" / "services"
 WORDS = [("Maybe,", 0.1, 0.52), ("people", 0.56, 0.95), ("hum", 0.97, 1.2), ("by", 1.5, 1.7), ("the", 1.7, 1.8),
@@ -144,16 +146,36 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
 }
 
 
+def rows_of(frames: Sequence[Sequence[int]]) -> List[str]:
+    """A line for each frame; for those that are like the one before ``and`` and how many they are."""
+    rows: List[str] = []
+    for faps, same in itertools.groupby(frames):
+        rows.append(" ".join(map(str, faps)))
+        alike = len(list(same)) - 1
+        rows += [f"and {alike}"] * bool(alike)
+    return rows
+
+
+def frames_text(shown: Mapping[str, Sequence[Optional[Sequence[Shown]]]]) -> str:
+    """The content of ``frames.txt``, of what the steps of each session show."""
+    rows: List[str] = []
+    for name, steps in shown.items():
+        rows += [name, *rows_of([frame.faps for frames in steps for frame in frames or []])]
+    return "\n".join(rows) + "\n"
+
+
 def main() -> None:
-    """Writes the file."""
-    found = []
+    """Writes the files."""
+    found, every = [], {}
     for name, session in SESSIONS.items():
         oracle = Oracle(session.get("options", {}))
         shown = [oracle.run(step) for step in session["steps"]]
+        every[name] = shown
         found.append({"name": name, **session, "shown": [summary(frames) for frames in shown if frames is not None]})
     lines = ",\n".join(json.dumps(session, ensure_ascii=False) for session in found)
     text = f'{{"about": "written by regenerate_voices.py, which explains it", "sessions": [\n{lines}\n]}}\n'
     Path(__file__).with_name("sessions.json").write_text(text, encoding="utf-8")
+    Path(__file__).with_name("frames.txt").write_text(frames_text(every), encoding="utf-8")
 
 
 if __name__ == "__main__":

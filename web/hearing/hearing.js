@@ -21,7 +21,8 @@ const CANCEL_MAX = 1000;
 const ARTICULATION_MAX = 200;
 const ERROR_STATE = -5;
 
-export class Hearing {
+/** Tells "ended" and "lost" of its source as events. */
+export class Hearing extends EventTarget {
     #tools;
     #labial;
     #wasm;
@@ -54,6 +55,7 @@ export class Hearing {
     #weights = {};
 
     constructor(tools, labial, wasm, { sampleRate, channels, output, context, tap, delay, exact }) {
+        super();
         const memory = new tools.Memory(wasm.memory, wasm.__heap_base.value);
         this.#tools = tools;
         this.#labial = labial;
@@ -78,7 +80,8 @@ export class Hearing {
         for (let at; (at = wasm.hearing_class(0, this.#names.length)); ) this.#names.push(memory.text(at));
         this.#latency = wasm.ears_latency(this.#at) / 1000;
         this.#delay = tap ? tools.amount(delay ?? this.#latency + 0.08, "delay") : 0;
-        tap?.start(this.#delay, (block, time) => this.#ended || this.#push(block, time));
+        const take = (block, time) => this.#ended || this.#push(block, time);
+        tap?.start(this.#delay, take, (what) => this.dispatchEvent(new Event(what)));
     }
 
     // ---- In ---------------------------------------------------------------------------------------------------------
@@ -191,7 +194,7 @@ export class Hearing {
         return context && context.currentTime - (context.outputLatency || context.baseLatency || 0);
     }
 
-    get rate() {
+    get fps() {
         return RATE;
     }
 

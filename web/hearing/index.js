@@ -9,14 +9,14 @@ const compiled = {};
 
 /** What to hear with `tools`, which are labial's: its own sources would be another copy. */
 export async function hear(tools, labial, source, options = {}) {
-    const { LabialError, shown, unpack } = tools;
+    const { LabialError, allowed, shown, unpack } = tools;
     const { model = "small", output = "faps", channels = 1, delay, play, exact } = options;
     labial.checkOutput(output);
     if (!Object.hasOwn(MODELS, model)) {
         throw new LabialError(`${shown(model)} is no model of hearing: ${Object.keys(MODELS).join(", ")}`);
     }
     const context = contextOf(tools, source ?? null, options.context);
-    const code = await (compiled[model] ??= module(model, unpack).catch((error) => {
+    const code = await (compiled[model] ??= allowed(module(model, unpack)).catch((error) => {
         delete compiled[model]; // so that it can be tried again
         throw error;
     }));

@@ -1,38 +1,5 @@
 // Takes the samples of a stream, an element or a node, and plays the sound later, in step with the lips.
 
-/** Gathers blocks of the mean of all channels and posts them with the time of their first sample. Rates beyond those
- * that are heard are lowered by whole factors. The output is silent; it is there so that the browser runs the node. */
-const PROCESSOR = `
-registerProcessor("labial-tap", class extends AudioWorkletProcessor {
-    constructor({ processorOptions: { factor } }) {
-        super();
-        this.factor = factor;
-        this.room = Math.ceil(sampleRate / factor / 100 / 32) * 32;
-        this.block = null;
-        this.port.onmessage = () => { this.closed = true; };
-    }
-    process([[input]]) {
-        const { factor } = this;
-        const count = 128 / factor;
-        for (let i = 0; i < count; i++) {
-            if (!this.block) {
-                this.block = new Float32Array(this.room);
-                this.used = 0;
-                this.time = currentTime + i * factor / sampleRate;
-            }
-            let sum = 0;
-            for (let j = 0; input && j < factor; j++) sum += input[i * factor + j];
-            this.block[this.used++] = sum / factor;
-            if (this.used === this.room) {
-                this.port.postMessage([this.block, this.time], [this.block.buffer]);
-                this.block = null;
-            }
-        }
-        return !this.closed;
-    }
-});
-`;
-
 /** Contexts that have the processor, and the nodes of elements: an element can have only one. */
 const prepared = new WeakMap();
 const elements = new WeakMap();
@@ -63,8 +30,7 @@ export async function tap({ LabialError }, context, source, play = !isNode(sourc
     }
     let loading = prepared.get(context);
     if (!loading) {
-        const address = URL.createObjectURL(new Blob([PROCESSOR], { type: "text/javascript" }));
-        loading = context.audioWorklet.addModule(address).finally(() => URL.revokeObjectURL(address));
+        loading = addProcessor(LabialError, context);
         loading.catch(() => prepared.delete(context)); // so that it can be tried again
         prepared.set(context, loading);
     }
@@ -72,6 +38,24 @@ export async function tap({ LabialError }, context, source, play = !isNode(sourc
     if (context.state === "suspended") Promise.resolve(context.resume()).catch(() => {}); // waits for a click
     const factor = context.sampleRate <= 48000 ? 1 : context.sampleRate <= 96000 ? 2 : 4;
     return new Tap(context, nodeOf(LabialError, context, source), { source, factor, play });
+}
+
+/** The processor's own file. A bundler that does not emit it, as esbuild and rollup, leaves its text. */
+async function addProcessor(LabialError, context) {
+    try {
+        return await context.audioWorklet.addModule(new URL("./labial-tap.js?no-inline", import.meta.url));
+    } catch {
+        const { default: text } = await import("./labial-tap-text.js");
+        const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
+        try {
+            return await context.audioWorklet.addModule(address);
+        } catch (error) {
+            throw Object.assign(new LabialError("the page can load neither labial-hearing's labial-tap.js nor its copy: serve " +
+                "that file, or allow script-src blob:"), { cause: error });
+        } finally {
+            URL.revokeObjectURL(address);
+        }
+    }
 }
 
 function nodeOf(LabialError, context, source) {
@@ -87,8 +71,10 @@ function nodeOf(LabialError, context, source) {
 class Tap {
     #node;
     #worklet;
+    #source;
     #later;
     #silent = null;
+    #watched = new AbortController(); // of the source's events
 
     constructor(context, node, { source, factor, play }) {
         this.context = context;
@@ -96,6 +82,7 @@ class Tap {
         this.element = isElement(source);
         this.play = play;
         this.#node = node;
+        this.#source = source;
         this.#worklet = new AudioWorkletNode(context, "labial-tap", {
             channelCount: 1, channelCountMode: "explicit", processorOptions: { factor },
         });
@@ -105,8 +92,18 @@ class Tap {
         }
     }
 
-    /** Passes each block, with the time when it is heard, to `take`. */
-    start(delay, take) {
+    /** Passes each block, with the time when it is heard, to `take`; and to `tell`, "ended" when an element or a node has
+     * played to its end, "lost" when the last track of a stream ends, once the sound before that was heard. */
+    start(delay, take, tell) {
+        const { signal } = this.#watched;
+        const tracks = isStream(this.#source) ? this.#source.getAudioTracks() : [];
+        const later = (what) => setTimeout(() => signal.aborted || tell(what), 1000 * delay);
+        if (!tracks.length) this.#source.addEventListener("ended", () => later("ended"), { signal });
+        for (const track of tracks) {
+            track.addEventListener("ended", () => {
+                if (tracks.every(({ readyState }) => readyState === "ended")) later("lost");
+            }, { signal });
+        }
         const { context } = this;
         this.#later = new DelayNode(context, { delayTime: delay, maxDelayTime: delay + 1 });
         this.sound = new GainNode(context);
@@ -118,6 +115,7 @@ class Tap {
     }
 
     close() {
+        this.#watched.abort();
         this.#worklet.port.onmessage = null;
         this.#worklet.port.postMessage(null);
         this.#worklet.disconnect();

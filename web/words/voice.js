@@ -22,7 +22,8 @@ const DURATION_MAX = 3600000;
 const FADE_MAX = 1000;
 const NEUTRAL = new Array(CHANNELS).fill(0);
 
-export class Voice {
+/** Tells as an event "ended" that all of an utterance was shown. */
+export class Voice extends EventTarget {
     #tools;
     #labial;
     #output;
@@ -47,8 +48,10 @@ export class Voice {
     #step = 0;
     #steps = 0;
     #frame; // what at() returns
+    #told = false; // that it has ended
 
     constructor(lexicon, formats, options = {}) {
+        super();
         const { tools, labial } = lexicon;
         const { format = "auto", output = "faps", model = "speech", labels = "auto", unknown = "error" } = options;
         const { own, numbers, offset = 0, clock, context } = options;
@@ -102,8 +105,8 @@ export class Voice {
             this.#begin(0);
         } else {
             const heard = this.#clock ? (this.#clock.read() ?? 0) : Infinity;
-            const shown = this.#next / this.rate;
-            if (heard - this.#origin < shown - 1 / this.rate) this.#origin = heard - shown; // the clock was set back
+            const shown = this.#next / this.fps;
+            if (heard - this.#origin < shown - 1 / this.fps) this.#origin = heard - shown; // the clock was set back
             const after = at === undefined ? null : this.#moment(at) - this.#origin;
             if (after !== null && after < 0) {
                 throw new RangeError(`${at} s is before the first sound, ${this.#origin} s`);
@@ -126,12 +129,12 @@ export class Voice {
     cancel(milliseconds = 200) {
         this.#open();
         const length = Math.min(this.#tools.amount(milliseconds, "milliseconds"), DURATION_MAX);
-        const steps = Math.ceil((length * this.rate) / 1000 - 1e-6);
+        const steps = Math.ceil((length * this.fps) / 1000 - 1e-6);
         this.#timeline.clear();
         this.#cancelled = this.#changed = true;
         this.#dropStream();
         this.#fadeFrom(NEUTRAL, Math.max(1, Math.min(steps, FADE_MAX)));
-        this.#eased = [this.#next / this.rate, Date.now()];
+        this.#eased = [this.#next / this.fps, Date.now()];
     }
 
     // ---- What is shown
@@ -160,8 +163,8 @@ export class Voice {
                 if (this.#closed) return;
             }
             if (this.#finished && this.done) return;
-            const wait = heard === null ? PATIENCE : this.#origin + this.#next / this.rate - heard;
-            const milliseconds = 1000 * Math.min(Math.max(wait, 0.001), 1 / this.rate);
+            const wait = heard === null ? PATIENCE : this.#origin + this.#next / this.fps - heard;
+            const milliseconds = 1000 * Math.min(Math.max(wait, 0.001), 1 / this.fps);
             await new Promise((resolve) => { setTimeout(resolve, milliseconds); });
         }
     }
@@ -171,7 +174,7 @@ export class Voice {
     }
 
     get time() {
-        return this.number / this.rate + (this.#origin ?? 0);
+        return this.number / this.fps + (this.#origin ?? 0);
     }
 
     get now() {
@@ -182,15 +185,15 @@ export class Voice {
         return this.#given;
     }
 
-    get rate() {
-        return this.#model.rate;
+    get fps() {
+        return this.#model.fps;
     }
 
     get done() {
         if (this.#closed) return true;
         if (this.#cancelled) return this.#step === this.#steps;
         if (this.#timeline.empty) return this.#finished;
-        return this.#finished && this.#next >= (this.#timeline.end / 1000 + REST) * this.rate;
+        return this.#finished && this.#next >= (this.#timeline.end / 1000 + REST) * this.fps;
     }
 
     close() {
@@ -248,7 +251,7 @@ export class Voice {
 
     /** When the next frame is due. */
     get #milliseconds() {
-        return Math.floor((this.#next * 1000) / this.rate);
+        return Math.floor((this.#next * 1000) / this.fps);
     }
 
     /** What `take` makes of the frames that became due. */
@@ -260,9 +263,9 @@ export class Voice {
         }
         const heard = seconds - this.#origin;
         if (heard > LATEST) throw new RangeError(`${heard} s is more than a year`);
-        const last = heard >= 0 ? Math.floor(heard * this.rate + 1e-6) : -1;
+        const last = heard >= 0 ? Math.floor(heard * this.fps + 1e-6) : -1;
         if (last < this.#next) return [];
-        const late = last - this.#next >= this.rate;
+        const late = last - this.#next >= this.fps;
         if (late) this.#next = last;
         if (this.#changed || late) this.#followChanges(late);
         const frames = [];
@@ -270,6 +273,9 @@ export class Voice {
             this.#shown = this.#faded(this.#made());
             frames.push(take(this.#shown));
         }
+        const done = this.done && !this.#cancelled;
+        if (done && !this.#told) this.dispatchEvent(new Event("ended"));
+        this.#told = done;
         return frames;
     }
 
@@ -296,7 +302,7 @@ export class Voice {
         this.#stream = this.#labial.stream({ model: this.#model });
         this.#plan = plan;
         let base = NEUTRAL;
-        for (let frame = Math.floor(plan[0].start / 1000) * this.rate; frame < this.#next; frame++) base = this.#made();
+        for (let frame = Math.floor(plan[0].start / 1000) * this.fps; frame < this.#next; frame++) base = this.#made();
         this.#fadeFrom(base, FADE);
     }
 

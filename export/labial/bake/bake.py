@@ -34,7 +34,7 @@ def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name
         raise LabialError(f"{output}: this is the name of the player")
     name = name or re.sub(r"[^0-9A-Za-z]+", "_", path.stem)
     check_name(name, "header")
-    check_folder(path.parent)
+    check_folder(path.parent, path)
     longest = _longest(parts)
     told: List[str] = []
     if kind == "phonemes":
@@ -54,7 +54,7 @@ def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name
         told = [f"part {number}: {part.begin / RATE:.2f} to {part.end / RATE:.2f} s"
                 for number, part in enumerate(cut or [])]
         files = {path: text, path.with_name(PLAYER): Path(__file__).with_name(PLAYER).read_text(encoding="ascii")}
-    with folder(path.parent) as made:
+    with folder(path.parent, path) as made:
         for file, content in files.items():
             (made / file.name).write_bytes(content.encode("ascii", errors="replace"))
     return [*map(str, files), *told]

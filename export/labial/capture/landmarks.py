@@ -24,6 +24,7 @@ import numpy as np
 
 from labial.corpus.timings import LONGEST
 from labial.errors import DataError, LabialError
+from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.grammar import columns_of, number_or_nan, read_bytes, read_lines, table_rows
 
@@ -38,8 +39,6 @@ USED = (*HEAD, *MOUTH, 152, 4, 2)
 #: Where a landmark stands in `USED`.
 INDEX = {number: place for place, number in enumerate(USED)}
 
-#: Most bytes of a file, packed or not: over an hour of a video, 478 landmarks as float32.
-LARGEST = 1_000_000_000
 _ARRAYS = ("landmarks", "fps", "times", "size", "pucker")
 _COUNTS = (468, 478)
 _SIDES = (16, 100000)  # pixels
@@ -131,8 +130,8 @@ def _check_orientation(path: PathLike, points: np.ndarray) -> None:
 def _load(path: PathLike) -> Dict[str, np.ndarray]:
     try:
         if Path(path).suffix.lower() == ".npy":
-            return {"landmarks": array("the array", read_bytes(path, LARGEST))}
-        members = read_zip(path, [f"{name}.npy" for name in _ARRAYS], LARGEST)
+            return {"landmarks": array("the array", read_bytes(path, limits.LANDMARKS))}
+        members = read_zip(path, [f"{name}.npy" for name in _ARRAYS], limits.LANDMARKS)
         return {name[:-4]: array(name[:-4], data) for name, data in members.items()}
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None

@@ -45,11 +45,11 @@ def run(options: argparse.Namespace) -> int:
         import scipy.optimize  # noqa: F401
 
         from labial.fit.fit import fit
-    check_folder(output.parent)
+    check_folder(output.parent, output)
     points = _points(options)
     done = fit(options.avatar, points, options.shapes, output.stem)
     names = [output.name]
-    with folder(output.parent) as made:  # the rig and its picture appear together
+    with folder(output.parent, output) as made:  # the rig and its picture appear together
         (made / output.name).write_text(done.text, encoding="utf-8")
         if not options.no_figure and done.found is not None:
             from labial.see.picture import draw

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ContextManager, Iterator, List, Tuple
 
 from labial.commands.common import add_format, format_of
 from labial.errors import DataError, LabialError
+from labial.files import wav
 from labial.files.arguments import whole
 
 if TYPE_CHECKING:
@@ -78,10 +79,10 @@ def _sound(path: str) -> Tuple[int, int, bytes]:
     try:
         with wave.open(path, "rb") as file:
             if file.getsampwidth() == 2 and file.getnchannels() <= 2 and file.getframerate() in _RATES:
-                return file.getframerate(), file.getnchannels(), file.readframes(file.getnframes())
+                return file.getframerate(), file.getnchannels(), b"".join(wav.blocks(file))
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
-    except (wave.Error, EOFError):
+    except wav.ERRORS:
         pass
     return 16000, 1, _converted(path)
 

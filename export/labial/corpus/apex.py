@@ -14,6 +14,7 @@ import numpy as np
 
 from labial.corpus.episode import Segment
 from labial.errors import DataError
+from labial.files import wav
 
 PathLike = Union[str, os.PathLike[str]]
 
@@ -52,12 +53,12 @@ def read_wave(path: PathLike) -> Tuple[np.ndarray, int]:
         with open(path, "rb") as file, wave.open(file) as sound:
             if sound.getsampwidth() != 2:
                 raise DataError(path, None, f"samples of {8 * sound.getsampwidth()} bits, not of 16")
-            data = sound.readframes(sound.getnframes())
+            data = b"".join(wav.blocks(sound))
             samples = np.frombuffer(data[: len(data) // (2 * sound.getnchannels()) * 2 * sound.getnchannels()], "<i2")
             return samples.reshape(-1, sound.getnchannels()).mean(axis=1), sound.getframerate()
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
-    except (wave.Error, EOFError) as error:
+    except wav.ERRORS as error:
         raise DataError(path, None, f"not a WAV file that can be read: {error or 'it ends too early'}") from None
 
 

@@ -16,6 +16,7 @@ from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import PhoneSet
 from labial.corpus.timings import LONGEST, phoneme_segments
 from labial.errors import DataError
+from labial.files import limits
 from labial.files.arrays import ArrayError, read_zip
 from labial.files.faps import CHANNELS, FAP_COLUMNS
 from labial.files.grammar import Content, columns_of, number, read_lines, table_rows
@@ -28,8 +29,6 @@ HEADER = ",".join(("time", *FAP_COLUMNS))
 SLACK = 1.0
 #: Most seconds between two frames of an episode: interpolated motion over longer gaps teaches nothing.
 LONGEST_GAP = 10.0
-#: Most bytes of the unpacked files of a zip file: some hours of motion.
-LARGEST_PACKED = 512_000_000
 #: Largest FAP, FAP units: a face is some thousands wide.
 LARGEST = 1e6
 
@@ -85,7 +84,7 @@ def check_span(path: PathLike, episode: Episode) -> None:
 
 def _files(folder: Path) -> Iterator[PathLike]:
     """The files of a folder and of its zip files, except hidden ones and sub-folders. Raises DataError for a zip file
-    that is invalid, damaged, or larger than `LARGEST_PACKED` bytes."""
+    that is invalid, damaged, or larger than `limits.CORPUS` bytes."""
     for file in sorted(folder.iterdir()):
         if file.name.startswith(".") or not file.is_file():
             continue
@@ -93,7 +92,7 @@ def _files(folder: Path) -> Iterator[PathLike]:
             yield file
             continue
         try:
-            members = read_zip(file, None, LARGEST_PACKED)
+            members = read_zip(file, None, limits.CORPUS)
         except (ArrayError, OSError) as error:
             raise DataError(file, None, getattr(error, "strerror", None) or str(error)) from None
         for name in sorted(members):

@@ -16,6 +16,7 @@ from typing import Any, BinaryIO, ContextManager, Dict, Iterable, Mapping, Optio
 import numpy as np
 
 from labial.errors import LabialError
+from labial.files import limits
 from labial.files.outputs import writing
 
 PathLike = Union[str, os.PathLike[str]]
@@ -52,7 +53,7 @@ def read_zip(path: PathLike, names: Optional[Iterable[str]], most: int) -> Dict[
     """Members of a zip file by name: those of `names` that exist, or all of them.
 
     Raises OSError for a file that cannot be opened; ArrayError for a file that is not a zip, is encrypted or damaged,
-    or whose members, unpacked, exceed `most` bytes together.
+    or whose members, unpacked, exceed `most` bytes together, or too many times the size of the file (`limits`).
     """
     with open(path, "rb") as file:
         return _members(file, None if names is None else set(names), most)
@@ -64,21 +65,31 @@ def _members(file: BinaryIO, wanted: Optional[Set[str]], most: int) -> Dict[str,
     try:
         with zipfile.ZipFile(file) as archive:
             members = [item for item in archive.infolist() if wanted is None or item.filename in wanted]
-            if sum(item.file_size for item in members) > most:
-                raise ArrayError(f"what it holds has more than {most} bytes")
+            size, most = sum(item.file_size for item in members), limits.unpacked(_size(file), most)
+            if size > most:
+                raise ArrayError(f"unpacked, it has {size:,} bytes, more than the {most:,} that are read")
             for item in members:
                 name = item.filename
                 if item.flag_bits & 1:
                     raise ArrayError(f"{name} is encrypted")
                 if name in found:
                     raise ArrayError(f"{name} is there twice")
-                with archive.open(item) as member:  # reads no more than file_size, and checks it by its CRC-32
-                    found[name] = member.read()
+                if item.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):  # others unpack without limit
+                    raise ArrayError(f"{name} is packed by method {item.compress_type}, which is not read")
+                with archive.open(item) as member:
+                    found[name] = member.read(item.file_size)  # without a size, as much as there is
+                    if len(found[name]) != item.file_size or member.read(1):
+                        raise ArrayError(f"{name} is damaged (it has another size than its head says)")
     except ArrayError:
         raise
     except Exception as error:  # any error of zipfile, zlib and others in a damaged file
         raise ArrayError(f"{name or 'the zip file'} is damaged ({' '.join(str(error).split())[:80]})") from None
     return found
+
+
+def _size(file: BinaryIO) -> int:
+    """The bytes of a file, whose place stays."""
+    return file.seek(0, os.SEEK_END)
 
 
 def array(name: str, data: bytes) -> np.ndarray:

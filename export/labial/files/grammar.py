@@ -17,11 +17,12 @@ import re
 from typing import Iterator, List, Optional, Sequence, Tuple, Union
 
 from labial.errors import DataError
+from labial.files import limits
 
 PathLike = Union[str, os.PathLike[str]]
 
-#: Bytes that a text file has at most.
-LARGEST_TEXT = 256_000_000
+#: Bytes that are read at once.
+_PART = 1_000_000
 #: Digits that a whole number has at most: times of a file are far from that.
 _MOST_DIGITS = 18
 
@@ -42,21 +43,24 @@ class Content(os.PathLike[str]):
         return self._name
 
 
-def read_bytes(path: PathLike, most: int = LARGEST_TEXT) -> bytes:
+def read_bytes(path: PathLike, most: int = limits.TEXT) -> bytes:
     """A file's bytes. Raises DataError where it cannot be read or has more than `most`."""
     if isinstance(path, Content):
         return path.data
     try:
         with open(path, "rb") as file:
-            data = file.read(most + 1)
+            limits.refuse(path, "it has", os.fstat(file.fileno()).st_size, most)
+            data = bytearray()
+            while len(data) <= most and (part := file.read(_PART)):  # devices and pipes do not tell their size
+                data += part
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
     if len(data) > most:
-        raise DataError(path, None, f"longer than {most} bytes")
-    return data
+        raise DataError(path, None, f"it has more than the {most:,} bytes that are read")
+    return bytes(data)
 
 
-def read_text(path: PathLike, most: int = LARGEST_TEXT) -> str:
+def read_text(path: PathLike, most: int = limits.TEXT) -> str:
     """A file's text without its byte order mark. Raises DataError, which names the line of an invalid character."""
     data = read_bytes(path, most)
     encoding = "utf-16" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig"

@@ -3,12 +3,14 @@
 :func:`writing` is for one file, :func:`folder` for several that belong together. Output goes to a temporary file beside
 the target, whose name begins with a dot and ends with ``.part``. It is synced to the disk before it is renamed to the
 target, and removed after any failure: a full disk, an exception, Ctrl-C, SIGTERM. Only a killed process leaves one
-behind. Errors name the target.
+behind, which the next one that writes the same target removes: each process holds a lock on its own, so that those of
+processes that run are known. Errors name the target.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import shutil
 import stat
@@ -18,6 +20,11 @@ from pathlib import Path
 from typing import IO, Any, Callable, Iterator, List, Optional, Union
 
 from labial.errors import LabialError
+
+try:
+    import fcntl
+except ImportError:  # Windows, where nothing is removed
+    fcntl = None  # type: ignore[assignment]
 
 PathLike = Union[str, os.PathLike[str]]
 
@@ -40,6 +47,8 @@ def writing(path: PathLike, encoding: Optional[str] = None) -> Iterator[IO[Any]]
     temporary = _part(target) if target is not None else ""  # named before it is created: a signal may come at any time
     try:
         with _named(path):
+            if target is not None:
+                _sweep(target)
             file = _opened(_create(temporary, target) if target is not None else _direct(path), encoding)
         with _unnamed_of(path), file:
             with _unnamed_of(path):
@@ -58,15 +67,17 @@ def writing(path: PathLike, encoding: Optional[str] = None) -> Iterator[IO[Any]]
 
 
 @contextmanager
-def folder(path: PathLike) -> Iterator[Path]:
-    """A temporary folder for the files of the folder `path`, which is created if missing.
+def folder(path: PathLike, name: Optional[PathLike] = None) -> Iterator[Path]:
+    """A temporary folder for the files of the folder `path`, which is created if missing. Errors of the folder itself
+    name `name`, if it is given.
 
     A new or empty folder appears with all of its files at once. In a folder with other files, the files are renamed one
     after the other when the block ends, each as :func:`writing` does; if that fails, the LabialError says which are
     new. No file is changed if the block raises.
     """
-    target = Path(path)
-    with _named(path):
+    target, shown = Path(path), path if name is None else name
+    lock: Optional[int] = None
+    with _named(shown):
         if target.exists() and not target.is_dir():
             raise LabialError(f"{path}: not a folder")
         made = [item for item in (target, *target.parents) if not item.exists()]
@@ -74,18 +85,20 @@ def folder(path: PathLike) -> Iterator[Path]:
         whole = _replaceable(place)
         staging = Path(_part(os.path.join(place if not whole else place.parent, place.name)))
     try:
-        with _named(path):
+        with _named(shown):
+            for beside in (place, place.parent):
+                _sweep(os.path.join(beside, place.name))
             place.mkdir(parents=True, exist_ok=True)
-            staging.mkdir()
+            lock = _create_folder(staging)
         try:
             yield staging
         except OSError as error:
-            raise _translated(error, staging, target) from None
+            raise _translated(error, staging, target, shown) from None
         except LabialError as error:
             if str(staging) not in str(error):
                 raise
             raise LabialError(str(error).replace(str(staging), str(target))) from None
-        with _named(path):
+        with _named(shown):
             files = sorted(item for item in staging.rglob("*") if not item.is_dir())
             for file in files:
                 _sync(file)
@@ -99,6 +112,8 @@ def folder(path: PathLike) -> Iterator[Path]:
         _sync(place.parent if whole else place)
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
         for item in made:
             with suppress(OSError):  # not empty after success
                 item.rmdir()
@@ -120,15 +135,15 @@ def check(path: Optional[PathLike]) -> None:
                 os.unlink(temporary)
 
 
-def check_folder(path: PathLike) -> None:
+def check_folder(path: PathLike, name: Optional[PathLike] = None) -> None:
     """Raises LabialError unless :func:`folder` can write to `path`; call it before the work."""
     place = Path(path)
-    with _named(path):
+    with _named(path if name is None else name):
         if place.exists() and not place.is_dir():
             raise LabialError(f"{path}: not a folder")
         while not place.exists() and place != place.parent:
             place = place.parent
-        staging = _part(os.path.join(place, "check"))
+        staging = _part(os.path.join(place, os.path.basename(os.path.realpath(place))))
         try:
             os.mkdir(staging)
         finally:
@@ -180,9 +195,78 @@ def _part(target: str) -> str:
     return os.path.join(directory, f".{cut}.{secrets.token_hex(4)}{SUFFIX}")
 
 
+def _sweep(target: str) -> None:
+    """Removes the temporary files and folders beside `target` whose processes are dead."""
+    directory, ours = os.path.split(_part(target))
+    begin = ours[: -len("00000000" + SUFFIX)]
+    with suppress(OSError):
+        found = [entry.path for entry in os.scandir(directory) if entry.name.startswith(begin)
+                 and re.fullmatch(f"[0-9a-f]{{8}}{re.escape(SUFFIX)}", entry.name[len(begin):])]
+        for path in found:
+            with suppress(OSError):
+                _remove_if_dead(path)
+
+
+def _remove_if_dead(path: str) -> None:
+    """Removes one that is this user's and that no process has locked."""
+    if fcntl is None:
+        return
+    descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    try:
+        status = os.fstat(descriptor)
+        if status.st_uid != os.geteuid():
+            return
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)  # an OSError where its process runs
+        if not _is_at(descriptor, path):
+            return
+        if stat.S_ISDIR(status.st_mode):
+            shutil.rmtree(path, ignore_errors=True)
+        elif stat.S_ISREG(status.st_mode):
+            os.unlink(path)
+    finally:
+        os.close(descriptor)
+
+
+def _is_at(descriptor: int, path: str) -> bool:
+    """Whether what is open is still what has this path."""
+    try:
+        return os.path.samestat(os.fstat(descriptor), os.stat(path, follow_symlinks=False))
+    except FileNotFoundError:
+        return False
+
+
+def _locked(descriptor: int, path: str) -> bool:
+    """Locks what this process has just made, until it is closed; whether nobody removed it before it was locked. Some
+    file systems have no locks: nothing is removed there."""
+    if fcntl is not None:
+        with suppress(OSError):
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            return _is_at(descriptor, path)
+    return True
+
+
+def _create_folder(path: Path) -> Optional[int]:
+    """Makes the temporary folder `path`; the descriptor that locks it, or None."""
+    while True:
+        path.mkdir()
+        if fcntl is None:
+            return None
+        try:
+            descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+        except FileNotFoundError:  # another process took it for that of a dead one
+            continue
+        if _locked(descriptor, str(path)):
+            return descriptor
+        os.close(descriptor)
+
+
 def _create(temporary: str, target: str) -> int:
     """The descriptor of a new file `temporary`, with the owner and permissions of `target`, or those of a new file."""
-    descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_CLOEXEC", 0), 0o666)
+    while True:
+        descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_CLOEXEC", 0), 0o666)
+        if _locked(descriptor, temporary):
+            break
+        os.close(descriptor)
     with suppress(OSError):
         found, own = os.stat(target), os.stat(temporary)
         if (found.st_uid, found.st_gid) != (own.st_uid, own.st_gid):
@@ -299,11 +383,14 @@ def _failure(path: PathLike, error: OSError) -> LabialError:
     return LabialError(f"{name}: {error.strerror or error}")
 
 
-def _translated(error: OSError, staging: Path, target: Path) -> Exception:
-    """Replaces the name of a temporary file in an error by its target."""
+def _translated(error: OSError, staging: Path, target: Path, shown: PathLike) -> Exception:
+    """Replaces the name of a temporary file in an error by its target; `shown` stands for the folder. An error of
+    writing, which has no name, is one of the newest file."""
     if error.filename is None:
-        return _failure(target, error)
-    name = os.fsdecode(error.filename)
+        files = [item for item in staging.rglob("*") if item.is_file()]
+        name = str(max(files, key=lambda item: item.stat().st_mtime_ns)) if files else str(staging)
+    else:
+        name = os.fsdecode(error.filename)
     if not name.startswith(str(staging)):
         return error
-    return _failure(Path(str(target) + name[len(str(staging)):]), error)
+    return _failure(target / name[len(str(staging)) + 1 :] if name != str(staging) else shown, error)

@@ -7,19 +7,21 @@ import math
 import os
 import re
 import sys
-from typing import Any, Dict, Iterable, Mapping, Union
+from typing import Any, Dict, Iterable, List, Mapping, Union
 
 from labial.errors import DataError
+from labial.files import limits
 from labial.files.grammar import read_bytes
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:  # pragma: no cover - the same parser before it became a part of Python
     import tomli as tomllib
-#: Most bytes of a file.
-LARGEST = 1_000_000
 #: Largest number in a file: products of several stay within a float's range.
 LARGEST_NUMBER = 1e12
+#: Most levels of tables and lists, and most dots in a line, outside of its texts and remarks.
+_LEVELS, _DOTS = 10, 200
+_TEXTS = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'|#[^\n]*')
 
 
 class Table:
@@ -74,7 +76,11 @@ def meant(name: str, known: Iterable[str]) -> str:
 def read_toml(path: Union[str, os.PathLike[str]]) -> Dict[str, Any]:
     """The content of a TOML file. Raises DataError, which names the file and the line, for invalid TOML."""
     try:
-        return tomllib.loads(read_bytes(path, LARGEST).decode("utf-8"))
+        text = read_bytes(path, limits.TOML).decode("utf-8")
+        for number, content in enumerate(_TEXTS.sub("", text).split("\n"), 1):
+            if content.count(".") > _DOTS:  # the parser's time grows with the square of a key's parts
+                raise DataError(path, number, "not TOML: nested too deeply")
+        content_of = tomllib.loads(text)
     except UnicodeDecodeError as error:
         raise DataError(path, None, f"not UTF-8 text: byte {error.start}") from None
     except ValueError as error:  # TOMLDecodeError, or a number of more digits than Python takes
@@ -84,3 +90,10 @@ def read_toml(path: Union[str, os.PathLike[str]]) -> Dict[str, Any]:
         raise DataError(path, line, f"not TOML: {found[1] if found else error}{column}") from None
     except RecursionError:
         raise DataError(path, None, "not TOML: nested too deeply") from None
+    level: List[Any] = [content_of]
+    for _ in range(_LEVELS):
+        level = [item for holder in level for item in (holder.values() if isinstance(holder, dict) else holder)
+                 if isinstance(item, (dict, list))]
+    if level:
+        raise DataError(path, None, f"nested in more than {_LEVELS} levels")
+    return content_of

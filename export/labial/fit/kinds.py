@@ -7,6 +7,7 @@ names may follow everything.
 
 from __future__ import annotations
 
+import warnings
 from typing import Dict, List, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
@@ -71,6 +72,8 @@ _ALSO = {"fclmtha": "aa", "fclmthi": "ih", "fclmthu": "ou", "fclmthe": "ee", "fc
          "visemeoh": "O", "visemeou": "U"}
 #: Millimetres by which a shape of another name must move a lip to be used.
 _LEAST = 1.0
+#: Shapes beyond which solving takes more than some seconds, and fits less well; and the most that are solved for.
+_MANY, _MOST = 40, 200
 
 
 def known(head: Head, kind: str) -> Dict[str, str]:
@@ -120,6 +123,12 @@ def prepare(head: Head, kind: str, single: bool, only: Sequence[str] = ()) -> Tu
         names = {shape: names.get(shape, shape) for shape in only}
     if not names:
         raise LabialError(f"{head.name}: none of its shapes is one of {kind}'s")
+    if len(names) > _MOST:
+        raise LabialError(f"{head.name}: {len(names)} shapes move the lips, more than the {_MOST} that are solved for: "
+                          "name those to use with --shapes")
+    if len(names) > _MANY:
+        warnings.warn(f"{head.name}: solving for {len(names)} shapes takes long; --shapes names those to use",
+                      stacklevel=2)
     picked = head.only(list(names))
     renamed = Head(head.name, tuple(names.values()), picked.rest, picked.moves)
     wishes = Wishes(shut=0.0 if single else -0.5, deep=-1.5 if single else -1.9,

@@ -13,6 +13,7 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
 import numpy as np
 
 from labial.errors import DataError
+from labial.files import limits
 from labial.fit.avatar import Mesh
 from labial.fit.head import POINTS, USUAL_MNS, Head, from_points
 
@@ -26,6 +27,11 @@ _TORN_MIDDLE, _TORN = 4.0, 15.0
 _NOSE = 0.5
 #: Millimetres between the inner lips at rest from which on a mouth counts as open.
 _APART = 1.0
+#: Least extent of a mesh, in the file's unit.
+_SMALLEST = 1e-6
+#: Most pairs of vertices among which the lips' middle is looked for, edges of a profile, and neighbours of the vertices
+#: on the seam: a real face has a hundredth of each.
+_PAIRS, _EDGES, _BRANCHES = 4_000_000, 200_000, 2_000
 
 
 class Found(NamedTuple):
@@ -86,20 +92,25 @@ class _Face:
     def __init__(self, mesh: Mesh, where: str) -> None:
         name = opener(mesh)
         assert name is not None
-        size = np.ptp(mesh.vertices, axis=0).max()
-        _, first, inverse = np.unique(np.round((mesh.vertices - mesh.vertices.min(axis=0)) / (1e-5 * size)).astype(int),
-                                      axis=0, return_index=True, return_inverse=True)
-        inverse = inverse.ravel()
+        size = float(np.ptp(mesh.vertices, axis=0).max()) if len(mesh.vertices) else 0.0
+        if not size >= _SMALLEST:
+            raise DataError(where, None, f"the mesh {mesh.name[:60]!r} is {size:g} wide, not a face")
+        grid = np.round((mesh.vertices - mesh.vertices.min(axis=0)) / (1e-5 * size)).astype(np.int64)
+        _, first, inverse = np.unique(grid @ [1 << 40, 1 << 20, 1], return_index=True, return_inverse=True)
+        self.where = where
         self.first, self.points = first, mesh.vertices[first]
-        self.down = -mesh.shapes[name][first][:, 1]
+        self.down = -mesh.shapes[name][first][:, 1].astype(np.float64)
         self.jaw = float(self.down.max())
         if not self.jaw > 0.0:
             raise DataError(where, None, f"the shape {name!r} moves nothing down")
         moving = np.linalg.norm(mesh.shapes[name][first], axis=1) > 0.02 * self.jaw
         self.size = float(np.ptp(self.points[moving][:, 0]))
+        if not self.size > 0.0:
+            raise DataError(where, None, f"the shape {name!r} moves nothing that is wide")
         self.middle = float((self.points[moving][:, 0].min() + self.points[moving][:, 0].max()) / 2.0)
         edges = np.concatenate([inverse[mesh.triangles[:, pair]] for pair in ((0, 1), (1, 2), (2, 0))])
-        edges = np.unique(np.sort(edges, axis=1), axis=0)
+        pairs = np.unique(np.sort(edges, axis=1) @ [1 << 32, 1])
+        edges = np.stack([pairs >> 32, pairs & 0xffffffff], axis=1)
         self.edges = edges[edges[:, 0] != edges[:, 1]]
         both = np.concatenate([self.edges, self.edges[:, ::-1]])
         order = np.argsort(both[:, 0], kind="stable")
@@ -119,6 +130,7 @@ class _Face:
         """Along the midline from height `begin` to `end`: height, how far in front the foremost place lies, and its
         nearest vertex. Places along edges count, so that coarse meshes have a profile, too."""
         edges = self.edges[(keep & self.strip(0.03))[self.edges].all(axis=1)]
+        limits.refuse(self.where, "on its midline the face has", len(edges), _EDGES, "edges")
         share = np.linspace(0.0, 1.0, 9)
         ends = self.points[edges]
         places = (ends[:, 0, None] * (1.0 - share)[None, :, None] + ends[:, 1, None] * share[None, :, None]).reshape(
@@ -147,6 +159,7 @@ def _inner(face: _Face, where: str) -> Tuple[int, int]:
         lower = np.flatnonzero(middle & (face.down > 0.55 * face.jaw))
         if not len(upper) or not len(lower):
             continue
+        limits.refuse(where, "on its midline the mouth has", len(upper) * len(lower), _PAIRS, "pairs of vertices")
         apart = np.linalg.norm(face.points[upper][:, None] - face.points[lower][None], axis=2)
         torn = (face.down[lower][None] - face.down[upper][:, None]) / (apart + 0.002 * face.size)
         near = np.argwhere((torn > _TORN_MIDDLE * face.jaw / face.size) & (apart <= max(2.2 * float(apart.min()),
@@ -163,8 +176,11 @@ def _seam(face: _Face, upper: int, lower: int, sign: float) -> List[Tuple[int, i
     """Pairs of an upper and a lower vertex from the middle to a corner, as far as the lips part."""
     pairs = [(upper, lower)]
     seen = {upper}
+    branches = 0
     for _ in range(100):
         here = pairs[-1][0]
+        branches += len(face.beside(here))
+        limits.refuse(face.where, "beside the seam of its lips the face has", branches, _BRANCHES, "vertices")
         best: Optional[Tuple[float, int, int]] = None
         for step in face.beside(here):
             move = face.points[step] - face.points[here]
@@ -313,7 +329,7 @@ def read_head(meshes: List[Mesh], where: str, given: Mapping[str, int]) -> Found
                       f"{USUAL_MNS:g} mm from nose to mouth")
     shapes = list(mesh.shapes)
     rest = {point: mesh.vertices[vertex] * factor for point, vertex in vertices.items()}
-    moves = {point: np.stack([mesh.shapes[shape][vertex] for shape in shapes]) * factor
+    moves = {point: np.stack([mesh.shapes[shape][vertex] for shape in shapes]).astype(np.float64) * factor
              for point, vertex in vertices.items()}
     head = from_points(where, shapes, rest, moves)
     apart = float(rest["inner_upper"][1] - rest["inner_lower"][1])

@@ -8,6 +8,7 @@ from typing import List, Mapping, Sequence, Tuple
 import numpy as np
 
 from labial.fit.solve import FEATURES, Solution
+from labial.program import one_line
 
 _CORNERS = {"left": ("stretch_l_cornerlip_o", "raise_l_cornerlip_o"),
             "right": ("stretch_r_cornerlip_o", "raise_r_cornerlip_o")}
@@ -40,7 +41,7 @@ def describe(solution: Solution, shapes: Sequence[str], remarks: Sequence[str], 
              keep: Sequence[str] = ()) -> str:
     """The text of a description. `remarks` are its first lines, `notes` a remark beside a shape; shapes that never move
     are left out, except those of `keep`."""
-    lines = [f"# {remark}".rstrip() for remark in remarks]
+    lines = [f"# {one_line(remark)}".rstrip() for remark in remarks]
     lines.append('unit = "weight"')
     for number, group in enumerate(solution.groups):
         for place, side in group.members:
@@ -53,7 +54,7 @@ def describe(solution: Solution, shapes: Sequence[str], remarks: Sequence[str], 
             note = notes.get(shapes[place], notes.get(group.name, "")) if side != "right" else ""
             neutral = min(round(float(solution.offsets[number]), 4), 0.0)
             cap = float(solution.caps[number])
-            lines += ["", f"[output.{output_name(shapes[place])}]" + (f"    # {note}" if note else ""),
+            lines += ["", f"[output.{output_name(shapes[place])}]" + (f"    # {one_line(note)}" if note else ""),
                       f"from = {{ {mixed} }}", f"neutral = {neutral:g}", "full = 1",
                       f"reach = {(1.0 - neutral) * 1024.0 / largest:.1f}", "minimum = 0"]
             if cap < 1.0:

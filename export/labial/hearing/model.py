@@ -14,6 +14,7 @@ from typing import Any, BinaryIO, Dict, List, Tuple, Union
 import numpy as np
 
 from labial.errors import ModelError
+from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS, SIDES
 from labial.hearing.features import BANDS, HOPS
@@ -26,8 +27,6 @@ FORMAT = 1
 KIND = "hearing"
 #: Features of a frame.
 INPUTS = HOPS * BANDS
-#: Most bytes of a file's members together.
-LARGEST = 4_000_000
 
 #: Limits of `lib/hear_network.c`: units, a multiple of four; blocks; frames that a memory reaches back and ahead, times
 #: its dilation; classes.
@@ -133,7 +132,7 @@ def save(model: HearingModel, path: Union[PathLike, BinaryIO]) -> None:
 def is_hearing(path: PathLike) -> bool:
     """Whether a file says that it holds a model of hearing; false for all other files, also those that are missing."""
     try:
-        members = read_zip(path, ["model.json"], LARGEST)
+        members = read_zip(path, ["model.json"], limits.HEARING)
         text = json.loads(members["model.json"].decode("utf-8"))
     except (OSError, ArrayError, KeyError, ValueError, RecursionError):
         return False
@@ -143,7 +142,7 @@ def is_hearing(path: PathLike) -> bool:
 def load(path: PathLike) -> HearingModel:
     """Reads and checks a model of hearing. Raises ModelError, which names the file, for anything else."""
     try:
-        members = read_zip(path, None, LARGEST)
+        members = read_zip(path, None, limits.HEARING)
         _expect("model.json" in members, "it holds no model.json")
         text = _texts(members["model.json"])
 

@@ -20,6 +20,7 @@ import numpy as np
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError, apt, missing
+from labial.files import wav
 from labial.hearing.espeak import Speaker
 
 #: Seconds after which a program that speaks one text, or all of them, is ended.
@@ -128,7 +129,7 @@ def _spoken(voice: str, text: str, path: str, ends: Sequence[Tuple[float, str]])
         with wave.open(path) as sound:
             rate, width, channels = sound.getframerate(), sound.getsampwidth(), sound.getnchannels()
             content = sound.readframes(sound.getnframes())
-    except (OSError, EOFError, wave.Error) as error:
+    except (OSError, *wav.ERRORS) as error:
         raise LabialError(f"{voice} could not say {text[:40]!r}: {error}") from None
     if width != 2 or channels != 1 or not content or not ends:
         raise LabialError(f"{voice} could not say {text[:40]!r}")

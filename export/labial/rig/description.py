@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.errors import LabialError
+from labial.files import limits
 from labial.files.faps import CHANNELS
 from labial.files.toml import Table, meant, read_toml
 from labial.rig.gestures import SOURCES, Row
@@ -67,6 +68,7 @@ def read(path: Union[str, os.PathLike[str]], name: str) -> Rig:
     outputs = content.get("output")
     if not isinstance(outputs, dict) or not outputs:
         raise top.error("output", "at least one table [output.NAME] is needed")
+    limits.refuse(path, "it has", len(outputs), limits.OUTPUTS, "outputs")
     return Rig(name, unit, tuple(_output(where, key, in_microseconds(table, ends), unit)
                                  for key, table in _named(top, outputs)), where)
 

@@ -21,6 +21,7 @@ from labial.core.library import (
 from labial.core.numbers import whole
 from labial.corpus.aliases import LABEL_SETS
 from labial.errors import LabialError, ModelError, StreamError
+from labial.files import limits
 
 #: Sets of labels, labial_labels_t (labial/names.h).
 LABELS = {"auto": sum(LABEL_SETS.values()), **LABEL_SETS}
@@ -53,7 +54,9 @@ class Model:
         if not isinstance(self.name, str) or not self.name:
             raise TypeError(f"a model is named by a path, not by {type(path).__name__}")
         with open(self.name, "rb") as file:
-            content = file.read()
+            content = file.read(limits.BLOB + 1)
+        if len(content) > limits.BLOB:
+            raise ModelError(f"{self.name}: it has more than the {limits.BLOB:,} bytes that are read")
         # The library uses the tables in place: this object keeps both blocks alive.
         self._content = memory(len(content))
         ctypes.memmove(self._content, content, len(content))

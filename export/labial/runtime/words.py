@@ -45,8 +45,8 @@ def word_timings(timed: Iterable[TimedWord], *, offset_ms: float = 0,
     `timed` are words as they are written, punctuation included, with their beginnings and ends in milliseconds. An end
     may be None: then the word lasts until the next one, or as long as such a word usually does. `offset_ms` is added to
     all times: a positive number for a voice that reports its words too early. The other arguments are those of
-    :func:`labial.phonemes`. Raises LabialError, with the word, for words that are not in order; warns where all durations
-    are below 5 ms, as seconds are.
+    :func:`labial.phonemes`. Raises LabialError, with the word, for words that are not in order; warns where all
+    durations are below 5 ms, as seconds are.
     """
     found, longest, before = [], 0.0, 0.0
     for place, item in enumerate(timed, 1):

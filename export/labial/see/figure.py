@@ -8,6 +8,7 @@ from typing import Union
 import numpy as np
 
 from labial.errors import needs
+from labial.files import limits
 from labial.rig.description import Rig
 from labial.rig.gestures import POSES
 from labial.rig.table import convert, expected
@@ -21,6 +22,7 @@ def draw(rig: Rig, path: Union[str, Path]) -> None:
     with needs("drawing (--no-figure leaves it out)", "rig"):
         from labial.see.drawing import COLOURS, pyplot, style, write
 
+    limits.refuse(rig.path, "it has", len(rig.outputs), limits.DRAWN, "outputs (--no-figure leaves the drawing out)")
     table = convert(rig)
     columns = min(len(table), 3)
     rows = -(-len(table) // columns)

@@ -12,7 +12,9 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy as np
 
 from labial.errors import DataError, LabialError
+from labial.files import limits
 from labial.files.frames import even
+from labial.files.grammar import read_bytes
 from labial.fit.avatar import read as read_avatar
 from labial.fit.judge import matrix, opening
 from labial.fit.kinds import KINDS, kind_of, known
@@ -22,7 +24,7 @@ from labial.fit.write import output_name
 from labial.rig.animation import face, outputs
 from labial.rig.description import Rig, read
 from labial.see.motion import Motion
-from labial.see.page import LARGEST_SOUND, script_data
+from labial.see.page import script_data
 
 PathLike = Union[str, os.PathLike[str]]
 
@@ -31,12 +33,13 @@ _RIGHT, _LEAST = (0.8, 1.25), 2.0
 PLAYER = Path(__file__).with_name("head.html")
 #: Modules of the npm package three, their names on a page, and their names for each other.
 _THREE: Dict[str, str] = {
-    "labial-core": "build/three.core.js",
     "three": "build/three.module.js",
     "labial-gltf": "examples/jsm/loaders/GLTFLoader.js",
     "labial-buffers": "examples/jsm/utils/BufferGeometryUtils.js",
     "labial-skeletons": "examples/jsm/utils/SkeletonUtils.js",
 }
+#: A part of `three` from 0.172 on.
+_CORE = {"labial-core": "build/three.core.js"}
 _IMPORTS = {"./three.core.js": "labial-core", "../utils/BufferGeometryUtils.js": "labial-buffers",
             "../utils/SkeletonUtils.js": "labial-skeletons"}
 
@@ -57,7 +60,8 @@ def find_three(given: Optional[PathLike]) -> Path:
 def _imports(three: Path) -> str:
     """An import map whose modules are data: no network."""
     modules = {}
-    for name, file in _THREE.items():
+    core = {name: file for name, file in _CORE.items() if (three / file).is_file()}
+    for name, file in {**core, **_THREE}.items():
         text = (three / file).read_text(encoding="utf-8")
         for path, other in _IMPORTS.items():
             for quote in "\"'":
@@ -104,15 +108,14 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
     Raises DataError for a file that cannot be used and LabialError for an avatar that no rig moves.
     """
     where = os.fspath(avatar)
-    found = read_head(read_avatar(avatar), where, {})
+    found = read_head(read_avatar(avatar, everything=True), where, {})
     chosen, used = _shapes(found, rig)
-    size = os.path.getsize(avatar)
-    content = Path(avatar).read_bytes()
+    content = read_bytes(avatar)
     if content[:4] != b"glTF":
         raise DataError(where, None, "a page takes a .glb or .vrm, in which everything is in one file")
-    if size > LARGEST_SOUND:
-        raise DataError(where, None, f"a page takes an avatar of {LARGEST_SOUND // 1_000_000} MB at most, and this one "
-                                     f"has {size / 1e6:.1f} MB")
+    if len(content) > limits.PAGE:
+        raise DataError(where, None, f"a page takes an avatar of {limits.PAGE // 1_000_000} MB at most, and this one "
+                                     f"has {len(content) / 1e6:.1f} MB")
     try:
         fps, frames = even(motion.times, motion.frames)
     except ValueError as error:

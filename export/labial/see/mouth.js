@@ -154,11 +154,24 @@ const MARKUP = `<svg viewBox="-215 -185 430 412" role="img" aria-label="A drawn 
 
 let drawings = 0;
 
+/** Appends the SVG elements of a drawing's markup, which has no text, to an element or shadow root. Pages may forbid
+ * innerHTML ("trusted types"). Names in one drawing are not meant by another one. */
+export function build(place, markup) {
+  const own = `labial-${++drawings}-`, open = [place];
+  for (const [, closes, name, attributes, empty] of markup.matchAll(/<(\/?)(\w+)([^>]*?)(\/?)>/g)) {
+    if (closes) { open.pop(); continue; }
+    const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [, key, value] of attributes.matchAll(/([\w-]+)="([^"]*)"/g))
+      element.setAttribute(key, key === "id" ? own + value : value.replace("url(#", `url(#${own}`));
+    open[open.length - 1].append(element);
+    if (!empty) open.push(element);
+  }
+}
+
 /** Puts a mouth into an empty element or shadow root and returns the function that draws a frame, as mouthShape() takes it.
  * The colours behind the face are --labial-backdrop-top and --labial-backdrop-bottom. */
 export function createMouth(place) {
-  const own = `labial-${++drawings}-`; /* what is named in one drawing is not meant by another one */
-  place.innerHTML = MARKUP.replace(/(id="|url\(#)/g, `$1${own}`);
+  build(place, MARKUP);
   const shapes = [...place.querySelectorAll("[data-d]")], jawParts = [...place.querySelectorAll("[data-move=jaw]")];
   return faps => {
     const {paths, opacity, jaw} = mouthShape(faps);
@@ -168,5 +181,155 @@ export function createMouth(place) {
       if (name in opacity) shape.setAttribute("opacity", opacity[name]);
     }
     for (const part of jawParts) part.setAttribute("transform", `translate(0 ${jaw})`);
+  };
+}
+
+/* The whole face: flat, in the mouth's drawing units. Lids, brows and gaze are moved by FACE_STYLE and by the frame. */
+const FACE = `<svg viewBox="-300 -455 600 690" aria-hidden="true" class="labial-face">
+  <defs>
+    <linearGradient id="backdrop" x2="0" y2="1"><stop class="top"/><stop offset="1" class="bottom"/></linearGradient>
+    <clipPath id="opening"><path data-d="inner"/></clipPath>
+    <clipPath id="left"><ellipse cx="96" cy="-178" rx="42" ry="38"/></clipPath>
+    <clipPath id="right"><ellipse cx="-96" cy="-178" rx="42" ry="38"/></clipPath>
+    <clipPath id="head"><path data-d="head"/></clipPath>
+  </defs>
+  <rect x="-1500" y="-1500" width="3000" height="3000" fill="url(#backdrop)"/>
+  <path class="clothes" d="M-270 400C-262 262-190 214-74 196H74C190 214 262 262 270 400Z"/>
+  <path class="neck" d="M-72 90V196C-60 236 60 236 72 196V90Z"/>
+  <path class="shade" data-d="below"/>
+  <ellipse class="ear" cx="-228" cy="-140" rx="30" ry="46"/><ellipse class="ear" cx="228" cy="-140" rx="30" ry="46"/>
+  <path class="skin" data-d="head"/>
+  <g clip-path="url(#head)">
+    <ellipse class="blush" cx="-150" cy="-62" rx="46" ry="30"/><ellipse class="blush" cx="150" cy="-62" rx="46" ry="30"/>
+  </g>
+  <path class="hair" d="M-238-150C-262-330-150-428 4-428C160-428 262-330 238-150C232-196 222-232 204-262C150-262 84-290 40-334C-20-280-130-262-200-270C-222-236-232-200-238-150Z"/>
+  <g clip-path="url(#left)">
+    <ellipse class="white" cx="96" cy="-178" rx="41" ry="37"/>
+    <g class="gaze"><circle class="iris" cx="96" cy="-178" r="27"/><circle class="pupil" cx="96" cy="-178" r="15"/><circle class="light" cx="105" cy="-189" r="8"/></g>
+    <path class="skin" data-part="cheek" d="M36-60V-134Q96-148 156-134V-60Z"/>
+    <path class="skin" d="M36-300V-196Q96-216 156-196V-300Z"/>
+    <path class="skin lid" d="M36-320V-150Q96-134 156-150V-320Z"/>
+  </g>
+  <g clip-path="url(#right)">
+    <ellipse class="white" cx="-96" cy="-178" rx="41" ry="37"/>
+    <g class="gaze"><circle class="iris" cx="-96" cy="-178" r="27"/><circle class="pupil" cx="-96" cy="-178" r="15"/><circle class="light" cx="-87" cy="-189" r="8"/></g>
+    <path class="skin" data-part="cheek" d="M-156-60V-134Q-96-148 -36-134V-60Z"/>
+    <path class="skin" d="M-156-300V-196Q-96-216 -36-196V-300Z"/>
+    <path class="skin lid" d="M-156-320V-150Q-96-134 -36-150V-320Z"/>
+  </g>
+  <path class="lash" d="M54-182Q62-206 96-207Q130-206 138-182M-54-182Q-62-206-96-207Q-130-206-138-182"/>
+  <path class="brow" data-part="brow" d="M58-246Q98-268 142-244M-58-246Q-98-268-142-244"/>
+  <path class="nose" d="M-20-92Q0-76 20-92"/>
+  <g transform="scale(1.2)">
+    <path class="crease" data-d="crease"/>
+    <path class="hollow" data-d="inner"/>
+    <g clip-path="url(#opening)">
+      <path class="tongue" data-part="tongue" d="M-60 90C-66 30-42 0-3 6C42 0 66 30 60 90Z"/>
+      <path class="teeth under" data-move="jaw" d="M-52 60V17Q0 4 52 17V60Z"/>
+      <path class="teeth" d="M-82-60V0Q-46 12 0 13Q46 12 82 0V-60Z"/>
+    </g>
+    <path class="upper" data-d="upperLip"/>
+    <path class="lower" data-d="lowerLip"/>
+    <path class="shine" data-d="lowerShine"/>
+    <path class="line" data-d="inner"/>
+  </g>
+</svg>`;
+
+const FACE_STYLE = `
+.labial-face { --skin: var(--labial-skin, light-dark(#e9b18f, #d09c7d)); --lips: var(--labial-lips, light-dark(#c8716a, #b1605a));
+  --hair: var(--labial-hair, light-dark(#4b3a36, #43352f)) }
+.labial-face .top { stop-color: var(--labial-backdrop-top, light-dark(#e8eef5, #36414e)) }
+.labial-face .bottom { stop-color: var(--labial-backdrop-bottom, light-dark(#c9d5e2, #171c23)) }
+.labial-face .skin { fill: var(--skin) }
+.labial-face .ear { fill: color-mix(in oklab, var(--skin), #8a3d24 12%) }
+.labial-face .neck { fill: color-mix(in oklab, var(--skin), #6b2a18 16%) }
+.labial-face .shade { fill: color-mix(in oklab, var(--skin), #6b2a18 34%) }
+.labial-face .blush { fill: #d9574a; opacity: .16 }
+.labial-face .clothes { fill: var(--labial-clothes, light-dark(#5b7fa6, #40597a)) }
+.labial-face .hair { fill: var(--hair) }
+.labial-face .white { fill: light-dark(#fff, #eee9e4) }
+.labial-face .iris { fill: var(--labial-iris, #7a5236) }
+.labial-face .pupil { fill: #1c1a1d }
+.labial-face .light { fill: #fff; opacity: .9 }
+.labial-face :is(.lash, .brow, .nose, .crease, .shine, .line) { fill: none; stroke-linecap: round; stroke-linejoin: round }
+.labial-face .lash { stroke: var(--hair); stroke-width: 7 }
+.labial-face .brow { stroke: var(--hair); stroke-width: 13 }
+.labial-face .nose { stroke: color-mix(in oklab, var(--skin), #6b2a18 42%); stroke-width: 7 }
+.labial-face .crease { stroke: color-mix(in oklab, var(--skin), #6b2a18 24%); stroke-width: 6 }
+.labial-face .hollow { fill: #3a0f14 }
+.labial-face .tongue { fill: #cf6a6d }
+.labial-face .teeth { fill: #fbf8f2 }
+.labial-face .teeth.under { fill: #ece5da }
+.labial-face .upper { fill: color-mix(in oklab, var(--lips), #3a0f14 16%) }
+.labial-face .lower { fill: var(--lips) }
+.labial-face .shine { stroke: #fff; stroke-width: 5; opacity: .2 }
+.labial-face .line { stroke: #3a0f14; stroke-width: 3 }
+.labial-face .lid { transform: translateY(-90px); animation: labial-blink 11s infinite }
+.labial-face .lash { transform-origin: 0 -176px; animation: labial-lash 11s infinite }
+.labial-face .gaze { animation: labial-gaze 17s infinite }
+@keyframes labial-blink {
+  0%, 26.6%, 28.8%, 61%, 63.2%, 64%, 66.2%, 100% { transform: translateY(-90px) }
+  27.5%, 61.9%, 64.9% { transform: none }
+}
+@keyframes labial-lash {
+  0%, 26.6%, 28.8%, 61%, 63.2%, 64%, 66.2%, 100% { transform: none }
+  27.5%, 61.9%, 64.9% { transform: scaleY(-.8) }
+}
+@keyframes labial-gaze {
+  0%, 31%, 43%, 70%, 82%, 100% { transform: none }
+  31.8%, 42.2% { transform: translate(7px, 1px) }
+  70.8%, 81.2% { transform: translate(-6px, -2px) }
+}
+@media (prefers-reduced-motion: reduce) { .labial-face :is(.lid, .lash, .gaze) { animation: none } }
+`;
+
+/** The head's outline and what shows of the lips' surroundings, for a jaw that is `jaw` units down. */
+function headShape(jaw) {
+  const chin = 126 + 0.9 * jaw, cheek = 40 + 0.35 * jaw;
+  const half = side => `C${side * 138}-410 ${side * 232}-310 ${side * 232}-170C${side * 232} ${cheek} ${side * 118} ${chin} 0 ${chin}`;
+  return {
+    head: `M0-410${half(1)}C-118 ${chin}-232 ${cheek}-232-170C-232-310-138-410 0-410Z`,
+    below: `M-72 90V${chin + 24}Q0 ${chin + 62} 72 ${chin + 24}V90Z`,
+  };
+}
+
+/** What the face's mouth draws of a frame. At rest it smiles a little. In f and v upper teeth stand on the lower lip: lips are
+ * near each other, but the upper one has not come down as in p, b and m (FAP 51 is above 80 there and below 20 here), and
+ * the jaw is not at rest. Then the upper lip is drawn higher, so that the teeth are seen. */
+export function faceFrame(faps) {
+  const frame = Array.from(faps), [jaw, , , top, bottom] = frame;
+  const near = 170 + top + bottom, teeth = clamp(near / 80, 0, 1) * clamp((70 - top) / 50, 0, 1) * clamp((jaw - 40) / 80, 0, 1);
+  const lift = (80 + clamp(near, 0, 220)) * teeth;
+  frame[3] -= lift; frame[7] -= 0.75 * lift; frame[8] -= 0.75 * lift;
+  for (const corner of [11, 12]) frame[corner] += 70;
+  return frame;
+}
+
+/** Puts a whole face into an empty element or shadow root and returns the function that draws a frame. */
+export function createFace(place) {
+  build(place, FACE);
+  const root = place.getRootNode(), sheet = new CSSStyleSheet();
+  sheet.replaceSync(FACE_STYLE);
+  root.adoptedStyleSheets = [...root.adoptedStyleSheets, sheet];
+  const all = selector => [...place.querySelectorAll(selector)], move = (parts, y) => {
+    for (const part of parts) part.setAttribute("transform", `translate(0 ${y.toFixed(1)})`);
+  };
+  const shapes = all("[data-d]"), [jaws, brows, cheeks, tongue] =
+    ["[data-move=jaw]", "[data-part=brow]", "[data-part=cheek]", "[data-part=tongue]"].map(all);
+  const delay = `${-drawings * 3.7 % 11}s`; /* not all faces blink at once */
+  for (const part of all(".lid, .lash, .gaze")) part.style.animationDelay = delay;
+  const still = matchMedia("(prefers-reduced-motion: reduce)");
+  let lift = 0;
+  return faps => {
+    const {paths, jaw} = mouthShape(faceFrame(faps)), drawn = {...paths, ...headShape(jaw)};
+    for (const shape of shapes) shape.setAttribute("d", drawn[shape.dataset.d]);
+    move(jaws, jaw);
+    /* Of a rounded mouth the tongue is farther back, in the dark. */
+    move(tongue, 4 + 0.45 * jaw + 0.5 * clamp(-(faps[5] + faps[6]), 0, 100));
+    /* Corners that rise press the cheeks to the eyes; brows follow the jaw, slowly. */
+    const smile = clamp((faps[11] + faps[12]) / 500, 0, 1);
+    lift += 0.12 * (clamp(jaw / 4 - 14 * smile, -12, 11) - lift);
+    move(brows, still.matches ? 0 : -lift);
+    move(cheeks, -26 * smile);
   };
 }

@@ -13,6 +13,7 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 import numpy as np
 
 from labial.errors import DataError, LabialError
+from labial.files import limits
 from labial.files.faps import FAP_COLUMNS
 from labial.files.frames import even
 from labial.see.motion import Band, Motion, laughs
@@ -24,8 +25,6 @@ PLAYER = Path(__file__).with_name("player.html")
 MOUTH = Path(__file__).with_name("mouth.js")
 DATA_PLACE, MOUTH_PLACE = "@LABIAL_DATA@", "@LABIAL_MOUTH@"
 
-#: Most bytes of a page's sound. In the page it is a third longer, and Firefox stops at 32 MB.
-LARGEST_SOUND = 24_000_000
 #: First bytes of sounds that browsers play, their place, and the media type.
 _SOUNDS = (
     (0, rb"RIFF....WAVE", "audio/wav"),
@@ -41,7 +40,7 @@ _SOUNDS = (
 def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None, title: Optional[str] = None) -> str:
     """The page as text; `title` is the motion's name unless given.
 
-    `audio` is a sound file that browsers play (WAV, MP3, Ogg, FLAC, AAC, M4A, WebM), of at most `LARGEST_SOUND` bytes,
+    `audio` is a sound file that browsers play (WAV, MP3, Ogg, FLAC, AAC, M4A, WebM), of at most `limits.PAGE` bytes,
     whose time 0 is that of the motion's file. Raises DataError, which names it, when it is none, and LabialError for a
     motion whose frames are too uneven in time to be played.
     """
@@ -92,11 +91,11 @@ def sound(path: PathLike) -> str:
     """A sound file as a data URL."""
     try:
         size = os.path.getsize(path)
-        content = b"" if size > LARGEST_SOUND else Path(path).read_bytes()
+        content = b"" if size > limits.PAGE else Path(path).read_bytes()
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
-    if size > LARGEST_SOUND:
-        most = LARGEST_SOUND // 1_000_000
+    if size > limits.PAGE:
+        most = limits.PAGE // 1_000_000
         raise DataError(path, None, f"a page takes a sound of {most} MB at most, and this one has {size / 1e6:.1f} MB; "
                                     "as MP3 or Ogg it is shorter")  # fmt: skip
     for offset, start, kind in _SOUNDS:

@@ -13,6 +13,7 @@ import soxr
 from labial.corpus.formats import VIDEOS
 from labial.corpus.timings import PathLike
 from labial.errors import DataError, needs
+from labial.files import limits
 from labial.files.frames import spans
 
 #: Samples per second of the recogniser's models.
@@ -20,24 +21,31 @@ RATE = 16000
 #: The level that speech is scaled to, in dB of full scale, and that of the added noise. Synthetic speech is digitally
 #: silent in its pauses, which the models, trained on microphones, do not know.
 SPEECH_LEVEL, NOISE_LEVEL = -20.0, -55.0
-#: Seconds that are read at once.
-_BLOCK = 10
+#: Seconds that are read at once, and the most numbers that are.
+_BLOCK, _NUMBERS = 10, 4_000_000
 
 
 def read_sound(path: PathLike) -> np.ndarray:
     """A sound file's samples, (N,) float32 at `RATE`, the mean of its channels; full scale is 1. For a video, if the
     package av is installed, its sound from the video's start on.
 
-    Raises DataError for a file that is not a sound, for samples that are not finite and for a file without samples.
+    Raises DataError for a file that is not a sound or is beyond :mod:`labial.files.limits`, for samples that are not
+    finite and for a file without samples.
     """
     blocks: List[np.ndarray] = []
     try:
         with open(path, "rb") as file, soundfile.SoundFile(file) as sound:
-            resampler = soxr.ResampleStream(sound.samplerate, RATE, 1, dtype="float32")
+            limit = limits.Samples(path, RATE)
+            (low, high), rate = limits.SOUND_RATES, sound.samplerate
+            if not low <= rate <= high:
+                raise DataError(path, None, f"a rate of {rate:,} samples per second is not within {low:,} .. {high:,}")
+            limits.refuse(path, "it has", sound.channels, limits.SOUND_CHANNELS, "channels")
+            resampler = soxr.ResampleStream(rate, RATE, 1, dtype="float32")
             while True:
-                block = sound.read(_BLOCK * sound.samplerate, dtype="float32", always_2d=True)
+                block = sound.read(min(_BLOCK * rate, _NUMBERS // sound.channels), dtype="float32", always_2d=True)
                 last = len(block) == 0
                 blocks.append(resampler.resample_chunk(block.mean(axis=1), last=last))
+                limit.add(len(blocks[-1]))
                 if last:
                     break
     except OSError as error:

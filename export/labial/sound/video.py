@@ -9,6 +9,7 @@ import av
 import numpy as np
 
 from labial.errors import DataError, SilentError
+from labial.files import limits
 
 PathLike = Union[str, os.PathLike[str]]
 
@@ -44,14 +45,17 @@ def sound(path: PathLike, rate: int) -> np.ndarray:
             if not container.streams.audio:
                 raise SilentError(path, None, "no sound in it")
             start = container.start_time / av.time_base if container.start_time else 0.0
-            resampler = av.AudioResampler(format="fltp", rate=rate)
+            resampler, limit = av.AudioResampler(format="fltp", rate=rate), limits.Samples(path, rate)
             for frame in container.decode(container.streams.audio[0]):
                 if not blocks and frame.time is not None:
                     first = frame.time - start
-                blocks += [part.to_ndarray().mean(axis=0) for part in resampler.resample(frame)]
+                for part in resampler.resample(frame):
+                    blocks.append(part.to_ndarray().mean(axis=0))
+                    limit.add(len(blocks[-1]))
             blocks += [part.to_ndarray().mean(axis=0) for part in resampler.resample(None)]
     except av.FFmpegError as error:
         raise DataError(path, None, f"not a sound that can be read: {error.strerror or error}") from None
+    limit.add(max(round(first * rate), 0))
     samples = np.concatenate([np.zeros(max(round(first * rate), 0), np.float32), *blocks]).astype(np.float32)
     return samples[max(-round(first * rate), 0) :]
 

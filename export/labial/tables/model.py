@@ -16,6 +16,7 @@ import numpy as np
 
 from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError
+from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS
 from labial.tables.bundled import model_file
@@ -33,8 +34,6 @@ _TEXT = (
 )  # fmt: skip
 
 
-#: Most bytes of a file, packed or not; the bundled ones have half a million.
-LARGEST = 64_000_000
 
 _POSITION, _LOGARITHM, _PRECISION = (-1e5, 1e5), (-1e5, 1e-9), (1e-15, 1e15)
 #: The least and the largest value of each array; the library's tables hold no others, however scaled.
@@ -240,7 +239,7 @@ def load(path: Union[str, os.PathLike[str]]) -> Model:
     else."""
     path = model_file(path)
     try:
-        members = read_zip(path, None, LARGEST)
+        members = read_zip(path, None, limits.MODEL)
         _expect("model.json" in members, "not a labial model: it holds no model.json")
         members = {**{name: members[former] for former, name in _NAMES_SINCE.items() if former in members}, **members}
         values = _texts(members["model.json"])

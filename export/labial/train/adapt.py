@@ -148,6 +148,7 @@ def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> M
         training={
             **model.training,
             "adapted": {"episodes": len(material), "frames": frames},
-            "talkers": {**model.training["talkers"], "gain": gain.tolist()},
+            "talkers": {"variance": float(about["variance"]), **{name: about[name].tolist() for name in KEYS[1:]},
+                        "gain": gain.tolist()},
         },
     )

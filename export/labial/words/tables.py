@@ -11,6 +11,7 @@ from typing import Any, Dict, List, Sequence, Tuple, Union
 import numpy as np
 
 from labial.errors import ModelError
+from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.outputs import writing
 from labial.words.alignment import SOUNDS, phonemes_of
@@ -19,9 +20,8 @@ from labial.words.questions import LABELS_MOST, QUESTIONS
 
 PathLike = Union[str, os.PathLike[str]]
 
-#: Version of the file's layout, and most bytes of its content.
+#: Version of the file's layout.
 FORMAT = 1
-_LARGEST = 16_000_000
 #: Questions on the way to a leaf, at most.
 _DEEPEST = 250
 _ARRAYS = ("format", "sounds", "first", "question", "yes", "no", "label", "multiplier", "patch_count", "patch_letter",
@@ -116,7 +116,7 @@ def _check_shape(tables: WordTables) -> None:
 def is_tables(path: PathLike) -> bool:
     """Whether a file contains tables of words; False for other files, models among them."""
     try:
-        return "words.npy" in read_zip(path, ["words.npy"], _LARGEST)
+        return "words.npy" in read_zip(path, ["words.npy"], limits.WORDS)
     except (OSError, ArrayError):
         return False
 
@@ -151,7 +151,7 @@ def load(path: PathLike) -> WordTables:
 def _load(path: PathLike) -> WordTables:
     names = (*_ARRAYS, "words", "about")
     try:
-        found = read_zip(path, [f"{name}.npy" for name in names], _LARGEST)
+        found = read_zip(path, [f"{name}.npy" for name in names], limits.WORDS)
         missing = [name for name in names if f"{name}.npy" not in found]
         _expect(not missing, f"not tables of words: no array {', '.join(missing)}")
         content = {name: array(name, found[f"{name}.npy"]) for name in names}

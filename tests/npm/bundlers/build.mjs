@@ -18,6 +18,14 @@ const bundlers = {
         await build({ ...options, entryPoints: [at("server.js")], platform: "node", format: "esm", outfile: join(server, "server.mjs") });
         await build({ ...options, entryPoints: [at("server.cjs")], platform: "node", outfile: join(server, "required.cjs") });
     },
+    async parcel() {
+        const { Parcel } = await import("@parcel/core");
+        const options = { defaultConfig: import.meta.resolve("@parcel/config-default").slice("file://".length), mode: "production",
+            shouldDisableCache: true, cacheDir: join(out, "cache") };
+        const targets = { distDir: page, publicUrl: "./", sourceMaps: false };
+        process.chdir(app); // the project's root
+        await new Parcel({ ...options, entries: ["index.html", "worklet.js"], defaultTargetOptions: targets }).run();
+    },
     async rollup() {
         const { rollup } = await import("rollup");
         const { nodeResolve } = await import("@rollup/plugin-node-resolve");
@@ -51,4 +59,4 @@ const bundlers = {
     },
 };
 await bundlers[name]();
-if (name !== "vite") copyFileSync(at("index.html"), join(page, "index.html"));
+if (name !== "vite" && name !== "parcel") copyFileSync(at("index.html"), join(page, "index.html"));

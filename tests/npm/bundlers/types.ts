@@ -2,7 +2,10 @@
 import { Labial, type Faps, type Hearing, type Segment, type Stream, type Track, type Voice, type Weights, type Words } from "labial";
 import { fromEspeak } from "labial/espeak.js";
 import laughter from "labial-laughter";
+import { attach } from "labial/attach.js";
+import { LabialFace } from "labial/labial-face.js";
 import type { LabialMouth } from "labial/labial-mouth.js";
+import { createMouth, mouthShape } from "labial/mouth.js";
 
 const labial = await Labial.load({ laughter: () => import("labial-laughter") });
 await Labial.load({ laughter });
@@ -32,7 +35,7 @@ labial.convert(between, "arkitt");
 // @ts-expect-error no output has this name
 labial.stream({ output: "vrmm" });
 // @ts-expect-error null until it is loaded
-labial.models.laughter.rate;
+labial.models.laughter.fps;
 
 const mine = labial.rig<"beak" | "brow">({});
 const beak: number | undefined = labial.stream({ output: mine }).tick()?.beak;
@@ -99,6 +102,26 @@ fromEspeak([], { samples: [new Int16Array(5)], sampleRate: 22050 });
 // @ts-expect-error the rate of the sound is missing
 fromEspeak([], { samples: new Int16Array(5) });
 
+pushed.addEventListener("lost", ({ type }) => type.trim());
+followed.addEventListener("ended", () => {});
+// @ts-expect-error no event has this name
+followed.addEventListener("finished", () => {});
+const gap: number = mouthShape(between).gap;
+createMouth(document.body)(between);
+// @ts-expect-error text is no place
+createMouth("face");
+const head = attach({ traverse: () => {} });
+head.source = labial.render([], { output: head.output });
+head.audio = document.querySelector("audio");
+head.update();
+// @ts-expect-error this is no avatar
+attach("avatar.glb");
+const drawn = new LabialFace();
+drawn.words = words.reader().read({}).words;
+drawn.track = labial.render([]);
+// @ts-expect-error words have times
+drawn.words = ["Hello"];
+
 /** Code that does not know the face. */
 function total(weights: Weights): number {
     return Object.values<number>(weights).reduce((sum, one) => sum + one, 0);
@@ -118,4 +141,4 @@ function follow(mouth: LabialMouth, track: Track, stream: Stream): void {
     mouth.track = vrm;
 }
 
-export { aa, any, beak, espoken, faps, follow, ih, jaw, open, opened, ou, read, sil };
+export { aa, any, beak, espoken, faps, follow, gap, ih, jaw, open, opened, ou, read, sil };

@@ -1,4 +1,5 @@
-import "labial/labial-mouth.js";
+import "labial/labial-face.js";
+import { Labial } from "labial";
 import { frames, heard as hears, spoken } from "./lips.js";
 
 const heard = (port) => new Promise((resolve, reject) => {
@@ -14,13 +15,32 @@ async function worklet() {
     return heard(lips.port);
 }
 
+/** Hears a node: whether labial-hearing's AudioWorklet was found as a file, and what it has heard. */
+async function tapped() {
+    const names = [];
+    const { addModule } = AudioWorklet.prototype;
+    AudioWorklet.prototype.addModule = function (address) {
+        names.push(String(address).replace(/:.*/, ""));
+        return addModule.call(this, address);
+    };
+    const labial = await Labial.load({ hearing: () => import("labial-hearing") });
+    const context = new AudioContext();
+    const hearing = await labial.hear(new ConstantSourceNode(context), { context });
+    while (hearing.number < 5) {
+        await new Promise((resolve) => setTimeout(resolve, 20));
+        hearing.at();
+    }
+    return names;
+}
+
 const places = {
     page: () => frames(() => import("labial-laughter")),
     worker: () => heard(new Worker(new URL("./worker.js", import.meta.url), { type: "module" })),
     worklet,
     hearing: () => hears(() => import("labial-hearing")),
     words: () => spoken(() => import("labial-words")),
-    element: async () => document.querySelector("labial-mouth").shadowRoot.querySelectorAll("path").length,
+    element: async () => document.querySelector("labial-face").shadowRoot.querySelectorAll("path").length,
+    tapped,
 };
 window.results = {};
 for (const [place, run] of Object.entries(places)) {

@@ -1,5 +1,5 @@
 // A server draws nothing, but the page's modules are imported there.
-import "labial/labial-mouth.js";
+import "labial/labial-face.js";
 import { frames, heard, spoken } from "./lips.js";
 
 Promise.all([

@@ -1,0 +1,67 @@
+/*
+ * suite_fails.c - comparisons that fail: what they print says what differs, in decimals, and of which seed.
+ *
+ * Would catch messages such as "0x3b6 != 0x320", from which nobody sees what was compared. All of its tests but the last one must fail.
+ */
+#include "suite.h"
+
+static int frames(void)
+{
+    return 950;
+}
+
+TEST(equal)
+{
+    assert_int_equal(frames() + 0, 800);
+}
+
+TEST(negative)
+{
+    const int16_t fap = -7;
+    assert_int_equal(fap, 3);
+}
+
+TEST(large)
+{
+    const uint32_t most = 0xffffffffu;
+    assert_int_equal(most, -1);
+}
+
+TEST(unequal)
+{
+    assert_int_not_equal(frames(), 950);
+}
+
+TEST(below)
+{
+    assert_in_range(-frames(), -900, 900);
+}
+
+TEST(above)
+{
+    assert_in_range(frames(), -900, 900);
+}
+
+TEST(drawn)
+{
+    fixture_phoneme_t input[4];
+    fixture_stream(input, 4, FIXTURE_PAUSES, 77);
+    assert_int_equal(frames(), 800);
+}
+
+TEST(not_drawn_any_more)
+{
+    assert_int_equal(frames(), 801);
+}
+
+/* Holds: both sides are evaluated once. */
+TEST(once)
+{
+    int calls = 0, more = 0;
+    assert_int_equal(++calls, ++more);
+    assert_int_not_equal(++calls, ++more - 1);
+    assert_in_range(++calls, ++more, 3);
+    assert_true(calls == 3 && more == 3);
+}
+
+SUITE(NULL, NULL)

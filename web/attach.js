@@ -1,0 +1,112 @@
+// Finds out which weights a loaded avatar takes, and moves it. attach.d.ts documents it.
+import { LabialError } from "./memory.js";
+
+/** A name without its case, separators and the mesh's name before a dot. */
+const plain = (name) => name.replace(/^.*\./, "").replace(/[\W_]/g, "").toLowerCase();
+
+/** Other names of a weight: Ready Player Me's visemes, VRoid's shapes, sides as Face Cap has them. */
+function namesOf(output, weight) {
+    const names = [weight];
+    if (output === "arkit") names.push(weight.replace(/(L)eft$|(R)ight$/, "$1$2"));
+    if (output === "oculus") names.push(`viseme_${weight}`, `viseme_${{ ih: "I", oh: "O", ou: "U" }[weight] ?? weight}`, `v_${weight}`);
+    if (output === "vrm") names.push(`Fcl_MTH_${{ aa: "A", ih: "I", ou: "U", ee: "E", oh: "O" }[weight]}`);
+    return names.map(plain);
+}
+
+/** What tells a kind of avatar: so many of these weights. The first that is found is taken. */
+const KINDS = Object.entries({
+    arkit: ["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose"],
+    oculus: ["PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou"],
+    vrm: ["aa", "ih", "ou", "ee", "oh"],
+});
+const ENOUGH = { arkit: 4, oculus: 8, vrm: 3 };
+
+export class Head {
+    #move; // by the plain name of a shape or an expression, what sets it
+    #places = new Map(); // of each weight: what it moves
+    #source = null;
+
+    constructor(output, meshes, move) {
+        this.output = output;
+        this.meshes = meshes;
+        this.audio = null;
+        this.#move = move;
+    }
+
+    get source() {
+        return this.#source;
+    }
+
+    set source(source) {
+        if (source && typeof source.at !== "function") {
+            throw new TypeError("the source is none that has at(): a track, a hearing or a voice");
+        }
+        if (!source && this.#source) this.rest();
+        this.#source = source ?? null;
+    }
+
+    show(weights) {
+        for (const [name, weight] of Object.entries(weights)) this.#placesOf(name).forEach((set) => set(weight));
+    }
+
+    update(seconds) {
+        const source = this.#source;
+        if (!source) return;
+        const at = seconds ?? this.audio?.currentTime;
+        this.show(at === undefined ? source.at() : source.at(at));
+    }
+
+    rest() {
+        for (const places of this.#places.values()) places.forEach((set) => set(0));
+    }
+
+    #placesOf(name) {
+        let places = this.#places.get(name);
+        if (!places) {
+            const names = namesOf(this.output, name);
+            const found = names.find((one) => this.#move.has(one)) ?? plain(name);
+            places = this.#move.get(found) ?? [];
+            this.#places.set(name, places);
+        }
+        return places;
+    }
+}
+
+/** Finds the shapes of an avatar: a scene, what GLTFLoader loads, or what three-vrm makes of it. */
+export function attach(avatar, { output } = {}) {
+    const vrm = avatar?.userData?.vrm ?? (avatar?.expressionManager ? avatar : null);
+    const scene = vrm?.scene ?? avatar?.scene ?? avatar;
+    if (typeof scene?.traverse !== "function") {
+        throw new TypeError("the avatar is none: a scene of three.js, what GLTFLoader loads, or a VRM of three-vrm");
+    }
+    const move = new Map();
+    const add = (name, set) => {
+        const known = plain(name);
+        if (!move.has(known)) move.set(known, []);
+        move.get(known).push(set);
+    };
+    const meshes = [];
+    const manager = vrm?.expressionManager;
+    for (const name of manager ? Object.keys(manager.expressionMap) : []) add(name, (weight) => manager.setValue(name, weight));
+    const expressed = manager && kindOf(move);
+    scene.traverse((mesh) => {
+        if (!mesh.morphTargetDictionary) return;
+        meshes.push(mesh);
+        if (expressed) return; // the expressions move the shapes
+        for (const [name, place] of Object.entries(mesh.morphTargetDictionary)) {
+            add(name, (weight) => { mesh.morphTargetInfluences[place] = weight; });
+        }
+    });
+    const kind = output ?? kindOf(move);
+    if (!kind) {
+        const names = [...new Set(meshes.flatMap((mesh) => Object.keys(mesh.morphTargetDictionary)))];
+        throw new LabialError(names.length ? `the avatar's shapes are neither ARKit's nor visemes: ${names.slice(0, 8).join(", ")}` +
+            `${names.length > 8 ? ", ..." : ""}; labial fit makes a rig for them` : "the avatar has no shapes (morph targets)");
+    }
+    return new Head(kind, meshes, move);
+}
+
+function kindOf(move) {
+    const has = (kind) => (name) => namesOf(kind, name).some((one) => move.has(one));
+    return KINDS.find(([kind, names]) => names.filter(has(kind)).length >= ENOUGH[kind])?.[0];
+}
