@@ -122,6 +122,16 @@ int ears_exact(ears_t *ears, unsigned exact)
     return labial_hear_exact(&ears->hear, exact != 0);
 }
 
+unsigned ears_level(const ears_t *ears)
+{
+    return labial_hear_level(&ears->hear);
+}
+
+int ears_set_level(ears_t *ears, unsigned level)
+{
+    return labial_hear_set_level(&ears->hear, level);
+}
+
 int ears_articulation(ears_t *ears, unsigned percent)
 {
     return labial_hear_articulation(&ears->hear, percent);

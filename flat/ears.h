@@ -45,6 +45,8 @@ FLAT(ears_cancel)
 int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint32_t *stretches, uint32_t room);
 FLAT(ears_stretches) uint32_t ears_stretches(const ears_t *ears);
 FLAT(ears_exact) int ears_exact(ears_t *ears, unsigned exact);
+FLAT(ears_level) unsigned ears_level(const ears_t *ears);
+FLAT(ears_set_level) int ears_set_level(ears_t *ears, unsigned level);
 FLAT(ears_articulation) int ears_articulation(ears_t *ears, unsigned percent);
 FLAT(ears_restart) int ears_restart(ears_t *ears);
 

@@ -130,7 +130,7 @@ static int hear_rest(labial_hear_t *hear)
     return tell_class(hear);
 }
 
-/* Forgets the sound: there was silence before, and what follows fades in. */
+/* Forgets the sound but for its level: there was silence before, and what follows fades in. */
 static void reset_sound(labial_hear_t *hear)
 {
     labial_fade_begin(&hear->fade, LABIAL_FADE_STEPS, 0);
@@ -166,6 +166,7 @@ int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint
     hear->network.model = model;
     hear->network.rows = (int16_t *)workspace;
     hear->motion.articulation.wanted = 100;
+    hear->features.level.level = LABIAL_HEAR_LEVEL_BEGIN * (LABIAL_HEAR_LEVEL_ONE / 256);
     reset_sound(hear);
     hear->magic = HEARING;
     return LABIAL_OK;
@@ -245,6 +246,26 @@ int labial_hear_restart(labial_hear_t *hear)
     reset_sound(hear);
     hear->ended = 0;
     return LABIAL_OK;
+}
+
+int labial_hear_set_level(labial_hear_t *hear, unsigned level)
+{
+    const int result = usable(hear);
+    if (result != LABIAL_OK)
+        return result;
+    if (hear->sounding > 0)
+        return LABIAL_ERROR_STATE;
+    if (level < LABIAL_HEAR_LEVEL_MIN || level > LABIAL_HEAR_LEVEL_MAX)
+        return LABIAL_ERROR_RANGE;
+    hear->features.level.level = (int32_t)level * (LABIAL_HEAR_LEVEL_ONE / 256);
+    return LABIAL_OK;
+}
+
+unsigned labial_hear_level(const labial_hear_t *hear)
+{
+    if (!hear || hear->magic != HEARING)
+        return 0;
+    return labial_quotient((uint32_t)hear->features.level.level, LABIAL_HEAR_LEVEL_ONE / 256u);
 }
 
 labial_latency_t labial_hear_latency(const labial_hear_t *hear)

@@ -27,9 +27,12 @@
 #define FIRST_BIN 2u
 #define LAST_BIN 121u
 
-/* log2 in Q8: of the least energy, of a level's fall in a hop, of a feature's range around the level. */
+/* log2 in Q8 of the least energy; a level's fall in a hop, and until a hop has reached it; log2 in Q8 of a feature's range
+ * around the level. */
 #define LOG_LEAST 256
+#define LEVEL_LEAST (LABIAL_HEAR_LEVEL_MIN / 256 * LABIAL_HEAR_LEVEL_ONE)
 #define LEVEL_FALL 3146
+#define LEVEL_SEARCH 11796
 #define FEATURE_LEAST (-12 * 256)
 #define FEATURE_MOST (8 * 256)
 #define FEATURE_OFFSET (3 * 256)
@@ -183,7 +186,44 @@ static void add_bands(const int16_t *points, uint32_t energy[LABIAL_HEAR_BANDS +
     }
 }
 
-void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int32_t *level, int16_t features[LABIAL_HEAR_BANDS])
+/* Stages of a level: no voice was there, and the level stays; a voice was there, and the level falls fast until a hop
+ * reaches it; then it follows. */
+enum { WAITS, SEARCHES, FOLLOWS };
+
+/* A hop begins a voice that is less than this below the level, or more than this above the quietest two hops. */
+#define LEVEL_NEAR (4 * LABIAL_HEAR_LEVEL_ONE)
+#define LEVEL_RISE (3 * LABIAL_HEAR_LEVEL_ONE)
+
+void labial_hear_level_wait(labial_hear_level_t *level)
+{
+    level->stage = WAITS;
+    level->quietest = level->before = LABIAL_HEAR_LEVEL_NONE;
+}
+
+/* Moves the level on by a hop. */
+static void follow_level(labial_hear_level_t *level, int32_t now, int silent)
+{
+    if (level->stage == WAITS && !silent) {
+        const int32_t louder = level->before > now ? level->before : now;
+        if (louder < level->quietest)
+            level->quietest = louder;
+        if (now > level->level - LEVEL_NEAR || now > level->quietest + LEVEL_RISE)
+            level->stage = SEARCHES;
+    }
+    level->before = silent ? LABIAL_HEAR_LEVEL_NONE : now;
+    if (level->stage != WAITS) {
+        level->level -= level->stage == SEARCHES ? LEVEL_SEARCH : LEVEL_FALL;
+        if (level->level < LEVEL_LEAST)
+            level->level = LEVEL_LEAST;
+    }
+    if (level->level <= now) {
+        level->level = now;
+        level->stage = FOLLOWS;
+    }
+}
+
+void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int silent, labial_hear_level_t *level,
+                          int16_t features[LABIAL_HEAR_BANDS])
 {
     uint32_t energy[LABIAL_HEAR_BANDS + 2];
     int32_t sum = 0, value;
@@ -199,13 +239,8 @@ void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int32_t *level, i
         features[b] = (int16_t)(value > LOG_LEAST ? value : LOG_LEAST);
         sum += features[b];
     }
-    value = *level - LEVEL_FALL;
-    if (value < LABIAL_HEAR_LEVEL_LEAST)
-        value = LABIAL_HEAR_LEVEL_LEAST;
-    if (value < sum * 64)
-        value = sum * 64;
-    *level = value;
-    value = (int32_t)labial_quotient((uint32_t)value, 64u * LABIAL_HEAR_BANDS);
+    follow_level(level, sum * 64, silent);
+    value = (int32_t)labial_quotient((uint32_t)level->level, 64u * LABIAL_HEAR_BANDS);
     for (b = 0; b < LABIAL_HEAR_BANDS; b++) {
         int32_t relative = features[b] - value;
         if (relative < FEATURE_LEAST)
@@ -234,13 +269,14 @@ void labial_hear_features_reset(labial_hear_features_t *features)
 {
     features->hop = 0;
     features->filled = LABIAL_HEAR_SHARED;
-    features->level = LABIAL_HEAR_LEVEL_LEAST;
+    labial_hear_level_wait(&features->level);
     memset(features->tail, 0, sizeof features->tail);
 }
 
 int labial_hear_features_take(labial_hear_features_t *features, int16_t sample)
 {
     int16_t *const window = features->window;
+    int silent;
     if (features->filled == LABIAL_HEAR_SHARED) {
         memcpy(window, features->tail, sizeof features->tail);
         features->loud &= features->hop;
@@ -248,10 +284,11 @@ int labial_hear_features_take(labial_hear_features_t *features, int16_t sample)
     window[features->filled++] = sample;
     if (features->filled < LABIAL_HEAR_WINDOW_)
         return 0;
-    if (!is_silent(window))
-        features->loud = 1;
+    silent = is_silent(window);
     memcpy(features->tail, window + LABIAL_HEAR_HOP_, sizeof features->tail);
-    labial_hear_features(window, &features->level, features->bands + features->hop * LABIAL_HEAR_BANDS);
+    labial_hear_features(window, silent, &features->level, features->bands + features->hop * LABIAL_HEAR_BANDS);
+    if (!silent && labial_hear_level_voiced(&features->level))
+        features->loud = 1;
     features->filled = LABIAL_HEAR_SHARED;
     features->hop ^= 1u;
     return features->hop == 0;

@@ -6,13 +6,14 @@
 
 #include "labial/hear.h"
 
-/* The level before any sound, which is also the least. */
-#define LABIAL_HEAR_LEVEL_LEAST (13 * 256 * 64 * LABIAL_HEAR_BANDS)
+/* A log2 energy of one as a level, and one that no sound has. */
+#define LABIAL_HEAR_LEVEL_ONE (256 * 64 * LABIAL_HEAR_BANDS)
+#define LABIAL_HEAR_LEVEL_NONE (64 * LABIAL_HEAR_LEVEL_ONE)
 
 /* Samples that a window shares with the next one. */
 #define LABIAL_HEAR_SHARED (LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_)
 
-/* Begins again with silence before. */
+/* Begins a sound with silence before it. The level stays, and the sound waits for a voice. */
 void labial_hear_features_reset(labial_hear_features_t *features);
 
 /* Whether the next sample is not the first one of a frame. */
@@ -25,8 +26,18 @@ static inline int labial_hear_features_begun(const labial_hear_features_t *featu
  * until the next sample. */
 int labial_hear_features_take(labial_hear_features_t *features, int16_t sample);
 
-/* Computes the features of a hop, Q9, from the window of samples that ends with it, which is lost. Moves the level on,
- * which is 64 times the sum of the bands' log2 energies in Q8. */
-void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int32_t *level, int16_t features[LABIAL_HEAR_BANDS]);
+/* Computes the features of a hop, Q9, from the window of samples that ends with it, which is lost. Moves the level on.
+ * `silent` tells that the hop's own samples hardly differ. */
+void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int silent, labial_hear_level_t *level,
+                          int16_t features[LABIAL_HEAR_BANDS]);
+
+/* Waits for a voice again. */
+void labial_hear_level_wait(labial_hear_level_t *level);
+
+/* Whether a voice was there. */
+static inline int labial_hear_level_voiced(const labial_hear_level_t *level)
+{
+    return level->stage != 0; /* WAITS */
+}
 
 #endif

@@ -294,6 +294,8 @@ def hearing(source: Sources) -> Iterator[Sentence]:
         worst += [source.bench(f"{model}, {rate} Hz: worst frame", "m4") for rate in (24000, 48000)]
         yield row(f"`{model}`", *(count(source.bench(f"{model}: {what}", "m4")) for what in ("flash", "RAM")),
                   *(count(round(value, -3)) for value in worst))
+    for group, method, cells in _real_lips(source, ("opening", "upper lip", "corners", "mean of five")):
+        yield row(f"{group} | {method}", *cells)
     heard = _by_sound(source)
     for title, sounds in _SOUNDS.items():
         libraries = ("integers", "wawa-lipsync", "wawa-lipsync unsmoothed", "headaudio", "pocketsphinx")
@@ -305,6 +307,20 @@ def hearing(source: Sources) -> Iterator[Sentence]:
 _SOUNDS = {"125 people (169 clips)": "talkers/judge", "flite's awb": "flite:awb",
            "espeak-ng's klatt4": "espeak:en-us+klatt4", "espeak-ng's f5": "espeak:en-us+f5",
            "espeak-ng's Jacky": "espeak:en-us+Jacky"}
+
+
+#: Groups of real lips and their names in the pages; methods, and the records that have them.
+_GROUPS = {"grid_singles+grid_more": "GRID", "addresses": "addresses"}
+_LIPS = {"`hear_large`": ("hear_large", "integers"), "`hear_small`": ("hear_small", "integers"),
+         "loudness": ("hear_large", "loudness"), "phonemes, known": ("hear_large", "phonemes")}
+
+
+def _real_lips(source: Sources, heads: Sequence[str]) -> Iterator[Tuple[str, str, List[str]]]:
+    """Group, method and correlations of each row of a table of real lips."""
+    for name, group in _GROUPS.items():
+        for method, (model, kind) in _LIPS.items():
+            record = source.record(f"real lips, {model}")
+            yield group, method, [share(record[f"{name} {kind}: {head}"], 3) for head in heads]
 
 
 def _by_sound(source: Sources) -> Dict[Tuple[str, str], List[str]]:
@@ -431,6 +447,9 @@ def results(source: Sources) -> Iterator[Sentence]:
                    share(number(other[PAPER]["closure"])), share(number(diff[NORMALISED]["mean"]), 4),
                    share(number(other[NORMALISED]["closure"])))
     yield from _laughter(source.results.table(LAUGHTER, DIFF), source.results.table(LAUGHTER, OTHER))
+    for group, method, cells in _real_lips(source, ("opening", "jaw", "upper lip", "lower lip", "corners",
+                                                    "mean of five")):
+        yield row(f"{group} | {method}", *cells)
 
 
 def _laughter(diff: Table, other: Table) -> Iterator[Sentence]:

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Sequence, Tuple
 
-from measure.sources import number, tables
+from measure.sources import number, rows, tables
 
 FILE = Path("bench") / "records.json"
 RESULTS = Path("export") / "RESULTS.md"
@@ -35,6 +35,9 @@ OTHER_VOICE = "flite:awb"
 
 Figures = Dict[str, float]
 
+#: What hearing depends on besides.
+HEARD = ("export/models/hear_large.npz", "export/models/hear_small.npz", "tests/c/hears.h")
+
 
 @dataclass(frozen=True)
 class Command:
@@ -42,6 +45,7 @@ class Command:
 
     lines: Tuple[str, ...]
     read: Callable[[str], Figures]
+    of: Tuple[str, ...] = MOTION  #: files that the figures depend on
 
 
 def _search(text: str) -> Figures:
@@ -98,6 +102,18 @@ def _split(text: str) -> Figures:
             if measure != "method" and value != "-"}
 
 
+def _lips(text: str) -> Figures:
+    return {f"{row['lips of']} {row['method']}: {head}": number(value) for table in rows(text) for row in table
+            for head, value in row.items() if head not in ("lips of", "method")}
+
+
+def _by_lips(model: str) -> Command:
+    folder = "export/corpora"
+    return Command((f"python -m labial evaluate-hear export/models/{model}.npz --lips {folder}/grid_singles "
+                    f"{folder}/grid_more --lips {folder}/addresses --methods integers,loudness,phonemes",), _lips,
+                   MOTION + HEARD)
+
+
 _SENTENCES = "tests/python/sentences.txt"
 COMMANDS: Dict[str, Command] = {
     "search": Command(("python -m labial.evaluate.search speech_en export/corpora/grid_s1",), _search),
@@ -110,6 +126,8 @@ COMMANDS: Dict[str, Command] = {
     "closures of awb": Command((f"python bench/closures.py {_SENTENCES} {OTHER_VOICE}",), _closures),
     "window": Command(("python bench/window.py tests/python/sentences.flite",), _window),
     "laughs": Command(("python bench/laughs.py tests/python/sentences.flite",), _laughs),
+    "real lips, hear_large": _by_lips("hear_large"),
+    "real lips, hear_small": _by_lips("hear_small"),
     "first split": Command(("python export/reproduce.py split",), _split),
 }
 
@@ -127,10 +145,10 @@ def write(root: Path, records: Mapping[str, Mapping[str, object]]) -> None:
     (root / FILE).write_text(text + "\n", encoding="utf-8")
 
 
-def digest(root: Path) -> str:
-    """Of everything that the motion depends on."""
+def digest(root: Path, record: str = "") -> str:
+    """Of everything that the motion, or the figures of a record, depend on."""
     found = hashlib.sha256()
-    for name in MOTION:
+    for name in COMMANDS[record].of if record in COMMANDS else MOTION:
         found.update((root / name).read_bytes())
     return found.hexdigest()[:16]
 
@@ -155,8 +173,7 @@ def names(root: Path) -> List[str]:
 
 def outdated(root: Path, records: Mapping[str, Mapping[str, object]]) -> List[str]:
     """The records that were made with other models or another library, and those that are missing."""
-    now = digest(root)
-    return [name for name in names(root) if records.get(name, {}).get("of") != now]
+    return [name for name in names(root) if records.get(name, {}).get("of") != digest(root, name)]
 
 
 def marked(text: str, records: Mapping[str, Mapping[str, object]], now: str) -> str:
@@ -206,7 +223,7 @@ def measure(root: Path, name: str) -> None:
             report = (Path(folder) / "report" / "report.md").read_text(encoding="utf-8")
             page.write_text(with_tables(page.read_text(encoding="utf-8"), name, report), encoding="utf-8")
             record = {"command": lines[-1]}
-    record.update(of=digest(root), measured=datetime.date.today().isoformat())
+    record.update(of=digest(root, name), measured=datetime.date.today().isoformat())
     write(root, {**read(root), name: record})
 
 

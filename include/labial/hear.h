@@ -16,7 +16,7 @@
  *
  * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. A stream
  * begins and ends with the neutral face, all FAPs 0, and so is silence: sound whose samples differ by 32 at most for 140
- * ms.
+ * ms. So is steady noise before the first word, unless it is as loud as a voice.
  *
  * Like the stream of phonemes (labial/labial.h) it never allocates, keeps no state outside `hear` and `workspace`,
  * computes in integers only and gives the same bits on every target and for blocks of any length. Calls on one stream
@@ -117,11 +117,34 @@ int labial_hear_cancel(labial_hear_t *hear, uint32_t milliseconds);
 
 /*
  * Continues after labial_hear_end() or labial_hear_cancel(): frame numbers continue, the new sound begins with the next
- * frame, and the first frames are cross-faded from the last delivered one.
+ * frame, and the first frames are cross-faded from the last delivered one. The level stays (labial_hear_level()).
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (unless the stream has ended).
  */
 int labial_hear_restart(labial_hear_t *hear);
+
+/*
+ * The level of the voice: the largest mean of the log2 energies of the network's 24 bands, in 1/256, that is 85 for a
+ * decibel; it falls by 2.4 dB a second. Speech whose peaks are at full scale has some 7,700.
+ *
+ * A sound begins at LABIAL_HEAR_LEVEL_BEGIN, or where labial_hear_set_level() sets it, and after labial_hear_restart() at
+ * the level of the sound before. The face rests until a sound comes within 12 dB of that, or rises 9 dB above the noise;
+ * then the level falls by 9 dB a second until the voice reaches it. Set the level where it is known, so that the first
+ * word is heard at it: for a file, hear it once from LABIAL_HEAR_LEVEL_MIN on, look at the level every 10 ms, and take
+ * the largest.
+ */
+#define LABIAL_HEAR_LEVEL_MIN 3328
+#define LABIAL_HEAR_LEVEL_BEGIN 6656
+#define LABIAL_HEAR_LEVEL_MAX 11776
+
+/* The level now; 0 for a null or uninitialised stream. */
+unsigned labial_hear_level(const labial_hear_t *hear);
+
+/* Sets the level, LABIAL_HEAR_LEVEL_MIN .. LABIAL_HEAR_LEVEL_MAX, before the first sample of a sound.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RANGE or LABIAL_ERROR_STATE (while a sound is heard).
+ */
+int labial_hear_set_level(labial_hear_t *hear, unsigned level);
 
 /*
  * How far the mouth moves, as labial_articulation() says it: the poses that the network tells from now on come nearer to

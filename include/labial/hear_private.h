@@ -25,12 +25,20 @@ typedef struct {
     int16_t past[2 * LABIAL_HEAR_TAPS_]; /* every sample twice, so that the latest are always in one piece */
 } labial_hear_convert_t;
 
+/* The level of the voice and of the sound before it, 64 times the sum of the bands' log2 energies in Q8
+ * (hear_features.c). */
+typedef struct {
+    int32_t level;
+    int32_t quietest, before; /* hops until a voice is there */
+    uint8_t stage;            /* waits for a voice, looks for its level, follows it */
+} labial_hear_level_t;
+
 /* Sound at 16 kHz on its way to features (hear_features.c). */
 typedef struct {
     uint8_t hop;     /* 1 in the second half of a frame */
-    uint8_t loud;    /* the frame has sound */
+    uint8_t loud;    /* the frame has sound that is a voice */
     uint16_t filled; /* samples of the window */
-    int32_t level;
+    labial_hear_level_t level;
     int16_t bands[LABIAL_HEAR_INPUTS];                    /* features of the frame, Q9 */
     int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_]; /* samples that a window shares with the next one */
     int16_t window[LABIAL_HEAR_WINDOW_]; /* samples, then their spectrum, then what layers of the network put out */

@@ -29,6 +29,9 @@ static inline int16_t hear_sound(uint32_t number, uint32_t at, uint32_t *state)
         value = (int32_t)((((int64_t)(at * 420u % 65536u) - 32768) * (int32_t)(at * 77u % 16384u)) >> 15);
         value = ((value * (int32_t)(at / 3000u % 3u)) >> 1) + (noise >> 7);
         break;
+    case 6:
+        value = noise >> (at < 5000u ? 9u : 4u + at / 1500u % 3u);
+        break;
     default:
         break;
     }

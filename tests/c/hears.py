@@ -25,7 +25,7 @@ MEMORIES = (Memory(2, 1, 1), Memory(2, 0, 1), Memory(1, 1, 2))
 CLASSES = ("SIL", "M", "AA", "S", "IY")
 
 #: Sounds by number: what a sample is made of. test_hear.c has the same in C.
-SOUNDS = ("silence", "constant", "square", "noise", "quiet", "buzz")
+SOUNDS = ("silence", "constant", "square", "noise", "quiet", "buzz", "faint voice")
 
 
 def model() -> HearingModel:
@@ -70,6 +70,8 @@ def sound(number: int, count: int, seed: int = 1) -> np.ndarray:
         noise[k] = (state >> 16) - 32768
     if name == "noise":
         return noise >> (at // 2500 % 4 * 4)
+    if name == "faint voice":
+        return noise >> np.where(at < 5000, 9, 4 + at // 1500 % 3)
     if name == "quiet":
         return 8000 + (noise >> 12)
     saw = ((at * 420 % 65536 - 32768) * (at * 77 % 16384)) >> 15
@@ -100,6 +102,35 @@ def cases() -> List[Dict[str, int]]:
     return found
 
 
+#: Level that is set, 0 for none, and numbers and samples of a sound and of the next one, at 16 kHz.
+AGAIN = ((0, 5, 8000, 6, 12000), (0, 6, 9001, 5, 7000), (4000, 5, 4000, 3, 8000), (9000, 6, 16000, 6, 16000))
+
+HEAD_AGAIN = """};
+
+/* The same of two sounds of 16 kHz, one after the other: the level that is set, 0 for none, numbers and samples of
+ * both; levels when they were heard; frames, and CRC-32 of those of the second. */
+static const struct {
+    uint32_t set, sound, samples, next, next_samples, level, next_level, frames, next_frames, next_crc;
+} hears_again[] = {
+"""
+
+
+def again() -> str:
+    """The rows of sounds that follow others."""
+    rows, own, scale = [], tables(), integer.LEVEL_ONE // integer.LOG
+    for level, *sounds in AGAIN:
+        begin, numbers, frames = level * scale or integer.BEGIN, [], []
+        for number, count in (sounds[:2], sounds[2:]):
+            samples = sound(number, count)
+            frames.append(integer.delivered(own, samples, begin=begin).faps)
+            begin = integer.level_after(own, samples, begin=begin)
+            numbers.append(begin // scale)
+        crc = zlib.crc32(frames[1].astype("<i2").tobytes())
+        values = (level, *sounds, *numbers, *map(len, frames))
+        rows.append(f"    {{ {', '.join(map(str, values))}, 0x{crc:08x}u }},\n")
+    return "".join(rows)
+
+
 def table() -> str:
     """The file hears.h."""
     rows, own = [], tables()
@@ -113,7 +144,7 @@ def table() -> str:
         classes = zlib.crc32(np.array(told, dtype="<u4").tobytes())
         numbers = ", ".join(str(value) for value in case.values())
         rows.append(f"    {{ {numbers}, {len(heard.faps)}, {len(told)}, 0x{faps:08x}u, 0x{classes:08x}u }},\n")
-    return HEAD + "".join(rows) + "};\n"
+    return HEAD + "".join(rows) + HEAD_AGAIN + again() + "};\n"
 
 
 def files() -> Dict[str, str]:

@@ -126,7 +126,7 @@ TEST(blocks_of_any_length_give_the_same_frames)
 {
     static const uint32_t blocks[] = { 1, 2, 7, 159, 160, 161, 320, 1024, 4801 };
     unsigned i, b;
-    for (i = 5; i < HEARS; i += 6)
+    for (i = 5; i < HEARS; i += 7)
         for (b = 0; b < sizeof blocks / sizeof blocks[0]; b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
             begin(hears[i].rate, hears[i].channels);
             make_sound(hears[i].sound, hears[i].samples, hears[i].channels);
@@ -196,16 +196,16 @@ TEST(two_channels_are_heard_as_their_mean)
 TEST(a_stream_may_be_moved)
 {
     labial_hear_t other;
-    assert_int_equal(hears[47].rate, 48000);
-    assert_int_equal(hears[47].sound, 5);
+    assert_int_equal(hears[54].rate, 48000);
+    assert_int_equal(hears[54].sound, 5);
     begin(48000, 2);
-    make_sound(5, hears[47].samples, 2);
+    make_sound(5, hears[54].samples, 2);
     assert_int_equal(labial_hear_push(&hear, samples, 1000), LABIAL_OK);
     memcpy(&other, &hear, sizeof other);
     memset(&hear, 0xa5, sizeof hear);
-    assert_int_equal(labial_hear_push(&other, samples + 2000, hears[47].samples - 1000u), LABIAL_OK);
+    assert_int_equal(labial_hear_push(&other, samples + 2000, hears[54].samples - 1000u), LABIAL_OK);
     assert_int_equal(labial_hear_end(&other), LABIAL_OK);
-    assert_int_equal(faps_crc(), hears[47].faps_crc);
+    assert_int_equal(faps_crc(), hears[54].faps_crc);
 }
 
 /* ---- The end, a cancel, a restart ----------------------------------------------------------------------------------- */
@@ -263,11 +263,12 @@ TEST(silence_is_rest)
     for (span = 32; span <= 33; span++) {
         unsigned moved = 0;
         begin(16000, 1);
-        for (i = 0; i < 16000u; i++)
-            samples[i] = (int16_t)(8000u + (i % 7u == 0 ? span : i % 3u));
+        make_sound(3, 1600, 1); /* a voice */
+        for (i = 1600; i < 16000u; i++)
+            samples[i] = (int16_t)(i % 7u == 0 ? span : i % 3u);
         push_in_blocks(16000, 1, 1000);
         labial_hear_end(&hear);
-        for (i = 0; i < 50u; i++)
+        for (i = 15; i < 50u; i++)
             for (k = 0; k < LABIAL_CHANNELS; k++)
                 moved += told[i][k] != 0;
         assert_true(span == 32 ? moved == 0 && frame_count == 50u : moved > 100u);
@@ -306,6 +307,62 @@ TEST(a_cancel_eases_to_the_neutral_face)
     }
 }
 
+/* Would catch a face that opens in noise before a voice, and one that has not opened when the voice begins. */
+TEST(noise_before_a_voice_is_rest)
+{
+    unsigned i, k, moved = 0;
+    begin(16000, 1);
+    make_sound(3, 16000, 1);
+    for (i = 0; i < 8000u; i++)
+        samples[i] = (int16_t)(samples[i % 2500u] / 256);
+    memmove(samples + 8000, samples + 10000, 2000 * sizeof *samples);
+    push_in_blocks(16000, 1, 1000);
+    for (i = 0; i < 20u; i++)
+        for (k = 0; k < LABIAL_CHANNELS; k++)
+            assert_int_equal(told[i][k], 0);
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        moved += told[25][k] != 0;
+    assert_true(moved > 5u);
+}
+
+/* Would catch a level that a restart forgets, one that is not set, and one that is set while a sound is heard. */
+TEST(a_restart_keeps_the_level)
+{
+    unsigned i;
+    for (i = 0; i < sizeof hears_again / sizeof hears_again[0]; i++) {
+        begin(16000, 1);
+        assert_int_equal(labial_hear_level(&hear), LABIAL_HEAR_LEVEL_BEGIN);
+        if (hears_again[i].set > 0) {
+            assert_int_equal(labial_hear_set_level(&hear, hears_again[i].set), LABIAL_OK);
+            assert_int_equal(labial_hear_level(&hear), hears_again[i].set);
+        }
+        make_sound(hears_again[i].sound, hears_again[i].samples, 1);
+        push_in_blocks(hears_again[i].samples, 1, 333);
+        assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_BEGIN), LABIAL_ERROR_STATE);
+        labial_hear_end(&hear);
+        assert_int_equal(frame_count, hears_again[i].frames);
+        assert_int_equal(labial_hear_level(&hear), hears_again[i].level);
+        assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+        assert_int_equal(labial_hear_level(&hear), hears_again[i].level);
+        first_frame += frame_count;
+        frame_count = 0;
+        make_sound(hears_again[i].next, hears_again[i].next_samples, 1);
+        push_in_blocks(hears_again[i].next_samples, 1, 777);
+        labial_hear_end(&hear);
+        assert_int_equal(frame_count, hears_again[i].next_frames);
+        assert_int_equal(faps_crc(), hears_again[i].next_crc);
+        assert_int_equal(labial_hear_level(&hear), hears_again[i].next_level);
+    }
+    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN), LABIAL_OK);
+    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX), LABIAL_OK);
+    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN - 1), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX + 1), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_hear_set_level(NULL, LABIAL_HEAR_LEVEL_MIN), LABIAL_ERROR_NULL);
+    memset(&hear, 0, sizeof hear);
+    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN), LABIAL_ERROR_STATE);
+    assert_true(labial_hear_level(&hear) == 0 && labial_hear_level(NULL) == 0);
+}
+
 /* Would catch sound from before the restart that is still heard, and a jump from the last frame. */
 TEST(a_restart_fades_and_then_hears_afresh)
 {
@@ -328,6 +385,7 @@ TEST(a_restart_fades_and_then_hears_afresh)
     labial_hear_end(&hear);
     before = frame_count;
     assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_BEGIN), LABIAL_OK);
     make_sound(5, 9000, 1);
     push_in_blocks(9000, 1, 500);
     labial_hear_end(&hear);

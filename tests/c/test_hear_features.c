@@ -55,11 +55,17 @@ static double mean_of(const double *values)
 /* The features of a window after one of this level, and the level, in log2. */
 static double hear_after(double level, const int16_t *window, int16_t features[BANDS])
 {
-    int32_t state = (int32_t)lround(level * 64 * 256 * BANDS);
+    labial_hear_level_t state = { 0, 0, 0, 0 };
     int16_t copy[WINDOW];
+    state.level = 1; /* which any sound reaches */
+    memset(copy, 0, sizeof copy);
+    labial_hear_level_wait(&state);
+    labial_hear_features(copy, 1, &state, features);
+    assert_true(labial_hear_level_voiced(&state));
+    state.level = (int32_t)lround(level * 64 * 256 * BANDS);
     memcpy(copy, window, sizeof copy);
-    labial_hear_features(copy, &state, features);
-    return state / (64.0 * 256 * BANDS);
+    labial_hear_features(copy, 0, &state, features);
+    return state.level / (64.0 * 256 * BANDS);
 }
 
 static double wanted(double energy, double level)
@@ -157,6 +163,74 @@ TEST(the_level_follows_peaks_and_falls_slowly)
     for (; hop < 4000u; hop++)
         level = hear_after(level, window, features);
     assert_true(fabs(level - 13) < 1e-9);
+}
+
+/* A level before which nothing was heard. */
+static labial_hear_level_t waiting(double level)
+{
+    labial_hear_level_t voice = { 0, 0, 0, 0 };
+    voice.level = (int32_t)lround(level * 64 * 256 * BANDS);
+    labial_hear_level_wait(&voice);
+    return voice;
+}
+
+/* Hears hops of white noise that is `amplitude` large; returns the level. */
+static double hear_noise(labial_hear_level_t *voice, unsigned hops, double amplitude, int silent)
+{
+    int16_t window[WINDOW], features[BANDS];
+    unsigned i;
+    for (; hops > 0; hops--) {
+        for (i = 0; i < WINDOW; i++)
+            window[i] = (int16_t)lround(drawn() * amplitude);
+        labial_hear_features(window, silent, voice, features);
+    }
+    return voice->level / (64.0 * 256 * BANDS);
+}
+
+/* Would catch noise before the first word that is taken for a voice, however long it lasts, and whether silence is before
+ * it or the noise sets in slowly; and a level that falls meanwhile. */
+TEST(noise_is_no_voice)
+{
+    labial_hear_level_t voice = waiting(26);
+    assert_true(fabs(hear_noise(&voice, 600, 30, 0) - 26) < 1e-9 && !labial_hear_level_voiced(&voice));
+    voice = waiting(26);
+    hear_noise(&voice, 20, 3, 1);
+    hear_noise(&voice, 1, 8, 0);
+    assert_true(fabs(hear_noise(&voice, 600, 30, 0) - 26) < 1e-9 && !labial_hear_level_voiced(&voice));
+}
+
+/* Would catch a voice that is not noticed 10 dB above the noise, or one 8 dB above it that is; and one within 12 dB of the
+ * level. White noise of 1,500 has a level of 27.9, and twice of that is 2 more. */
+TEST(a_voice_rises_above_the_noise_or_comes_near_the_level)
+{
+    labial_hear_level_t voice = waiting(40);
+    hear_noise(&voice, 100, 30, 0);
+    hear_noise(&voice, 1, 72, 0);
+    assert_false(labial_hear_level_voiced(&voice));
+    hear_noise(&voice, 1, 100, 0);
+    assert_true(labial_hear_level_voiced(&voice));
+    voice = waiting(33);
+    hear_noise(&voice, 1, 1500, 0);
+    assert_false(labial_hear_level_voiced(&voice));
+    voice = waiting(31);
+    hear_noise(&voice, 1, 1500, 0);
+    assert_true(labial_hear_level_voiced(&voice));
+}
+
+/* Would catch a level that stays above a quiet voice: it falls by 3 a second until a hop reaches it, then by .8. */
+TEST(the_level_looks_for_a_quiet_voice)
+{
+    labial_hear_level_t voice = waiting(26);
+    double level, before;
+    hear_noise(&voice, 10, 30, 0);
+    before = hear_noise(&voice, 1, 100, 0);
+    assert_true(fabs(before - (26 - 0.03)) < 1e-4);
+    level = hear_noise(&voice, 50, 100, 0);
+    assert_true(fabs(before - level - 1.5) < 1e-3);
+    before = hear_noise(&voice, 400, 100, 0);
+    assert_true(before > 19 && before < 22);
+    level = hear_noise(&voice, 100, 3, 0);
+    assert_true(fabs(before - level - 0.8) < 1e-3);
 }
 
 /* Would catch silence, or a constant, that sounds like anything; also after the loudest sound. */

@@ -74,6 +74,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             ended = 1;
         } else if (call == 7u) {
             REQUIRE(labial_hear_restart(hear) == (ended ? LABIAL_OK : LABIAL_ERROR_STATE));
+            if (ended && labial_hear_set_level(hear, (unsigned)bytes * 64u) == LABIAL_OK)
+                REQUIRE(labial_hear_level(hear) == bytes * 64u);
+            REQUIRE(labial_hear_level(hear) >= LABIAL_HEAR_LEVEL_MIN &&
+                    labial_hear_level(hear) <= LABIAL_HEAR_LEVEL_MAX);
             heard = ended ? 0 : heard;
             before = ended ? told.frames : before;
             ended = 0;

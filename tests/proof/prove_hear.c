@@ -124,6 +124,8 @@ static void any_state(void)
     hear.channels = (uint8_t)Frama_C_interval(1, 2);
     hear.features.hop = (uint8_t)Frama_C_interval(0, 1);
     hear.features.loud = (uint8_t)Frama_C_interval(0, 1);
+    hear.features.level.level =
+        Frama_C_interval(LABIAL_HEAR_LEVEL_MIN / 256 * LABIAL_HEAR_LEVEL_ONE, 46 * LABIAL_HEAR_LEVEL_ONE);
     hear.features.filled = (uint16_t)Frama_C_interval(LABIAL_HEAR_SHARED, LABIAL_HEAR_WINDOW_ - 1);
     hear.ended = (uint8_t)Frama_C_interval(0, 1);
     hear.busy = (uint8_t)Frama_C_interval(0, 1);
@@ -156,6 +158,8 @@ static void misuse(void)
     labial_hear_cancel(NULL, any_uint32);
     labial_hear_exact(NULL, any_int);
     labial_hear_articulation(NULL, any_unsigned);
+    labial_hear_level(NULL);
+    labial_hear_set_level(NULL, any_unsigned);
     labial_hear_restart(NULL);
     labial_hear_latency(NULL);
 }
@@ -179,6 +183,8 @@ static void use(void)
     any_state();
     labial_hear_exact(&hear, any_int);
     labial_hear_articulation(&hear, any_unsigned);
+    labial_hear_level(&hear);
+    labial_hear_set_level(&hear, any_unsigned);
     labial_hear_restart(&hear);
     any_state();
     labial_hear_cancel(&hear, any_uint32);

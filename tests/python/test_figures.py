@@ -136,17 +136,19 @@ def test_a_section_tells_when_it_is_older_than_the_models() -> None:
 
 def test_a_model_outdates_its_records(tmp_path: Path) -> None:
     # Catches a record that stays valid although a model, or the frames that it makes, are others.
-    for name in (*records.MOTION, str(records.FILE), str(records.RESULTS)):
+    for name in (*records.MOTION, *records.HEARD, str(records.FILE), str(records.RESULTS)):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(SOURCE / name, tmp_path / name)
     names = [*records.COMMANDS, *records.section_commands(PAGE)]
     (tmp_path / records.RESULTS).write_text(PAGE, encoding="utf-8")
-    records.write(tmp_path, {name: {"of": records.digest(tmp_path)} for name in names})
+    records.write(tmp_path, {name: {"of": records.digest(tmp_path, name)} for name in names})
     assert records.outdated(tmp_path, records.read(tmp_path)) == []
-    for name in records.MOTION:
+    by_lips = [name for name in names if name.startswith("real lips")]
+    assert len(by_lips) == 2
+    for name in (*records.MOTION, *records.HEARD):
         before = (tmp_path / name).read_bytes()
         (tmp_path / name).write_bytes(before + b" ")
-        assert records.outdated(tmp_path, records.read(tmp_path)) == names
+        assert records.outdated(tmp_path, records.read(tmp_path)) == (by_lips if name in records.HEARD else names)
         (tmp_path / name).write_bytes(before)
 
 

@@ -58,6 +58,12 @@ def random_model(units: int, memories: Tuple[Memory, ...], classes: int = 5, see
     )  # fmt: skip
 
 
+def features_of(energies: np.ndarray) -> np.ndarray:
+    """The integers' features of log energies."""
+    silent = energies.mean(axis=1) <= 1.5 * 256
+    return integer.normalise(energies, integer.levels(energies, silent, integer.BEGIN).hops)
+
+
 # ---- The front end ---------------------------------------------------------------------------------------------------
 
 
@@ -83,15 +89,19 @@ def test_features_follow_the_level() -> None:
     """Catches a level that looks ahead, falls too fast, or keeps a quiet voice quiet: 36 dB less give the same."""
     sound = voice(4.0)
     energies = front.log_energies(sound)
-    level, levels = 13.0, []
-    for hop in energies:
-        level = max(level - 0.008, 13.0, float(hop.mean()))
-        levels.append(level)
-    assert np.abs(front.levels(energies) - levels).max() < 1e-4
+    for begin, levels in ((13.0, front.crop_levels(energies)), (26.0, front.levels(energies))):
+        level, wanted = begin, []
+        for hop in energies:
+            level = max(level - 0.008, 13.0, float(hop.mean()))
+            wanted.append(level)
+        assert np.abs(levels - wanted)[30:].max() < 1e-4  # until then the one of a sound may fall faster
+    found = integer.levels(integer.log_energies(sound), np.ptp(sound.reshape(-1, 160), axis=1) <= 32, integer.BEGIN)
+    assert np.abs(found.hops / 256 - front.levels(energies)).max() < 0.05
     loud = front.features(sound)
     assert np.abs(front.features(sound[: 320 * 60]) - loud[:60]).max() < 1e-3
     spoken = np.flatnonzero(np.abs(sound.reshape(-1, 320).astype(int)).max(axis=1) > 8000)
-    quiet = front.features((sound // 64).astype(np.int16))
+    faint = front.log_energies((sound // 64).astype(np.int16))
+    quiet = front.relative_to(front.levels(faint, 14.0), faint).reshape(loud.shape)
     assert np.sqrt(np.mean((quiet - loud)[spoken] ** 2)) < 0.06
     assert loud.min() >= -2.25 and loud.max() <= 2.75
 
@@ -102,7 +112,8 @@ def test_silence_has_the_least_features(sound: np.ndarray) -> None:
     found = front.features(sound.astype(np.int16))
     assert found.shape == (-(-len(sound) // 320), 48)
     assert (found[1:] == -2.25).all()
-    assert (integer.normalise(integer.log_energies(sound.astype(np.int64)))[2:] == -1152).all()
+    energies = integer.log_energies(sound.astype(np.int64))
+    assert (features_of(energies)[2:] == -1152).all()
 
 
 @pytest.mark.parametrize("rate", sorted(convert.RATES))
@@ -181,7 +192,7 @@ def test_integers_are_near_the_float_network(name: str) -> None:
     assert found.faps.shape == wanted.faps.shape == (250, 13)
     assert np.sqrt(np.mean((found.scores / 512 - wanted.scores) ** 2)) < 0.04
     assert np.sqrt(np.mean((found.faps - wanted.faps) ** 2)) < 0.01 * wanted.faps.std()
-    heard = integer.normalise(integer.log_energies(sound)) / 512
+    heard = features_of(integer.log_energies(sound)) / 512
     assert np.sqrt(np.mean((heard.reshape(250, 48) - front.features(sound)) ** 2)) < 0.01
     assert emit.flash_bytes(quantise(model, "x")) < {"small": 23000, "large": 34500}[name] and plan.ahead == 4
 
@@ -190,7 +201,7 @@ def test_integers_hear_a_clipped_sound() -> None:
     """Catches windows with both the least and the largest sample that are heard louder than they are."""
     sound = np.clip(20 * voice(5.0).astype(int), -32768, 32767).astype(np.int16)
     assert (sound == -32768).any() and (sound == 32767).any()
-    heard = integer.normalise(integer.log_energies(sound)) / 512
+    heard = features_of(integer.log_energies(sound)) / 512
     assert np.sqrt(np.mean((heard.reshape(250, 48) - front.features(sound)) ** 2)) < 0.01
 
 

@@ -77,6 +77,7 @@ def test_figures_of_several_clips() -> None:
     figures = measured([(one, twice, classes), (one, other, classes)])
     expected = (1 + float(np.corrcoef(wave, wave[::-1])[0, 1])) / 2
     assert figures.opening == pytest.approx(expected) and figures.channels == pytest.approx(expected)
+    assert figures.speech == figures.opening
     assert np.isnan(figures.closed) and figures.false == 0
     assert figures.jerk == pytest.approx(np.sqrt((2**2 + 1) / 2), rel=1e-6)
     assert measured([(one, one, classes)]).jerk == pytest.approx(1.0)
@@ -87,7 +88,7 @@ def test_pooled_figures() -> None:
     """Weighed by shares; what is not known does not count."""
     nan = float("nan")
     found = pooled([Figures(0.8, 0.7, nan, 0.2, 1.0), Figures(0.4, 0.5, 0.6, nan, 2.0), Figures(*[nan] * 5)], [3, 1, 9])
-    assert found == pytest.approx((0.7, 0.65, 0.6, 0.2, 1.25))
+    assert found[:5] == pytest.approx((0.7, 0.65, 0.6, 0.2, 1.25))
     assert np.isnan(pooled([Figures(*[nan] * 5)], [1])).all()
 
 
@@ -200,8 +201,8 @@ def test_the_command_judges(tmp_path: Path, capsys: pytest.CaptureFixture) -> No
     assert [row[:3] for row in rows[:3]] == [[f"{tmp_path.name}/speech", "clean", name]
                                              for name in ("network", "integers", "loudness")]
     assert len(rows) == 12 and rows[-1][:2] == ["espeak:en-us", "telephone"]
-    for network, integers in zip(rows[6::3], rows[7::3]):
-        assert float(integers[3]) == pytest.approx(float(network[3]), abs=0.03)
+    for network, integers in zip(rows[6::3], rows[7::3]):  # in speech, where the library rests in pauses alone
+        assert float(integers[4]) == pytest.approx(float(network[4]), abs=0.06)
     for option, wrong, message in (("--methods", "network,magic", "--methods: 'magic' is not one of network"),
                                    ("--conditions", "dirty", "'dirty' is not one of clean")):
         assert main([*given, str(folder), option, wrong]) == 1 and message in capsys.readouterr().err

@@ -20,7 +20,8 @@ from labial.__main__ import main
 from labial.errors import LabialError, StreamError
 from labial.hearing import integer
 from labial.hearing.model import load
-from labial.hearing.quantise import quantise
+from labial.hearing.quantise import HearingTables, quantise
+from labial.hearing.targets import opening
 from labial.runtime.hearing import models
 from packages import SOURCE
 from runtime import needs_runtime
@@ -29,10 +30,25 @@ from test_hearing import voice
 pytestmark = [needs_runtime, pytest.mark.skipif(not list((SOURCE / "export/models").glob("hear_*.npz")),
                                                 reason="no model of hearing is bundled")]
 
+#: A level of the stream in the exporter's units.
+SCALE = integer.LEVEL_ONE // integer.LOG
 
-def wanted(sound: np.ndarray, rate: int = 16000, name: str = "hear_small") -> integer.Heard:
-    """What the exporter's integers make of a sound."""
-    return integer.delivered(quantise(load(SOURCE / "export" / "models" / f"{name}.npz"), name), sound, rate)
+
+def tables(name: str) -> HearingTables:
+    """Of a bundled model."""
+    return quantise(load(SOURCE / "export" / "models" / f"{name}.npz"), name)
+
+
+def wanted(sound: np.ndarray, rate: int = 16000, name: str = "hear_small", begin: int = integer.BEGIN) -> integer.Heard:
+    """What the exporter's integers make of a sound that begins at a level."""
+    return integer.delivered(tables(name), sound, rate, begin=begin)
+
+
+def measured(sound: np.ndarray, rate: int) -> int:
+    """The exporter's largest level of a sound."""
+    samples = integer.convert(sound, rate)
+    energies = integer.log_energies(samples[: len(samples) // 160 * 160])
+    return int(integer.levels(energies, np.zeros(len(energies), dtype=bool), SCALE * 3328).hops.max()) * SCALE
 
 
 def numbers(frames: List[labial.Frame]) -> List[List[int]]:
@@ -63,6 +79,7 @@ def test_articulation_and_a_slow_cancel() -> None:
     with labial.Hearing(exact=True) as hearing:
         plain = np.array(numbers(list(hearing.frames([sound]))))
         hearing.restart()
+        hearing.level = 6656
         hearing.articulation(49.6)
         half = np.array(numbers(list(hearing.frames([sound]))))[8:]
         assert np.abs(2 * half - plain[8:]).max() <= 2 and np.abs(plain).max() > 50
@@ -115,6 +132,45 @@ def test_sound_may_come_from_an_asynchronous_source() -> None:
     assert 0 <= told.index(0) < len(told) - 1 - told[::-1].index(-1600)
 
 
+def test_the_level_is_known() -> None:
+    """Catches a level that is not the stream's, a measurement that looks too rarely or begins too high, and one that
+    changes more than the level."""
+    sound = voice(1.0) // 64
+    with labial.Hearing() as hearing:
+        assert hearing.level == 6656
+        assert hearing.measure(sound) == hearing.level == measured(sound, 16000) // SCALE < 6000
+        begin = hearing.level * SCALE
+        frames = hearing.push(sound)
+        with pytest.raises(StreamError, match="not allowed now"):
+            hearing.level = 5000
+        assert numbers(frames + hearing.end()) == wanted(sound, begin=begin).faps.tolist()
+        assert hearing.level == integer.level_after(tables("hear_small"), sound, begin=begin) // SCALE
+        for wrong in (-1, 3327, 11777, 2**40):
+            with pytest.raises(StreamError, match="level"):
+                hearing.level = wrong
+        with pytest.raises((LabialError, TypeError)):
+            hearing.level = "loud"
+
+
+@pytest.mark.parametrize("name", ["hear_small", "hear_large"])
+@pytest.mark.parametrize("seconds", [0.5, 1.0, 4.0])
+@pytest.mark.parametrize("scale", [1.0, 0.125])
+def test_room_noise_before_the_first_word_does_not_open_the_mouth(name: str, seconds: float, scale: float) -> None:
+    """Noise as of a room, 40 dB below the voice: the lips stay together until 100 ms before the first word, and then
+    they open; the same after a restart. Catches noise that is taken for a voice."""
+    speech, before = voice(1.5).astype(float), round(seconds * 16000) // 320 * 320
+    random = np.random.default_rng(1)
+    spectrum = np.fft.rfft(random.normal(size=before + len(speech)))
+    noise = np.fft.irfft(spectrum / np.sqrt(np.arange(len(spectrum)) + 500.0), before + len(speech))
+    noise *= 0.01 * np.sqrt(np.mean(speech**2) / np.mean(noise**2))
+    sound = np.rint((np.concatenate([np.zeros(before), speech]) + noise) * scale).astype(np.int16)
+    with labial.Hearing(model=name) as hearing:
+        for _ in range(2):
+            gap = opening(np.array(numbers(list(hearing.frames([sound])))))
+            assert gap[: before // 320 - 5].max() <= 60 < gap[before // 320 :].max()
+            hearing.restart()
+
+
 def test_a_long_block_is_heard_in_pieces() -> None:
     """Catches frames beyond the room that one call has."""
     sound = np.tile(voice(3.0), 4)
@@ -139,7 +195,8 @@ def test_cancel_and_restart() -> None:
         hearing.restart()
         again = hearing.push(sound) + hearing.end()
         assert again[0].number == len(before) + 5
-        assert numbers(again)[8:] == wanted(sound).faps.tolist()[8:]
+        level = integer.levels(integer.log_energies(sound), np.zeros(50, dtype=bool), integer.BEGIN).last
+        assert numbers(again)[8:] == wanted(sound, begin=level).faps.tolist()[8:]
     for call in (hearing.end, hearing.restart, hearing.shown, hearing.cancel, hearing.__enter__):
         with pytest.raises(StreamError, match="closed"):
             call()
@@ -201,13 +258,15 @@ def test_the_command_writes_frames(tmp_path: Path, capsys: pytest.CaptureFixture
     stereo = np.stack([sound, -(sound // 3)], axis=1)
     for name, samples in (("one.wav", sound), ("two.wav", stereo)):
         assert main(["hear", str(write_wav(tmp_path / name, samples, 24000))]) == 0
-        assert rows(capsys.readouterr().out).tolist() == wanted(samples, 24000).faps.tolist()
+        expected = wanted(samples, 24000, begin=measured(samples, 24000)).faps
+        assert rows(capsys.readouterr().out).tolist() == expected.tolist()
+    begin = measured(sound, 24000)
     assert main(["hear", str(tmp_path / "one.wav"), "--model", "large", "-o", str(tmp_path / "out.csv")]) == 0
-    assert rows((tmp_path / "out.csv").read_text()).tolist() == wanted(sound, 24000, "hear_large").faps.tolist()
+    assert rows((tmp_path / "out.csv").read_text()).tolist() == wanted(sound, 24000, "hear_large", begin).faps.tolist()
     assert main(["hear", str(tmp_path / "one.wav"), "--to", "fap"]) == 0
     assert capsys.readouterr().out.splitlines()[0].split()[-1] == "47"
     assert main(["hear", str(tmp_path / "one.wav"), "--exact"]) == 0
-    assert rows(capsys.readouterr().out).tolist() == wanted(sound, 24000).faps[:35].tolist()
+    assert rows(capsys.readouterr().out).tolist() == wanted(sound, 24000, begin=begin).faps[:35].tolist()
     assert main(["hear", str(tmp_path / "one.wav"), "--to", "jsonl"]) == 0
     assert len(capsys.readouterr().out.splitlines()) == 35 + 12
 

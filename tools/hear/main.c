@@ -213,18 +213,67 @@ static int hear_all(hear_t *hear)
     return 0;
 }
 
-/* The sound is open, and how it is to be read is known. */
-static int run(hear_t *hear, const options_t *options)
+/* Begins the stream. */
+static int begin(hear_t *hear, labial_frame_fn callback)
 {
-    const hear_model_t *model = hear->model = &models[options->model];
-    char why[160];
-    const int result = labial_hear_init(&hear->stream, model->model, hear->wav.rate, hear->wav.channels,
-                                        hear->workspace, sizeof hear->workspace, on_frame, hear);
+    const int result = labial_hear_init(&hear->stream, hear->model->model, hear->wav.rate, hear->wav.channels,
+                                        hear->workspace, sizeof hear->workspace, callback, hear);
     if (result < 0) {
+        char why[160];
         (void)snprintf(why, sizeof why, "%" PRIu32 " samples per second, channels: %u: %s", hear->wav.rate,
                        hear->wav.channels, labial_result_text(result));
         return failed(hear, why);
     }
+    return 0;
+}
+
+static void ignore_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)user;
+    (void)frame;
+    (void)faps;
+}
+
+/* Hears the file to find the level of its voice, the largest there is, and goes back to the first sample. Leaves it at 0,
+ * unknown, for what cannot be read twice, such as a pipe. What is wrong with the file is told when it is heard. */
+static int measure(hear_t *hear, unsigned *level)
+{
+    int16_t samples[BLOCK_MAX];
+    const wav_t first = hear->wav;
+    FILE *const in = hear->wav.in;
+    const long place = ftell(in);
+    const size_t count = hear->wav.rate / BLOCKS_PER_SECOND;
+    long read;
+    *level = 0;
+    if (place < 0 || fseek(in, place, SEEK_SET) != 0)
+        return 0;
+    if (begin(hear, ignore_frame) != 0)
+        return EXIT_INPUT;
+    *level = LABIAL_HEAR_LEVEL_MIN;
+    (void)labial_hear_set_level(&hear->stream, *level);
+    do {
+        read = wav_read(&hear->wav, samples, count);
+        if (read > 0)
+            (void)labial_hear_push(&hear->stream, samples, (size_t)read);
+        if (labial_hear_level(&hear->stream) > *level)
+            *level = labial_hear_level(&hear->stream);
+    } while (read >= 0 && (size_t)read == count);
+    hear->wav = first;
+    clearerr(in);
+    return fseek(in, place, SEEK_SET) == 0 ? 0 : failed(hear, "cannot be read a second time");
+}
+
+/* The sound is open, and how it is to be read is known. */
+static int run(hear_t *hear, const options_t *options)
+{
+    unsigned level = 0;
+    hear->model = &models[options->model];
+    if (hear->wav.in != stdin && measure(hear, &level) != 0)
+        return EXIT_INPUT;
+    if (begin(hear, on_frame) != 0)
+        return EXIT_INPUT;
+    if (level > 0)
+        (void)labial_hear_set_level(&hear->stream, level);
     (void)labial_hear_exact(&hear->stream, options->exact);
     hear->classes = options->classes;
     if (hear->classes) {
@@ -232,7 +281,7 @@ static int run(hear_t *hear, const options_t *options)
         const int status = hear_all(hear);
         return status == 0 ? flush(hear) : status;
     }
-    frames_init(&hear->frames, stdout, options->to, model->name, LABIAL_HEAR_FPS);
+    frames_init(&hear->frames, stdout, options->to, hear->model->name, LABIAL_HEAR_FPS);
     const int status = hear_all(hear);
     if (frames_finish(&hear->frames, status == 0) != 0 && status == 0)
         return failed(hear, "cannot write what was heard");

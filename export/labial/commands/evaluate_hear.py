@@ -1,4 +1,4 @@
-"""``labial evaluate-hear``: lips from sound against lips from true timings."""
+"""``labial evaluate-hear``: lips from sound against lips in videos, or against lips from true timings."""
 
 from __future__ import annotations
 
@@ -17,14 +17,17 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     """A model, and the sounds, conditions and methods to judge."""
     command.add_argument("model", metavar="HEAR.npz")
     command.add_argument("folder", nargs="*", metavar="FOLDER", help="speech, as for train-hear")
+    command.add_argument("--lips", nargs="+", action="append", metavar="CORPUS", help="judge by lips that were "
+                         "measured in video: corpora, as for train, with the sound beside each episode or with "
+                         "energies.npz; once more for another group of them")
     command.add_argument("-o", "--output", metavar="TABLE.md", help="standard output without it")
     command.add_argument("--voices", nargs="*", metavar="VOICE", help="synthesisers' voices that say the bundled "
                          "sentences, as for speech-corpus (four that no bundled network was trained on)")
     command.add_argument("--conditions", metavar="A,B,...", help="of clean, -40 dBFS, white noise 20 dB and so on; all "
                          "of them by default")
     command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness, \"loudness and "
-                         "crossings\" (these), and other projects: wawa-lipsync, \"wawa-lipsync unsmoothed\", "
-                         "headaudio, pocketsphinx")
+                         "crossings\" (these; with --lips phonemes in place of the last), and other projects: "
+                         "wawa-lipsync, \"wawa-lipsync unsmoothed\", headaudio, pocketsphinx")
     command.add_argument("--npm", metavar="FOLDER", help="where npm installed wawa-lipsync and @met4citizen/headaudio")
     command.add_argument("--most", type=positive, help="clips of each folder (all)")
     command.add_argument("--cache", metavar="FOLDER", help="for alignments")
@@ -33,12 +36,31 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prints a table."""
-    with needs("evaluating", "hear"):
-        from labial.evaluate import hearing, others
     from labial.files.outputs import check
-    from labial.hearing.model import load
 
     check(options.output)
+    put(_by_lips(options) if options.lips else _by_timings(options), options.output)
+    return 0
+
+
+def _by_lips(options: argparse.Namespace) -> str:
+    with needs("evaluating", "hear"):
+        from labial.evaluate import real_lips
+    from labial.hearing.model import load
+
+    for name in ("folder", "voices", "conditions", "npm", "most"):
+        if getattr(options, name):
+            raise LabialError(f"{'FOLDER' if name == 'folder' else '--' + name} does not go with --lips")
+    own = real_lips.methods(load(options.model))
+    judged = {name: own[name] for name in _chosen(options.methods, "--methods", list(own))}
+    return real_lips.table(list(real_lips.evaluated([real_lips.group(item) for item in options.lips], judged)))
+
+
+def _by_timings(options: argparse.Namespace) -> str:
+    with needs("evaluating", "hear"):
+        from labial.evaluate import hearing, others
+    from labial.hearing.model import load
+
     model = load(options.model)
     own = hearing.methods(model)
     names = _chosen(options.methods, "--methods", list(own), list(others.PACKAGES))
@@ -51,8 +73,7 @@ def run(options: argparse.Namespace) -> int:
         sets += [hearing.of_voice(voice, hearing.default_sentences()) for voice in voices]
     if not sets:
         raise LabialError("there is nothing to judge by: neither a folder nor a voice")
-    put(hearing.table(list(hearing.evaluated(sets, chosen, conditions))), options.output)
-    return 0
+    return hearing.table(list(hearing.evaluated(sets, chosen, conditions)))
 
 
 def _chosen(text: Optional[str], option: str, usual: List[str], more: Sequence[str] = ()) -> List[str]:

@@ -53,8 +53,15 @@ def run(options: argparse.Namespace) -> int:
     form = format_of(options)
     if options.sound != "-" and (options.rate or options.channels):
         raise LabialError("--rate and --channels go with -, a sound from standard input")
-    rate, channels, blocks = _sound(options)
+    if options.sound == "-":
+        rate, channels, whole_sound = options.rate or 16000, options.channels or 1, None
+        blocks = iter(lambda: sys.stdin.buffer.read(_BLOCK), b"")
+    else:
+        rate, channels, whole_sound = _sound(options.sound)
+        blocks = iter([whole_sound])
     with Hearing(rate, channels, model=f"hear_{options.model}", exact=options.exact) as hearing:
+        if whole_sound is not None:
+            hearing.measure(whole_sound)
         parts = _parts(hearing, blocks)
         count = 0
         if options.to == "fap":  # whose head has the number of frames
@@ -66,20 +73,18 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _sound(options: argparse.Namespace) -> Tuple[int, int, Iterator[bytes]]:
-    """Rate, channels and blocks of the sound. A WAV file of 16 bits is heard as it is, all else as the reader of
-    ``labial align`` converts it."""
-    if options.sound == "-":
-        return options.rate or 16000, options.channels or 1, iter(lambda: sys.stdin.buffer.read(_BLOCK), b"")
+def _sound(path: str) -> Tuple[int, int, bytes]:
+    """Rate, channels and samples of a file. A WAV file of 16 bits is heard as it is, all else as the reader of ``labial
+    align`` converts it."""
     try:
-        with wave.open(options.sound, "rb") as file:
+        with wave.open(path, "rb") as file:
             if file.getsampwidth() == 2 and file.getnchannels() <= 2 and file.getframerate() in _RATES:
-                return file.getframerate(), file.getnchannels(), iter(list(wav.blocks(file)))
+                return file.getframerate(), file.getnchannels(), b"".join(wav.blocks(file))
     except OSError as error:
-        raise DataError(options.sound, None, error.strerror or str(error)) from None
+        raise DataError(path, None, error.strerror or str(error)) from None
     except wav.ERRORS:
         pass
-    return 16000, 1, iter([_converted(options.sound)])
+    return 16000, 1, _converted(path)
 
 
 def _converted(path: str) -> bytes:

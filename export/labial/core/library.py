@@ -19,7 +19,7 @@ from labial.errors import LabialError, StreamError, pip
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 5
+_INTERFACE = 6
 
 #: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
@@ -76,6 +76,7 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "ears_cancel": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
     "ears_stretches": (_NUMBER, (_POINTER,)), "ears_restart": (c_int, (_POINTER,)),
     "ears_exact": (c_int, (_POINTER, _NUMBER)), "ears_articulation": (c_int, (_POINTER, _NUMBER)),
+    "ears_level": (_NUMBER, (_POINTER,)), "ears_set_level": (c_int, (_POINTER, _NUMBER)),
     "servos_size": (_NUMBER, (_NUMBER, _NUMBER)), "servos_init": (c_int, (_POINTER, _POINTER, _NUMBER, _NUMBER)),
     "servos_frame": (None, (_POINTER, _POINTER)), "servos_values": (c_int, (_POINTER, _POINTER)),
     "servos_tick": (c_int, (_POINTER, _POINTER)), "servos_play": (c_int, (_POINTER,)),

@@ -17,7 +17,7 @@ from labial.corpus.timings import PathLike
 from labial.evaluate.loudness import loudness, loudness_and_crossings
 from labial.hearing import clips, distort, targets
 from labial.hearing.features import RATE, frames_of
-from labial.hearing.integer import hear as hear_in_integers
+from labial.hearing.integer import delivered
 from labial.hearing.measures import Figures, Judged, delay, measured
 from labial.hearing.model import HearingModel
 from labial.hearing.network import hear
@@ -132,11 +132,12 @@ CONDITIONS: Dict[str, Callable[[np.ndarray, np.random.Generator], np.ndarray]] =
 
 
 def methods(model: HearingModel, in_integers: bool = True) -> Dict[str, Method]:
-    """The network in floating point and in the library's integers, and what follows loudness."""
+    """The network in floating point and in the library's integers, and what follows loudness. The integers are
+    as a stream delivers them, at rest before the first voice and in silence."""
     found: Dict[str, Method] = {"network": lambda sound: hear(model, sound).faps}
     if in_integers:
         tables = quantise(model, "hear")
-        found["integers"] = lambda sound: hear_in_integers(tables, sound).faps
+        found["integers"] = lambda sound: delivered(tables, sound, exact=True).faps
     return {**found, "loudness": loudness, "loudness and crossings": loudness_and_crossings}
 
 
@@ -174,7 +175,7 @@ def _without(lag: int, true: np.ndarray, heard: np.ndarray, classes: np.ndarray)
     return true, heard[at], classes
 
 
-COLUMNS = ("sounds", "condition", "method", "opening", "10th percentile", "channels", "p, b, m closed",
+COLUMNS = ("sounds", "condition", "method", "opening", "in speech", "10th percentile", "channels", "p, b, m closed",
            "false closures per second", "jerk", "delay, ms")
 
 
@@ -183,8 +184,9 @@ def table(rows: Sequence[Row]) -> str:
     lines = [f"| {' | '.join(COLUMNS)} |", f"|{'---|' * 3}{'---:|' * (len(COLUMNS) - 3)}"]
     for row in rows:
         f = row.figures
-        lines.append(f"| {row.sounds} | {row.condition} | {row.method} | {f.opening:.3f} | {row.tenth:.2f} | "
-                     f"{f.channels:.3f} | {f.closed:.2f} | {f.false:.2f} | {f.jerk:.2f} | {row.delay} |")
+        cells = (f"{f.opening:.3f}", f"{f.speech:.3f}", f"{row.tenth:.2f}", f"{f.channels:.3f}", f"{f.closed:.2f}",
+                 f"{f.false:.2f}", f"{f.jerk:.2f}", str(row.delay))
+        lines.append(f"| {row.sounds} | {row.condition} | {row.method} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 

@@ -38,9 +38,14 @@ def _pieces(sound: np.ndarray) -> np.ndarray:
     return np.pad(np.asarray(sound, np.float64), (0, count * FRAME - len(sound))).reshape(count, FRAME)
 
 
-def shares(sound: np.ndarray) -> np.ndarray:
-    """(T,) 0 .. 1: the loudness of each frame of an int16 sound, from `_RANGE` dB below its loud frames up to them."""
-    level = 10 * np.log10(np.square(_pieces(sound)).mean(axis=1) + 1.0)
+def levels(sound: np.ndarray) -> np.ndarray:
+    """(T,) dB: the level of each frame of an int16 sound."""
+    result: np.ndarray = 10 * np.log10(np.square(_pieces(sound)).mean(axis=1) + 1.0)
+    return result
+
+
+def shares(level: np.ndarray) -> np.ndarray:
+    """(T,) 0 .. 1: the loudness of frames whose levels are (T,) dB, from `_RANGE` dB below the loud ones up to them."""
     if not len(level):
         return np.zeros(0)
     found: np.ndarray = np.clip((level - np.percentile(level, 95)) / _RANGE + 1.0, 0.0, 1.0)
@@ -61,14 +66,19 @@ def crossings(sound: np.ndarray) -> np.ndarray:
 
 def loudness(sound: np.ndarray) -> np.ndarray:
     """(T, 13) FAP units: between closed lips and an open mouth by loudness."""
-    return _pose(shares(sound))
+    return loudness_of(levels(sound))
+
+
+def loudness_of(level: np.ndarray) -> np.ndarray:
+    """The same for frames whose levels are (T,) dB."""
+    return _pose(shares(level))
 
 
 def loudness_and_crossings(sound: np.ndarray) -> np.ndarray:
     """The same, but nearly shut where many crossings of zero tell a fricative."""
     low, high = _CROSSINGS
     fricative = np.clip((crossings(sound) - low) / (high - low), 0.0, 1.0)
-    return _pose(shares(sound) * (1 - (1 - _FRICATIVE) * fricative))
+    return _pose(shares(levels(sound)) * (1 - (1 - _FRICATIVE) * fricative))
 
 
 def _pose(share: np.ndarray) -> np.ndarray:

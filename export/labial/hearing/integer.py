@@ -6,7 +6,7 @@ The steps are those of :mod:`labial.hearing.convert`, :mod:`labial.hearing.featu
 
 from __future__ import annotations
 
-from typing import Tuple
+from typing import NamedTuple, Tuple
 
 import numpy as np
 
@@ -18,9 +18,13 @@ from labial.hearing.features import (
     FRAME,
     HOP,
     HOPS,
+    LEVEL_BEGIN,
     LEVEL_LEAST,
+    NEAR_LEVEL,
     OFFSET,
     RANGE,
+    RISE,
+    SEARCH,
     WINDOW,
     frames_of,
     places,
@@ -34,6 +38,8 @@ LOG = 256
 LEVEL_ONE = 64 * BANDS * LOG
 #: The first and the last bin that belong to a band.
 FIRST_BIN, LAST_BIN = 2, 121
+#: The level before any sound, and more than any level, in 1 / `LEVEL_ONE`.
+BEGIN, _NONE = round(LEVEL_BEGIN * LEVEL_ONE), 64 * LEVEL_ONE
 #: Points of the transform: pairs of samples.
 COUNT = WINDOW // 2
 
@@ -178,14 +184,39 @@ def log_energies(sound: np.ndarray) -> np.ndarray:
     return np.maximum(logs, int(FLOOR * LOG))
 
 
-def normalise(energies: np.ndarray) -> np.ndarray:
-    """(n, 24) int64, features in Q9 of log2 energies (n, 24) in 1/256."""
-    level, levels = round(LEVEL_LEAST * LEVEL_ONE), np.zeros(len(energies), dtype=np.int64)
+class Levels(NamedTuple):
+    """The level of a sound of n hops."""
+
+    hops: np.ndarray  #: (n,) int64, in 1/256
+    voiced: np.ndarray  #: (n,) bool: not before the first voice
+    last: int  #: the level at the end, in 1 / `LEVEL_ONE`
+
+
+def levels(energies: np.ndarray, silent: np.ndarray, begin: int) -> Levels:
+    """The level of log2 energies (n, 24) in 1/256, of which hops are `silent` (n,), from the level `begin` on, in
+    1 / `LEVEL_ONE`: see :mod:`labial.hearing.features`."""
+    level, waiting, fall = begin, True, round(SEARCH * LEVEL_ONE)
+    quietest = before = _NONE
+    hops, voiced = np.zeros(len(energies), dtype=np.int64), np.zeros(len(energies), dtype=bool)
     for k, total in enumerate(energies.sum(axis=1).tolist()):
-        level = max(level - round(DECAY * LEVEL_ONE), round(LEVEL_LEAST * LEVEL_ONE), total * 64)
-        levels[k] = level // (64 * BANDS)
+        now = total * 64
+        if waiting and not silent[k]:
+            quietest = min(quietest, max(before, now))
+            waiting = now <= level - round(NEAR_LEVEL * LEVEL_ONE) and now <= quietest + round(RISE * LEVEL_ONE)
+        before = _NONE if silent[k] else now
+        if not waiting:
+            level = max(level - fall, round(LEVEL_LEAST * LEVEL_ONE))
+        if now >= level:
+            level, waiting, fall = now, False, round(DECAY * LEVEL_ONE)
+        hops[k], voiced[k] = level // (64 * BANDS), not waiting
+    return Levels(hops, voiced, level)
+
+
+def normalise(energies: np.ndarray, level: np.ndarray) -> np.ndarray:
+    """(n, 24) int64, features in Q9 of log2 energies (n, 24) at levels (n,), both in 1/256."""
     low, high = (round(end * LOG) for end in RANGE)
-    return (np.clip(energies - levels[:, None], low, high) + round(OFFSET * LOG)) >> 1
+    result: np.ndarray = (np.clip(energies - level[:, None], low, high) + round(OFFSET * LOG)) >> 1
+    return result
 
 
 # ---- The network -----------------------------------------------------------------------------------------------------
@@ -224,44 +255,72 @@ def poses(tables: HearingTables, head: np.ndarray) -> np.ndarray:
     return result
 
 
-def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
+class _Told(NamedTuple):
+    """What the network tells of T frames."""
+
+    heard: Heard
+    pose: np.ndarray  #: (T, 13) in Q4, smoothed
+    still: np.ndarray  #: (T,) bool: silent, or before the first voice
+    level: int  #: after the last frame and what the network looks ahead, in 1 / `LEVEL_ONE`
+
+
+def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000, begin: int = BEGIN) -> Heard:
     """Scores (T, C) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end: what the
-    network tells, under way."""
-    return _heard(tables, sound, rate)[0]
+    network tells, under way, from the level `begin` on."""
+    return _of_sound(tables, sound, rate, begin).heard
 
 
-def _heard(tables: HearingTables, sound: np.ndarray, rate: int) -> Tuple[Heard, np.ndarray]:
-    """The same, and the poses (T, 13) in Q4."""
+def hear_energies(tables: HearingTables, energies: np.ndarray, count: int) -> Heard:
+    """The first `count` frames of log2 energies (n, 24) in 1/256, int64, which reach as far as the network looks ahead
+    and smoothing waits for; in digital silence and before the first voice they are at rest, as in a stream."""
+    silent = energies.sum(axis=1) <= (FLOOR + 0.5) * LOG * BANDS
+    told = _of_energies(tables, energies, silent, count, BEGIN)
+    pose = _resting(told.pose, told.still, tables.ahead + SMOOTHING)
+    return Heard(told.heard.scores, (pose + 8) >> 4)
+
+
+def _of_sound(tables: HearingTables, sound: np.ndarray, rate: int, begin: int) -> _Told:
     samples = convert(np.asarray(sound), rate)
     count = frames_of(len(samples))
-    known = count + SMOOTHING
-    padded = np.concatenate([samples, np.zeros((known + tables.ahead) * FRAME - len(samples), dtype=np.int64)])
-    heard = normalise(log_energies(padded)).reshape(known + tables.ahead, HOPS * BANDS)
-    head = heads(tables, heard)[:known]
+    frames = count + SMOOTHING + tables.ahead
+    padded = np.concatenate([samples, np.zeros(frames * FRAME - len(samples), dtype=np.int64)])
+    return _of_energies(tables, log_energies(padded), _silent_hops(padded), count, begin)
+
+
+def _of_energies(tables: HearingTables, energies: np.ndarray, silent: np.ndarray, count: int, begin: int) -> _Told:
+    known, level = count + SMOOTHING, levels(energies, silent, begin)
+    features = normalise(energies, level.hops).reshape(len(energies) // HOPS, HOPS * BANDS)
+    head = heads(tables, features)[:known]
     pose = poses(tables, head)
     before = np.concatenate([pose[:1], pose])[:count]
     smooth = (before + 2 * pose[:count] + pose[1:known] + 2) >> 2
-    return Heard(head[:count, : len(tables.classes)], (smooth + 8) >> 4), smooth
+    sounds = (level.voiced & ~silent)[: HOPS * count].reshape(count, HOPS)
+    told = Heard(head[:count, : len(tables.classes)], (smooth + 8) >> 4)
+    return _Told(told, smooth, ~sounds.any(axis=1), level.last)
 
 
 # ---- Beginning, silence and end -------------------------------------------------------------------------------------
 
 
-def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: bool = False) -> Heard:
-    """The same as a stream delivers it: it fades in from rest, rests in silence and, unless it is to be `exact`, at the
-    end, for which frames are added to the FAPs."""
-    heard, pose = _heard(tables, sound, rate)
-    pose = _faded(_resting(pose, silence(convert(np.asarray(sound), rate)), tables.ahead + SMOOTHING))
+def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: bool = False,
+              begin: int = BEGIN) -> Heard:
+    """The same as a stream delivers it: it fades in from rest, rests before the first voice, in silence and, unless it
+    is to be `exact`, at the end, for which frames are added to the FAPs."""
+    told = _of_sound(tables, sound, rate, begin)
+    pose = _faded(_resting(told.pose, told.still, tables.ahead + SMOOTHING))
     if len(pose) and not exact and np.abs(pose[-1]).max() > round(16 * NEAR):
         pose = np.concatenate([pose, pose[-1] + ((-pose[-1] * _eases(EASE, EASE)[:, None] + 8192) >> 14)])
-    return Heard(heard.scores, (pose + 8) >> 4)
+    return Heard(told.heard.scores, (pose + 8) >> 4)
 
 
-def silence(samples: np.ndarray) -> np.ndarray:
-    """(T,) bool: which frames of a sound (M,) at 16 kHz are silent, by either half's span."""
-    count = frames_of(len(samples))
-    halves = np.pad(samples, (0, count * FRAME - len(samples))).reshape(count, HOPS, HOP)
-    result: np.ndarray = (np.ptp(halves, axis=2) <= SILENT).all(axis=1) if count else np.zeros(0, dtype=bool)
+def level_after(tables: HearingTables, sound: np.ndarray, rate: int = 16000, begin: int = BEGIN) -> int:
+    """The level, in 1 / `LEVEL_ONE`, when a stream has delivered a sound: that with which the next one begins."""
+    return _of_sound(tables, sound, rate, begin).level
+
+
+def _silent_hops(samples: np.ndarray) -> np.ndarray:
+    """(n,) bool: which of n hops of samples are silent."""
+    result: np.ndarray = np.ptp(samples.reshape(-1, HOP), axis=1) <= SILENT
     return result
 
 

@@ -4,6 +4,7 @@
 - **closed**: the share of the runs of p, b, m in which the lips touch (`TOUCHING`) within `REACH` frames of the run.
 - **false**: how often a second of speech the lips touch where neither p, b, m nor touching lips of Labial's are within
   `REACH` frames.
+- **speech**: the correlation of the opening in frames of speech, without those before, after and in pauses.
 - **jerk**: the RMS third difference over that of Labial's frames, the mean of the channels.
 """
 
@@ -33,6 +34,7 @@ class Figures(NamedTuple):
     closed: float
     false: float
     jerk: float
+    speech: float = float("nan")
 
     def __str__(self) -> str:
         return (f"opening {self.opening:.3f}, channels {self.channels:.3f}, p b m closed {self.closed:.2f}, "
@@ -81,7 +83,8 @@ def measured(clips: Sequence[Judged]) -> Figures:
     false, speech = 0, 0
     third = np.zeros((2, clips[0][0].shape[1])) if clips else np.zeros((2, 1))
     for true, heard, classes in clips:
-        every.append(np.concatenate([correlation(opening(true)[:, None], opening(heard)[:, None]),
+        gaps, spoken = (opening(true)[:, None], opening(heard)[:, None]), classes != _SILENCE
+        every.append(np.concatenate([correlation(*gaps), correlation(*(gap[spoken] for gap in gaps)),
                                      correlation(true, heard)]))
         seen += closures(heard, classes)
         false += false_closures(true, heard, classes)
@@ -95,9 +98,9 @@ def measured(clips: Sequence[Judged]) -> Figures:
             for column in found.T]
     moving = third[0] > 1e-9
     return Figures(
-        each[0], float(np.nanmean(each[1:])) if np.isfinite(each[1:]).any() else float("nan"),
+        each[0], float(np.nanmean(each[2:])) if np.isfinite(each[2:]).any() else float("nan"),
         float(np.mean(seen)) if seen else float("nan"), false * RATE / speech if speech else float("nan"),
-        float(np.sqrt(third[1][moving] / third[0][moving]).mean()) if moving.any() else float("nan"))
+        float(np.sqrt(third[1][moving] / third[0][moving]).mean()) if moving.any() else float("nan"), each[1])
 
 
 def pooled(figures: Sequence[Figures], shares: Sequence[float]) -> Figures:

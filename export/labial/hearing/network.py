@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from labial.hearing.features import FRAME, features, frames_of
+from labial.hearing.features import BANDS, FRAME, HOPS, frames_of, log_energies, normalise
 from labial.hearing.model import HearingModel
 
 
@@ -81,5 +81,12 @@ def hear(model: HearingModel, sound: np.ndarray) -> Heard:
     sound = np.asarray(sound)
     count, ahead = frames_of(len(sound)), model.plan.ahead + SMOOTHING
     padded = np.concatenate([sound, np.zeros((count + ahead) * FRAME - len(sound), dtype=sound.dtype)])
-    result = closed(model, run(model, features(padded)))
+    return hear_energies(model, log_energies(padded), count)
+
+
+def hear_energies(model: HearingModel, energies: np.ndarray, count: int) -> Heard:
+    """The same for the first `count` frames of log energies (n, 24), which reach as far as the network looks ahead and
+    smoothing waits for."""
+    features = normalise(energies).reshape(len(energies) // HOPS, HOPS * BANDS)
+    result = closed(model, run(model, features))
     return Heard(result.scores[:count], smoothed(result.faps[: count + SMOOTHING])[:count])

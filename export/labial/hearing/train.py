@@ -21,7 +21,7 @@ from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.hearing import targets
 from labial.hearing.augment import augmented, noises, white
 from labial.hearing.choose import Choice, choose
-from labial.hearing.features import BANDS, FLOOR, HOPS, normalise
+from labial.hearing.features import BANDS, FLOOR, HOPS, normalise_crops
 from labial.hearing.learner import Learner, model_of, restore
 from labial.hearing.model import HearingModel, save, with_even_sides
 from labial.hearing.plans import CLASSES, CLOSED, PLANS
@@ -97,7 +97,7 @@ class _Data:
         for k in np.flatnonzero(random.random(BATCH) < _ALONE):
             mixed[k] = np.maximum(noises(1, HOPS * LENGTH, pool, random)[0] + random.uniform(*_LEVELS), FLOOR)
             frames[k], classes[k] = np.tile(self.rest, (LENGTH, 1)), np.full(LENGTH, CLASSES.index("SIL"), np.uint8)
-        heard = normalise(mixed)
+        heard = normalise_crops(mixed)
         wanted = ((np.stack(frames) - self.mean) / self.scale).astype(np.float32)
         return heard.reshape(BATCH, LENGTH, HOPS * BANDS), wanted, np.stack(classes).astype(np.int64)
 

@@ -22,6 +22,8 @@ FPS = 50
 _SAMPLE = 2
 #: Most frames that the end delivers, and a cancel before it eases.
 _LAST = 64
+#: LABIAL_HEAR_LEVEL_MIN, and how often a second the level is looked at.
+_LEVEL_MIN, _LOOKS = 3328, 100
 #: Samples that are heard in one call of C.
 _PIECE = 1 << 16
 
@@ -77,6 +79,7 @@ class Hearing:
         self._sample_rate, self._channels = whole(sample_rate, "a sample rate"), whole(channels, "a number of channels")
         number = next(k for k in range(len(names)) if core.hearing_name(k).decode("ascii") == model)
         self._names = [core.hearing_class(number, k).decode("ascii") for k in range(core.hearing_classes(number))]
+        self._model = model
         self._library, self._guard = core, Guard()
         self._memory: Any = memory(core.ears_size())
         self._address = ctypes.addressof(self._memory)
@@ -131,6 +134,36 @@ class Hearing:
         last one. Raises StreamError before the end."""
         self._open()
         checked(self._library.ears_restart(self._address), "restart")
+
+    @property
+    @alone
+    def level(self) -> int:
+        """The level of the voice: 1/256 of log2, 85 for a decibel (``labial_hear_level()``). A sound begins at that of
+        the sound before. Set it before a sound where it is known; StreamError is raised while one is heard, and
+        for a level out of range."""
+        self._open()
+        return int(self._library.ears_level(self._address))
+
+    @level.setter
+    @alone
+    def level(self, level: int) -> None:
+        self._open()
+        value = whole(level, "a level")
+        checked(self._library.ears_set_level(self._address, min(max(value, 0), 2**31 - 1)), f"the level {level}")
+
+    def measure(self, sound: Sound) -> int:
+        """Sets the level to the largest one of a whole sound that is there before it is heard, and returns it: so the
+        first word, too, is heard at its level. To be called before the first sound; it hears all of the sound, in
+        another stream."""
+        with Hearing(self._sample_rate, self._channels, model=self._model) as other:
+            other.level = found = _LEVEL_MIN
+            samples = other._samples(sound)
+            step = self._sample_rate // _LOOKS * self._channels
+            for first in range(0, len(samples), step):
+                other.push(samples[first : first + step])
+                found = max(found, other.level)
+        self.level = found
+        return found
 
     @alone
     def articulation(self, percent: float) -> None:
