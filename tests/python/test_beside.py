@@ -135,8 +135,8 @@ def test_packets_repeat_as_many_frames_as_there_are(repeat: int) -> None:
     """Also more than a packet has, from the first packet on; and on from where the one before ended."""
     motion = labial.render(HELLO)[:24]
     lips, wanted = labial.Beside(FACE, frames=2, repeat=repeat), expected(motion)
-    packets = lips.packets(motion[:12], sample=0, rate=16000)
-    packets += lips.packets(motion[12:], sample=16000 * 12 // 50, rate=16000)
+    packets = lips.packets(motion[:12], sample=0, sample_rate=16000)
+    packets += lips.packets(motion[12:], sample=16000 * 12 // 50, sample_rate=16000)
     assert [packet.frame for packet in packets] == list(range(0, 24, 2))
     for packet in packets:
         parsed, first = parse(packet.data), max(packet.frame - repeat, 0)

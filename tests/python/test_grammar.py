@@ -122,5 +122,5 @@ def test_text(tmp_path: Path) -> None:
     for encoding in ("utf-8", "utf-8-sig", "utf-16"):
         path.write_bytes("ä\r\n\u2028b".encode(encoding))
         assert lines_of(read_text(path)) == ["ä\r", "\u2028b"]
-    with pytest.raises(DataError, match="longer than 1000 bytes"):
+    with pytest.raises(DataError, match="more than the 1,000 bytes"):
         read_bytes("/dev/zero", 1000)
