@@ -98,7 +98,7 @@ def _machine_code(listing: str) -> Tuple[int, Set[str]]:
 def public_functions(bench: Bench, header: str = "labial.h") -> List[str]:
     """The functions of the library that a header of include/labial declares; the program defines those of the lock."""
     text = (bench.source / "include" / "labial" / header).read_text(encoding="utf-8")
-    text = re.sub(r"/\*.*?\*/|^#if LABIAL_LOCKS .*?^#endif", "", text, flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(r"/\*.*?\*/|^#if LABIAL_(?:LOCKS|HEAR_SUMS)\b.*?^#endif", "", text, flags=re.DOTALL | re.MULTILINE)
     return sorted(set(re.findall(r"^[a-z][\w \*]*?\b(labial_\w+)\([^;{]*\);", text, re.MULTILINE)))
 
 
