@@ -6,7 +6,7 @@
 #include <driver/ledc.h>
 #include <esp_timer.h>
 
-#include "labial/rig.h"
+#include "labial/face.h"
 #include "lips.h"
 
 #define PERIOD 20000 /* microseconds: of a frame and of a servo's pulses */
@@ -14,8 +14,10 @@
 #define TIMER LEDC_TIMER_3 /* the last of each, which boards use for their backlights last */
 #define CHANNEL LEDC_CHANNEL_5
 
-static const labial_rig_output_t jaw = LABIAL_RIG_JAW(SERVO_CLOSED, SERVO_OPEN);
+static const labial_rig_output_t jaw = LABIAL_RIG_SERVO(SERVO_CLOSED, SERVO_OPEN, SERVO_SLEW);
 static const labial_rig_t rig = { &jaw, 1 };
+static labial_face_t face;
+static int32_t room[LABIAL_FACE_SIZE(1, 0) / 4];
 static int32_t pulse;
 
 static void move(void *user)
@@ -23,7 +25,8 @@ static void move(void *user)
     int16_t faps[LABIAL_CHANNELS];
     (void)user;
     (void)lips_frame(esp_timer_get_time(), faps);
-    labial_rig_apply(&rig, faps, &pulse);
+    labial_face_frame(&face, 0, faps);
+    (void)labial_face_tick(&face, &pulse);
     (void)ledc_set_duty(LEDC_LOW_SPEED_MODE, CHANNEL, ((uint32_t)pulse << 14) / PERIOD);
     (void)ledc_update_duty(LEDC_LOW_SPEED_MODE, CHANNEL);
 }
@@ -35,7 +38,8 @@ int servo_begin(int pin)
     esp_timer_create_args_t every = { 0 };
     esp_timer_handle_t handle;
     esp_err_t result;
-    labial_rig_rest(&rig, &pulse);
+    labial_rig_rest(&rig, &pulse); /* with the first pulse a servo goes there */
+    (void)labial_face_init(&face, &rig, 1000000 / PERIOD, 0, room, sizeof room);
     timer.speed_mode = LEDC_LOW_SPEED_MODE;
     timer.duty_resolution = BITS;
     timer.timer_num = TIMER;

@@ -16,6 +16,11 @@ extern "C" {
 #define SERVO_OPEN 1900
 #endif
 
+/* Microseconds by which a pulse changes at most in 20 ms: what a common servo can follow. */
+#ifndef SERVO_SLEW
+#define SERVO_SLEW 160
+#endif
+
 /* Moves the servo on a pin every 20 ms from now on. Returns 0, or an error of ESP-IDF. */
 int servo_begin(int pin);
 

@@ -357,8 +357,8 @@ def test_threads(lips: ctypes.CDLL) -> None:
 def board(tmp_path: Path) -> ctypes.CDLL:
     """lips.c, lips_render.c and servo.c as they are compiled for an ESP32, with the stubs. The assertions in these end
     the process."""
-    sources = [*sorted(EXAMPLE.glob("*.c")), STUBS / "host.c", SOURCE / "lib/rig.c"]
-    return build(tmp_path, *sources, options=["-DESP_PLATFORM", f"-I{STUBS}"])
+    sources = [*sorted(EXAMPLE.glob("*.c")), STUBS / "host.c", SOURCE / "lib/rig.c", SOURCE / "lib/face.c"]
+    return build(tmp_path, *sources, options=["-DESP_PLATFORM", "-DSERVO_SLEW=20", f"-I{STUBS}"])
 
 
 def value(board: ctypes.CDLL, name: str, kind: Any = ctypes.c_int) -> Any:
@@ -404,7 +404,7 @@ def test_the_renderer_holds_sound_back(board: ctypes.CDLL) -> None:
 
 
 def test_the_servo_follows(board: ctypes.CDLL) -> None:
-    """Catches pulses outside the servo's, and a duty of another resolution."""
+    """Catches pulses outside the servo's, those that it cannot follow, and a duty of another resolution."""
     samples = voice(1.0)
     duty, now = value(board, "stub_duty", ctypes.c_uint32), value(board, "stub_now", ctypes.c_int64)
     board.stub_timer.restype = ctypes.c_uint64
@@ -421,6 +421,7 @@ def test_the_servo_follows(board: ctypes.CDLL) -> None:
     assert value(board, "stub_duties", ctypes.c_uint32).value == 70
     assert min(pulses) > 1397 and 1410 < max(pulses) <= 1900 and len(set(pulses)) > 10
     assert pulses[-1] < 1401
+    assert 20 - 2 < np.abs(np.diff(pulses)).max() < 20 + 2, "as fast as it may, and no faster"
 
 
 # ---- The patches -----------------------------------------------------------------------------------------------------
