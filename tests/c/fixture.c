@@ -21,33 +21,6 @@ uint32_t fixture_below(fixture_random_t *random, uint32_t limit)
     return (uint32_t)(((uint64_t)fixture_random(random) * limit) >> 32);
 }
 
-static struct {
-    uint32_t last;
-    unsigned long count;
-} seeds;
-
-uint32_t fixture_seed(uint32_t seed)
-{
-    seeds.last = seed;
-    seeds.count++;
-    return seed;
-}
-
-uint32_t fixture_seed_last(void)
-{
-    return seeds.last;
-}
-
-unsigned long fixture_seed_count(void)
-{
-    return seeds.count;
-}
-
-void fixture_seed_forget(void)
-{
-    seeds.count = 0;
-}
-
 /* ---- Models ---- */
 
 double fixture_weight_value(uint8_t code)
