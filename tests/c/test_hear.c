@@ -692,4 +692,30 @@ TEST(a_callback_may_begin_anew)
             }
 }
 
+/* The same with sound of another rate and two channels, and wherever in a frame the sound ends. */
+TEST(a_callback_may_begin_anew_at_any_rate)
+{
+    unsigned length;
+    make_sound(3, 16000, 1);
+    with = 1;
+    for (length = 4800; length < 5280; length += 5) {
+        const unsigned at_end = length % 2, before = again;
+        begun = 0;
+        assert_int_equal(
+            labial_hear_init(&hear, &hear_fixture, 24000, 2, workspace, sizeof workspace, begin_anew_at_frame, NULL),
+            LABIAL_OK);
+        anew = at_end ? UINT32_MAX : 2;
+        assert_int_equal(labial_hear_push(&hear, samples, length), LABIAL_OK);
+        if (at_end) {
+            anew = 1;
+            assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        }
+        assert_int_equal(again, before + 1u);
+        assert_int_equal(begun, 0);
+        assert_int_equal(labial_hear_push(&hear, samples, 9600), LABIAL_OK);
+        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_true(begun >= 20);
+    }
+}
+
 SUITE(NULL, NULL)

@@ -153,6 +153,9 @@ TEST(calls_do_as_the_header_says)
     wrong |= labial_timings_end(NULL, &timing) != LABIAL_ERROR_NULL;
     wrong |= labial_timings_end(&timings, NULL) != LABIAL_ERROR_NULL;
     wrong |= labial_timings_end(&timings, &timing) != LABIAL_DONE;
+    wrong |= labial_timings_tier(NULL, "a", 1) != LABIAL_ERROR_NULL;
+    wrong |= labial_timings_format(NULL) != LABIAL_TIMINGS_AUTO || labial_timings_line(NULL) != 0;
+    wrong |= labial_timings_message(NULL)[0] != '\0';
     wrong |= labial_timings_format_name(LABIAL_TIMINGS_TEXTGRID + 1) != NULL;
     wrong |= labial_timings_format_help(LABIAL_TIMINGS_TEXTGRID + 1) != NULL;
     wrong |= labial_timings_format_suffix(LABIAL_TIMINGS_TEXTGRID + 1) != NULL;
@@ -163,6 +166,7 @@ TEST(calls_do_as_the_header_says)
         char label = '-';
         labial_timings_init(&timings, LABIAL_TIMINGS_TEXTGRID);
         assert_int_equal(labial_timings_tier(&timings, names[i], numbers[i]), LABIAL_OK);
+        assert_int_equal(labial_timings_format(&timings), LABIAL_TIMINGS_TEXTGRID);
         const char *text = grid;
         for (size_t left = strlen(grid); left > 0; left -= used, text += used)
             if (labial_timings_next(&timings, text, left, &used, &timing) == LABIAL_OK)

@@ -374,6 +374,39 @@ TEST(words_end_and_go_on)
     assert_int_equal(until(&spoken, spoken.count), 1200);
 }
 
+/* Would catch a word that is counted twice or not at all while it is spoken, and a restart in the midst of one. */
+TEST(latency_tells_what_is_inside)
+{
+    static const char *const texts[] = { "banana", "\xd0\x9f" }; /* read, and in letters that are not known */
+    spoken_t spoken = { 0 };
+    labial_latency_t latency;
+    unsigned i, phoneme;
+    uint32_t lasts;
+    for (i = 0; i < 2; i++) {
+        unsigned before;
+        begin(0);
+        assert_int_equal(labial_words_pronounce(&stream, NULL), LABIAL_OK);
+        assert_int_equal(labial_words_push(&stream, texts[i], strlen(texts[i]), 0, 900), LABIAL_OK);
+        assert_int_equal(labial_words_push(&stream, "me", 2, 900, LABIAL_WORDS_NO_END), LABIAL_OK);
+        latency = labial_words_latency(&stream);
+        assert_int_equal(latency.milliseconds, 900); /* nobody knows how long the open word lasts */
+        before = latency.phonemes;
+        assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_OK);
+        latency = labial_words_latency(&stream);
+        assert_true(latency.phonemes < before && latency.milliseconds == 900 - lasts);
+        assert_int_equal(labial_words_end(&stream), LABIAL_OK);
+        assert_int_equal(take_all(&spoken), LABIAL_DONE);
+        assert_int_equal(labial_words_latency(&stream).phonemes, 0);
+    }
+    begin(0);
+    assert_int_equal(labial_words_push(&stream, "me", 2, 0, 300), LABIAL_OK);
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_OK);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_OK);
+    assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
+}
+
 TEST(misuse_is_an_error)
 {
     labial_words_model_t other = words_en;
