@@ -129,6 +129,7 @@ def test_packages_carry_every_attribution(tmp_path: Path, kind: str) -> None:
 # ---- Amalgamation --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_amalgamation_is_clean_c_and_cxx(tmp_path: Path) -> None:
     """No warning in either language, though files share one scope; nothing else of Labial is needed, and every global
     name begins with labial_."""
@@ -472,6 +473,7 @@ def test_component_builds(tree: object, tmp_path: Path, kind: str, functions: st
     assert ("laughter" in (tmp_path / "build" / "sources").read_text()) == (kind == "esp-idf")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CMAKE, reason="no cmake")
 def test_device_tests_run_as_apps_of_frameworks(tmp_path: Path) -> None:
     """The test apps of ESP-IDF and PlatformIO name files that exist and suffice. As there, Unity has a unity_config.h
