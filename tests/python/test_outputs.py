@@ -43,6 +43,7 @@ def injected(folder: Path, corpus: Path, rounds: int) -> Dict[str, List[str]]:  
     return found
 
 
+@pytest.mark.slow
 def test_interrupted_commands(tmp_path: Path, corpus: Path) -> None:  # noqa: F811
     """Every command that writes, each with a full disk, SIGKILL and SIGTERM at random writes: finds a file that is half
     written, a temporary one left behind, and an error that names another file."""

@@ -34,7 +34,8 @@ from test_head_page import stand_in  # noqa: F401, a fixture
 from test_record import LAB as TALK
 from test_record import talking, turned
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
+pytestmark = [pytest.mark.slow,
+              pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")]
 
 #: Seconds of the processor and bytes of memory, beyond what the test has, that a file of 1 MB may take.
 SECONDS, MEMORY = 10, 500_000_000
