@@ -17,7 +17,7 @@
 #include "labial/timings.h"
 
 /* Version of this interface; the Python package refuses a library of another one. */
-#define FLAT_INTERFACE 6
+#define FLAT_INTERFACE 7
 
 #ifdef __wasm__
 #define FLAT(name) __attribute__((export_name(#name)))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from ctypes import POINTER, c_char_p, c_int, c_int16, c_int32, c_uint32, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int, c_int16, c_int32, c_size_t, c_uint32, c_void_p
 from functools import cache
 from pathlib import Path
 from typing import Any, Dict, Optional, Sequence, Tuple
@@ -19,11 +19,11 @@ from labial.errors import LabialError, StreamError, pip
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 6
+_INTERFACE = 7
 
 #: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
-ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -9, -11
+ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FULL, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -8, -9, -11
 
 #: LABIAL_DURATION_MAX: the longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
@@ -34,6 +34,9 @@ ARTICULATION_MAX = 200
 #: LABIAL_LAUGH_FULL.
 LAUGH_FULL = 256
 
+
+#: A function that the library asks for a word's pronunciation (labial_voice_own_fn of include/labial/voice.h).
+PRONOUNCE = ctypes.CFUNCTYPE(c_void_p, c_void_p, c_void_p, c_size_t)
 
 _POINTER, _NUMBER, _TEXT = c_void_p, c_uint32, c_char_p
 _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
@@ -91,6 +94,14 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "words_push_characters": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _POINTER, _NUMBER)),
     "words_end": (c_int, (_POINTER,)), "words_restart": (c_int, (_POINTER,)),
     "words_next": (c_int, (_POINTER, _POINTER)),
+    "voice_size": (_NUMBER, (_POINTER, _NUMBER)), "voice_items_size": (_NUMBER, (_NUMBER,)),
+    "voice_init": (c_int, (_POINTER, _POINTER, _NUMBER, _POINTER, c_int32)),
+    "voice_words": (c_int, (_POINTER, _POINTER)), "voice_pronounce": (c_int, (_POINTER, PRONOUNCE)),
+    "voice_tell": (c_int, (_POINTER, _POINTER, _NUMBER, _POINTER, _POINTER, _TEXT, *(_NUMBER,) * 5)),
+    "voice_identity": (_NUMBER, (_TEXT, _NUMBER)), "voice_begin": (c_int, (_POINTER, c_double, _NUMBER)),
+    "voice_finish": (c_int, (_POINTER,)), "voice_cancel": (c_int, (_POINTER, _NUMBER)),
+    "voice_frame": (c_int, (_POINTER, _NUMBER, _POINTER)), "voice_next": (_NUMBER, (_POINTER,)),
+    "voice_done": (c_int, (_POINTER,)), "voice_counts": (None, (_POINTER, _POINTER)),
 }  # fmt: skip
 
 
