@@ -18,8 +18,7 @@ from labial.reference.published import Piece, join
 from labial.reference.tables import FloatTables
 from labial.train import codebook, pipeline, shapes
 from models import write_episode
-from test_evaluate import law
-from test_evaluate_material import planted
+from test_evaluate import law, planted
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,7 @@ from labial.evaluate.training import Training
 from labial.reference import published
 from labial.reference.tables import FloatTables
 from models import write_episode
-from test_evaluate import law
-from test_evaluate_material import planted
+from test_evaluate import law, planted
 
 
 @pytest.fixture(scope="module")

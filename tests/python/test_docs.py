@@ -71,7 +71,7 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     "method.md": {
         'labial train "$LABIAL/export/corpora/grid_s1" --method paper -o paper.npz': "takes a minute",
         'python -m labial.evaluate.side_by_side "$LABIAL/examples/demo/sentence.flite" published=paper.npz '
-        "Labial=speech_en -o sentence.svg": "needs the model above; test_side_by_side.py draws others",
+        "Labial=speech_en -o sentence.svg": "needs the model above; test_see.py draws others",
         'cmake -S "$LABIAL" -B letter -D LABIAL_METHOD=paper -D LABIAL_BUILD_TESTS=OFF':
             "test_published_device.py has such a library",
         "cmake --build letter --target labial-python": "likewise",
@@ -103,7 +103,7 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         "labial train export/corpora/grid_s1 --method paper -o paper.npz": "takes a minute",
         "labial synth paper.npz examples/demo/sentence.flite -o frames.csv":
             "needs the model above; test_paper_model.py has another",
-        "labial laughter-corpus LAUGHTER": "takes half a minute; test_laughter_corpus.py makes a smaller one",
+        "labial laughter-corpus LAUGHTER": "takes half a minute; test_laughter.py makes a smaller one",
         "python -m labial.evaluate.choices export/corpora/grid_s1 --splits 4 -o speech.md":
             "takes minutes; test_choices.py runs it on less",
         "python -m labial.evaluate.choices LAUGHTER --kind laughter --splits 2 -o laughter.md": "likewise",

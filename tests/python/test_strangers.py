@@ -30,9 +30,9 @@ from labial.tables.model import save
 from labial.tables.phones import read_stream
 from models import random_model, write_motion
 from runtime import needs_runtime
-from test_head_page import stand_in  # noqa: F401, a fixture
 from test_record import LAB as TALK
 from test_record import talking, turned
+from test_see import stand_in  # noqa: F401, a fixture
 
 pytestmark = [pytest.mark.slow,
               pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")]
