@@ -11,24 +11,13 @@ from labial.corpus.phonesets import SPEECH
 from labial.evaluate import departures
 from labial.evaluate.departures import DEPARTURES
 from labial.evaluate.material import utterances
-from labial.evaluate.training import Training
 from labial.reference import published
 from labial.reference.tables import FloatTables
 from models import write_episode
-from test_evaluate import law, planted
+from test_choices import corpus, training  # noqa: F401, fixtures
 
 
-@pytest.fixture(scope="module")
-def corpus():
-    return planted(law, 14, noise=3.0)
-
-
-@pytest.fixture(scope="module")
-def training(corpus) -> Training:
-    return Training(utterances(corpus[:11], SPEECH, 50), SPEECH, 50, 0)
-
-
-def test_every_departure_changes_something(corpus, training) -> None:
+def test_every_departure_changes_something(corpus, training) -> None:  # noqa: F811
     """Would catch a row that measures the model as it is. This corpus has pairs too few to be learnt."""
     timeline = utterances(corpus[11:], SPEECH, 50)[0].timeline
     model = training.model("labial")
@@ -38,7 +27,7 @@ def test_every_departure_changes_something(corpus, training) -> None:
     assert same <= {"pairs"}
 
 
-def test_units_of_a_published_model_are_the_published_ones(corpus, training) -> None:
+def test_units_of_a_published_model_are_the_published_ones(corpus, training) -> None:  # noqa: F811
     """The row of units and joins is the published reference, which test_published.py holds against other programs."""
     timeline = utterances(corpus[11:], SPEECH, 50)[0].timeline
     model = training.model("paper")
@@ -47,7 +36,8 @@ def test_units_of_a_published_model_are_the_published_ones(corpus, training) -> 
 
 
 @pytest.mark.slow
-def test_the_command_writes_a_table(corpus, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_command_writes_a_table(corpus, tmp_path: Path,  # noqa: F811
+                                    capsys: pytest.CaptureFixture) -> None:
     (tmp_path / "corpus").mkdir()
     for item in corpus:
         write_episode(tmp_path / "corpus", item)
