@@ -1,15 +1,11 @@
 /*
- * host.c - what the stubs do on a host. The test that loads it reads and sets the variables.
+ * esp32.c - what the calls of esp32.h do on a host. The test that loads it reads and sets the variables.
  */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "audio_render.h"
-#include "driver/ledc.h"
-#include "esp_timer.h"
-#include "freertos/stream_buffer.h"
-#include "freertos/task.h"
+#include "esp32.h"
 
 int64_t stub_now;
 uint32_t stub_duty, stub_duties; /* that takes effect, and how often one did */
