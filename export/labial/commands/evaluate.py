@@ -36,8 +36,8 @@ def add_evaluate(command: argparse.ArgumentParser) -> None:
 def run_evaluate(options: argparse.Namespace) -> int:
     """Evaluates, writes the report and prints its first table."""
     with needs("evaluating", "train,evaluate"):
+        from labial.evaluate.material import Options
         from labial.evaluate.run import run as evaluated
-        from labial.evaluate.splits import Options
 
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
     if words and options.leave_out_talkers:

@@ -165,7 +165,7 @@ def run_page(options: argparse.Namespace) -> int:
             raise LabialError("--rig and --three go with --head")
         text = page(motion, bands, options.audio, options.title)
     else:
-        from labial.see.head import head_page
+        from labial.see.page import head_page
 
         text = head_page(motion, options.head, options.rig, options.audio, options.title, options.three)
     put(text, options.output)
