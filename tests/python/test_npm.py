@@ -11,7 +11,7 @@ import random
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Dict, List, Tuple
 
 import hears
 import numpy as np
@@ -21,7 +21,6 @@ import labial
 from labial.__main__ import main
 from labial.corpus import services
 from labial.corpus.phonesets import ARPABET, AUTO
-from labial.corpus.timings import PathLike, SourceSegment
 from labial.errors import DataError
 from labial.files.faps import CHANNELS, FAP_NAMES
 from labial.hearing import integer
@@ -31,6 +30,7 @@ from labial.rig import FACES, description_of
 from npm import MISSING, answered, package
 from packages import SOURCE, run
 from runtime import needs_runtime
+from services import SAMPLES
 from test_hearing import voice
 
 SAY = os.environ.get("LABIAL_SAY", "")
@@ -172,13 +172,9 @@ def test_servos_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], 
     assert message in error and "face.toml" in error and not (tmp_path / "face.json").exists()
 
 
-SAMPLES = Path(__file__).with_name("services")
-READERS: Dict[str, Callable[[PathLike], List[SourceSegment]]] = {
-    "fromPiper": services.read_piper, "fromKokoro": services.read_kokoro, "fromHeadTTS": services.read_headtts,
-    "fromAzure": services.read_azure, "fromPolly": services.read_polly,
-}  # fmt: skip
-SAMPLE_OF = {"piper.json": "fromPiper", "piper_info.json": "fromPiper", "kokoro.json": "fromKokoro",
-             "headtts.json": "fromHeadTTS", "azure.json": "fromAzure", "polly.marks": "fromPolly"}
+#: The readers of the package alone, and the services that they are of.
+READERS = {"fromPiper": "piper", "fromKokoro": "kokoro", "fromHeadTTS": "headtts", "fromAzure": "azure",
+           "fromPolly": "polly"}
 
 #: Of each [reader, text] its segments, or the sentence of its error.
 READ = """
@@ -204,7 +200,7 @@ def read_by_python(folder: Path, reader: str, text: str) -> Any:
     path = folder / "a"
     path.write_bytes(text.encode("utf-8"))
     try:
-        return [(item.start, item.end, item.label, item.labels) for item in READERS[reader](path)]
+        return [(item.start, item.end, item.label, item.labels) for item in services.read(path, READERS[reader])]
     except DataError as error:
         return str(error)
 
@@ -220,9 +216,9 @@ def assert_alike(folder: Path, cases: List[Tuple[str, str]]) -> None:
 
 def test_samples(tmp_path: Path) -> None:
     """Catches a time that is rounded otherwise, a phoneme that is joined otherwise, labels of no set."""
-    cases = [(reader, (SAMPLES / name).read_text(encoding="utf-8")) for name, reader in SAMPLE_OF.items()]
-    for (name, _), rows in zip(SAMPLE_OF.items(), read_by_node(cases)):
-        assert not isinstance(rows, str) and len(rows) > 5, name
+    cases = [(reader, sample.text) for reader, service in READERS.items() for sample in SAMPLES.values()
+             if sample.service == service and not sample.phonemes.startswith("SIL M EY")]
+    assert len(cases) == 6 and all(not isinstance(rows, str) and len(rows) > 5 for rows in read_by_node(cases))
     assert_alike(tmp_path, cases)
 
 
@@ -251,7 +247,8 @@ def drawn_json(rng: random.Random) -> Tuple[str, str]:
                    for time in times[:-1]]
     elif reader == "fromPolly":
         names = [*"ptSTfkirsluaeEoO@BJx", "sil", "sil"]
-        marks = [{"time": round(1000 * time), "type": rng.choice(["viseme", "viseme", "word"]),
+        marks = [{"time": 0, "type": "viseme", "value": "p"}]  # words alone are of the package labial-words
+        marks += [{"time": round(1000 * time), "type": rng.choice(["viseme", "viseme", "word"]),
                   "value": rng.choice(names)} for time in times[:-1]]
         return reader, "\n".join(map(json.dumps, marks))
     return reader, json.dumps(content, ensure_ascii=False)
@@ -281,7 +278,7 @@ MALFORMED: List[Tuple[str, Any]] = [
     ("fromAzure", [{"audio_offset": 0, "viseme_id": 22}]), ("fromAzure", [{"audio_offset": 0}]),
     ("fromAzure", [{"audio_offset": 90000, "viseme_id": 2}, {"audio_offset": 1, "viseme_id": 0}]),
     ("fromAzure", [{"audio_offset": 0, "viseme_id": "__proto__"}]),
-    ("fromAzure", [{"audio_offset": 0, "viseme_id": {}}]), ("fromPolly", {"time": 0, "type": "word", "value": "a"}),
+    ("fromAzure", [{"audio_offset": 0, "viseme_id": {}}]),
     ("fromPolly", {"time": 0, "type": "viseme", "value": "?"}),
     ("fromPolly", {"time": 0, "type": "viseme", "value": "constructor"}),
     ("fromHeadTTS", {"phonemes": ["m"], "vtimes": [0, 1], "vdurations": [5]}),

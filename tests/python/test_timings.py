@@ -17,10 +17,12 @@ from labial.errors import DataError, LabialError
 from labial.files.grammar import is_number, is_whole, lines_of, number, number_or_nan, read_bytes, read_text
 from packages import SOURCE
 from runtime import needs_runtime
+from services import SAMPLES
 from test_npm import read_by_node
 
 SEEDS = SOURCE / "tests" / "fuzz" / "seeds" / "fuzz_timings"
-FILES = [*sorted(SEEDS.iterdir()), *sorted((SOURCE / "tests" / "python" / "services").glob("*.[jm]*"))]
+FILES = {path.name: path.read_bytes() for path in sorted(SEEDS.iterdir())}
+FILES.update({f"{name}.json": sample.text.encode("utf-8") for name, sample in SAMPLES.items()})
 #: What a reader may trip over: signs of every format, numbers beyond any range, bytes that are no UTF-8.
 TOKENS = [
     b"", b"\n", b"\r", b"\0", b" ", b"-", b"1e999", b"nan", b"9" * 30, b"-1", b"0.5", b'"', b"#", b"[", b"{", b"]",
@@ -41,12 +43,12 @@ def damaged(data: bytes, chance: random.Random) -> bytes:
     return data
 
 
-@pytest.mark.parametrize("path", FILES, ids=[path.name for path in FILES])
-def test_damaged_timings_are_read_or_refused_in_one_line(path: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", FILES)
+def test_damaged_timings_are_read_or_refused_in_one_line(name: str, tmp_path: Path) -> None:
     """Would catch a traceback of Python's: whatever a file holds, it is phonemes in order or one sentence."""
-    chance = random.Random(path.name)
-    copy = tmp_path / path.name
-    data = path.read_bytes()
+    chance = random.Random(name)
+    copy = tmp_path / name
+    data = FILES[name]
     refused = 0
     for _ in range(DAMAGED):
         copy.write_bytes(damaged(data, chance))
@@ -54,7 +56,7 @@ def test_damaged_timings_are_read_or_refused_in_one_line(path: Path, tmp_path: P
             segments = read_timings(copy)
         except LabialError as error:
             refused += 1
-            assert "\n" not in str(error) and path.name in str(error)
+            assert "\n" not in str(error) and name in str(error)
         else:
             assert all(0 <= segment.start <= segment.end for segment in segments)
     assert refused > 0
