@@ -11,8 +11,8 @@
 FLAT(voice_size) uint32_t voice_size(const labial_model_t *model, uint32_t places);
 FLAT(voice_items_size) uint32_t voice_items_size(uint32_t count);
 
-/* `numbers` are the model's phonemes of ARPABET in the order of words_label(), 40 of them, which must stay where they are;
- * null where they are the same. */
+/* `numbers` are the model's phonemes of ARPABET in the order of words_label(), 40 of them, which must stay where they
+ * are; null where they are the same. */
 FLAT(voice_init)
 int voice_init(labial_voice_t *voice, const labial_model_t *model, uint32_t places, const uint8_t *numbers,
                int32_t offset);
@@ -22,9 +22,10 @@ FLAT(voice_words) int voice_words(labial_voice_t *voice, const labial_words_own_
 FLAT(voice_pronounce) int voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own);
 
 /*
- * A message of `count` items, made at `memory`. `times` are their beginnings and ends, in seconds; a negative end is one
- * that is not known, and items with other odd times are skipped. Of phonemes, `texts` are their numbers, a byte each; of
- * other kinds the texts one behind the other, and `sizes` their bytes. `key` is 0 for none, `gap` milliseconds; `kind` and `counted` are a labial_voice_kind_t and a labial_voice_times_t.
+ * A message of `count` items, made at `memory`. `times` are their beginnings and ends, in seconds; a negative end is
+ * one that is not known, and items with other odd times are skipped. Of phonemes, `texts` are their numbers, a byte
+ * each; of other kinds the texts one behind the other, and `sizes` their bytes. `key` is 0 for none, `gap`
+ * milliseconds; `kind` and `counted` are a labial_voice_kind_t and a labial_voice_times_t.
  */
 FLAT(voice_tell)
 int voice_tell(labial_voice_t *voice, void *memory, uint32_t count, const double *times, const uint16_t *sizes,

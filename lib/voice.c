@@ -3,9 +3,9 @@
  *
  *     message --rules--> items --plan--> segments --stream--> motion --fade--> frames
  *
- * The stream is given segments when it needs them. What is told of the time before may change some that it has: with the
- * next frame they are compared, and if they differ, a new stream is given all from two to three seconds before, and the
- * difference between its motion and what was shown fades.
+ * The stream is given segments when it needs them. What is told of the time before may change some that it has: with
+ * the next frame they are compared, and if they differ, a new stream is given all from two to three seconds before, and
+ * the difference between its motion and what was shown fades.
  */
 #include "voice_parts.h"
 
@@ -44,7 +44,7 @@ static int64_t voice_now(const labial_voice_t *voice)
     return (int64_t)seconds * 1000 + labial_quotient((voice->next - seconds * rate) * 1000u, rate);
 }
 
-/* ---- Utterances ---------------------------------------------------------------------------------------------------- */
+/* ---- Utterances -------------------------------------------------------------------------------------------------- */
 
 /* Appends an utterance, unless there are as many as there may be. One that nothing was told of gives its place up. */
 static int append_utterance(labial_voice_t *voice, int64_t origin, uint32_t identity, int is_queued)
@@ -128,7 +128,7 @@ static int utterance_of(labial_voice_t *voice, uint32_t identity)
     return (int)voice->utterance_count - 1;
 }
 
-/* ---- Messages ------------------------------------------------------------------------------------------------------ */
+/* ---- Messages ---------------------------------------------------------------------------------------------------- */
 
 /* What the rules need to know of a message. */
 typedef struct {
@@ -264,7 +264,7 @@ static int begins_again(const labial_voice_t *voice, const labial_voice_utteranc
 {
     const uint64_t begin = utterance->base + message->begin, end = utterance->base + message->end;
     uint64_t told, shorter = utterance->told - utterance->base;
-    if (utterance->places == 0u || begin > utterance->last + ROUNDING)
+    if (!utterance->joined || begin > utterance->last + ROUNDING)
         return 0;
     if (message->end - message->begin < shorter)
         shorter = message->end - message->begin;
@@ -361,6 +361,7 @@ static int add(labial_voice_t *voice, labial_voice_utterance_t *utterance, const
     if (message->kind != utterance->kind) {
         utterance->kind = message->kind;
         utterance->told = utterance->last = 0;
+        utterance->joined = 0;
         utterance->over = utterance->highest = 0;
         voice->stale = 1;
     }
@@ -371,6 +372,7 @@ static int add(labial_voice_t *voice, labial_voice_utterance_t *utterance, const
         labial_voice_pack(voice);
     if (found.count > 0u) {
         utterance->last = base + found.begin;
+        utterance->joined = message->times == LABIAL_VOICE_JOINED;
         if (base + found.end > utterance->told)
             utterance->told = base + found.end;
     }
@@ -442,7 +444,7 @@ uint32_t labial_voice_identity(const char *text, size_t size)
     return hash ? hash : 1u;
 }
 
-/* ---- Beginning and end --------------------------------------------------------------------------------------------- */
+/* ---- Beginning and end ------------------------------------------------------------------------------------------- */
 
 int labial_voice_init(labial_voice_t *voice, const labial_model_t *model, void *memory, size_t size)
 {

@@ -9,7 +9,7 @@
 
 #define GIVEN LABIAL_VOICE_GIVEN_
 
-/* ---- The stream ---------------------------------------------------------------------------------------------------- */
+/* ---- The stream -------------------------------------------------------------------------------------------------- */
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -131,7 +131,7 @@ static void follow_changes(labial_voice_t *voice, int is_late)
     voice->stale = 0;
 }
 
-/* ---- The frames ---------------------------------------------------------------------------------------------------- */
+/* ---- The frames -------------------------------------------------------------------------------------------------- */
 
 void labial_voice_begin_fade(labial_voice_t *voice, uint32_t steps)
 {

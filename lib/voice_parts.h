@@ -25,7 +25,7 @@ typedef struct labial_voice_plan labial_voice_plan_t;
 #define LABIAL_VOICE_BACK 100u
 #define LABIAL_VOICE_BACK_FEW 2u
 
-/* ---- Items: a place is told by its index; those of an utterance lie one after the other ----------------------------- */
+/* ---- Items: a place is told by its index; those of an utterance lie one after the other -------------------------- */
 
 /* Places of an item whose text has `size` bytes. */
 static inline uint32_t labial_voice_places(uint32_t size)
@@ -79,7 +79,7 @@ void labial_voice_forget(labial_voice_t *voice, int64_t moment);
 uint32_t labial_voice_free(const labial_voice_t *voice);
 void labial_voice_pack(labial_voice_t *voice);
 
-/* ---- The plan ------------------------------------------------------------------------------------------------------ */
+/* ---- The plan ---------------------------------------------------------------------------------------------------- */
 
 /* The number of a viseme of Azure or Polly by its name, or -1. */
 int labial_voice_viseme(unsigned kind, const char *text, size_t size);
@@ -104,7 +104,7 @@ static inline void labial_voice_look(labial_voice_plan_t *plan, uint32_t at)
         plan->seen = at + 1u;
 }
 
-/* ---- Frames -------------------------------------------------------------------------------------------------------- */
+/* ---- Frames ------------------------------------------------------------------------------------------------------ */
 
 /* Begins to fade from what was shown, where the stream is at `made`. */
 void labial_voice_begin_fade(labial_voice_t *voice, uint32_t steps);

@@ -1,12 +1,10 @@
 /*
  * voice_plan.c - what is known of a voice as phonemes in time (voice_parts.h).
  *
- * The plan makes one segment after the other, when the stream needs it, and notes up to where it has looked at items: what
- * is told behind that changes nothing that it made. It begins at any time, with a few items before it.
+ * The plan makes one segment after the other, when the stream needs it, and notes up to where it has looked at items:
+ * what is told behind that changes nothing that it made. It begins at any time, with a few items before it.
  */
 #include "voice_parts.h"
-
-#include <string.h>
 
 /* Between phonemes, milliseconds that come from rounding. */
 #define ROUNDING 1u
@@ -60,7 +58,7 @@ enum {
  * frequent, for the one that it is named after: Azure's ids (Microsoft's table of phonemes for en-US); Polly's symbols
  * (Amazon's tables of en-US and en-GB; B, J and x are of its other languages). */
 static const uint8_t azure[] = { SIL, AH, AA, AO, EH, ER, IH, UW, OW, AW, OY, AY, HH, R, L, S, SH, DH, F, N, K, P };
-static const char polly_names[] = "sil\0p\0t\0S\0T\0f\0k\0i\0r\0s\0l\0u\0@\0a\0e\0E\0o\0O\0B\0J\0x\0";
+static const char polly_names[] = "ptSTfkirslu@aeEoOBJx"; /* the first one is "sil" */
 static const uint8_t polly[] = { SIL, P, N, SH, DH, F, K, IH, R, S, L, UW, AH, AE, EY, EH, OW, AO, B, Y, K };
 
 /* Phonemes that Azure reports in two events: "8 4", "4 6" and "19 16". */
@@ -72,14 +70,12 @@ static const uint8_t azure_pairs[][3] = { { 8, 4, OW }, { 4, 6, EY }, { 19, 16, 
     (BIT(AA) | BIT(AE) | BIT(AH) | BIT(AO) | BIT(AW) | BIT(AY) | BIT(EH) | BIT(ER) | BIT(EY) | BIT(IH) | BIT(IY) |     \
      BIT(OW) | BIT(OY) | BIT(UH) | BIT(UW))
 
-/* ---- Visemes ------------------------------------------------------------------------------------------------------- */
+/* ---- Visemes ----------------------------------------------------------------------------------------------------- */
 
 int labial_voice_viseme(unsigned kind, const char *text, size_t size)
 {
-    const char *name = polly_names;
-    int i;
+    int number = 0;
     if (kind == LABIAL_VOICE_AZURE) {
-        int number = 0;
         if (size == 0u || size > 2u || (size == 2u && text[0] == '0'))
             return -1;
         for (; size > 0u; size--, text++) {
@@ -89,12 +85,11 @@ int labial_voice_viseme(unsigned kind, const char *text, size_t size)
         }
         return number < (int)sizeof azure ? number : -1;
     }
-    for (i = 0; *name; i++) {
-        const size_t length = strlen(name);
-        if (length == size && memcmp(name, text, size) == 0)
-            return i;
-        name += length + 1u;
-    }
+    if (size == 3u && text[0] == 's' && text[1] == 'i' && text[2] == 'l')
+        return 0;
+    while (size == 1u && polly_names[number])
+        if (polly_names[number++] == *text)
+            return number;
     return -1;
 }
 
@@ -146,7 +141,7 @@ static int next_viseme(labial_voice_t *voice, const labial_voice_utterance_t *ut
     return 1;
 }
 
-/* ---- Phonemes ------------------------------------------------------------------------------------------------------ */
+/* ---- Phonemes ---------------------------------------------------------------------------------------------------- */
 
 /* Each phoneme lasts until the next one if the gap between them is short, and no longer. */
 static int next_phoneme(labial_voice_t *voice, const labial_voice_utterance_t *utterance)
@@ -177,7 +172,7 @@ static int next_phoneme(labial_voice_t *voice, const labial_voice_utterance_t *u
     return 1;
 }
 
-/* ---- The plan ------------------------------------------------------------------------------------------------------ */
+/* ---- The plan ---------------------------------------------------------------------------------------------------- */
 
 /* Goes to the items of the current utterance that matter from `plan->moment` on. */
 static void enter(labial_voice_t *voice)

@@ -8,7 +8,7 @@
 /* What an unknown last word lasts, milliseconds: its two phonemes. */
 #define UNKNOWN 300u
 
-/* ---- Words --------------------------------------------------------------------------------------------------------- */
+/* ---- Words ------------------------------------------------------------------------------------------------------- */
 
 /* The caller's own words for a text. */
 static const labial_words_own_t *own_of(const labial_voice_t *voice, const char *text, size_t size)
@@ -35,7 +35,7 @@ static uint32_t last_word_lasts(labial_voice_t *voice, const labial_voice_uttera
     return word.kind == LABIAL_WORDS_UNKNOWN ? UNKNOWN : labial_words_length(voice->words, &word);
 }
 
-/* ---- Characters ---------------------------------------------------------------------------------------------------- */
+/* ---- Characters -------------------------------------------------------------------------------------------------- */
 
 /* The bytes of the character that begins a text of `left` bytes. */
 static unsigned bytes_of(const char *text, unsigned left)
@@ -46,7 +46,8 @@ static unsigned bytes_of(const char *text, unsigned left)
     return bytes;
 }
 
-/* Whether a character of so many bytes is a blank: of ASCII, or U+00A0, U+1680, U+2000 to U+200A, U+2028, U+2029, U+202F,
+/* Whether a character of so many bytes is a blank: of ASCII, or U+00A0, U+1680, U+2000 to U+200A, U+2028, U+2029,
+   U+202F,
  * U+205F and U+3000. */
 static int is_blank(const char *text, unsigned bytes)
 {
@@ -67,13 +68,14 @@ static int is_blank(const char *text, unsigned bytes)
 static int is_closed(labial_voice_t *voice, const labial_voice_utterance_t *utterance, char closing)
 {
     uint32_t at = voice->plan.at;
-    unsigned i;
+    unsigned i, k;
     for (i = 0; i <= LABIAL_VOICE_BACK; i++, at = labial_voice_after(voice, at)) {
         labial_voice_look(&voice->plan, at);
         if (at >= labial_voice_limit(utterance))
             return 0;
-        if (memchr(labial_voice_text(voice, at), closing, voice->items[at].size))
-            return 1;
+        for (k = 0; k < voice->items[at].size; k++)
+            if (labial_voice_text(voice, at)[k] == closing)
+                return 1;
     }
     return 0;
 }
@@ -145,7 +147,7 @@ static int next_word(labial_voice_t *voice, const labial_voice_utterance_t *utte
     return finish_word(voice);
 }
 
-/* ---- Both ---------------------------------------------------------------------------------------------------------- */
+/* ---- Both -------------------------------------------------------------------------------------------------------- */
 
 /* The next phoneme of an utterance of words or characters; returns whether there is one. */
 static int next_spoken(labial_voice_t *voice)

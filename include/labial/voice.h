@@ -1,7 +1,7 @@
 /*
- * labial/voice.h - follows a voice whose words or phonemes become known while it is heard: items with their times in, as
- * a speech service sends them; frames out, when they are due by the clock of the sound. Optional: a program that does
- * not call it links nothing of it.
+ * labial/voice.h - follows a voice whose words or phonemes become known while it is heard: items with their times in,
+ * as a speech service sends them; frames out, when they are due by the clock of the sound. Optional: a program that
+ * does not call it links nothing of it.
  *
  *     static labial_voice_t voice;
  *     static uint32_t memory[LABIAL_VOICE_SIZE(3, 8, 256) / 4]; // of the model speech_en, and 256 places
@@ -15,8 +15,8 @@
  *     while (labial_voice_next(&voice, heard, &frame, faps) == LABIAL_OK) // often: `heard` milliseconds were heard
  *         show(faps);
  *
- * Frame k is due when k / fps seconds of the sound were heard. What becomes known late, or otherwise than before, changes
- * the frames that were not taken yet: they fade over LABIAL_VOICE_FADE frames to what they would have been.
+ * Frame k is due when k / fps seconds of the sound were heard. What becomes known late, or otherwise than before,
+ * changes the frames that were not taken yet: they fade over LABIAL_VOICE_FADE frames to what they would have been.
  *
  * Utterances
  * - Times of items count from the beginning of their utterance. The first one begins with the sound; further ones begin
@@ -26,9 +26,9 @@
  *   or is over are dropped. An utterance without an identity takes that of the first message that has one.
  * - An utterance that begins by itself is queued: it begins where the one before it ends, as far as is known, until its
  *   own sound is heard.
- * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of its
- *   last one, less 20 ms or half of that item, as ends are rounded. Of an utterance only the items of its first kind
- *   (labial_voice_kind_t) count.
+ * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
+ *   its last one, less 20 ms or half of that item, as ends are rounded. Of an utterance only the items of its first
+ *   kind (labial_voice_kind_t) count.
  * - Nothing known is silence. An utterance ends where the next one begins.
  *
  * Items that make no sense are skipped and counted: those that end before they begin, last more than an hour, begin or
@@ -37,9 +37,9 @@
  * The work of a call is linear in the items that it is given; that of a frame is a tick of the stream
  * (labial/labial.h). A change of what is already playing costs the ticks of up to three seconds once.
  *
- * The memory and `voice` are the caller's; the structure may be moved or copied between calls as long as the memory stays
- * where it is and one copy alone is used. Calls must not overlap. Models are trusted, as those of a stream; items,
- * texts, times and the order of calls are not.
+ * The memory and `voice` are the caller's; the structure may be moved or copied between calls as long as the memory
+ * stays where it is and one copy alone is used. Calls must not overlap. Models are trusted, as those of a stream;
+ * items, texts, times and the order of calls are not.
  */
 #ifndef LABIAL_VOICE_H
 #define LABIAL_VOICE_H
@@ -72,7 +72,7 @@ extern "C" {
 /* Bytes of an item's text that are kept; the rest is passed over. */
 #define LABIAL_VOICE_TEXT 255u
 
-/* An end that is not known, in microseconds; that of a word is then the next one's beginning, or what it usually lasts. */
+/* An end that is not known, in microseconds: a word lasts until the next one then, or as long as it usually does. */
 #define LABIAL_VOICE_NO_END UINT64_MAX
 
 /* The same in milliseconds, for labial_voice_word(). */
@@ -86,9 +86,10 @@ extern "C" {
 #define LABIAL_VOICE_BEHIND UINT64_MAX
 
 /*
- * Bytes of memory for models of `channels` channels that search a state every `stride` frames (as LABIAL_WORKSPACE_SIZE),
- * and for so many places of items that are not over for a few seconds: a phoneme, viseme or character takes one, a word of
- * n bytes 1 + (n + 11) / 16, a shorter one of up to four bytes one. A constant expression, a multiple of four.
+ * Bytes of memory for models of `channels` channels that search a state every `stride` frames (as
+ * LABIAL_WORKSPACE_SIZE), and for so many places of items that are not over for a few seconds: a phoneme, viseme or
+ * character takes one, a word of n bytes 1 + (n + 11) / 16, a shorter one of up to four bytes one. A constant
+ * expression, a multiple of four.
  */
 #define LABIAL_VOICE_SIZE(stride, channels, places) (LABIAL_WORKSPACE_SIZE(stride, channels) + 16u * (uint32_t)(places))
 
@@ -106,8 +107,8 @@ typedef enum {
     LABIAL_VOICE_ABSOLUTE, /* from the beginning of the utterance */
     LABIAL_VOICE_CHAINED,  /* from the end of the message before */
     LABIAL_VOICE_JOINED    /* from the beginning of the utterance or, if the message begins again, from the end of all
-                            * before: if it begins no later than the one before it and at least half of its time, more
-                            * than 20 ms, was told. A message that is told twice counts once. */
+                            * before: if it begins no later than the joined one before it and at least half of its time,
+                            * more than 20 ms, was told. A message that is told twice counts once. */
 } labial_voice_times_t;
 
 /* An item of a message. */
@@ -140,8 +141,8 @@ typedef struct {
 typedef struct labial_voice labial_voice_t;
 
 /*
- * Prepares a voice with frames of `model`. `memory`, aligned to four bytes, is the voice's from then on: `size` bytes, at
- * least LABIAL_VOICE_SIZE(stride, channels, 1) of the model.
+ * Prepares a voice with frames of `model`. `memory`, aligned to four bytes, is the voice's from then on: `size` bytes,
+ * at least LABIAL_VOICE_SIZE(stride, channels, 1) of the model.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION or LABIAL_ERROR_WORKSPACE.
  */
@@ -167,8 +168,8 @@ typedef const labial_words_own_t *(*labial_voice_own_fn)(void *user, const char 
 int labial_voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own, void *user);
 
 /*
- * The model's number of each of the 40 phonemes of labial/words.h, silence first: of a model that numbers them otherwise
- * than the bundled ones. The numbers must stay where they are; null for the bundled ones' order.
+ * The model's number of each of the 40 phonemes of labial/words.h, silence first: of a model that numbers them
+ * otherwise than the bundled ones. The numbers must stay where they are; null for the bundled ones' order.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE or LABIAL_ERROR_PHONEME.
  */
@@ -184,8 +185,8 @@ uint32_t labial_voice_identity(const char *text, size_t size);
 /*
  * Takes a message.
  *
- * Returns LABIAL_OK, also where nothing of it counts, LABIAL_CANCELLED where its utterance is over and it was dropped, or
- * with nothing changed LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised; words without labial_voice_words()),
+ * Returns LABIAL_OK, also where nothing of it counts, LABIAL_CANCELLED where its utterance is over and it was dropped,
+ * or with nothing changed LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised; words without labial_voice_words()),
  * LABIAL_ERROR_RANGE (kind or times) or LABIAL_ERROR_FULL (no place for all of its items, or for another utterance).
  */
 int labial_voice_tell(labial_voice_t *voice, const labial_voice_message_t *message);
@@ -196,34 +197,34 @@ int labial_voice_word(labial_voice_t *voice, const char *text, size_t size, uint
 int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start, uint32_t end);
 
 /*
- * The next utterance, whose sound begins when `at` milliseconds were heard, or LABIAL_VOICE_BEHIND: where the one before
- * ends, as far as is known, or now if that is over. `utterance` is its identity, 0 for that of its first message. After a
- * cancel, items count again from here on.
+ * The next utterance, whose sound begins when `at` milliseconds were heard, or LABIAL_VOICE_BEHIND: where the one
+ * before ends, as far as is known, or now if that is over. `utterance` is its identity, 0 for that of its first
+ * message. After a cancel, items count again from here on.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_RANGE or LABIAL_ERROR_FULL.
  */
 int labial_voice_begin(labial_voice_t *voice, uint64_t at, uint32_t utterance);
 
-/* Nothing more follows (labial_voice_done()). What is told nevertheless, but to utterances whose identity is known, begins
- * the next utterance. Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE. */
+/* Nothing more follows (labial_voice_done()). What is told nevertheless, but to utterances whose identity is known,
+ * begins the next utterance. Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE. */
 int labial_voice_finish(labial_voice_t *voice);
 
 /*
  * Drops all that is not shown yet, and eases to the neutral face over `milliseconds`, rounded up to whole frames, 1 ..
- * LABIAL_CANCEL_MAX. What is told until labial_voice_begin() is dropped, and so is all of the utterances whose identities
- * were known by then.
+ * LABIAL_CANCEL_MAX. What is told until labial_voice_begin() is dropped, and so is all of the utterances whose
+ * identities were known by then.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds);
 
 /*
- * The next of the frames that are due when `milliseconds` of the sound were heard; `frame` may be null. Call it until it
- * returns LABIAL_WAITING. A clock that goes back yields none; more than a second after the last frame, the latest one
- * alone is due.
+ * The next of the frames that are due when `milliseconds` of the sound were heard; `frame` may be null. Call it until
+ * it returns LABIAL_WAITING. A clock that goes back yields none; more than a second after the last frame, the latest
+ * one alone is due.
  *
- * Returns LABIAL_OK, LABIAL_WAITING where none is due, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, or LABIAL_ERROR_RANGE beyond
- * LABIAL_VOICE_CLOCK.
+ * Returns LABIAL_OK, LABIAL_WAITING where none is due, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, or LABIAL_ERROR_RANGE
+ * beyond LABIAL_VOICE_CLOCK.
  */
 int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *frame, int16_t faps[LABIAL_CHANNELS]);
 
@@ -234,7 +235,7 @@ int labial_voice_done(labial_voice_t *voice);
 /* What it was told so far; all zero for a null or uninitialised voice. */
 labial_voice_counts_t labial_voice_counts(const labial_voice_t *voice);
 
-/* ---- Private ------------------------------------------------------------------------------------------------------ */
+/* ---- Private ----------------------------------------------------------------------------------------------------- */
 
 /* Segments that the stream was given last: all of three seconds, unless phonemes are shorter than 25 ms. */
 #define LABIAL_VOICE_GIVEN_ 128u
@@ -266,6 +267,7 @@ struct labial_voice_utterance {
     uint8_t kind;        /* that counts */
     uint8_t tail;        /* places of the last item */
     uint8_t queued;      /* it begins behind the one before it */
+    uint8_t joined;      /* its last message was */
 };
 
 /* A piece of what is known: a phoneme from `start` to `end`. */

@@ -102,7 +102,7 @@ static const char *known(void)
     return said;
 }
 
-/* ---- Phonemes and visemes ------------------------------------------------------------------------------------------ */
+/* ---- Phonemes and visemes ---------------------------------------------------------------------------------------- */
 
 TEST_AFTER(begin, phonemes_touch_within_their_gap)
 {
@@ -166,10 +166,11 @@ TEST_AFTER(begin, visemes_of_polly)
     item("@", 200, -1);
     item("sil", 300, -1);
     item("q", 300, -1);
-    item("si", 300, -1);
+    for (unsigned i = 0; i < 5; i++)
+        item(((const char *const[]){ "si", "xil", "sal", "six", "" })[i], 300, -1);
     assert_int_equal(tell(), LABIAL_OK);
     assert_string_equal(known(), "100-200 W, 200-300 AH");
-    assert_int_equal(labial_voice_counts(&voice).skipped, 2);
+    assert_int_equal(labial_voice_counts(&voice).skipped, 6);
     assert_int_equal(labial_voice_end(&voice, 0), 400);
 }
 
@@ -190,7 +191,7 @@ TEST_AFTER(begin, the_first_kind_counts)
     assert_string_equal(known(), "100-200 S");
 }
 
-/* ---- Words and characters ------------------------------------------------------------------------------------------ */
+/* ---- Words and characters ---------------------------------------------------------------------------------------- */
 
 TEST_AFTER(begin, words_are_those_of_the_library)
 {
@@ -324,7 +325,7 @@ TEST_AFTER(begin, pronunciations_are_the_callers)
     assert_non_null(strstr(known(), "S, "));
 }
 
-/* ---- Utterances ---------------------------------------------------------------------------------------------------- */
+/* ---- Utterances -------------------------------------------------------------------------------------------------- */
 
 static uint32_t name(const char *text)
 {
@@ -477,7 +478,7 @@ TEST_AFTER(begin, there_are_only_so_many_utterances)
     tell_one("M", 0, 100);
 }
 
-/* ---- Times of messages --------------------------------------------------------------------------------------------- */
+/* ---- Times of messages ------------------------------------------------------------------------------------------- */
 
 TEST_AFTER(begin, chained_messages_begin_where_the_last_one_ended)
 {
@@ -573,7 +574,7 @@ TEST_AFTER(begin, a_key_replaces_what_was_told_of_it)
     assert_int_equal(voice.items[labial_voice_find(&voice, voice.utterances, 0)].start, 250);
 }
 
-/* ---- Memory -------------------------------------------------------------------------------------------------------- */
+/* ---- Memory ------------------------------------------------------------------------------------------------------ */
 
 TEST_AFTER(begin, memory_is_bounded)
 {
@@ -639,7 +640,7 @@ TEST_AFTER(begin, items_that_make_no_sense_are_skipped)
     assert_int_equal(labial_voice_counts(&voice).skipped, 8);
 }
 
-/* ---- Frames -------------------------------------------------------------------------------------------------------- */
+/* ---- Frames ------------------------------------------------------------------------------------------------------ */
 
 enum { FRAMES = 130 };
 
@@ -820,7 +821,7 @@ TEST_AFTER(begin_frames, phonemes_of_a_millisecond)
     assert_int_equal(frame_count, 51);
 }
 
-/* ---- Drawn sentences ----------------------------------------------------------------------------------------------- */
+/* ---- Drawn sentences --------------------------------------------------------------------------------------------- */
 
 enum { WORDS = 24 };
 
@@ -899,7 +900,7 @@ TEST_AFTER(begin, drawn_messages_are_not_shifted)
             assert_in_range(shift_of(&random, way), 0, 20);
 }
 
-/* ---- Misuse -------------------------------------------------------------------------------------------------------- */
+/* ---- Misuse ------------------------------------------------------------------------------------------------------ */
 
 TEST_AFTER(begin, misuse)
 {
