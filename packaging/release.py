@@ -74,7 +74,7 @@ def python(tree: Path, output: Path) -> None:
     with tempfile.TemporaryDirectory() as temporary:  # an environment with the build's own package
         run([sys.executable, "-m", "venv", temporary], tree)
         own = Path(temporary) / "bin" / "python"
-        run([own, "-m", "pip", "install", "-q", "-r", tree / "packaging" / "wheels.txt"], tree)
+        run([own, "-m", "pip", "install", "-q", "--require-hashes", "-r", tree / "packaging" / "wheels.txt"], tree)
         run([own, "-c", sources, output], tree)
 
 

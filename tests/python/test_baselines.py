@@ -11,7 +11,7 @@ from labial.corpus.phonesets import SPEECH
 from labial.evaluate.baselines import blur, dominance, hmm, mean, regression, ridge, steps, window
 from labial.evaluate.baselines.alignment import align, deal, even
 from labial.evaluate.material import Timeline, timeline
-from test_evaluate_material import FPS, LABELS, shape_of_phoneme, training, unseen
+from test_evaluate import FPS, LABELS, shape_of_phoneme, training, unseen
 
 
 @pytest.fixture(autouse=True)

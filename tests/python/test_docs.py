@@ -71,19 +71,19 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     "method.md": {
         'labial train "$LABIAL/export/corpora/grid_s1" --method paper -o paper.npz': "takes a minute",
         'python -m labial.evaluate.side_by_side "$LABIAL/examples/demo/sentence.flite" published=paper.npz '
-        "Labial=speech_en -o sentence.svg": "needs the model above; test_side_by_side.py draws others",
+        "Labial=speech_en -o sentence.svg": "needs the model above; test_see.py draws others",
         'cmake -S "$LABIAL" -B letter -D LABIAL_METHOD=paper -D LABIAL_BUILD_TESTS=OFF':
-            "test_published_device.py has such a library",
+            "test_published.py has such a library",
         "cmake --build letter --target labial-python": "likewise",
         "LABIAL_RUNTIME=letter/flat/labial_runtime.so labial check paper.npz --predecessors 13 phones.lab":
-            "needs the model above; test_published_device.py checks others",
+            "needs the model above; test_published.py checks others",
         'git clone -q "$LABIAL" copy': "needs the model above and a board's tools",
         "labial export paper.npz --name speech_en --predecessors 13 -o copy/lib/models": "likewise",
         "cd copy": "likewise",
         "cmake --preset m0 -D LABIAL_METHOD=paper -D LABIAL_BUILD_BENCH=ON -D LABIAL_BUILD_TESTS=OFF": "likewise",
         "cmake --build --preset m0 --target run_bench_speech": "likewise",
         'python -m labial.evaluate.departures "$LABIAL/export/corpora/grid_s1" --splits 2 -o departures.md':
-            "takes minutes; test_departures.py runs it on less",
+            "takes minutes; test_published.py runs it on less",
     },
     "python.md": {
         "pip install .": "fetches what builds it; test_wheel.py installs the package without",
@@ -102,10 +102,10 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         "build/reproduce/bin/python export/reproduce.py": "likewise",
         "labial train export/corpora/grid_s1 --method paper -o paper.npz": "takes a minute",
         "labial synth paper.npz examples/demo/sentence.flite -o frames.csv":
-            "needs the model above; test_paper_model.py has another",
-        "labial laughter-corpus LAUGHTER": "takes half a minute; test_laughter_corpus.py makes a smaller one",
+            "needs the model above; test_published.py has another",
+        "labial laughter-corpus LAUGHTER": "takes half a minute; test_laughter.py makes a smaller one",
         "python -m labial.evaluate.choices export/corpora/grid_s1 --splits 4 -o speech.md":
-            "takes minutes; test_choices.py runs it on less",
+            "takes minutes; test_published.py runs it on less",
         "python -m labial.evaluate.choices LAUGHTER --kind laughter --splits 2 -o laughter.md": "likewise",
     },
     "record.md": {
