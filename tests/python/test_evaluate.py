@@ -18,10 +18,9 @@ from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
 from labial.evaluate import protocol
 from labial.evaluate.baselines import trained
-from labial.evaluate.material import Timeline, Utterance, bands, timeline, utterance, utterances
+from labial.evaluate.material import Split, Timeline, Utterance, bands, make_splits, timeline, utterance, utterances
 from labial.evaluate.methods import METHODS, select
 from labial.evaluate.report import Cell, cell
-from labial.evaluate.splits import Split, make_splits
 from labial.evaluate.training import Training, choose, validation_error
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables

@@ -16,9 +16,18 @@ from labial.corpus.laughter import is_synthetic
 from labial.corpus.phonesets import LAUGHTER, SPEECH
 from labial.evaluate import lipsync
 from labial.evaluate.material import Utterance, timeline
-from labial.evaluate.measures import Judge, judged_frames, measure_scale
-from labial.evaluate.pulses import longest_train, rises
-from labial.evaluate.trajectories import amplitude, correlation, differences, joins, labial_parameters
+from labial.evaluate.measures import (
+    Judge,
+    amplitude,
+    correlation,
+    differences,
+    joins,
+    judged_frames,
+    labial_parameters,
+    longest_train,
+    measure_scale,
+    rises,
+)
 from labial.files.faps import FAP_COLUMNS, FAP_NAMES
 from models import write_motion
 from test_evaluate import planted

@@ -19,7 +19,7 @@ from bundlers import NPM, tools
 from labial.__main__ import main
 from labial.errors import DataError
 from labial.evaluate import side_by_side
-from labial.evaluate.trajectories import labial_parameters
+from labial.evaluate.measures import labial_parameters
 from labial.files import limits
 from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.files.frames import even

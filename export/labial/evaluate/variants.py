@@ -14,9 +14,8 @@ from labial.corpus import read_corpus
 from labial.corpus.phonesets import PHONE_SETS
 from labial.defaults import FPS, KINDS
 from labial.errors import LabialError
-from labial.evaluate.material import Timeline, Utterance, utterances
+from labial.evaluate.material import Split, Timeline, Utterance, make_splits, utterances
 from labial.evaluate.measures import Judge, judged_frames
-from labial.evaluate.splits import Split, make_splits
 from labial.evaluate.training import Training
 from labial.files.arguments import positive, seed
 from labial.files.outputs import check, writing
