@@ -4,7 +4,7 @@
     python3 server.py --rig face.toml                    # at port 8765, until Ctrl-C
     python3 server.py --rig face.toml --ahead 2          # sends up to two seconds before they are heard
     python3 server.py --rig face.toml --repeat 10        # each packet has the frames of the one before once more
-    python3 server.py --rig face.toml --with-sound       # lips that are nearer to people's: the sound has a share in them
+    python3 server.py --rig face.toml --with-sound       # hears the voice, too, for lips nearer to people's
 
 Before it prints its port it has checked all that it was given and spoken a word; what is wrong is a line on standard
 error, and status 1. A toy that comes when there are enough of them, or that is silent for long, is hung up on.
