@@ -18,18 +18,18 @@
 #define KIND_NONE 0xffu
 
 /* Microseconds by which rounding may move a message, and the longest time that an item lasts. */
-#define ROUNDING UINT64_C(20000)
-#define LONGEST (UINT64_C(1000) * LABIAL_DURATION_MAX)
+#define MESSAGE_ROUNDING UINT64_C(20000)
+#define ITEM_LONGEST (UINT64_C(1000) * LABIAL_DURATION_MAX)
 
 /* Keys as places keep them: 1 to so many. */
-#define KEYS 0xffffu
+#define KEYS_KEPT 0xffffu
 
 /* Places that are used at most. */
 #define PLACES_MAX 0x1000000u
 
 /* FNV-1a. */
-#define HASH_START UINT32_C(2166136261)
-#define HASH_PRIME UINT32_C(16777619)
+#define FNV_START UINT32_C(2166136261)
+#define FNV_PRIME UINT32_C(16777619)
 
 /* LABIAL_OK for a voice that was initialised, else the error that every call on it returns. */
 static int voice_status(const labial_voice_t *voice)
@@ -137,7 +137,7 @@ typedef struct {
     uint32_t count;      /* of these */
     uint32_t places;     /* that they take */
     uint32_t hash;
-} summary_t;
+} message_summary_t;
 
 /* Bytes of an item's text that are kept, up to a whole character. */
 static unsigned kept_bytes(const labial_voice_item_t *item)
@@ -152,7 +152,7 @@ static unsigned kept_bytes(const labial_voice_item_t *item)
 }
 
 /* The end of an item; the beginning where it is not known, and of characters that end before. */
-static uint64_t end_of(const labial_voice_message_t *message, const labial_voice_item_t *item)
+static uint64_t item_end(const labial_voice_message_t *message, const labial_voice_item_t *item)
 {
     if (item->end == LABIAL_VOICE_NO_END)
         return item->start;
@@ -163,8 +163,8 @@ static uint64_t end_of(const labial_voice_message_t *message, const labial_voice
 static int makes_sense(const labial_voice_t *voice, const labial_voice_message_t *message,
                        const labial_voice_item_t *item, uint64_t base)
 {
-    const uint64_t latest = UINT64_C(1000) * LABIAL_VOICE_LATEST - base, end = end_of(message, item);
-    if (item->start > latest || end > latest || end < item->start || end - item->start > LONGEST)
+    const uint64_t latest = UINT64_C(1000) * LABIAL_VOICE_LATEST - base, end = item_end(message, item);
+    if (item->start > latest || end > latest || end < item->start || end - item->start > ITEM_LONGEST)
         return 0;
     if (message->kind == LABIAL_VOICE_PHONEMES)
         return item->phoneme < voice->model->phoneme_count;
@@ -176,39 +176,39 @@ static int makes_sense(const labial_voice_t *voice, const labial_voice_message_t
 static uint32_t hash_bytes(uint32_t hash, const char *bytes, size_t size)
 {
     for (; size > 0u; size--, bytes++)
-        hash = (hash ^ (unsigned char)*bytes) * HASH_PRIME;
+        hash = (hash ^ (unsigned char)*bytes) * FNV_PRIME;
     return hash;
 }
 
 static uint32_t hash_number(uint32_t hash, uint64_t number)
 {
     for (; number > 0u; number >>= 8)
-        hash = (hash ^ (uint32_t)(number & 255u)) * HASH_PRIME;
-    return hash * HASH_PRIME;
+        hash = (hash ^ (uint32_t)(number & 255u)) * FNV_PRIME;
+    return hash * FNV_PRIME;
 }
 
-static summary_t summarise(const labial_voice_t *voice, const labial_voice_message_t *message, uint64_t base)
+static message_summary_t summarise(const labial_voice_t *voice, const labial_voice_message_t *message, uint64_t base)
 {
-    summary_t found = { UINT64_MAX, 0, 0, 0, 0, HASH_START };
+    message_summary_t found = { UINT64_MAX, 0, 0, 0, 0, FNV_START };
     uint32_t i;
     for (i = 0; i < message->count; i++) {
         const labial_voice_item_t *const item = message->items + i;
         uint64_t end;
         if (!makes_sense(voice, message, item, base))
             continue;
-        end = end_of(message, item);
+        end = item_end(message, item);
         if (item->start < found.begin)
             found.begin = item->start;
         if (end > found.end)
             found.end = end;
-        end -= (end - item->start) / 2u < ROUNDING ? (end - item->start) / 2u : ROUNDING;
+        end -= (end - item->start) / 2u < MESSAGE_ROUNDING ? (end - item->start) / 2u : MESSAGE_ROUNDING;
         if (end < item->start + 1000u)
             end = item->start + 1000u;
         if (end > found.reach)
             found.reach = end;
         found.count++;
         found.places += 1u;
-        found.hash = hash_number(hash_number(found.hash, item->start), end_of(message, item)) ^ item->phoneme;
+        found.hash = hash_number(hash_number(found.hash, item->start), item_end(message, item)) ^ item->phoneme;
         if (message->kind >= LABIAL_VOICE_WORDS) {
             const unsigned size = kept_bytes(item);
             found.places += labial_voice_places(size) - 1u;
@@ -260,22 +260,22 @@ static uint64_t told_between(const labial_voice_t *voice, const labial_voice_utt
 
 /* Whether a joined message begins again. */
 static int begins_again(const labial_voice_t *voice, const labial_voice_utterance_t *utterance,
-                        const summary_t *message)
+                        const message_summary_t *message)
 {
     const uint64_t begin = utterance->base + message->begin, end = utterance->base + message->end;
     uint64_t told, shorter = utterance->told - utterance->base;
-    if (!utterance->joined || begin > utterance->last + ROUNDING)
+    if (!utterance->joined || begin > utterance->last + MESSAGE_ROUNDING)
         return 0;
     if (message->end - message->begin < shorter)
         shorter = message->end - message->begin;
     told = told_between(voice, utterance, begin, end);
-    return told > ROUNDING && told >= shorter / 2u;
+    return told > MESSAGE_ROUNDING && told >= shorter / 2u;
 }
 
 /* Removes what was told of a key. Keys that count up are new, and nothing has them. */
 static void remove_key(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint32_t key)
 {
-    const uint16_t kept = (uint16_t)(1u + key % KEYS);
+    const uint16_t kept = (uint16_t)(1u + key % KEYS_KEPT);
     uint32_t at = labial_voice_limit(utterance);
     if (key > utterance->highest) {
         utterance->highest = key;
@@ -304,11 +304,11 @@ static void insert_items(labial_voice_t *voice, labial_voice_utterance_t *uttera
         }
         memset(&place, 0, sizeof place);
         place.start = milliseconds_of(base + item->start);
-        place.end = end = milliseconds_of(base + end_of(message, item));
+        place.end = end = milliseconds_of(base + item_end(message, item));
         if (item->end == LABIAL_VOICE_NO_END)
             place.end = LABIAL_VOICE_OPEN;
         if (message->key)
-            place.key = (uint16_t)(1u + message->key % KEYS);
+            place.key = (uint16_t)(1u + message->key % KEYS_KEPT);
         if (message->kind == LABIAL_VOICE_PHONEMES) {
             const uint16_t gap = message->gap > 0u ? message->gap : 1u;
             place.text[0] = item->phoneme;
@@ -327,9 +327,10 @@ static void insert_items(labial_voice_t *voice, labial_voice_utterance_t *uttera
 }
 
 /* Adds a message to an utterance whose kind it is of, or becomes. */
-static int add(labial_voice_t *voice, labial_voice_utterance_t *utterance, const labial_voice_message_t *message)
+static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utterance,
+                       const labial_voice_message_t *message)
 {
-    summary_t found = summarise(voice, message, 0);
+    message_summary_t found = summarise(voice, message, 0);
     uint64_t base = 0;
     uint32_t from, to;
     if (found.count == 0u && !message->key) {
@@ -406,7 +407,7 @@ int labial_voice_tell(labial_voice_t *voice, const labial_voice_message_t *messa
     if (message->kind > voice->utterances[position].kind)
         return LABIAL_OK;
     voice->changed = 1;
-    result = add(voice, voice->utterances + position, message);
+    result = add_message(voice, voice->utterances + position, message);
     if (result == LABIAL_OK)
         requeue(voice, (unsigned)position);
     return result;
@@ -440,7 +441,7 @@ int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start
 
 uint32_t labial_voice_identity(const char *text, size_t size)
 {
-    const uint32_t hash = hash_bytes(HASH_START, text, text ? size : 0u);
+    const uint32_t hash = hash_bytes(FNV_START, text, text ? size : 0u);
     return hash ? hash : 1u;
 }
 

@@ -7,11 +7,11 @@
 
 #include "fixed.h"
 
-#define GIVEN LABIAL_VOICE_GIVEN_
+#define GIVEN_MOST LABIAL_VOICE_GIVEN_
 
 /* ---- The stream -------------------------------------------------------------------------------------------------- */
 
-static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+static void on_voice_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     labial_voice_t *const voice = (labial_voice_t *)user;
     memcpy(voice->made, faps, sizeof voice->made);
@@ -31,12 +31,12 @@ static uint32_t length_of(const labial_voice_segment_t *segment, int64_t start)
 static void note_given(labial_voice_t *voice, const labial_voice_segment_t *segment)
 {
     unsigned at;
-    if (voice->given_count == GIVEN) {
+    if (voice->given_count == GIVEN_MOST) {
         voice->from += voice->given[voice->given_first];
-        voice->given_first = (uint8_t)((voice->given_first + 1u) % GIVEN);
+        voice->given_first = (uint8_t)((voice->given_first + 1u) % GIVEN_MOST);
         voice->given_count--;
     }
-    at = (voice->given_first + voice->given_count++) % GIVEN;
+    at = (voice->given_first + voice->given_count++) % GIVEN_MOST;
     voice->given[at] = length_of(segment, segment->start);
     voice->phonemes[at] = segment->phoneme;
 }
@@ -50,7 +50,7 @@ static int is_given(labial_voice_t *voice, int64_t moment)
         return 0;
     labial_voice_plan_start(voice, moment);
     for (i = 0; i < voice->given_count; i++) {
-        const unsigned at = (voice->given_first + i) % GIVEN;
+        const unsigned at = (voice->given_first + i) % GIVEN_MOST;
         const int64_t end = voice->given[at] > 0u ? start + voice->given[at] : INT64_MAX;
         if (end > moment) {
             labial_voice_segment_t segment;
@@ -64,7 +64,7 @@ static int is_given(labial_voice_t *voice, int64_t moment)
 }
 
 /* Gives the stream what it needs next: a segment, or an hour of one; a silence without an end again and again. */
-static int give(labial_voice_t *voice)
+static int give_segment(labial_voice_t *voice)
 {
     uint32_t milliseconds = LABIAL_DURATION_MAX;
     if (voice->left == 0u) {
@@ -94,16 +94,16 @@ static void make_frame(labial_voice_t *voice)
         if (voice->moved || (result == LABIAL_WAITING && ahead-- > 0u))
             continue;
         ahead = LABIAL_DELAY((unsigned)voice->model->search_stride);
-        if (give(voice) != LABIAL_OK)
+        if (give_segment(voice) != LABIAL_OK)
             return;
     }
 }
 
 /* A new stream, which is given the plan from a whole second on; the difference from what was shown fades. */
-static void renew(labial_voice_t *voice, uint32_t second)
+static void renew_stream(labial_voice_t *voice, uint32_t second)
 {
     uint32_t frame = second * voice->model->frames_per_second;
-    (void)labial_init(&voice->stream, voice->model, voice->workspace, voice->workspace_size, on_frame, voice);
+    (void)labial_init(&voice->stream, voice->model, voice->workspace, voice->workspace_size, on_voice_frame, voice);
     (void)labial_exact(&voice->stream, 1);
     labial_voice_plan_start(voice, (int64_t)second * 1000);
     voice->streaming = 1;
@@ -127,7 +127,7 @@ static void follow_changes(labial_voice_t *voice, int is_late)
     if (is_new && voice->begun && !labial_voice_plan_sounds(voice))
         return; /* the neutral face after a cancel */
     if (is_new || is_late || (voice->stale && !is_given(voice, (int64_t)second * 1000)))
-        renew(voice, second);
+        renew_stream(voice, second);
     voice->stale = 0;
 }
 
@@ -143,7 +143,7 @@ void labial_voice_begin_fade(labial_voice_t *voice, uint32_t steps)
 }
 
 /* Shows what the stream made, on the way there. */
-static void show(labial_voice_t *voice)
+static void show_frame(labial_voice_t *voice)
 {
     int32_t left = 0;
     unsigned k;
@@ -176,7 +176,7 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
     if (voice->changed || is_late)
         follow_changes(voice, is_late);
     make_frame(voice);
-    show(voice);
+    show_frame(voice);
     if (frame)
         *frame = voice->next;
     voice->next++;

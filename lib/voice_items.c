@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* What is over is kept for so many milliseconds more. */
-#define KEPT 1000
+#define ITEMS_KEPT 1000
 
 uint32_t labial_voice_before(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t at)
 {
@@ -51,7 +51,7 @@ static void move_places(labial_voice_t *voice, labial_voice_utterance_t *utteran
 }
 
 /* What the plan had looked at from `at` on is otherwise. */
-static void touch(labial_voice_t *voice, uint32_t at)
+static void touch_plan(labial_voice_t *voice, uint32_t at)
 {
     if (at < voice->plan.seen)
         voice->stale = 1;
@@ -62,7 +62,7 @@ void labial_voice_remove(labial_voice_t *voice, labial_voice_utterance_t *uttera
     uint32_t back = 0;
     if (from == to)
         return;
-    touch(voice, from);
+    touch_plan(voice, from);
     if (from > utterance->first)
         back = from - labial_voice_before(voice, utterance, from);
     move_places(voice, utterance, to, from);
@@ -75,7 +75,7 @@ void labial_voice_insert(labial_voice_t *voice, labial_voice_utterance_t *uttera
     const uint32_t places = labial_voice_places(item->size);
     const uint32_t at = labial_voice_find(voice, utterance, item->start + 1u);
     uint32_t back = 0;
-    touch(voice, at);
+    touch_plan(voice, at);
     if (at > utterance->first)
         back = at - labial_voice_before(voice, utterance, at);
     move_places(voice, utterance, at, at + places);
@@ -141,7 +141,7 @@ static void forget_items(labial_voice_t *voice, labial_voice_utterance_t *uttera
 
 void labial_voice_forget(labial_voice_t *voice, int64_t moment)
 {
-    const int64_t limit = moment - KEPT - voice->offset;
+    const int64_t limit = moment - ITEMS_KEPT - voice->offset;
     while (voice->utterance_count > 1u) {
         const labial_voice_utterance_t *const first = voice->utterances;
         if (first->origin + first->end >= limit || first[1].origin >= limit)

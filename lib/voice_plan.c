@@ -7,68 +7,34 @@
 #include "voice_parts.h"
 
 /* Between phonemes, milliseconds that come from rounding. */
-#define ROUNDING 1u
+#define PHONEME_ROUNDING 1u
 
 /* What the last viseme lasts, milliseconds. */
 #define LAST_VISEME 100u
 
 /* Phonemes of labial/words.h. */
-enum {
-    SIL,
-    AA,
-    AE,
-    AH,
-    AO,
-    AW,
-    AY,
-    B,
-    CH,
-    D,
-    DH,
-    EH,
-    ER,
-    EY,
-    F,
-    G,
-    HH,
-    IH,
-    IY,
-    JH,
-    K,
-    L,
-    M,
-    N,
-    NG,
-    OW,
-    OY,
-    P,
-    R,
-    S,
-    SH,
-    T,
-    TH,
-    UH,
-    UW,
-    V,
-    W,
-    Y
-};
+enum { V_SIL, V_AA, V_AE, V_AH, V_AO, V_AW, V_AY, V_B, V_EH = 11, V_ER, V_EY, V_F, V_HH = 16, V_IH, V_IY };
+enum { V_K = 20, V_L, V_N = 23, V_OW = 25, V_OY, V_P, V_R, V_S, V_SH, V_UH = 33, V_UW, V_W = 36, V_Y };
+enum { V_CH = 8, V_DH = 10 };
 
 /* Each viseme stands for the phoneme that is most frequent in English among those that it covers or, if two are equally
  * frequent, for the one that it is named after: Azure's ids (Microsoft's table of phonemes for en-US); Polly's symbols
  * (Amazon's tables of en-US and en-GB; B, J and x are of its other languages). */
-static const uint8_t azure[] = { SIL, AH, AA, AO, EH, ER, IH, UW, OW, AW, OY, AY, HH, R, L, S, SH, DH, F, N, K, P };
+static const uint8_t azure_phonemes[] = { V_SIL, V_AH, V_AA, V_AO, V_EH, V_ER, V_IH, V_UW, V_OW, V_AW, V_OY,
+                                          V_AY,  V_HH, V_R,  V_L,  V_S,  V_SH, V_DH, V_F,  V_N,  V_K,  V_P };
 static const char polly_names[] = "ptSTfkirslu@aeEoOBJx"; /* the first one is "sil" */
-static const uint8_t polly[] = { SIL, P, N, SH, DH, F, K, IH, R, S, L, UW, AH, AE, EY, EH, OW, AO, B, Y, K };
+static const uint8_t polly_phonemes[] = { V_SIL, V_P,  V_N,  V_SH, V_DH, V_F,  V_K,  V_IH, V_R, V_S, V_L,
+                                          V_UW,  V_AH, V_AE, V_EY, V_EH, V_OW, V_AO, V_B,  V_Y, V_K };
 
 /* Phonemes that Azure reports in two events: "8 4", "4 6" and "19 16". */
-static const uint8_t azure_pairs[][3] = { { 8, 4, OW }, { 4, 6, EY }, { 19, 16, CH } };
+static const uint8_t azure_pairs[][3] = { { 8, 4, V_OW }, { 4, 6, V_EY }, { 19, 16, V_CH } };
 
 /* A bit for each vowel. */
-#define BIT(phoneme) (UINT64_C(1) << (phoneme))
-#define VOWELS                                                                                                         \
-    (BIT(AA) | BIT(AE) | BIT(AH) | BIT(AO) | BIT(AW) | BIT(AY) | BIT(EH) | BIT(ER) | BIT(EY) | BIT(IH) | BIT(IY) |     \
-     BIT(OW) | BIT(OY) | BIT(UH) | BIT(UW))
+#define VISEME_BIT(phoneme) (UINT64_C(1) << (phoneme))
+#define VISEME_VOWELS                                                                                                  \
+    (VISEME_BIT(V_AA) | VISEME_BIT(V_AE) | VISEME_BIT(V_AH) | VISEME_BIT(V_AO) | VISEME_BIT(V_AW) | VISEME_BIT(V_AY) | \
+     VISEME_BIT(V_EH) | VISEME_BIT(V_ER) | VISEME_BIT(V_EY) | VISEME_BIT(V_IH) | VISEME_BIT(V_IY) | VISEME_BIT(V_OW) | \
+     VISEME_BIT(V_OY) | VISEME_BIT(V_UH) | VISEME_BIT(V_UW))
 
 /* ---- Visemes ----------------------------------------------------------------------------------------------------- */
 
@@ -83,7 +49,7 @@ int labial_voice_viseme(unsigned kind, const char *text, size_t size)
                 return -1;
             number = number * 10 + (*text - '0');
         }
-        return number < (int)sizeof azure ? number : -1;
+        return number < (int)sizeof azure_phonemes ? number : -1;
     }
     if (size == 3u && text[0] == 's' && text[1] == 'i' && text[2] == 'l')
         return 0;
@@ -94,8 +60,8 @@ int labial_voice_viseme(unsigned kind, const char *text, size_t size)
 }
 
 /* The phoneme that a viseme and the one at `after` are together, or 0. */
-static unsigned pair_of(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t at,
-                        uint32_t after)
+static unsigned viseme_pair(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t at,
+                            uint32_t after)
 {
     unsigned i;
     if (utterance->kind == LABIAL_VOICE_AZURE && after < labial_voice_limit(utterance))
@@ -106,12 +72,12 @@ static unsigned pair_of(const labial_voice_t *voice, const labial_voice_utteranc
 }
 
 /* The phoneme of the viseme at `at`, or of the pair that it begins; moves `at` behind it. */
-static unsigned phoneme_of(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t *at)
+static unsigned viseme_phoneme(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t *at)
 {
     const uint32_t first = *at, after = labial_voice_after(voice, first);
-    const unsigned number = voice->items[first].text[0], pair = pair_of(voice, utterance, first, after);
+    const unsigned number = voice->items[first].text[0], pair = viseme_pair(voice, utterance, first, after);
     *at = pair ? labial_voice_after(voice, after) : after;
-    return pair ? pair : utterance->kind == LABIAL_VOICE_AZURE ? azure[number] : polly[number];
+    return pair ? pair : utterance->kind == LABIAL_VOICE_AZURE ? azure_phonemes[number] : polly_phonemes[number];
 }
 
 static int next_viseme(labial_voice_t *voice, const labial_voice_utterance_t *utterance)
@@ -125,7 +91,7 @@ static int next_viseme(labial_voice_t *voice, const labial_voice_utterance_t *ut
         return 0;
     plan->start = voice->items[plan->at].start;
     labial_voice_look(plan, labial_voice_after(voice, plan->at));
-    phoneme = phoneme_of(voice, utterance, &plan->at);
+    phoneme = viseme_phoneme(voice, utterance, &plan->at);
     labial_voice_look(plan, plan->at);
     follows = plan->at;
     plan->end = voice->items[limit - utterance->tail].start + LAST_VISEME;
@@ -133,9 +99,9 @@ static int next_viseme(labial_voice_t *voice, const labial_voice_utterance_t *ut
         unsigned next;
         plan->end = voice->items[follows].start;
         labial_voice_look(plan, labial_voice_after(voice, follows));
-        next = phoneme_of(voice, utterance, &follows);
-        if (phoneme == UW && next != UW && (VOWELS & BIT(next))) /* rounded lips before a vowel */
-            phoneme = W;
+        next = viseme_phoneme(voice, utterance, &follows);
+        if (phoneme == V_UW && next != V_UW && (VISEME_VOWELS & VISEME_BIT(next))) /* rounded lips before a vowel */
+            phoneme = V_W;
     }
     plan->phoneme = labial_voice_number(voice, phoneme);
     return 1;
@@ -156,11 +122,12 @@ static int next_phoneme(labial_voice_t *voice, const labial_voice_utterance_t *u
     labial_voice_look(plan, after);
     plan->start = item->start;
     plan->end = item->end == LABIAL_VOICE_OPEN ? item->start : item->end;
-    if (plan->joins && plan->start <= plan->previous + ROUNDING && plan->previous <= plan->start + ROUNDING)
+    if (plan->joins && plan->start <= plan->previous + PHONEME_ROUNDING &&
+        plan->previous <= plan->start + PHONEME_ROUNDING)
         plan->start = plan->previous;
     if (after < labial_voice_limit(utterance)) {
         const uint32_t gap = item->text[2] | (uint32_t)item->text[3] << 8, next = voice->items[after].start;
-        if (plan->end < next ? next - plan->end <= gap : plan->end > next + ROUNDING)
+        if (plan->end < next ? next - plan->end <= gap : plan->end > next + PHONEME_ROUNDING)
             plan->end = next;
     }
     if (plan->end < plan->start)
@@ -175,7 +142,7 @@ static int next_phoneme(labial_voice_t *voice, const labial_voice_utterance_t *u
 /* ---- The plan ---------------------------------------------------------------------------------------------------- */
 
 /* Goes to the items of the current utterance that matter from `plan->moment` on. */
-static void enter(labial_voice_t *voice)
+static void enter_utterance(labial_voice_t *voice)
 {
     labial_voice_plan_t *const plan = &voice->plan;
     const labial_voice_utterance_t *const utterance = voice->utterances + plan->utterance;
@@ -193,7 +160,7 @@ static void enter(labial_voice_t *voice)
         if (back > 0u)
             back--;
         else if (utterance->kind == LABIAL_VOICE_CHARACTERS ? item->size == 1u && item->text[0] == ' '
-                                                            : !pair_of(voice, utterance, before, at))
+                                                            : !viseme_pair(voice, utterance, before, at))
             break;
         at = before;
     }
@@ -212,11 +179,11 @@ void labial_voice_plan_start(labial_voice_t *voice, int64_t moment)
     voice->plan.utterance = 0;
     voice->stale = 0;
     if (voice->utterance_count > 0u)
-        enter(voice);
+        enter_utterance(voice);
 }
 
 /* Whether a phoneme comes next; makes it. */
-static int has_next(labial_voice_t *voice)
+static int has_phoneme(labial_voice_t *voice)
 {
     labial_voice_plan_t *const plan = &voice->plan;
     while (!plan->has && plan->utterance < voice->utterance_count) {
@@ -233,7 +200,7 @@ static int has_next(labial_voice_t *voice)
             labial_voice_look(plan, labial_voice_limit(utterance));
             plan->utterance++;
             if (plan->utterance < voice->utterance_count)
-                enter(voice);
+                enter_utterance(voice);
         }
     }
     return plan->has;
@@ -245,7 +212,7 @@ void labial_voice_plan_next(labial_voice_t *voice, labial_voice_segment_t *segme
     int64_t silent = plan->moment; /* up to which there is silence */
     segment->start = plan->moment;
     segment->phoneme = voice->model->silence;
-    while (has_next(voice)) {
+    while (has_phoneme(voice)) {
         const labial_voice_utterance_t *const utterance = voice->utterances + plan->utterance;
         const int64_t shift = utterance->origin + voice->offset;
         const int64_t start = plan->start + shift > silent ? plan->start + shift : silent;
@@ -272,7 +239,7 @@ void labial_voice_plan_next(labial_voice_t *voice, labial_voice_segment_t *segme
 int labial_voice_plan_sounds(labial_voice_t *voice)
 {
     labial_voice_plan_start(voice, INT32_MIN);
-    while (has_next(voice)) {
+    while (has_phoneme(voice)) {
         if (voice->plan.phoneme != voice->model->silence)
             return 1;
         voice->plan.has = 0;

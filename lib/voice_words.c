@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* What an unknown last word lasts, milliseconds: its two phonemes. */
-#define UNKNOWN 300u
+#define UNKNOWN_LASTS 300u
 
 /* ---- Words ------------------------------------------------------------------------------------------------------- */
 
@@ -32,13 +32,13 @@ static uint32_t last_word_lasts(labial_voice_t *voice, const labial_voice_uttera
     const size_t size = voice->items[at].size;
     labial_word_t word;
     (void)labial_words_read(voice->words, own_of(voice, text, size), text, size, &word);
-    return word.kind == LABIAL_WORDS_UNKNOWN ? UNKNOWN : labial_words_length(voice->words, &word);
+    return word.kind == LABIAL_WORDS_UNKNOWN ? UNKNOWN_LASTS : labial_words_length(voice->words, &word);
 }
 
 /* ---- Characters -------------------------------------------------------------------------------------------------- */
 
 /* The bytes of the character that begins a text of `left` bytes. */
-static unsigned bytes_of(const char *text, unsigned left)
+static unsigned character_bytes(const char *text, unsigned left)
 {
     unsigned bytes = 1;
     while (bytes < left && bytes < 4u && ((unsigned char)text[bytes] & 0xc0u) == 0x80u)
@@ -49,7 +49,7 @@ static unsigned bytes_of(const char *text, unsigned left)
 /* Whether a character of so many bytes is a blank: of ASCII, or U+00A0, U+1680, U+2000 to U+200A, U+2028, U+2029,
    U+202F,
  * U+205F and U+3000. */
-static int is_blank(const char *text, unsigned bytes)
+static int is_blank_character(const char *text, unsigned bytes)
 {
     static const uint32_t blanks[] = { 0xc2a0u, 0xe19a80u, 0xe280a8u, 0xe280a9u, 0xe280afu, 0xe2819fu, 0xe38080u };
     uint32_t code = 0;
@@ -97,7 +97,7 @@ static int finish_word(labial_voice_t *voice)
 }
 
 /* Appends a character to the word; one that is too long ends later, and that is all. */
-static void append(labial_voice_plan_t *plan, const char *text, unsigned bytes, uint32_t begin, uint32_t end)
+static void append_character(labial_voice_plan_t *plan, const char *text, unsigned bytes, uint32_t begin, uint32_t end)
 {
     if (plan->size == 0u)
         plan->begin = plan->until = begin > plan->words.latest ? begin : plan->words.latest;
@@ -120,10 +120,10 @@ static int next_word(labial_voice_t *voice, const labial_voice_utterance_t *utte
         const char *const text = labial_voice_text(voice, plan->at);
         const uint32_t length = item->end == LABIAL_VOICE_OPEN ? 0u : item->end - item->start;
         unsigned count = 0, i;
-        for (i = 0; i < item->size; i += bytes_of(text + i, item->size - i))
+        for (i = 0; i < item->size; i += character_bytes(text + i, item->size - i))
             count++;
         while (plan->byte < item->size) {
-            const unsigned bytes = bytes_of(text + plan->byte, item->size - plan->byte);
+            const unsigned bytes = character_bytes(text + plan->byte, item->size - plan->byte);
             const char *const character = text + plan->byte;
             const uint32_t begin = item->start + (uint32_t)((uint64_t)length * plan->point / count);
             const uint32_t end = item->start + (uint32_t)((uint64_t)length * (plan->point + 1u) / count);
@@ -132,8 +132,8 @@ static int next_word(labial_voice_t *voice, const labial_voice_utterance_t *utte
                 plan->closing = (uint8_t)closing;
             plan->byte = (uint8_t)(plan->byte + bytes);
             plan->point++;
-            if (!plan->closing && !is_blank(character, bytes)) {
-                append(plan, character, bytes, begin, end);
+            if (!plan->closing && !is_blank_character(character, bytes)) {
+                append_character(plan, character, bytes, begin, end);
                 continue;
             }
             if (*character == (char)plan->closing)
