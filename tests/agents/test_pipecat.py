@@ -16,14 +16,14 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "voices"
 sys.path.insert(0, str(EXAMPLES))
 pytest.importorskip("pipecat")
 
-import pipecat_bot  # noqa: E402
-import stand_in  # noqa: E402
 from pipecat.frames.frames import EndFrame, InterruptionFrame, TTSSpeakFrame  # noqa: E402
 from pipecat.pipeline.pipeline import Pipeline  # noqa: E402
 from pipecat.pipeline.worker import PipelineParams, PipelineWorker  # noqa: E402
 from pipecat.processors.frame_processor import FrameDirection, FrameProcessor  # noqa: E402
 from pipecat.workers.runner import WorkerRunner  # noqa: E402
 
+import pipecat_bot  # noqa: E402
+import stand_in  # noqa: E402
 from labial.integrations.pipecat import LipsFrame, LipsProcessor  # noqa: E402
 
 TEXT = "Maybe people hum by the pool."
