@@ -57,7 +57,7 @@ static const char usage_begin[] =
     "       labial-hear - [--rate RATE] [--channels N] [--to FORMAT] [--model MODEL] < samples > motion\n"
     "\n"
     "Hears speech and writes the motion of lips and jaw, frame by frame, while the sound is still arriving. Frame k\n"
-    "shows the lips in the 20 ms that begin at 20 k ms; it is written when the 120 ms from there on were heard.\n"
+    "shows the lips in the 20 ms that begin at 20 k ms; it is written when the model has heard what follows.\n"
     "\n"
     "  SOUND.wav       16-bit PCM with one or two channels; 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000\n"
     "                  samples per second\n"
