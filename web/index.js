@@ -3,7 +3,7 @@ import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, allow
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
-import * as timings from "./timings.js";
+import * as timings from "./services.js";
 import speech from "./speech.js";
 
 export { LabialError, Stream, Track, timings };

@@ -88,8 +88,7 @@ def readme(source: Sources) -> Iterator[Sentence]:
     """README.md."""
     bench = source.bench
     diff, other = source.results.table(RANDOM, DIFF), source.results.table(RANDOM, OTHER)
-    unseen = source.results.table(UNSEEN, DIFF)
-    voice_diff, voice = source.results.table(TALKERS, ON_ONE), source.results.table(TALKERS, ON_ONE_OTHER)
+    voice = source.results.table(TALKERS, ON_ONE_OTHER)
     talkers = _talkers(source)
     ram, code, model = bench("speech: workspace and labial_t"), bench("code -Os: total"), bench("speech: model")
     busy = bench("speech: share of the core")
@@ -105,9 +104,18 @@ def readme(source: Sources) -> Iterator[Sentence]:
     yield sentence("| closed lips | in {} % of p, b, m; people close them in {} % |",
                    count(100 * number(voice[DEVICE]["closure"])), count(100 * number(other["human"]["closure"])))
 
+
+def costs(source: Sources) -> Iterator[Sentence]:
+    """docs/figures.md."""
+    bench = source.bench
+    diff, other = source.results.table(RANDOM, DIFF), source.results.table(RANDOM, OTHER)
+    unseen = source.results.table(UNSEEN, DIFF)
+    voice_diff, voice = source.results.table(TALKERS, ON_ONE), source.results.table(TALKERS, ON_ONE_OTHER)
+    talkers = _talkers(source)
+    ram = bench("speech: workspace and labial_t")
     yield sentence("| code | {} | enough to play compiled-in models, `-Os`; the compiler adds {} of its own",
-                   count(code), count(bench("code -Os: compiler's helpers")))
-    yield sentence("| speech model | {} |", count(model))
+                   count(bench("code -Os: total")), count(bench("code -Os: compiler's helpers")))
+    yield sentence("| speech model | {} |", count(bench("speech: model")))
     yield sentence("| laughter model | {} |", count(bench("laughter: model")))
     yield sentence("| RAM | {} | stream {}, workspace {};", count(ram), count(bench("labial_t")),
                    count(bench("speech: workspace")))
@@ -147,7 +155,7 @@ def readme(source: Sources) -> Iterator[Sentence]:
 
 
 def _closeness(diff: Dict[str, str], other: Dict[str, str], *unseen: Dict[str, str]) -> List[str]:
-    """Cells of README's last table."""
+    """Cells of the last table of docs/figures.md."""
     closed = number(other["closure"])
     return [*(share(number(one["mean"]), 3) for one in (diff, *unseen)), share(number(other["correlation"])),
             share(number(other["amplitude"])), share(closed) if closed < 1 else decimal(closed, 2)]
@@ -484,6 +492,7 @@ PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
     "docs/browser.md": browser,
     "docs/esp32-hear.md": esp32_hear,
     "docs/experiments.md": experiments,
+    "docs/figures.md": costs,
     "docs/hearing.md": hearing,
     "docs/laughing.md": laughing,
     "docs/method.md": method,

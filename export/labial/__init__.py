@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any, List
 
 #: The bundled models. The order of a kind's phonemes is part of the interface: their names are those of every model.
 BUNDLED = ("speech_en", "laughter_synthetic")
-__version__ = "0.3.0"
+__version__ = "0.4.0"
 
 if TYPE_CHECKING:
     from labial.runtime.beside import Beside

@@ -195,10 +195,8 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
             return [() => voice.push("m", ...times), () => voice.say("m", ...times)];
         }),
         ...[null, undefined, 5, true, "{", "5", "null", [5], [null], [[]], new TextEncoder().encode("{"),
-            new Uint8Array([0x7b, 0xff]), { word: "a", start: 0, end: NaN }, { word: "a", start: 9, end: 1 },
-            { word: "a", start: 0, end: 1e9 }, { word: "x".repeat(1e6), start: 0, end: 1 },
-            { alignment: { chars: ["a"], charStartTimesMs: [], charsDurationsMs: [] } },
-            { audio_offset: 5, viseme_id: 99 }].map((x) => () => voice.feed(x)),
+            new Uint8Array([0x7b, 0xff]), new Array(2001).fill({}), `${"[".repeat(100)}${"]".repeat(100)}`,
+        ].map((x) => () => voice.feed(x)),
     ];
     for (const call of calls) {
         assert.throws(call, (error) => {
@@ -210,6 +208,11 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     }
     for (const sound of [new ArrayBuffer(64), new Int16Array(9), "[]", {}, { audio: "" }, new Blob(["{}"])]) {
         voice.feed(sound);
+    }
+    for (const odd of [{ word: "a", start: 0, end: NaN }, { word: "a", start: 9, end: 1 }, { word: "a", start: 0, end: 1e9 },
+        { word: "a", start: 0, end: null }, { word: "x".repeat(1e6), start: 0, end: 1 }, { audio_offset: 5, viseme_id: 99 },
+        { alignment: { chars: ["a"], charStartTimesMs: [], charsDurationsMs: [] } }]) {
+        voice.feed(odd);
     }
     const whole = await told({});
     assert.deepEqual(before.concat(rows(voice.played(0.9))), rows(whole.played(0.9)));

@@ -1,6 +1,6 @@
 """labial-say from outside: text in, frames out. The environment variable LABIAL_SAY holds the program's path.
 
-What lines of timings mean and which are refused is the library's; test_grammar.py and tests/c/test_timings.c have it.
+What lines of timings mean and which are refused is the library's; test_timings.py and tests/c/test_timings.c have it.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from labial.corpus import Episode, Segment, Source, read_corpora, read_corpus, r
 from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError, LabialError
 from labial.evaluate import protocol
-from labial.evaluate.trajectories import lips
+from labial.evaluate.measures import lips
 from labial.tables.model import load
 from labial.train import train
 from labial.train.recordings import recordings

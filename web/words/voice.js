@@ -50,7 +50,7 @@ export class Voice extends EventTarget {
     #frame; // what at() returns
     #told = false; // that it has ended
 
-    constructor(lexicon, formats, options = {}) {
+    constructor(lexicon, options = {}) {
         super();
         const { tools, labial } = lexicon;
         const { format = "auto", output = "faps", model = "speech", labels = "auto", unknown = "error" } = options;
@@ -62,7 +62,7 @@ export class Voice extends EventTarget {
         this.#labial = labial;
         this.#output = output;
         this.#settings = { model: this.#model, labels, nearest: unknown === "nearest" };
-        this.#messages = new Messages(lexicon, formats, { format, labels });
+        this.#messages = new Messages(lexicon, { format, labels });
         this.#timeline = new Timeline(lexicon, {
             own, numbers, offset: lexicon.offset(offset), silence: this.#model.silence,
             number: (label) => labial.phoneme(label, { model: this.#model }),

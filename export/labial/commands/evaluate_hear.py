@@ -13,7 +13,7 @@ from labial.errors import LabialError, needs
 from labial.files.arguments import positive
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_evaluate_hear(command: argparse.ArgumentParser) -> None:
     """A model, and the sounds, conditions and methods to judge."""
     command.add_argument("model", metavar="HEAR.npz")
     command.add_argument("folder", nargs="*", metavar="FOLDER", help="speech, as for train-hear")
@@ -34,7 +34,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="processes that align")
 
 
-def run(options: argparse.Namespace) -> int:
+def run_evaluate_hear(options: argparse.Namespace) -> int:
     """Prints a table."""
     from labial.files.outputs import check
 

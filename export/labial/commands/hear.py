@@ -26,7 +26,7 @@ _RATES = (8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000)
 _BLOCK = 640
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_hear(command: argparse.ArgumentParser) -> None:
     """A sound, and the format of the frames."""
     command.add_argument("sound", metavar="SOUND", help="speech: a WAV file; a file of another format, if "
                          "the extra align is installed; or - for 16-bit samples from standard input, low byte first")
@@ -42,7 +42,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          help="with -: 1 or 2 channels (1)")
 
 
-def run(options: argparse.Namespace) -> int:
+def run_hear(options: argparse.Namespace) -> int:
     """Writes the frames."""
     import numpy as np
 

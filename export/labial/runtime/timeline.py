@@ -10,10 +10,8 @@ import math
 from bisect import bisect_left
 from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
-from labial.corpus.messages import VISEMES, Heard
-from labial.corpus.services import LAST_VISEME
-from labial.corpus.visemes import stand_ins
-from labial.corpus.word_services import end_of, later, origin_of
+from labial.corpus.messages import Heard
+from labial.corpus.services import LAST_VISEME, VISEMES, stand_ins
 from labial.corpus.words import (
     ENGLISH,
     Pronunciation,
@@ -245,10 +243,11 @@ def _items_of(heard: Heard, utterance: _Utterance) -> List[Tuple[str, List[Item]
     for told in heard.told:
         before, timed = utterance.told.get(told.kind, 0.0), told.items
         if timed and (heard.chained or heard.joins):
-            origin = before if heard.chained else origin_of(timed, before)
-            timed = [later(item, origin) for item in timed]
+            origin = before if heard.chained or timed[0].start < before - 1e-3 else 0.0
+            timed = [item._replace(start=item.start + origin, end=None if item.end is None else item.end + origin)
+                     for item in timed]
         if timed:
-            utterance.told[told.kind] = max(before, end_of(timed))
+            utterance.told[told.kind] = max(before, *(item.end or item.start for item in timed))
         gap = max(milliseconds(heard.gap), _ROUNDING)
         items = [Item(milliseconds(item.start), None if item.end is None else milliseconds(item.end), item.text, gap,
                       told.key) for item in timed]
@@ -301,4 +300,4 @@ def _shapes(items: Sequence[Item], kind: str) -> List[_Sound]:
     """Visemes: each lasts until the next."""
     ends = [*(item.start for item in items[1:]), items[-1].start + milliseconds(LAST_VISEME)]
     return [(items[first].start, ends[last], phoneme)
-            for (first, last), phoneme in stand_ins([str(item.what) for item in items], *VISEMES[kind])]
+            for (first, last), phoneme in stand_ins([str(item.what) for item in items], kind)]
