@@ -8,11 +8,7 @@
 #include "labial/labial.h"
 #include "words_parts.h"
 
-/* Digits of a number that is said as one, at most: 999 trillion. */
-#define MOST_DIGITS 15u
-
 /* Spoken for numbers, and the same as ordinals. */
-enum { TEN = 10, TWENTY = 20, HUNDRED = 28, THOUSAND, MILLION, BILLION, TRILLION, NO_WORD };
 static const char cardinals[] = "zero\0one\0two\0three\0four\0five\0six\0seven\0eight\0nine\0ten\0eleven\0twelve\0"
                                 "thirteen\0fourteen\0fifteen\0sixteen\0seventeen\0eighteen\0nineteen\0twenty\0thirty\0"
                                 "forty\0fifty\0sixty\0seventy\0eighty\0ninety\0hundred\0thousand\0million\0billion\0"
@@ -23,29 +19,14 @@ static const char ordinals[] = "zeroth\0first\0second\0third\0fourth\0fifth\0six
                                "seventieth\0eightieth\0ninetieth\0hundredth\0thousandth\0millionth\0billionth\0"
                                "trillionth\0";
 
-const char labial_words_months[] = "january\0february\0march\0april\0may\0june\0july\0august\0september\0october\0"
-                                   "november\0december\0";
-
 /* Signs of money, the names of whole units, and of their hundredths. */
 static const uint8_t currency_signs[] = { '$', SIGN_EURO, SIGN_POUND, SIGN_YEN, SIGN_RUPEE };
 static const char currencies[] = "dollar_\0euro_\0pound_\0yen\0rupee_\0";
 static const char hundredths[] = "cent_\0cent_\0penny|pence\0\0paisa|paise\0";
 
-/* Digits as they stand in a text. */
-typedef struct {
-    uint8_t digits[MOST_DIGITS]; /* the first ones */
-    unsigned count;
-    uint32_t value;    /* of at most nine */
-    unsigned is_other; /* it is not 0 */
-    unsigned last;     /* character of the last digit */
-} number_t;
-
-/* How a number ends. */
-enum { CARDINAL, ORDINAL, PLURALS, ORDINALS };
-
 /* ---- Whole numbers ---------------------------------------------------------------------------------------------- */
 
-static unsigned character_of(const labial_words_reading_t *reading)
+unsigned labial_words_here(const labial_words_reading_t *reading)
 {
     return reading->here.characters - 1u;
 }
@@ -75,14 +56,14 @@ static void say_hundreds(labial_words_reading_t *reading, unsigned *last, unsign
 }
 
 /* Says the last word of a number. */
-static void say_last(labial_words_reading_t *reading, unsigned last, unsigned ending, unsigned character)
+void labial_words_say_last(labial_words_reading_t *reading, unsigned last, unsigned ending, unsigned character)
 {
     labial_words_say(reading, labial_words_listed(ending == ORDINAL || ending == ORDINALS ? ordinals : cardinals, last),
                      ending >= PLURALS ? SAID_PLURAL : SAID_PLAIN, character);
 }
 
 /* Says up to 9,999, of which years need no more. */
-static void say_small(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character)
+void labial_words_say_small(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character)
 {
     unsigned last = NO_WORD;
     if (value >= 1000u) {
@@ -90,17 +71,18 @@ static void say_small(labial_words_reading_t *reading, unsigned value, unsigned 
         say_part(reading, &last, THOUSAND, character);
     }
     say_hundreds(reading, &last, value % 1000u, character);
-    say_last(reading, value == 0u ? 0u : last, ending, character);
+    labial_words_say_last(reading, value == 0u ? 0u : last, ending, character);
 }
 
 /* Whether digits are said one by one. */
-static int is_coded(const number_t *number)
+static int is_coded(const labial_words_number_t *number)
 {
     return number->count > MOST_DIGITS || (number->count > 1u && number->digits[0] == 0u);
 }
 
 /* Says at most MOST_DIGITS digits as one number, three by three. */
-static void say_number(labial_words_reading_t *reading, const number_t *number, unsigned ending, unsigned character)
+static void say_number(labial_words_reading_t *reading, const labial_words_number_t *number, unsigned ending,
+                       unsigned character)
 {
     unsigned last = NO_WORD, part = 0, i;
     for (i = 0; i < number->count && i < MOST_DIGITS; i++) {
@@ -113,7 +95,7 @@ static void say_number(labial_words_reading_t *reading, const number_t *number, 
             say_part(reading, &last, HUNDRED + behind / 3u, character);
         part = 0;
     }
-    say_last(reading, last == NO_WORD ? 0u : last, ending, character);
+    labial_words_say_last(reading, last == NO_WORD ? 0u : last, ending, character);
 }
 
 static void say_digit(labial_words_reading_t *reading, unsigned digit, unsigned character)
@@ -122,7 +104,7 @@ static void say_digit(labial_words_reading_t *reading, unsigned digit, unsigned 
 }
 
 /* Adds the digit here to a number. */
-static void add_digit(number_t *number, const labial_words_place_t *here)
+static void add_digit(labial_words_number_t *number, const labial_words_place_t *here)
 {
     const unsigned digit = here->code - '0';
     if (number->count < MOST_DIGITS)
@@ -135,9 +117,9 @@ static void add_digit(number_t *number, const labial_words_place_t *here)
 }
 
 /* Takes digits. */
-static number_t take_digits(labial_words_place_t *here)
+labial_words_number_t labial_words_take_digits(labial_words_place_t *here)
 {
-    number_t number;
+    labial_words_number_t number;
     memset(&number, 0, sizeof number);
     for (; labial_words_is_decimal(here->code); labial_words_advance(here))
         add_digit(&number, here);
@@ -149,13 +131,13 @@ static int has_group(const labial_words_place_t *here)
 {
     labial_words_place_t next = *here;
     labial_words_advance(&next);
-    return take_digits(&next).count == 3u;
+    return labial_words_take_digits(&next).count == 3u;
 }
 
 /* Takes a whole number, also with commas. */
-static number_t take_whole(labial_words_place_t *here)
+static labial_words_number_t take_whole(labial_words_place_t *here)
 {
-    number_t number;
+    labial_words_number_t number;
     memset(&number, 0, sizeof number);
     for (; labial_words_is_decimal(here->code) || (number.count > 0u && here->code == ',' && has_group(here));
          labial_words_advance(here))
@@ -165,14 +147,14 @@ static number_t take_whole(labial_words_place_t *here)
 }
 
 /* Digits one by one; behind a point without commas. */
-static void say_digits(labial_words_reading_t *reading, int with_commas)
+void labial_words_say_digits(labial_words_reading_t *reading, int with_commas)
 {
     labial_words_place_t *here = &reading->here;
     for (; labial_words_is_decimal(here->code) ||
            (with_commas && here->code == ',' && labial_words_is_decimal(labial_words_following(here)));
          labial_words_advance(here))
         if (here->code != ',')
-            say_digit(reading, here->code - '0', character_of(reading));
+            say_digit(reading, here->code - '0', labial_words_here(reading));
 }
 
 /* Passes over digits, also with commas; returns the character of the last one. */
@@ -186,20 +168,20 @@ static unsigned skip_digits(labial_words_place_t *here)
     return last;
 }
 
-static int has_fraction(const labial_words_place_t *here)
+int labial_words_has_fraction(const labial_words_place_t *here)
 {
     return here->code == '.' && labial_words_is_decimal(labial_words_following(here));
 }
 
 static void say_fraction(labial_words_reading_t *reading)
 {
-    labial_words_say(reading, "point", SAID_PLAIN, character_of(reading));
+    labial_words_say(reading, "point", SAID_PLAIN, labial_words_here(reading));
     labial_words_advance(&reading->here);
-    say_digits(reading, 0);
+    labial_words_say_digits(reading, 0);
 }
 
 /* "to" and another number behind a number. */
-static int read_range(labial_words_reading_t *reading)
+int labial_words_read_range(labial_words_reading_t *reading)
 {
     labial_words_place_t next = reading->here;
     if (next.code != '-' && next.code != SIGN_DASH)
@@ -207,265 +189,12 @@ static int read_range(labial_words_reading_t *reading)
     labial_words_advance(&next);
     if (!labial_words_is_decimal(next.code) && !labial_words_is_sum(&next))
         return 0;
-    labial_words_say(reading, "to", SAID_PLAIN, character_of(reading));
+    labial_words_say(reading, "to", SAID_PLAIN, labial_words_here(reading));
     reading->here = next;
-    return 1;
-}
-
-/* ---- Years, dates, times ---------------------------------------------------------------------------------------- */
-
-/* A year of up to four digits: two by two, except 2000 to 2009 and years below 1100 or above 2099. */
-static void say_year(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character)
-{
-    const unsigned century = value / 100u, rest = value % 100u;
-    if (century < 11u || century > 20u || (century == 20u && rest < TEN)) {
-        say_small(reading, value, ending, character);
-        return;
-    }
-    say_small(reading, century, CARDINAL, character);
-    if (rest == 0u) {
-        say_last(reading, HUNDRED, ending, character);
-        return;
-    }
-    if (rest < TEN)
-        labial_words_say(reading, "oh", SAID_PLAIN, character);
-    say_small(reading, rest, ending, character);
-}
-
-/* 2024-03-05, 3/5/2024, 3/5/24, 5.3.2024: month first, unless that cannot be or points are between. */
-static int read_date(labial_words_reading_t *reading)
-{
-    labial_words_place_t next = reading->here;
-    const unsigned character = character_of(reading);
-    number_t parts[3];
-    unsigned sign = 0, i, year, month, day;
-    for (i = 0; i < 3u; i++) {
-        if (i > 0u) {
-            if (next.code != (i == 1u ? next.code : sign) || (next.code != '/' && next.code != '-' && next.code != '.'))
-                return 0;
-            sign = next.code;
-            labial_words_advance(&next);
-        }
-        parts[i] = take_digits(&next);
-        if (parts[i].count == 0u || parts[i].count > 4u)
-            return 0;
-    }
-    if (labial_words_is_inside(next.code) || parts[1].count > 2u)
-        return 0;
-    if (parts[0].count == 4u && sign == '-' && parts[2].count <= 2u) {
-        year = parts[0].value;
-        month = parts[1].value;
-        day = parts[2].value;
-    } else {
-        if (parts[0].count > 2u || (parts[2].count != 4u && (parts[2].count != 2u || sign != '/')))
-            return 0;
-        year = parts[2].value + (parts[2].count == 2u ? 2000u : 0u);
-        month = parts[0].value;
-        day = parts[1].value;
-        if (sign == '.' || month > 12u) {
-            month = parts[1].value;
-            day = parts[0].value;
-        }
-    }
-    if (month < 1u || month > 12u || day < 1u || day > 31u)
-        return 0;
-    labial_words_say(reading, labial_words_listed(labial_words_months, month - 1u), SAID_PLAIN, character);
-    say_small(reading, day, ORDINAL, character);
-    say_year(reading, year, CARDINAL, character);
-    reading->here = next;
-    reading->context->after = AFTER_NOTHING;
-    return 1;
-}
-
-/* Numbers of telephones: 555-1234, or three groups and more. */
-static int read_phone(labial_words_reading_t *reading)
-{
-    labial_words_place_t next = reading->here;
-    unsigned groups = 1, size = take_digits(&next).count;
-    const unsigned first = size;
-    if (size > 4u)
-        return 0;
-    while (next.code == '-' && labial_words_is_decimal(labial_words_following(&next))) {
-        labial_words_advance(&next);
-        size = take_digits(&next).count;
-        if (size < 2u || size > 4u)
-            return 0;
-        groups++;
-    }
-    if (next.code == '-' || labial_words_is_inside(next.code) ||
-        !(groups > 2u || (groups == 2u && first == 3u && size == 4u)))
-        return 0;
-    for (; groups > 0u; groups--) {
-        say_digits(reading, 0);
-        if (groups > 1u)
-            labial_words_advance(&reading->here);
-    }
-    reading->context->after = AFTER_NOTHING;
-    return 1;
-}
-
-/* Minutes or seconds, two digits. */
-static void say_minutes(labial_words_reading_t *reading, unsigned value, unsigned character)
-{
-    if (value > 0u && value < TEN)
-        labial_words_say(reading, "oh", SAID_PLAIN, character);
-    say_small(reading, value, CARDINAL, character);
-}
-
-/* 3:30, 15:00, 10:30:15. */
-static int read_time(labial_words_reading_t *reading)
-{
-    labial_words_place_t next = reading->here;
-    const unsigned character = character_of(reading);
-    const number_t hours = take_digits(&next);
-    number_t minutes, seconds;
-    unsigned minutes_at, seconds_at, first;
-    if (hours.count > 2u || next.code != ':')
-        return 0;
-    labial_words_advance(&next);
-    minutes_at = next.characters - 1u;
-    minutes = take_digits(&next);
-    seconds_at = minutes_at;
-    seconds.count = 0;
-    if (minutes.count != 2u || hours.value > 24u || minutes.value > 59u)
-        return 0;
-    if (next.code == ':') {
-        labial_words_advance(&next);
-        seconds_at = next.characters - 1u;
-        seconds = take_digits(&next);
-        if (seconds.count != 2u || next.code == ':')
-            return 0;
-    }
-    reading->context->after = AFTER_TIME;
-    say_small(reading, hours.value, CARDINAL, character);
-    if (minutes.value > 0u || seconds.count > 0u) {
-        say_minutes(reading, minutes.value, minutes_at);
-    } else {
-        first = reading->word->count;
-        labial_words_say(reading, hours.value >= 1u && hours.value <= 12u ? "o'clock" : "hundred", SAID_PLAIN,
-                         character);
-        labial_words_keep_tail(reading, first);
-    }
-    if (seconds.count > 0u)
-        say_minutes(reading, seconds.value, seconds_at);
-    reading->here = next;
-    (void)read_range(reading);
-    return 1;
-}
-
-/* ---- Fractions, lengths, decades -------------------------------------------------------------------------------- */
-
-static int is_denominator(unsigned value)
-{
-    return (value >= 2u && value <= 10u) || value == 16u || value == 32u || value == 64u || value == 100u;
-}
-
-/* 3/4, 2/3; "and" before it behind a number. */
-static int read_share(labial_words_reading_t *reading, int is_counted)
-{
-    labial_words_place_t next = reading->here;
-    const unsigned character = character_of(reading);
-    const number_t count = take_digits(&next);
-    number_t parts;
-    unsigned ending;
-    if (count.count > 2u || next.code != '/')
-        return 0;
-    labial_words_advance(&next);
-    parts = take_digits(&next);
-    if (parts.count == 0u || parts.count > 3u || labial_words_is_inside(next.code) || next.code == '/' ||
-        !is_denominator(parts.value) || count.value == 0u || count.value >= parts.value)
-        return 0;
-    ending = count.value > 1u ? SAID_PLURAL : SAID_PLAIN;
-    if (is_counted)
-        labial_words_say(reading, "and", SAID_PLAIN, character);
-    if (is_counted && count.value == 1u && parts.value == 2u)
-        labial_words_say(reading, "a", SAID_PLAIN, character);
-    else
-        say_small(reading, count.value, CARDINAL, character);
-    if (parts.value == 2u || parts.value == 4u)
-        labial_words_say(reading, parts.value == 2u ? "half" : "quarter", ending, character);
-    else
-        say_small(reading, parts.value, ending == SAID_PLURAL ? ORDINALS : ORDINAL, character);
-    reading->here = next;
-    return 1;
-}
-
-/* 5'10. */
-static int read_feet(labial_words_reading_t *reading)
-{
-    labial_words_place_t next = reading->here;
-    const unsigned character = character_of(reading);
-    const number_t feet = take_digits(&next);
-    number_t inches;
-    if (feet.count > 2u || next.code != '\'')
-        return 0;
-    labial_words_advance(&next);
-    inches = take_digits(&next);
-    if (inches.count == 0u || inches.count > 2u || labial_words_is_inside(next.code))
-        return 0;
-    say_small(reading, feet.value, CARDINAL, character);
-    labial_words_say(reading, "foot", SAID_PLAIN, character);
-    say_small(reading, inches.value, CARDINAL, character);
-    reading->here = next;
-    return 1;
-}
-
-/* 1990s, 80s, 80's. */
-static int read_decade(labial_words_reading_t *reading)
-{
-    labial_words_place_t next = reading->here;
-    const unsigned character = character_of(reading);
-    const number_t number = take_digits(&next);
-    if (number.count == 4u ? number.value < 1100u || number.value > 2099u : number.count != 2u || number.value < TWENTY)
-        return 0;
-    if (number.value % TEN != 0u)
-        return 0;
-    if (next.code == '\'')
-        labial_words_advance(&next);
-    if (next.code != 's' || labial_words_is_inside(labial_words_following(&next)))
-        return 0;
-    labial_words_advance(&next);
-    if (number.count == 4u)
-        say_year(reading, number.value, PLURALS, character);
-    else
-        say_small(reading, number.value, PLURALS, character);
-    reading->here = next;
-    reading->context->after = AFTER_NOTHING;
     return 1;
 }
 
 /* ---- Numbers of one part ---------------------------------------------------------------------------------------- */
-
-/* The day of a month that was named. */
-static int read_day(labial_words_reading_t *reading)
-{
-    labial_words_place_t next = reading->here;
-    const unsigned character = character_of(reading);
-    const number_t day = take_digits(&next);
-    if (day.count > 2u || day.value < 1u || day.value > 31u || labial_words_is_inside(next.code) || next.code == ':' ||
-        next.code == '/' ||
-        ((next.code == '.' || next.code == ',') && labial_words_is_decimal(labial_words_following(&next))))
-        return 0;
-    say_small(reading, day.value, ORDINAL, character);
-    reading->here = next;
-    reading->context->after = read_range(reading) ? AFTER_MONTH : AFTER_NOTHING;
-    return 1;
-}
-
-/* 1100 to 1999, 2010 to 2099. */
-static int read_year(labial_words_reading_t *reading)
-{
-    labial_words_place_t next = reading->here;
-    const unsigned character = character_of(reading);
-    const number_t year = take_digits(&next);
-    if (year.count != 4u || year.value < 1100u || year.value > 2099u || year.value / TEN == 200u ||
-        labial_words_is_inside(next.code) || next.code == '%' || has_fraction(&next))
-        return 0;
-    say_year(reading, year.value, CARDINAL, character);
-    reading->here = next;
-    (void)read_range(reading);
-    return 1;
-}
 
 /* st, nd, rd, th behind a number: moves behind it. */
 static int takes_ordinal(labial_words_place_t *here)
@@ -497,14 +226,14 @@ static void read_behind(labial_words_reading_t *reading)
                          code == SIGN_HALF      ? "and a half"
                          : code == SIGN_QUARTER ? "and a quarter"
                                                 : "and three quarters",
-                         SAID_PLAIN, character_of(reading));
+                         SAID_PLAIN, labial_words_here(reading));
         reading->context->after = AFTER_NUMBER;
         labial_words_advance(here);
     } else if ((code == 'x' || code == SIGN_TIMES) && labial_words_is_decimal(labial_words_following(here))) {
-        labial_words_say(reading, "by", SAID_PLAIN, character_of(reading));
+        labial_words_say(reading, "by", SAID_PLAIN, labial_words_here(reading));
         labial_words_advance(here);
     } else {
-        (void)read_range(reading);
+        (void)labial_words_read_range(reading);
     }
 }
 
@@ -512,10 +241,10 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
 {
     labial_words_place_t *here = &reading->here;
     const labial_words_place_t first = *here;
-    const number_t number = take_whole(here);
+    const labial_words_number_t number = take_whole(here);
     if (is_coded(&number)) {
         *here = first;
-        say_digits(reading, 1);
+        labial_words_say_digits(reading, 1);
     } else if (takes_ordinal(here)) {
         say_number(reading, &number, ORDINAL, first.characters - 1u);
         reading->context->after = AFTER_NOTHING;
@@ -525,7 +254,7 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
         if (number.count == 1u && number.value == 1u)
             reading->context->after = AFTER_ONE;
     }
-    while (has_fraction(here)) {
+    while (labial_words_has_fraction(here)) {
         say_fraction(reading);
         reading->context->after = AFTER_NUMBER;
     }
@@ -538,12 +267,9 @@ void labial_words_read_number(labial_words_reading_t *reading)
     labial_words_context_t *context = reading->context;
     const unsigned after = context->after;
     const int is_start = !labial_words_is_inside(reading->here.before);
-    const int is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
     context->after = AFTER_NUMBER;
     context->tail = 0;
-    if (is_start && (read_date(reading) || read_phone(reading) || read_time(reading) ||
-                     read_share(reading, is_counted) || read_feet(reading) || read_decade(reading) ||
-                     (after == AFTER_MONTH && read_day(reading)) || read_year(reading)))
+    if (is_start && labial_words_read_special(reading, after))
         return;
     read_plain(reading, is_start);
 }
@@ -600,10 +326,10 @@ void labial_words_read_sum(labial_words_reading_t *reading)
 {
     labial_words_context_t *context = reading->context;
     labial_words_place_t *here = &reading->here, behind;
-    const unsigned currency = (unsigned)labial_words_currency(here->code) & 7u, character = character_of(reading);
+    const unsigned currency = (unsigned)labial_words_currency(here->code) & 7u, character = labial_words_here(reading);
     const char *const name = labial_words_listed(currencies, currency);
     const char *const part = labial_words_listed(hundredths, currency);
-    number_t whole, cents;
+    labial_words_number_t whole, cents;
     unsigned scale, point, last, first;
     int has_point, has_cents, is_plural;
     labial_words_advance(here);
@@ -615,11 +341,11 @@ void labial_words_read_sum(labial_words_reading_t *reading)
         last = skip_digits(&behind);
     }
     point = behind.characters - 1u;
-    has_point = has_fraction(&behind);
+    has_point = labial_words_has_fraction(&behind);
     memset(&cents, 0, sizeof cents);
     if (has_point) {
         labial_words_advance(&behind);
-        cents = take_digits(&behind);
+        cents = labial_words_take_digits(&behind);
     }
     last = has_point ? cents.last : last;
     scale = take_scale(&behind);
@@ -630,7 +356,7 @@ void labial_words_read_sum(labial_words_reading_t *reading)
     context->tail = 0;
     if (!has_cents || whole.is_other || cents.value == 0u) {
         if (is_coded(&whole))
-            say_digits(reading, 1);
+            labial_words_say_digits(reading, 1);
         else
             say_number(reading, &whole, CARDINAL, character);
     }
@@ -640,7 +366,7 @@ void labial_words_read_sum(labial_words_reading_t *reading)
         if (whole.is_other && cents.value > 0u)
             labial_words_say(reading, "and", SAID_PLAIN, point);
         if (cents.value > 0u) {
-            say_small(reading, cents.value, CARDINAL, point);
+            labial_words_say_small(reading, cents.value, CARDINAL, point);
             labial_words_say_name(reading, part, cents.value != 1u, point);
         }
     } else {
@@ -649,7 +375,7 @@ void labial_words_read_sum(labial_words_reading_t *reading)
             while (here->code != '.' && here->code != TEXT_END)
                 labial_words_advance(here);
             labial_words_advance(here);
-            say_digits(reading, 0);
+            labial_words_say_digits(reading, 0);
         }
         first = reading->word->count;
         if (scale != NO_WORD) {
@@ -661,5 +387,5 @@ void labial_words_read_sum(labial_words_reading_t *reading)
             labial_words_keep_tail(reading, first);
     }
     *here = behind;
-    (void)read_range(reading);
+    (void)labial_words_read_range(reading);
 }

@@ -106,14 +106,69 @@ void labial_words_say(labial_words_reading_t *reading, const char *words, unsign
 /* Says a name in singular or plural: "foot|feet", or with _ where an s goes. */
 void labial_words_say_name(labial_words_reading_t *reading, const char *name, int is_plural, unsigned character);
 
+/* Says words where the current character is. */
+void labial_words_say_here(labial_words_reading_t *reading, const char *words);
+
 /* Notes that the phonemes from `first` on may be taken back by the next word; takes such phonemes back. */
 void labial_words_keep_tail(labial_words_reading_t *reading, unsigned first);
 void labial_words_take_back(labial_words_reading_t *reading);
 
-/* The text of this number in a list of texts that end with NUL. */
+/* What was said last matters no more; returns what it was. */
+unsigned labial_words_forget(labial_words_reading_t *reading);
+
+/* Lists are texts that end with NUL, and an empty one. The text of a number in a list. */
 const char *labial_words_listed(const char *list, unsigned number);
 
+/* What is said of a sign in a list, whose texts begin with it; or null. */
+const char *labial_words_said_of(const char *list, unsigned sign);
+
+/* Which of the texts of a list, `step` of which belong together, `count` capitals are, or -1; whether they are one. The
+ * letters of the list may be small. */
+int labial_words_find(const char *letters, unsigned count, const char *list, unsigned step);
+int labial_words_is_listed(const char *letters, unsigned count, const char *list);
+
+/* Reads letters from the current one on. */
+void labial_words_read_letters(labial_words_reading_t *reading);
+
 /* ---- Numbers ---------------------------------------------------------------------------------------------------- */
+
+/* Digits of a number that is said as one, at most: 999 trillion. */
+#define MOST_DIGITS 15u
+
+/* Numbers of words that are said: those up to TWENTY themselves, then tens. */
+enum { TEN = 10, TWENTY = 20, HUNDRED = 28, THOUSAND, MILLION, BILLION, TRILLION, NO_WORD };
+
+/* How a number ends. */
+enum { CARDINAL, ORDINAL, PLURALS, ORDINALS };
+
+/* Digits as they stand in a text. */
+typedef struct {
+    uint8_t digits[MOST_DIGITS]; /* the first ones */
+    unsigned count;
+    uint32_t value;    /* of at most nine */
+    unsigned is_other; /* it is not 0 */
+    unsigned last;     /* character of the last digit */
+} labial_words_number_t;
+
+/* The character that is here, from 0. */
+unsigned labial_words_here(const labial_words_reading_t *reading);
+
+/* Takes digits; says digits one by one, also with commas. */
+labial_words_number_t labial_words_take_digits(labial_words_place_t *here);
+void labial_words_say_digits(labial_words_reading_t *reading, int with_commas);
+
+/* Whether a point and a digit are at a place. */
+int labial_words_has_fraction(const labial_words_place_t *here);
+
+/* Says a number up to 9,999; the last word of a number. */
+void labial_words_say_small(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character);
+void labial_words_say_last(labial_words_reading_t *reading, unsigned last, unsigned ending, unsigned character);
+
+/* Reads "to" behind a number where another one follows; whether it does. */
+int labial_words_read_range(labial_words_reading_t *reading);
+
+/* Reads dates, times and whatever is more than a number, `after` what was said before; whether there is any. */
+int labial_words_read_special(labial_words_reading_t *reading, unsigned after);
 
 /* Names of months, as a list. */
 extern const char labial_words_months[];

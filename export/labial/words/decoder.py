@@ -13,7 +13,6 @@ from labial.words.dictionary import LETTERS, PHONEMES, letters_of
 from labial.words.questions import answer, features
 from labial.words.tables import WordTables
 
-
 #: Phonemes that a letter has by its accent, or None.
 Accent = Optional[Tuple[str, ...]]
 

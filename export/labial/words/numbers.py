@@ -290,7 +290,7 @@ def _below_thousand(value: int) -> List[str]:
 
 
 def _year(digits: str) -> List[str]:
-    """A year of four digits: two by two, unless the third is 0 in 2000 to 2009 and in years below 1000 or above 2999."""
+    """A year of four digits: two by two, except 2000 to 2009 and years below 1100 or above 2099."""
     century, rest = int(digits[:2]), int(digits[2:])
     if not (11 <= century <= 19 or (century == 20 and rest > 9)):
         return cardinal(digits)

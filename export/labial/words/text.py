@@ -22,6 +22,7 @@ CHARACTERS, PHONEMES = 255, 96
 _DIRECTION = 8
 
 _SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals", signs.TIMES: "times"}
+_PARTS = {signs.HALF: "one half", signs.QUARTER: "one quarter", signs.QUARTERS: "three quarters"}
 _MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
 prof professor;jr junior;sr senior;vs versus;etc etcetera;approx approximately;dept department;govt government
 blvd boulevard;ave avenue;rd road;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
@@ -36,8 +37,8 @@ _SCALES = "hundred thousand million billion trillion".split()
 
 #: Units behind a number, with names in singular and plural; those after the blank only where nothing is between.
 _UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m meter_;cm centimeter_;mm millimeter_
-nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_;ft foot|feet
-yd yard_;mi mile_;mph mile_ per hour;kph kilometer_ per hour;L liter_;l liter_;ml milliliter_;mL milliliter_
+nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_
+ft foot|feet;yd yard_;mi mile_;mph mile_ per hour;kph kilometer_ per hour;L liter_;l liter_;ml milliliter_;mL milliliter_
 cl centiliter_;dl deciliter_;gal gallon_;s second_;sec second_;secs second_;ms millisecond_;us microsecond_
 ns nanosecond_;min minute_;mins minute_;h hour_;hr hour_;hrs hour_;Hz hertz;kHz kilohertz;MHz megahertz;GHz gigahertz
 kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_;kbps kilobit_ per second;Mbps megabit_ per second
@@ -61,13 +62,14 @@ _ONSETS = frozenset("""BL BR CH CL CR DR DW FL FR GH GL GR KN PH PL PR SC SH SK 
 _CODAS = frozenset("""B C D F G H K L M N P R S T W X Z BB BT CH CK CT DD FF FT GG GH GN LD LF LK LL LM LP LT MB MN MP
     NG NK NN NT ND PH PT RB RC RD RF RK RL RM RN RP RT SH SK SM SP SS ST TH TT WD WL WN XT DTH FTH GHT LDT LTH NCH NTH
     PTH RCH RLD RNT RSH RST RTH TCH XTH DST HN PP RR SC""".split())
-_PAIRS = frozenset("AI AU AY EA EE EI EU EY IA IE IO OA OE OI OO OU OY UA UE UI UO UY YE YI EO AO UIE UEE EYE OYA AYE IOU".split())
+_PAIRS = frozenset("""AI AU AY EA EE EI EU EY IA IE IO OA OE OI OO OU OY UA UE UI UO UY YE YI EO AO UIE UEE EYE OYA AYE
+    IOU""".split())
 _LAST_PAIRS = frozenset("AY EA EE EY IE OE OO OU OY UE UY".split())
 
 #: Stage directions: the beginnings of verbs, behind which s, es or ing stands, and words that stand alone.
 _VERBS = """applaud beam blink blush breath burp chuckl clap clear cough cr cri exhal frown gasp giggl glanc grin groan
-    gulp hum inhal laugh mumbl mutter nod nodd paus pout scream shout shrug sigh sing smil smirk snap snapp snicker sniff
-    snort sob sobb swallow wav whisper whistl wink yawn yell""".split()
+    gulp hum inhal laugh mumbl mutter nod nodd paus pout scream shout shrug sigh sing smil smirk snap snapp snicker
+    sniff snort sob sobb swallow wav whisper whistl wink yawn yell""".split()
 _ALONE = frozenset("""applause beat blush breath chuckle clap cough cry gasp giggle grin groan gulp hum
     laugh laughter mumble music mutter nod pause quietly scream shout shrug sigh silence smile smirk sniff snort sob
     softly whisper whistle wink yawn yell""".split())
@@ -191,7 +193,7 @@ class _Reader:
         elif here in (".", "/", "-", "_", ":"):
             return self._read_joint(place, here, before, follows)
         elif here in (signs.HALF, signs.QUARTER, signs.QUARTERS):
-            said.say({signs.HALF: "one half", signs.QUARTER: "one quarter", signs.QUARTERS: "three quarters"}[here], place)
+            said.say(_PARTS[here], place)
             self.context.after = "number"
         elif here == signs.MINUS:
             said.say("minus", place)
@@ -235,8 +237,7 @@ class _Reader:
     # ---- Letters
 
     def _read_letters(self, place: int) -> int:
-        said, context = self.said, self.context
-        before = said.at(place - 1)
+        before = self.said.at(place - 1)
         after = self._forget()
         pointed = _POINTED.match(self.simple, place)
         if pointed:
@@ -296,7 +297,7 @@ class _Reader:
         elif self.address and before == "." and self._is_spelt_in_address(small):
             said.say_names(small, range(place, place + len(small)), False)
         elif self._is_spelt(run, before, follows, shouting):
-            letters = re.sub("'?s$", "", run) if run[-1] == "s" else run
+            letters = _capitals(run)
             said.say_names(letters.lower(), range(place, place + len(letters)), letters != run)
         else:
             self._spell(run, place)
@@ -317,7 +318,7 @@ class _Reader:
         if len(run) == 1:
             beside = before + follows
             return run not in "aAiI" or (run == "A" and bool(re.search("[0-9&+]", beside) or follows == "-"))
-        letters = re.sub("'?s$", "", run) if run[-1] == "s" else run
+        letters = _capitals(run)
         if not (letters.isalpha() and letters.isupper() and 2 <= len(letters) <= 5):
             return False
         if "&" in (before, follows) and letters == run:
@@ -325,6 +326,11 @@ class _Reader:
         if letters in _SHOUTED:
             return not shouting
         return letters in _SPELT or not (letters in _WORDS or is_pronounceable(letters))
+
+
+def _capitals(run: str) -> str:
+    """A run without the s or 's behind it."""
+    return re.sub("(?<=.)'?s$", "", run)
 
 
 def is_pronounceable(letters: str) -> bool:
