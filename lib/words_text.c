@@ -288,7 +288,7 @@ static void read_sign(labial_words_reading_t *reading)
     const int currency = labial_words_currency(code);
     unsigned after;
     int is_counted;
-    if (code == '[' ||
+    if ((code == '[' && !labial_words_is_blank(follows)) ||
         (code == '<' && (labial_words_is_latin(follows) || follows == '/' || follows == '!' || follows == '?'))) {
         open_tag(reading, code == '[' ? ']' : '>');
         return;

@@ -8,7 +8,7 @@ export const LONGEST_GAP = 0.15;
 /** Seconds that the last viseme lasts, of which only the beginning is told. */
 export const LAST_VISEME = 0.1;
 /** What is read of a message, as in export/labial/files/limits.py: levels, documents, items, characters of a text. */
-export const LIMITS = { nesting: 64, documents: 2000, items: 10000, text: 1000 };
+export const LIMITS = { nesting: 64, documents: 1000, items: 10000, text: 1000 };
 /** No word or phoneme lasts longer, in seconds. */
 const LONGEST_ITEM = 3600;
 /** Times that differ by no more, in seconds, are the same. */
@@ -399,7 +399,7 @@ class Service {
         this.#tells = row.tells.map((tell) => new Tell(tell));
         /** Whether its messages are nothing but timings: others may have fields of the same names. */
         this.bare = this.#tells.every(({ places }) => places.length === 1 && !places[0].length);
-        this.begins = this.#marks.flatMap(([first]) => first.options.map(({ steps }) => steps[0].name.toLowerCase()));
+        this.begins = this.#marks.flatMap(([first]) => first.options.map(({ steps }) => plain(steps[0].name)));
     }
 
     /** Whether an object is one of this service. */
@@ -428,14 +428,18 @@ class Service {
 /** Every service by its name, in the order of detection. */
 export const SERVICES = {};
 for (const [name, row] of Object.entries(table.services)) SERVICES[name] = new Service(row);
-const BEGINS = new Set(Object.values(SERVICES).flatMap(({ begins }) => begins));
+const NAMES = Object.keys(SERVICES);
+/** By the first name of a rule, the services that it may tell, by their numbers. */
+const BEGINS = new Map();
+NAMES.forEach((name, i) => {
+    for (const first of SERVICES[name].begins) BEGINS.set(first, [...(BEGINS.get(first) ?? []), i]);
+});
 
 /** The name of the service that an object is of, or undefined. */
 export function serviceOf(item) {
-    for (const name of item.plain.keys()) {
-        if (BEGINS.has(name)) return Object.keys(SERVICES).find((one) => SERVICES[one].told(item));
-    }
-    return undefined;
+    const found = new Set();
+    for (const name of item.plain.keys()) for (const i of BEGINS.get(name) ?? []) found.add(i);
+    return NAMES[[...found].sort((a, b) => a - b).find((i) => SERVICES[NAMES[i]].told(item))];
 }
 
 // ---- Segments
@@ -469,7 +473,7 @@ function phonemesOf(tokens) {
         if (label === "ˈ" || label === "ˌ") {
             begin = begin === null ? start : begin;
         } else if ((free && /^[\p{Lm}\p{Mn}\p{Sk}\p{Nd}]+$/u.test(label)) || pair) {
-            voiced.label += label;
+            if (voiced.label.length < 64) voiced.label += label;
             voiced.end = end;
         } else if (voiced && /^\s+$/u.test(label) && end - start <= LONGEST_GAP) {
             voiced.end = end;
@@ -552,7 +556,7 @@ export function entriesOf(source) {
 
 /** The documents of a text, each with its line, 0 if it has none of its own, and its number. `odd` is called for single
  * lines that are not JSON, if it is given. */
-export function documentsOf(source, odd = null) {
+export function documentsOf(source, odd = null, most = Infinity) {
     const text = source.replace(/^\uFEFF/, "");
     linesOf(text);
     try {
@@ -564,6 +568,7 @@ export function documentsOf(source, odd = null) {
     const lines = linesOf(text).map((line, i) => [contentOf(line), i + 1]).filter(([line]) => !/^[ \t\r]*$/.test(line));
     const isEvent = lines.length === 1 && lines[0][0] !== text.trim();
     if (lines.length < 2 && !isEvent) throw new LabialError("not JSON");
+    if (lines.length > most) throw new LabialError(`${lines.length} lines, more than the ${most} that are read`);
     return lines.flatMap(([line, place], i) => {
         try {
             return [[parsed(line), place, place]];

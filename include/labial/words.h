@@ -38,8 +38,8 @@
  * - Addresses: www.example.com, info@example.com, https://example.com/maps.
  * - Mr Mrs Ms Dr St Prof Jr Sr vs etc and other abbreviations, e.g. and i.e., months and days in short (Jan., Tues.).
  * - & @ % + = # and signs of multiplication as and, at, percent, plus, equals, number (before a digit), times.
- * - Nothing, that is silence: emoji, other punctuation, [tags] and <tags>, the latter where a letter or one of / ! ?
- *   follows. A tag may have blanks, and ends after eight words at the latest.
+ * - Nothing, that is silence: emoji, other punctuation, [tags] and <tags> where no blank follows, and in <tags> a
+ *   letter or one of / ! ?. A tag may have blanks, and ends after eight words at the latest.
  * - Stage directions are silent as well, and may be as long: in (parentheses) or *asterisks* a verb of speech or
  *   gestures in -s or -ing comes first, or such a word stands alone: (sighs), (laughing softly), (pause), *smiles*; in
  *   asterisks any small word in -s with another one behind it: *leans in*. All others are said: (for example), *really*,

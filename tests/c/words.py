@@ -45,8 +45,8 @@ Pneumonoultramicroscopicsilicovolcanoconiosis bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb'b
 """.split()
 PHRASES = ["$5 million", "3:00 pm", "9:00 a.m.", "9:00 o'clock", "March 5", "Dec. 25", "May 5-7", "March 5.5", "5 km",
            "1 h", "10 AM", "I AM", "IS IT", "IT is", "(laughs softly) yes", "<break time='1s'/> go", "[a b] c",
-           "[a b c d e f g h i j", "*leans in* yes", "*really* no", "2 1/2", "1 1/4", "20 €", "20 °C", "$20 / hour", "5 km / h", "5 in 6",
-           "$5. Million"]
+           "[a b c d e f g h i j", "*leans in* yes", "*really* no", "2 1/2", "1 1/4", "20 €", "20 °C", "$20 / hour",
+           "5 km / h", "5 in 6", "$5. Million"]
 LONG = ["111111111" * 30, "ab" * 150, "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
 TIMED = """the a I computer banana strengths idea go tv's reiteration 21 we're asthma B&B hmm spaghetti queue onion boy
  Mississippi extraordinary rhythm""".split()

@@ -195,7 +195,7 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
             return [() => voice.push("m", ...times), () => voice.say("m", ...times)];
         }),
         ...[null, undefined, 5, true, "{", "5", "null", [5], [null], [[]], new TextEncoder().encode("{"),
-            new Uint8Array([0x7b, 0xff]), new Array(2001).fill({}), `${"[".repeat(100)}${"]".repeat(100)}`,
+            new Uint8Array([0x7b, 0xff]), new Array(1001).fill({}), `${"[".repeat(100)}${"]".repeat(100)}`,
         ].map((x) => () => voice.feed(x)),
     ];
     for (const call of calls) {

@@ -66,7 +66,7 @@ export class Messages {
             }
         }
         if (typeof found === "string") {
-            found = documentsOf(found, () => { odd.count++; });
+            found = documentsOf(found, () => { odd.count++; }, LIMITS.documents);
         } else if (typeof found === "object" && found !== null) {
             found = (Array.isArray(found) ? found : [found]).map((item, i) => [item, 0, i + 1]);
         } else {

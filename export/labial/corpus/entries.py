@@ -6,6 +6,7 @@ import json
 import os
 from dataclasses import fields as dataclass_fields
 from dataclasses import is_dataclass
+from functools import lru_cache
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from labial.errors import DataError
@@ -39,7 +40,7 @@ class Entry:
         if self._plain is None:
             self._plain = {}
             for key, value in self.fields.items():
-                self._plain.setdefault(str(key).replace("_", "").lower(), value)
+                self._plain.setdefault(plain_name(key), value)
         return self._plain
 
     def inner(self, value: Any, number: Optional[int] = None) -> Optional[Entry]:
@@ -48,12 +49,18 @@ class Entry:
         return None if fields is None else Entry(self.path, self.line, number or self.number, fields)
 
 
+@lru_cache(maxsize=4096)
+def plain_name(key: Any) -> str:
+    """A field's name in small letters without underscores."""
+    return str(key).replace("_", "").lower()
+
+
 def fields_of(value: Any) -> Optional[Mapping[Any, Any]]:
     """The fields of a dictionary or of an object of a client library: what it dumps, or its public attributes, of which
     at most `MESSAGE_FIELDS` are read. None for texts, numbers, lists and None."""
     if isinstance(value, Mapping):
         return value
-    if isinstance(value, _VALUES) or isinstance(value, type):
+    if isinstance(value, type) or (isinstance(value, _VALUES) and not hasattr(value, "_asdict")):
         return None
     if is_dataclass(value):
         return {field.name: getattr(value, field.name, None) for field in dataclass_fields(value)}
@@ -91,10 +98,11 @@ def read_entries(path: PathLike) -> List[Entry]:
     return [_entry_of(path, line, number, item) for line, number, item in documents(path, text)]
 
 
-def documents(path: PathLike, text: str,
+def documents(path: PathLike, text: str, most: Optional[int] = None,
               odd: Optional[Callable[[DataError], None]] = None) -> List[Tuple[Optional[int], int, Any]]:
     """The documents of a text, each with its line, if it has one of its own, and its number. Raises DataError where the
-    text is neither JSON nor lines of JSON; `odd` is called for single lines that are not, if it is given."""
+    text is neither JSON nor lines of JSON, and for more than `most` lines; `odd` is called for single lines that are no
+    JSON, if it is given."""
     try:
         document = loads(path, None, text)
         items = document if isinstance(document, list) else [document]
@@ -106,7 +114,9 @@ def documents(path: PathLike, text: str,
         is_event = len(lines) == 1 and lines[0][1] != text.strip()
         if not (len(lines) > 1 or is_event) or not _is_document(lines[0][1]):
             raise DataError(path, error.lineno, f"not JSON: {error.msg}") from None
-    found = []
+    if most is not None and len(lines) > most:
+        raise DataError(path, None, f"{len(lines)} lines, more than the {most} that are read")
+    found: List[Tuple[Optional[int], int, Any]] = []
     for number, line in lines:
         try:
             found.append((number, number, loads(path, number, line)))

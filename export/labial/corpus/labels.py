@@ -27,6 +27,8 @@ _PRAAT_MARK = re.compile(r"\\[|0OT\-+:~NUDn3cv'`^][v^()]|\\[:.]f|\\'[12]")
 _BLANKS = " \t\r\n"
 #: Bytes of a label without meaning in which a known part is looked for (LABEL_MAX of lib/names.c).
 _SEARCHED = 32
+#: Characters of the longest name of a phoneme.
+LONGEST = 16
 
 #: Sets of labels: one set, or "auto", any of them, ARPABET before the IPA before X-SAMPA.
 AUTO = "auto"
@@ -66,12 +68,11 @@ def nearest(names: Mapping[str, str], label: str, silence: str, neutral: str) ->
     label = label.strip(_BLANKS)
     if len(label) > 1 and label[0] + label[-1] in ("<>", "[]", "()", "{}", "++", "**", "##"):
         return silence
-    start = label[:_SEARCHED].encode("utf-8", "replace")[:_SEARCHED]
-    text = without_marks(start.decode("utf-8", "replace"))
+    text = without_marks(label[:_SEARCHED].encode("utf-8", "replace")[:_SEARCHED].decode("utf-8", "replace"))
     if not re.search(r"[A-Za-z\u0080-\U0010ffff]", text):
         return silence
     for start in range(len(text)):
-        for end in range(len(text), start, -1):
+        for end in range(min(len(text), start + LONGEST), start, -1):
             if text[start:end] in names:
                 return names[text[start:end]]
     return neutral

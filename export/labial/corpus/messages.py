@@ -96,7 +96,7 @@ class Messages:
                     return []
                 raise DataError(name, None, "not UTF-8") from None
         if isinstance(message, str):
-            lines = documents(name, message, odd.count_of)
+            lines = documents(name, message, MESSAGE_DOCUMENTS, odd.count_of)
         elif isinstance(message, (list, tuple)) and fields_of(message) is None:
             lines = [(None, number, item) for number, item in enumerate(message, 1)]
         else:

@@ -26,11 +26,12 @@ from numbers import Real
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from labial.corpus.entries import Entry, read_entries, shown
+from labial.corpus.entries import Entry, plain_name, read_entries, shown
 from labial.corpus.phonesets import VOWELS
 from labial.corpus.timings import LONGEST, PathLike, SourceSegment, checked
 from labial.corpus.words import PLAIN, Pronunciation, Word, timings_of, words_of_characters
 from labial.errors import DataError, StreamError
+from labial.files.limits import LABEL
 
 #: A blank between words, or a gap between a service's phonemes, is a pause if it is longer, in seconds.
 LONGEST_GAP = 0.15
@@ -104,7 +105,7 @@ class _Field:
             steps = [_step(name) for name in path.split(".")] if path else []
             is_number = not divisor or divisor[0].isdigit()
             self.options.append((steps, float(divisor or 1) if is_number else 0.0,
-                                 "" if is_number else _plain(divisor)))
+                                 "" if is_number else plain_name(divisor)))
         self.name = text.lstrip("?=").split("|")[0].split("/")[0]
         # Most fields are looked up directly.
         self._simple = [steps[0][0] for steps, _, _ in self.options] if all(
@@ -133,14 +134,10 @@ class _Field:
         return value if value is not None and value >= 1.0 else 0.0
 
 
-def _plain(name: str) -> str:
-    return name.replace("_", "").lower()
-
-
 def _step(name: str) -> Tuple[str, int, bool]:
     """A name, how many lists are in it, and whether it is looked up as it is written."""
     depth, bare = name.count("[]"), name.replace("[]", "")
-    return (bare[1:], depth, True) if bare.startswith("=") else (_plain(bare), depth, False)
+    return (bare[1:], depth, True) if bare.startswith("=") else (plain_name(bare), depth, False)
 
 
 def _descended(entry: Entry, steps: Sequence[Tuple[str, int, bool]]) -> Any:
@@ -390,8 +387,7 @@ class Service:
     @property
     def begins(self) -> List[str]:
         """The names by one of which an object of it can be told."""
-        return [steps[0][0].lower() if steps[0][2] else steps[0][0]
-                for fields in self._marks for steps, _, _ in fields[0].options]
+        return [plain_name(steps[0][0]) for fields in self._marks for steps, _, _ in fields[0].options]
 
     @property
     def is_bare(self) -> bool:
@@ -420,14 +416,18 @@ class Service:
 
 #: Every service by its name for --from, in the order of detection.
 SERVICES: Dict[str, Service] = {name: Service(row) for name, row in _TABLE["services"].items()}
-_BEGINS = frozenset(name.lower() for service in SERVICES.values() for name in service.begins)
+#: By the first name of a rule, the services that it may tell, by their numbers.
+_BEGINS: Dict[str, List[int]] = {}
+for _number_of, _service in enumerate(SERVICES.values()):
+    for _name in _service.begins:
+        _BEGINS.setdefault(_name, []).append(_number_of)
+_ORDER = list(SERVICES)
 
 
 def service_of(item: Entry) -> Optional[str]:
     """The service that an object is of, by its fields; None for others."""
-    if _BEGINS.isdisjoint(item.plain):
-        return None
-    return next((name for name, service in SERVICES.items() if service.told(item)), None)
+    found = sorted({number for name in _BEGINS.keys() & item.plain.keys() for number in _BEGINS[name]})
+    return next((_ORDER[number] for number in found if SERVICES[_ORDER[number]].told(item)), None)
 
 
 # ---- Files
@@ -554,7 +554,7 @@ def _phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
         if label in _STRESS:
             begin = token.start if begin is None else begin
         elif last and begin is None and _is_mark(label):
-            result[-1] = _grown(last, token.end, last.label + label)
+            result[-1] = _grown(last, token.end, (last.label + label)[:LABEL])
         elif last and begin is None and joins and last.label + label in _TABLE["pairs"] and token.start <= last.end:
             result[-1] = _grown(last, token.end, last.label + label)
         elif last and label.isspace() and token.duration <= LONGEST_GAP:
