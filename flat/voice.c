@@ -120,6 +120,16 @@ int voice_done(labial_voice_t *voice)
     return labial_voice_done(voice);
 }
 
+int voice_finished(const labial_voice_t *voice)
+{
+    return voice->finished;
+}
+
+int voice_cancelled(const labial_voice_t *voice)
+{
+    return voice->cancelled;
+}
+
 int voice_eases(const labial_voice_t *voice)
 {
     return voice->cancelled && voice->step < voice->steps;
@@ -131,4 +141,29 @@ void voice_counts(const labial_voice_t *voice, uint32_t *out)
     out[0] = counts.told;
     out[1] = counts.skipped;
     out[2] = counts.dropped;
+}
+
+/* Moves `count` addresses that lie one behind the other; null ones stay. */
+static void move_addresses(void *addresses, unsigned count, size_t further)
+{
+    for (unsigned i = 0; i < count; i++) {
+        uintptr_t address;
+        char *const at = (char *)addresses + i * sizeof address;
+        memcpy(&address, at, sizeof address);
+        if (address)
+            address += further;
+        memcpy(at, &address, sizeof address);
+    }
+}
+
+void voice_move(labial_model_t *model, size_t further)
+{
+    const size_t tables = offsetof(labial_model_t, channels) - offsetof(labial_model_t, phonemes);
+    move_addresses(&model->phonemes, (unsigned)(tables / sizeof(void *)) + 1u, further);
+    for (unsigned k = 0; k < model->channel_count; k++) {
+        labial_channel_t channel;
+        memcpy(&channel, model->channels + k, sizeof channel);
+        move_addresses(&channel.emissions, 4, further);
+        memcpy((void *)(uintptr_t)(model->channels + k), &channel, sizeof channel);
+    }
 }

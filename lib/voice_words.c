@@ -46,16 +46,17 @@ static unsigned character_bytes(const char *text, unsigned left)
     return bytes;
 }
 
-/* Whether a character of so many bytes is a blank: of ASCII, or U+00A0, U+1680, U+2000 to U+200A, U+2028, U+2029,
-   U+202F,
+/* Whether a character of so many bytes is a blank: of ASCII, or U+0085, U+00A0, U+1680, U+2000 to U+200A, U+2028,
+   U+2029, U+202F,
  * U+205F and U+3000. */
 static int is_blank_character(const char *text, unsigned bytes)
 {
-    static const uint32_t blanks[] = { 0xc2a0u, 0xe19a80u, 0xe280a8u, 0xe280a9u, 0xe280afu, 0xe2819fu, 0xe38080u };
+    static const uint32_t blanks[] = { 0xc285u,   0xc2a0u,   0xe19a80u, 0xe280a8u,
+                                       0xe280a9u, 0xe280afu, 0xe2819fu, 0xe38080u };
     uint32_t code = 0;
     unsigned i;
     if (bytes == 1u)
-        return *text == ' ' || (*text >= '\t' && *text <= '\r');
+        return (*text >= 0x1c && *text <= ' ') || (*text >= '\t' && *text <= '\r');
     for (i = 0; i < bytes; i++)
         code = code << 8 | (unsigned char)text[i];
     for (i = 0; i < sizeof blanks / sizeof *blanks; i++)

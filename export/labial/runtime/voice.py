@@ -92,7 +92,6 @@ class Voice:
             checked(self._library.voice_pronounce(self._memory, self._speaker.callback))
         else:
             checked(self._library.voice_words(self._memory, self._speaker.own.place))
-        self._finished = False
         self._faps = (ctypes.c_int16 * CHANNELS)()
 
     # ---- What becomes known
@@ -146,7 +145,6 @@ class Voice:
         self._open()
         self._checked(self._library.voice_begin(self._memory, -1.0 if at is None else _seconds(at),
                                                 self._identity(utterance)))
-        self._finished = False
 
     @alone
     def finish(self) -> None:
@@ -154,7 +152,6 @@ class Voice:
         next utterance."""
         self._open()
         self._checked(self._library.voice_finish(self._memory))
-        self._finished = True
 
     @alone
     def cancel(self, milliseconds: float = 200) -> None:
@@ -196,7 +193,7 @@ class Voice:
                 yield frame
                 if self._memory is None:
                     return
-            if self._finished and self.done:
+            if self._is_finished() and self.done:
                 return
             wait = _PATIENCE if heard is None else self.time - heard
             await asyncio.sleep(min(max(wait, 0.001), 1.0 / self.fps))
@@ -244,6 +241,10 @@ class Voice:
     def __exit__(self, *exception: object) -> None:
         self.close()
 
+    @alone
+    def _is_finished(self) -> bool:
+        return self._memory is None or bool(self._library.voice_finished(self._memory))
+
     # ---- With the lock held
 
     def _open(self) -> None:
@@ -279,7 +280,6 @@ class Voice:
             self._memory, memory(self._library.voice_items_size(len(items))), len(items),
             (ctypes.c_double * len(times))(*times), (ctypes.c_uint16 * len(texts))(*map(len, texts)),
             b"".join(texts), self._identity(utterance), key, gap, _KINDS[kind], counted))
-        self._finished = False
 
 
 class _Speaker:
