@@ -329,7 +329,8 @@ ALPHABET = ("abeigxyzAEIXYZTVUSmrstndhkKMBGCF0123456789012345..,,''-–--/:://&%
             "éñÆßœŁ’Жﬁëïç中😀\u0301\u0308\u200b\u00a0Ａµ")
 PARTS = """1999 2005 1990s 80s 5 1 12 0 007 3:30 9:00 15:00 10:30:15 2024-03-05 3/5/2024 3/5/24 5.3.2024 1/2 3/4 5/12
     555-1234 1-800-555-0199 10-20 5'10 22nd $5 $1 $5.50 $0.99 $.50 $1.5 €20 ¥5.50 ₹1,000 5€ 50¢ $2M $10k $5/hour
-    1,234,567 1,00 999,999,999,999,999 1234567890123456 million billion a.m. p.m. am PM o'clock km kg m s h GB km/h m² °C
+    1,234,567 1,00 999,999,999,999,999 1234567890123456 million billion a.m. p.m. am PM o'clock km kg m s h GB km/h
+    m² °C
     °F ° 5km 16GB 5M 2bn 6in 3A March May Jan. Sept. Tues FBI CIA VIP NASA STOP IT US WHO AM I A PhDs TVs FBI's CEOs
     U.S. e.g. i.e. Ph.D. www.example.com https://a.org/b-c_d info@b.io .com (sighs) (pause) (laughing (softly)
     *smiles* *leans in* *really* **bold** [tag] <break <b> x<3 -5 −5

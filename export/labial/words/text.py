@@ -40,7 +40,8 @@ _UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m 
 nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_
 ft foot|feet;yd yard_;mi mile_;mph mile_ per hour;kph kilometer_ per hour;L liter_;l liter_;ml milliliter_
 mL milliliter_;cl centiliter_;dl deciliter_;gal gallon_;s second_;sec second_;secs second_;ms millisecond_
-us microsecond_;ns nanosecond_;min minute_;mins minute_;h hour_;hr hour_;hrs hour_;Hz hertz;kHz kilohertz;MHz megahertz;GHz gigahertz
+us microsecond_;ns nanosecond_;min minute_;mins minute_;h hour_;hr hour_;hrs hour_;Hz hertz;kHz kilohertz
+MHz megahertz;GHz gigahertz
 kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_;kbps kilobit_ per second;Mbps megabit_ per second
 Gbps gigabit_ per second;W watt_;kW kilowatt_;MW megawatt_;GW gigawatt_;Wh watt hour_;kWh kilowatt hour_;V volt_
 mV millivolt_;kV kilovolt_;mA milliamp_;mAh milliamp hour_;dB decibel_;px pixel_;cal calorie_;kcal kilocalorie_
