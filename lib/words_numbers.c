@@ -3,6 +3,7 @@
  */
 #include "labial/words.h"
 
+#include "fixed.h"
 #include "labial/labial.h"
 #include "words_parts.h"
 
@@ -53,7 +54,7 @@ static void say_number(labial_words_reading_t *reading, uint32_t value, int is_o
         say_part(reading, &last, THOUSAND, character);
     }
     say_hundreds(reading, &last, value % 1000u, character);
-    if (value == 0u)
+    if (last > MILLION)
         last = 0;
     labial_words_say(reading, labial_words_listed(is_ordinal ? ordinals : cardinals, last), character);
 }
@@ -64,9 +65,11 @@ static void say_digits(labial_words_reading_t *reading, int with_commas)
     labial_words_place_t *here = &reading->here;
     for (; labial_words_is_decimal(here->code) ||
            (with_commas && here->code == ',' && labial_words_is_decimal(labial_words_following(here)));
-         labial_words_advance(here))
-        if (here->code != ',')
-            labial_words_say(reading, labial_words_listed(cardinals, here->code - '0'), here->characters - 1u);
+         labial_words_advance(here)) {
+        const unsigned digit = here->code - '0';
+        if (digit < TEN) /* no comma */
+            labial_words_say(reading, labial_words_listed(cardinals, digit), here->characters - 1u);
+    }
 }
 
 /* Whether three digits and no fourth one follow. */
@@ -112,6 +115,8 @@ void labial_words_read_digits(labial_words_reading_t *reading)
         *here = first;
         say_digits(reading, 1);
     } else {
+        /*@ assert value <= 999999999; */
+        LABIAL_CHECK(value <= 999999999u);
         say_number(reading, value, takes_ordinal(here), first.characters - 1u);
     }
     if (here->code == '.' && labial_words_is_decimal(labial_words_following(here))) {

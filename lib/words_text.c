@@ -6,12 +6,16 @@
 
 #include <string.h>
 
+#include "fixed.h"
 #include "labial/labial.h"
 #include "words_parts.h"
 
 /* Names of letters, as words that the trees read so. */
 static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0jay\0kay\0ell\0em\0en\0oh\0pee\0cue\0"
                                    "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
+
+/* The number of the letter that an apostrophe is. */
+#define APOSTROPHE 27u
 
 /* Letters of the longest word in these lists: "seventeenth". */
 #define LONGEST_SAID 11
@@ -38,6 +42,8 @@ void labial_words_say(labial_words_reading_t *reading, const char *words, unsign
     unsigned count = 0;
     for (;; words++) {
         if (*words > ' ') {
+            /*@ assert count < 11; */
+            LABIAL_CHECK(count < LONGEST_SAID);
             letters[count].letter = (uint8_t)(*words - 'a' + 1);
             letters[count++].character = (uint8_t)character;
             continue;
@@ -69,7 +75,11 @@ typedef struct {
 
 static void say_name(labial_words_reading_t *reading, labial_words_letter_t letter)
 {
-    labial_words_say(reading, labial_words_listed(letter_names, letter.letter - 1u), letter.character);
+    const unsigned number = letter.letter - 1u;
+    /* No apostrophe. */
+    /*@ assert number < 26; */
+    LABIAL_CHECK(number < 26u);
+    labial_words_say(reading, labial_words_listed(letter_names, number), letter.character);
 }
 
 /* Takes the letters that belong together from a letter on, up to a capital behind a small letter. */
@@ -79,14 +89,19 @@ static void take_run(labial_words_place_t *here, run_t *run)
     memset(run, 0, sizeof *run);
     while (run->count < LABIAL_WORDS_LETTERS) {
         const unsigned code = here->code;
-        const int is_inner = code == '\'' && labial_words_is_latin(labial_words_following(here));
-        if (!is_inner && !labial_words_is_latin(code))
+        unsigned letter = APOSTROPHE;
+        if (labial_words_is_latin(code))
+            letter = labial_words_small_letter(code) - 'a' + 1u;
+        else if (code != '\'' || !labial_words_is_latin(labial_words_following(here)))
             return;
         if (labial_words_is_capital(code) && before > 'Z')
             return;
+        /* Small letters lie beside each other. */
+        /*@ assert 1 <= letter <= 27; */
+        LABIAL_CHECK(letter >= 1u && letter <= APOSTROPHE);
         if (run->count < 5u)
             run->capitals[run->count] = (char)(labial_words_small_letter(code) - ('a' - 'A'));
-        run->letters[run->count].letter = (uint8_t)(is_inner ? 27u : labial_words_small_letter(code) - 'a' + 1u);
+        run->letters[run->count].letter = (uint8_t)letter;
         run->letters[run->count++].character = (uint8_t)(here->characters - 1u);
         run->small += !labial_words_is_capital(code);
         before = code;
@@ -212,10 +227,11 @@ static int reads_own(labial_words_reading_t *reading, const labial_words_own_t *
         if (!takes_own(&reading->here, entry->word))
             continue;
         length = reading->here.characters - first.characters + (reading->here.code == TEXT_END);
-        for (k = 0; k < entry->count; k++)
-            labial_words_append(reading->word,
-                                entry->phonemes[k] < reading->model->phoneme_count ? entry->phonemes[k] : 0u,
+        for (k = 0; k < entry->count; k++) {
+            const unsigned phoneme = entry->phonemes[k];
+            labial_words_append(reading->word, phoneme < reading->model->phoneme_count ? phoneme : 0u,
                                 first.characters - 1u + k * length / entry->count, k == 0u);
+        }
         return 1;
     }
     return 0;
