@@ -7,6 +7,10 @@
 
 #include "models.h"
 
+#ifndef __wasm__
+#include "functions.h"
+#endif
+
 #ifdef FLAT_FACES
 #include "attribution.h"
 #include "faces.h"
@@ -15,17 +19,17 @@
 #define TEXT(x) #x
 #define NUMBER(x) TEXT(x)
 
-uint32_t flat_interface(void)
+uint32_t interface(void)
 {
     return FLAT_INTERFACE;
 }
 
-const char *flat_version(void)
+const char *version(void)
 {
     return NUMBER(LABIAL_VERSION_MAJOR) "." NUMBER(LABIAL_VERSION_MINOR) "." NUMBER(LABIAL_VERSION_PATCH);
 }
 
-const char *flat_method(void)
+const char *method(void)
 {
     return LABIAL_PAPER ? "paper" : "labial";
 }
@@ -34,6 +38,14 @@ const char *result_text(int result)
 {
     return labial_result_text(result);
 }
+
+#ifndef __wasm__
+const char *function(unsigned number)
+{
+    static const char *const rows[] = { FLAT_FUNCTIONS };
+    return number < sizeof rows / sizeof *rows ? rows[number] : NULL;
+}
+#endif
 
 /* ---- Sizes ------------------------------------------------------------------------------------------------------- */
 

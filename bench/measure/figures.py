@@ -283,20 +283,28 @@ def esp32_hear(source: Sources) -> Iterator[Sentence]:
                    count(source.bench("esp32-hear, lips.c: RAM", "m4")))
     yield sentence("| flash: `lips.c` {}, the library's clock {}, its hearing with `hear_small` {} | {} |", count(own),
                    count(clock), count(heard), count(own + clock + heard))
+    for text in ("when it has the {} ms of sound from the frame's begin on", "A frame needs the {} ms of sound "
+                 "after its begin", "holds less than {} ms, the lips are late", "task of its own writes it to I2S, {} ms later.",
+                 "**The answer comes {} ms later**"):
+        yield sentence(text, source.latency())
 
 
 def beside(source: Sources) -> Iterator[Sentence]:
     """docs/beside.md."""
     own, heard = source.bench("esp32-hear, lips.c: flash", "m4"), source.bench("hear_small: flash", "m4")
     yield sentence("only a player of {} KB of code", _kilobytes(source.bench("code -Os: beside.c"), 1))
-    yield sentence("| hears the sound that it plays ([esp32-hear.md](esp32-hear.md)) | {} KB | {} KB |",
-                   _kilobytes(own + heard), _kilobytes(source.bench("esp32-hear, lips.c: RAM", "m4"), 1))
+    yield sentence("| hears the sound that it plays ([esp32-hear.md](esp32-hear.md)) | {} KB | {} KB | {} ms of sound "
+                   "ahead |", _kilobytes(own + heard), _kilobytes(source.bench("esp32-hear, lips.c: RAM", "m4"), 1),
+                   source.latency())
     yield sentence("| flash, bytes | {}, and 266 for a division of 32 bits | {} |",
                    *(count(source.bench("code -Os: beside.c", target)) for target in ("m0", "m4")))
 
 
 def hearing(source: Sources) -> Iterator[Sentence]:
     """docs/hearing.md."""
+    for text in ("when the network has heard what follows, {} ms", "If the player has {} ms or more in its buffer",
+                 "otherwise its last {} ms have no frames", "the lips are {} ms late, or the sound has to wait"):
+        yield sentence(text, source.latency())
     for model in ("hear_small", "hear_large"):
         worst = [source.bench(f"{model}, 16000 Hz: worst frame", target) for target in TARGETS]
         worst += [source.bench(f"{model}, {rate} Hz: worst frame", "m4") for rate in (24000, 48000)]

@@ -71,7 +71,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 24806 bytes on a 32-bit target. */
+/* The model, 24446 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

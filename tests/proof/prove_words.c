@@ -1,5 +1,6 @@
 /*
- * Words of any letters, with tables of any numbers, as large as what points into them can tell.
+ * words.c: words of any letters, with tables of any numbers, as large as what points into them can tell.
+ * words_characters.c: any bytes of a text of any size up to its largest here, at any place of it.
  */
 #include "prove.h"
 #include "words_parts.h"
@@ -40,5 +41,24 @@ int main(void)
     model.phoneme_count = (uint8_t)Frama_C_interval(0, 3);
     labial_words_spell(&model, letters, (unsigned)Frama_C_interval(1, LABIAL_WORDS_LETTERS), &word);
     any_int = labial_words_label(OR_NULL(labial_words_model_t *, &model), any_unsigned)[0];
+    return 0;
+}
+
+#define BYTES 64
+
+int prove_words_characters(void)
+{
+    static unsigned char text[BYTES];
+    labial_words_place_t here;
+    FILL(text);
+    FILL(here);
+    here.text = text;
+    here.size = (size_t)Frama_C_interval(0, BYTES);
+    here.at = any_size;
+    any_int = (int)labial_words_following(&here);
+    labial_words_advance(&here);
+    any_int = labial_words_is_capital(any_unsigned) + labial_words_is_latin(any_unsigned) +
+              labial_words_is_decimal(any_unsigned) + labial_words_is_inside(any_unsigned);
+    any_int = (int)labial_words_small_letter(any_unsigned);
     return 0;
 }

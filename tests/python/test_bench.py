@@ -10,19 +10,19 @@ import sys
 from pathlib import Path
 from typing import Dict, List
 
-import closures
 import numpy as np
 import pytest
+
+import closures
+import heads
+from labial.fit.sentences import Motion
+from labial.tables.model import load
 from measure import baseline, figures, pages, records, sizes, table
 from measure.core import Bench, Figure
 from measure.pages import Sentence, row, sentence, share, updated
 from measure.profile import cycles
 from measure.sources import Results, number, tables
 from measure.stack import CallGraph, _machine_code, public_functions
-
-import heads
-from labial.fit.sentences import Motion
-from labial.tables.model import load
 from packages import CC, SOURCE
 from runtime import needs_runtime
 

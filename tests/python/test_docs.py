@@ -113,8 +113,8 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         "labial align recordings/s01.mp4 --text-file recordings/s01.txt -o recordings/s01.lab": "likewise",
         "labial evaluate corpus/ --splits 5 -o report/": "takes too long; test_evaluate.py runs it on less",
         'cd "$LABIAL/export/corpora" && labial train grid_s1 addresses grid_singles grid_more --talker-variance 1 '
-        "-o ~/shared.npz": "takes a minute; test_train_talkers.py trains on less",
-        "labial train corpus/ --adapt ~/shared.npz -o mine.npz": "needs the model above; test_train_talkers.py adapts",
+        "-o ~/shared.npz": "takes a minute; test_talkers.py trains on less",
+        "labial train corpus/ --adapt ~/shared.npz -o mine.npz": "needs the model above; test_talkers.py adapts",
     },
 }
 

@@ -13,20 +13,20 @@ import wave
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
-import follow
 import numpy as np
 import pytest
+
+import follow
+import labial
 import servos
 import speak
-from voices import Piper
-
-import labial
 from labial.errors import LabialError
 from labial.program import run
 from packages import SOURCE
 from runtime import needs_runtime
 from test_hearing import voice
 from test_runtime_hearing import write_wav
+from voices import Piper
 
 PI = SOURCE / "examples" / "pi"
 

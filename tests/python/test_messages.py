@@ -82,14 +82,6 @@ def test_what_users_hold(message: Any) -> None:
     assert told(message) == [("go", 0.5, 0.75)]
 
 
-def test_types_of_client_libraries() -> None:
-    """Cartesia's and ElevenLabs' own types, where their packages are installed."""
-    types = pytest.importorskip("cartesia.types.websocket_response")
-    stamps = {"words": ["go"], "start": [0.5], "end": [0.75]}
-    message = types.Timestamps(context_id="c", done=False, status_code=206, type="timestamps", word_timestamps=stamps)
-    assert told(message) == [("go", 0.5, 0.75)]
-
-
 @pytest.mark.parametrize("message", [7, None, {1}, 1.5, True, Messages, object()])
 def test_other_types_are_refused(message: Any) -> None:
     with pytest.raises(TypeError, match="a message is a dict, an object"):

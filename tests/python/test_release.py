@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any, Dict
 
 import pytest
-from bill import bill
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 import labial
+from bill import bill
 from packages import SOURCE
 
 pytestmark = pytest.mark.skipif(not shutil.which("git"), reason="no git")

@@ -26,8 +26,9 @@ def add_evaluate_hear(command: argparse.ArgumentParser) -> None:
     command.add_argument("--conditions", metavar="A,B,...", help="of clean, -40 dBFS, white noise 20 dB and so on; all "
                          "of them by default")
     command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness, \"loudness and "
-                         "crossings\" (these; with --lips phonemes in place of the last), and other projects: "
-                         "wawa-lipsync, \"wawa-lipsync unsmoothed\", headaudio, pocketsphinx")
+                         "crossings\" (these; with --lips phonemes and \"phonemes and sound\" in place of "
+                         "the last), and other projects: wawa-lipsync, \"wawa-lipsync unsmoothed\", headaudio, "
+                         "pocketsphinx")
     command.add_argument("--npm", metavar="FOLDER", help="where npm installed wawa-lipsync and @met4citizen/headaudio")
     command.add_argument("--most", type=positive, help="clips of each folder (all)")
     command.add_argument("--cache", metavar="FOLDER", help="for alignments")

@@ -1,28 +1,31 @@
-"""Lips for a LiveKit agent: follows the words that the speech service times, in step with the sound that is played.
+"""Lips for a LiveKit agent, in step with the sound that is played.
+
+    from labial.integrations.livekit import LipsOutput
 
     await session.start(agent, room=room)
-    session.output.audio = lips = Lips(session.output.audio)
+    session.output.audio = lips = LipsOutput(session.output.audio)
     async for frame in lips: ...
 
-Words come with the sound, as TimedStrings, if the service's capability aligned_transcript is true; of others LiveKit
-times sentences at most, which are then spoken at the usual speed. An avatar's worker (AvatarRunner) gets the sound
-without words: it can use labial.Hearing.
+They follow the words that the speech service times, which come with the sound as TimedStrings if its capability
+aligned_transcript is true. Where none come, they follow the sound (:class:`labial.Hearing`). An interruption closes the
+mouth.
 """
 
 from __future__ import annotations
 
 import time
-from typing import Any, AsyncIterator, Optional
+from typing import Any, AsyncIterator, List, Optional
 
 from livekit import rtc
 from livekit.agents.types import USERDATA_TIMED_TRANSCRIPT
 from livekit.agents.utils import is_given
 from livekit.agents.voice.io import AudioOutput, AudioOutputCapabilities
 
-import labial
+from labial.integrations.lips import Lips
+from labial.runtime.frame import Frame
 
 
-class Lips(AudioOutput):
+class LipsOutput(AudioOutput):
     """An audio output that watches the sound on its way to another one, `sink`. Iterating yields frames as they are
     due.
 
@@ -33,7 +36,7 @@ class Lips(AudioOutput):
 
     def __init__(self, sink: AudioOutput, *, delay: float = 0.0, **options: Any) -> None:
         super().__init__(label="Labial", capabilities=AudioOutputCapabilities(pause=True), next_in_chain=sink)
-        self.voice = labial.Voice(**options)
+        self.voice = Lips(**options)
         self._delay = delay
         self._resampler: Optional[rtc.AudioResampler] = None
         self._segment = False  # within the sound between two flushes
@@ -49,10 +52,11 @@ class Lips(AudioOutput):
         if not self._segment:
             self._segment = True
             self._origin = self._queued = max(self._queued, self.clock() or 0.0)
-            self.voice.begin(self._origin)
+            self.voice.begin_sound(self._origin)
         for text in frame.userdata.get(USERDATA_TIMED_TRANSCRIPT, []):
-            if is_given(text.start_time):
+            if is_given(text.start_time) and len(text.split()) == 1:  # of a sentence the sound says more
                 self.voice.say(text, text.start_time, text.end_time if is_given(text.end_time) else None)
+        self.voice.sound(bytes(frame.data), frame.sample_rate, frame.num_channels)
         self._queued += frame.duration
         for piece in self._resampled(frame):
             await self._sink.capture_frame(piece)
@@ -61,6 +65,7 @@ class Lips(AudioOutput):
         """The end of a segment."""
         super().flush()
         self._segment = False
+        self.voice.end_sound()
         self._sink.flush()
 
     def clear_buffer(self) -> None:
@@ -100,7 +105,7 @@ class Lips(AudioOutput):
             return None
         return self._at if self._paused else max(self._at, self._at + time.time() - self._moment)
 
-    def __aiter__(self) -> AsyncIterator[labial.Frame]:
+    def __aiter__(self) -> AsyncIterator[Frame]:
         return self.voice.follow(self.clock)
 
     def _hold(self) -> None:
@@ -113,11 +118,11 @@ class Lips(AudioOutput):
         assert self.next_in_chain is not None
         return self.next_in_chain
 
-    def _resampled(self, frame: rtc.AudioFrame) -> list[rtc.AudioFrame]:
+    def _resampled(self, frame: rtc.AudioFrame) -> List[rtc.AudioFrame]:
         """A frame at the sink's rate."""
         rate = self._sink.sample_rate
         if rate in (None, frame.sample_rate):
             return [frame]
         if self._resampler is None:
             self._resampler = rtc.AudioResampler(frame.sample_rate, rate, num_channels=frame.num_channels)
-        return self._resampler.push(frame)
+        return list(self._resampler.push(frame))

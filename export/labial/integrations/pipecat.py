@@ -1,11 +1,14 @@
-"""Lips in a Pipecat pipeline: follows the words that a speech service times, in step with the sound that is played.
+"""Lips in a Pipecat pipeline, in step with the sound that is played.
 
-    lips = Lips(show)
+    from labial.integrations.pipecat import LipsProcessor
+
+    lips = LipsProcessor(show)
     pipeline = Pipeline([..., tts, lips, transport.output(), lips.heard])
 
 `lips` reads words and sound on their way to the transport. `lips.heard`, behind it, sees each piece of sound that was
-played, and passes a LipsFrame on for each frame of the mouth; `show`, if given, is called with the same frame. Services
-that time no words (TTSTextFrames without pts) do not move the lips.
+played, and passes a LipsFrame on for each frame of the mouth; `show`, if given, is called with the same frame. Where a
+service times no words (TTSTextFrames without pts), lips follow its sound (:class:`labial.Hearing`). An interruption
+closes the mouth, and what is left of the interrupted answer is ignored.
 """
 
 from __future__ import annotations
@@ -27,13 +30,15 @@ from pipecat.frames.frames import (
     StartFrame,
     TTSAudioRawFrame,
     TTSStartedFrame,
+    TTSStoppedFrame,
     TTSTextFrame,
 )
 from pipecat.processors.frame_processor import FrameDirection, FrameProcessor
 
-import labial
+from labial.integrations.lips import Lips
+from labial.runtime import frame as labial_frame
 
-Show = Callable[[labial.Frame], Awaitable[None]]
+Show = Callable[[labial_frame.Frame], Awaitable[None]]
 
 
 @dataclass
@@ -76,7 +81,7 @@ class _Clock:
             self._idle, self._at, self._moment = True, now, time.monotonic()
 
 
-class Lips(FrameProcessor):
+class LipsProcessor(FrameProcessor):
     """Stands between the speech service and the transport's output.
 
     Args:
@@ -86,11 +91,12 @@ class Lips(FrameProcessor):
 
     def __init__(self, show: Optional[Show] = None, *, delay: float = 0.0, **options: Any) -> None:
         super().__init__()
-        self.voice = labial.Voice(**options)
+        self.voice = Lips(**options)
         self._clock = _Clock(delay)
         self.heard = _Heard(self.voice, self._clock, show)
         self._queued = 0.0  # seconds of the clock up to which there is sound
         self._context: Optional[Tuple[Any]] = None  # the service's, whose words count from `_origin`
+        self._over: Optional[str] = None  # the context that was interrupted
         self._origin = self._last = 0  # nanoseconds
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
@@ -98,14 +104,16 @@ class Lips(FrameProcessor):
         await super().process_frame(frame, direction)
         if isinstance(frame, TTSStartedFrame):
             self._context = None
-        elif isinstance(frame, TTSTextFrame) and frame.pts:
-            self._enter(frame.context_id)
+        elif isinstance(frame, TTSStoppedFrame):
+            self.voice.end_sound()
+        elif isinstance(frame, TTSTextFrame) and frame.pts and self._enter(frame.context_id):
             self._last = frame.pts
             self.voice.say(frame.text, max(0, frame.pts - self._origin) / 1e9)
-        elif isinstance(frame, TTSAudioRawFrame):
-            self._enter(frame.context_id)
+        elif isinstance(frame, TTSAudioRawFrame) and self._enter(frame.context_id):
+            self.voice.sound(frame.audio, frame.sample_rate, frame.num_channels)
             self._queued += frame.num_frames / frame.sample_rate
         elif isinstance(frame, InterruptionFrame):
+            self._over = self._context[0] if self._context else self._over
             self.voice.cancel()
             self._clock.starts.clear()
             self._clock.stop()
@@ -113,22 +121,25 @@ class Lips(FrameProcessor):
             self._last = 0
         await self.push_frame(frame, direction)
 
-    def _enter(self, context: Any) -> None:
+    def _enter(self, context: Any) -> bool:
         """A service's new stretch of sound begins behind what there is; its words count from now or from the last word,
-        as Pipecat's WordTimestampTracker has it."""
+        as Pipecat's WordTimestampTracker has it. False for what is left of an interrupted one."""
+        if context is not None and context == self._over:
+            return False
         if self._context == (context,):
-            return
+            return True
         self._context = (context,)
         self._origin = max(self._last, self.get_clock().get_time())
         self._queued = max(self._queued, self._clock() or 0.0)
         self._clock.starts.append(self._queued)
-        self.voice.begin(self._queued)
+        self.voice.begin_sound(self._queued)
+        return True
 
 
 class _Heard(FrameProcessor):
     """Stands behind the transport's output."""
 
-    def __init__(self, voice: labial.Voice, clock: _Clock, show: Optional[Show]) -> None:
+    def __init__(self, voice: Lips, clock: _Clock, show: Optional[Show]) -> None:
         super().__init__()
         self._voice, self._clock, self._show = voice, clock, show
         self._task: Optional[asyncio.Task[None]] = None
