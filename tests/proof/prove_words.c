@@ -36,6 +36,7 @@ int main(void)
     for (i = 0; i < LABIAL_WORDS_LETTERS; i++) {
         letters[i].letter = (uint8_t)Frama_C_interval(1, 27);
         letters[i].character = any_uint8;
+        letters[i].sound = any_uint8;
     }
     model.multiplier = any_uint32;
     model.phoneme_count = (uint8_t)Frama_C_interval(0, 3);

@@ -15,9 +15,10 @@ static labial_words_model_t model = { .milliseconds = milliseconds, .classes = c
 
 static labial_word_t any_word;
 
-int labial_words_read(const labial_words_model_t *any, const labial_words_own_t *own, const char *text, size_t size,
-                      labial_word_t *word)
+int labial_words_read_next(const labial_words_model_t *any, const labial_words_own_t *own,
+                           labial_words_context_t *context, const char *text, size_t size, labial_word_t *word)
 {
+    FILL(*context);
     *word = any_word;
     return LABIAL_OK;
 }
