@@ -92,7 +92,7 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     for (i = 1; i <= count; i++) {
         uint16_t share;                   /* of the mixture, Q12 */
         c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
-        share = i < count ? likelihood_share(likelihoods[c], sum, inverse) : rest;
+        share = (uint16_t)(i < count ? likelihood_share(likelihoods[c], sum, inverse) : rest);
         rest -= share;
         if (share > 0) {
             selection->components[counting] = (uint8_t)c;
