@@ -17,7 +17,7 @@
 #include "labial/timings.h"
 
 /* Version of this interface; the Python package refuses a library of another one. */
-#define FLAT_INTERFACE 6
+#define FLAT_INTERFACE 7
 
 /* Stands before each function that other languages call; nothing else leaves the module or the shared library, where
  * their symbols begin with flat_. flat/CMakeLists.txt makes the list of them that Python binds, so that they are declared

@@ -33,11 +33,11 @@ from labial.errors import LabialError, StreamError, pip
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 6
+_INTERFACE = 7
 
 #: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
-ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -9, -11
+ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FULL, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -8, -9, -11
 
 #: LABIAL_DURATION_MAX: the longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
@@ -54,6 +54,8 @@ _TYPES: Dict[str, Any] = {
     "void": None, "int": c_int, "int32_t": c_int32, "int64_t": c_int64, "uint64_t": c_uint64, "size_t": c_size_t,
     "number": c_uint32, "double": c_double, "text": c_char_p, "pointer": c_void_p, "frame": POINTER(c_int16),
 }  # fmt: skip
+#: A function that the library asks for a word's pronunciation (labial_voice_own_fn of include/labial/voice.h).
+PRONOUNCE = ctypes.CFUNCTYPE(c_void_p, c_void_p, c_void_p, c_size_t)
 #: What the functions' symbols begin with.
 _PREFIX = "" if sys.platform == "win32" else "flat_"
 
