@@ -39,7 +39,7 @@ class StreamError(LabialError):
 def did_you_mean(name: object, known: Iterable[str]) -> str:
     """The end of a message about an unknown name: the known one that looks most like it, or all of them."""
     names = list(known)
-    near = get_close_matches(str(name).lower(), names, 1) if len(str(name)) <= 100 else []
+    near = get_close_matches(str(name).lower(), names, 1, 0.7) if len(str(name)) <= 100 else []
     return f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
 
 

@@ -39,7 +39,7 @@ class Stats(NamedTuple):
     messages: int = 0  #: those that were fed, sound included
     told: int = 0  #: words, characters, phonemes and visemes with their times
     skipped: int = 0  #: those that made no sense
-    dropped: int = 0  #: messages of utterances that are over
+    dropped: int = 0  #: messages of utterances that are over, and those that came twice
 
 
 class Messages:
