@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 import ctypes
 import math
-from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, checked, library, memory
