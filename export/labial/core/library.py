@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from ctypes import POINTER, c_char_p, c_int, c_int16, c_int32, c_uint32, c_void_p
+from ctypes import POINTER, c_char_p, c_int, c_int16, c_int32, c_uint8, c_uint32, c_void_p
 from functools import cache
 from pathlib import Path
 from typing import Any, Dict, Optional, Sequence, Tuple
@@ -19,7 +19,7 @@ from labial.errors import LabialError, StreamError, pip
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 6
+_INTERFACE = 7
 
 #: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
@@ -31,6 +31,8 @@ DURATION_MAX = 3_600_000
 CANCEL_MAX = 1000
 #: LABIAL_ARTICULATION_MAX, percent.
 ARTICULATION_MAX = 200
+#: LABIAL_VISEMES.
+VISEMES = 15
 #: LABIAL_LAUGH_FULL.
 LAUGH_FULL = 256
 
@@ -52,9 +54,9 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "mouth_push": (c_int, (_POINTER, _NUMBER, _NUMBER)), "mouth_room": (_NUMBER, (_POINTER,)),
     "mouth_end": (c_int, (_POINTER,)), "mouth_cancel": (c_int, (_POINTER, _NUMBER)),
     "mouth_restart": (c_int, (_POINTER,)), "mouth_articulation": (c_int, (_POINTER, _NUMBER)),
-    "mouth_run": (c_int, (_POINTER, _POINTER, _NUMBER)), "mouth_exact": (c_int, (_POINTER, _NUMBER)),
+    "mouth_run": (c_int, (_POINTER, _POINTER, _POINTER, _NUMBER)), "mouth_exact": (c_int, (_POINTER, _NUMBER)),
     "mouth_moved": (_NUMBER, (_POINTER,)),
-    "mouth_tick": (c_int, (_POINTER,)), "mouth_faps": (POINTER(c_int16), (_POINTER,)),
+    "mouth_tick": (c_int, (_POINTER,)), "mouth_faps": (POINTER(c_int16), (_POINTER,)), "mouth_visemes": (POINTER(c_uint8), (_POINTER,)),
     "mouth_state": (c_int, (_POINTER,)), "mouth_held": (_NUMBER, (_POINTER,)),
     "mouth_milliseconds": (_NUMBER, (_POINTER,)), "mouth_waiting": (_NUMBER, (_POINTER,)),
     "mouth_delay": (_NUMBER, (_POINTER,)),
@@ -62,6 +64,7 @@ _FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
     "rig_output": (None, (_POINTER, _POINTER, _POINTER)), "rig_check": (c_int, (_POINTER, _NUMBER)),
     "rig_rest": (c_int, (_POINTER, _NUMBER, _POINTER)),
     "rig_apply": (c_int, (_POINTER, _NUMBER, _POINTER, _NUMBER, _POINTER, _POINTER)),
+    "rig_show": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _POINTER)),
     "timings_name": (_TEXT, (_NUMBER,)), "timings_suffix": (_TEXT, (_NUMBER,)),
     "timings_init": (c_int, (_POINTER, _NUMBER, _TEXT, _NUMBER)),
     "timings_next": (c_int, (_POINTER, _POINTER, _NUMBER, _POINTER, _POINTER)),
