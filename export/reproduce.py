@@ -98,9 +98,9 @@ def models(folder: Path) -> bool:
 def first_split() -> str:
     """The Markdown table of the first of RESULTS.md's random splits."""
     from labial.corpus import read_corpora
+    from labial.evaluate.material import Options
     from labial.evaluate.protocol import evaluate
     from labial.evaluate.report import title
-    from labial.evaluate.splits import Options
 
     (corpus,) = read_corpora([CORPORA / "grid_s1"])
     (outcome,) = evaluate(corpus, Options(splits=1))

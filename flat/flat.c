@@ -7,6 +7,10 @@
 
 #include "models.h"
 
+#ifndef __wasm__
+#include "functions.h"
+#endif
+
 #ifdef FLAT_FACES
 #include "attribution.h"
 #include "faces.h"
@@ -15,17 +19,17 @@
 #define TEXT(x) #x
 #define NUMBER(x) TEXT(x)
 
-uint32_t flat_interface(void)
+uint32_t interface(void)
 {
     return FLAT_INTERFACE;
 }
 
-const char *flat_version(void)
+const char *version(void)
 {
     return NUMBER(LABIAL_VERSION_MAJOR) "." NUMBER(LABIAL_VERSION_MINOR) "." NUMBER(LABIAL_VERSION_PATCH);
 }
 
-const char *flat_method(void)
+const char *method(void)
 {
     return LABIAL_PAPER ? "paper" : "labial";
 }
@@ -34,6 +38,14 @@ const char *result_text(int result)
 {
     return labial_result_text(result);
 }
+
+#ifndef __wasm__
+const char *function(unsigned number)
+{
+    static const char *const rows[] = { FLAT_FUNCTIONS };
+    return number < sizeof rows / sizeof *rows ? rows[number] : NULL;
+}
+#endif
 
 /* What an output of a rig refers to. */
 typedef struct {
@@ -157,7 +169,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 }
 
 /* Models of speech are told by the number of their phonemes. */
-static void hear_of(mouth_t *mouth, const labial_model_t *model)
+static void take_model(mouth_t *mouth, const labial_model_t *model)
 {
     if (model->phoneme_count == LABIAL_ARPABET_PHONEMES)
         mouth->speech = model;
@@ -166,7 +178,7 @@ static void hear_of(mouth_t *mouth, const labial_model_t *model)
 int mouth_init(mouth_t *mouth, const labial_model_t *model)
 {
     memset(mouth, 0, sizeof *mouth);
-    hear_of(mouth, model);
+    take_model(mouth, model);
     return labial_init(&mouth->stream, model, mouth->workspace, sizeof mouth->workspace, on_frame, mouth);
 }
 
@@ -174,7 +186,7 @@ int mouth_use(mouth_t *mouth, const labial_model_t *model)
 {
     const int result = labial_use(&mouth->stream, model);
     if (result == LABIAL_OK)
-        hear_of(mouth, model);
+        take_model(mouth, model);
     return result;
 }
 

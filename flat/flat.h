@@ -18,12 +18,18 @@
 #include "labial/visemes.h"
 
 /* Version of this interface; the Python package refuses a library of another one. */
-#define FLAT_INTERFACE 7
+#define FLAT_INTERFACE 8
 
-#ifdef __wasm__
+/* Stands before each function that other languages call; nothing else leaves the module or the shared library, where
+ * their symbols begin with flat_. flat/CMakeLists.txt makes the list of them that Python binds, so that they are declared
+ * here and in the other headers of this folder, and nowhere else. */
+#if defined(__wasm__)
 #define FLAT(name) __attribute__((export_name(#name)))
+#elif defined(_WIN32)
+#define FLAT(name) __declspec(dllexport)
 #else
-#define FLAT(name)
+#define FLAT_PRAGMA(text) _Pragma(#text)
+#define FLAT(name) FLAT_PRAGMA(redefine_extname name flat_##name) __attribute__((visibility("default")))
 #endif
 
 /* A stream with all that belongs to it. */
@@ -40,10 +46,16 @@ typedef struct {
 
 /* FLAT_INTERFACE, "MAJOR.MINOR.PATCH", the method that the library is built for ("labial" or "paper"), and a sentence for
  * a result. */
-FLAT(flat_interface) uint32_t flat_interface(void);
-FLAT(flat_version) const char *flat_version(void);
-FLAT(flat_method) const char *flat_method(void);
+FLAT(interface) uint32_t interface(void);
+FLAT(version) const char *version(void);
+FLAT(method) const char *method(void);
 FLAT(result_text) const char *result_text(int result);
+
+/* The functions with FLAT() by number: the name, and the types of the result and of the arguments, separated by blanks;
+ * null beyond the last. Not in WebAssembly, whose exports say that themselves. */
+#ifndef __wasm__
+FLAT(function) const char *function(unsigned number);
+#endif
 
 /* Bytes of what the caller makes room for: a stream, a loaded model, a laugh, a parser of timings, an output and a curve
  * of a rig. */

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Builds every package of a release from a tag.
 
-    git tag v0.3.0
-    packaging/release.py v0.3.0 -o DIR
+    git tag v0.4.0
+    packaging/release.py v0.4.0 -o DIR
 
 DIR gets the sources, the two files, the folders for Arduino, PlatformIO, ESP-IDF and Zephyr as archives, the Python
 package as source and as wheels for Linux, the npm packages, a bill of materials, and SHA256SUMS. Everything is built
@@ -74,7 +74,7 @@ def python(tree: Path, output: Path) -> None:
     with tempfile.TemporaryDirectory() as temporary:  # an environment with the build's own package
         run([sys.executable, "-m", "venv", temporary], tree)
         own = Path(temporary) / "bin" / "python"
-        run([own, "-m", "pip", "install", "-q", "-r", tree / "packaging" / "wheels.txt"], tree)
+        run([own, "-m", "pip", "install", "-q", "--require-hashes", "-r", tree / "packaging" / "wheels.txt"], tree)
         run([own, "-c", sources, output], tree)
 
 

@@ -4,6 +4,7 @@
 //     node assemble.mjs text FILE SCRIPT              a script's text as another script's default export
 //     node assemble.mjs data FILE WASM NOTICE         a file of bytes as a script's default export, below a notice
 //     node assemble.mjs model FILE WASM NAME NOTICE   the model that a module exports, as a binary one, in the same way
+//     node assemble.mjs table FILE JSON               the table of services, without what only readers of it need
 //     node assemble.mjs faces FOLDER DESCRIPTION...   the types of all faces' weights
 //     node assemble.mjs licence FILE LICENSE NOTICE NAME...   LICENSE, and NOTICE on the models of these names
 import { readFileSync, writeFileSync } from "node:fs";
@@ -77,6 +78,12 @@ function packed(file, bytes, notice) {
     writeFileSync(file, `/*! ${notice} */\nexport default "${text}";\n`);
 }
 
+function table(file, json) {
+    const { letters, pairs, visemes, services } = JSON.parse(read(json));
+    for (const service of Object.values(services)) delete service.from;
+    writeFileSync(file, `export default ${JSON.stringify({ letters, pairs, visemes, services })};\n`);
+}
+
 async function model(file, wasm, name, notice) {
     const { instance } = await WebAssembly.instantiate(readFileSync(wasm), {});
     packed(file, binary(instance.exports.memory.buffer, instance.exports[name].value), notice);
@@ -105,4 +112,4 @@ function licence(file, code, notice, ...names) {
 
 const [, , what, ...rest] = process.argv;
 const data = (file, wasm, notice) => packed(file, readFileSync(wasm), notice);
-await { scripts, text, data, model, faces, licence }[what](...rest);
+await { scripts, text, data, table, model, faces, licence }[what](...rest);

@@ -360,8 +360,8 @@ export class Voice<O extends Output = "faps"> {
     /** Begins the next utterance, whose sound begins at this time of the clock; by default where the one before ends, or
      * now if that is over. With the clock of an AudioContext or a MediaStream the first call says when the first
      * utterance begins; until then lips rest. A clock that was set back, as that of an element with another sound, counts
-     * from there. */
-    begin(at?: number): void;
+     * from there. `utterance` is what the service calls it, if it does: messages of others that are over are dropped. */
+    begin(at?: number | null, utterance?: string | null): void;
     /** The sound goes on so many seconds later than it would have, because its next piece came too late: lips wait. Only
      * for a clock that does not stop with the sound, as that of an AudioContext. */
     delay(seconds: number): void;
@@ -390,6 +390,8 @@ export class Voice<O extends Output = "faps"> {
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;
+    /** Words, phonemes and so on that were told and that made no sense; messages of utterances that are over. */
+    readonly counts: { readonly told: number; readonly skipped: number; readonly dropped: number };
     /** "ended": all of the utterance was shown, after finish(). */
     addEventListener(type: "ended", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
     removeEventListener(type: "ended", listener: (event: { readonly type: string }) => void): void;

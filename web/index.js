@@ -3,7 +3,7 @@ import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEM
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
-import * as timings from "./timings.js";
+import * as timings from "./services.js";
 import speech from "./speech.js";
 
 export { LabialError, Stream, Track, timings };
@@ -34,10 +34,11 @@ const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
 
 /** A model for streams, bundled or loaded. */
 export class Model {
-    constructor(labial, at, names) {
+    constructor(labial, at, names, range) {
         const { wasm } = labial;
         this.at = at;
         this.names = names;
+        this.range = range; // of the memory: all that its tables are in
         this.phonemes = wasm.model_phonemes(at);
         this.silence = wasm.model_silence(at);
         this.fps = wasm.model_fps(at);
@@ -69,7 +70,8 @@ export class Labial {
     constructor(instance, { laughter, hearing, words }) {
         this.wasm = instance.exports;
         this.memory = new Memory(this.wasm.memory, this.wasm.__heap_base.value);
-        this.models = { speech: new Model(this, this.wasm.bundled_model(0), this.wasm.bundled_names(0)), laughter: null };
+        this.models = { speech: new Model(this, this.wasm.bundled_model(0), this.wasm.bundled_names(0),
+            [0, this.wasm.__heap_base.value]), laughter: null };
         this.#owned.add(this.models.speech);
         this.faces = facesOf(this);
         this.attribution = this.memory.text(this.wasm.attribution());
@@ -139,7 +141,7 @@ export class Labial {
         }
         const names = [0, 1].map((number) => this.wasm.bundled_names(number));
         const own = names.find((one) => this.wasm.names_phonemes(one) === this.wasm.model_phonemes(at)) ?? 0;
-        const model = new Model(this, at, own);
+        const model = new Model(this, at, own, [at, at + size]);
         this.#owned.add(model);
         this.#loaded.register(model, [at, size]);
         return model;

@@ -22,8 +22,8 @@ RATE = 50
 
 @dataclass(frozen=True)
 class Board:
-    """An emulated board; `preset` is also the name of its toolchain file. `clock` is what a chip with this core usually
-    runs at, in MHz, and `chip` which one is meant."""
+    """An emulated board. `clock` is what a chip with this core usually runs at, in MHz, and `chip` which one is meant;
+    `options` are the compiler's, which name the processor."""
 
     preset: str
     core: str
@@ -33,20 +33,22 @@ class Board:
     emulator_package: str
     clock: int
     chip: str
+    options: Tuple[str, ...]
 
 
 _ARM = ("arm-none-eabi-", "gcc-arm-none-eabi", "qemu-system-arm", "qemu-system-arm")
 _RISCV = ("riscv64-unknown-elf-", "gcc-riscv64-unknown-elf", "qemu-system-riscv32", "qemu-system-misc")
 
+#: All boards under QEMU, one in each row of its list.
+TOOLCHAIN = Path(__file__).parents[2] / "boards" / "toolchains" / "qemu.cmake"
+
+
 def _boards() -> Tuple[Board, ...]:
-    """The boards whose toolchain file names the core and a usual chip's clock, by name."""
     found = []
-    for path in sorted((Path(__file__).parents[2] / "boards" / "toolchains").glob("*.cmake")):
-        text = path.read_text(encoding="utf-8")
-        said = dict(re.findall(r'^set\(LABIAL_BOARD_(\w+) "?([^")]*)"?\)$', text, re.MULTILINE))
-        if "CORE" in said:
-            tools = _ARM if "/arm.cmake" in text else _RISCV
-            found.append(Board(path.stem, said["CORE"], *tools, int(said["CLOCK"]), said["CHIP"]))
+    for row in re.findall(r'^  "([^"]*)"\)?$', TOOLCHAIN.read_text(encoding="utf-8"), re.MULTILINE):
+        preset, _, options, link, core, clock, chip = row.split("|")
+        tools = _ARM if link.startswith("arm/") else _RISCV
+        found.append(Board(preset, core, *tools, int(clock), chip, tuple(options.split())))
     return tuple(found)
 
 
@@ -58,23 +60,14 @@ def compiler(board: Board) -> str:
     return tool(f"{board.prefix}gcc", board.package, f"{board.core} code size")
 
 
-def cpu_flags(bench: Bench, board: Board) -> List[str]:
-    """The compiler options that name the processor, from the board's toolchain file."""
-    path = bench.source / "boards" / "toolchains" / f"{board.preset}.cmake"
-    found = re.search(r'LABIAL_BOARD_CPU "([^"]+)"', path.read_text(encoding="utf-8"))
-    if not found:
-        raise RuntimeError(f"{path}: sets no LABIAL_BOARD_CPU")
-    return found.group(1).split()
-
-
 def build(bench: Bench, board: Board) -> Dict[str, List[str]]:
     """Builds the board's images; the command that runs each, by its name."""
     what = f"What runs on {board.core}"
     tool(f"{board.prefix}gcc", board.package, what)
     tool(board.emulator, board.emulator_package, what)
     folder = bench.build / board.preset
-    toolchain = bench.source / "boards" / "toolchains" / f"{board.preset}.cmake"
-    run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={toolchain}", "-DCMAKE_BUILD_TYPE=Release",
+    run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
+         f"-DLABIAL_BOARD={board.preset}", "-DCMAKE_BUILD_TYPE=Release",
          "-DLABIAL_BUILD_BENCH=ON", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF",
          f"-DLABIAL_BENCH_SECONDS={SECONDS}"])
     run(["cmake", "--build", folder, "--parallel", "2"])

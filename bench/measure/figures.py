@@ -88,8 +88,7 @@ def readme(source: Sources) -> Iterator[Sentence]:
     """README.md."""
     bench = source.bench
     diff, other = source.results.table(RANDOM, DIFF), source.results.table(RANDOM, OTHER)
-    unseen = source.results.table(UNSEEN, DIFF)
-    voice_diff, voice = source.results.table(TALKERS, ON_ONE), source.results.table(TALKERS, ON_ONE_OTHER)
+    voice = source.results.table(TALKERS, ON_ONE_OTHER)
     talkers = _talkers(source)
     ram, code, model = bench("speech: workspace and labial_t"), bench("code -Os: total"), bench("speech: model")
     busy = bench("speech: share of the core")
@@ -105,9 +104,18 @@ def readme(source: Sources) -> Iterator[Sentence]:
     yield sentence("| closed lips | in {} % of p, b, m; people close them in {} % |",
                    count(100 * number(voice[DEVICE]["closure"])), count(100 * number(other["human"]["closure"])))
 
+
+def costs(source: Sources) -> Iterator[Sentence]:
+    """docs/figures.md."""
+    bench = source.bench
+    diff, other = source.results.table(RANDOM, DIFF), source.results.table(RANDOM, OTHER)
+    unseen = source.results.table(UNSEEN, DIFF)
+    voice_diff, voice = source.results.table(TALKERS, ON_ONE), source.results.table(TALKERS, ON_ONE_OTHER)
+    talkers = _talkers(source)
+    ram = bench("speech: workspace and labial_t")
     yield sentence("| code | {} | enough to play compiled-in models, `-Os`; the compiler adds {} of its own",
-                   count(code), count(bench("code -Os: compiler's helpers")))
-    yield sentence("| speech model | {} |", count(model))
+                   count(bench("code -Os: total")), count(bench("code -Os: compiler's helpers")))
+    yield sentence("| speech model | {} |", count(bench("speech: model")))
     yield sentence("| laughter model | {} |", count(bench("laughter: model")))
     yield sentence("| RAM | {} | stream {}, workspace {};", count(ram), count(bench("labial_t")),
                    count(bench("speech: workspace")))
@@ -147,7 +155,7 @@ def readme(source: Sources) -> Iterator[Sentence]:
 
 
 def _closeness(diff: Dict[str, str], other: Dict[str, str], *unseen: Dict[str, str]) -> List[str]:
-    """Cells of README's last table."""
+    """Cells of the last table of docs/figures.md."""
     closed = number(other["closure"])
     return [*(share(number(one["mean"]), 3) for one in (diff, *unseen)), share(number(other["correlation"])),
             share(number(other["amplitude"])), share(closed) if closed < 1 else decimal(closed, 2)]
@@ -275,20 +283,28 @@ def esp32_hear(source: Sources) -> Iterator[Sentence]:
                    count(source.bench("esp32-hear, lips.c: RAM", "m4")))
     yield sentence("| flash: `lips.c` {}, the library's clock {}, its hearing with `hear_small` {} | {} |", count(own),
                    count(clock), count(heard), count(own + clock + heard))
+    for text in ("when it has the {} ms of sound from the frame's begin on", "A frame needs the {} ms of sound "
+                 "after its begin", "holds less than {} ms, the lips are late", "task of its own writes it to I2S, {} ms later.",
+                 "**The answer comes {} ms later**"):
+        yield sentence(text, source.latency())
 
 
 def beside(source: Sources) -> Iterator[Sentence]:
     """docs/beside.md."""
     own, heard = source.bench("esp32-hear, lips.c: flash", "m4"), source.bench("hear_small: flash", "m4")
     yield sentence("only a player of {} KB of code", _kilobytes(source.bench("code -Os: beside.c"), 1))
-    yield sentence("| hears the sound that it plays ([esp32-hear.md](esp32-hear.md)) | {} KB | {} KB |",
-                   _kilobytes(own + heard), _kilobytes(source.bench("esp32-hear, lips.c: RAM", "m4"), 1))
+    yield sentence("| hears the sound that it plays ([esp32-hear.md](esp32-hear.md)) | {} KB | {} KB | {} ms of sound "
+                   "ahead |", _kilobytes(own + heard), _kilobytes(source.bench("esp32-hear, lips.c: RAM", "m4"), 1),
+                   source.latency())
     yield sentence("| flash, bytes | {}, and 266 for a division of 32 bits | {} |",
                    *(count(source.bench("code -Os: beside.c", target)) for target in ("m0", "m4")))
 
 
 def hearing(source: Sources) -> Iterator[Sentence]:
     """docs/hearing.md."""
+    for text in ("when the network has heard what follows, {} ms", "If the player has {} ms or more in its buffer",
+                 "otherwise its last {} ms have no frames", "the lips are {} ms late, or the sound has to wait"):
+        yield sentence(text, source.latency())
     for model in ("hear_small", "hear_large"):
         worst = [source.bench(f"{model}, 16000 Hz: worst frame", target) for target in TARGETS]
         worst += [source.bench(f"{model}, {rate} Hz: worst frame", "m4") for rate in (24000, 48000)]
@@ -484,6 +500,7 @@ PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
     "docs/browser.md": browser,
     "docs/esp32-hear.md": esp32_hear,
     "docs/experiments.md": experiments,
+    "docs/figures.md": costs,
     "docs/hearing.md": hearing,
     "docs/laughing.md": laughing,
     "docs/method.md": method,

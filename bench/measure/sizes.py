@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Dict, List
 
-from measure.boards import Board, compiler, cpu_flags
+from measure.boards import Board, compiler
 from measure.core import Bench, run, version
 
 #: Files of lib/ that play compiled-in models. A program links the others only if it calls them, or for models from
@@ -45,7 +45,7 @@ COUNT = 8
 
 def compile_command(bench: Bench, board: Board, level: str) -> List[str]:
     """The command that compiles a file of the library for a board, up to the file's name."""
-    return [compiler(board), *cpu_flags(bench, board), level, "-std=c99", "-ffreestanding", "-isystem",
+    return [compiler(board), *board.options, level, "-std=c99", "-ffreestanding", "-isystem",
             str(bench.source / "boards" / "include"), f"-I{bench.source / 'include'}", "-c"]
 
 
@@ -102,7 +102,7 @@ def measure(bench: Bench, board: Board) -> None:
 
 def _face(bench: Bench, board: Board, command: List[str], scratch: Path, tool_version: str) -> None:
     """What a program links of face.c for servos that follow a stream, and with what that needs of rig.c and fixed.c."""
-    link = [compiler(board), *cpu_flags(bench, board), "-nostdlib", "-r", "-Wl,--gc-sections",
+    link = [compiler(board), *board.options, "-nostdlib", "-r", "-Wl,--gc-sections",
             *(f"-Wl,-u,{name}" for name in FACE)]
     objects: List[Path] = []
     for stem, figure in (("face", "a face, of face.c"), ("rig", ""), ("fixed", "a face, with rig.c and fixed.c")):
@@ -119,7 +119,7 @@ def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
     """Bytes that `objects` link from the compiler's library, such as division; raises RuntimeError if they need more
     than that and the functions that every C compiler relies on."""
     prefix, linked = board.prefix, objects[0].with_name("linked.o")
-    flags = cpu_flags(bench, board)
+    flags = list(board.options)
     archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()
     link_map = run([compiler(board), *flags, "-nostdlib", "-r", "-Wl,-M", *objects, archive, "-o", linked])
     undefined = run([f"{prefix}nm", "-u", linked]).stdout.decode()

@@ -101,6 +101,14 @@ class Sources:
         """A limit of include/labial/config.h."""
         return self.constant("include/labial/config.h", name)
 
+    def latency(self) -> str:
+        """Milliseconds from the begin of a frame until the bundled models of hearing know it, as their headers say."""
+        texts = [path.read_text(encoding="utf-8") for path in sorted((self.root / "lib" / "models").glob("hear_*.h"))]
+        found = {said for text in texts for said in re.findall(r"\b(\d+)\s(?:\* )?ms from a frame's begin", text)}
+        if len(found) != 1:
+            raise ValueError("lib/models/hear_*.h: the models do not name one latency")
+        return found.pop()
+
     def constant(self, header: str, name: str) -> int:
         """A number that a header defines."""
         text = (self.root / header).read_text(encoding="utf-8")

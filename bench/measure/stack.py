@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Dict, List, Set, Tuple
 
-from measure.boards import Board, compiler, cpu_flags
+from measure.boards import Board, compiler
 from measure.core import Bench, run, version
 from measure.sizes import LEVELS, compile_command
 
@@ -116,7 +116,7 @@ def measure(bench: Bench, board: Board) -> None:
                 run([*command, *own, path, "-o", Path(scratch) / f"{path.stem}.o"])
             for found in sorted(Path(scratch).glob("*.ci")):
                 graph.add_ci(found.read_text(encoding="utf-8"))
-        add_archive(graph, board, cpu_flags(bench, board))
+        add_archive(graph, board, list(board.options))
         headers = sorted(path.name for path in (bench.source / "include" / "labial").glob("*.h")
                          if path.name != "words.h")
         everything = [name for header in headers for name in public_functions(bench, header)]

@@ -4,6 +4,7 @@
     python3 server.py --rig face.toml                    # at port 8765, until Ctrl-C
     python3 server.py --rig face.toml --ahead 2          # sends up to two seconds before they are heard
     python3 server.py --rig face.toml --repeat 10        # each packet has the frames of the one before once more
+    python3 server.py --rig face.toml --with-sound       # hears the voice, too, for lips nearer to people's
 
 Before it prints its port it has checked all that it was given and spoken a word; what is wrong is a line on standard
 error, and status 1. A toy that comes when there are enough of them, or that is silent for long, is hung up on.
@@ -53,6 +54,15 @@ class Spoken(NamedTuple):
     rate: int  #: samples per second
     timings: List[Tuple[str, float]]  #: phonemes with their milliseconds
 
+    def frames(self, with_sound: bool) -> List[Tuple[int, ...]]:
+        """The lips: those of the phonemes, `with_sound` with a share of what is heard in the sound."""
+        said = labial.render(self.timings, exact=True)
+        if not with_sound:
+            return said
+        with labial.Hearing(self.rate, exact=True) as hearing:
+            hearing.measure(self.sound)
+            return labial.with_sound(said, [frame.faps for frame in hearing.frames([self.sound])][: len(said)])
+
 
 def flite(*arguments: object) -> str:
     """What flite prints. Raises LabialError if it cannot be run, fails, or takes too long."""
@@ -87,6 +97,7 @@ class Service:
 
     def __init__(self, options: argparse.Namespace) -> None:
         self.ahead, self.idle, self.connections = options.ahead, options.idle, options.connections
+        self.with_sound = options.with_sound
         self._voice, self._rig, self._repeat = options.voice, options.rig, options.repeat
         self.lips()
         known = flite("-lv").partition(":")[2].split()
@@ -141,7 +152,7 @@ class Toy:
     async def _send_utterance(self, spoken: Spoken) -> None:
         """Sends sound in blocks, each after the packets of lips that begin before its end."""
         rate = self._service.rate
-        packets = self._lips.packets(labial.render(spoken.timings, exact=True), sample=self._sent, sample_rate=rate)
+        packets = self._lips.packets(spoken.frames(self._service.with_sound), sample=self._sent, sample_rate=rate)
         block = 2 * rate * BLOCK // 1000
         for start in range(0, len(spoken.sound), block):
             sound = spoken.sound[start : start + block].ljust(block, b"\0")  # whole frames, as of an Opus packet
@@ -229,6 +240,7 @@ async def main() -> int:
     parser.add_argument("--port", type=whole(0, 65535), default=8765, help="0 for any that is free")
     parser.add_argument("--ahead", type=number(0, 600), default=1.0, help="seconds that are sent before they are heard")
     parser.add_argument("--repeat", type=whole(0, 254), default=0, help="frames that each packet repeats")
+    parser.add_argument("--with-sound", action="store_true", help="hear the voice, too, for lips nearer to people's")
     parser.add_argument("--connections", type=whole(1, 10000), default=64, help="most toys at a time")
     parser.add_argument("--idle", type=number(0.1, 86400), default=600.0, help="seconds without a word from a toy")
     options = parser.parse_args()

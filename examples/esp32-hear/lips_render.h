@@ -1,5 +1,5 @@
 /*
- * lips_render.h - a renderer of Espressif's av_render that hears what it plays (lips.h), 120 ms before it plays it.
+ * lips_render.h - a renderer of Espressif's av_render that hears what it plays (lips.h), LIPS_RENDER_DELAY before.
  *
  * av_render decodes sound when it is to be played, too late for lips. This renderer stands in front of another one and
  * holds the sound back in a buffer, from which a task of its own writes it to the other.
@@ -9,7 +9,7 @@
 
 #include "audio_render.h"
 
-/* Milliseconds that sound is held back, at least what hearing needs. */
+/* Milliseconds that sound is held back, at least the latency of hearing. */
 #ifndef LIPS_RENDER_DELAY
 #define LIPS_RENDER_DELAY 120
 #endif

@@ -1,5 +1,5 @@
 /*
- * arkit.h - what moves a face. Values are weights, 1000 for 1. Written by labial rig 0.3.0; do not edit.
+ * arkit.h - what moves a face. Values are weights, 1000 for 1. Written by labial rig 0.4.0; do not edit.
  */
 #ifndef LABIAL_RIG_ARKIT_H
 #define LABIAL_RIG_ARKIT_H

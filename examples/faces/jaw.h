@@ -1,5 +1,5 @@
 /*
- * jaw.h - what moves a face. Values are microseconds. Written by labial rig 0.3.0; do not edit.
+ * jaw.h - what moves a face. Values are microseconds. Written by labial rig 0.4.0; do not edit.
  */
 #ifndef LABIAL_RIG_JAW_H
 #define LABIAL_RIG_JAW_H

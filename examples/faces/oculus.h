@@ -1,5 +1,5 @@
 /*
- * oculus.h - what moves a face. Values are weights, 1000 for 1. Written by labial rig 0.3.0; do not edit.
+ * oculus.h - what moves a face. Values are weights, 1000 for 1. Written by labial rig 0.4.0; do not edit.
  */
 #ifndef LABIAL_RIG_OCULUS_H
 #define LABIAL_RIG_OCULUS_H

@@ -1,6 +1,6 @@
 /*
  * servos.c - what moves a face. Values are ticks of 4.88 us (PCA9685 with prescale register 121, 50.03 Hz).
- * Written by labial rig 0.3.0; do not edit.
+ * Written by labial rig 0.4.0; do not edit.
  */
 #include "servos.h"
 

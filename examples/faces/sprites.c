@@ -1,5 +1,5 @@
 /*
- * sprites.c - what moves a face. Values are plain units. Written by labial rig 0.3.0; do not edit.
+ * sprites.c - what moves a face. Values are plain units. Written by labial rig 0.4.0; do not edit.
  */
 #include "sprites.h"
 

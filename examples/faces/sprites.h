@@ -1,5 +1,5 @@
 /*
- * sprites.h - what moves a face. Values are plain units. Written by labial rig 0.3.0; do not edit.
+ * sprites.h - what moves a face. Values are plain units. Written by labial rig 0.4.0; do not edit.
  */
 #ifndef LABIAL_RIG_SPRITES_H
 #define LABIAL_RIG_SPRITES_H

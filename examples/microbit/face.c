@@ -1,5 +1,5 @@
 /*
- * face.c - what moves a face. Values are microseconds. Written by labial rig 0.3.0; do not edit.
+ * face.c - what moves a face. Values are microseconds. Written by labial rig 0.4.0; do not edit.
  */
 #include "face.h"
 

@@ -6,7 +6,7 @@
     python3 follow.py --to jsonl         # an object per frame for another program: number, FAPs, ARKit's blendshapes
 
 The microphone is read by the package sounddevice where that is installed (`pip install sounddevice`), else by arecord.
-A frame is shown 120 ms after its sound, plus what the sound device needs.
+A frame is shown `latency` of labial.Hearing after its sound, plus what the sound device needs.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 /*
  * talk.h - 3.4 s of motion from talk.lab, 50 frames a second, a byte for each of 1 output. Values are microseconds.
- * Written by labial bake 0.3.0; do not edit.
+ * Written by labial bake 0.4.0; do not edit.
  */
 #ifndef LABIAL_BAKED_TALK_H
 #define LABIAL_BAKED_TALK_H

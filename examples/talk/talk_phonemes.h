@@ -1,5 +1,5 @@
 /*
- * talk_phonemes.h - 30 phonemes, 3.1 s, of talk.lab, for the model speech_en. Written by labial bake 0.3.0; do not
+ * talk_phonemes.h - 30 phonemes, 3.1 s, of talk.lab, for the model speech_en. Written by labial bake 0.4.0; do not
  * edit.
  */
 #ifndef LABIAL_PHONEMES_TALK_PHONEMES_H

@@ -21,16 +21,16 @@ try:
     from livekit.agents.types import DEFAULT_API_CONNECT_OPTIONS, TimedString
     from livekit.agents.voice.io import AudioOutput, AudioOutputCapabilities
 
-    from livekit_lips import Lips
+    from labial.integrations.livekit import LipsOutput
 except ModuleNotFoundError as error:
     sys.exit(f"livekit_agent: this needs the package {error.name}: pip install livekit-agents")
 
 
 class StandInTTS(tts.TTS):
-    """Hums, and times its words."""
+    """Hums, and times its words if `words` is true."""
 
-    def __init__(self) -> None:
-        super().__init__(capabilities=tts.TTSCapabilities(streaming=True, aligned_transcript=True),
+    def __init__(self, words: bool = True) -> None:
+        super().__init__(capabilities=tts.TTSCapabilities(streaming=True, aligned_transcript=words),
                          sample_rate=stand_in.RATE, num_channels=1)
 
     def synthesize(self, text: str, **options: Any) -> tts.ChunkedStream:
@@ -55,9 +55,10 @@ class StandInStream(tts.SynthesizeStream):
         output_emitter.start_segment(segment_id=utils.shortuuid())
         moment = 0.0
         for said in stand_in.say(text):
-            output_emitter.push_timed_transcript([
-                TimedString(f"{word} ", start_time=moment + start, end_time=moment + end)
-                for word, start, end in said.words])
+            if self._tts.capabilities.aligned_transcript:
+                output_emitter.push_timed_transcript([
+                    TimedString(f"{word} ", start_time=moment + start, end_time=moment + end)
+                    for word, start, end in said.words])
             output_emitter.push(said.sound)
             moment += len(said.sound) / (2 * stand_in.RATE)
         output_emitter.end_segment()
@@ -100,10 +101,10 @@ class StandInOutput(AudioOutput):
         self.on_playback_finished(playback_position=played, interrupted=interrupted)
 
 
-async def main(*texts: str, interrupt_after: Optional[float] = None) -> List[Any]:
+async def main(*texts: str, interrupt_after: Optional[float] = None, words: bool = True) -> List[Any]:
     """Says texts, prints frames and returns them; half a second after the last word it ends."""
-    session = AgentSession(tts=StandInTTS())
-    session.output.audio = lips = Lips(StandInOutput())
+    session = AgentSession(tts=StandInTTS(words))
+    session.output.audio = lips = LipsOutput(StandInOutput())
     await session.start(Agent(instructions="Hum."))
     frames: List[Any] = []
 

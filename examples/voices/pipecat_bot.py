@@ -24,15 +24,16 @@ try:
     from pipecat.transports.base_transport import TransportParams
     from pipecat.workers.runner import WorkerRunner
 
-    from pipecat_lips import Lips
+    from labial.integrations.pipecat import LipsProcessor
 except ModuleNotFoundError as error:
     sys.exit(f"pipecat_bot: this needs the package {error.name}: pip install pipecat-ai")
 
 
 class StandInTTS(TTSService):
-    """Hums, and times its words."""
+    """Hums, and times its words if `words` is true."""
 
-    def __init__(self) -> None:
+    def __init__(self, words: bool = True) -> None:
+        self._words = words
         super().__init__(sample_rate=stand_in.RATE, push_start_frame=True, push_stop_frames=True,
                          push_text_frames=False, stop_frame_timeout_s=0.3,
                          settings=TTSSettings(model=None, voice=None, language=None))
@@ -41,7 +42,8 @@ class StandInTTS(TTSService):
         """The sound of a text."""
         moment = 0.0
         for said in stand_in.say(text):
-            await self.add_word_timestamps([(word, moment + start) for word, start, _ in said.words], context_id)
+            if self._words:
+                await self.add_word_timestamps([(word, moment + start) for word, start, _ in said.words], context_id)
             yield TTSAudioRawFrame(said.sound, stand_in.RATE, 1, context_id=context_id)
             moment += len(said.sound) / (2 * stand_in.RATE)
 
@@ -68,7 +70,7 @@ async def main(*texts: str, show: Any = None) -> None:
     async def printed(frame: labial.Frame) -> None:
         print(f"{frame.number:4} jaw {frame.rig('arkit')['jawOpen']:.3f}", flush=True)
 
-    lips = Lips(show or printed)
+    lips = LipsProcessor(show or printed)
     pipeline = Pipeline([StandInTTS(), lips, StandInOutput(), lips.heard])
     worker = PipelineWorker(pipeline, params=PipelineParams(audio_out_sample_rate=stand_in.RATE), enable_rtvi=False)
     await worker.queue_frames([*map(TTSSpeakFrame, texts), EndFrame()])

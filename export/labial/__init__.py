@@ -26,13 +26,14 @@ from typing import TYPE_CHECKING, Any, List
 
 #: The bundled models. The order of a kind's phonemes is part of the interface: their names are those of every model.
 BUNDLED = ("speech_en", "laughter_synthetic")
-__version__ = "0.3.0"
+__version__ = "0.4.0"
 
 if TYPE_CHECKING:
     from labial.runtime.beside import Beside
     from labial.runtime.face import Face
     from labial.runtime.frame import Frame, Latency
     from labial.runtime.hearing import Hearing
+    from labial.runtime.mixing import with_sound
     from labial.runtime.models import Model
     from labial.runtime.render import read_timings, render
     from labial.runtime.rig import Rig
@@ -44,11 +45,12 @@ if TYPE_CHECKING:
     laughter_synthetic: Model
 
 __all__ = ["Beside", "Face", "Frame", "Hearing", "Latency", "Model", "Rig", "Stream", "Voice", "character_timings",
-           "phonemes", "read_timings", "render", "word_timings", *BUNDLED]
+           "phonemes", "read_timings", "render", "with_sound", "word_timings", *BUNDLED]
 
 _HOMES = {"Beside": "beside", "Face": "face", "Frame": "frame", "Hearing": "hearing", "Latency": "frame",
           "Model": "models", "Rig": "rig", "Stream": "stream", "Voice": "voice", "character_timings": "words",
-          "phonemes": "words", "word_timings": "words", "read_timings": "render", "render": "render"}  # fmt: skip
+          "phonemes": "words", "word_timings": "words", "read_timings": "render", "render": "render",
+          "with_sound": "mixing"}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""The command ``labial``, also ``python -m labial``. `labial.commands` lists its commands and has a module for each."""
+"""The command ``labial``, also ``python -m labial``. `labial.commands` lists its commands and their modules."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"labial {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, text in COMMANDS.items():
+    for name, (module, text) in COMMANDS.items():
         command = commands.add_parser(name, help=text)
         if name in arguments:
-            module = import_module(f"labial.commands.{name.replace('-', '_')}")
-            module.add_arguments(command)
-            command.set_defaults(run=module.run)
+            functions, suffix = vars(import_module(f"labial.commands.{module}")), name.replace("-", "_")
+            functions[f"add_{suffix}"](command)
+            command.set_defaults(run=functions[f"run_{suffix}"])
     return top
 
 

@@ -16,32 +16,11 @@
  * `sample` is the number of the sample that is heard now: the first sample of a session has the number 0, and each one
  * that the server sent since is counted, played or not. Dropping sound therefore does not shift the lips.
  *
- * A packet, numbers with the low byte first:
- *
- *     0     LABIAL_BESIDE_FORMAT
- *     1     1 to cancel, else 0
- *     2     outputs, 1 .. 255
- *     3     frames, 0 .. 255
- *     4..7  number of the first frame, modulo 2^32; frame k begins with sample k * R / 50 at R samples per second
- *     8..9  the session: another number than that of the session before
- *     10    the face at rest, a byte for each output
- *     ..    the frames, a byte for each output of each
- *
- * Each packet stands alone: it may be lost, doubled or late, and may repeat frames of earlier ones. A packet that
- * cancels makes all earlier frames void; its own number is that of the next frame. A packet of another session than the
- * packet before does the same, and its numbers have nothing to do with the earlier ones: a server may begin again at any
- * time, and a player may join at any time.
- *
- * Without a frame to show for LABIAL_BESIDE_HOLD calls, because packets are missing or the sound stands still, the
- * values ease to the face at rest in LABIAL_BESIDE_EASE calls, or more where a limit asks for them. No value ever
- * changes by more than its limit (labial_beside_limit()) from one call to the next, whatever packets say; a frame that
- * is further away is approached.
- *
- * Packets are not trusted: with any bytes, of any size, and any sample number the library reads and writes only the
- * memory it was given. They have no key either: who can send to the player moves the face, within its limits. Let them
- * come through TLS or a network that you trust. Integers only, no allocation, no state but the structure and its memory,
- * the same bits on every target, also where an int has 16 bits: the files beside.h, beside.c and result.h need no
- * other file of the library. Calls on one player must not overlap; the structure may be moved between calls.
+ * docs/beside.md has the format of packets, how a server makes them, and how far they are trusted. With any bytes,
+ * of any size, and any sample number, the library reads and writes only the memory it was given; whoever can send to
+ * the player moves the face, within its limits (labial_beside_limit()). Integers only, no allocation, the same bits
+ * on every target, also where an int has 16 bits: the files beside.h, beside.c and result.h need no other file of
+ * the library. Calls on one player must not overlap; the structure may be moved between calls.
  */
 #ifndef LABIAL_BESIDE_H
 #define LABIAL_BESIDE_H
@@ -102,8 +81,9 @@ typedef struct labial_beside labial_beside_t;
          : (unsigned)((change)*255L / LABIAL_BESIDE_SPAN_(at_0, at_255)))
 
 /*
- * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of 1 .. 50,000,000 `samples_per_second`. `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest
- * power of two up to LABIAL_BESIDE_FRAMES_MAX. Where the outputs stand is not known: the first packet puts them at rest,
+ * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of 1 .. 50,000,000 `samples_per_second`.
+ * `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest power of two up
+ * to LABIAL_BESIDE_FRAMES_MAX. Where the outputs stand is not known: the first packet puts them at rest,
  * without a limit. Outputs have no limits until labial_beside_limit().
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RANGE (outputs), LABIAL_ERROR_SAMPLE_RATE, or
@@ -113,8 +93,8 @@ int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t sampl
                        size_t size);
 
 /*
- * The largest change of an output, 0 .. outputs - 1, from one call of labial_beside_tick() to the next: `most` steps of the
- * 255 between its ends, 1 .. 255. It is the servo's, and holds for every packet; give the server's description of the
+ * The largest change of an output, 0 .. outputs - 1, from one call of labial_beside_tick() to the next: `most` steps of
+ * the 255 between its ends, 1 .. 255. It is the servo's, and holds for every packet; give the server's description of the
  * face the same (`slew`), so that what it sends arrives unchanged.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised) or LABIAL_ERROR_RANGE.
@@ -123,9 +103,8 @@ int labial_beside_limit(labial_beside_t *player, unsigned output, unsigned most)
 
 /*
  * A connection begins, beside sound of so many samples per second: samples count from 0, and the next packet is the
- * first of its session. Frames are dropped; the face eases to rest from where it is, within its limits, which stay. A program
- * that is told of sessions by packets alone (LABIAL_NEW_SESSION) does not
- * need it.
+ * first of its session. Frames are dropped; the face eases to rest from where it is, within its limits, which stay. A
+ * program that learns of sessions by packets alone (LABIAL_NEW_SESSION) does not need it.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised) or LABIAL_ERROR_SAMPLE_RATE.
  */

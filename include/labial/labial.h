@@ -40,7 +40,7 @@ extern "C" {
 #endif
 
 #define LABIAL_VERSION_MAJOR 0
-#define LABIAL_VERSION_MINOR 3
+#define LABIAL_VERSION_MINOR 4
 #define LABIAL_VERSION_PATCH 0
 
 /* Longest duration of one phoneme, milliseconds: one hour. */

@@ -1,6 +1,6 @@
 /*
  * hear_small.h - the model of hearing, 68 units in 3 blocks, 120 ms from a frame's begin until it is known.
- * Written by labial export 0.3.0; do not edit. Trained on speech of LibriSpeech (c) 2014 Vassil Panayotov, Guoguo
+ * Written by labial export 0.4.0; do not edit. Trained on speech of LibriSpeech (c) 2014 Vassil Panayotov, Guoguo
  * Chen, Daniel Povey and Sanjeev Khudanpur, CC BY 4.0, https://www.openslr.org/12; LibriTTS (c) 2019 Heiga Zen
  * and others, Google, CC BY 4.0, https://www.openslr.org/60; the CSTR VCTK Corpus 0.92 (c) 2019 Junichi
  * Yamagishi, Christophe Veaux and Kirsten MacDonald, University of Edinburgh, CC BY 4.0,

@@ -1,5 +1,5 @@
 /*
- * laughter_synthetic.h - the laughter model, method labial, 50 frames per second. Written by labial export 0.3.0;
+ * laughter_synthetic.h - the laughter model, method labial, 50 frames per second. Written by labial export 0.4.0;
  * do not edit. Trained on a synthetic corpus: the timings follow published statistics, the amplitudes are design
  * choices.
  */

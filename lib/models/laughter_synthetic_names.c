@@ -1,6 +1,6 @@
 /*
  * laughter_synthetic_names.c - names of the phonemes of the laughter model, method labial, 50 frames per second.
- * Written by labial export 0.3.0; do not edit. Trained on a synthetic corpus: the timings follow published
+ * Written by labial export 0.4.0; do not edit. Trained on a synthetic corpus: the timings follow published
  * statistics, the amplitudes are design choices.
  */
 #include "laughter_synthetic.h"

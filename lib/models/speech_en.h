@@ -1,5 +1,5 @@
 /*
- * speech_en.h - the speech model, method labial, 50 frames per second. Written by labial export 0.3.0; do not
+ * speech_en.h - the speech model, method labial, 50 frames per second. Written by labial export 0.4.0; do not
  * edit. Trained on the GRID audio-visual speech corpus (Cooke, Barker, Cunningham and Shao, 2006), CC BY 4.0, and
  * on measurements of addresses by presidents of the United States, works of the federal government (public
  * domain, 17 USC 105).
@@ -71,7 +71,7 @@ enum {
     SPEECH_EN_ZH = 39
 };
 
-/* The model, 24806 bytes on a 32-bit target. */
+/* The model, 24446 bytes on a 32-bit target. */
 extern const labial_model_t speech_en;
 
 /* Its labels and aliases; linked only when used. */

@@ -1,6 +1,6 @@
 /*
  * speech_en_names.c - names of the phonemes of the speech model, method labial, 50 frames per second. Written by
- * labial export 0.3.0; do not edit. Trained on the GRID audio-visual speech corpus (Cooke, Barker, Cunningham and
+ * labial export 0.4.0; do not edit. Trained on the GRID audio-visual speech corpus (Cooke, Barker, Cunningham and
  * Shao, 2006), CC BY 4.0, and on measurements of addresses by presidents of the United States, works of the
  * federal government (public domain, 17 USC 105).
  */

@@ -1,5 +1,5 @@
 /*
- * words_en.c - how words sound, for labial/words.h. Written by labial export 0.3.0; do not edit.
+ * words_en.c - how words sound, for labial/words.h. Written by labial export 0.4.0; do not edit.
  *
  * Trained on the CMU Pronouncing Dictionary, which comes with this notice:
  *

@@ -61,6 +61,12 @@ def test_answers_follow_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
     assert frames[: int(50 * length) - 15] == whole[: int(50 * length) - 15] and frames[second:] == whole[second:]
 
 
+def test_a_voice_without_words_is_heard() -> None:
+    """The mouth moves with the sound and comes to rest behind it; without hearing it stayed shut."""
+    frames = [frame.faps for frame in asyncio.run(livekit_agent.main(TEXT, words=False))]
+    assert sum(faps[0] > 50 for faps in frames[:-30]) > 30 and len(set(frames[-5:])) == 1
+
+
 def test_an_interruption_closes_the_mouth() -> None:
     """Within 200 ms."""
     frames = [frame.faps for frame in asyncio.run(livekit_agent.main(TEXT, interrupt_after=0.7))]

@@ -16,14 +16,15 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "voices"
 sys.path.insert(0, str(EXAMPLES))
 pytest.importorskip("pipecat")
 
-import pipecat_bot  # noqa: E402
-import stand_in  # noqa: E402
 from pipecat.frames.frames import EndFrame, InterruptionFrame, TTSSpeakFrame  # noqa: E402
 from pipecat.pipeline.pipeline import Pipeline  # noqa: E402
 from pipecat.pipeline.worker import PipelineParams, PipelineWorker  # noqa: E402
 from pipecat.processors.frame_processor import FrameDirection, FrameProcessor  # noqa: E402
 from pipecat.workers.runner import WorkerRunner  # noqa: E402
-from pipecat_lips import Lips, LipsFrame  # noqa: E402
+
+import pipecat_bot  # noqa: E402
+import stand_in  # noqa: E402
+from labial.integrations.pipecat import LipsFrame, LipsProcessor  # noqa: E402
 
 TEXT = "Maybe people hum by the pool."
 
@@ -54,9 +55,9 @@ class Behind(FrameProcessor):
         await self.push_frame(frame, direction)
 
 
-async def run(*texts: str, interrupt: float = 0.0) -> Tuple[Output, Behind]:
-    output, behind, lips = Output(), Behind(), Lips(delay=-0.04)
-    pipeline = Pipeline([pipecat_bot.StandInTTS(), lips, output, lips.heard, behind])
+async def run(*texts: str, interrupt: float = 0.0, words: bool = True) -> Tuple[Output, Behind]:
+    output, behind, lips = Output(), Behind(), LipsProcessor(delay=-0.04)
+    pipeline = Pipeline([pipecat_bot.StandInTTS(words), lips, output, lips.heard, behind])
     worker = PipelineWorker(pipeline, params=PipelineParams(audio_out_sample_rate=stand_in.RATE), enable_rtvi=False)
     runner = WorkerRunner(handle_sigint=False)
     await runner.add_workers(worker)
@@ -113,10 +114,17 @@ def test_texts_follow_each_other() -> None:
     assert shown <= 60, shown  # the transport rounds a sound's length up to 40 ms
 
 
+def test_a_voice_without_words_is_heard() -> None:
+    """The mouth moves with the sound and comes to rest behind it; without hearing it stayed shut."""
+    _, behind = asyncio.run(run(TEXT, words=False))
+    frames = [frame.faps for _, frame in behind.frames]
+    assert sum(faps[0] > 50 for faps in frames) > 30, frames
+
+
 def test_an_interruption_closes_the_mouth() -> None:
     """Within 200 ms, and the next answer moves it again."""
     _, behind = asyncio.run(run(TEXT, TEXT, interrupt=0.7))
     frames = [frame.faps for _, frame in behind.frames]
     neutral = [number for number, faps in enumerate(frames) if not any(faps)]
-    assert neutral and 30 < neutral[0] < 50
+    assert neutral and max(faps[0] for faps in frames[: neutral[0]]) > 50 and neutral[0] < 50
     assert max(faps[0] for faps in frames[neutral[0]:]) > 100

@@ -1,6 +1,6 @@
 /*
  * hear_fixture.c - the model of hearing, 8 units in 3 blocks, 100 ms from a frame's begin until it is known.
- * Written by labial export 0.3.0; do not edit.
+ * Written by labial export 0.4.0; do not edit.
  */
 #include "hear_fixture.h"
 

@@ -1,6 +1,6 @@
 /*
  * hear_fixture.h - the model of hearing, 8 units in 3 blocks, 100 ms from a frame's begin until it is known.
- * Written by labial export 0.3.0; do not edit.
+ * Written by labial export 0.4.0; do not edit.
  */
 #ifndef LABIAL_MODEL_HEAR_FIXTURE_H
 #define LABIAL_MODEL_HEAR_FIXTURE_H

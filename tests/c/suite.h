@@ -84,8 +84,13 @@ static size_t suite_count;
             fail_msg("%s (frame %zu)", (host)->complaint, (host)->recorder.count);                                     \
     } while (0)
 
+/* The program's main(), or in a program of several suites a function that theirs calls. */
+#ifndef SUITE_MAIN
+#define SUITE_MAIN main
+#endif
 #define SUITE(setup, teardown)                                                                                         \
-    int main(void)                                                                                                     \
+    int SUITE_MAIN(void);                                                                                              \
+    int SUITE_MAIN(void)                                                                                               \
     {                                                                                                                  \
         return cmocka_run_group_tests(suite, setup, teardown);                                                         \
     }

@@ -283,7 +283,8 @@ static void every_blob_is_refused(void **state)
 }
 
 /* A blob is little-endian and used in place. */
-int main(void)
+int SUITE_MAIN(void);
+int SUITE_MAIN(void)
 {
     const struct CMUnitTest elsewhere[] = { cmocka_unit_test(the_serialisers_checksum_is_the_known_one),
                                             cmocka_unit_test(every_blob_is_refused) };

@@ -144,6 +144,14 @@ TEST(what_cannot_be)
     assert_int_equal(labial_clock_init(&clock, 0), LABIAL_ERROR_SAMPLE_RATE);
     labial_clock_play(&clock, 0, 100, 0);
     assert_int_equal(labial_clock_at(&clock, 0, &sample), -1);
+    assert_int_equal(labial_clock_init(&clock, 1000), LABIAL_OK);
+    labial_clock_play(&clock, 0, 1000, INT64_MIN); /* at -LABIAL_CLOCK_MAX */
+    assert_int_equal(labial_clock_at(&clock, INT64_MAX, &sample), 2 * LABIAL_CLOCK_MAX - 1000000);
+    assert_int_equal(labial_clock_at(&clock, INT64_MIN, &sample), 0);
+    assert_int_equal(sample, 0);
+    labial_clock_play(&clock, INT64_MAX, 1000, INT64_MAX);
+    assert_int_equal(labial_clock_at(&clock, INT64_MAX, &sample), 0);
+    assert_int_equal(sample, LABIAL_CLOCK_MAX);
     assert_int_equal(labial_clock_init(&clock, LABIAL_CLOCK_SAMPLE_RATE_MAX + 1), LABIAL_ERROR_SAMPLE_RATE);
     labial_clock_play(&clock, 0, 100, 0);
     labial_clock_stop(&clock);

@@ -304,6 +304,10 @@ TEST(a_cancel_eases_to_the_neutral_face)
         assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
         assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
         assert_int_equal(frame_count, before + eases[i].frames);
+        assert_int_equal(labial_hear_latency(&hear).frames, 0);
+        assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+        assert_int_equal(labial_hear_end(&hear), LABIAL_OK); /* of no sound: nothing was left behind */
+        assert_int_equal(frame_count, before + eases[i].frames);
     }
 }
 

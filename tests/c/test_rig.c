@@ -250,6 +250,22 @@ TEST(curve_bends)
     assert_int_equal(moved(&output, 1500, INT16_MAX), 1000);
 }
 
+/* Each of as many segments as a curve may have. */
+TEST(full_curve_bends_everywhere)
+{
+    labial_rig_curve_t curve = { LABIAL_RIG_SEGMENTS, { { 0, 0, 0 } } };
+    labial_rig_output_t output = plain();
+    for (int32_t i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
+        curve.segments[i].from = 1500 + 10 * i;
+        curve.segments[i].to = 1900 - 100 * i;
+    }
+    output.curve = &curve;
+    for (int16_t i = 0; i < LABIAL_RIG_SEGMENTS; i++) {
+        assert_int_equal(moved(&output, 1500, (int16_t)(10 * i)), 1900 - 100 * i);
+        assert_int_equal(moved(&output, 1500, (int16_t)(10 * i + 9)), 1900 - 100 * i);
+    }
+}
+
 /* A servo with a limit of acceleration, on its way down from 1600 to 1400 in the frame 8 with all in sight: it sets out
  * where it must, comes to rest there and goes no further; with nothing in sight it is late, and does not go beyond. */
 TEST(acceleration_comes_to_rest)

@@ -1,16 +1,25 @@
 /*
- * test_soak.c - a day in the life of a face: speech and laughter by chance, starving, cancelled, taken up again, without
- * a new labial_init(), and with the frame counter's wrap at noon.
+ * test_soak.c - eight hours of everything that a face runs on, without a new init, each counter's wrap halfway.
  *
- * Every frame is accounted for: what was delivered and what the stream still holds are the rounded sum of what was
- * pushed, frames are numbered on without a gap, and nothing beside the stream and its workspace is written to. Every
- * hour one sentence must give the frames that it gave a stream that was new.
+ * A stream of phonemes: speech and laughter by chance, starving, cancelled, taken up again. Every frame is accounted for:
+ * what was delivered and what the stream still holds are the rounded sum of what was pushed, and frames are numbered on
+ * without a gap. Every hour one sentence must give the frames that it gave a stream that was new.
+ *
+ * Sound that is heard, whose frames move the servos of a face by a clock that stumbles, and whose values are sent to a
+ * player of lips beside the audio. The face stays within its limits and in step with the clock; the player shows each
+ * frame with its sample.
+ *
+ * Nothing beside the structures and their workspaces is ever written to.
  */
 #include "suite.h"
 
 #include <string.h>
 
 #include "fixture.h"
+#include "hear_fixture.h"
+#include "hear_sound.h"
+#include "labial/beside.h"
+#include "labial/face.h"
 #include "labial/laugh.h"
 #include "laughter_synthetic.h"
 #include "speech_en.h"
@@ -69,7 +78,7 @@ static void paint(uint32_t *words, int check)
 {
     for (uint32_t i = 0; i < CANARIES; i++) {
         if (check && words[i] != (i + 1u) * 0x9e3779b1u)
-            fail_msg("memory beside the stream or its workspace was written to");
+            fail_msg("memory beside a structure or its workspace was written to");
         words[i] = (i + 1u) * 0x9e3779b1u;
     }
 }
@@ -218,7 +227,7 @@ static size_t speak(int16_t kept[SENTENCE][LABIAL_CHANNELS])
 TEST(a_day_is_exact_to_the_frame)
 {
     static int16_t first[SENTENCE][LABIAL_CHANNELS], again[SENTENCE][LABIAL_CHANNELS];
-    const uint64_t length = (uint64_t)FIXTURE_ROUNDS(24 * 60) * (HOUR / 60u);
+    const uint64_t length = (uint64_t)FIXTURE_ROUNDS(8 * 60) * (HOUR / 60u);
     unsigned sentences = 0;
     begin_day(0u - (uint32_t)(length / 2u));
     const size_t frames = speak(first);
@@ -271,6 +280,283 @@ TEST(a_restart_at_the_wrap_does_not_jump)
         assert_true(step * 4 <= (whole < 0 ? -whole : whole) + 40 && -step * 4 <= (whole < 0 ? -whole : whole) + 40);
     }
     assert_true(moved);
+}
+
+/* ---- Sound, servos and lips beside the audio ----------------------------------------------------------------------- */
+
+#define SOUND_RATE 8000u
+#define SAMPLES (SOUND_RATE / LABIAL_HEAR_FPS) /* of a frame */
+#define SERVOS 2
+#define AHEAD 5
+#define KEPT 64u    /* frames that the player's ring and the server remember */
+#define BUFFERED 32 /* frames that the server is ahead of what is heard */
+#define REPEATED 8u /* frames of a packet */
+
+static const labial_rig_output_t servos[SERVOS] = {
+    { .weights = { [4] = -LABIAL_RIG_ONE },
+      .contact = 1,
+      .gain = LABIAL_RIG_GAIN(1, 1),
+      .neutral = 1400,
+      .minimum = 1400,
+      .maximum = 1900,
+      .slew = 60,
+      .closed = 1400,
+      .acceleration = 20 },
+    { .weights = { [5] = LABIAL_RIG_ONE },
+      .gain = LABIAL_RIG_GAIN(2, 1),
+      .neutral = 90,
+      .minimum = 20,
+      .maximum = 160,
+      .slew = 25 },
+};
+static const labial_rig_t rig = { servos, SERVOS };
+
+static struct {
+    uint32_t before[CANARIES];
+    labial_hear_t hear;
+    uint32_t workspace[HEAR_FIXTURE_WORKSPACE_SIZE / 4];
+    uint32_t behind_hear[CANARIES];
+    labial_face_t face;
+    int32_t room[LABIAL_FACE_SIZE(SERVOS, AHEAD) / 4];
+    uint32_t behind_face[CANARIES];
+    labial_beside_t player;
+    uint8_t ring[LABIAL_BESIDE_SIZE(SERVOS, KEPT)];
+    uint32_t behind_player[CANARIES];
+} toy;
+
+static struct {
+    fixture_random_t random;
+    uint32_t heard, told;             /* numbers of the frame and of the class that are due */
+    int16_t (*kept)[LABIAL_CHANNELS]; /* where frames go, or null */
+    size_t frames;                    /* since the sound began */
+    uint32_t at, state;               /* of the sound that is made */
+    int32_t values[SERVOS], changes[SERVOS];
+    unsigned steady; /* ticks since the clock stumbled */
+    uint32_t frame;  /* that the server sends next */
+    uint32_t known;  /* the first frame that the player must show */
+    uint16_t session;
+    uint8_t sent[KEPT][SERVOS];
+    unsigned lost, cancels, wraps;
+} shift;
+
+static void on_heard(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    assert_int_equal(frame, shift.heard++);
+    shift.wraps += shift.heard == 0;
+    if (shift.kept && shift.frames < SENTENCE)
+        memcpy(shift.kept[shift.frames], faps, sizeof shift.kept[0]);
+    shift.frames++;
+    labial_face_frame(user, frame, faps);
+}
+
+static void on_class(void *user, unsigned shown, uint32_t frame, uint32_t frames)
+{
+    (void)user;
+    assert_in_range(shown, 0, HEAR_FIXTURE_CLASSES - 1);
+    assert_true(frames > 0);
+    assert_int_equal(frame, shift.told);
+    shift.told += frames;
+}
+
+static void guard_toy(int check)
+{
+    paint(toy.before, check);
+    paint(toy.behind_hear, check);
+    paint(toy.behind_face, check);
+    paint(toy.behind_player, check);
+}
+
+static void begin_shift(uint32_t first)
+{
+    memset(&toy, 0, sizeof toy);
+    memset(&shift, 0, sizeof shift);
+    guard_toy(0);
+    shift.random.state = 36;
+    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+    assert_int_equal(labial_face_init(&toy.face, &rig, LABIAL_HEAR_FPS, AHEAD, toy.room, sizeof toy.room), LABIAL_OK);
+    assert_int_equal(labial_hear_init(&toy.hear, &hear_fixture, SOUND_RATE, 1, toy.workspace, sizeof toy.workspace,
+                                      on_heard, &toy.face),
+                     LABIAL_OK);
+    assert_int_equal(labial_hear_classes(&toy.hear, on_class), LABIAL_OK);
+    assert_int_equal(labial_beside_init(&toy.player, SERVOS, SOUND_RATE, toy.ring, sizeof toy.ring), LABIAL_OK);
+    for (unsigned i = 0; i < SERVOS; i++)
+        shift.values[i] = servos[i].neutral;
+    toy.hear.frame = toy.hear.first = shift.heard = shift.told = first;
+}
+
+/* Pushes a frame of sound: some seconds of speech, noise or silence, then others. */
+static void hear_frame(void)
+{
+    int16_t samples[SAMPLES];
+    for (unsigned i = 0; i < SAMPLES; i++, shift.at++)
+        samples[i] = hear_sound(3u + shift.at / 24000u % 5u, shift.at, &shift.state);
+    assert_int_equal(labial_hear_push(&toy.hear, samples, SAMPLES), LABIAL_OK);
+}
+
+/* A sound of its own, as long as a sentence; returns its frames. */
+static size_t hear_sentence(int16_t kept[SENTENCE][LABIAL_CHANNELS])
+{
+    assert_int_equal(labial_hear_set_level(&toy.hear, LABIAL_HEAR_LEVEL_BEGIN), LABIAL_OK);
+    shift.kept = kept;
+    shift.frames = 0;
+    shift.at = 0;
+    shift.state = 1;
+    for (unsigned i = 0; i < SENTENCE - 20u; i++)
+        hear_frame();
+    assert_int_equal(labial_hear_end(&toy.hear), LABIAL_OK);
+    assert_int_equal(shift.told, shift.heard - (uint32_t)(shift.frames - (SENTENCE - 20u)));
+    shift.kept = NULL;
+    return shift.frames;
+}
+
+/* A tick of the face, which keeps its limits. */
+static int move_servos(void)
+{
+    int32_t values[SERVOS];
+    const int result = labial_face_tick(&toy.face, values);
+    assert_in_range(result, LABIAL_OK, LABIAL_DONE);
+    for (unsigned i = 0; i < SERVOS; i++) {
+        const labial_rig_output_t *const servo = &servos[i];
+        const int32_t change = values[i] - shift.values[i];
+        assert_in_range(values[i], servo->minimum, servo->maximum);
+        assert_in_range(change, -servo->slew, servo->slew);
+        if (servo->acceleration > 0 && shift.steady > 2)
+            assert_in_range(change - shift.changes[i], -servo->acceleration, servo->acceleration);
+        shift.values[i] = values[i];
+        shift.changes[i] = change;
+    }
+    return result;
+}
+
+/* Sends `count` frames up to the next one, which it makes void if it cancels, and returns what the player says. */
+static int send_frames(unsigned count, int cancels)
+{
+    uint8_t packet[LABIAL_BESIDE_HEAD + (REPEATED + 1u) * SERVOS] = { LABIAL_BESIDE_FORMAT, (uint8_t)cancels, SERVOS,
+                                                                      (uint8_t)count };
+    uint8_t *to = packet + 4;
+    const uint32_t first = shift.frame - count;
+    for (unsigned i = 0; i < 4; i++)
+        *to++ = (uint8_t)(first >> 8 * i);
+    *to++ = (uint8_t)shift.session;
+    *to++ = (uint8_t)(shift.session >> 8);
+    to += SERVOS;
+    for (unsigned k = 0; k < count; k++, to += SERVOS)
+        memcpy(to, shift.sent[(first + k) % KEPT], SERVOS);
+    return labial_beside_push(&toy.player, packet, (size_t)(to - packet));
+}
+
+/* The server begins anew, with numbers that wrap halfway through the hour. */
+static void begin_numbers(uint32_t frame)
+{
+    shift.session++;
+    shift.frame = shift.known = frame;
+    assert_int_equal(send_frames(0, 0), shift.session > 1 ? LABIAL_NEW_SESSION : LABIAL_OK);
+}
+
+/* The values of the servos go to the player, nine packets of ten arrive, and it shows what is heard now. */
+static void play_beside(void)
+{
+    uint8_t values[SERVOS];
+    const uint32_t heard = shift.frame - BUFFERED;
+    for (unsigned i = 0; i < SERVOS; i++)
+        shift.sent[shift.frame % KEPT][i] = (uint8_t)(shift.values[i] & 0xff);
+    shift.frame++;
+    if (fixture_below(&shift.random, 10) > 0)
+        assert_int_equal(send_frames(shift.frame - shift.known < REPEATED ? shift.frame - shift.known : REPEATED, 0),
+                         LABIAL_OK);
+    else
+        shift.lost++;
+    const int result = labial_beside_tick(&toy.player, heard * SAMPLES + fixture_below(&shift.random, SAMPLES), values);
+    if (heard - shift.known < 0x80000000u) {
+        assert_int_equal(result, LABIAL_OK);
+        assert_memory_equal(values, shift.sent[heard % KEPT], SERVOS);
+    }
+}
+
+/* Speech is interrupted: what was not delivered is dropped everywhere. */
+static void interrupt(void)
+{
+    const uint32_t ms = fixture_below(&shift.random, 600);
+    assert_int_equal(labial_hear_cancel(&toy.hear, ms), LABIAL_OK);
+    shift.told = shift.heard;
+    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
+    assert_int_equal(labial_face_cancel(&toy.face, ms), LABIAL_OK);
+    assert_int_equal(send_frames(0, 1), LABIAL_CANCELLED);
+    shift.known = shift.frame;
+    shift.cancels++;
+}
+
+/* The sound ends, the face comes to rest, exactly, and the same sound as at first gives the same frames. */
+static void compare_sentence(int16_t first[SENTENCE][LABIAL_CHANNELS], size_t frames)
+{
+    static int16_t again[SENTENCE][LABIAL_CHANNELS];
+    unsigned ticks = 0;
+    assert_int_equal(labial_hear_end(&toy.hear), LABIAL_OK);
+    while (move_servos() != LABIAL_DONE)
+        assert_true(++ticks < AHEAD + LABIAL_FACE_HOLD + LABIAL_FACE_EASE + LABIAL_FACE_TRAVEL(500, 60, 20));
+    assert_int_equal(shift.values[0], 1400);
+    assert_int_equal(shift.values[1], 90);
+    shift.told = shift.heard; /* the way to rest has no class */
+    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
+    assert_int_equal(hear_sentence(again), frames);
+    assert_memory_equal(again, first, frames * sizeof first[0]);
+    shift.told = shift.heard;
+    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
+}
+
+/* Some hours from a time of the clock and from the number of a frame on. */
+static void work(unsigned minutes, uint32_t now, uint32_t frame)
+{
+    static int16_t first[SENTENCE][LABIAL_CHANNELS];
+    const uint32_t length = minutes * 60000u;
+    uint32_t passed = 0, ticks = 0, hours = 0;
+    begin_shift(frame);
+    const size_t frames = hear_sentence(first);
+    assert_in_range(frames, SENTENCE - 20, SENTENCE);
+    shift.told = shift.heard;
+    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
+    begin_numbers(0u - HOUR / 2u);
+    while (passed < length) {
+        const uint32_t chance = fixture_below(&shift.random, 4096);
+        const uint32_t step = chance < 16   ? fixture_below(&shift.random, LABIAL_FACE_CATCH_UP)
+                              : chance < 80 ? fixture_below(&shift.random, 40)
+                                            : 20u;
+        shift.steady = step == 20u ? shift.steady + 1u : 0u;
+        passed += step;
+        for (; labial_face_due(&toy.face, now + passed); ticks++) {
+            hear_frame();
+            move_servos();
+            play_beside();
+        }
+        assert_in_range(ticks, (uint64_t)passed * LABIAL_HEAR_FPS / 1000u,
+                        (uint64_t)(passed + 1u) * LABIAL_HEAR_FPS / 1000u + 1u);
+        if (chance == 99)
+            interrupt();
+        if (passed / 3600000u > hours) {
+            hours++;
+            compare_sentence(first, frames);
+            begin_numbers((hours % 2u ? 0x80000000u : 0u) - HOUR / 2u);
+        }
+        guard_toy(1);
+    }
+    compare_sentence(first, frames);
+    assert_int_equal(shift.wraps, frame > 0x80000000u);
+    assert_true(shift.cancels > length / 20u / 4096u / 4u && shift.lost > length / 20u / 12u);
+}
+
+/* Would catch a level, a memory or a fade that decays, times and numbers that are wrong where they wrap, a face that
+ * falls behind its clock or leaves its limits, and a frame that the player shows too early, too late or not at all. */
+TEST(hours_of_sound_stay_in_step)
+{
+    const unsigned minutes = FIXTURE_ROUNDS(8 * 60);
+    work(minutes, 0u - minutes * 30000u, 0u - minutes * HOUR / 120u);
+}
+
+/* The same where counters become negative as signed numbers. */
+TEST(sound_stays_in_step_at_half_of_the_counters)
+{
+    const unsigned minutes = FIXTURE_ROUNDS(60);
+    work(minutes, 0x80000000u - minutes * 30000u, 0x80000000u - minutes * HOUR / 120u);
 }
 
 SUITE(NULL, NULL)

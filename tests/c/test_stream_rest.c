@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fade.h"
 #include "fixture.h"
 
 #define COUNT 60
@@ -514,6 +515,20 @@ TEST(random_calls_end_at_rest_and_lose_no_frame)
         for (unsigned i = 0; i < 20; i++)
             assert_true(tick(&face) != LABIAL_OK);
         assert_int_equal(face.count, before);
+    }
+}
+
+/* Eight FAP units to either side, on every channel, are still at rest. */
+TEST(rest_ends_at_eight_units)
+{
+    labial_fade_t fade;
+    memset(&fade, 0, sizeof fade);
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
+        static const int16_t poses[] = { 128, 129, -128, -129, 0 };
+        for (unsigned i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+            fade.pose[c] = poses[i];
+            assert_int_equal(labial_fade_rests(&fade), i % 2 == 0);
+        }
     }
 }
 

@@ -145,7 +145,9 @@ TEST(calls_do_as_the_header_says)
     labial_timing_t timing;
     size_t used;
     int wrong = labial_timings_init(NULL, LABIAL_TIMINGS_AUTO) != LABIAL_ERROR_NULL;
-    labial_timings_init(&timings, LABIAL_TIMINGS_AUTO);
+    assert_int_equal(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO), LABIAL_OK);
+    assert_int_equal(labial_timings_next(&timings, ";", 1, &used, &timing), LABIAL_WAITING); /* a comment of .pho */
+    assert_int_equal(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO), LABIAL_OK);
     wrong |= labial_timings_next(NULL, "", 0, &used, &timing) != LABIAL_ERROR_NULL;
     wrong |= labial_timings_next(&timings, NULL, 0, &used, &timing) != LABIAL_ERROR_NULL;
     wrong |= labial_timings_next(&timings, "", 0, NULL, &timing) != LABIAL_ERROR_NULL;
@@ -187,6 +189,11 @@ TEST(calls_do_as_the_header_says)
     wrong |= timing.laugh != 179 || strcmp(timing.label, "<laugh:0.7>") != 0 || !timing.xsampa || timing.has_apex;
     wrong |= labial_timings_next(&timings, laughs + used, strlen(laughs) - used, &used, &timing) != LABIAL_OK;
     wrong |= timing.laugh != 128 || timing.label || timing.end != 1100000000u || timing.line != 2;
+    static const char usual[] = "flite:0.1 <laugh 1> m:0.2\n";
+    labial_timings_init(&timings, LABIAL_TIMINGS_FLITE);
+    wrong |= labial_timings_next(&timings, usual, strlen(usual), &used, &timing) != LABIAL_OK;
+    wrong |= labial_timings_next(&timings, usual + used, strlen(usual) - used, &used, &timing) != LABIAL_OK;
+    assert_int_equal(timing.laugh, 128);
     assert_int_equal(wrong, 0);
 }
 

@@ -405,6 +405,7 @@ TEST(latency_tells_what_is_inside)
     assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_OK);
     assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
+    assert_int_equal(labial_words_push(&stream, "me", 2, 300, 600), LABIAL_OK); /* the first one takes no room */
 }
 
 TEST(misuse_is_an_error)

@@ -3,6 +3,7 @@
  * a seed, and the CRC-32 of what is shown. Passes if it is that of the player in tests/python/test_beside.py.
  */
 #include "board.h"
+#include "checksum.h"
 
 #include "labial/beside.h"
 
@@ -13,19 +14,16 @@
 
 static labial_beside_t player;
 static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, FRAMES)];
-static uint32_t seed = 1, crc = 0xffffffffu;
+static uint32_t seed = 1, crc = CHECKSUM_BEGIN;
 
 static uint32_t draw(uint32_t below)
 {
-    seed = seed * 1664525u + 1013904223u;
-    return (seed >> 8) % below;
+    return checksum_draw(&seed, below);
 }
 
 static void add(uint32_t number)
 {
-    unsigned bit;
-    for (crc ^= number & 255u, bit = 0; bit < 8; bit++)
-        crc = crc >> 1 ^ (crc & 1u ? 0xedb88320u : 0u);
+    crc = checksum_add(crc, number);
 }
 
 /* A packet of frames around one, of which few cancel. */

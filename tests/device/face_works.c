@@ -3,6 +3,7 @@
  * CRC-32 of every value. Passes if it is that of the face in tests/python/test_face.py, which is written anew there.
  */
 #include "board.h"
+#include "checksum.h"
 
 #include "labial/face.h"
 
@@ -20,19 +21,16 @@ static const labial_rig_output_t outputs[OUTPUTS] = {
 static const labial_rig_t rig = { outputs, OUTPUTS };
 static labial_face_t face;
 static int32_t memory[LABIAL_FACE_SIZE(OUTPUTS, AHEAD) / 4];
-static uint32_t seed = 1, crc = 0xffffffffu;
+static uint32_t seed = 1, crc = CHECKSUM_BEGIN;
 
 static uint32_t draw(uint32_t below)
 {
-    seed = seed * 1664525u + 1013904223u;
-    return (seed >> 8) % below;
+    return checksum_draw(&seed, below);
 }
 
 static void add(uint32_t byte)
 {
-    unsigned bit;
-    for (crc ^= byte & 255u, bit = 0; bit < 8; bit++)
-        crc = crc >> 1 ^ (crc & 1u ? 0xedb88320u : 0u);
+    crc = checksum_add(crc, byte);
 }
 
 static void give(void)

@@ -3,6 +3,7 @@
  * their CRC-32, and the largest sums. Passes if all are right.
  */
 #include "board.h"
+#include "checksum.h"
 
 #include "hear_fixture.h"
 #include "hear_sound.h"
@@ -18,9 +19,7 @@ static uint32_t frames, crc;
 
 static void add(uint8_t byte)
 {
-    unsigned bit;
-    for (crc ^= byte, bit = 0; bit < 8; bit++)
-        crc = crc >> 1 ^ (crc & 1u ? 0xedb88320u : 0u);
+    crc = checksum_add(crc, byte);
 }
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -40,7 +39,7 @@ static int is_heard(unsigned row)
     int16_t block[2u * BLOCK];
     uint32_t state = 1, at, used = 0;
     frames = 0;
-    crc = 0xffffffffu;
+    crc = CHECKSUM_BEGIN;
     if (labial_hear_init(&hear, &hear_fixture, hears[row].rate, hears[row].channels, workspace, sizeof workspace,
                          on_frame, NULL) != LABIAL_OK)
         return 0;

@@ -157,6 +157,16 @@ static void put_output(FILE *file, int i)
 
 static const labial_rig_curve_t curve = { 2, { { 260, 260, 1 << 19 }, { 320, 290, 3 << 19 } } };
 
+/* The frames of the first stream, a sentence, as `put_one` writes them; the file ends with them. */
+static void put_sentence(FILE *file, labial_frame_fn put_one)
+{
+    static uint32_t workspace[CONFORMANCE_WORKSPACE / 4u];
+    static labial_t stream;
+    REQUIRE(!conformance_play(&conformance_streams[0], CONFORMANCE_FILL, &stream, workspace, sizeof workspace, put_one,
+                              file));
+    finish(file);
+}
+
 static void put_face_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     put((FILE *)user, frame % 7u == 6u ? 1 + frame % 6u : 15, 1);
@@ -167,16 +177,12 @@ static void put_face_frame(void *user, uint32_t frame, const int16_t faps[LABIAL
 static void make_face(void)
 {
     static const uint8_t curved_sound_ahead_rate[] = { 4, 15, 5, 49 };
-    static uint32_t workspace[CONFORMANCE_WORKSPACE / 4u];
-    static labial_t stream;
     FILE *file = create("fuzz_face", "sentence");
     for (int i = 1; i < OUTPUTS; i++)
         put_output(file, i);
     fwrite(&curve, sizeof curve, 1, file);
     fwrite(curved_sound_ahead_rate, sizeof curved_sound_ahead_rate, 1, file);
-    REQUIRE(!conformance_play(&conformance_streams[0], CONFORMANCE_FILL, &stream, workspace, sizeof workspace,
-                              put_face_frame, file));
-    finish(file);
+    put_sentence(file, put_face_frame);
 }
 
 /* Outputs that are within their ranges, two with a slew limit, one with a deadband, two that say where they are closed,
@@ -187,8 +193,6 @@ static void make_rig(void)
     static const int16_t visemes[LABIAL_VISEMES] = { 0, 40, -40, 300 };
     static const uint8_t shares[LABIAL_VISEMES] = { 20, 0, 8, 100 };
     static const uint8_t curved_and_sound[] = { 6, 31, 0 };
-    static uint32_t workspace[CONFORMANCE_WORKSPACE / 4u];
-    static labial_t stream;
     FILE *file = create("fuzz_rig", "sentence");
     for (int i = 0; i < OUTPUTS; i++)
         put_output(file, i);
@@ -198,9 +202,7 @@ static void make_rig(void)
     fwrite(visemes, sizeof visemes, 1, file);
     fwrite(shares, sizeof shares, 1, file);
     fwrite(curved_and_sound, sizeof curved_and_sound, 1, file);
-    REQUIRE(!conformance_play(&conformance_streams[0], CONFORMANCE_FILL, &stream, workspace, sizeof workspace,
-                              put_frame, file));
-    finish(file);
+    put_sentence(file, put_frame);
 }
 
 /* Adds a label, ended by a byte that no UTF-8 has, to the present seed, or to the next one where that is full. */

@@ -1,4 +1,4 @@
-"""Small changes of C sources, each of which some test should detect."""
+"""Small changes of sources in C, JavaScript and Python, each of which some test should detect."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import hashlib
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, Iterator, List, Sequence, Tuple
+from typing import Dict, Iterator, List, NamedTuple, Pattern, Sequence, Set, Tuple
+
+from python_changes import Change, python_changes
 
 #: Replacements of operators; the left operand of a binary one ends with a word, a number or a closing bracket.
 BINARY: Dict[str, Tuple[str, ...]] = {
@@ -14,16 +16,19 @@ BINARY: Dict[str, Tuple[str, ...]] = {
     "+": ("-",), "-": ("+",), "*": ("+",), "/": ("*",), "%": ("*",), "<<": (">>",), ">>": ("<<",),
     "&": ("|",), "|": ("&",), "^": ("&",), "&&": ("||",), "||": ("&&",),
     "+=": ("-=",), "-=": ("+=",), "*=": ("+=",), "|=": ("&=",), "&=": ("|=",), "<<=": (">>=",), ">>=": ("<<=",),
-    "^=": ("&=",),
+    "^=": ("&=",), "===": ("!==",), "!==": ("===",), "??": ("&&",), ">>>": ("<<",),
 }  # fmt: skip
 #: Replacements of unary operators.
 UNARY: Dict[str, Tuple[str, ...]] = {"!": ("",), "-": ("",), "~": ("",), "++": ("--",), "--": ("++",)}
 
 #: Kinds of changes: one sign or number, an inverted condition, a removed statement; two neighbouring arguments of a
-#: call swapped, a named constant or its definition off by one, one of several members that are set together omitted.
-KINDS = ("sign", "number", "condition", "statement", "argument", "constant", "reset")
+#: call swapped, a named constant or its definition off by one, a factor that converts units omitted, one of several
+#: members that are set together omitted; in JavaScript and Python also a statement that sets something to nothing.
+KINDS = ("sign", "number", "condition", "statement", "argument", "constant", "unit", "reset")
+#: Those that users would notice.
+UNFRIENDLY = ("condition", "argument", "constant", "unit", "reset")
 
-_TOKEN = re.compile(
+_C_TOKEN = re.compile(
     r"(?P<space>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:[^\n\\]|\\\n)*)"
     r"|(?P<text>\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
     r"|(?P<number>0[xX][0-9a-fA-F]+[uUlL]*|\d+[uUlL]*)"
@@ -31,12 +36,43 @@ _TOKEN = re.compile(
     r"|(?P<sign><<=|>>=|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||[-+*/%&|^]=|.)",
     re.DOTALL | re.MULTILINE,
 )
+#: A regular expression stands where a value can begin; templates count as texts.
+_JS_TOKEN = re.compile(
+    r"(?P<space>\s+|//[^\n]*|/\*.*?\*/)"
+    r"|(?P<text>\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'|`(?:[^`\\]|\\.)*`"
+    r"|(?:(?<=[(,=:!&|?{;])|(?<=[(,=:!&|?{;][ ]))/(?:[^/\\\n\[]|\\.|\[(?:[^\]\\\n]|\\.)*\])+/[a-z]*)"
+    r"|(?P<number>0[xX][0-9a-fA-F]+|\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?)"
+    r"|(?P<word>[A-Za-z_$\#][\w$]*)"
+    r"|(?P<sign>>>>=|\.\.\.|===|!==|\*\*|>>>|&&=|\|\|=|\?\?=|=>|\?\?|\?\.|<<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\|"
+    r"|[-+*/%&|^]=|.)",
+    re.DOTALL,
+)
 #: Named constants of lib/ or of its headers; macros with arguments are excluded.
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*_?(?:MAX)?$")
-_DEFINITION = re.compile(r"^#define [A-Z][A-Z0-9_]* (0[xX][0-9a-fA-F]+[uUlL]*|\d+[uUlL]*)(?=\s)", re.MULTILINE)
+_C_DEFINITION = re.compile(r"^#define [A-Z][A-Z0-9_]* (0[xX][0-9a-fA-F]+[uUlL]*|\d+[uUlL]*)(?=\s)", re.MULTILINE)
+_JS_DEFINITION = re.compile(r"^(?:export )?const [A-Z][A-Z0-9_]* = (\d+)(?=;)", re.MULTILINE)
 #: Words behind which - or * stands alone, and those that begin no statement that could go.
-_KEYWORDS = set("return case else do sizeof goto break continue default switch for while if".split())
-_DECLARATION = re.compile(r"(?:const|static|extern|unsigned|signed|int|char|typedef|enum|struct|\w+_t|return|case)\b")
+_C_KEYWORDS = set("return case else do sizeof goto break continue default switch for while if".split())
+_JS_KEYWORDS = (_C_KEYWORDS - {"sizeof", "goto"}) | set(
+    "function class const let import export throw async await yield catch try finally of in typeof new delete".split())
+_C_DECLARATION = re.compile(r"(?:const|static|extern|unsigned|signed|int|char|typedef|enum|struct|\w+_t|return|case)\b")
+_JS_DECLARATION = re.compile(r"static\b")
+#: What a statement of JavaScript sets something to that begins anew.
+_NOTHING = re.compile(r"=\s*(?:-?\d+|null|undefined|false|true|Infinity|\"\"|\[\]|\{\}|new \w+\(\))$|\.clear\(\)$")
+
+
+class _Language(NamedTuple):
+    token: Pattern[str]
+    definition: Pattern[str]
+    keywords: Set[str]
+    declaration: Pattern[str]
+    begins: Tuple[str, ...]  #: what a statement follows
+
+
+_C = _Language(_C_TOKEN, _C_DEFINITION, _C_KEYWORDS, _C_DECLARATION, ("{", "}", ";"))
+_JS = _Language(_JS_TOKEN, _JS_DEFINITION, _JS_KEYWORDS, _JS_DECLARATION, ("{", "}", ";", ")", "else"))
+#: Least number that may convert units.
+_FACTOR_MIN = 10
 
 
 @dataclass(frozen=True)
@@ -63,14 +99,15 @@ class _Token:
     start: int
 
 
-def _tokens(source: str) -> List[_Token]:
-    found = ((match.lastgroup or "", match.group(), match.start()) for match in _TOKEN.finditer(source))
+def _tokens(source: str, language: _Language) -> List[_Token]:
+    found = ((match.lastgroup or "", match.group(), match.start()) for match in language.token.finditer(source))
     return [_Token(*token) for token in found if token[0] != "space"]
 
 
 def _number_changes(text: str) -> Iterator[str]:
-    digits = re.match(r"0[xX][0-9a-fA-F]+|\d+", text)
-    assert digits
+    digits = re.match(r"0[xX][0-9a-fA-F]+|\d+(?![\d_.eE])", text)
+    if not digits:
+        return  # no whole number
     value, suffix = int(digits.group(), 0), text[digits.end() :]
     yield f"{value + 1}{suffix}"
     if value > 0:
@@ -91,9 +128,9 @@ def _bodies(tokens: Sequence[_Token]) -> Iterator[Tuple[int, int]]:
                 yield begin, i
 
 
-def _statement(source: str, tokens: Sequence[_Token], i: int) -> str:
+def _statement(language: _Language, source: str, tokens: Sequence[_Token], i: int) -> str:
     """The expression statement that begins with token `i`, without its semicolon; empty where none does."""
-    if tokens[i - 1].text not in "{};" or tokens[i].kind != "word" or tokens[i].text in _KEYWORDS:
+    if tokens[i - 1].text not in language.begins or tokens[i].kind != "word" or tokens[i].text in language.keywords:
         return ""
     depth = 0
     for token in tokens[i:]:
@@ -102,18 +139,28 @@ def _statement(source: str, tokens: Sequence[_Token], i: int) -> str:
             return ""
         if token.text == ";":
             text = source[tokens[i].start : token.start]
-            return "" if _DECLARATION.match(text) or text.startswith("(void)") else text
+            return "" if language.declaration.match(text) or text.startswith("(void)") else text
     return ""
 
 
-def _changes(source: str, tokens: Sequence[_Token], i: int) -> Iterator[Tuple[str, str, str]]:
-    """What stands at token `i`, or in the bracket behind it, and may become another: kind, old text, new text."""
+def _changes(language: _Language, source: str, tokens: Sequence[_Token], i: int) -> Iterator[Change]:
+    """What stands at token `i`, or in the bracket behind it, and may become another."""
+    for kind, old, new in _texts_changed(language, source, tokens, i):
+        yield Change(tokens[i + 1].start if old.startswith("(") else tokens[i].start, kind, old, new)
+
+
+def _texts_changed(language: _Language, source: str, tokens: Sequence[_Token],
+                   i: int) -> Iterator[Tuple[str, str, str]]:
+    """Kind, old text, new text."""
     token, before = tokens[i], tokens[i - 1]
-    is_binary = (before.kind in ("word", "number") and before.text not in _KEYWORDS) or before.text in (")", "]")
+    is_value = before.kind in ("word", "number") and before.text not in language.keywords
+    is_binary = is_value or before.text in (")", "]")
+    if token.text in ("*", "/") and is_binary and not _is_cast(tokens, i) and _is_factor(tokens, i + 1):
+        yield "unit", source[token.start : tokens[i + 1].start + len(tokens[i + 1].text)], ""
     if token.kind == "number":
         for new in _number_changes(token.text):
             yield "number", token.text, new
-    elif _is_constant(tokens, i):
+    elif _is_constant(tokens, i, language):
         yield "constant", token.text, f"({token.text} + 1)"
         yield "constant", token.text, f"({token.text} - 1)"
     elif token.text in BINARY and is_binary and not _is_cast(tokens, i):
@@ -125,24 +172,49 @@ def _changes(source: str, tokens: Sequence[_Token], i: int) -> Iterator[Tuple[st
     elif token.text in ("if", "while") and tokens[i + 1].text == "(":
         condition = _bracket(source, tokens, i + 1)
         yield "condition", condition, f"(!{condition})"
-    elif token.kind == "word" and token.text not in _KEYWORDS and tokens[i + 1].text == "(":
-        for swapped in _swaps(source, tokens, i + 1):
-            yield "argument", _bracket(source, tokens, i + 1), swapped
-    statement = _statement(source, tokens, i)
+    elif token.kind == "word" and token.text not in language.keywords and tokens[i + 1].text == "(":
+        behind = _behind(tokens, i + 1)
+        if language is _C or (before.text != "function" and behind not in ("{", "=>")):  # which define
+            for swapped in _swaps(source, tokens, i + 1):
+                yield "argument", _bracket(source, tokens, i + 1), swapped
+    statement = _statement(language, source, tokens, i)
     if statement:
-        yield "statement", statement, ""
+        yield "reset" if language is _JS and _NOTHING.search(statement) else "statement", statement, ""
         for new in _fewer_targets(statement):
             yield "reset", statement, new
 
 
-def _is_constant(tokens: Sequence[_Token], i: int) -> bool:
-    """Whether token `i` is a named constant that is used, not the length of an array that is declared."""
+def _is_constant(tokens: Sequence[_Token], i: int, language: _Language = _C) -> bool:
+    """Whether token `i` is a named constant that is used, not the length of an array that is declared; in JavaScript
+    constants may be texts, and are left alone."""
     token, before, behind = tokens[i], tokens[i - 1], tokens[i + 1]
-    if token.kind != "word" or not _CONSTANT.match(token.text) or token.text == "NULL" or behind.text == "(":
+    if language is not _C or token.kind != "word" or not _CONSTANT.match(token.text) or token.text == "NULL":
+        return False
+    if behind.text == "(":
         return False
     declares = before.text == "[" and behind.text == "]" and tokens[i - 2].kind == "word" and (
-        tokens[i - 3].kind == "word" and tokens[i - 3].text not in _KEYWORDS)
+        tokens[i - 3].kind == "word" and tokens[i - 3].text not in _C_KEYWORDS)
     return not declares
+
+
+def _is_factor(tokens: Sequence[_Token], i: int) -> bool:
+    """Whether token `i` is a number or a named constant alone that may convert one unit to another."""
+    if tokens[i + 1].text in ("(", "[", ".", "->", "?.", "**"):
+        return False
+    if tokens[i].kind == "number":
+        digits = re.match(r"\d+", tokens[i].text)
+        return digits is not None and int(digits.group()) >= _FACTOR_MIN
+    return tokens[i].kind == "word" and bool(_CONSTANT.match(tokens[i].text))
+
+
+def _behind(tokens: Sequence[_Token], i: int) -> str:
+    """What stands behind the bracket that token `i` opens."""
+    depth = 0
+    for j in range(i, len(tokens) - 1):
+        depth += (tokens[j].text == "(") - (tokens[j].text == ")")
+        if depth == 0:
+            return tokens[j + 1].text
+    return ""
 
 
 def _arguments(source: str, tokens: Sequence[_Token], i: int) -> List[Tuple[int, int]]:
@@ -200,24 +272,34 @@ def _bracket(source: str, tokens: Sequence[_Token], i: int) -> str:
     raise ValueError("a bracket is not closed")
 
 
-def mutants(path: Path) -> List[Mutant]:
+def _changed(path: Path, source: str) -> Iterator[Change]:
     """All changes of the functions of a file, and of the numbers that it gives names."""
-    source = path.read_text(encoding="utf-8")
-    tokens, found, seen = _tokens(source), [], {}  # type: List[_Token], List[Mutant], Dict[str, int]
-    places = [(match.start(1), "constant", match.group(1), new) for match in _DEFINITION.finditer(source)
-              for new in _number_changes(match.group(1))]
-    for begin, end in _bodies(tokens):
+    if path.suffix == ".py":
+        yield from python_changes(source)
+        return
+    language = _JS if path.suffix == ".js" else _C
+    tokens = _tokens(source, language)
+    for match in language.definition.finditer(source):
+        for new in _number_changes(match.group(1)):
+            yield Change(match.start(1), "constant", match.group(1), new)
+    for begin, end in _bodies(tokens) if language is _C else [(0, len(tokens) - 2)]:
         for i in range(begin + 1, end):
-            for kind, old, new in _changes(source, tokens, i):
-                places.append((tokens[i + 1].start if old.startswith("(") else tokens[i].start, kind, old, new))
-    for start, kind, old, new in places:
+            yield from _changes(language, source, tokens, i)
+
+
+def mutants(path: Path, name: str) -> List[Mutant]:
+    """All changes of a file, which has this name in their keys."""
+    source = path.read_text(encoding="utf-8")
+    found, seen = [], {}  # type: List[Mutant], Dict[str, int]
+    lines = source.splitlines()
+    for start, kind, old, new in _changed(path, source):
         line = source.count("\n", 0, start) + 1
-        text = " ".join(source.splitlines()[line - 1].split())
-        key = f"{path.name} | {text} | {_brief(old)} -> {_brief(new)}"
+        text = " ".join(lines[line - 1].split())
+        key = f"{name} | {text} | {_brief(old)} -> {_brief(new)}"
         seen[key] = seen.get(key, 0) + 1
         if seen[key] > 1:
             key += f" ({seen[key]})"
-        found.append(Mutant(path.name, start, old, new, line, key, kind))
+        found.append(Mutant(name, start, old, new, line, key, kind))
     return found
 
 

@@ -1,14 +1,17 @@
-"""Makes small changes of the library and reports those that no test detects.
+"""Makes small changes of the library, of the Python package or of the npm packages, and reports those that no test
+detects.
 
     python3 tests/mutation/mutate.py --build build/mutate [--count 300] [--seed 1] [--jobs 2] [--survivors] [--list]
                                      [--kinds argument constant reset] [--files units.c] [--suites test_units]
+    python3 tests/mutation/mutate.py --build build/mutate --packages build/test [--files web/stream.js] ...
 
-Each mutant is one change in lib/, of one of the kinds that mutants.py names, chosen by a seed. It is
-compiled with sanitizers, and the C suites, the conformance streams and the device tests run on it, the file's own suite
-first and then the fastest first, until one fails or hangs: then it is killed. A mutant whose optimised code equals that
-of the library is replaced by another. survivors.txt must list exactly those that survive, each with a reason; of those
-that are not equivalent at least 95 % must be killed. With --survivors only those in survivors.txt are tried, for
-instance after a new test for one of them. Needs gcc or clang with sanitizers, cmocka and Unity.
+Each mutant is one change of one of the kinds that mutants.py names, chosen by a seed. One of lib/ is compiled with
+sanitizers, and the C suites, the conformance streams and the device tests run on it, the file's own suite first and
+then the fastest first, until one fails or hangs: then it is killed. A mutant whose optimised code equals that of the
+library is replaced by another. One of Python or JavaScript (--packages, with the build of the preset `test`) is killed
+by the tests that packages_bench.py names for its file. survivors.txt must list exactly those that survive, each with a
+reason; of those that are not equivalent at least 95 % must be killed. With --survivors only those in survivors.txt are
+tried, for instance after a new test for one of them. The library needs gcc or clang with sanitizers, cmocka and Unity.
 """
 
 from __future__ import annotations
@@ -25,9 +28,10 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Optional, Sequence
+from typing import Dict, List, Optional, Sequence, Union
 
-from mutants import KINDS, Mutant, chosen, mutants
+from mutants import KINDS, UNFRIENDLY, Mutant, chosen, mutants
+from packages_bench import COVERED, Packages
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -154,6 +158,8 @@ class Bench:
             changed = folder / mutant.file
             changed.write_text(mutant.apply(source.read_text(encoding="utf-8")), encoding="utf-8")
             for build in BUILDS:
+                if all(test.build != build for test in self.tests):
+                    continue
                 (folder / build).mkdir()
                 target = folder / build / f"{source.stem}.o"
                 try:
@@ -191,7 +197,7 @@ def known_survivors() -> Dict[str, str]:
     return known
 
 
-def tried(bench: Bench, candidates: Sequence[Mutant], count: int, jobs: int) -> Dict[Mutant, str]:
+def tried(bench: Union[Bench, Packages], candidates: Sequence[Mutant], count: int, jobs: int) -> Dict[Mutant, str]:
     """The verdicts on the first `count` candidates that are mutants."""
     verdicts: Dict[Mutant, str] = {}
     rest = iter(candidates)
@@ -220,15 +226,20 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="mutants at a time")
     parser.add_argument("--compiler", default=os.environ.get("CC", "cc"))
     parser.add_argument("--cmocka", nargs=2, metavar=("INCLUDE", "LIBRARY"), help="where cmocka is, if not installed")
-    parser.add_argument("--unity", type=Path, required=True, help="folder of Unity, which holds src/unity.c")
+    parser.add_argument("--unity", type=Path, help="folder of Unity, which holds src/unity.c")
+    parser.add_argument("--packages", type=Path, metavar="BUILD", help="change Python and JavaScript; BUILD's tests")
     parser.add_argument("--kinds", nargs="*", choices=KINDS, help="of changes, instead of all")
-    parser.add_argument("--files", nargs="*", help="of lib/, instead of all")
+    parser.add_argument("--unfriendly", action="store_const", dest="kinds", const=UNFRIENDLY,
+                        help="those kinds that users would notice")
+    parser.add_argument("--files", nargs="*", help="of lib/ or of packages, instead of all")
     parser.add_argument("--suites", nargs="*", default=[], help="of tests/c, instead of all")
     parser.add_argument("--survivors", action="store_true", help="only the mutants in survivors.txt")
     parser.add_argument("--list", action="store_true", help="print the mutants and do nothing")
     options = parser.parse_args()
-    files = [path for path in sorted(LIB.glob("*.c")) if not options.files or path.name in options.files]
-    candidates = chosen([mutant for path in files for mutant in mutants(path)
+    sources = {name: ROOT / name for name in COVERED} if options.packages else {
+        path.name: path for path in sorted(LIB.glob("*.c"))}
+    files = [name for name in sources if not options.files or name in options.files]
+    candidates = chosen([mutant for name in files for mutant in mutants(sources[name], name)
                          if not options.kinds or mutant.kind in options.kinds], options.seed)
     known = known_survivors()
     if options.survivors:
@@ -238,7 +249,13 @@ def main() -> int:
             print(f"{mutant.line}: {mutant.key}")
         return 0
     cmocka = [f"-I{options.cmocka[0]}", options.cmocka[1]] if options.cmocka else ["-lcmocka"]
-    bench = Bench(options.build.resolve(), options.compiler, cmocka, options.unity, options.suites)
+    bench: Union[Bench, Packages]
+    if options.packages:
+        bench = Packages(options.build.resolve(), options.packages.resolve(), files)
+    elif options.unity:
+        bench = Bench(options.build.resolve(), options.compiler, cmocka, options.unity, options.suites)
+    else:
+        parser.error("the library's mutants need --unity")
     verdicts = tried(bench, candidates, min(options.count, len(candidates)), options.jobs)
     survivors = [mutant for mutant, verdict in verdicts.items() if not verdict]
     unknown = [mutant for mutant in survivors if mutant.key not in known]

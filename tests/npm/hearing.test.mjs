@@ -1,4 +1,4 @@
-// Hearing beside the frames themselves, which tests/python/test_npm_hearing.py compares with the library's: blocks of
+// Hearing beside the frames themselves, which tests/python/test_npm.py compares with the library's: blocks of
 // any length, times, cancels, misuse. Sound comes from a generator; tests/python/test_browser_hearing.py has pages.
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { pathToFileURL } from "node:url";
 import test from "node:test";
-import { Labial, LabialError, crc32, difference, folder, framesOf, source } from "./setup.mjs";
+import { Labial, LabialError, binary, crc32, difference, folder, framesOf, source } from "./setup.mjs";
 
 const labial = await Labial.load({ words: () => import(pathToFileURL(`${folder}-words/index.js`)) });
 const { sessions } = JSON.parse(source("tests/voices/sessions.json"));
@@ -195,10 +195,8 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
             return [() => voice.push("m", ...times), () => voice.say("m", ...times)];
         }),
         ...[null, undefined, 5, true, "{", "5", "null", [5], [null], [[]], new TextEncoder().encode("{"),
-            new Uint8Array([0x7b, 0xff]), { word: "a", start: 0, end: NaN }, { word: "a", start: 9, end: 1 },
-            { word: "a", start: 0, end: 1e9 }, { word: "x".repeat(1e6), start: 0, end: 1 },
-            { alignment: { chars: ["a"], charStartTimesMs: [], charsDurationsMs: [] } },
-            { audio_offset: 5, viseme_id: 99 }].map((x) => () => voice.feed(x)),
+            new Uint8Array([0x7b, 0xff]), new Array(1001).fill({}), `${"[".repeat(100)}${"]".repeat(100)}`,
+        ].map((x) => () => voice.feed(x)),
     ];
     for (const call of calls) {
         assert.throws(call, (error) => {
@@ -210,6 +208,11 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     }
     for (const sound of [new ArrayBuffer(64), new Int16Array(9), "[]", {}, { audio: "" }, new Blob(["{}"])]) {
         voice.feed(sound);
+    }
+    for (const odd of [{ word: "a", start: 0, end: NaN }, { word: "a", start: 9, end: 1 }, { word: "a", start: 0, end: 1e9 },
+        { word: "a", start: 0, end: null }, { word: "x".repeat(1e6), start: 0, end: 1 }, { audio_offset: 5, viseme_id: 99 },
+        { alignment: { chars: ["a"], charStartTimesMs: [], charsDurationsMs: [] } }]) {
+        voice.feed(odd);
     }
     const whole = await told({});
     assert.deepEqual(before.concat(rows(voice.played(0.9))), rows(whole.played(0.9)));
@@ -226,6 +229,30 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     await assert.rejects((await Labial.load()).voice(), { message: /^words are not loaded/ });
 });
 
+test("utterances have names: those that are over change nothing", async () => {
+    const [one, other] = [await told({}), await told({})];
+    for (const voice of [one, other]) {
+        voice.begin(2, "b");
+        voice.say("by", 0, 0.5);
+        voice.cancel(100);
+        if (voice === other) assert.throws(() => voice.begin(1, 7), { name: "TypeError" });
+        voice.begin(1, "c");
+    }
+    const message = (context_id) => ({ type: "timestamps", context_id, done: false,
+        word_timestamps: { words: ["hum"], start: [0], end: [0.5] } });
+    one.feed(message("c"));
+    for (const name of ["b", "c", "b"]) other.feed(message(name));
+    for (const seconds of [0.99, 1.9]) assert.deepEqual(rows(one.played(seconds)), rows(other.played(seconds)));
+    assert.deepEqual([one.counts.dropped, other.counts.dropped], [0, 2]);
+});
+
+test("a loaded model moves lips as the bundled one", async () => {
+    const model = labial.model(binary(labial, labial.models.speech));
+    const [one, other] = [await told({}), await told({ model })];
+    for (const seconds of [0, 0.5, 1.4]) assert.deepEqual(rows(one.played(seconds)), rows(other.played(seconds)));
+    other.close();
+});
+
 test("a server that tells without end is refused, and what is over is forgotten", async () => {
     const voice = await labial.voice();
     const words = (count, from, length) => {
@@ -234,7 +261,9 @@ test("a server that tells without end is refused, and what is over is forgotten"
         return { word_timestamps: { words: start.map(() => "mama"), start, end } };
     };
     voice.feed(words(9999, 0, 1));
-    assert.throws(() => voice.feed(words(100, 10000, 1)), { name: "LabialError", message: /^more than 10000 words/ });
+    voice.feed(words(9999, 9999, 1));
+    assert.throws(() => voice.feed(words(3, 20000, 1)), { name: "LabialError", message: /there is room for 20000/ });
+    assert.deepEqual(voice.counts, { told: 19998, skipped: 0, dropped: 0 });
     const long = await labial.voice();
     const memory = labial.memory.bytes.length;
     let frames = 0;

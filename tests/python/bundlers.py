@@ -39,7 +39,7 @@ def _install_tools(folder: Path) -> None:
         folder.mkdir(parents=True)
         for name in names:
             shutil.copyfile(FOLDER / name, folder / name)
-        run(NPM, "install", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)
+        run(NPM, "ci", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)  # which checks the hashes
         stamp.touch()
 
 

@@ -20,7 +20,7 @@ sys.path += [str(ROOT / name) for name in
               "examples/voices", "packaging")]
 
 #: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
-TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter_corpus", "test_packages",
+TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter", "test_packages",
             "test_packages_cmake", "test_speak_page", "test_train", "test_wheel")  # fmt: skip
 
 

@@ -34,8 +34,8 @@ from labial.__main__ import main
 from labial.corpus import read_corpus
 from labial.corpus.episode import Segment
 from labial.evaluate.loss import measure
+from labial.evaluate.material import Options
 from labial.evaluate.protocol import evaluate
-from labial.evaluate.splits import Options
 from labial.see import drawing
 from labial.tables.model import save
 from labial.tables.phones import drawn_streams

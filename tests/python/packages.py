@@ -1,4 +1,4 @@
-"""What the tests of the packages share: commands run on the source tree, a small program, the house's warnings."""
+"""What tests share: commands run on the source tree, a small program, the house's warnings, the tools of SPTK."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import sys
 import tempfile
 from pathlib import Path
 from typing import Dict, List, Optional
+
+import pytest
 
 SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2]))
 CMAKE = os.environ.get("LABIAL_CMAKE") or shutil.which("cmake") or ""
@@ -115,3 +117,17 @@ def _frames(folder: Path) -> str:
     frames = run(folder / "expected")
     assert len(frames.splitlines()) == 20 + 12  # 400 ms, and the way to rest
     return frames
+
+
+# ---- Independent programs that results are held against --------------------------------------------------------------
+
+
+def sptk(tool: str) -> List[str]:
+    """The command of a tool of SPTK, found in the folder LABIAL_SPTK or on the path; skips the test where it is not."""
+    folder = os.environ.get("LABIAL_SPTK")
+    if folder and os.access(Path(folder) / tool, os.X_OK):
+        return [str(Path(folder) / tool)]
+    program = shutil.which("sptk")
+    if not program:
+        pytest.skip("SPTK is not installed (Debian package sptk)")
+    return [program, tool]

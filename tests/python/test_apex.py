@@ -16,8 +16,8 @@ from labial.corpus.iemocap import read_iemocap
 from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError
 from labial.train import without_apex
-from test_iemocap import PHSEG, face
-from test_iemocap import write as write_utterance
+from test_corpora import PHSEG, face
+from test_corpora import write as write_utterance
 from test_record import talking
 from test_record import write as write_landmarks
 

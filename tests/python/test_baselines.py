@@ -8,10 +8,10 @@ from scipy.ndimage import gaussian_filter1d
 from threadpoolctl import threadpool_limits
 
 from labial.corpus.phonesets import SPEECH
-from labial.evaluate.baselines import blur, dominance, hmm, mean, regression, ridge, steps, window
-from labial.evaluate.baselines.alignment import align, deal, even
+from labial.evaluate.baselines import dominance, hmm, ridge, steps
+from labial.evaluate.baselines.hmm import align, deal, even
 from labial.evaluate.material import Timeline, timeline
-from test_evaluate_material import FPS, LABELS, shape_of_phoneme, training, unseen
+from test_evaluate import FPS, LABELS, shape_of_phoneme, training, unseen
 
 
 @pytest.fixture(autouse=True)
@@ -75,7 +75,8 @@ def error(predictor, law, labels=LABELS) -> float:
 def test_mean_is_the_mean_outside_silence() -> None:
     part = training(held, noise=0.0)
     frames = np.concatenate([item.human[item.timeline.phoneme_at != 0] for item in part.utterances])
-    np.testing.assert_allclose(mean.fit(part).predict(timeline([0, 1], [40, 40], 50)), np.tile(frames.mean(0), (4, 1)))
+    motion = ridge.fit_mean(part).predict(timeline([0, 1], [40, 40], 50))
+    np.testing.assert_allclose(motion, np.tile(frames.mean(0), (4, 1)))
 
 
 @pytest.mark.parametrize("context", [False, True])
@@ -107,10 +108,10 @@ def test_steps_alone_do_not_explain_blur() -> None:
 
 def test_blur_finds_the_width() -> None:
     part = training(blurred)
-    fitted = blur.fit(part)
+    fitted = steps.fit_blur(part)
     shapes_alone = error(fitted.steps, blurred)
     assert error(fitted, blurred) < 0.75 * shapes_alone and 0.025 <= fitted.width <= 0.045  # planted: 0.04
-    assert blur.fit(training(held)).width < 0.01
+    assert steps.fit_blur(training(held)).width < 0.01
 
 
 def test_dominance_recovers_its_law() -> None:
@@ -136,23 +137,23 @@ def test_dominance_gradient_is_exact() -> None:
 
 
 def test_regression_recovers_its_law() -> None:
-    assert error(regression.fit(training(coarticulated, 60)), coarticulated) < 0.05
+    assert error(ridge.fit_regression(training(coarticulated, 60)), coarticulated) < 0.05
 
 
 def test_windows_recover_additive_kernels() -> None:
-    assert error(window.fit_phonemes(training(additive, 60)), additive) < 0.15
+    assert error(ridge.fit_phonemes(training(additive, 60)), additive) < 0.15
     assert error(steps.fit(training(additive)), additive) > 0.4
 
 
 def test_class_window_takes_phonemes_from_the_shapes() -> None:
     # P and B, S and Z share a class: only the stream of shapes tells them apart.
     labels = ("P", "B", "AA", "AE", "S", "Z")
-    assert error(window.fit_classes(training(held, 40, labels=labels)), held, labels) < 0.15
+    assert error(ridge.fit_classes(training(held, 40, labels=labels)), held, labels) < 0.15
 
 
 def test_ridge_solves_the_weighted_normal_equations() -> None:
     part = training(held, 6)
-    design = regression._design(part)
+    design = ridge._design_of_neighbours(part)
     base = np.full(13, 7.0)
     equations = ridge.normal(design, part.utterances, base, 0)
     rows = np.concatenate([design(item.timeline).sparse.toarray() for item in part.utterances])
@@ -203,8 +204,8 @@ def test_alignment_is_the_best_of_all_monotone_paths() -> None:
     assert found[7:].tolist() == [0, 2]
 
 
-@pytest.mark.parametrize("fit", [mean.fit, steps.fit, blur.fit, regression.fit, window.fit_phonemes, window.fit_classes,
-                                 hmm.fit])
+@pytest.mark.parametrize("fit", [ridge.fit_mean, steps.fit, steps.fit_blur, ridge.fit_regression,
+                                 ridge.fit_phonemes, ridge.fit_classes, hmm.fit])
 def test_unseen_phonemes_short_segments_and_single_frames(fit) -> None:
     # Catches a KeyError, a NaN or a frame too few for what the training part never showed.
     fitted = fit(training(held, 12))

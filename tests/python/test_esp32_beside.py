@@ -23,13 +23,13 @@ from labial.rig.description import read
 from packages import SOURCE
 from runtime import needs_runtime
 from test_beside import HELLO, parse
-from test_esp32_hear import CC, CXX, FRAME, MS, STUBS, WARNINGS, hunks, value
+from test_esp32_hear import CC, CXX, FRAME, MS, STUBS, WARNINGS, fill, hunks, stub_options, value
 
 pytestmark = [needs_runtime, pytest.mark.skipif(not CC or not CXX, reason="LABIAL_CC or LABIAL_CXX names no compiler")]
 
 EXAMPLE = SOURCE / "examples" / "esp32-beside"
 JAW = SOURCE / "examples" / "faces" / "jaw.toml"
-INCLUDES = [f"-I{SOURCE / 'include'}", f"-I{EXAMPLE}", f"-I{STUBS}"]
+INCLUDES = [f"-I{SOURCE / 'include'}", f"-I{EXAMPLE}"]
 RATE, BLOCK = 24000, 1440  # 60 ms
 HELD, EASED = 5, 6  #: calls, as in labial/beside.h
 OK, STARVED = 0, 2  #: of labial/result.h: lips of a frame, and the way to rest
@@ -41,9 +41,9 @@ def board(request: pytest.FixtureRequest, tmp_path: Path) -> ctypes.CDLL:
     limit of speed, or with that of the parameter."""
     library = tmp_path / "mouth.so"
     (tmp_path / "none.c").write_text("void lips_render_step(void);\nvoid lips_render_step(void)\n{\n}\n")
-    subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES,
+    subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES, *stub_options(tmp_path),
                     *getattr(request, "param", ["-DMOUTH_CHANGE=500"]), str(EXAMPLE / "mouth.c"),
-                    str(SOURCE / "lib" / "beside.c"), str(SOURCE / "lib" / "clock.c"), str(STUBS / "host.c"),
+                    str(SOURCE / "lib" / "beside.c"), str(SOURCE / "lib" / "clock.c"), str(STUBS / "esp32.c"),
                     str(tmp_path / "none.c"), "-o",
                     str(library)], check=True, timeout=120)
     loaded = ctypes.CDLL(str(library))
@@ -152,23 +152,105 @@ def test_the_servo_follows(board: ctypes.CDLL) -> None:
     assert duties.value == 50 and max(rows) > 200
 
 
+#: What the patched lines of xiaozhi-esp32 stand in.
+XIAOZHI = """\
+#include <esp_timer.h>
+#include <functional>
+#include <memory>
+#include <vector>
+/* hunk 1 of application.cc */
+/* hunk 2 of application.cc */
+/* hunk 1 of audio_service.cc */
+
+struct AudioStreamPacket {
+    int sample_rate = 0;
+    int frame_duration = 0;
+/* hunk 1 of protocol.h */
+};
+
+struct AudioTask {
+    std::vector<int16_t> pcm;
+/* hunk 1 of audio_service.h */
+
+enum PowerSaveLevel { PERFORMANCE };
+enum AbortReason { kAbortReasonNone };
+enum DeviceState { kDeviceStateSpeaking };
+
+struct AudioCodec {
+    int output_sample_rate() const;
+    void OutputData(std::vector<int16_t> &data);
+};
+
+struct Board {
+    void SetPowerSaveLevel(PowerSaveLevel level);
+};
+
+struct Protocol {
+    void OnIncomingAudio(std::function<void(std::unique_ptr<AudioStreamPacket> packet)> callback);
+    void OnAudioChannelOpened(std::function<void()> callback);
+    void SendAbortSpeaking(AbortReason reason);
+};
+
+class AudioService {
+    AudioCodec *codec_;
+    void AudioOutputTask(std::unique_ptr<AudioTask> task);
+    std::unique_ptr<AudioTask> OpusCodecTask(std::unique_ptr<AudioStreamPacket> packet);
+};
+
+void AudioService::AudioOutputTask(std::unique_ptr<AudioTask> task)
+{
+    /* hunk 2 of audio_service.cc */
+}
+
+std::unique_ptr<AudioTask> AudioService::OpusCodecTask(std::unique_ptr<AudioStreamPacket> packet)
+{
+    auto task = std::make_unique<AudioTask>();
+    /* hunk 3 of audio_service.cc */
+    return task;
+}
+
+class Application {
+    std::unique_ptr<Protocol> protocol_;
+    DeviceState GetDeviceState() const;
+    void InitializeProtocol(AudioCodec *codec, Board &board);
+    void OnJson(const cJSON *root, const cJSON *type);
+    void AbortSpeaking(AbortReason reason);
+};
+
+void Application::InitializeProtocol(AudioCodec *codec, Board &board)
+{
+    /* hunk 3 of application.cc */
+        }
+    });
+
+    /* hunk 4 of application.cc */
+    });
+}
+
+void Application::OnJson(const cJSON *root, const cJSON *type)
+{
+    if (type) {
+        if (strcmp(type->valuestring, "llm") == 0) {
+            if (root) {
+            /* hunk 5 of application.cc */
+        }
+    }
+}
+
+void Application::AbortSpeaking(AbortReason reason)
+{
+    if (protocol_) {
+        /* hunk 6 of application.cc */
+}
+"""
+
+
 def test_patched_lines_compile(tmp_path: Path) -> None:
     """Catches calls that mouth.h does not have, or with other arguments: every hunk is compiled as it is."""
-    parts, used = hunks(EXAMPLE / "xiaozhi.patch"), set()
-
-    def patched(match: re.Match) -> str:
-        used.add((match[2], int(match[1])))
-        return parts[match[2]][int(match[1]) - 1]
-
-    text = re.sub(r"/\* hunk (\d+) of (\S+) \*/", patched, (STUBS / "xiaozhi_beside.cc").read_text(encoding="utf-8"))
-    assert used == {(name, k + 1) for name, bodies in parts.items() if name.endswith((".cc", ".h"))
-                    for k in range(len(bodies))}
-    for name in ("mcp_server.h", "mqtt_protocol.h"):
-        (tmp_path / name).touch()
     source = tmp_path / "xiaozhi.cc"
-    source.write_text(text, encoding="utf-8")
-    subprocess.run([CXX, "-std=c++17", *WARNINGS, *INCLUDES, "-c", str(source), "-o", os.devnull], check=True,
-                   timeout=60)
+    source.write_text(fill(XIAOZHI, hunks(EXAMPLE / "xiaozhi.patch"), ".cc", ".h"), encoding="utf-8")
+    subprocess.run([CXX, "-std=c++17", *WARNINGS, *INCLUDES, *stub_options(tmp_path), "-c", str(source), "-o",
+                    os.devnull], check=True, timeout=60)
 
 
 # ---- The server ------------------------------------------------------------------------------------------------------
@@ -207,19 +289,50 @@ class Socket:
         self.sent.append(data)
 
 
+#: What the patched lines of xiaozhi-esp32-server stand in: the part of edge.py, and of sendAudioHandle.py.
+SERVER = '''\
+import edge_tts
+# hunk 1 of edge.py
+
+class TTSProvider(TTSProviderBase):
+    def __init__(self, config, delete_audio_file):
+# hunk 2 of edge.py
+            pass
+# hunk 3 of edge.py
+            communicate = edge_tts.Communicate(
+                text,
+# hunk 4 of edge.py
+            if output_file:
+                with open(output_file, "wb") as f:
+                    async for chunk in communicate.stream():
+                        if chunk["type"] == "audio":
+# hunk 5 of edge.py
+                audio_bytes = b""
+                async for chunk in communicate.stream():
+                    if chunk["type"] == "audio":
+# hunk 6 of edge.py
+        except OSError:
+            return None
+
+
+class AudioRateController:
+    pass
+
+
+# hunk 1 of sendAudioHandle.py
+
+async def _do_send_audio(conn, opus_packet, flow_control):
+    """
+# hunk 2 of sendAudioHandle.py
+    flow_control["packet_count"] = packet_index + 1
+    await conn.websocket.send(opus_packet)
+'''
+
+
 @pytest.fixture()
 def provider(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The module of the patched lines, on stubs of the server's."""
-    parts = hunks(EXAMPLE / "xiaozhi-server.patch")
-    used = set()
-
-    def patched(match: re.Match) -> str:
-        used.add((match[2], int(match[1])))
-        return parts[match[2]][int(match[1]) - 1]
-
-    text = re.sub(r"# hunk (\d+) of (\S+)$", patched, (STUBS / "xiaozhi_server.py.in").read_text(encoding="utf-8"),
-                  flags=re.MULTILINE)
-    assert used == {(name, k + 1) for name, bodies in parts.items() for k in range(len(bodies))}
+    text = fill(SERVER, hunks(EXAMPLE / "xiaozhi-server.patch"), "")
     for name in ("core", "core.providers", "core.providers.tts", "core.providers.tts.base", "core.utils",
                  "core.utils.audioRateController", "edge_tts"):
         monkeypatch.setitem(sys.modules, name, types.ModuleType(name))

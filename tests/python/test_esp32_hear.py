@@ -25,7 +25,11 @@ CC, CXX = os.environ.get("LABIAL_CC", ""), os.environ.get("LABIAL_CXX", "")
 pytestmark = [needs_runtime, pytest.mark.skipif(not CC or not CXX, reason="LABIAL_CC or LABIAL_CXX names no compiler")]
 
 EXAMPLE = SOURCE / "examples" / "esp32-hear"
-STUBS = SOURCE / "tests" / "packages" / "esp32_stub"
+STUBS = SOURCE / "tests" / "packages"
+#: The headers that esp32.h stands in for.
+HEADERS = ("esp_log.h", "esp_timer.h", "driver/ledc.h", "freertos/FreeRTOS.h", "freertos/stream_buffer.h",
+           "freertos/task.h", "mbedtls/base64.h", "audio_render.h", "cJSON.h", "PitchShift.h", "mcp_server.h",
+           "mqtt_protocol.h")
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 INCLUDES = [f"-I{SOURCE / folder}" for folder in ("include", "lib/models", "examples/esp32-hear")]
 MS = 1000  #: microseconds
@@ -45,6 +49,15 @@ def build(folder: Path, *sources: Path, options: Sequence[str] = ()) -> ctypes.C
     loaded.lips_feed.restype = ctypes.c_uint64
     loaded.lips_playing.argtypes = [ctypes.c_uint64, ctypes.c_size_t, ctypes.c_int64]
     return loaded
+
+
+def stub_options(folder: Path) -> List[str]:
+    """Options that let a compiler find the headers of an ESP32, which are made in `folder`."""
+    for name in HEADERS:
+        path = folder / "esp32" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text('#include "esp32.h"\n', encoding="ascii")
+    return [f"-I{folder / 'esp32'}", f"-I{STUBS}"]
 
 
 @pytest.fixture(scope="module")
@@ -357,8 +370,8 @@ def test_threads(lips: ctypes.CDLL) -> None:
 def board(tmp_path: Path) -> ctypes.CDLL:
     """lips.c, lips_render.c and servo.c as they are compiled for an ESP32, with the stubs. The assertions in these end
     the process."""
-    sources = [*sorted(EXAMPLE.glob("*.c")), STUBS / "host.c", SOURCE / "lib/rig.c", SOURCE / "lib/face.c"]
-    return build(tmp_path, *sources, options=["-DESP_PLATFORM", "-DSERVO_SLEW=20", f"-I{STUBS}"])
+    sources = [*sorted(EXAMPLE.glob("*.c")), STUBS / "esp32.c", SOURCE / "lib/rig.c", SOURCE / "lib/face.c"]
+    return build(tmp_path, *sources, options=["-DESP_PLATFORM", "-DSERVO_SLEW=20", *stub_options(tmp_path)])
 
 
 def value(board: ctypes.CDLL, name: str, kind: Any = ctypes.c_int) -> Any:
@@ -441,27 +454,168 @@ def hunks(patch: Path) -> Dict[str, List[str]]:
     return found
 
 
-@pytest.mark.parametrize(("patch", "stub", "compiler"), [
-    ("xiaozhi", "xiaozhi.cc", [CXX, "-std=c++17"]),
-    ("elatoai", "elatoai.cpp", [CXX, "-std=c++17"]),
-    ("openai_demo", "openai_demo.c", [CC, "-std=c11"]),
-])
-def test_patched_lines_compile(patch: str, stub: str, compiler: List[str], tmp_path: Path) -> None:
-    """Catches calls that lips.h does not have, or with other arguments: every hunk in C or C++ is compiled as it is."""
-    parts, used = hunks(EXAMPLE / f"{patch}.patch"), set()
+def fill(context: str, parts: Dict[str, List[str]], *suffixes: str) -> str:
+    """Code in which each comment `hunk N of FILE` is replaced by that hunk as patched; all hunks of files with these
+    suffixes must be used, and no others."""
+    used = set()
 
     def patched(match: re.Match) -> str:
         used.add((match[2], int(match[1])))
         return parts[match[2]][int(match[1]) - 1]
 
-    text = re.sub(r"/\* hunk (\d+) of (\S+) \*/", patched, (STUBS / stub).read_text(encoding="utf-8"))
-    assert used == {(name, k + 1) for name, bodies in parts.items() if name.endswith((".c", ".cc", ".cpp", ".h"))
+    text = re.sub(r"(?:/\* |# )hunk (\d+) of (\S+)(?: \*/|$)", patched, context, flags=re.MULTILINE)
+    assert used == {(name, k + 1) for name, bodies in parts.items() if name.endswith(suffixes)
                     for k in range(len(bodies))}
+    return text
+
+
+#: What the patched lines stand in.
+XIAOZHI = """\
+#include <esp_timer.h>
+#include <memory>
+#include <vector>
+/* hunk 1 of audio_service.cc */
+
+struct AudioTask {
+    std::vector<int16_t> pcm;
+/* hunk 1 of audio_service.h */
+
+class AudioCodec {
+public:
+    void Start();
+    int output_sample_rate() const;
+    void OutputData(std::vector<int16_t> &data);
+};
+
+class AudioService {
+    AudioCodec *codec_;
+    void Initialize(AudioCodec *codec);
+    void AudioOutputTask(std::unique_ptr<AudioTask> task);
+    std::unique_ptr<AudioTask> OpusCodecTask(bool resampled);
+};
+
+void AudioService::Initialize(AudioCodec *codec)
+{
+    codec_ = codec;
+    /* hunk 2 of audio_service.cc */
+}
+
+void AudioService::AudioOutputTask(std::unique_ptr<AudioTask> task)
+{
+    /* hunk 3 of audio_service.cc */
+}
+
+std::unique_ptr<AudioTask> AudioService::OpusCodecTask(bool resampled)
+{
+    bool decoded = false;
+    auto task = std::make_unique<AudioTask>();
+    {
+        if (resampled) {
+            /* hunk 4 of audio_service.cc */
+    }
+    return decoded ? std::move(task) : nullptr;
+}
+"""
+ELATOAI = """\
+#include <esp_timer.h>
+#include <stddef.h>
+#define portMAX_DELAY 0xffffffffu
+/* hunk 1 of Audio.cpp */
+
+extern const int BITS_PER_SAMPLE;
+/* hunk 1 of Audio.h */
+
+extern const int CHANNELS;
+extern const uint32_t SAMPLE_RATE;
+extern const int I2S_SD_OUT, LOW, SPEAKING;
+extern int deviceState;
+extern float currentPitchFactor;
+extern void *wsMutex;
+void xSemaphoreTake(void *mutex, uint32_t wait);
+void digitalWrite(int pin, int level);
+struct WebSocketsClient {
+    bool isConnected();
+} extern webSocket;
+struct Buffer {
+    size_t writeArray(const uint8_t *data, size_t size);
+} extern buffer_of_sound;
+struct BufferPrint {
+    Buffer &_buffer;
+    size_t write(const uint8_t *buffer, size_t size);
+} extern bufferPrint;
+struct OpusAudioDecoder {
+    void setOutput(BufferPrint &out);
+} extern opusDecoder;
+struct StreamCopy {
+    size_t copy();
+} extern copier, pitchCopier;
+struct QueueStream {
+    int read();
+} extern queue;
+extern volatile bool i2sOutputFlushScheduled;
+
+size_t BufferPrint::write(const uint8_t *buffer, size_t size)
+{
+    /* hunk 2 of Audio.cpp */
+    }
+    return AUDIO_BUFFER_SIZE < AUDIO_CHUNK_SIZE ? 0 : size;
+}
+
+void transitionToListening()
+{
+    /* hunk 3 of Audio.cpp */
+}
+
+void audioStreamTask(void *)
+{
+    /* hunk 4 of Audio.cpp */
+    /* hunk 5 of Audio.cpp */
+        (void)i2sOutputFlushScheduled;
+        /* hunk 6 of Audio.cpp */
+        else {
+        /* hunk 7 of Audio.cpp */
+    }
+}
+"""
+OPENAI_DEMO = """\
+#include <stddef.h>
+/* hunk 1 of media_sys.c */
+
+typedef struct {
+    void *play_handle;
+} i2s_render_cfg_t;
+audio_render_handle_t av_render_alloc_i2s_render(i2s_render_cfg_t *cfg);
+void *get_playback_handle(void);
+int build_player_system(void);
+static struct {
+    audio_render_handle_t audio_render;
+} player_sys;
+
+int build_player_system(void)
+{
+    i2s_render_cfg_t i2s_cfg = {
+        .play_handle = get_playback_handle(),
+        /* hunk 2 of media_sys.c */
+        return -1;
+}
+return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(("patch", "context", "compiler"), [
+    ("xiaozhi", XIAOZHI, [CXX, "-std=c++17", "-x", "c++"]),
+    ("elatoai", ELATOAI, [CXX, "-std=c++17", "-x", "c++"]),
+    ("openai_demo", OPENAI_DEMO, [CC, "-std=c11"]),
+], ids=["xiaozhi", "elatoai", "openai_demo"])
+def test_patched_lines_compile(patch: str, context: str, compiler: List[str], tmp_path: Path) -> None:
+    """Catches calls that lips.h does not have, or with other arguments: every hunk in C or C++ is compiled as it is."""
+    text = fill(context, hunks(EXAMPLE / f"{patch}.patch"), ".c", ".cc", ".cpp", ".h")
     assert "lips_" in text
-    source = tmp_path / stub
+    source = tmp_path / "patched.c"
     source.write_text(text, encoding="utf-8")
-    subprocess.run([*compiler, *WARNINGS, *INCLUDES, f"-I{STUBS}", "-c", str(source), "-o", str(tmp_path / "a.o")],
-                   check=True, timeout=60)
+    subprocess.run([*compiler, *WARNINGS, *INCLUDES, *stub_options(tmp_path), "-c", str(source), "-o",
+                    str(tmp_path / "a.o")], check=True, timeout=60)
 
 
 @pytest.mark.parametrize("patch", ["xiaozhi", "elatoai", "openai_demo"])

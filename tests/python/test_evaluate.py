@@ -1,28 +1,33 @@
-"""An evaluation from corpus to report: small, whole, and the same bytes for any number of processes."""
+"""An evaluation from corpus to report: small, whole, and the same bytes for any number of processes; its timelines and
+splits, and corpora that are made up by a known law."""
 
 from __future__ import annotations
 
 import csv
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Callable, List, Sequence
 
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from labial.__main__ import main
+from labial.corpus import Episode, Segment
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
 from labial.evaluate import protocol
 from labial.evaluate.baselines import trained
-from labial.evaluate.material import utterances
+from labial.evaluate.material import Split, Timeline, Utterance, bands, make_splits, timeline, utterance, utterances
 from labial.evaluate.methods import METHODS, select
 from labial.evaluate.report import Cell, cell
-from labial.evaluate.splits import Split
-from labial.evaluate.training import Training
+from labial.evaluate.training import Training, choose, validation_error
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
+from labial.see.motion import Band
+from labial.train import train
+from labial.train.codebook import lbg
 from models import write_episode
-from test_evaluate_material import planted, shape_of_phoneme
 
 QUICK = "mean,steps,blur,regression,hmm_synthesis"
 
@@ -135,3 +140,178 @@ def test_a_measure_that_no_split_has_is_a_dash(corpus) -> None:
     assert str(cell(outcomes, "mean", "seam/mean")) == "-" and str(Cell(0.1234, 0.001)) == "0.1234 (0.0010)"
     one = cell(outcomes, "mean", "diff/mean")  # a deviation of 0 would say that splits agree
     assert str(one) == f"{one.mean:.4f}"
+
+
+# ---- Timelines and splits of an evaluation ---------------------------------------------------------------------------
+
+
+FPS = 50
+LABELS = ("P", "AA", "T", "IY", "UW", "S", "K")
+WORDS = ("alpha", "beta", "gamma")
+
+
+def planted(law: Callable[[Timeline], np.ndarray], count: int, noise: float = 0.0, seed: int = 0,
+            labels: Sequence[str] = LABELS) -> List[Episode]:
+    """Episodes of 20 phonemes between silences whose motion (T, 13) is `law` of the timeline, plus noise, FAP."""
+    episodes = []
+    for number in range(count):
+        rng = np.random.default_rng([seed, number])
+        names = ["SIL", *rng.choice(labels, 20), "SIL"]
+        milliseconds = [200, *(20 * rng.integers(3, 9, 20)), 200]
+        ends = np.cumsum(milliseconds) / 1000.0
+        given = timeline([SPEECH.phonemes.index(name) for name in names], milliseconds, FPS)
+        motion = law(given) + rng.normal(0, noise, (given.frames, 13)) * (noise > 0)
+        times = (np.arange(given.frames) + 0.5) / FPS
+        words = [None, *(WORDS[(number + n // 5) % 3] if number % 2 else "delta" for n in range(20)), None]
+        segments = tuple(Segment(end - ms / 1000.0, end, name, word=word)
+                         for end, ms, name, word in zip(ends, milliseconds, names, words))
+        episodes.append(Episode(f"e{number:03}", times, motion, segments))
+    return episodes
+
+
+def training(law: Callable[[Timeline], np.ndarray], count: int = 30, noise: float = 1.0,
+             labels: Sequence[str] = LABELS) -> Training:
+    return Training(utterances(planted(law, count, noise, labels=labels), SPEECH, FPS), SPEECH, FPS, seed=0)
+
+
+def unseen(law: Callable[[Timeline], np.ndarray], count: int = 4, labels: Sequence[str] = LABELS) -> List:
+    return utterances(planted(law, count, seed=99, labels=labels), SPEECH, FPS)
+
+
+def shape_of_phoneme() -> np.ndarray:
+    """(P, 13) FAP: a shape for every phoneme."""
+    return np.random.default_rng(5).normal(0, 150, (len(SPEECH.phonemes), 13))
+
+
+def ramp(given: Timeline) -> np.ndarray:
+    """Channel k rises by k + 1 FAP per frame."""
+    return np.arange(given.frames)[:, None] * np.arange(1, 14)[None, :]
+
+
+def test_the_timeline_is_what_the_library_is_told() -> None:
+    # Catches human frames that are judged against a timeline shifted or stretched by rounding.
+    motion = np.arange(60.0)[:, None] * np.ones(13)
+    segments = (Segment(0.1, 0.1337, "SIL"), Segment(0.1337, 0.1442, "P"), Segment(0.1442, 1.0004, "AA"))
+    episode = Episode("odd", 0.1 + (np.arange(60) + 0.5) / 50, motion, segments)
+    item = utterance(episode, SPEECH, 50)
+    assert item.timeline.milliseconds.tolist() == [34, 10, 856]
+    assert item.timeline.length.tolist() == [2, 0, 43] and item.timeline.frames == 45 == len(item.human)
+    assert item.timeline.held.tolist() == [0, 2]
+    np.testing.assert_allclose(item.human[:, 4], np.arange(45), atol=1e-9)
+
+
+def test_human_frames_are_those_of_the_planted_law() -> None:
+    # Catches resampling or alignment that is off by half a frame.
+    for item in unseen(ramp):
+        np.testing.assert_allclose(item.human, ramp(item.timeline), atol=1e-6)
+
+
+def test_words_select_frames() -> None:
+    item = utterances(planted(ramp, 2), SPEECH, FPS)[1]
+    expected = np.repeat([word == "beta" for word in item.words], item.timeline.length)
+    assert np.array_equal(item.in_words(["beta"]), expected) and expected.any()
+    assert not item.in_words(["delta"]).any()
+
+
+def test_the_longest_word_is_one_run_of_segments() -> None:
+    # Catches a word that occurs twice taken for one, and words that are not judged.
+    item = utterances(planted(ramp, 2), SPEECH, FPS)[1]
+    words = ("a", "a", "b", "a", "a", "a", "c", None, "c", *(None,) * 13)
+    marked = Utterance(item.episode, item.timeline, words, item.human)
+    assert marked.longest_word(silence=0) == (3, 5)
+    assert marked.longest_word(silence=0, words=["c", "b"]) == (2, 2)
+    assert marked.longest_word(silence=0, words=["d"]) is None
+
+
+def test_splits_are_disjoint_and_do_not_depend_on_their_number() -> None:
+    # Catches test episodes that are trained on, and a split 0 that changes when more are asked for.
+    corpus = utterances(planted(ramp, 21), SPEECH, FPS)
+    many = make_splits(corpus, 6, seed=3)
+    assert make_splits(corpus, 2, seed=3) == many[:2]
+    assert len({split.training for split in many}) == 6
+    for split in many:
+        assert sorted(split.training + split.test) == list(range(21)) and len(split.training) == 17
+    assert make_splits(corpus, 1, seed=4)[0] != many[0]
+
+
+def test_held_out_words_leave_the_training_part() -> None:
+    # Catches a word that is trained on and judged as unseen.
+    corpus = utterances(planted(ramp, 20), SPEECH, FPS)
+    for split in make_splits(corpus, 3, seed=0, held_out=["beta", "gamma"]):
+        assert split.words == ("beta", "gamma") and len(split.training) == 8
+        assert not any(set(corpus[i].words) & {"beta", "gamma"} for i in split.training)
+        assert all(set(corpus[i].words) & {"beta", "gamma"} for i in split.test)
+    with pytest.raises(LabialError, match="omega"):
+        make_splits(corpus, 1, 0, ["beta", "omega"])
+    with pytest.raises(LabialError, match="nothing is left"):
+        make_splits(corpus, 1, 0, ["beta", "delta"])
+
+
+def test_unknown_labels_are_told() -> None:
+    episode = planted(ramp, 1)[0]
+    strange = Episode("odd", episode.times, episode.frames, (Segment(0.0, 1.0, "QQ"),))
+    with pytest.raises(LabialError, match="odd: labels QQ"):
+        utterance(strange, SPEECH, FPS)
+
+
+def test_inner_validation_stays_inside_the_training_part() -> None:
+    # Catches settings that are chosen on what the final fit is judged by, or on what the inner fit has seen.
+    part = training(ramp, 20)
+    fold, = part.folds
+    assert len(fold.training.utterances) == 16 and not fold.words
+    assert sorted(item.episode.name for item in (*fold.training.utterances, *fold.held_out)) == [
+        item.episode.name for item in part.utterances]  # fmt: skip
+
+
+def test_inner_validation_holds_out_words_where_unseen_words_are_judged() -> None:
+    # Catches settings that suit known words alone, error on frames of words that were fitted, silence as a word.
+    named = [replace(e, segments=tuple(replace(s, word="<s>" if s.label == "SIL" else f"w{n}" if i < 9 else "common")
+                                       for i, s in enumerate(e.segments))) for n, e in enumerate(planted(ramp, 20))]
+    part = Training(utterances(named, SPEECH, FPS), SPEECH, FPS, seed=0, unseen_words=True)
+    words = [word for fold in part.folds for word in fold.words]
+    assert [len(fold.words) for fold in part.folds] == [6, 6, 6] and len(set(words)) == 18
+    assert not {"common", "<s>"} & set(words)
+    for fold in part.folds:
+        assert not any(set(fold.words) & set(item.words) for item in fold.training.utterances)
+        assert all(set(fold.words) & set(item.words) for item in fold.held_out) and len(fold.held_out) == 6
+
+    def wrong_in_common(given: Timeline) -> np.ndarray:
+        return ramp(given) + 99.0 * (given.segment_at >= 9)[:, None]
+
+    assert validation_error(part.scale, part.folds[0], wrong_in_common) == pytest.approx(0, abs=1e-9)
+    assert validation_error(part.scale, part.folds[0], lambda given: ramp(given) + 5.0) > 1e-3
+
+
+def test_the_setting_of_least_error_over_all_folds_is_chosen() -> None:
+    part = training(ramp, 20)
+    assert choose(part, [40.0, -3.0, 2.0, 7.0], lambda _: lambda off: lambda given: ramp(given) + off) == 2.0
+
+
+def test_methods_share_the_cells_of_their_codebooks(monkeypatch) -> None:
+    # Catches a model that changes because another was trained before it, and cells that are computed twice.
+    calls = []
+    monkeypatch.setattr("labial.evaluate.training.lbg", lambda points, size: calls.append(size) or lbg(points, size))
+    part = training(ramp, 4)
+    shared = [part.model(method, normalise=True) for method in ("paper", "labial")]
+    assert len(calls) == 13 + 4  # of the solved channels, four are sides of pairs, which labial's method evens
+    assert part.model("paper", normalise=True) is shared[0] and part.model("paper") is not shared[0]
+    assert len(calls) == 17 + 13  # as they are, features have other cells
+    for model in shared:
+        alone = train([item.episode for item in part.utterances], kind="speech", method=model.method, jobs=1,
+                      progress=False, normalise=True)  # fmt: skip
+        for field in fields(model):
+            own, other = getattr(model, field.name), getattr(alone, field.name)
+            assert np.array_equal(own, other) if isinstance(own, np.ndarray) else own == other, field.name
+
+
+def test_bands_are_the_phonemes_that_have_frames() -> None:
+    """Catches phonemes without frames that are drawn, bands that leave the window, and kinds of other phonemes."""
+    given = timeline([0, 2, 1, 0], [100, 1, 59, 100], 50)
+    assert given.length.tolist() == [5, 0, 3, 5]
+    labels, kinds = ("SIL", "AA", "T"), ("silence", "vowel", "other")
+    assert bands(given, labels, kinds, 50) == [
+        Band(0.0, 0.1, "SIL", "silence"),
+        Band(0.1, 0.16, "AA", "vowel"),
+        Band(0.16, 0.26, "SIL", "silence"),
+    ]
+    assert bands(given, labels, kinds, 50, 5, 9) == [Band(0.1, 0.16, "AA", "vowel"), Band(0.16, 0.18, "SIL", "silence")]

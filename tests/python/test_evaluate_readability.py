@@ -11,7 +11,7 @@ from labial.corpus.phonesets import SPEECH
 from labial.evaluate.material import Utterance, timeline
 from labial.evaluate.readability import MARGIN, POINTS, LipReader, features, spoken, word_classes
 from labial.evaluate.training import Training
-from test_evaluate_material import planted
+from test_evaluate import planted
 
 FPS = 50
 WORDS = (("lay", "set", "bin"), ("one", "two"))

@@ -11,8 +11,7 @@ from typing import Callable, Iterator
 import numpy as np
 import pytest
 
-from labial.corpus.episode import Episode, Segment, Source
-from labial.corpus.sides import with_even_sides
+from labial.corpus.episode import Episode, Segment, Source, with_even_sides
 from labial.errors import ModelError
 from labial.evaluate.check import device_frames
 from labial.files.faps import CHANNELS, SIDES

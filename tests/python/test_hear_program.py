@@ -228,6 +228,53 @@ def test_unusual_files_are_heard(data: bytes, tmp_path: Path) -> None:
         assert motion(hear("/dev/stdin", data=data)) == wanted(SOUND)
 
 
+def a_law(code: np.ndarray) -> np.ndarray:
+    """16 bits of G.711's A-law, by its table: eight segments, whose steps double from the third on."""
+    code = code.astype(int) ^ 0x55
+    step, segment = (code & 15) * 2 + 1, (code >> 4) & 7
+    size = np.where(segment == 0, step, (step + 32) << np.maximum(segment - 1, 0)) * 8
+    return np.where(code & 128, size, -size)
+
+
+def mu_law(code: np.ndarray) -> np.ndarray:
+    """16 bits of G.711's mu-law: a bias of 33, whose segments' steps double."""
+    code = 255 - code.astype(int)
+    size = ((((code & 15) * 2 + 33) << ((code >> 4) & 7)) - 33) * 4
+    return np.where(code & 128, -size, size)
+
+
+CODES = np.frombuffer(SOUND.astype("<i2").tobytes()[: len(SOUND)], np.uint8)
+
+
+@pytest.mark.parametrize(("bits", "encoding", "data", "heard"), [
+    (8, PCM, ((SOUND >> 8) + 128).astype(np.uint8), SOUND >> 8 << 8),
+    (24, PCM, np.stack([SOUND & 0, SOUND & 255, SOUND >> 8 & 255], axis=1).astype(np.uint8), SOUND),
+    (32, PCM, (SOUND.astype("<i4") << 16) + 65535, SOUND),
+    (32, FLOAT, (SOUND / 32767).astype("<f4"), SOUND),
+    (64, FLOAT, (SOUND / 32767).astype("<f8") * 4, np.clip(SOUND.astype(int) * 4, -32768, 32767)),
+    (8, 6, CODES, a_law(CODES)),
+    (8, 7, CODES, mu_law(CODES)),
+], ids=["8", "24", "32", "float", "double", "a-law", "mu-law"])
+@pytest.mark.parametrize("channels", [1, 2])
+def test_encodings_are_heard(bits: int, encoding: int, data: np.ndarray, heard: np.ndarray, channels: int,
+                             tmp_path: Path) -> None:
+    """Catches a wrong scale, sign or order of bytes; with two channels the second one is silent, so that half is
+    heard."""
+    content = np.ascontiguousarray(data)
+    sound = heard.astype(np.int16)
+    if channels == 2:
+        width = bits // 8
+        rows = np.frombuffer(content.tobytes(), np.uint8).reshape(-1, width)
+        silent = {(8, PCM): 128, (8, 6): 0xD5, (8, 7): 0xFF}.get((bits, encoding), 0)
+        content = np.concatenate([rows, np.full_like(rows, silent)], axis=1)
+        sound = np.stack([sound, np.full_like(sound, 8 if encoding == 6 else 0)], axis=1)
+    path = tmp_path / "a.wav"
+    path.write_bytes(riff(form(16000, channels, bits, encoding), chunk(b"data", content.tobytes())))
+    (tmp_path / "pcm.wav").write_bytes(riff(form(16000, channels), chunk(b"data", pcm(sound))))
+    done, plain = hear(str(path)), hear(str(tmp_path / "pcm.wav"))
+    assert done.returncode == 0 and done.stdout == plain.stdout, done.stderr
+
+
 WHOLE = riff(form(), chunk(b"data", pcm(SOUND)))
 
 
@@ -248,12 +295,16 @@ WHOLE = riff(form(), chunk(b"data", pcm(SOUND)))
     (riff(form(more=b"x")[:4] + b"\xff\xff\xff\x7f" + form()[8:], chunk(b"data", pcm(SOUND))),
      "a chunk is longer than the file"),
     (riff(chunk(b"data", pcm(SOUND)), form()), "has no format before its samples"),
-    (riff(form(bits=24), chunk(b"data", b"")), "has samples of 24 bits in encoding 1; only 16-bit PCM"),
-    (riff(form(bits=8), chunk(b"data", b"")), "has samples of 8 bits in encoding 1"),
-    (riff(form(bits=32, encoding=FLOAT), chunk(b"data", b"")), "has samples of 32 bits in encoding 3"),
+    (riff(form(bits=12), chunk(b"data", b"")), "has samples of 12 bits in encoding 1, not PCM, floating point"),
+    (riff(form(bits=64), chunk(b"data", b"")), "has samples of 64 bits in encoding 1"),
+    (riff(form(bits=16, encoding=FLOAT), chunk(b"data", b"")), "has samples of 16 bits in encoding 3"),
+    (riff(form(bits=4, encoding=2), chunk(b"data", b"")), "has samples of 4 bits in encoding 2"),
+    (riff(form(bits=32, encoding=FLOAT), chunk(b"data", struct.pack("<f", float("inf")))), "a sample is not finite"),
+    (riff(form(bits=64, encoding=FLOAT), chunk(b"data", struct.pack("<d", float("nan")))), "a sample is not finite"),
+    (riff(form(bits=24)[:-4] + b"\4\0\x18\0", chunk(b"data", b"")), "contradicts itself"),
     (riff(form(encoding=EXTENSIBLE), chunk(b"data", b"")), "has samples of 16 bits in encoding 65534"),
     (riff(form(encoding=EXTENSIBLE, more=struct.pack("<HHIH", 22, 16, 4, 6) + GUID), chunk(b"data", b"")),
-     "has samples of 16 bits in encoding 6;"),
+     "has samples of 16 bits in encoding 6,"),
     (riff(form(channels=0), chunk(b"data", b"")), "has 0 channels, not 1 or 2"),
     (riff(form(channels=6), chunk(b"data", b"")), "has 6 channels, not 1 or 2"),
     (riff(form(2**32 - 1, 0)[:10] + form(48000, 2)[10:20] + b"\2\0\x10\0", chunk(b"data", b"")), "contradicts itself"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import random
-import resource
-import signal
 import struct
 import subprocess
 import sys
@@ -27,6 +25,7 @@ from models import archive, members_of, random_model, write_motion
 from test_record import LAB as TALK
 from test_record import talking, turned
 from test_timings import damaged
+from told import Told, limited
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory and time are those of Linux")
 
@@ -42,37 +41,9 @@ FAP = "2.1 x 25 2\n" + "".join(" ".join(["0", "0", "1"] + 65 * ["0"]) + f"\n{n} 
 
 @pytest.fixture(autouse=True)
 def limits() -> Iterator[None]:
-    """Ends what takes too much memory or time; the time is the processor's, on a machine that may be busy otherwise."""
-    def late(*_: object) -> None:
-        raise RuntimeError("a command hangs")
-
-    before = resource.getrlimit(resource.RLIMIT_AS)
-    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY, before[1]))
-    previous = signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)
-    yield
-    signal.setitimer(signal.ITIMER_PROF, 0)
-    signal.signal(signal.SIGPROF, previous)
-    resource.setrlimit(resource.RLIMIT_AS, before)
-
-
-class Told:
-    """Runs the command and holds it to its promise: status 0, 1 or 2, and of an error one line."""
-
-    def __init__(self, capsys: pytest.CaptureFixture) -> None:
-        self._capsys = capsys
-
-    def __call__(self, *arguments: object) -> str:
-        """The line of the error, or nothing."""
-        self._capsys.readouterr()
-        try:
-            status = main([str(argument) for argument in arguments])
-        except SystemExit as error:
-            status = int(error.code or 0)
-        said = [line for line in self._capsys.readouterr().err.split("\n") if "labial: warning: " not in line]
-        assert status in (0, 1, 2) and len(said) == (1 if status == 0 else 2), (arguments, status, said)
-        return said[0]
+    """Ends what takes too much memory or time."""
+    with limited(SECONDS, MEMORY):
+        yield
 
 
 @pytest.fixture

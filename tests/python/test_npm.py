@@ -8,22 +8,30 @@ from __future__ import annotations
 import json
 import os
 import random
+import shutil
+import subprocess
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Dict, List, Tuple
 
+import hears
+import numpy as np
 import pytest
 
 import labial
 from labial.__main__ import main
 from labial.corpus import services
 from labial.corpus.phonesets import ARPABET, AUTO
-from labial.corpus.timings import PathLike, SourceSegment
 from labial.errors import DataError
 from labial.files.faps import CHANNELS, FAP_NAMES
+from labial.hearing import integer
+from labial.hearing.model import load
+from labial.hearing.quantise import quantise
 from labial.rig import FACES, description_of
-from npm import answered
-from packages import run
+from npm import MISSING, answered, package
+from packages import SOURCE, run
 from runtime import needs_runtime
+from services import SAMPLES
+from test_hearing import voice
 
 SAY = os.environ.get("LABIAL_SAY", "")
 OUTPUTS = ("faps", *FACES)
@@ -164,13 +172,9 @@ def test_servos_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], 
     assert message in error and "face.toml" in error and not (tmp_path / "face.json").exists()
 
 
-SAMPLES = Path(__file__).with_name("services")
-READERS: Dict[str, Callable[[PathLike], List[SourceSegment]]] = {
-    "fromPiper": services.read_piper, "fromKokoro": services.read_kokoro, "fromHeadTTS": services.read_headtts,
-    "fromAzure": services.read_azure, "fromPolly": services.read_polly,
-}  # fmt: skip
-SAMPLE_OF = {"piper.json": "fromPiper", "piper_info.json": "fromPiper", "kokoro.json": "fromKokoro",
-             "headtts.json": "fromHeadTTS", "azure.json": "fromAzure", "polly.marks": "fromPolly"}
+#: The readers of the package alone, and the services that they are of.
+READERS = {"fromPiper": "piper", "fromKokoro": "kokoro", "fromHeadTTS": "headtts", "fromAzure": "azure",
+           "fromPolly": "polly"}
 
 #: Of each [reader, text] its segments, or the sentence of its error.
 READ = """
@@ -196,7 +200,7 @@ def read_by_python(folder: Path, reader: str, text: str) -> Any:
     path = folder / "a"
     path.write_bytes(text.encode("utf-8"))
     try:
-        return [(item.start, item.end, item.label, item.labels) for item in READERS[reader](path)]
+        return [(item.start, item.end, item.label, item.labels) for item in services.read(path, READERS[reader])]
     except DataError as error:
         return str(error)
 
@@ -212,9 +216,9 @@ def assert_alike(folder: Path, cases: List[Tuple[str, str]]) -> None:
 
 def test_samples(tmp_path: Path) -> None:
     """Catches a time that is rounded otherwise, a phoneme that is joined otherwise, labels of no set."""
-    cases = [(reader, (SAMPLES / name).read_text(encoding="utf-8")) for name, reader in SAMPLE_OF.items()]
-    for (name, _), rows in zip(SAMPLE_OF.items(), read_by_node(cases)):
-        assert not isinstance(rows, str) and len(rows) > 5, name
+    cases = [(reader, sample.text) for reader, service in READERS.items() for sample in SAMPLES.values()
+             if sample.service == service and not sample.phonemes.startswith("SIL M EY")]
+    assert len(cases) == 6 and all(not isinstance(rows, str) and len(rows) > 5 for rows in read_by_node(cases))
     assert_alike(tmp_path, cases)
 
 
@@ -243,7 +247,8 @@ def drawn_json(rng: random.Random) -> Tuple[str, str]:
                    for time in times[:-1]]
     elif reader == "fromPolly":
         names = [*"ptSTfkirsluaeEoO@BJx", "sil", "sil"]
-        marks = [{"time": round(1000 * time), "type": rng.choice(["viseme", "viseme", "word"]),
+        marks = [{"time": 0, "type": "viseme", "value": "p"}]  # words alone are of the package labial-words
+        marks += [{"time": round(1000 * time), "type": rng.choice(["viseme", "viseme", "word"]),
                   "value": rng.choice(names)} for time in times[:-1]]
         return reader, "\n".join(map(json.dumps, marks))
     return reader, json.dumps(content, ensure_ascii=False)
@@ -273,7 +278,7 @@ MALFORMED: List[Tuple[str, Any]] = [
     ("fromAzure", [{"audio_offset": 0, "viseme_id": 22}]), ("fromAzure", [{"audio_offset": 0}]),
     ("fromAzure", [{"audio_offset": 90000, "viseme_id": 2}, {"audio_offset": 1, "viseme_id": 0}]),
     ("fromAzure", [{"audio_offset": 0, "viseme_id": "__proto__"}]),
-    ("fromAzure", [{"audio_offset": 0, "viseme_id": {}}]), ("fromPolly", {"time": 0, "type": "word", "value": "a"}),
+    ("fromAzure", [{"audio_offset": 0, "viseme_id": {}}]),
     ("fromPolly", {"time": 0, "type": "viseme", "value": "?"}),
     ("fromPolly", {"time": 0, "type": "viseme", "value": "constructor"}),
     ("fromHeadTTS", {"phonemes": ["m"], "vtimes": [0, 1], "vdurations": [5]}),
@@ -287,3 +292,63 @@ def test_malformed_timings(tmp_path: Path) -> None:
     cases = [(reader, text if isinstance(text, str) else json.dumps(text)) for reader, text in MALFORMED]
     assert all(isinstance(read_by_python(tmp_path, *case), str) for case in cases)
     assert_alike(tmp_path, cases)
+
+
+# ---- Hearing in the npm package against the exporter's integers ------------------------------------------------------
+
+
+NODE = shutil.which("node")
+
+#: Reads a list of { sampleRate, channels, model, blocks }; of each the frames, the stretches and the latency.
+SCRIPT = r"""
+const [, url] = process.argv;
+const { Labial } = await import(url);
+let input = "";
+for await (const piece of process.stdin) input += piece;
+const labial = await Labial.load({ hearing: () => import(url.replace(/\/index\.js$/, "-hearing/index.js")) });
+const found = [];
+for (const { blocks, ...options } of JSON.parse(input)) {
+    const hearing = await labial.hear(null, options);
+    for (const block of blocks) hearing.push(Int16Array.from(block));
+    hearing.end();
+    found.push([Array.from(hearing, (faps) => Array.from(faps)), hearing.segments(), hearing.latency]);
+    hearing.close();
+}
+process.stdout.write(JSON.stringify(found));
+"""
+
+
+@pytest.mark.skipif(not NODE, reason="needs node: install the Debian package nodejs")
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
+def test_frames_are_the_exporters(tmp_path: Path) -> None:
+    """Catches another model in the package, a rate that is converted otherwise, and frames that are lost between
+    blocks."""
+    rng = np.random.default_rng(3)
+    sounds, asked = [], []
+    for number, rate in enumerate((8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000)):
+        sound = voice(1.7, number, rate)
+        if number % 2:
+            sound = np.stack([sound, -(sound // 3)], axis=1)
+        model = ("small", "large")[number // 2 % 2]
+        cuts = np.sort(rng.integers(0, len(sound), 12))
+        sounds.append((model, rate, sound))
+        asked.append({"sampleRate": rate, "channels": sound.ndim, "model": model,
+                      "blocks": [block.ravel().tolist() for block in np.split(sound, cuts)]})  # fmt: skip
+    url = (package(tmp_path / "npm") / "index.js").as_uri()
+    done = subprocess.run([str(NODE), "--input-type=module", "-e", SCRIPT, url], input=json.dumps(asked),
+                          capture_output=True, encoding="utf-8", check=False, timeout=120)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert len(found) == len(sounds)
+    for (model, rate, sound), (frames, segments, latency) in zip(sounds, found):
+        trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
+        heard = integer.delivered(quantise(trained, f"hear_{model}"), sound, rate)
+        assert frames == heard.faps.tolist(), (model, rate)
+        rows = [
+            (trained.classes[shown], first / 50, (first + length) / 50)
+            for shown, first, length in hears.stretches(heard.scores)
+        ]
+        assert [row["label"] for row in segments] == [label for label, _, _ in rows]
+        assert [row["start"] for row in segments] == pytest.approx([start for _, start, _ in rows])
+        assert [row["end"] for row in segments] == pytest.approx([end for _, _, end in rows])
+        assert 0.1 < latency < 0.2

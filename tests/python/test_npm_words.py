@@ -9,17 +9,16 @@ from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
 
 import labial
-from labial.corpus.entries import read_entries
 from labial.corpus.formats import read_timings
 from labial.corpus.words import PLAIN, Pronunciation, pronunciation
 from labial.errors import DataError, LabialError
 from messages import NAMES, PIECES, drawn_messages
 from npm import answered
 from runtime import needs_runtime
+from services import SAMPLES
 from test_npm import MALFORMED, drawn_json
 
 pytestmark = needs_runtime
-SERVICES = Path(__file__).with_name("services")
 OWN: Dict[str, Any] = {"kokoro": "K OW K AO R OW", "it's": ["IH", "T", "S"], "Zürich": "Z UH R IH K", "go": ""}
 
 
@@ -138,7 +137,7 @@ def assert_alike(
 
 def test_samples_of_services(tmp_path: Path) -> None:
     """Every sample, told by its content; text that is no JSON as well. Would catch a service taken for another."""
-    cases = [(None, path.read_text(encoding="utf-8")) for path in sorted(SERVICES.iterdir()) if path.suffix != ".md"]
+    cases = [(None, sample.text) for sample in SAMPLES.values()]
     cases += [(None, "0 .1 sil\n.1 .3 m\n"), ("lab", "0 .1 sil\n"), (None, "{}"), (None, "[]"), (None, "nothing")]
     wanted = assert_alike(tmp_path, cases)
     assert len(cases) > 24 and sum(isinstance(one, str) for one in wanted) == 3
@@ -175,14 +174,14 @@ answer(given.map(([format, messages]) => {
 
 def test_messages_one_by_one(tmp_path: Path) -> None:
     """Would catch times of a message that do not follow those of the one before: together they are what read() has."""
-    names = {"elevenlabs_ws.json": "characters", "elevenlabs.json": "characters", "cartesia.json": "words",
-             "cartesia_phonemes.json": "phonemes", "hume.json": "phonemes", "inworld.json": "phonemes",
-             "minimax.json": "words", "words.json": "words"}  # fmt: skip
-    messages = [[item.fields for item in read_entries(SERVICES / name)] for name in names]
-    given = [["auto", one] for one in messages]
+    names = {"elevenlabs_ws": "characters", "elevenlabs": "characters", "cartesia": "words", "rime": "words",
+             "cartesia_phonemes": "phonemes", "hume": "phonemes", "inworld": "phonemes", "minimax": "words",
+             "words": "words"}  # fmt: skip
+    given = [["auto", SAMPLES[name].messages] for name in names]
     for name, kind, found in zip(names, names.values(), answered(MESSAGES, given, tmp_path)):
         items = [item for one in found for item in one[kind]]
-        wanted = read_timings(SERVICES / name)
+        (tmp_path / "a.json").write_text(SAMPLES[name].text, encoding="utf-8")
+        wanted = read_timings(tmp_path / "a.json")
         if kind == "phonemes":
             assert [item["text"] for item in items] == [one.label for one in wanted], name
             continue

@@ -13,7 +13,6 @@ from typing import Callable, Dict, List, Optional
 
 import numpy as np
 import pytest
-from notices import notices
 
 import labial
 from labial.__main__ import main
@@ -25,6 +24,7 @@ from labial.rig.table import convert, expected
 from labial.tables.model import load
 from labial.tables.phones import read_stream
 from labial.tables.quantise import quantise
+from notices import notices
 from packages import (
     CC,
     CMAKE,

@@ -1,11 +1,33 @@
-"""The published method unit by unit: its parts, and the whole against other programs and dense algebra."""
+"""The published method unit by unit: its parts, and the whole against other programs and dense algebra; on a device, in
+models of ``--method paper``, with its open choices made otherwise, and with what Labial changes."""
 
 from __future__ import annotations
+
+import io
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hmmlearn.hmm import GaussianHMM
 
+from labial.__main__ import main
+from labial.bake.source import Source, read_track
+from labial.corpus.folder import read_frames
+from labial.corpus.phonesets import PHONE_SETS, SPEECH
+from labial.evaluate import choices, departures
+from labial.evaluate.baselines import trained
+from labial.evaluate.choices import CHOICES, Choice
+from labial.evaluate.departures import DEPARTURES
+from labial.evaluate.material import utterances
+from labial.evaluate.training import Training
+from labial.reference import published
+from labial.reference import stream as steps
+from labial.reference.fade import delivered
 from labial.reference.published import (
     OVERLAP,
     PIECE_MAX,
@@ -20,7 +42,13 @@ from labial.reference.published import (
 )
 from labial.reference.tables import Equation, FloatTables
 from labial.reference.units import frame_counts
-from models import random_model, streams
+from labial.rig.animation import FORMATS
+from labial.see import motion
+from labial.tables.model import load, save
+from labial.tables.phones import read_stream
+from labial.train import codebook, pipeline, shapes
+from models import random_model, streams, write_episode
+from test_evaluate import law, planted
 from test_trajectory import dense
 from test_viterbi import hidden_markov_model, likeliest
 
@@ -153,3 +181,276 @@ def test_join_crosses_shared_frames_linearly() -> None:
     pieces = [Piece(0, 6, 0, 3), Piece(3, 9, 3, 0)]
     joined = join(pieces, [np.zeros((6, 1)), np.full((6, 1), 4.0)])
     assert joined[:, 0].tolist() == [0, 0, 0, 1, 2, 3, 4, 4, 4]
+
+
+# ---- The published method on a device --------------------------------------------------------------------------------
+
+
+HERE = Path(__file__).resolve().parent
+LAB = "0 0.2 SIL\n0.2 0.3 P1\n0.3 0.42 P2\n0.42 0.5 P3\n0.5 0.9 P4\n0.9 1.3 P1\n1.3 2.8 SIL\n"
+
+needs_letter = pytest.mark.skipif(
+    not os.environ.get("LABIAL_RUNTIME_PAPER"),
+    reason="LABIAL_RUNTIME_PAPER names no build to the letter: cmake --build builds it as labial-python-paper")
+
+
+def run(*command: str) -> subprocess.CompletedProcess:
+    """Python with the run-time that is built to the letter."""
+    environment = {**os.environ, "LABIAL_RUNTIME": os.environ["LABIAL_RUNTIME_PAPER"]}
+    return subprocess.run([sys.executable, *command], env=environment, cwd=HERE, capture_output=True, text=True)
+
+
+@needs_letter
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 6))])
+def test_every_frame_is_that_of_the_published_method(seed: int) -> None:
+    """At most one FAP unit anywhere and RMS .25 after rounding; .6 before. A state that differs, a unit that is cut
+    elsewhere, a join over other frames and a row that is taken over from the unit before are all far beyond."""
+    done = run("published_player.py", str(seed))
+    assert done.returncode == 0, done.stderr
+    differences = []
+    for name, (found, wanted) in json.loads(done.stdout).items():
+        frames, expected = np.array(found).reshape(-1, 13), np.array(wanted).reshape(-1, 13)
+        assert frames.shape == expected.shape, name
+        limit = 1.3 if name == "articulated" else 1.0
+        assert np.abs(frames - expected).max(initial=0) <= 0.6 * limit, name
+        differences.append(frames - np.floor(expected + 0.5))
+        assert np.abs(differences[-1]).max(initial=0) <= 1, name
+    assert sum(map(len, differences)) > 1000
+    assert np.sqrt(np.mean(np.concatenate(differences) ** 2)) <= 0.25
+
+
+@needs_letter
+def test_check_compares_with_the_published_method(tmp_path: Path) -> None:
+    """`labial check` tells what the library is built for; one that is built to the letter refuses other models."""
+    save(random_model(1, "paper"), tmp_path / "paper.npz")
+    save(random_model(1), tmp_path / "labial.npz")
+    (tmp_path / "phones.lab").write_text(LAB)
+    phones = str(tmp_path / "phones.lab")
+    done = run("-m", "labial", "check", str(tmp_path / "paper.npz"), phones, "--predecessors", "12")
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"published method by [0-9.]+ FAP units RMS: it is that method", done.stdout)
+    done = run("-m", "labial", "check", str(tmp_path / "labial.npz"), phones, "--predecessors", "12")
+    assert done.returncode == 1 and "train it by --method paper" in done.stderr
+
+
+# ---- Models of ``--method paper`` ------------------------------------------------------------------------------------
+
+
+ENDS_EARLY = "0 0.2 SIL\n0.2 0.3 P1\n0.3 0.42 P2\n0.42 0.5 P3\n0.5 0.9 P4\n0.9 1.3 P1\n1.3 1.8 SIL\n"
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Path:
+    save(random_model(1, "paper"), tmp_path / "paper.npz")
+    save(random_model(1), tmp_path / "labial.npz")
+    (tmp_path / "phones.lab").write_text(ENDS_EARLY)
+    return tmp_path
+
+
+def frames_of(given: Path, name: str, module) -> np.ndarray:
+    """The motion by one of the references, which differ by more than rounding."""
+    model = load(given / f"{name}.npz")
+    return module.synthesise(FloatTables(model), read_stream(given / "phones.lab", model))
+
+
+@pytest.fixture
+def wanted(given: Path) -> np.ndarray:
+    frames = frames_of(given, "paper", published)
+    assert np.abs(frames - frames_of(given, "paper", steps)).max() > 1
+    return frames
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_has_the_published_motion(given: Path, wanted: np.ndarray, name: str) -> None:
+    """Would catch a format that takes its frames from another reference."""
+    out = given / "out"
+    assert main(["synth", str(given / "paper.npz"), str(given / "phones.lab"), "--to", name, "-o", str(out)]) == 0
+    text = io.StringIO()
+    FORMATS[name].write(text, [wanted], 50, "paper", len(wanted))
+    assert out.read_text() == text.getvalue()
+
+
+def test_whole_utterances_and_labials_models_are_as_they_were(given: Path) -> None:
+    """The published method's `--whole` is one unit; Labial's models move as the run-time does."""
+    for name, option, expected in (
+        ("paper", ["--whole"], published.synthesise(
+            FloatTables(load(given / "paper.npz")), read_stream(given / "phones.lab", load(given / "paper.npz")),
+            whole=True)),
+        ("labial", [], delivered(frames_of(given, "labial", steps))),
+        ("labial", ["--exact"], delivered(frames_of(given, "labial", steps), exact=True)),
+    ):
+        out = given / f"{name}.csv"
+        assert main(["synth", str(given / f"{name}.npz"), str(given / "phones.lab"), "-o", str(out), *option]) == 0
+        np.testing.assert_allclose(read_frames(out)[1], expected, atol=0.00501)
+
+
+def test_page_plot_and_bake_have_the_published_motion(given: Path, wanted: np.ndarray) -> None:
+    """What is looked at, and what a board plays back that does not compute, is the published method's too; on a board
+    it begins and ends at rest."""
+    [read] = motion.read_motions([given / "paper.npz"], given / "phones.lab")
+    np.testing.assert_array_equal(read.frames, wanted)
+    track = read_track(Source(str(given / "phones.lab"), str(given / "paper.npz"))).frames
+    np.testing.assert_array_equal(track, delivered(wanted))
+
+
+def test_check_says_what_the_device_does_differently(given: Path, capsys: pytest.CaptureFixture) -> None:
+    """One sentence, and no defect where the device differs by design."""
+    assert main(["check", str(given / "paper.npz"), str(given / "phones.lab"), "--predecessors", "12"]) == 0
+    captured = capsys.readouterr()
+    found = re.search(r"differs from the published method by ([0-9.]+) FAP units RMS, by design", captured.out)
+    assert found and float(found[1]) > 1 and captured.err == ""
+    assert "published method: rms" in captured.out and captured.out.count("by design") == 1
+    main(["check", str(given / "labial.npz"), str(given / "phones.lab"), "--predecessors", "12"])
+    assert "published" not in capsys.readouterr().out
+
+
+def test_the_figure_of_check_is_measured_from_the_published_method(given: Path, wanted, capsys) -> None:
+    """Held against the frames of the library's own reference on the exported tables, with the rounding of frames."""
+    from labial.reference.tables import ExportedTables
+    from labial.tables.quantise import quantise
+
+    model = load(given / "paper.npz")
+    device = steps.synthesise(ExportedTables(quantise(model, "m")), read_stream(given / "phones.lab", model))
+    rms = float(np.sqrt(np.mean((device - wanted) ** 2)))
+    main(["check", str(given / "paper.npz"), str(given / "phones.lab")])
+    assert f"published method by {rms:.1f} FAP units" in capsys.readouterr().out
+
+
+def test_export_says_it_too(given: Path, capsys: pytest.CaptureFixture) -> None:
+    assert main(["export", str(given / "paper.npz"), "--name", "m", "-o", str(given / "out")]) == 0
+    text = capsys.readouterr().out
+    assert "from the published method, FAP" in text and "by design" in text and "quantisation loss" not in text
+
+
+def test_bundled_models_by_name(given: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+    """In every command that takes a model; a file of the same name is another thing."""
+    monkeypatch.chdir(given)
+    (given / "hello.lab").write_text("0 0.2 SIL\n0.2 0.3 B\n0.3 0.5 AY\n0.5 0.8 SIL\n")
+    (given / "laugh.lab").write_text("0 0.2 silence\n0.2 0.3 a\n0.3 0.5 silence\n")
+    assert main(["synth", "speech_en", "hello.lab", "--to", "jsonl", "-o", "hello.jsonl"]) == 0
+    assert len([json.loads(line) for line in (given / "hello.jsonl").read_text().splitlines()]) == 52
+    assert main(["synth", "laughter_synthetic", "laugh.lab", "-o", "laugh.csv"]) == 0
+    assert main(["page", "speech_en", "--phones", "hello.lab", "-o", "hello.html"]) == 0
+    assert main(["bake", "hello.lab", "--model", "speech_en", "-o", "hello.h"]) == 0
+    assert "speech_en" in capsys.readouterr().out or (given / "hello.h").exists()
+    assert main(["export", "speech_en", "--name", "own", "-o", "own"]) == 0
+    assert main(["synth", "./speech_en", "hello.lab"]) == 1
+    assert "speech_en: No such file" in capsys.readouterr().err
+    assert main(["page", "speech_en", "-o", "hello.html"]) == 1
+    assert "speech_en: a model speaks phoneme timings: give --phones" in capsys.readouterr().err
+
+
+# ---- The published method with its open choices made otherwise -------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def corpus():
+    return planted(law, 14, noise=3.0)
+
+
+@pytest.fixture(scope="module")
+def training(corpus) -> Training:
+    return Training(utterances(corpus[:11], SPEECH, 50), SPEECH, 50, 0)
+
+
+def test_the_first_row_is_the_published_method(corpus, training) -> None:
+    """The same frames as the row `paper` of an evaluation."""
+    given = [item.timeline for item in utterances(corpus[11:], SPEECH, 50)]
+    motion = choices._motion(CHOICES["speech"][0], training, given)
+    for frames, item in zip(motion, given):
+        np.testing.assert_array_equal(frames, trained.fit_paper(training).predict(item))
+
+
+def test_every_choice_changes_something_and_leaves_nothing_behind(corpus, training) -> None:
+    """Would catch a choice that is not made, and one that is still made in the next row."""
+    given = [utterances(corpus[11:], SPEECH, 50)[0].timeline]
+    kept = [codebook.VARIANCE_FLOOR, codebook.transitions, shapes.SAMPLES_PER_COMPONENT, shapes.REGULARISATION,
+            published.join, published.OVERLAP, published.PIECE_MAX, pipeline.PHONE_SETS]
+    plain = choices._motion(Choice(""), training, given)[0]
+    same = []
+    for choice in CHOICES["speech"][1:]:
+        if np.array_equal(choices._motion(choice, training, given)[0], plain):
+            same.append(choice.title)
+    # This corpus's apexes are the middles, and it has no unit of more than 40 frames.
+    assert set(same) <= {"a phoneme's middle, not the apex of its sound", "units of any length, not cut at 40 frames",
+                         "cross-fade of 20 frames at most, not 8"}
+    assert [codebook.VARIANCE_FLOOR, codebook.transitions, shapes.SAMPLES_PER_COMPONENT, shapes.REGULARISATION,
+            published.join, published.OVERLAP, published.PIECE_MAX, pipeline.PHONE_SETS] == kept
+    np.testing.assert_array_equal(choices._motion(Choice(""), training, given)[0], plain)
+
+
+def test_full_covariances_without_covariances_are_the_diagonal_ones(training) -> None:
+    """Equation 3 with the matrix written out, against the solver of the published reference."""
+    model = training.model("paper")
+    path = np.random.default_rng(1).integers(0, model.log_initial.shape[1], (30, 13))
+    inverse = np.zeros((*model.state_precision.shape[:2], 3, 3))
+    inverse[..., np.arange(3), np.arange(3)] = model.state_precision
+    terms = FloatTables(model).equation(path, np.zeros((30, 13)))
+    np.testing.assert_allclose(choices._solve_full(model, inverse, path), published.solve(terms), atol=1e-6)
+
+
+def test_a_cut_lies_in_the_middle_of_what_two_pieces_share() -> None:
+    pieces = [Piece(0, 10, 0, 4), Piece(6, 15, 4, 0)]
+    motion = [np.full((10, 13), 1.0), np.full((9, 13), 2.0)]
+    assert choices._cut_in_the_middle(pieces, motion)[:, 0].tolist() == [1.0] * 8 + [2.0] * 7
+    assert 1.0 < join(pieces, motion)[7, 0] < 2.0
+
+
+def test_laughs_have_their_boundaries_changed() -> None:
+    """The phone set of the training alone: what is judged stays as it was."""
+    by_title = {choice.title: choice for choice in CHOICES["laughter"]}
+    every = by_title["every phoneme ends a unit"].replaced[pipeline, "PHONE_SETS"]["laughter"]
+    silence = by_title["silence alone ends a unit"].replaced[pipeline, "PHONE_SETS"]["laughter"]
+    assert all(every.boundary) and sum(silence.boundary) == 1 and silence.boundary[0]
+    assert 1 < sum(PHONE_SETS["laughter"].boundary) < len(PHONE_SETS["laughter"].boundary)
+
+
+@pytest.mark.slow
+def test_choices_writes_a_table(corpus, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    (tmp_path / "corpus").mkdir()
+    for item in corpus:
+        write_episode(tmp_path / "corpus", item)
+    assert choices.main([str(tmp_path / "corpus"), "--splits", "1", "--jobs", "1", "-o", str(tmp_path / "t.md")]) == 0
+    lines = (tmp_path / "t.md").read_text().splitlines()
+    assert lines[0] == "| choice | diff | correlation | amplitude | closure | jitter | seam |"
+    assert len(lines) == 2 + len(CHOICES["speech"]) and all(line.count("|") == 8 for line in lines)
+    assert capsys.readouterr().out == "\n".join(lines) + "\n"
+    assert choices.main([str(tmp_path / "nothing"), "-o", str(tmp_path / "t.md")]) == 1
+    assert "nothing: no such folder" in capsys.readouterr().err
+
+
+# ---- Labial's departures from the published method -------------------------------------------------------------------
+
+
+def test_every_departure_changes_something(corpus, training) -> None:
+    """Would catch a row that measures the model as it is. This corpus has pairs too few to be learnt."""
+    timeline = utterances(corpus[11:], SPEECH, 50)[0].timeline
+    model = training.model("labial")
+    plain = DEPARTURES[0].synthesise(model, timeline)
+    same = {item.title for item in DEPARTURES[1:]
+            if np.array_equal(item.synthesise(item.back(model), timeline), plain)}
+    assert same <= {"pairs"}
+
+
+def test_units_of_a_published_model_are_the_published_ones(corpus, training) -> None:
+    """The row of units and joins is the published reference, which test_published.py holds against other programs."""
+    timeline = utterances(corpus[11:], SPEECH, 50)[0].timeline
+    model = training.model("paper")
+    np.testing.assert_array_equal(departures._unit_by_unit(model, timeline),
+                                  published.synthesise(FloatTables(model), timeline.stream))
+
+
+@pytest.mark.slow
+def test_departures_writes_a_table(corpus, tmp_path: Path,
+                                    capsys: pytest.CaptureFixture) -> None:
+    (tmp_path / "corpus").mkdir()
+    for item in corpus:
+        write_episode(tmp_path / "corpus", item)
+    options = ["--splits", "1", "--jobs", "1", "-o", str(tmp_path / "t.md")]
+    assert departures.main([str(tmp_path / "corpus"), *options]) == 0
+    lines = (tmp_path / "t.md").read_text().splitlines()
+    assert lines[0] == "| taken back | diff | correlation | amplitude | closure | jitter | seam |"
+    assert len(lines) == 3 + len(DEPARTURES) and all(line.count("|") == 8 for line in lines)
+    assert capsys.readouterr().out == "\n".join(lines) + "\n"
+    assert departures.main([str(tmp_path / "nothing"), "-o", str(tmp_path / "t.md")]) == 1
+    assert "nothing: no such folder" in capsys.readouterr().err

@@ -118,7 +118,7 @@ def test_loudness_follows_lips_that_follow_loudness(tmp_path: Path) -> None:
     assert found.name == "corpus" and clip.talker == "corpus" and clip.real.shape == (100, 13)
     assert np.flatnonzero(clip.speech).tolist() == list(range(25, 75))
     rows = {row.method: row for row in real_lips.evaluated([found], real_lips.methods(random_hearing(3)))}
-    assert set(rows) == {"network", "integers", "loudness", "phonemes"}
+    assert set(rows) == {"network", "integers", "loudness", "phonemes", "phonemes and sound"}
     loud = rows["loudness"]
     assert min(loud.opening, loud.jaw, loud.lower) > 0.9 and max(abs(loud.upper), abs(loud.corners)) < 0.3
     assert rows["integers"][5:] == pytest.approx(rows["network"][5:], abs=0.03)

@@ -12,11 +12,9 @@ import numpy as np
 import pytest
 
 from labial.__main__ import main
-from labial.capture.faces import talker
-from labial.capture.head import head_angles
+from labial.capture.faces import head_angles, talker
 from labial.capture.landmarks import USED, Given
-from labial.capture.record import record
-from labial.capture.sync import SURE, Lag, advice, estimate
+from labial.capture.record import SURE, Lag, advice, estimate, record
 from labial.corpus import Episode, read_corpus
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import SPEECH

@@ -14,8 +14,11 @@ from pathlib import Path
 from typing import Any, Dict
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import labial
+from bill import bill
 from packages import SOURCE
 
 pytestmark = pytest.mark.skipif(not shutil.which("git"), reason="no git")
@@ -85,8 +88,35 @@ def check_bill(bill: Dict[str, Any], folder: Path) -> None:
     assert speech["licenses"] == [{"license": {"id": "CC-BY-4.0"}}]
     assert "synthetic" in components["model:laughter_synthetic"]["description"]
     assert {"pypi:numpy", "pypi:scipy", "pypi:mediapipe", "pypi:distributed", "build:ziglang"} <= set(components)
-    assert [item["dependsOn"] for item in bill["dependencies"]] == [
-        ["model:hear_large", "model:hear_small", "model:laughter_synthetic", "model:speech_en", "words:words_en"]]
+    data = ["model:hear_large", "model:hear_small", "model:laughter_synthetic", "model:speech_en", "words:words_en"]
+    contents = {item["ref"]: item["dependsOn"] for item in bill["dependencies"]}
+    assert set(contents) == {"labial", *files}
+    for name, inside in contents.items():
+        assert inside == data or name.endswith("-npm.tgz"), name
+
+
+def test_the_bill_says_what_is_in_each_package(tmp_path: Path) -> None:
+    """Of npm packages, which LICENSE lists what they contain, and of wheels."""
+    names = {"labial": "speech_en", "labial-words": "words_en", "labial-hearing": "hear_small, hear_large"}
+    for name, data in names.items():
+        with tarfile.open(tmp_path / f"{name}-1.0.0-npm.tgz", "w:gz") as packed:
+            for file, text in (("package.json", json.dumps({"name": name})),
+                               ("LICENSE", f"What the package contains besides that code: {data}.\n")):
+                (tmp_path / file).write_text(text)
+                packed.add(tmp_path / file, f"package/{file}")
+    with zipfile.ZipFile(tmp_path / "labial-1.0.0-py3-none-any.whl", "w") as wheel:
+        wheel.writestr("labial/models/speech_en.npz", "")
+        wheel.writestr("labial/models/words_en.npz", "")
+    packages = sorted(tmp_path.glob("labial*"))
+    made = bill(SOURCE, packages, 0)
+    assert {item["ref"]: item["dependsOn"] for item in made["dependencies"][1:]} == {
+        "labial-1.0.0-npm.tgz": ["model:speech_en"], "labial-words-1.0.0-npm.tgz": ["words:words_en"],
+        "labial-hearing-1.0.0-npm.tgz": ["model:hear_large", "model:hear_small"],
+        "labial-1.0.0-py3-none-any.whl": ["model:speech_en", "words:words_en"]}  # fmt: skip
+    version = labial.__version__
+    assert [item["purl"] for item in made["components"] if item["type"] == "file"] == [
+        f"pkg:npm/labial@{version}", f"pkg:pypi/labial@{version}", f"pkg:npm/labial-hearing@{version}",
+        f"pkg:npm/labial-words@{version}"]  # fmt: skip
 
 
 def test_what_ci_takes_from_elsewhere_is_pinned() -> None:
@@ -95,6 +125,34 @@ def test_what_ci_takes_from_elsewhere_is_pinned() -> None:
     uses = [use for text in texts for use in re.findall(r"^ +(?:- )?(?:uses|container|image): (\S+)", text, re.M)]
     assert len(uses) >= 3
     assert [use for use in uses if not re.search(r"@([0-9a-f]{40}|sha256:[0-9a-f]{64})$", use)] == []
+
+
+def test_what_pip_and_npm_install_has_hashes() -> None:
+    """Catches a package that CI installs and nobody pinned, and a lock file that is not made anew."""
+    locks = {name: locked(SOURCE / name) for name in ("tests/requirements.lock", "tests/tracking/requirements.lock",
+                                                      "packaging/wheels.txt")}  # fmt: skip
+    assert all(len(lock) >= 5 for lock in locks.values())
+    for name in ("tests/requirements", "tests/tracking/requirements"):
+        for line in (SOURCE / f"{name}.txt").read_text(encoding="utf-8").splitlines():
+            wanted = Requirement(line.split("#")[0]) if line.split("#")[0].strip() else None
+            if wanted and (not wanted.marker or wanted.marker.evaluate()):
+                assert wanted.specifier.contains(locks[f"{name}.lock"][canonicalize_name(wanted.name)]), (name, line)
+    packages = json.loads((SOURCE / "tests/npm/bundlers/package-lock.json").read_text(encoding="utf-8"))["packages"]
+    assert [name for name, item in packages.items() if name and not item["integrity"].startswith("sha512-")] == []
+
+
+def locked(path: Path) -> Dict[str, str]:
+    """The versions that a lock file of pip names for this Python, by name; each must have a hash."""
+    found = {}
+    for entry in re.split(r"\n(?! )", re.sub(r"^#.*\n", "", path.read_text(encoding="utf-8"), flags=re.M).strip()):
+        requirement, *hashes = entry.split("\\\n")
+        assert hashes and all(re.fullmatch(r" +--hash=sha256:[0-9a-f]{64} ?", text) for text in hashes), requirement
+        named = Requirement(requirement)
+        if not named.marker or named.marker.evaluate():
+            (pinned,) = named.specifier
+            assert pinned.operator == "=="
+            found[canonicalize_name(named.name)] = pinned.version
+    return found
 
 
 def test_manifests_name_the_licence_of_the_data() -> None:

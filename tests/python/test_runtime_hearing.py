@@ -257,17 +257,18 @@ def test_the_command_writes_frames(tmp_path: Path, capsys: pytest.CaptureFixture
     sound = voice(0.7, rate=24000)
     stereo = np.stack([sound, -(sound // 3)], axis=1)
     for name, samples in (("one.wav", sound), ("two.wav", stereo)):
-        assert main(["hear", str(write_wav(tmp_path / name, samples, 24000))]) == 0
+        assert main(["hear", str(write_wav(tmp_path / name, samples, 24000)), "--sound-alone"]) == 0
         expected = wanted(samples, 24000, begin=measured(samples, 24000)).faps
         assert rows(capsys.readouterr().out).tolist() == expected.tolist()
     begin = measured(sound, 24000)
-    assert main(["hear", str(tmp_path / "one.wav"), "--model", "large", "-o", str(tmp_path / "out.csv")]) == 0
+    assert main(["hear", str(tmp_path / "one.wav"), "--model", "large", "--sound-alone", "-o",
+                 str(tmp_path / "out.csv")]) == 0
     assert rows((tmp_path / "out.csv").read_text()).tolist() == wanted(sound, 24000, "hear_large", begin).faps.tolist()
-    assert main(["hear", str(tmp_path / "one.wav"), "--to", "fap"]) == 0
+    assert main(["hear", str(tmp_path / "one.wav"), "--sound-alone", "--to", "fap"]) == 0
     assert capsys.readouterr().out.splitlines()[0].split()[-1] == "47"
-    assert main(["hear", str(tmp_path / "one.wav"), "--exact"]) == 0
+    assert main(["hear", str(tmp_path / "one.wav"), "--sound-alone", "--exact"]) == 0
     assert rows(capsys.readouterr().out).tolist() == wanted(sound, 24000, begin=begin).faps[:35].tolist()
-    assert main(["hear", str(tmp_path / "one.wav"), "--to", "jsonl"]) == 0
+    assert main(["hear", str(tmp_path / "one.wav"), "--sound-alone", "--to", "jsonl"]) == 0
     assert len(capsys.readouterr().out.splitlines()) == 35 + 12
 
 
@@ -286,7 +287,7 @@ def test_other_files_are_converted(tmp_path: Path, capsys: pytest.CaptureFixture
     pytest.importorskip("soxr")
     sound = voice(1.0, rate=11025)
     write_wav(tmp_path / "low.wav", (sound >> 8) + 128, 11025, 1)
-    assert main(["hear", str(tmp_path / "low.wav"), "--exact"]) == 0
+    assert main(["hear", str(tmp_path / "low.wav"), "--sound-alone", "--exact"]) == 0
     assert len(rows(capsys.readouterr().out)) == 50
 
 

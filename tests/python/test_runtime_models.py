@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import io
-import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -26,6 +25,7 @@ from labial.tables.quantise import ExportedModel, quantise
 from models import random_model
 from packages import SOURCE
 from runtime import needs_runtime
+from services import SAMPLES
 
 pytestmark = needs_runtime
 
@@ -165,7 +165,6 @@ def test_what_is_no_rig(tmp_path: Path) -> None:
 
 # ---- Timings and types
 
-SAMPLES = Path(__file__).with_name("services")
 LAB = "0.00 0.12 sil\n0.12 0.20 m\n0.20 0.45 ay\n"
 
 
@@ -178,9 +177,10 @@ def test_timings_from_anything_that_holds_them(tmp_path: Path) -> None:
     assert labial.read_timings(io.StringIO(LAB)) == labial.read_timings(io.BytesIO(LAB.encode())) == expected
     with open(path) as file:
         assert labial.read_timings(file, source="lab") == expected
-    for name in ("piper.json", "piper_info.json", "kokoro.json", "azure.json", "headtts.json"):
-        parsed = json.loads((SAMPLES / name).read_text(encoding="utf-8"))
-        assert labial.read_timings(parsed) == labial.read_timings(SAMPLES / name)
+    for name in ("piper", "piper_info", "kokoro", "azure", "headtts"):
+        path = tmp_path / "a.json"
+        path.write_text(SAMPLES[name].text, encoding="utf-8")
+        assert labial.read_timings(SAMPLES[name].messages) == labial.read_timings(path)
     for given in (3, None, object()):
         with pytest.raises(TypeError, match="timings are a path, a file, a list or a dict"):
             labial.read_timings(given)  # type: ignore[arg-type]
@@ -192,12 +192,12 @@ def chunks(name: str) -> list:
     """A sample of Piper's as its own objects, whose numbers are NumPy's."""
     return [SimpleNamespace(sample_rate=chunk["sample_rate"], audio_float_array=np.zeros(3), phoneme_alignments=[
         SimpleNamespace(phoneme=item["phoneme"], num_samples=np.int64(item["num_samples"]))
-        for item in chunk["phoneme_alignments"]]) for chunk in json.loads((SAMPLES / name).read_text("utf-8"))]
+        for item in chunk["phoneme_alignments"]]) for chunk in SAMPLES[name].messages]
 
 
 def test_pipers_chunks_as_they_are() -> None:
-    found = labial.read_timings(chunks("piper.json"), source="piper")
-    assert found == labial.read_timings(SAMPLES / "piper.json") and len(labial.render(found)) > 50
+    found = labial.read_timings(chunks("piper"), source="piper")
+    assert found == labial.read_timings(SAMPLES["piper"].messages) and len(labial.render(found)) > 50
 
 
 def test_piper_without_alignments_says_what_to_do() -> None:

@@ -1,4 +1,4 @@
-"""Plots and pages of motion files, from outside; the page is held to what the demo's is."""
+"""Plots and pages of motion files, avatars on pages, figures of several models."""
 
 from __future__ import annotations
 
@@ -6,19 +6,31 @@ import base64
 import json
 import re
 import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List
 
 import numpy as np
 import pytest
 
+from avatars import document_of, glb, made_head
+from browser import CHROMIUM, REASON, THREE_D, Browser
+from bundlers import NPM, tools
 from labial.__main__ import main
 from labial.errors import DataError
+from labial.evaluate import side_by_side
+from labial.evaluate.measures import labial_parameters
 from labial.files import limits
 from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.files.frames import even
+from labial.reference import published, stream
+from labial.reference.tables import FloatTables
+from labial.reference.units import frame_counts
+from labial.rig.animation import face, outputs
 from labial.see.motion import read_bands, read_fap, read_motion, read_motions
 from labial.see.page import DATA_PLACE, MOUTH, MOUTH_PLACE, PLAYER, page
+from labial.tables.model import save
+from models import random_model, write_motion
 
 HEADER = ",".join(("time", *FAP_COLUMNS))
 LAB = "0 0.1 sil\n0.1 0.2 M\n0.2 0.3 ah0\n0.3 0.4 v\n0.4 0.5 t\n"
@@ -231,3 +243,218 @@ def test_names_tell_files_apart(given: Path) -> None:
     assert [motion.name for motion in read_motions([given / "a.csv"])] == ["a"]
     names = [motion.name for motion in read_motions([given / "a.csv", given / "a.csv"])]
     assert names == [str(given / "a.csv")] * 2
+
+
+# ---- ``labial page --head`` ------------------------------------------------------------------------------------------
+
+
+BROWSER = THREE_D
+#: Frames of which the third is wide open.
+OPENING = (0, 200, 600, 200, 0)
+FAPS = np.zeros((5, 13))
+FAPS[:, 0], FAPS[:, 4] = [x // 2 for x in OPENING], [-x for x in OPENING]
+
+
+@pytest.fixture
+def opening(tmp_path: Path) -> Path:
+    """A mouth that opens and closes."""
+    return write_motion(tmp_path / "opens.csv", np.arange(5) / 50, FAPS)
+
+
+@pytest.fixture
+def avatar(tmp_path: Path) -> Path:
+    """The made head, below a node that moves it."""
+    document, binary = document_of(*made_head(), node={"translation": [0.3, 1.5, -0.2]})
+    path = tmp_path / "head.glb"
+    path.write_bytes(glb(document, binary))
+    return path
+
+
+@pytest.fixture
+def stand_in(tmp_path: Path) -> Path:
+    """What looks like the npm package three."""
+    files = {"build/three.core.js": "export const core = 1;",
+             "build/three.module.js": "import { core } from './three.core.js';\nexport { core };",
+             "examples/jsm/loaders/GLTFLoader.js": "import { a } from '../utils/BufferGeometryUtils.js';\n"
+                                                   "import { b } from '../utils/SkeletonUtils.js';",
+             "examples/jsm/utils/BufferGeometryUtils.js": "import { core } from 'three';",
+             "examples/jsm/utils/SkeletonUtils.js": ""}
+    for name, text in files.items():
+        (tmp_path / "three" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "three" / name).write_text(text)
+    return tmp_path / "three"
+
+
+@pytest.mark.parametrize("core", [True, False])
+def test_everything_is_in_the_page(tmp_path: Path, opening: Path, avatar: Path, stand_in: Path, core: bool) -> None:
+    """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside. Before
+    0.172 three had no three.core.js."""
+    out = tmp_path / "page.html"
+    if not core:
+        (stand_in / "build" / "three.core.js").unlink()
+        (stand_in / "build" / "three.module.js").write_text("export const core = 1;")
+    assert main(["page", str(opening), "--head", str(avatar), "--three", str(stand_in), "-o", str(out)]) == 0
+    text = out.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert base64.b64decode(data["head"]) == avatar.read_bytes()
+    expected = outputs(face("arkit"), FAPS)
+    weights = np.array(data["weights"])
+    assert "jawOpen" in data["shapes"] and set(data["shapes"]) <= set(made_head()[2])
+    for name, column in zip(data["shapes"], weights.T):
+        assert column == pytest.approx(expected[name], abs=0.0006)
+    assert np.mean(data["corners"], axis=0)[1] == pytest.approx(1.5, abs=0.01)
+    imports = json.loads(re.search(r'<script type="importmap">(.*?)</script>', text, re.DOTALL)[1])["imports"]
+    for address in imports.values():
+        kind, _, content = address.partition(",")
+        assert kind == "data:text/javascript;base64"
+        for module in re.findall(r"from '(.*?)'", base64.b64decode(content).decode()):
+            assert module in imports
+
+
+@pytest.mark.parametrize(("jaw", "told"), [(1.0, ""), (0.25, "its mouth opens 0."), (3.0, "its mouth opens 2.")])
+def test_heads_that_the_built_in_weights_do_not_suit_are_told(tmp_path: Path, opening: Path, stand_in: Path, jaw: float,
+                                                              told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """A jaw that goes a quarter as far as the made head's, or three times; of a rig of one's own nothing is said."""
+    vertices, triangles, shapes = made_head()
+    for name in ("jawOpen", "mouthClose"):
+        shapes[name] = jaw * shapes[name]
+    path, out = tmp_path / "odd.glb", str(tmp_path / "page.html")
+    path.write_bytes(glb(*document_of(vertices, triangles, shapes)))
+    command = ["page", str(opening), "--head", str(path), "--three", str(stand_in), "-o", out]
+    assert main(command) == 0
+    said = capsys.readouterr().err
+    assert told in said and (f"warning: {path}: with the built-in weights" in said) == bool(told), said
+    (tmp_path / "mine.toml").write_text('unit = "weight"\n[output.jawOpen]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
+    assert main([*command, "--rig", str(tmp_path / "mine.toml")]) == 0 and capsys.readouterr().err == ""
+
+
+def test_expressions_of_vrm_move_their_shapes(tmp_path: Path, opening: Path, stand_in: Path) -> None:
+    """three.js knows the mesh's shapes alone, not the expressions that are made of them."""
+    vertices, triangles, shapes = made_head(mouth="vrm")
+    document, binary = document_of(vertices, triangles, {f"M_{name}": 2.0 * move for name, move in shapes.items()})
+    document["extensions"] = {"VRMC_vrm": {"expressions": {"preset": {
+        name: {"morphTargetBinds": [{"node": 0, "index": place, "weight": 0.5}]}
+        for place, name in enumerate(("aa", "ou", "ih"))}}}}
+    (tmp_path / "a.vrm").write_bytes(glb(document, binary))
+    out = tmp_path / "page.html"
+    head = ["--head", str(tmp_path / "a.vrm"), "--three", str(stand_in)]
+    assert main(["page", str(opening), *head, "-o", str(out)]) == 0
+    text = out.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert set(data["shapes"]) == {"M_A", "M_U", "M_I"} and data["facing"] == 1.0
+    opened = np.array(data["weights"])[:, data["shapes"].index("M_A")]
+    assert opened == pytest.approx(0.5 * outputs(face("vrm"), FAPS)["aa"], abs=0.001) and opened.max() > 0.2
+
+
+def test_errors_say_what_to_do(tmp_path: Path, opening: Path, avatar: Path, stand_in: Path,
+                               monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """One line each, and no page."""
+    monkeypatch.chdir(tmp_path)
+    out = str(tmp_path / "page.html")
+    (tmp_path / "rig.toml").write_text('unit = "weight"\n[output.beak]\nfrom = "jaw"\nneutral = 0\nfull = 1\n')
+    three = ["--three", str(stand_in)]
+    for options, message in (
+        (["--head", str(avatar)], "`npm install three` brings it"),
+        (["--head", str(avatar), "--three", str(tmp_path)], "is not the npm package three"),
+        (["--head", str(opening), *three], "is not a whole .glb"),
+        (["--head", str(avatar), "--rig", str(tmp_path / "rig.toml"), *three], "none of the rig's shapes, beak"),
+        (three, "--rig and --three go with --head"),
+    ):
+        assert main(["page", str(opening), "-o", out, *options]) == 1
+        error = capsys.readouterr().err
+        assert message in error and error.count("\n") == 1, error
+    assert not Path(out).exists()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not NPM, reason="needs npm: install the Debian package npm")
+@pytest.mark.skipif(not CHROMIUM, reason=REASON)
+def test_the_head_moves_in_a_browser(tmp_path: Path, opening: Path, avatar: Path, browser: Browser) -> None:
+    """With the real three.js: no error, the camera looks at the mouth, weights reach the mesh, and what is drawn
+    changes where the mouth opens and is the same again where it closes."""
+    out, three = tmp_path / "page.html", tools() / "node_modules" / "three"
+    assert main(["page", str(opening), "--head", str(avatar), "--three", str(three), "-o", str(out)]) == 0
+    page = browser.page(out.as_uri())
+    page.wait_for("!!window.labialHead", 60)
+    assert not page.errors()
+    middle = page.evaluate("labialHead.middle.toArray()")
+    assert middle[0] == pytest.approx(0.3, abs=0.003) and middle[1] == pytest.approx(1.5, abs=0.003)
+    drawn = []
+    for frame in range(len(OPENING)):
+        page.evaluate(f"labialHead.show({frame})")
+        drawn.append(page.evaluate("document.querySelector('canvas').toDataURL()"))
+        jaw = page.evaluate("(([mesh]) => mesh.morphTargetInfluences[mesh.morphTargetDictionary.jawOpen])"
+                            "(labialHead.meshes[0])")
+        assert (jaw > 0.05) == (OPENING[frame] > 100)
+    assert drawn[0] == drawn[4] and drawn[1] == drawn[3] and len(set(drawn)) == 3
+    page.evaluate("document.querySelector('button').click()")
+    page.wait_for("document.querySelector('input').value === '4'", 20)
+
+
+# ---- The figure that draws several models' motion for one stream of phonemes -----------------------------------------
+
+
+TIMINGS = "0.000 0.200 SIL\n0.200 0.300 P1\n0.300 0.400 P2\n0.400 0.520 P1\n0.520 0.900 P4\n"
+
+
+@pytest.fixture
+def files(tmp_path) -> Path:
+    classes = ("silence", "bilabial", "class 2", "class 3")  # P1 and P5 close the lips
+    for name, method in (("old", "paper"), ("new", "labial")):
+        model = replace(random_model(1, method), classes=classes)
+        if method == "labial":
+            floor = model.floor.copy()
+            floor[1] = floor[5] = np.arange(13.0)
+            model = replace(model, floor=floor)
+        save(model, tmp_path / f"{name}.npz")
+    save(replace(random_model(1), fps=25), tmp_path / "slow.npz")
+    (tmp_path / "timings.lab").write_text(TIMINGS)
+    return tmp_path
+
+
+def run(files: Path, output: str, *models: str) -> int:
+    return side_by_side.main([str(files / "timings.lab"), "-o", str(files / output),
+                              *(f"{name}={files / name}.npz" for name in models)])  # fmt: skip
+
+
+def test_the_same_figure_every_time_with_all_models_and_phonemes(files, capsys) -> None:
+    # Catches dates and random names in the file, a model or a phoneme that is left out.
+    assert run(files, "one.svg", "old", "new") == 0 and run(files, "two.svg", "old", "new") == 0
+    text = (files / "one.svg").read_text(encoding="utf-8")
+    assert text == (files / "two.svg").read_text(encoding="utf-8")
+    written = re.findall(r">([^<>]+)</text>", text)
+    assert {"old", "new", "SIL", "P2", "P4"} <= set(written) and written.count("P1") == 2
+    assert "firm contact: -7" in capsys.readouterr().out  # FAP 51 and 52 are channels 3 and 4
+    assert run(files, "one.png", "new") == 0 and (files / "one.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_the_least_distance_is_that_of_the_closures_own_frames(files) -> None:
+    models = {name: side_by_side.load(files / f"{name}.npz") for name in ("old", "new")}
+    drawn = side_by_side.synthesise_all(files / "timings.lab", models)
+    assert [item.label for item in drawn.closing] == ["P1", "P1"]
+    begin = sum(frame_counts([200], 50))
+    assert drawn.motion["new"].shape == (45, 4)
+    first, second = side_by_side.least(drawn, "new")
+    assert first == drawn.motion["new"][begin : begin + 5, 0].min()
+    assert second == drawn.motion["new"][20:26, 0].min()
+
+
+def test_each_method_moves_in_its_own_way(files) -> None:
+    """The published method unit by unit, to the letter; Labial as the run-time does."""
+    models = {name: side_by_side.load(files / f"{name}.npz") for name in ("old", "new")}
+    drawn = side_by_side.synthesise_all(files / "timings.lab", models)
+    given = [(0, 200), (1, 100), (2, 100), (1, 120), (4, 380)]
+    for name, synthesise in (("old", published.synthesise), ("new", stream.synthesise)):
+        motion = synthesise(FloatTables(models[name]), given)
+        np.testing.assert_array_equal(drawn.motion[name], labial_parameters(motion))
+    other = labial_parameters(stream.synthesise(FloatTables(models["old"]), given))
+    assert np.abs(drawn.motion["old"] - other).max() > 1
+
+
+def test_models_that_cannot_be_compared_are_told(files, capsys) -> None:
+    assert run(files, "x.svg", "new", "slow") == 1
+    assert "slow: its phonemes or its frame rate" in capsys.readouterr().err
+    for wrong in (["new.npz"], ["a=x.npz", "a=y.npz"], ["=x.npz"]):
+        assert side_by_side.main([str(files / "timings.lab"), "-o", str(files / "x.svg"), *wrong]) == 1
+        assert "NAME=MODEL.npz" in capsys.readouterr().err
+    assert not (files / "x.svg").exists()

@@ -8,7 +8,6 @@ import io
 import json
 import os
 import random
-import resource
 import shutil
 import signal
 import struct
@@ -23,16 +22,16 @@ import numpy as np
 import pytest
 
 from avatars import document_of, glb, made_head
-from labial.__main__ import main
 from labial.files import limits
 from labial.files.frames import CSV_HEAD
 from labial.tables.model import save
 from labial.tables.phones import read_stream
 from models import random_model, write_motion
 from runtime import needs_runtime
-from test_head_page import stand_in  # noqa: F401, a fixture
 from test_record import LAB as TALK
 from test_record import talking, turned
+from test_see import stand_in  # noqa: F401, a fixture
+from told import Told, limited
 
 pytestmark = [pytest.mark.slow,
               pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")]
@@ -53,46 +52,26 @@ def imported() -> None:
 
 
 @pytest.fixture(autouse=True)
-def limited() -> Iterator[None]:
+def bounds() -> Iterator[None]:
     """Ends what takes too much memory or time."""
-    def late(*_: object) -> None:
-        raise RuntimeError("it takes too long")
-
-    before = resource.getrlimit(resource.RLIMIT_AS)
-    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY, before[1]))
-    previous = signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)
-    yield
-    signal.setitimer(signal.ITIMER_PROF, 0)
-    signal.signal(signal.SIGPROF, previous)
-    resource.setrlimit(resource.RLIMIT_AS, before)
+    with limited(SECONDS, MEMORY):
+        yield
 
 
-class Told:
-    """Runs a command and holds it to its promise: it succeeds and says nothing, or fails and says one line."""
-
-    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
-        self._capsys = capsys
+class Brief(Told):
+    """The line of an error, without its ``labial: ``, which is no page of text and has nothing to do with memory."""
 
     def __call__(self, *arguments: object) -> str:
-        """The line of the error, without its ``labial: ``, or nothing."""
-        self._capsys.readouterr()
-        try:
-            status = main([str(argument) for argument in arguments])
-        except SystemExit as error:
-            status = int(error.code or 0)
-        said = [line for line in self._capsys.readouterr().err.splitlines() if "labial: warning: " not in line]
-        assert status in (0, 1, 2) and len(said) == (1 if status else 0), (status, said)
-        assert not said or (len(said[0]) <= 2100 and "memory" not in said[0]), said
-        return said[0][len("labial: "):] if said else ""
+        said = super().__call__(*arguments)
+        assert len(said) <= 2100 and "memory" not in said, said
+        return said[len("labial: "):]
 
 
 @pytest.fixture
 def told(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Told:
     monkeypatch.chdir(tmp_path)
     write_motion(tmp_path / "f.csv", np.arange(9) / 50, np.zeros((9, 13)))
-    return Told(capsys)
+    return Brief(capsys)
 
 
 # ---- Avatars ---------------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ import pytest
 from labial.reference import published
 from labial.reference.tables import Equation
 from labial.reference.trajectory import forward, solve, solve_whole, starts
-from oracles import sptk
+from packages import sptk
 
 
 def terms(rng: np.random.Generator, frames: int, channels: int = 2, anchors: bool = True) -> Equation:

@@ -12,13 +12,13 @@ import time
 from pathlib import Path
 from typing import Any, List, Tuple
 
-import follow_websocket
-import player
 import pytest
-import stand_in
 import websockets
 
+import follow_websocket
 import labial
+import player
+import stand_in
 from labial.errors import LabialError
 from packages import SOURCE
 from runtime import needs_runtime

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Dict, List
 
 import pytest
-import wheels
 
 import labial
+import wheels
 from packages import CC, CMAKE, SOURCE, attributions, run, single_spaced
 from runtime import conformance_frames, conformance_scripts
 from scripts import digest

@@ -52,7 +52,7 @@ option(LABIAL_TRACKING "Track a face with MediaPipe in the tests, which fetches 
 set(environment "${PROJECT_BINARY_DIR}/python")
 set(python "${environment}/bin/python")
 add_test(NAME python_environment COMMAND "${CMAKE_COMMAND}" -D "PYTHON=${Python3_EXECUTABLE}"
-  -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt" -D "DIRECTORY=${environment}"
+  -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/requirements.lock" -D "DIRECTORY=${environment}"
   -D "PIP_WHEEL=${pip_wheel}" -P "${LABIAL_TEST_SETUP}/python_environment.cmake")
 set_tests_properties(python_environment PROPERTIES FIXTURES_SETUP python RESOURCE_LOCK setup TIMEOUT 1800)
 
@@ -165,7 +165,7 @@ elseif(Python3_VERSION VERSION_GREATER_EQUAL 3.13)
 else()
   set(environment "${PROJECT_BINARY_DIR}/tracking")
   add_test(NAME tracking_environment COMMAND "${CMAKE_COMMAND}" -D "PYTHON=${Python3_EXECUTABLE}"
-    -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/tracking/requirements.txt" -D "DIRECTORY=${environment}"
+    -D "REQUIREMENTS=${CMAKE_CURRENT_SOURCE_DIR}/tracking/requirements.lock" -D "DIRECTORY=${environment}"
     -D "PIP_WHEEL=${pip_wheel}" -P "${LABIAL_TEST_SETUP}/python_environment.cmake")
   set_tests_properties(tracking_environment PROPERTIES FIXTURES_SETUP tracking RESOURCE_LOCK setup TIMEOUT 1800)
   add_test(NAME tracking WORKING_DIRECTORY "${PROJECT_BINARY_DIR}"
@@ -173,3 +173,4 @@ else()
       --rootdir "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/tracking")
   set_tests_properties(tracking PROPERTIES FIXTURES_REQUIRED tracking TIMEOUT 600 ENVIRONMENT "${variables}")
 endif()
+labial_label(python)

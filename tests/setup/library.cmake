@@ -18,65 +18,23 @@ else()
   labial_disabled_test(symbols)
 endif()
 
-# Without its requirements the library must not compile, and the compiler must say why.
-function(labial_refused name compiler file sentence)
-  add_test(NAME refuses_${name} COMMAND "${compiler}" -fsyntax-only -std=c99 "-I${PROJECT_SOURCE_DIR}/include"
-    "-I${PROJECT_SOURCE_DIR}/lib" ${ARGN} -x c "${PROJECT_SOURCE_DIR}/lib/${file}")
-  set_tests_properties(refuses_${name} PROPERTIES PASS_REGULAR_EXPRESSION "error: .*${sentence}")
-endfunction()
-
-# labial_refused_limit(<limit> <least> <most> <other options>...): refuses numbers beyond the limits, expressions
-# without parentheses, unsigned numbers, and empty definitions.
-function(labial_refused_limit limit least most)
-  math(EXPR below "${least} - 1")
-  math(EXPR above "${most} + 1")
-  math(EXPR part "${most} - 1")
-  set(negative "-${most}")
-  if(negative STREQUAL below)
-    set(negative "-${above}")
-  endif()
-  foreach(value IN ITEMS "${below}" "${above}" "${part}+1" "${negative}" "${most}u" "${most}.5" "")
-    string(MAKE_C_IDENTIFIER "${limit}_${value}" name)
-    string(TOLOWER "${name}" name)
-    set(sentence "${limit} must be a number from ${least} to ${most}")
-    if(value MATCHES "[.]" OR value STREQUAL "") # the preprocessor has a sentence of its own
-      set(sentence "${limit}")
-    endif()
-    labial_refused(${name} "${CMAKE_C_COMPILER}" stream.c "${sentence}" "-D${limit}=${value}" ${ARGN})
-  endforeach()
-endfunction()
-
-labial_refused_limit(LABIAL_WINDOW 1 48)
-labial_refused_limit(LABIAL_LAG 0 40)
-labial_refused_limit(LABIAL_REACH 0 60 -DLABIAL_QUEUE=255)
-labial_refused_limit(LABIAL_QUEUE 2 255 -DLABIAL_REACH=0)
-labial_refused_limit(LABIAL_MODELS 1 255)
-labial_refused_limit(LABIAL_LOCKS 0 2)
-labial_refused_limit(LABIAL_HEAR_SUMS 0 1)
-labial_refused(labial_paper_2 "${CMAKE_C_COMPILER}" stream.c "LABIAL_PAPER must be a number from 0 to 1" -DLABIAL_PAPER=2)
-labial_refused(window_and_lag "${CMAKE_C_COMPILER}" stream.c
-  "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together"
-  -DLABIAL_LAG=40 -DLABIAL_WINDOW=16)
-labial_refused(short_queue "${CMAKE_C_COMPILER}" stream.c "LABIAL_QUEUE must be LABIAL_REACH . 2 or more"
-  -DLABIAL_REACH=20 -DLABIAL_QUEUE=21)
-
+# Without its requirements the library must not compile, and the compiler must say why: refuses.cmake has the table.
 find_program(LABIAL_AVR_GCC avr-gcc)
 mark_as_advanced(LABIAL_AVR_GCC)
-if(LABIAL_AVR_GCC)
-  foreach(source IN LISTS library_sources)
-    get_filename_component(name "${source}" NAME)
-    if(name MATCHES "^(beside|clock|result)\\.c$") # for small boards, which play what a server computed
-      add_test(NAME compiles_with_int_of_16_bits_${name} COMMAND "${LABIAL_AVR_GCC}" -std=c99 -mmcu=atmega328p
-        "-I${PROJECT_SOURCE_DIR}/include" -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Werror -fsyntax-only "${source}")
-      continue()
-    endif()
-    labial_refused(int_of_16_bits_${name} "${LABIAL_AVR_GCC}" ${name} "Labial needs an int of 32 bits" -mmcu=atmega2560)
-  endforeach()
-else()
-  labial_left_out("The check that int of 16 bits is refused is left out, it needs avr-gcc: "
-                  "install the Debian package gcc-avr.")
-  labial_disabled_test(refuses_int_of_16_bits)
-endif()
+foreach(rule IN ITEMS limits combinations int_of_16_bits)
+  set(compiler "${CMAKE_C_COMPILER}")
+  if(rule STREQUAL "int_of_16_bits")
+    set(compiler "${LABIAL_AVR_GCC}")
+  endif()
+  if(NOT compiler)
+    labial_left_out("The check that int of 16 bits is refused is left out, it needs avr-gcc: "
+                    "install the Debian package gcc-avr.")
+    labial_disabled_test(refuses_${rule})
+    continue()
+  endif()
+  add_test(NAME refuses_${rule} COMMAND "${CMAKE_COMMAND}" -D "COMPILER=${compiler}" -D "SOURCE=${PROJECT_SOURCE_DIR}"
+    -D "FILES=${library_sources}" -D RULE=${rule} -P "${LABIAL_TEST_SETUP}/refuses.cmake")
+endforeach()
 
 file(GLOB public_headers CONFIGURE_DEPENDS
   "${PROJECT_SOURCE_DIR}/include/labial/*.h" "${PROJECT_SOURCE_DIR}/lib/models/*.h"

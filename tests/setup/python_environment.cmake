@@ -1,6 +1,7 @@
-# Makes a Python environment with the packages of a requirements file; does nothing when it is there already.
+# Makes a Python environment with the packages that requirements.lock names, whose hashes pip checks; does nothing when it
+# is there already.
 #
-#   cmake -D PYTHON=/path/of/python3 -D REQUIREMENTS=requirements.txt -D DIRECTORY=where [-D PIP_WHEEL=pip.whl]
+#   cmake -D PYTHON=/path/of/python3 -D REQUIREMENTS=requirements.lock -D DIRECTORY=where [-D PIP_WHEEL=pip.whl]
 #         -P python_environment.cmake
 #
 # The interpreter is then DIRECTORY/bin/python. pip comes from Python's ensurepip or runs from the wheel that is given.
@@ -36,12 +37,12 @@ else()
 endif()
 # Python compiles what it imports, which is a small part.
 execute_process(COMMAND ${pip} install --quiet --disable-pip-version-check --no-input --no-compile --prefer-binary
-  -r "${REQUIREMENTS}" RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  --no-deps --require-hashes -r "${REQUIREMENTS}" RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(failed)
   file(WRITE "${DIRECTORY}/pip.log" "${output}")
   get_filename_component(folder "${REQUIREMENTS}" DIRECTORY)
   get_filename_component(folder "${folder}" NAME)
-  message(FATAL_ERROR "The Python tests are left out, they need the packages of ${folder}/requirements.txt, which pip "
+  message(FATAL_ERROR "The Python tests are left out, they need the packages of ${folder}/requirements.lock, which pip "
     "could not install: see ${DIRECTORY}/pip.log. Is there a network?")
 endif()
 file(WRITE "${stamp}" "${key}")

@@ -112,9 +112,9 @@ class Oracle:
         return not self.cancelled
 
     def insert(self, kind: str, text: str, start: int, end: Optional[int]) -> None:
-        """Puts an item in place of those that begin within its time."""
+        """Puts an item in place of those that begin within its time, but for what its end may be rounded by."""
         utterance = self.utterances[-1]
-        behind = start + 1 if end is None else max(end, start + 1)
+        behind = start + 1 if end is None else max(end - min(20, (end - start) / 2), start + 1)
         kept = [item for item in utterance[kind] if not start <= item[0] < behind]
         utterance[kind] = sorted([*kept, (start, end, text)], key=lambda item: item[0])
         utterance["end"] = max(utterance["end"], start if end is None else end)
@@ -127,7 +127,7 @@ class Oracle:
             try:
                 timings = labial.read_timings(utterance["messages"], source=self.options.get("format"))
             except labial.errors.DataError as error:  # so far they tell nothing
-                assert "no speech marks" in str(error) or "no words" in str(error)
+                assert "times nothing here" in str(error)
                 timings = []
         elif utterance["phonemes"]:
             timings, moment = [], 0

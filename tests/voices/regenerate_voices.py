@@ -17,7 +17,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from oracle import Oracle, Shown, summary
 
-SERVICES = Path(__file__).parents[1] / "python" / "services"
+SAMPLES = json.loads((Path(__file__).parents[1] / "python" / "services.json").read_text(encoding="utf-8"))["samples"]
 WORDS = [("Maybe,", 0.1, 0.52), ("people", 0.56, 0.95), ("hum", 0.97, 1.2), ("by", 1.5, 1.7), ("the", 1.7, 1.8),
          ("pool.", 1.83, 2.3)]  # fmt: skip
 SOUNDS = [("m", 0.1, 0.17), ("eɪ", 0.17, 0.3), ("b", 0.3, 0.36), ("i", 0.36, 0.5), ("ɡ", 0.75, 0.82),
@@ -31,12 +31,7 @@ def _plays(first: float, last: float, step: float = FRAME) -> List[Any]:
 
 def _sample(name: str) -> List[List[Any]]:
     """The messages of a sample of a service."""
-    text = (SERVICES / name).read_text(encoding="utf-8")
-    try:
-        document = json.loads(text)
-    except ValueError:
-        document = [json.loads(line) for line in text.splitlines() if line.strip()]
-    return [["feed", message] for message in (document if isinstance(document, list) else [document])]
+    return [["feed", message] for sample in SAMPLES if sample["name"] == name for message in sample["messages"]]
 
 
 def _sounds(first: int = 0, end: int = len(SOUNDS)) -> List[List[Any]]:
@@ -118,31 +113,31 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
         "words": True, "steps": [["say", "strengths", 0.1], ["begin", None], ["say", "hum", 0.1], _plays(0, 2.5)]},
     "a word is revised": {"words": True, "steps": [*_words(), _plays(0, 0.4), ["say", "purple", 0.56, 0.95],
                                                    _plays(0.42, 0.7), ["say", "poodle", 1.0, 1.2], _plays(0.72, 3)]},
-    "Azure's visemes": {"options": {"format": "azure"}, "steps": [*_sample("azure.json"), _plays(0, 1.5)]},
+    "Azure's visemes": {"options": {"format": "azure"}, "steps": [*_sample("azure"), _plays(0, 1.5)]},
     "Azure's visemes come one by one": {
         "options": {"format": "azure"},
-        "steps": _one_by_one("azure.json", 0.1)},
+        "steps": _one_by_one("azure", 0.1)},
     "Polly's words come one by one": {"words": True, "options": {"format": "polly"},
-                                      "steps": _one_by_one("polly_words.marks", 0.2)},
+                                      "steps": _one_by_one("polly_words", 0.2)},
     "Hume's words, then their phonemes": {"words": True, "options": {"format": "hume"},
-                                          "steps": [*_one_by_one("hume.json", 0.04), _plays(0.32, 1.3)]},
+                                          "steps": [*_one_by_one("hume", 0.04), _plays(0.32, 1.3)]},
     "ElevenLabs splits a word": {"words": True, "options": {"format": "elevenlabs"}, "steps": _split_word()},
-    "Inworld's phones": {"options": {"format": "inworld"}, "steps": [*_sample("inworld.json"), _plays(0, 1.3)]},
-    "Polly's visemes": {"options": {"format": "polly"}, "steps": [*_sample("polly.marks"), _plays(0, 1.5)]},
-    "Piper's chunks": {"options": {"format": "piper"}, "steps": [*_sample("piper.json"), _plays(0, 4)]},
-    "Kokoro's results": {"options": {"format": "kokoro"}, "steps": [*_sample("kokoro.json"), _plays(0, 3)]},
-    "HeadTTS's answers": {"options": {"format": "headtts"}, "steps": [*_sample("headtts.json"), _plays(0, 3)]},
+    "Inworld's phones": {"options": {"format": "inworld"}, "steps": [*_sample("inworld"), _plays(0, 1.3)]},
+    "Polly's visemes": {"options": {"format": "polly"}, "steps": [*_sample("polly"), _plays(0, 1.5)]},
+    "Piper's chunks": {"options": {"format": "piper"}, "steps": [*_sample("piper"), _plays(0, 4)]},
+    "Kokoro's results": {"options": {"format": "kokoro"}, "steps": [*_sample("kokoro"), _plays(0, 3)]},
+    "HeadTTS's answers": {"options": {"format": "headtts"}, "steps": [*_sample("headtts"), _plays(0, 3)]},
     "Cartesia's phonemes": {"options": {"format": "cartesia"},
-                            "steps": [*_sample("cartesia_phonemes.json"), _plays(0, 1.5)]},
+                            "steps": [*_sample("cartesia_phonemes"), _plays(0, 1.5)]},
     "Cartesia's words": {"words": True, "options": {"format": "cartesia"},
-                         "steps": [*_sample("cartesia.json")[:2], _plays(0, 0.3), *_sample("cartesia.json")[2:],
+                         "steps": [*_sample("cartesia")[:2], _plays(0, 0.3), *_sample("cartesia")[2:],
                                    _plays(0.32, 1.5)]},
     "ElevenLabs' characters": {"words": True, "options": {"format": "elevenlabs"},
-                               "steps": [_sample("elevenlabs_ws.json")[0], _plays(0, 0.3),
-                                         *_sample("elevenlabs_ws.json")[1:], _plays(0.32, 1.7)]},
+                               "steps": [_sample("elevenlabs_ws")[0], _plays(0, 0.3),
+                                         *_sample("elevenlabs_ws")[1:], _plays(0.32, 1.7)]},
     "Fish Audio's chunks are revised": {"words": True, "options": {"format": "fish"},
-                                        "steps": [_sample("fish.json")[0], _plays(0, 0.2), _sample("fish.json")[1],
-                                                  _plays(0.22, 0.5), *_sample("fish.json")[2:], _plays(0.52, 1.5)]},
+                                        "steps": [_sample("fish")[0], _plays(0, 0.2), _sample("fish")[1],
+                                                  _plays(0.22, 0.5), *_sample("fish")[2:], _plays(0.52, 1.5)]},
 }
 
 

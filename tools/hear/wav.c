@@ -10,7 +10,11 @@
 #define FORMAT_BYTES 26u
 #define FORMAT_BYTES_MIN 16u
 
+/* Encodings. */
 #define PCM 1u
+#define FLOATING 3u
+#define A_LAW 6u
+#define MU_LAW 7u
 #define EXTENSIBLE 0xfffeu
 
 /* Programs that write into a pipe do not know the size of the sound, and write the largest that their like accepts. */
@@ -23,6 +27,84 @@ static uint32_t little_endian(const unsigned char *at, unsigned bytes)
         value |= (uint32_t)at[i] << 8 * i;
     return value;
 }
+
+/* ---- Samples ----------------------------------------------------------------------------------------------------- */
+
+static int16_t of_8_bits(const unsigned char *at, int *wrong)
+{
+    (void)wrong;
+    return (int16_t)((*at - 128) * 256);
+}
+
+static int16_t of_16_bits(const unsigned char *at, int *wrong)
+{
+    (void)wrong;
+    return (int16_t)(uint16_t)little_endian(at, 2);
+}
+
+static int16_t of_24_bits(const unsigned char *at, int *wrong)
+{
+    return of_16_bits(at + 1, wrong);
+}
+
+static int16_t of_32_bits(const unsigned char *at, int *wrong)
+{
+    return of_16_bits(at + 2, wrong);
+}
+
+static int16_t of_number(double number, int *wrong)
+{
+    const double scaled = 32767.0 * number;
+    if (!(scaled - scaled >= 0.0)) { /* infinite, or no number */
+        *wrong = 1;
+        return 0;
+    }
+    return (int16_t)(scaled < -32768.0 ? -32768.0 : scaled > 32767.0 ? 32767.0 : scaled + (scaled < 0.0 ? -0.5 : 0.5));
+}
+
+static int16_t of_float(const unsigned char *at, int *wrong)
+{
+    const uint32_t bits = little_endian(at, 4);
+    float number;
+    memcpy(&number, &bits, sizeof number);
+    return of_number((double)number, wrong);
+}
+
+static int16_t of_double(const unsigned char *at, int *wrong)
+{
+    const uint64_t bits = (uint64_t)little_endian(at + 4, 4) << 32 | little_endian(at, 4);
+    double number;
+    memcpy(&number, &bits, sizeof number);
+    return of_number(number, wrong);
+}
+
+/* ITU-T G.711. */
+static int16_t of_a_law(const unsigned char *at, int *wrong)
+{
+    const unsigned code = *at ^ 0x55u, segment = code >> 4 & 7u;
+    const int step = (int)((code & 15u) << 4) + 8;
+    const int size = segment == 0 ? step : (step + 256) * (1 << (segment - 1));
+    (void)wrong;
+    return (int16_t)(code & 0x80u ? size : -size);
+}
+
+static int16_t of_mu_law(const unsigned char *at, int *wrong)
+{
+    const unsigned code = ~(unsigned)*at;
+    const int size = (((int)(code & 15u) << 3) + 132) * (1 << (code >> 4 & 7u)) - 132;
+    (void)wrong;
+    return (int16_t)(code & 0x80u ? -size : size);
+}
+
+static const struct {
+    unsigned encoding, bits;
+    wav_sample_fn sample;
+} kinds[] = {
+    { PCM, 8, of_8_bits },      { PCM, 16, of_16_bits },     { PCM, 24, of_24_bits }, { PCM, 32, of_32_bits },
+    { FLOATING, 32, of_float }, { FLOATING, 64, of_double }, { A_LAW, 8, of_a_law },  { MU_LAW, 8, of_mu_law },
+};
+
+/* ---- The file ------------------------------------------------------------------------------------------------------ */
 
 static int failed(wav_t *wav, const char *why)
 {
@@ -62,17 +144,22 @@ static int read_format(wav_t *wav, uint32_t size)
         encoding = little_endian(format + 24, 2);
     wav->channels = little_endian(format + 2, 2);
     wav->rate = little_endian(format + 4, 4);
-    if (encoding != PCM || bits != 16) {
+    wav->sample = NULL;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (kinds[i].encoding == encoding && kinds[i].bits == bits)
+            wav->sample = kinds[i].sample;
+    if (!wav->sample) {
         (void)snprintf(wav->message, sizeof wav->message,
-                       "has samples of %u bits in encoding %u; only 16-bit PCM, encoding 1, can be heard", bits,
+                       "has samples of %u bits in encoding %u, not PCM, floating point, A-law or mu-law", bits,
                        encoding);
         return -1;
     }
+    wav->bytes = bits / 8u;
     if (wav->channels < 1 || wav->channels > 2) {
         (void)snprintf(wav->message, sizeof wav->message, "has %u channels, not 1 or 2", wav->channels);
         return -1;
     }
-    if (little_endian(format + 12, 2) != 2u * wav->channels)
+    if (little_endian(format + 12, 2) != wav->bytes * wav->channels)
         return failed(wav, "its format contradicts itself: bytes of a sample");
     return skip(wav, size - taken) == 0 && skip(wav, size & 1u) == 0 ? 0 : -1;
 }
@@ -110,14 +197,17 @@ void wav_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels)
     wav->in = in;
     wav->rate = rate;
     wav->channels = channels;
+    wav->bytes = 2;
+    wav->sample = of_16_bits;
     wav->endless = 1;
 }
 
 long wav_read(wav_t *wav, int16_t *samples, size_t count)
 {
-    unsigned char bytes[512];
-    const size_t size = 2u * (size_t)wav->channels; /* divides 512 */
+    unsigned char bytes[480];
+    const size_t size = (size_t)wav->bytes * wav->channels; /* divides 480 */
     size_t read = 0;
+    int wrong = 0;
     while (read < count) {
         size_t wanted = (count - read) * size < sizeof bytes ? (count - read) * size : sizeof bytes;
         if (!wav->endless && wanted > wav->left)
@@ -128,7 +218,9 @@ long wav_read(wav_t *wav, int16_t *samples, size_t count)
         if (!wav->endless)
             wav->left -= (uint32_t)got;
         for (size_t i = 0; i < got / size * wav->channels; i++)
-            samples[read * wav->channels + i] = (int16_t)(uint16_t)little_endian(bytes + 2 * i, 2);
+            samples[read * wav->channels + i] = wav->sample(bytes + wav->bytes * i, &wrong);
+        if (wrong)
+            return failed(wav, "a sample is not finite");
         read += got / size;
         if (got < size || (!wav->endless && wav->left == 0) || got < wanted)
             break;

@@ -1,5 +1,6 @@
 /*
- * wav.h - a WAV file with 16-bit PCM samples, read from its begin to its end, so that it may also be a pipe.
+ * wav.h - a WAV file, read from its begin to its end, so that it may also be a pipe: PCM of 8, 16, 24 and 32 bits,
+ * floating point of 32 and 64, A-law and mu-law.
  *
  * Files are not trusted. Sizes in them are believed only as far as the file has the bytes.
  */
@@ -10,12 +11,17 @@
 #include <stdint.h>
 #include <stdio.h>
 
+/* A sample of a file as 16 bits; `wrong` is set where it is no number. */
+typedef int16_t (*wav_sample_fn)(const unsigned char *at, int *wrong);
+
 /* Read `rate`, `channels` and `message`; the rest is private. */
 typedef struct {
     uint32_t rate;     /* samples per second, as the file says */
     unsigned channels; /* likewise */
     char message[128]; /* of the latest error */
     FILE *in;
+    unsigned bytes; /* of a sample of one channel */
+    wav_sample_fn sample;
     uint32_t left; /* bytes of samples that are still to come */
     int endless;   /* they come until the file ends */
 } wav_t;
@@ -28,7 +34,8 @@ void wav_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels);
 
 /*
  * Reads at most `count` samples, of two channels as many pairs. Returns how many it read, fewer only at the end, where
- * a part of a sample is dropped; or -1 with `message` if the file ends before its samples do, or cannot be read.
+ * a part of a sample is dropped; or -1 with `message` if the file ends before its samples do, has a sample that is not
+ * finite, or cannot be read. Samples of more bits are cut to 16, floating point is rounded; 1 is full scale.
  */
 long wav_read(wav_t *wav, int16_t *samples, size_t count);
 

@@ -19,6 +19,7 @@ export class Lexicon {
         this.labial = labial;
         this.wasm = wasm;
         this.memory = new tools.Memory(wasm.memory, wasm.__heap_base.value);
+        this.speech = 0; // where a voice's copy of the speech model is
         this.labels = [];
         for (let label; (label = this.memory.text(wasm.words_label(this.labels.length))); ) this.labels.push(label);
     }

@@ -1,29 +1,59 @@
-// A voice: messages of a speech service in, as they arrive while its sound plays; frames out, when they are due. It
-// does what export/labial/runtime/voice.py does; a test holds them to each other. docs/streams.md has the rules.
-import { strip } from "./characters.js";
+// A voice: messages of a speech service in, as they arrive while its sound plays; frames out, when they are due. The
+// rules are the library's (include/labial/voice.h); docs/streams.md explains them.
+import { strip, whole } from "./characters.js";
 import { clockOf } from "./clocks.js";
 import { Messages } from "./messages.js";
-import { ROUNDING, Timeline, milliseconds } from "./timeline.js";
 
 const CHANNELS = 13;
-/** A changed frame fades in over so many frames. */
-const FADE = 8;
-/** Seconds of what was shown that a new stream is given, besides the part of a second before. */
-const HISTORY = 2;
-/** Seconds from the end of the last word until lips are at rest. */
-const REST = 0.5;
+/** Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes
+ * one place, a word up to 20 letters two. */
+const PLACES = 20000;
 /** Seconds between two looks at a clock that has not begun. */
 const PATIENCE = 0.01;
-/** Times are believed up to this many seconds, a year. */
+/** The clock is believed up to this many seconds, a year; items up to a day, and those that last an hour at most. */
 const LATEST = 3.2e7;
-/** No phoneme is longer, milliseconds. */
-const DURATION_MAX = 3600000;
-/** Most frames of a fade. */
-const FADE_MAX = 1000;
-const NEUTRAL = new Array(CHANNELS).fill(0);
+const [DAY, HOUR] = [86400, 3600];
+/** The longest cancel, milliseconds. */
+const CANCEL_MAX = 1e6;
+/** LABIAL_ERROR_FULL. */
+const FULL = -8;
+/** Kinds of items (labial_voice_kind_t), and from when on their times count (labial_voice_times_t). */
+const KINDS = { phonemes: 0, azure: 1, polly: 2, words: 3, characters: 4 };
+const [ABSOLUTE, CHAINED, JOINED] = [0, 1, 2];
+
+const abandoned = new FinalizationRegistry((blocks) => blocks.release());
+
+/** What a voice has in the module's memory. */
+class Blocks {
+    #lexicon;
+    #taken = [];
+    #table = {};
+
+    constructor(lexicon) {
+        this.#lexicon = lexicon;
+    }
+
+    take(size) {
+        const at = this.#lexicon.memory.take(size);
+        this.#taken.push([at, size]);
+        return at;
+    }
+
+    /** Another table of own words, in place of the one before. */
+    set table(table) {
+        this.#lexicon.release(this.#table);
+        this.#table = table;
+    }
+
+    release() {
+        for (const [at, size] of this.#taken.splice(0)) this.#lexicon.memory.release(at, size);
+        this.table = {};
+    }
+}
 
 /** Tells as an event "ended" that all of an utterance was shown. */
 export class Voice extends EventTarget {
+    #lexicon;
     #tools;
     #labial;
     #output;
@@ -34,84 +64,94 @@ export class Voice extends EventTarget {
     #settings; // of push()
     #model;
     #messages;
-    #timeline;
-    #closed = false;
-    #finished = false;
-    #cancelled = false;
-    #changed = true; // something was told since the last frame
-    #next = 0; // the frame that comes next
-    #shown = null; // FAPs of the frame before
-    #stream = null; // makes the frames; null: the face is neutral
-    #plan = []; // what it is to be given
-    #pushed = []; // and what it has
-    #fade = NEUTRAL; // what is added to the stream's frames, less with each step
-    #step = 0;
-    #steps = 0;
+    #blocks;
+    #at; // where the voice is
+    #known; // words of one's own,
+    #numbers; // what writes numbers out,
+    #tail = ""; // and the characters of a word that may go on
+    #faps; // where a frame is written
+    #shown = null; // FAPs of the frame before,
+    #number = -1; // and its number
     #frame; // what at() returns
+    #closed = false;
     #told = false; // that it has ended
 
-    constructor(lexicon, formats, options = {}) {
+    constructor(lexicon, options = {}) {
         super();
-        const { tools, labial } = lexicon;
+        const { tools, labial, wasm, memory } = lexicon;
         const { format = "auto", output = "faps", model = "speech", labels = "auto", unknown = "error" } = options;
         const { own, numbers, offset = 0, clock, context } = options;
         const stream = labial.stream({ output, model, labels, unknown }); // which checks them
         this.#model = stream.model;
         stream.free();
+        this.#lexicon = lexicon;
         this.#tools = tools;
         this.#labial = labial;
         this.#output = output;
         this.#settings = { model: this.#model, labels, nearest: unknown === "nearest" };
-        this.#messages = new Messages(lexicon, formats, { format, labels });
-        this.#timeline = new Timeline(lexicon, {
-            own, numbers, offset: lexicon.offset(offset), silence: this.#model.silence,
-            number: (label) => labial.phoneme(label, { model: this.#model }),
-        });
-        this.#timeline.begin(0);
+        this.#messages = new Messages(lexicon, { format, labels });
+        this.#known = lexicon.known(own, numbers, []);
+        this.#numbers = numbers;
         this.#clock = clockOf(tools, clock, context);
         this.#given = clock ?? null;
         this.#origin = this.#clock?.anchored ? null : 0;
         this.#frame = output === "faps" ? new Int16Array(CHANNELS) : {};
+        const table = lexicon.table(this.#known); // an error in a word of one's own is raised now
+        const milliseconds = lexicon.offset(offset);
+        this.#blocks = new Blocks(lexicon);
+        this.#blocks.table = table;
+        const copy = this.#modelCopy();
+        const found = this.#numbersInModel();
+        this.#at = this.#blocks.take(wasm.voice_size(copy, PLACES));
+        this.#faps = this.#blocks.take(2 * CHANNELS);
+        memory.bytes.fill(0, this.#at, this.#at + wasm.voice_size(copy, 0));
+        abandoned.register(this, this.#blocks, this);
+        lexicon.check(wasm.voice_init(this.#at, copy, PLACES, found, milliseconds));
+        lexicon.check(wasm.voice_words(this.#at, table.place));
     }
 
     // ---- What becomes known
 
     feed(message) {
         this.#open();
-        for (const heard of this.#messages.read(message)) {
-            if (this.#listens()) this.#timeline.tell(heard);
+        for (const { told, chained, joins, gap, utterance } of this.#messages.read(message)) {
+            const counted = chained ? CHAINED : joins ? JOINED : ABSOLUTE;
+            for (const { kind, items, key } of told) {
+                this.#tell(kind, items, { counted, utterance, key: key === undefined ? 0 : Math.trunc(key) + 1,
+                    gap: Math.round(1000 * (gap ?? 0)) });
+            }
         }
     }
 
     say(text, start, end) {
         this.#open();
         if (typeof text !== "string") throw new TypeError(`the word is ${this.#tools.shown(text)}, not text`);
-        const item = this.#timed(start, end ?? null, this.#tools.shown(text));
-        if (strip(text) && this.#listens()) this.#timeline.put("words", { ...item, what: strip(text) });
+        const item = this.#timed(strip(text), start, end ?? null, this.#tools.shown(text));
+        if (item.text) this.#tell("words", [item]);
     }
 
     push(label, start, end) {
         this.#open();
-        const item = this.#timed(start, end, "a phoneme");
-        const phoneme = this.#labial.phoneme(label, this.#settings);
-        if (this.#listens()) this.#timeline.put("phonemes", { ...item, what: phoneme });
+        const item = this.#timed("", start, end, "a phoneme");
+        item.text = this.#labial.phoneme(label, this.#settings);
+        this.#tell("phonemes", [item]);
     }
 
-    begin(at) {
+    begin(at, utterance) {
         this.#open();
+        if (utterance != null && typeof utterance !== "string") {
+            throw new TypeError(`the utterance is ${this.#tools.shown(utterance)}, not its name`);
+        }
         if (this.#origin === null) {
-            this.#origin = at === undefined ? this.#clock.read() : this.#moment(at);
-            if (!this.#cancelled) return;
-            this.#begin(0);
+            this.#origin = at == null ? this.#clock.read() : this.#moment(at);
+            if (this.#cancelled || utterance != null) this.#begin(0, utterance);
         } else {
             const heard = this.#clock ? (this.#clock.read() ?? 0) : Infinity;
             const shown = this.#next / this.fps;
             if (heard - this.#origin < shown - 1 / this.fps) this.#origin = heard - shown; // the clock was set back
-            const after = at === undefined ? null : this.#moment(at) - this.#origin;
-            if (after !== null && after < 0) {
-                throw new RangeError(`${at} s is before the first sound, ${this.#origin} s`);
-            }
-            this.#begin(after === null ? null : milliseconds(after));
+            const after = at == null ? -1 : this.#moment(at) - this.#origin;
+            if (at != null && after < 0) throw new RangeError(`${at} s is before the first sound, ${this.#origin} s`);
+            this.#begin(after, utterance);
         }
     }
 
@@ -123,17 +163,13 @@ export class Voice extends EventTarget {
 
     finish() {
         this.#open();
-        this.#finished = true;
+        this.#lexicon.wasm.voice_finish(this.#at);
     }
 
     cancel(milliseconds = 200) {
         this.#open();
-        const length = Math.min(this.#tools.amount(milliseconds, "milliseconds"), DURATION_MAX);
-        const steps = Math.ceil((length * this.fps) / 1000 - 1e-6);
-        this.#timeline.clear();
-        this.#cancelled = this.#changed = true;
-        this.#dropStream();
-        this.#fadeFrom(NEUTRAL, Math.max(1, Math.min(steps, FADE_MAX)));
+        const length = Math.min(this.#tools.amount(milliseconds, "milliseconds"), CANCEL_MAX);
+        this.#lexicon.wasm.voice_cancel(this.#at, Math.ceil(length - 1e-6));
         this.#eased = [this.#next / this.fps, Date.now()];
     }
 
@@ -145,7 +181,7 @@ export class Voice extends EventTarget {
 
     at(seconds = this.now) {
         this.#due(seconds, () => null);
-        const faps = this.#shown ?? NEUTRAL;
+        const faps = this.#shown ?? new Array(CHANNELS).fill(0);
         if (this.#output !== "faps") return this.#labial.convert(faps, this.#output, this.#frame);
         this.#frame.set(faps);
         return this.#frame;
@@ -162,7 +198,7 @@ export class Voice extends EventTarget {
                 yield frame;
                 if (this.#closed) return;
             }
-            if (this.#finished && this.done) return;
+            if (this.#lexicon.wasm.voice_finished(this.#at) && this.done) return;
             const wait = heard === null ? PATIENCE : this.#origin + this.#next / this.fps - heard;
             const milliseconds = 1000 * Math.min(Math.max(wait, 0.001), 1 / this.fps);
             await new Promise((resolve) => { setTimeout(resolve, milliseconds); });
@@ -170,7 +206,7 @@ export class Voice extends EventTarget {
     }
 
     get number() {
-        return this.#shown ? this.#next - 1 : -1;
+        return this.#number;
     }
 
     get time() {
@@ -190,25 +226,45 @@ export class Voice extends EventTarget {
     }
 
     get done() {
-        if (this.#closed) return true;
-        if (this.#cancelled) return this.#step === this.#steps;
-        if (this.#timeline.empty) return this.#finished;
-        return this.#finished && this.#next >= (this.#timeline.end / 1000 + REST) * this.fps;
+        return this.#closed || this.#lexicon.wasm.voice_done(this.#at) !== 0;
+    }
+
+    /** Items told and skipped, messages dropped. */
+    get counts() {
+        this.#open();
+        return this.#lexicon.withBytes(12, (at) => {
+            this.#lexicon.wasm.voice_counts(this.#at, at);
+            const [told, skipped, dropped] = this.#lexicon.memory.int32(at, 3);
+            return { told, skipped, dropped };
+        });
     }
 
     close() {
         this.#closed = true;
-        this.#timeline.clear();
-        this.#dropStream();
+        this.#blocks.release();
+        abandoned.unregister(this);
     }
 
     // ---- Inside --------------------------------------------------------------------------------------------------
+
+    get #next() {
+        return this.#closed ? 0 : this.#lexicon.wasm.voice_next(this.#at);
+    }
+
+    /** Whether the voice was cancelled and no utterance began since. */
+    get #cancelled() {
+        return !this.#closed && this.#lexicon.wasm.voice_cancelled(this.#at) !== 0;
+    }
+
+    #begin(after, utterance) {
+        this.#checked(this.#lexicon.wasm.voice_begin(this.#at, after, this.#identity(utterance)));
+    }
 
     /** What a clock tells. While the face eases after a cancel, its sound may have stopped: then time goes on. */
     #heard(clock) {
         if (!clock) throw new this.#tools.LabialError("the voice has no clock: give it one, or say the time");
         const heard = clock.read();
-        if (!this.#cancelled || this.#step === this.#steps || this.#origin === null) return heard;
+        if (this.#closed || !this.#lexicon.wasm.voice_eases(this.#at) || this.#origin === null) return heard;
         const [time, begin] = this.#eased;
         const eased = this.#origin + time + (Date.now() - begin) / 1000;
         return heard > eased ? heard : eased;
@@ -228,30 +284,94 @@ export class Voice extends EventTarget {
         return seconds;
     }
 
-    #timed(start, end, what) {
+    #timed(text, start, end, what) {
         const [begin, stop] = [this.#moment(start), end === null ? null : this.#moment(end)];
-        if (stop !== null && !(begin <= stop && stop <= begin + DURATION_MAX / 1000)) {
+        if (stop !== null && !(begin <= stop && stop <= begin + HOUR)) {
             throw new RangeError(`${what} from ${begin} to ${stop} s ends before it begins or lasts more than an hour`);
         }
-        return { start: milliseconds(begin), end: stop === null ? null : milliseconds(stop), gap: ROUNDING };
+        if (Math.max(begin, stop ?? 0) > DAY) {
+            throw new RangeError(`${what} at ${begin} s is more than a day after the beginning; are these seconds?`);
+        }
+        return { text, start: begin, end: stop };
     }
 
-    /** Whether what is told counts; then the stream may change. */
-    #listens() {
-        if (this.#finished && !this.#cancelled) this.#begin(null);
-        this.#changed = true;
-        return !this.#cancelled;
+    #checked(result) {
+        if (result !== FULL) return this.#lexicon.check(result);
+        throw new this.#tools.LabialError("too many words, phonemes or utterances are told ahead of the sound: " +
+            `there is room for ${PLACES} phonemes`);
     }
 
-    #begin(at) {
-        this.#timeline.begin(at ?? Math.max(this.#timeline.end, this.#milliseconds));
-        this.#cancelled = this.#finished = false;
-        this.#changed = true;
+    #identity(utterance) {
+        if (utterance == null) return 0;
+        return this.#lexicon.withText(utterance, (at, size) => this.#lexicon.wasm.voice_identity(at, size));
     }
 
-    /** When the next frame is due. */
-    get #milliseconds() {
-        return Math.floor((this.#next * 1000) / this.fps);
+    /** Gives the library what a message tells of one kind. */
+    #tell(kind, items, { counted = ABSOLUTE, utterance = null, key = 0, gap = 0 } = {}) {
+        const { wasm, memory } = this.#lexicon;
+        if (!this.#model.names && kind !== "phonemes") this.#phoneme("SIL"); // an error
+        const texts = items.map(({ text }) => (kind === "phonemes" ? this.#phoneme(text) : whole(text)));
+        if (kind === "words" || kind === "characters") this.#learn(texts, kind === "characters");
+        const count = items.length;
+        const room = texts.reduce((sum, text) => sum + 3 * (text.length ?? 1) + 1, 1);
+        const structures = wasm.voice_items_size(count);
+        const identity = this.#identity(utterance);
+        this.#lexicon.withBytes(structures + 18 * count + room, (at) => {
+            const [times, sizes] = [at + structures, at + structures + 16 * count];
+            let to = sizes + 2 * count;
+            const begin = to;
+            texts.forEach((text, i) => {
+                const size = kind === "phonemes" ? 1 : memory.write(text, to, 3 * text.length + 1).written;
+                if (kind === "phonemes") memory.bytes[to] = text;
+                memory.int16(sizes, count)[i] = Math.min(size, 32767);
+                to += Math.min(size, 32767);
+            });
+            const seconds = new Float64Array(memory.bytes.buffer, times, 2 * count);
+            items.forEach(({ start, end }, i) => seconds.set([start, end ?? -1], 2 * i));
+            this.#checked(wasm.voice_tell(this.#at, at, count, times, sizes, begin, identity, key, gap, KINDS[kind],
+                counted));
+        });
+    }
+
+    #phoneme(label) {
+        return this.#labial.phoneme(label, { model: this.#model });
+    }
+
+    /** Tells the library of numbers that are to be written out. Characters may go on in the next message. */
+    #learn(texts, joined) {
+        if (!this.#numbers) return;
+        const text = joined ? this.#tail + texts.join("") : texts.join(" ");
+        if (joined) this.#tail = text.slice(-100).match(/\S*$/u)[0];
+        const known = this.#lexicon.known(this.#known, this.#numbers, [text]);
+        if (known.size === this.#known.size) return;
+        const table = this.#lexicon.table(known);
+        this.#lexicon.wasm.voice_words(this.#at, table.place);
+        this.#blocks.table = table;
+        this.#known = known;
+    }
+
+    /** The model, copied from the library's memory to this module's, where its tables have other addresses. */
+    #modelCopy() {
+        const { at, range: [begin, end] } = this.#model;
+        const isBundled = this.#model === this.#labial.models.speech;
+        if (isBundled && this.#lexicon.speech) return this.#lexicon.speech;
+        const copy = isBundled ? this.#lexicon.memory.take(end - begin) : this.#blocks.take(end - begin);
+        this.#lexicon.memory.bytes.set(this.#labial.memory.bytes.subarray(begin, end), copy);
+        this.#lexicon.wasm.voice_move(copy + at - begin, copy - begin);
+        if (isBundled) this.#lexicon.speech = copy + at - begin;
+        return copy + at - begin;
+    }
+
+    /** The model's number of each phoneme of words, or 0 where they are the same, or where it has other ones. */
+    #numbersInModel() {
+        const { names } = this.#model;
+        if (!names) return 0;
+        const settings = { model: this.#model, nearest: true };
+        const numbers = this.#lexicon.labels.map((label) => this.#labial.phoneme(label, settings));
+        if (numbers.every((number, i) => number === i)) return 0;
+        const at = this.#blocks.take(numbers.length);
+        this.#lexicon.memory.bytes.set(numbers, at);
+        return at;
     }
 
     /** What `take` makes of the frames that became due. */
@@ -265,12 +385,10 @@ export class Voice extends EventTarget {
         if (heard > LATEST) throw new RangeError(`${heard} s is more than a year`);
         const last = heard >= 0 ? Math.floor(heard * this.fps + 1e-6) : -1;
         if (last < this.#next) return [];
-        const late = last - this.#next >= this.fps;
-        if (late) this.#next = last;
-        if (this.#changed || late) this.#followChanges(late);
         const frames = [];
-        for (; this.#next <= last; this.#next++) {
-            this.#shown = this.#faded(this.#made());
+        while (this.#checked(this.#lexicon.wasm.voice_frame(this.#at, last, this.#faps)) === 0) {
+            this.#shown = Int16Array.from(this.#lexicon.memory.int16(this.#faps, CHANNELS));
+            this.#number = this.#next - 1;
             frames.push(take(this.#shown));
         }
         const done = this.done && !this.#cancelled;
@@ -278,80 +396,4 @@ export class Voice extends EventTarget {
         this.#told = done;
         return frames;
     }
-
-    /** Looks whether the stream has phonemes that are no longer right, and if so makes a new one. */
-    #followChanges(late) {
-        this.#changed = false;
-        const start = Math.max(0, Math.floor(this.#milliseconds / 1000) - HISTORY) * 1000;
-        this.#timeline.forget(start);
-        if (!this.#stream && this.#timeline.empty && this.#shown) return; // the neutral face after a cancel
-        const plan = this.#timeline.plan(start);
-        const pushed = this.#pushed.filter(({ end }) => end > start)
-            .map((one) => ({ ...one, start: Math.max(one.start, start) }));
-        if (!this.#stream || late || !pushed.every((one, i) => same(one, plan[i]))) {
-            this.#renew(plan);
-        } else {
-            this.#plan = plan.slice(pushed.length);
-            this.#pushed = pushed;
-        }
-    }
-
-    /** A new stream, which is given `plan`; the difference from what was shown fades. */
-    #renew(plan) {
-        this.#dropStream();
-        this.#stream = this.#labial.stream({ model: this.#model });
-        this.#plan = plan;
-        let base = NEUTRAL;
-        for (let frame = Math.floor(plan[0].start / 1000) * this.fps; frame < this.#next; frame++) base = this.#made();
-        this.#fadeFrom(base, FADE);
-    }
-
-    /** Begins to fade from what was shown, where the stream is at `base`. */
-    #fadeFrom(base, steps) {
-        const shown = this.#shown ?? base;
-        this.#fade = Array.from(shown, (value, i) => value - base[i]);
-        this.#step = 0;
-        this.#steps = steps;
-    }
-
-    /** The next frame of the stream. */
-    #made() {
-        if (!this.#stream) return NEUTRAL;
-        for (;;) {
-            for (const frame of this.#stream) return frame;
-            if (this.#plan.length) this.#pushed.push(this.#plan.shift());
-            const { start, end, phoneme } = this.#pushed.at(-1); // the endless silence again when an hour of it is over
-            const length = end === Infinity ? DURATION_MAX : end - start;
-            for (let passed = 0; passed < length; passed += DURATION_MAX) {
-                this.#stream.push(phoneme, Math.min(length - passed, DURATION_MAX));
-            }
-        }
-    }
-
-    /** A frame of the stream as it is shown. */
-    #faded(base) {
-        if (this.#step === this.#steps) return base;
-        this.#step++;
-        const left = 16384 - ease(this.#step, this.#steps);
-        return Array.from(base, (value, i) => {
-            return Math.max(-32768, Math.min(32767, value + ((this.#fade[i] * left + 8192) >> 14)));
-        });
-    }
-
-    #dropStream() {
-        this.#stream?.free();
-        this.#stream = null;
-        this.#plan = [];
-        this.#pushed = [];
-    }
-}
-
-function same(one, other) {
-    return other !== undefined && one.start === other.start && one.end === other.end && one.phoneme === other.phoneme;
-}
-
-/** Progress of a smooth transition, 0 to 16384 (labial_ease of lib/fixed.h). */
-function ease(step, steps) {
-    const share = Math.floor((step << 14) / steps);
-    return (((share * share) >> 14) * (3 * 16384 - 2 * share)) >> 14;
 }

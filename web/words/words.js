@@ -1,18 +1,16 @@
 // Words for programs: texts, words and characters with their times, and what services tell of them.
 import { split, wordsOfCharacters } from "./characters.js";
 import { Lexicon } from "./lexicon.js";
-import { MessageReader, formatsOf, readTimings } from "./readers.js";
+import { MessageReader, readTimings } from "./readers.js";
 import { WordStream, inMilliseconds, segmentsOf } from "./stream.js";
 import { Voice } from "./voice.js";
 
 export class Words {
     #lexicon;
-    #formats;
 
     constructor(tools, labial, wasm) {
         this.#lexicon = new Lexicon(tools, labial, wasm);
-        this.#formats = formatsOf(this.#lexicon);
-        this.formats = Object.freeze([...labial.formats, ...Object.keys(this.#formats)]);
+        this.formats = Object.freeze([...labial.formats, ...Object.keys(tools.timings.SERVICES)]);
         Object.freeze(this);
     }
 
@@ -49,11 +47,11 @@ export class Words {
     }
 
     read(source, options) {
-        return readTimings(this.#lexicon, this.#formats, source, options);
+        return readTimings(this.#lexicon, source, options);
     }
 
     reader(options) {
-        return new MessageReader(this.#lexicon, this.#formats, options);
+        return new MessageReader(this.#lexicon, options);
     }
 
     stream(options) {
@@ -61,6 +59,6 @@ export class Words {
     }
 
     voice(options) {
-        return new Voice(this.#lexicon, this.#formats, options);
+        return new Voice(this.#lexicon, options);
     }
 }

@@ -10,7 +10,7 @@ from labial.errors import LabialError, needs
 from labial.files.arguments import positive, seed
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_evaluate(command: argparse.ArgumentParser) -> None:
     """Corpora, the data to hold out, and the workers."""
     command.add_argument("corpus", nargs="+", help="as for train; episodes of the first are held out, and Labial's "
                          "models are trained on all of the others too")
@@ -33,11 +33,11 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
-def run(options: argparse.Namespace) -> int:
+def run_evaluate(options: argparse.Namespace) -> int:
     """Evaluates, writes the report and prints its first table."""
     with needs("evaluating", "train,evaluate"):
+        from labial.evaluate.material import Options
         from labial.evaluate.run import run as evaluated
-        from labial.evaluate.splits import Options
 
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
     if words and options.leave_out_talkers:

@@ -13,7 +13,7 @@ from labial.errors import LabialError, needs
 from labial.files.arguments import positive
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_evaluate_hear(command: argparse.ArgumentParser) -> None:
     """A model, and the sounds, conditions and methods to judge."""
     command.add_argument("model", metavar="HEAR.npz")
     command.add_argument("folder", nargs="*", metavar="FOLDER", help="speech, as for train-hear")
@@ -26,15 +26,16 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("--conditions", metavar="A,B,...", help="of clean, -40 dBFS, white noise 20 dB and so on; all "
                          "of them by default")
     command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness, \"loudness and "
-                         "crossings\" (these; with --lips phonemes in place of the last), and other projects: "
-                         "wawa-lipsync, \"wawa-lipsync unsmoothed\", headaudio, pocketsphinx")
+                         "crossings\" (these; with --lips phonemes and \"phonemes and sound\" in place of "
+                         "the last), and other projects: wawa-lipsync, \"wawa-lipsync unsmoothed\", headaudio, "
+                         "pocketsphinx")
     command.add_argument("--npm", metavar="FOLDER", help="where npm installed wawa-lipsync and @met4citizen/headaudio")
     command.add_argument("--most", type=positive, help="clips of each folder (all)")
     command.add_argument("--cache", metavar="FOLDER", help="for alignments")
     command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="processes that align")
 
 
-def run(options: argparse.Namespace) -> int:
+def run_evaluate_hear(options: argparse.Namespace) -> int:
     """Prints a table."""
     from labial.files.outputs import check
 

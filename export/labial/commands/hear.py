@@ -1,32 +1,37 @@
-"""``labial hear``: motion from the sound of speech alone."""
+"""``labial hear``: motion from the sound of speech, and from what it says where that is known or can be found."""
 
 from __future__ import annotations
 
 import argparse
 import functools
+import importlib.util
 import sys
+import warnings
 import wave
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ContextManager, Iterator, List, Tuple
+from typing import TYPE_CHECKING, Any, ContextManager, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from labial.commands.common import add_format, format_of
-from labial.errors import DataError, LabialError
+from labial.commands.common import add_format, add_phones, add_said, format_of, said
+from labial.errors import DataError, LabialError, needs
 from labial.files import wav
 from labial.files.arguments import whole
 
 if TYPE_CHECKING:
     import numpy as np
 
+    from labial.corpus.episode import Segment
     from labial.runtime.hearing import Hearing
 
 #: Rates that labial/hear.h lists.
 _RATES = (8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000)
+#: The sound's share beside words that were found in it, and the frames to both sides in which it passes to another one.
+_FOUND, _PASSING = 0.5, 5
 #: Bytes that are read at once: 20 ms of 16 kHz, so that frames of a pipe are written as they come.
 _BLOCK = 640
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_hear(command: argparse.ArgumentParser) -> None:
     """A sound, and the format of the frames."""
     command.add_argument("sound", metavar="SOUND", help="speech: a WAV file; a file of another format, if "
                          "the extra align is installed; or - for 16-bit samples from standard input, low byte first")
@@ -34,6 +39,10 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_format(command)
     command.add_argument("--model", choices=("small", "large"), default="small",
                          help="the network: small, or large, which is better and costs half as much again (small)")
+    add_said(command)
+    add_phones(command)
+    command.add_argument("--sound-alone", action="store_true", help="look for no words. Without this, and without a "
+                         "text or phonemes, English words are looked for where the extra align is installed")
     command.add_argument("--exact", action="store_true",
                          help="exactly the frames of the sound: the face does not come to rest after the last one")
     command.add_argument("--rate", type=functools.partial(whole, 1, 1_000_000), metavar="RATE",
@@ -42,7 +51,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
                          help="with -: 1 or 2 channels (1)")
 
 
-def run(options: argparse.Namespace) -> int:
+def run_hear(options: argparse.Namespace) -> int:
     """Writes the frames."""
     import numpy as np
 
@@ -51,6 +60,12 @@ def run(options: argparse.Namespace) -> int:
 
     check(options.output)
     form = format_of(options)
+    told = [name for name, value in (("--text", options.text), ("--text-file", options.text_file),
+                                     ("--phones", options.phones)) if value is not None]
+    if told and (options.sound == "-" or options.sound_alone):
+        raise LabialError(f"{told[0]} does not go with {'-' if options.sound == '-' else '--sound-alone'}")
+    if options.phones is not None and len(told) > 1:
+        raise LabialError(f"--phones does not go with {told[0]}")
     if options.sound != "-" and (options.rate or options.channels):
         raise LabialError("--rate and --channels go with -, a sound from standard input")
     if options.sound == "-":
@@ -59,10 +74,13 @@ def run(options: argparse.Namespace) -> int:
     else:
         rate, channels, whole_sound = _sound(options.sound)
         blocks = iter([whole_sound])
-    with Hearing(rate, channels, model=f"hear_{options.model}", exact=options.exact) as hearing:
+    words = None if whole_sound is None else _words(options)
+    with Hearing(rate, channels, model=f"hear_{options.model}", exact=options.exact or words is not None) as hearing:
         if whole_sound is not None:
             hearing.measure(whole_sound)
         parts = _parts(hearing, blocks)
+        if words is not None:
+            parts = iter([_mixed(words, np.concatenate(list(parts)), options.exact)])
         count = 0
         if options.to == "fap":  # whose head has the number of frames
             whole_motion = np.concatenate([np.zeros((0, 13)), *parts])
@@ -71,6 +89,68 @@ def run(options: argparse.Namespace) -> int:
         with opened as out:
             form.write(out, _flushed(parts, out), FPS, Path(options.sound).stem, count)
     return 0
+
+
+class _Words(NamedTuple):
+    """What a sound says."""
+
+    timings: List[Tuple[str, float]]  #: phonemes with their milliseconds
+    share: float  #: of the sound's frames in those that are shown
+    unsure: List[Tuple[float, float]]  #: seconds in which the words may be others, so that the sound alone is heard
+
+
+def _words(options: argparse.Namespace) -> Optional[_Words]:
+    """The phonemes of a file's sound: those that are given, those of its text, or those of the words that are found;
+    None for the sound alone."""
+    from labial.runtime.mixing import SHARE
+
+    if options.phones is not None:
+        from labial.runtime.render import read_timings
+
+        return _Words(read_timings(options.phones, labels=options.labels, source=options.source), SHARE, [])
+    text = said(options)
+    if options.sound_alone or (text is None and importlib.util.find_spec("pocketsphinx") is None):
+        return None
+    with needs("finding a text in a sound", "align"):
+        from labial.sound.align import aligned
+        from labial.sound.confidence import LOW
+    if text is not None:
+        return _Words(_timings(aligned(options.sound, text).segments), SHARE, [])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # where words are unsure, the sound alone counts
+        found = aligned(options.sound)
+    unsure = [(item.start, item.end) for item in found.stretches if item.confidence < LOW]
+    return _Words(_timings(found.segments), _FOUND, unsure) if len(unsure) < len(found.stretches) else None
+
+
+def _timings(segments: Sequence[Segment]) -> List[Tuple[str, float]]:
+    return [(item.label, 1000 * (item.end - item.start)) for item in segments]
+
+
+def _mixed(words: _Words, heard: np.ndarray, exact: bool) -> np.ndarray:
+    """(n, 13) frames of the phonemes with their share of those that are heard (T, 13), and the way to rest."""
+    import numpy as np
+
+    from labial.reference.fade import eased, rests
+    from labial.runtime.hearing import FPS
+    from labial.runtime.mixing import with_sound
+    from labial.runtime.render import render
+
+    count = len(heard)
+    share = np.full(count, words.share)
+    for begin, end in words.unsure:
+        share[round(begin * FPS) : round(end * FPS)] = 1.0
+    if words.unsure and count:
+        width = 2 * _PASSING + 1
+        share = np.clip(np.convolve(np.pad(share, _PASSING, mode="edge"), np.full(width, 1 / width), "valid"), 0, 1)
+    timings = list(words.timings)
+    after = timings.pop()[1] if timings and timings[-1][0] == "SIL" else 0.0  # silence, one with that behind the sound
+    spoken = render([*timings, ("SIL", after + 1000 * (count + 1) / FPS)], exact=True)[:count]
+    frames = np.array(with_sound(spoken, heard.tolist(), share.tolist()), dtype=np.float64)
+    frames = frames.reshape(-1, 13)
+    if exact or not count or rests(frames[-1]):
+        return frames
+    return np.concatenate([frames, np.rint(eased(frames[-1]))])
 
 
 def _sound(path: str) -> Tuple[int, int, bytes]:
@@ -89,8 +169,6 @@ def _sound(path: str) -> Tuple[int, int, bytes]:
 
 def _converted(path: str) -> bytes:
     import numpy as np
-
-    from labial.errors import needs
 
     with needs(f"{path}: a sound that is not a WAV file of 16 bits, one or two channels and a usual rate", "align"):
         from labial.sound.samples import read_sound

@@ -14,7 +14,7 @@ from labial.errors import needs
 from labial.files.arguments import positive, seed, whole
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_train(command: argparse.ArgumentParser) -> None:
     """Corpora, the method and its sizes, and the workers."""
     command.add_argument("corpus", nargs="+", help="Labial corpus folder, IEMOCAP or AVLaughterCycle; of several, all "
                          "talkers are brought to the first one's mean and scale, and corpus.toml in a folder tells "
@@ -50,7 +50,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_quiet(command, "bars")
 
 
-def run(options: argparse.Namespace) -> int:
+def run_train(options: argparse.Namespace) -> int:
     """Trains, writes the model, and prints unknown apexes and substitutes of phonemes."""
     with needs("training", "train"):
         from labial.train import backed_off, check_options, train, without_apex

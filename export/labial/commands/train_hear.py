@@ -16,7 +16,7 @@ from labial.files.arguments import number, positive, seed
 TAKES = 2
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_train_hear(command: argparse.ArgumentParser) -> None:
     """Folders, the network, and how long it learns."""
     command.add_argument("folder", nargs="+", metavar="FOLDER", help="sounds in any depth, each with timings or a text "
                          "(.txt) beside it, or with a metadata.csv in LJ Speech's layout")
@@ -40,7 +40,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
-def run(options: argparse.Namespace) -> int:
+def run_train_hear(options: argparse.Namespace) -> int:
     """Reads, aligns, prepares, trains, and writes the model."""
     with needs("training", "hear"):
         import torch  # noqa: F401

@@ -10,7 +10,7 @@ from labial.commands.common import add_quiet, shows_progress
 from labial.files.arguments import positive, whole
 
 
-def add_arguments(command: argparse.ArgumentParser) -> None:
+def add_train_words(command: argparse.ArgumentParser) -> None:
     """The dictionary, the sizes and the output file."""
     command.add_argument("dictionary", metavar="CMUDICT", help="the CMU Pronouncing Dictionary (cmudict.dict)")
     command.add_argument("-o", "--output", required=True, metavar="WORDS.npz")
@@ -24,7 +24,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     add_quiet(command, "lines")
 
 
-def run(options: argparse.Namespace) -> int:
+def run_train_words(options: argparse.Namespace) -> int:
     """Trains, writes the tables, and prints what they consist of."""
     from labial.errors import needs
 

@@ -8,10 +8,25 @@ from __future__ import annotations
 
 import ctypes
 import os
-from ctypes import POINTER, c_char_p, c_int, c_int16, c_int32, c_uint8, c_uint32, c_void_p
+import sys
+from ctypes import (
+    POINTER,
+    c_char_p,
+    c_double,
+    c_int,
+    c_int16,
+    c_int32,
+    c_int64,
+    c_size_t,
+    c_uint8,
+    c_uint32,
+    c_uint64,
+    c_void_p,
+)
 from functools import cache
 from pathlib import Path
-from typing import Any, Dict, Optional, Sequence, Tuple
+from types import SimpleNamespace
+from typing import Any, Dict, Optional
 
 from labial import __version__
 from labial.errors import LabialError, StreamError, pip
@@ -19,11 +34,11 @@ from labial.errors import LabialError, StreamError, pip
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 7
+_INTERFACE = 8
 
 #: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
-ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -9, -11
+ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FULL, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -8, -9, -11
 
 #: LABIAL_DURATION_MAX: the longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
@@ -37,82 +52,52 @@ VISEMES = 15
 LAUGH_FULL = 256
 
 
-_POINTER, _NUMBER, _TEXT = c_void_p, c_uint32, c_char_p
-_FUNCTIONS: Dict[str, Tuple[Any, Sequence[Any]]] = {
-    "flat_interface": (_NUMBER, ()), "flat_version": (_TEXT, ()), "flat_method": (_TEXT, ()),
-    "result_text": (_TEXT, (c_int,)),
-    "mouth_size": (_NUMBER, ()), "blob_size": (_NUMBER, ()), "laugh_size": (_NUMBER, ()), "timings_size": (_NUMBER, ()),
-    "rig_output_size": (_NUMBER, ()), "rig_curve_size": (_NUMBER, ()),
-    "bundled_name": (_TEXT, (_NUMBER,)), "bundled_model": (_POINTER, (_NUMBER,)),
-    "bundled_names": (_POINTER, (_NUMBER,)),
-    "model_phonemes": (_NUMBER, (_POINTER,)), "model_silence": (_NUMBER, (_POINTER,)),
-    "model_fps": (_NUMBER, (_POINTER,)), "model_stride": (_NUMBER, (_POINTER,)),
-    "model_load": (c_int, (_POINTER, _POINTER, _NUMBER)),
-    "label_at": (_TEXT, (_POINTER, _NUMBER)), "find": (c_int, (_POINTER, _NUMBER, _TEXT, _NUMBER)),
-    "find_nearest": (c_int, (_POINTER, _NUMBER, _TEXT, _NUMBER, _NUMBER)),
-    "mouth_init": (c_int, (_POINTER, _POINTER)), "mouth_use": (c_int, (_POINTER, _POINTER)),
-    "mouth_push": (c_int, (_POINTER, _NUMBER, _NUMBER)), "mouth_room": (_NUMBER, (_POINTER,)),
-    "mouth_end": (c_int, (_POINTER,)), "mouth_cancel": (c_int, (_POINTER, _NUMBER)),
-    "mouth_restart": (c_int, (_POINTER,)), "mouth_articulation": (c_int, (_POINTER, _NUMBER)),
-    "mouth_run": (c_int, (_POINTER, _POINTER, _POINTER, _NUMBER)), "mouth_exact": (c_int, (_POINTER, _NUMBER)),
-    "mouth_moved": (_NUMBER, (_POINTER,)),
-    "mouth_tick": (c_int, (_POINTER,)), "mouth_faps": (POINTER(c_int16), (_POINTER,)), "mouth_visemes": (POINTER(c_uint8), (_POINTER,)),
-    "mouth_state": (c_int, (_POINTER,)), "mouth_held": (_NUMBER, (_POINTER,)),
-    "mouth_milliseconds": (_NUMBER, (_POINTER,)), "mouth_waiting": (_NUMBER, (_POINTER,)),
-    "mouth_delay": (_NUMBER, (_POINTER,)),
-    "laugh_init": (c_int, (_POINTER, _NUMBER, _NUMBER, _NUMBER)), "laugh_next": (c_int, (_POINTER, _POINTER)),
-    "rig_output": (None, (_POINTER, _POINTER, _POINTER)), "rig_check": (c_int, (_POINTER, _NUMBER)),
-    "rig_rest": (c_int, (_POINTER, _NUMBER, _POINTER)),
-    "rig_apply": (c_int, (_POINTER, _NUMBER, _POINTER, _NUMBER, _POINTER, _POINTER)),
-    "rig_show": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _POINTER)),
-    "timings_name": (_TEXT, (_NUMBER,)), "timings_suffix": (_TEXT, (_NUMBER,)),
-    "timings_init": (c_int, (_POINTER, _NUMBER, _TEXT, _NUMBER)),
-    "timings_next": (c_int, (_POINTER, _POINTER, _NUMBER, _POINTER, _POINTER)),
-    "timings_end": (c_int, (_POINTER, _POINTER, _POINTER)),
-    "timings_label": (_TEXT, (_POINTER,)), "timings_word": (_TEXT, (_POINTER,)),
-    "timings_message": (_TEXT, (_POINTER,)), "timings_line": (_NUMBER, (_POINTER,)),
-    "ears_size": (_NUMBER, ()), "hearing_name": (_TEXT, (_NUMBER,)), "hearing_model": (_POINTER, (_NUMBER,)),
-    "hearing_classes": (_NUMBER, (_NUMBER,)), "hearing_class": (_TEXT, (_NUMBER, _NUMBER)),
-    "ears_init": (c_int, (_POINTER, _POINTER, _NUMBER, _NUMBER)), "ears_latency": (_NUMBER, (_POINTER,)),
-    "ears_push": (c_int, (_POINTER, _POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
-    "ears_end": (c_int, (_POINTER, _POINTER, _POINTER, _NUMBER)),
-    "ears_cancel": (c_int, (_POINTER, _NUMBER, _POINTER, _POINTER, _NUMBER)),
-    "ears_stretches": (_NUMBER, (_POINTER,)), "ears_restart": (c_int, (_POINTER,)),
-    "ears_exact": (c_int, (_POINTER, _NUMBER)), "ears_articulation": (c_int, (_POINTER, _NUMBER)),
-    "ears_level": (_NUMBER, (_POINTER,)), "ears_set_level": (c_int, (_POINTER, _NUMBER)),
-    "servos_size": (_NUMBER, (_NUMBER, _NUMBER)), "servos_init": (c_int, (_POINTER, _POINTER, _NUMBER, _NUMBER)),
-    "servos_frame": (None, (_POINTER, _POINTER)), "servos_values": (c_int, (_POINTER, _POINTER)),
-    "servos_tick": (c_int, (_POINTER, _POINTER)), "servos_play": (c_int, (_POINTER,)),
-    "servos_skip": (c_int, (_POINTER, _NUMBER)), "servos_cancel": (c_int, (_POINTER, _NUMBER)),
-    "servos_soft_start": (c_int, (_POINTER, _NUMBER)), "servos_attached": (_NUMBER, (_POINTER,)),
-    "servos_place": (c_int, (_POINTER, _POINTER)),
-    "words_size": (_NUMBER, ()), "words_own_size": (_NUMBER, (_NUMBER,)),
-    "words_own": (_POINTER, (_POINTER, _NUMBER, _POINTER)), "words_label": (_TEXT, (_NUMBER,)),
-    "words_read": (c_int, (_POINTER, _TEXT, _NUMBER, _POINTER)),
-    "words_init": (c_int, (_POINTER, _POINTER, c_int32)),
-    "words_push": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _NUMBER)),
-    "words_push_characters": (c_int, (_POINTER, _TEXT, _NUMBER, _NUMBER, _POINTER, _NUMBER)),
-    "words_end": (c_int, (_POINTER,)), "words_restart": (c_int, (_POINTER,)),
-    "words_next": (c_int, (_POINTER, _POINTER)),
+#: The types of flat/CMakeLists.txt, which makes the library's list of its functions.
+_TYPES: Dict[str, Any] = {
+    "void": None, "int": c_int, "int32_t": c_int32, "int64_t": c_int64, "uint64_t": c_uint64, "size_t": c_size_t,
+    "number": c_uint32, "double": c_double, "text": c_char_p, "pointer": c_void_p, "frame": POINTER(c_int16),
+    "shares": POINTER(c_uint8),
 }  # fmt: skip
+#: A function that the library asks for a word's pronunciation (labial_voice_own_fn of include/labial/voice.h).
+PRONOUNCE = ctypes.CFUNCTYPE(c_void_p, c_void_p, c_void_p, c_size_t)
+#: What the functions' symbols begin with.
+_PREFIX = "" if sys.platform == "win32" else "flat_"
+
+
+class Library(SimpleNamespace):
+    """The functions of ``flat`` as attributes, by the names of its headers."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(name)
+
+
+def _bound(loaded: ctypes.CDLL) -> Library:
+    """All functions that the library lists."""
+    listed = getattr(loaded, f"{_PREFIX}function")
+    listed.restype, listed.argtypes = c_char_p, [c_uint32]
+    functions, number = Library(), 0
+    while row := listed(number):
+        name, result, *arguments = row.decode("ascii").split()
+        function = getattr(loaded, _PREFIX + name)
+        function.restype, function.argtypes = _TYPES[result], [_TYPES[item] for item in arguments]
+        setattr(functions, name, function)
+        number += 1
+    return functions
 
 
 @cache
-def library() -> ctypes.CDLL:
+def library() -> Library:
     """The library, loaded once. Raises LabialError if it is missing or of another version."""
     path = library_path()
     try:
-        loaded = ctypes.CDLL(str(path))
-        for name, (result, arguments) in _FUNCTIONS.items():
-            function = getattr(loaded, name)
-            function.restype, function.argtypes = result, list(arguments)
-    except (OSError, AttributeError) as error:
+        found = _bound(ctypes.CDLL(str(path)))
+    except (OSError, AttributeError, KeyError) as error:
         raise LabialError(f"{path} is not Labial's run-time: {error}") from None
-    version = (loaded.flat_version() or b"").decode("ascii", "replace")
-    if loaded.flat_interface() != _INTERFACE or version != __version__:
+    version = (found.version() or b"").decode("ascii", "replace")
+    if found.interface() != _INTERFACE or version != __version__:
         raise LabialError(f"{path} is the run-time of Labial {version}, and this package is Labial {__version__}: "
                           "install or build it anew")
-    return loaded
+    return found
 
 
 def library_path() -> Path:
@@ -133,7 +118,7 @@ def library_path() -> Path:
 
 def method() -> str:
     """The method that the library is built for: "labial", or "paper" for the published one to the letter."""
-    text: bytes = library().flat_method()
+    text: bytes = library().method()
     return text.decode("ascii")
 
 

@@ -6,7 +6,7 @@ import ctypes
 from functools import cache
 from typing import Any, Iterator, List, NamedTuple, Optional, Tuple
 
-from labial.core.library import LAUGH_FULL, OK, STARVED, WAITING, library, memory
+from labial.core.library import LAUGH_FULL, OK, STARVED, WAITING, Library, library, memory
 from labial.errors import LabialError
 
 
@@ -74,7 +74,7 @@ def timings(text: bytes, form: str = "auto", tier: Optional[str] = None, number:
         raise Malformed(core.timings_message(block).decode("utf-8", "replace"), core.timings_line(block))
 
 
-def _timing(core: ctypes.CDLL, block: Any, times: Any, numbers: Any) -> Timing:
+def _timing(core: Library, block: Any, times: Any, numbers: Any) -> Timing:
     label, word = core.timings_label(block), core.timings_word(block)
     if label is None:
         label = b"" if numbers[2] < 0 else b"<laugh:%g>" % (numbers[2] / LAUGH_FULL)

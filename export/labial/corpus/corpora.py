@@ -10,11 +10,10 @@ from typing import List, NamedTuple, Sequence, Union
 import numpy as np
 
 from labial.corpus.avlaughter import laugh_files, read_avlaughter
-from labial.corpus.episode import Episode
+from labial.corpus.episode import Episode, with_even_sides
 from labial.corpus.folder import read_folder
 from labial.corpus.iemocap import read_iemocap
 from labial.corpus.phonesets import PHONE_SETS
-from labial.corpus.sides import with_even_sides
 from labial.corpus.talkers import brought_together, with_something_left, with_sources
 from labial.errors import DataError, LabialError
 from labial.files.frames import sampled

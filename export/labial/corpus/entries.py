@@ -3,77 +3,87 @@
 from __future__ import annotations
 
 import json
-import math
 import os
-from dataclasses import dataclass
-from typing import Any, Dict, List, Optional
+from dataclasses import fields as dataclass_fields
+from dataclasses import is_dataclass
+from functools import lru_cache
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
-from labial.corpus.timings import PathLike
 from labial.errors import DataError
-from labial.files.grammar import is_blank, lines_of, read_text
+from labial.files.grammar import PathLike, is_blank, lines_of, read_text
+from labial.files.limits import MESSAGE_FIELDS, MESSAGE_NESTING
+
+#: Types that hold no fields.
+_VALUES = (str, bytes, bytearray, memoryview, int, float, list, tuple, set, type(None))
+#: What an object of a client library calls its fields as a dictionary.
+_DUMPS = ("model_dump", "to_dict", "_asdict", "dict")
+#: Fields of server-sent events.
+_EVENT = ("event:", "id:", "retry:", ":")
 
 
-@dataclass(frozen=True)
 class Entry:
-    """One object of a file: `line` if a line is a document, else its `number` in the document, from 1."""
+    """One object of a file or message: `line` if a line is a document, else its `number` in the document, from 1."""
 
-    path: PathLike
-    line: Optional[int]
-    number: int
-    fields: Dict[str, Any]
+    __slots__ = ("_plain", "fields", "line", "number", "path")
+
+    def __init__(self, path: PathLike, line: Optional[int], number: int, fields: Mapping[Any, Any]) -> None:
+        self.path, self.line, self.number, self.fields = path, line, number, fields
+        self._plain: Optional[Dict[str, Any]] = None
 
     def error(self, problem: str) -> DataError:
         """`problem`, with its place in the file."""
         return DataError(self.path, self.line, problem if self.line else f"entry {self.number}: {problem}")
 
-    def get(self, *names: str) -> Any:
-        """The first existing field of `names`, ignoring case and underscores of the file's keys."""
-        for key, value in self.fields.items():
-            if _plain(key) in names:
-                return value
-        raise self.error(f"no field {names[0]!r}")
+    @property
+    def plain(self) -> Dict[str, Any]:
+        """The fields by their names in small letters without underscores; of two that are then alike, the first."""
+        if self._plain is None:
+            self._plain = {}
+            for key, value in self.fields.items():
+                self._plain.setdefault(plain_name(key), value)
+        return self._plain
 
-    def has(self, *names: str) -> bool:
-        """Whether all of `names` exist."""
-        return {_plain(key) for key in self.fields} >= set(names)
+    def inner(self, value: Any, number: Optional[int] = None) -> Optional[Entry]:
+        """An object within this one; None for what is no object."""
+        fields = fields_of(value)
+        return None if fields is None else Entry(self.path, self.line, number or self.number, fields)
 
-    def number_of(self, *names: str) -> float:
-        """A field that must be a finite number, not below zero."""
-        return self.as_number(self.get(*names), names[0])
 
-    def as_number(self, value: Any, what: str) -> float:
-        """`value` as a float, or an error."""
+@lru_cache(maxsize=4096)
+def plain_name(key: Any) -> str:
+    """A field's name in small letters without underscores."""
+    return str(key).replace("_", "").lower()
+
+
+def fields_of(value: Any) -> Optional[Mapping[Any, Any]]:
+    """The fields of a dictionary or of an object of a client library: what it dumps, or its public attributes, of which
+    at most `MESSAGE_FIELDS` are read. None for texts, numbers, lists and None."""
+    if isinstance(value, Mapping):
+        return value
+    if isinstance(value, type) or (isinstance(value, _VALUES) and not hasattr(value, "_asdict")):
+        return None
+    if is_dataclass(value):
+        return {field.name: getattr(value, field.name, None) for field in dataclass_fields(value)}
+    for name in _DUMPS:
+        dump = getattr(value, name, None)
+        if callable(dump):
+            found = dump()
+            return found if isinstance(found, Mapping) else None
+    found = {}
+    for name in [name for name in dir(value) if not name.startswith("_")][:MESSAGE_FIELDS]:
         try:
-            number = float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else math.nan
-        except OverflowError:
-            number = math.inf
-        if not 0.0 <= number < math.inf:
-            raise self.error(f"{what!r} is {shown(value)}, not a number from 0 on")
-        return number
-
-    def text_of(self, *names: str) -> str:
-        """A field that must be text."""
-        value = self.get(*names)
-        if not isinstance(value, str):
-            raise self.error(f"{names[0]!r} is {shown(value)}, not text")
-        return value
-
-    def list_of(self, *names: str) -> List[Any]:
-        """A field that must be a list."""
-        value = self.get(*names)
-        if not isinstance(value, list):
-            raise self.error(f"{names[0]!r} is {shown(value)}, not a list")
-        return value
-
-    def parts(self, *names: str) -> List[Entry]:
-        """A field that must be a list of objects, as entries."""
-        return [entry_of(self.path, self.line, number, item) for number, item in enumerate(self.list_of(*names), 1)]
+            item = getattr(value, name)
+        except Exception:  # noqa: BLE001 - a property of a library that has no value yet
+            continue
+        if not callable(item):
+            found[name] = item
+    return found or None
 
 
-class Documents(os.PathLike[str]):
-    """Parsed JSON that stands in for that of a file wherever one is read. Errors call the file `name`."""
+class Parsed(os.PathLike[str]):
+    """Parsed JSON, or objects of a client library, that stand in for those of a file. Errors call the file `name`."""
 
-    def __init__(self, items: List[Any], name: str) -> None:
+    def __init__(self, items: Sequence[Any], name: str) -> None:
         self.items, self._name = items, name
 
     def __fspath__(self) -> str:
@@ -81,41 +91,74 @@ class Documents(os.PathLike[str]):
 
 
 def read_entries(path: PathLike) -> List[Entry]:
-    """The objects of a file: those of a list, a single one, or one per line."""
-    if isinstance(path, Documents):
-        return [entry_of(path, None, number, item) for number, item in enumerate(path.items, 1)]
+    """The objects of a file: those of a list, a single one, or one per line. Lines may be server-sent events."""
+    if isinstance(path, Parsed):
+        return [_entry_of(path, None, number, item) for number, item in enumerate(path.items, 1)]
     text = read_text(path)
+    return [_entry_of(path, line, number, item) for line, number, item in documents(path, text)]
+
+
+def documents(path: PathLike, text: str, most: Optional[int] = None,
+              odd: Optional[Callable[[DataError], None]] = None) -> List[Tuple[Optional[int], int, Any]]:
+    """The documents of a text, each with its line, if it has one of its own, and its number. Raises DataError where the
+    text is neither JSON nor lines of JSON, and for more than `most` lines; `odd` is called for single lines that are no
+    JSON, if it is given."""
     try:
-        document = _loads(path, text)
+        document = loads(path, None, text)
         items = document if isinstance(document, list) else [document]
-        return [entry_of(path, None, number, item) for number, item in enumerate(items, 1)]
+        return [(None, number, item) for number, item in enumerate(items, 1)]
     except json.JSONDecodeError as error:
-        lines = [(number, line) for number, line in enumerate(lines_of(text), 1) if not is_blank(line)]
-        if len(lines) < 2 or not _is_document(lines[0][1]):
+        lines = [(number, _content(line)) for number, line in enumerate(lines_of(text), 1)]
+        lines = [(number, line) for number, line in lines if not is_blank(line)]
+        # Two lines at least, or one of an event; the first shows whether lines are documents.
+        is_event = len(lines) == 1 and lines[0][1] != text.strip()
+        if not (len(lines) > 1 or is_event) or not _is_document(lines[0][1]):
             raise DataError(path, error.lineno, f"not JSON: {error.msg}") from None
-    entries = []
+    if most is not None and len(lines) > most:
+        raise DataError(path, None, f"{len(lines)} lines, more than the {most} that are read")
+    found: List[Tuple[Optional[int], int, Any]] = []
     for number, line in lines:
         try:
-            entries.append(entry_of(path, number, number, _loads(path, line)))
-        except json.JSONDecodeError as error:
-            raise DataError(path, number, f"not JSON: {error.msg}") from None
-    return entries
+            found.append((number, number, loads(path, number, line)))
+        except (json.JSONDecodeError, DataError) as error:
+            problem = error if isinstance(error, DataError) else DataError(path, number, f"not JSON: {error.msg}")
+            if odd is None:
+                raise problem from None
+            odd(problem)
+    return found
 
 
-def entry_of(path: PathLike, line: Optional[int], number: int, item: Any) -> Entry:
-    """`item` as an entry; raises DataError if it is not an object."""
-    if not isinstance(item, dict):
-        raise Entry(path, line, number, {}).error(f"{shown(item)} is not an object")
-    return Entry(path, line, number, item)
-
-
-def _loads(path: PathLike, text: str) -> Any:
+def loads(path: PathLike, line: Optional[int], text: str) -> Any:
+    """JSON; raises JSONDecodeError, and DataError for what is nested deeper than `MESSAGE_NESTING` levels or has a
+    number of too many digits."""
     try:
-        return json.loads(text)
-    except (RecursionError, ValueError) as error:  # nested too deeply; a number of too many digits
-        if isinstance(error, json.JSONDecodeError):
-            raise
-        raise DataError(path, None, "JSON that is nested too deeply or has a number of too many digits") from None
+        found = json.loads(text)
+    except json.JSONDecodeError:
+        raise
+    except (RecursionError, ValueError):
+        found = None
+    if found is None and text.strip() != "null" or _nests_deeper(found, MESSAGE_NESTING):
+        raise DataError(path, line, "JSON that is nested too deeply or has a number of too many digits")
+    return found
+
+
+def _nests_deeper(value: Any, most: int) -> bool:
+    """Whether lists and objects of parsed JSON nest deeper than `most` levels."""
+    level = [value]
+    for _ in range(most + 1):
+        level = [item for one in level if isinstance(one, (dict, list))
+                 for item in (one.values() if isinstance(one, dict) else one)]
+        if not level:
+            return False
+    return True
+
+
+def _content(line: str) -> str:
+    """The document of a line: what follows ``data:`` in a server-sent event, "" in its other fields."""
+    text = line.lstrip(" \t\ufeff")
+    if text.startswith("data:"):
+        return "" if text[5:].strip() == "[DONE]" else text[5:]
+    return "" if text.startswith(_EVENT) else line
 
 
 def _is_document(line: str) -> bool:
@@ -125,11 +168,18 @@ def _is_document(line: str) -> bool:
         return False
 
 
-def _plain(key: str) -> str:
-    return key.replace("_", "").lower()
+def _entry_of(path: PathLike, line: Optional[int], number: int, item: Any) -> Entry:
+    entry = Entry(path, line, number, {}).inner(item)
+    if entry is None:
+        raise Entry(path, line, number, {}).error(f"{shown(item)} is not an object")
+    return entry
 
 
 def shown(value: Any) -> str:
     """A value for a message, at most 40 characters of it."""
-    text = value if isinstance(value, str) else json.dumps(value)
+    if isinstance(value, (dict, list)):
+        return "an object" if isinstance(value, dict) else "a list"
+    if isinstance(value, int) and value.bit_length() > 128:
+        return "a number of many digits"
+    text = value if isinstance(value, str) else json.dumps(value, default=lambda other: type(other).__name__)
     return text if len(text) <= 40 else text[:37] + "..."

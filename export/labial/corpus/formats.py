@@ -9,6 +9,7 @@ from typing import Dict, List, Optional, Tuple
 
 from labial.core import lines
 from labial.corpus import services
+from labial.corpus.entries import Parsed, read_entries
 from labial.corpus.phonesets import AUTO
 from labial.corpus.timings import PathLike, SourceSegment, lab_of, phone_set_of, phoneme_segments, read_segments
 from labial.corpus.words import PLAIN, Pronunciation
@@ -44,11 +45,7 @@ def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciatio
     the content. Where words are told, `how` says how they are pronounced. `offset` seconds are added to all times; what
     that moves before the beginning is cut off."""
     form = source or suffixes().get(Path(path).suffix.lower()) or _told_by_content(path)
-    service = services.SERVICES.get(form)
-    if service is None:
-        segments = read_segments(path, form)
-    else:
-        segments = service.read(path, how) if service.words else service.read(path)
+    segments = services.read(path, form, how) if form in services.SERVICES else read_segments(path, form)
     return _moved(segments, offset) if offset else segments
 
 
@@ -68,9 +65,10 @@ def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None, how
 
 
 def _told_by_content(path: PathLike) -> str:
-    if read_text(path)[:4000].lstrip(" \t\r\n")[:1] not in ("{", "["):
+    if not isinstance(path, Parsed) and read_text(path)[:4000].lstrip(" \t\r\n")[:1] not in ("{", "["):
         return AUTO
-    found = services.service_of(path)
+    entries = read_entries(path)
+    found = next((name for name in map(services.service_of, entries[:100]) if name), None)
     if found is None:
         raise DataError(path, None, f"no known format of phoneme timings ({titles()})")
     return found

@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from typing import Dict, List, Mapping, Optional, Tuple
 
+from labial.files import limits
+
 #: Combining marks (ties, nasalisation, syllabicity, releases), except the cedilla, which makes another consonant.
 _COMBINING = re.compile("[\u0300-\u0326\u0328-\u036f]")
 #: Length, half length; aspirated, palatalised, labialised, velarised, pharyngealised, released nasally or laterally.
@@ -23,6 +25,10 @@ _STRESS_DIGIT = re.compile(r"(?<=[A-Za-z]{2})[012]$")
 #: Diacritics, length and stress as Praat's backslash sequences. ``\h^`` is not one: it is a consonant.
 _PRAAT_MARK = re.compile(r"\\[|0OT\-+:~NUDn3cv'`^][v^()]|\\[:.]f|\\'[12]")
 _BLANKS = " \t\r\n"
+#: Bytes of a label without meaning in which a known part is looked for (LABEL_MAX of lib/names.c).
+_SEARCHED = 32
+#: Characters of the longest name of a phoneme.
+LONGEST = 16
 
 #: Sets of labels: one set, or "auto", any of them, ARPABET before the IPA before X-SAMPA.
 AUTO = "auto"
@@ -45,25 +51,28 @@ def normalise(label: str) -> str:
 
 def find(names: Mapping[str, str], label: str) -> Optional[str]:
     """The meaning of `label` in `names` (label or alias -> phoneme), or None: first without blanks around it, then also
-    without its marks."""
+    without its marks. A label longer than `limits.LABEL` bytes has none."""
     label = label.strip(_BLANKS)
+    if len(label) > limits.LABEL or len(label.encode("utf-8", "replace")) > limits.LABEL:
+        return None
     return names.get(label, names.get(normalise(label)))
 
 
 def nearest(names: Mapping[str, str], label: str, silence: str, neutral: str) -> str:
     """A phoneme for any label: its meaning; silence for text in brackets, and for labels of nothing but marks, digits
-    and punctuation; else the first known substring, scanning from the left, and the longest there; else `neutral`."""
+    and punctuation; else the first known part of its first 32 bytes, scanning from the left, and the longest there;
+    else `neutral`."""
     known = find(names, label)
     if known is not None:
         return known
     label = label.strip(_BLANKS)
     if len(label) > 1 and label[0] + label[-1] in ("<>", "[]", "()", "{}", "++", "**", "##"):
         return silence
-    text = without_marks(label)
+    text = without_marks(label[:_SEARCHED].encode("utf-8", "replace")[:_SEARCHED].decode("utf-8", "replace"))
     if not re.search(r"[A-Za-z\u0080-\U0010ffff]", text):
         return silence
     for start in range(len(text)):
-        for end in range(len(text), start, -1):
+        for end in range(min(len(text), start + LONGEST), start, -1):
             if text[start:end] in names:
                 return names[text[start:end]]
     return neutral

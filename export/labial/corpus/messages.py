@@ -1,45 +1,45 @@
 """Messages of speech services, one at a time, as they arrive while the sound plays.
 
 The formats are those of :data:`labial.corpus.services.SERVICES`. Messages without timings, such as those of sound, tell
-nothing.
+nothing. Items that make no sense are skipped and counted; :mod:`labial.files.limits` says how much of a message is
+read.
 """
 
 from __future__ import annotations
 
-import json
+import logging
 from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
-from labial.corpus import services, word_services
-from labial.corpus.entries import Documents, Entry, entry_of, shown
+from labial.corpus.entries import Entry, documents, fields_of, shown
 from labial.corpus.phonesets import AUTO, SPEECH
-from labial.corpus.timings import Empty, SourceSegment, meaning
-from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY
-from labial.corpus.word_files import LONGEST_GAP
-from labial.corpus.word_services import Timed, Told
+from labial.corpus.services import LONGEST_GAP, SERVICES, Odd, Timed, Told, phoneme_segments_of, service_of
+from labial.corpus.timings import SourceSegment, meaning
 from labial.errors import DataError, LabialError
+from labial.files.limits import MESSAGE_DOCUMENTS, MESSAGE_ITEMS, MESSAGE_TEXT
 
-#: Visemes: by the kind of what is told, the phoneme of each and of pairs.
-VISEMES: Dict[str, Tuple[Dict[str, str], Dict[Tuple[str, str], str]]] = {
-    "azure": (AZURE, AZURE_PAIRS), "polly": (POLLY, {})}
-#: Characters of a text that are believed.
-_LONGEST_TEXT = 1000
-#: Formats whose messages begin where the one before ended.
-_CHAINED = ("piper", "kokoro", "headtts")
-#: Formats whose messages are nothing but timings: others are passed over.
-_BARE = ("azure", "polly", "minimax", "google", "words", "json", *_CHAINED)
+#: After so many messages without a timing, one sentence is logged.
+_PATIENCE = 50
+
+_logger = logging.getLogger("labial")
 
 
 class Heard(NamedTuple):
     """What a message tells: times are seconds, and texts of the kind "phonemes" labels of ARPABET."""
 
-    told: Tuple[Told, ...] = ()
+    told: Tuple[Told, ...] = ()  #: of the kinds "phonemes", visemes, "words" and "characters"
     chained: bool = False  #: times count from the end of the message before
-    joins: bool = False  #: they may do so, see :mod:`labial.corpus.word_services`
+    joins: bool = False  #: they may do so, as docs/streams.md says
     gap: float = 0.0  #: a gap between phonemes, in seconds, is silence if it is longer
+    utterance: Optional[str] = None  #: what the service calls the utterance
 
 
-#: Of a message without timings.
-NOTHING = Heard()
+class Stats(NamedTuple):
+    """What became of the messages so far."""
+
+    messages: int = 0  #: those that were fed, sound included
+    told: int = 0  #: words, characters, phonemes and visemes with their times
+    skipped: int = 0  #: those that made no sense
+    dropped: int = 0  #: messages of utterances that are over
 
 
 class Messages:
@@ -51,118 +51,114 @@ class Messages:
     """
 
     def __init__(self, form: Optional[str] = None, labels: str = AUTO) -> None:
-        if form is not None and form not in services.SERVICES:
-            raise LabialError(f"{shown(form)!r} is no format of messages: {', '.join(services.SERVICES)}")
+        if form is not None and form not in SERVICES:
+            raise LabialError(f"{shown(form)!r} is no format of messages: {', '.join(SERVICES)}")
         self._form, self._labels = form, labels
-        self._count = 0
+        self._silent: Optional[str] = None  # a service whose messages had no timings
+        self._phonemes: Dict[Tuple[str, str], str] = {}
+        self.stats = Stats()
+
+    @property
+    def skipped(self) -> int:
+        """How many items made no sense."""
+        return self.stats.skipped
 
     def read(self, message: Any) -> List[Heard]:
-        """What a message tells: parsed JSON, a list of such, its text or bytes, or one of Piper's chunks. Bytes that
-        are not JSON are sound. Raises DataError for malformed messages, TypeError for other types."""
-        self._count += 1
-        name = f"message {self._count}"
-        found = [self._read(entry_of(name, None, number, item))
-                 for number, item in enumerate(_documents(message, name), 1)]
-        return [heard for heard in found if heard.told]
-
-    def _read(self, item: Entry) -> Heard:
-        form = self._form or next((name for name, service in services.SERVICES.items() if service.told(item)), None)
-        if form is None or (form in _BARE and not services.SERVICES[form].told(item)):
-            return NOTHING
-        heard = self._told(form, item)
-        for told in heard.told:
-            for timed in told.items:
-                _check(timed, told.kind != "characters")
-        if heard.told:
-            self._form = form
-        return heard
-
-    def _told(self, form: str, item: Entry) -> Heard:
-        if form == "azure" and not word_services.is_boundary(item):
-            name = shown(item.get("visemeid", "privvisemeid"))
-            return _viseme(form, name, item.number_of("audiooffset", "privaudiooffset") / services.AZURE_RATE, item)
-        if form == "polly" and item.get("type") == "viseme":
-            return _viseme(form, item.text_of("value"), item.number_of("time") / 1000, item)
-        if form == "azure":
-            return Heard(_full(word_services.tell_boundary(item)))
-        if form == "polly":
-            return Heard(_full(word_services.tell_word_mark(item)))
-        if form in word_services.SERVICES:
-            service = word_services.SERVICES[form]
-            told = [one if one.kind != "phonemes" else one._replace(items=[
-                timed._replace(text=self._phoneme(timed.text.strip(), "ipa")) for timed in one.items])
-                for one in service.tell(item)]
-            return Heard(_full(told), joins=service.joins, gap=LONGEST_GAP)
+        """What a message tells: a dictionary, an object of a service's client library, a list of these; text or bytes
+        of JSON, of lines of JSON or of server-sent events. Bytes that are neither are sound. Raises DataError for
+        malformed messages and those beyond a limit, TypeError for other types."""
+        name = f"message {self.stats.messages + 1}"
+        self.stats = self.stats._replace(messages=self.stats.messages + 1)
+        odd = Odd(strict=False)
         try:
-            segments = services.SERVICES[form].read(Documents([item.fields], str(item.path)))
-        except Empty:
-            return NOTHING
-        sounds = [Timed(self._phoneme(segment.label, segment.labels), segment.start, segment.end, item)
-                  for segment in segments]
-        return Heard(_full([Told("phonemes", sounds)]), chained=form in _CHAINED)
+            heard = [self._read(item, odd) for item in self._entries(message, name, odd)]
+        finally:
+            self.stats = self.stats._replace(skipped=self.stats.skipped + odd.count)
+        if odd.first is not None:
+            _logger.debug("%s%s", odd.first, f" ({odd.count} items are skipped)" if odd.count > 1 else "")
+        count = sum(len(told.items) for one in heard for told in one.told)
+        self.stats = self.stats._replace(told=self.stats.told + count)
+        if self.stats.told == 0 and self.stats.messages == _PATIENCE:
+            self._complain()
+        return [one for one in heard if one.told]
+
+    def _entries(self, message: Any, name: str, odd: Odd) -> List[Entry]:
+        """The objects of a message."""
+        lines: List[Tuple[Optional[int], int, Any]]
+        if isinstance(message, (bytes, bytearray, memoryview)):
+            message = bytes(message)
+            if message[:64].lstrip()[:1] not in (b"{", b"[", b"d", b"e", b":"):
+                return []
+            try:
+                message = message.decode("utf-8")
+            except UnicodeDecodeError:
+                if message[:64].lstrip()[:1] not in (b"{", b"["):
+                    return []
+                raise DataError(name, None, "not UTF-8") from None
+        if isinstance(message, str):
+            lines = documents(name, message, MESSAGE_DOCUMENTS, odd.count_of)
+        elif isinstance(message, (list, tuple)) and fields_of(message) is None:
+            lines = [(None, number, item) for number, item in enumerate(message, 1)]
+        else:
+            lines = [(None, 1, message)]
+        if len(lines) > MESSAGE_DOCUMENTS:
+            raise DataError(name, None, f"{len(lines)} objects, more than the {MESSAGE_DOCUMENTS} that are read")
+        found = []
+        for line, number, item in lines:
+            fields = fields_of(item)
+            if fields is not None:
+                found.append(Entry(name, line, number, fields))
+            elif isinstance(message, (str, list, tuple)):
+                raise Entry(name, line, number, {}).error(f"{shown(item)} is not an object")
+            else:
+                raise TypeError(f"a message is a dict, an object, a list, text or bytes, not {type(message).__name__}")
+        return found
+
+    def _read(self, item: Entry, odd: Odd) -> Heard:
+        form = self._form or service_of(item)
+        if form is None:
+            return Heard()
+        service = SERVICES[form]
+        told = service.read(item, odd) if service.told(item) or not service.is_bare else []
+        if sum(len(one.items) for one in told) > MESSAGE_ITEMS:
+            raise item.error(f"more than {MESSAGE_ITEMS} words or phonemes in a message")
+        found = [one for one in (self._converted(one, odd) for one in told) if one.items or one.key is not None]
+        if found:
+            self._form = form
+        else:
+            self._silent = form
+        return Heard(tuple(found), service.times == "chained", service.times == "restart",
+                     LONGEST_GAP if any(one.kind == "phonemes" for one in told) else 0.0, service.utterance(item))
+
+    def _converted(self, told: Told, odd: Odd) -> Told:
+        """Phonemes by their labels of ARPABET; no text that is too long."""
+        items = told.items
+        if told.kind in ("sounds", "labels"):
+            items = [Timed(self._phoneme(segment.label, segment.labels), segment.start, segment.end, items[0].place)
+                     for segment in phoneme_segments_of(items, told.kind)]
+        elif told.kind == "phonemes":
+            items = [item._replace(text=self._phoneme(item.text, "ipa")) for item in items]
+        short = [item for item in items if len(item.text) <= MESSAGE_TEXT]
+        if len(short) < len(items):
+            long = next(item for item in items if len(item.text) > MESSAGE_TEXT)
+            odd.add(long.place, f"a text of {len(long.text)} characters, more than {MESSAGE_TEXT}")
+            odd.count += len(items) - len(short) - 1
+        return Told("phonemes" if told.kind in ("sounds", "labels") else told.kind, short, told.key)
 
     def _phoneme(self, label: str, labels: str) -> str:
         """The phoneme that a label of the set `labels` means, or the one nearest to it; an empty one is silence."""
-        segment = SourceSegment(0.0, 0.0, label, labels=labels)
-        return meaning(segment, SPEECH, self._labels) or SPEECH.nearest(label, self._labels)
+        known = self._phonemes.get((label, labels))
+        if known is None:
+            segment = SourceSegment(0.0, 0.0, label, labels=labels)
+            known = meaning(segment, SPEECH, self._labels) or SPEECH.nearest(label, self._labels)
+            if len(self._phonemes) < MESSAGE_ITEMS:
+                self._phonemes[label[:MESSAGE_TEXT], labels] = known
+        return known
 
-
-def _documents(message: Any, name: str) -> List[Any]:
-    if isinstance(message, (bytes, bytearray, memoryview)):
-        data = bytes(message)
-        if data[:64].lstrip(b" \t\r\n")[:1] not in (b"{", b"["):
-            return []
-        message = _text_of(data, name)
-    if isinstance(message, str):
-        try:
-            message = json.loads(message)
-        except json.JSONDecodeError as error:
-            raise DataError(name, None, f"not JSON: {error.msg}") from None
-        except (RecursionError, ValueError):
-            raise DataError(name, None,
-                            "JSON that is nested too deeply or has a number of too many digits") from None
-        if not isinstance(message, (dict, list)):
-            raise DataError(name, None, f"{shown(message)} is not an object")
-    if isinstance(message, list):
-        return [_plain(item) for item in message]
-    found = _plain(message)
-    if not isinstance(found, dict):
-        raise TypeError(f"a message is a dict, a list, text or bytes, not {type(message).__name__}")
-    return [found]
-
-
-def _text_of(data: bytes, name: str) -> str:
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        raise DataError(name, None, "not UTF-8") from None
-
-
-def _plain(item: Any) -> Any:
-    """One of Piper's chunks as what it would be in JSON; all else as it is."""
-    if not hasattr(item, "sample_rate") or not hasattr(item, "phoneme_alignments"):
-        return item
-    return {"sample_rate": int(item.sample_rate), "phoneme_alignments": item.phoneme_alignments and [
-        {"phoneme": one.phoneme, "num_samples": int(one.num_samples)} for one in item.phoneme_alignments]}
-
-
-def _viseme(form: str, name: str, start: float, item: Entry) -> Heard:
-    if name not in VISEMES[form][0]:
-        raise item.error(f"no viseme is called {name!r}")
-    return Heard((Told(form, [Timed(name, start, None, item)]),))
-
-
-def _full(told: List[Told]) -> Tuple[Told, ...]:
-    """Without those that are empty, unless they replace others."""
-    return tuple(one for one in told if one.items or one.key is not None)
-
-
-def _check(timed: Timed, in_order: bool) -> None:
-    if len(timed.text) > _LONGEST_TEXT:
-        raise timed.place.error(f"a text of {len(timed.text)} characters, more than {_LONGEST_TEXT}")
-    if in_order and timed.end is not None and timed.end < timed.start:
-        raise timed.place.error(f"{timed.text!r:.40} ends at {timed.end:g} s, before its start {timed.start:g} s")
-    if max(timed.start, timed.end or 0.0) > 86400.0:
-        raise timed.place.error(f"{max(timed.start, timed.end or 0.0):g} s is more than a day; are these seconds?")
-    if timed.end is not None and timed.end - timed.start > 3600.0:
-        raise timed.place.error(f"{timed.text!r:.40} lasts {timed.end - timed.start:g} s, more than an hour")
+    def _complain(self) -> None:
+        service = SERVICES.get(self._form or self._silent or "")
+        if service is None:
+            problem = f"none is of a known service ({', '.join(SERVICES)})"
+        else:
+            problem = f"{service.title} has to be asked for them" + (f": {service.advice}" if service.advice else "")
+        _logger.warning("%d messages told no timings: %s", self.stats.messages, problem)

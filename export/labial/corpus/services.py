@@ -1,187 +1,549 @@
-"""Phoneme timings as JSON, as speech services and neural synthesisers report them.
+"""Timings that speech services and neural synthesisers report as JSON: the table services.json, and its interpreter.
 
-Each reader returns segments in seconds, as those of :mod:`labial.corpus.timings` do, and checks them the same way. A
-file is one JSON document, or one per line. Errors are DataErrors with the line where each line is a document of its
-own, else with the number of the entry.
+The table says of each service which lists and fields of its messages have texts and times; web/services.js reads the
+same. :func:`read` makes segments of a file of messages, in seconds, as the readers of :mod:`labial.corpus.timings` do;
+:mod:`labial.corpus.messages` reads messages as they arrive.
 
-Characters, as from Piper and Kokoro, become phonemes: a stress mark's time goes to the vowel after it, that of a length
-mark or diacritic to the phoneme before it, the two halves of a diphthong or affricate are one phoneme, and punctuation
-is silence. The blank between two words takes time, too, but lips do not rest there: up to `LONGEST_BLANK`, its time is
-added to the phoneme before it. What services tell of words and of written characters is read by
-:mod:`labial.corpus.word_files`.
+Sounds, as from Piper and Kokoro, are characters of the IPA that become phonemes: a stress mark's time goes to the vowel
+after it, that of a length mark or diacritic to the phoneme before it, the two halves of a diphthong or affricate are
+one phoneme, and punctuation is silence. The blank between two words takes time, too, but lips do not rest there: up to
+`LONGEST_GAP`, its time is added to the phoneme before it.
+
+A service reports fewer visemes than there are phonemes. Each viseme becomes the phoneme that is most frequent in
+English speech among those that it covers or, if two are equally frequent, the one that the viseme is named after. Two
+visemes in a row that occur together in only one English phoneme become that phoneme; rounded lips are W before a vowel,
+else UW.
 """
 
 from __future__ import annotations
 
+import json
 import math
+import re
 import unicodedata
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from datetime import timedelta
+from numbers import Real
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from labial.corpus import word_files, word_services
-from labial.corpus.entries import Entry, entry_of, read_entries, shown
-from labial.corpus.timings import PathLike, SourceSegment, checked
-from labial.corpus.visemes import AZURE, AZURE_PAIRS, POLLY, stand_ins
-from labial.corpus.words import PLAIN, Pronunciation
-from labial.errors import DataError
+from labial.corpus.entries import Entry, plain_name, read_entries, shown
+from labial.corpus.phonesets import VOWELS
+from labial.corpus.timings import LONGEST, PathLike, SourceSegment, checked
+from labial.corpus.words import PLAIN, Pronunciation, Word, timings_of, words_of_characters
+from labial.errors import DataError, StreamError
+from labial.files.limits import LABEL
 
 #: A blank between words, or a gap between a service's phonemes, is a pause if it is longer, in seconds.
-LONGEST_BLANK = 0.15
+LONGEST_GAP = 0.15
 #: Duration of the last viseme, seconds: services report only its beginning.
 LAST_VISEME = 0.1
-#: Kokoro's frames per second: 600 samples each, 24,000 samples per second.
-KOKORO_RATE = 40.0
-#: Azure's ticks per second, of 100 ns.
-AZURE_RATE = 1e7
+#: No word or phoneme lasts longer, in seconds.
+_LONGEST_ITEM = 3600.0
+#: Times that differ by no more, in seconds, are the same.
+_ROUNDING = 1e-3
 
+_TABLE = json.loads(Path(__file__).with_name("services.json").read_text(encoding="utf-8"))
+#: By the service, the phoneme of each viseme, and of two in a row with a blank between them.
+VISEMES: Dict[str, Dict[str, str]] = _TABLE["visemes"]
+#: Kinds of items, of which the first that a file has counts.
+KINDS = ("sounds", "labels", "phonemes", *VISEMES, "words", "characters")
 _STRESS = ("ˈ", "ˌ")
-#: Two characters that are one phoneme.
-_PAIRS = ("aɪ", "aʊ", "ɔɪ", "eɪ", "oʊ", "əʊ", "tʃ", "dʒ", "ɜɹ")
-#: Kokoro's letters (its grapheme-to-phoneme step Misaki's) that are not the IPA's.
-_MISAKI = {"A": "eɪ", "I": "aɪ", "O": "oʊ", "Q": "əʊ", "W": "aʊ", "Y": "ɔɪ", "T": "ɾ", "ᵊ": "ə"}
+_DIGITS = re.compile(r"[0-9]+$")
+_MISSING = object()
 
 
-def read_plain(path: PathLike) -> List[SourceSegment]:
-    """Reads a list of objects with `phoneme`, `start` and `end`, in seconds."""
-    return checked(path, [
-        SourceSegment(item.number_of("start"), item.number_of("end"), item.text_of("phoneme"), line=item.line)
-        for item in read_entries(path)])
+class Timed(NamedTuple):
+    """A text in seconds; the end is None where it is not told."""
+
+    text: str
+    start: float
+    end: Optional[float]
+    place: Entry
 
 
-def read_piper(path: PathLike) -> List[SourceSegment]:
-    """Reads Piper's alignments: audio chunks with `sample_rate` and `phoneme_alignments` (`phoneme`, `num_samples`), or
-    what its HTTP server's ``/info`` answers (`alignments` of `phoneme` and `seconds`)."""
-    tokens: List[SourceSegment] = []
-    moment = 0.0
-    for item in _piper_phonemes(read_entries(path)):
-        label, end = item.text_of("phoneme"), moment + item.number_of("seconds")
-        tokens.append(SourceSegment(moment, end, label, line=item.line))
-        moment = end
-    return checked(path, phonemes_of(tokens))
+class Told(NamedTuple):
+    """What a message tells of one kind."""
+
+    kind: str  #: one of `KINDS`
+    items: List[Timed]
+    key: Optional[float] = None  #: later messages with the same key replace this one
 
 
-def read_kokoro(path: PathLike) -> List[SourceSegment]:
-    """Reads results of Kokoro's pipeline: `phonemes`, a string, and `pred_dur`, the frames of the silence before it, of
-    each of its characters and of the silence behind it; 40 frames per second."""
-    tokens: List[SourceSegment] = []
-    frames = 0.0
+class Odd:
+    """Items that make no sense: `strict` raises a DataError for the first one, otherwise they are counted."""
+
+    def __init__(self, strict: bool) -> None:
+        self._strict = strict
+        self.count = 0
+        self.first: Optional[DataError] = None
+
+    def add(self, place: Entry, problem: str, *values: Any) -> None:
+        """An item is skipped; `problem` is a format of `values`."""
+        self.count += 1
+        if self.first is None:
+            self.first = place.error(problem.format(*map(shown, values)))
+        if self._strict:
+            raise self.first
+
+    def count_of(self, error: DataError) -> None:
+        """The same for an error that was found elsewhere."""
+        self.count += 1
+        self.first = self.first or error
+
+
+# ---- The table's fields
+
+
+class _Field:
+    """A field of the table: its alternatives, each the names on its way and the divisor that makes seconds of it."""
+
+    def __init__(self, text: str) -> None:
+        self.optional = text.startswith("?")
+        self.options: List[Tuple[List[Tuple[str, int, bool]], float, str]] = []
+        for option in text.lstrip("?").split("|"):
+            path, _, divisor = option.partition("/")
+            steps = [_step(name) for name in path.split(".")] if path else []
+            is_number = not divisor or divisor[0].isdigit()
+            self.options.append((steps, float(divisor or 1) if is_number else 0.0,
+                                 "" if is_number else plain_name(divisor)))
+        self.name = text.lstrip("?=").split("|")[0].split("/")[0]
+        # Most fields are looked up directly.
+        self._simple = [steps[0][0] for steps, _, _ in self.options] if all(
+            len(steps) == 1 and steps[0][1:] == (0, False) for steps, _, _ in self.options) else None
+
+    def found(self, entry: Entry) -> Tuple[Any, int]:
+        """The value of the first alternative that exists, and its number; `_MISSING` without one."""
+        if self._simple is not None:
+            plain = entry.plain
+            for number, name in enumerate(self._simple):
+                if name in plain:
+                    return plain[name], number
+            return _MISSING, 0
+        for number, (steps, _, _) in enumerate(self.options):
+            value = _descended(entry, steps)
+            if value is not _MISSING:
+                return value, number
+        return _MISSING, 0
+
+    def divisor(self, number: int, entry: Entry, root: Entry) -> float:
+        """What the value of an alternative is divided by; 0 where the field that says it does not."""
+        _, divisor, name = self.options[number]
+        if not name:
+            return divisor
+        value = _number(entry.plain.get(name, root.plain.get(name)), 1.0)
+        return value if value is not None and value >= 1.0 else 0.0
+
+
+def _step(name: str) -> Tuple[str, int, bool]:
+    """A name, how many lists are in it, and whether it is looked up as it is written."""
+    depth, bare = name.count("[]"), name.replace("[]", "")
+    return (bare[1:], depth, True) if bare.startswith("=") else (plain_name(bare), depth, False)
+
+
+def _descended(entry: Entry, steps: Sequence[Tuple[str, int, bool]]) -> Any:
+    """The value at the end of a way, of lists that of the first item."""
+    value: Any = _MISSING
+    inner: Optional[Entry] = entry
+    for name, depth, exact in steps:
+        if inner is None:
+            return _MISSING
+        value = inner.fields.get(name, _MISSING) if exact else inner.plain.get(name, _MISSING)
+        for _ in range(depth):
+            value = value[0] if isinstance(value, (list, tuple)) and value else _MISSING
+        inner = None if value is _MISSING else entry.inner(value)
+    return value
+
+
+def _number(value: Any, divisor: float) -> Optional[float]:
+    """A value in seconds; None for what is no finite number from 0 on. A timedelta has its own unit."""
+    if type(value) not in (int, float):
+        if isinstance(value, timedelta):
+            value, divisor = value.total_seconds(), 1.0
+        elif isinstance(value, bool) or not isinstance(value, Real):
+            return None
+    try:
+        number = float(value) / divisor
+    except (OverflowError, ZeroDivisionError):
+        return None
+    return number if 0.0 <= number < math.inf else None
+
+
+def _listed(value: Any) -> Optional[List[Any]]:
+    """A list, or an array or tensor as one; None for anything else."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    return list(value) if isinstance(value, (list, tuple)) else None
+
+
+class _Tell:
+    """One row of what a service tells."""
+
+    def __init__(self, row: Dict[str, Any]) -> None:
+        self.kind: str = row["kind"]
+        self.places = [[_step(name) for name in path.split(".")] if path else [] for path in row.get("in", [""])]
+        self.lists: bool = row.get("lists", False)
+        self.text = _Field(row["text"])
+        self.start, self.end, self.length, self.span, self.offset, self.key = (
+            _Field(row[name]) if name in row else None
+            for name in ("start", "end", "length", "span", "offset", "key"))
+        self.only, self.without = (
+            [(_Field(name), text) for name, text in row.get(rule, {}).items()] for rule in ("only", "not"))
+        self.pieces = [_Field(name) for name in row.get("pieces", [])]
+        self.letters: Dict[str, str] = _TABLE["letters"] if row.get("letters") else {}
+        self.hold: float = row.get("hold", 0.0)
+
+    def read(self, item: Entry, odd: Odd) -> List[Timed]:
+        """The items of a message."""
+        for path in self.places:
+            found = [one for one in self._within(item, path, odd) if self.text.found(one)[0] is not _MISSING]
+            if found:
+                break
+        else:
+            return []
+        later = 0.0
+        if self.offset is not None:
+            value, number = self.offset.found(item)
+            shift = 0.0 if value is _MISSING else _number(value, self.offset.divisor(number, item, item))
+            if shift is None:
+                odd.add(item, "{!r} is {}, not a number from 0 on", self.offset.name, value)
+                return []
+            later = shift
+        rows = [row for one in found for row in self._rows(one, odd)] if self.lists else self._objects(found, item, odd)
+        times = [Timed(self.letters.get(text, text), start + later, None if end is None else end + later, place)
+                 for text, start, end, place in rows if self._believed(text, start, end, place, odd)]
+        if self.hold:
+            times = [one._replace(end=_held(one, after, self.hold))
+                     for one, after in zip(times, [*(item.start for item in times[1:]), math.inf])]
+        return times
+
+    def listed(self, item: Entry) -> bool:
+        """Whether there is a list of items, which may be empty."""
+        steps = [(name, 0, exact) for name, _, exact in self.places[0]]
+        return isinstance(_descended(item, steps), (list, tuple))
+
+    def _within(self, item: Entry, path: Sequence[Tuple[str, int, bool]], odd: Odd) -> List[Entry]:
+        """The objects at the end of a path."""
+        found = [item]
+        for place, (name, depth, _) in enumerate(path):
+            after: List[Entry] = []
+            for one in found:
+                for value in _flat(one.plain.get(name), depth):
+                    inner = one.inner(value, len(after) + 1 if depth else None)
+                    if inner is not None:
+                        after.append(inner)
+                    elif value is not None and place == len(path) - 1:
+                        odd.add(one, "{} is not an object", value)
+            found = after
+        return found
+
+    def _objects(self, found: Sequence[Entry], root: Entry, odd: Odd) -> Iterator[_Row]:
+        """Of objects, one for each item."""
+        moment, behind, before = 0.0, None, None
+        for one in found:
+            if not all(str(field.found(one)[0]).lower() == text for field, text in self.only) or any(
+                    text in str(field.found(one)[0]).lower() for field, text in self.without):
+                continue
+            text = self._text(self.text.found(one)[0], one, odd)
+            start = moment if self.start is None else self._time(self.start, one, root, odd)
+            span = None if self.length is None else self._time(self.length, one, root, odd)
+            end = None if self.end is None else self._time(self.end, one, root, odd)
+            if text is None or math.nan in (start, span, end) or start is None:
+                continue
+            end = end if span is None else start + span
+            if self.start is None and end is not None:
+                moment = end
+            if self.pieces:
+                first, last = (field.found(one)[0] for field in self.pieces)
+                if before is not None and first == behind and _adjoin(before[0], text):
+                    before = (before[0] + text, before[1], end, before[3])
+                else:
+                    if before is not None:
+                        yield before
+                    before = (text, start, end, one)
+                behind = None if last is _MISSING else last
+            else:
+                yield text, start, end, one
+        if before is not None:
+            yield before
+
+    def _rows(self, one: Entry, odd: Odd) -> Iterator[_Row]:
+        """Of an object, lists of the same length."""
+        value = self.text.found(one)[0]
+        texts = ["", *value, ""] if isinstance(value, str) else _listed(value)
+        lists: List[Optional[List[Any]]] = [texts]
+        divisors = [1.0]
+        for field in (self.start, self.span, self.length, self.end):
+            value, number = _MISSING, 0
+            if field is not None and not (field is self.end and lists[3] is not None):
+                value, number = field.found(one)
+            lists.append(None if value is _MISSING else _listed(value))
+            divisors.append(1.0 if field is None else field.divisor(number, one, one))
+            if field is not None and value is not _MISSING and lists[-1] is None:
+                odd.add(one, "{!r} is {}, not a list", field.name, value)
+                return
+        _, starts, spans, lengths, ends = lists
+        if texts is None or (spans is None and lengths is None and ends is None):
+            missing = self.text if texts is None else self.span or self.end or self.length
+            odd.add(one, "no field {!r}", missing.name if missing else "")
+            return
+        if spans is not None:
+            pairs = [_listed(pair) or [] for pair in spans]
+            starts, ends = ([pair[k] if len(pair) == 2 else None for pair in pairs] for k in (0, 1))
+            divisors[4] = divisors[1] = divisors[2]
+        counts = {len(found) for found in (texts, starts, lengths, ends) if found is not None}
+        if len(counts) > 1 or (starts is None and self.start is not None):
+            odd.add(one, "{!r} and their times are not of one length", self.text.name)
+            return
+        moment = 0.0
+        for number, value in enumerate(texts):
+            text = self._text(value, one, odd)
+            start = moment if starts is None else _number(starts[number], divisors[1])
+            length = None if lengths is None else _number(lengths[number], divisors[3])
+            end = None if ends is None else _number(ends[number], divisors[4])
+            if start is not None and length is not None:
+                end = start + length
+            if start is None or end is None:
+                wrong = starts if start is None else ends if lengths is None else lengths
+                odd.add(one, "a time of {!r} is {}, not a number from 0 on", self.text.name,
+                        wrong[number] if wrong else None)
+                continue
+            moment = end
+            if text is not None:
+                yield text, start, end, one
+
+    def _text(self, value: Any, place: Entry, odd: Odd) -> Optional[str]:
+        value = getattr(value, "value", value)  # of an enumeration
+        if self.kind in VISEMES:
+            value = str(value) if isinstance(value, int) else value
+            if not isinstance(value, str) or value not in VISEMES[self.kind]:
+                odd.add(place, "no viseme is called {!r}", value)
+                return None
+        if not isinstance(value, str):
+            odd.add(place, "{!r} is {}, not text", self.text.name, value)
+            return None
+        return _DIGITS.sub("", value.strip()) if self.kind == "phonemes" else value
+
+    def _time(self, field: _Field, one: Entry, root: Entry, odd: Odd) -> Optional[float]:
+        """A field of an object in seconds; None where it may be missing and is, NaN where it makes no sense."""
+        value, number = field.found(one)
+        if value is _MISSING and field.optional:
+            return None
+        divisor = field.divisor(number, one, root)
+        if value is _MISSING or divisor == 0.0:
+            odd.add(one, "no field {!r}", field.name if divisor else field.options[number][2])
+            return math.nan
+        found = _number(value, divisor)
+        if found is None:
+            odd.add(one, "{!r} is {}, not a number from 0 on", field.name, value)
+            return math.nan
+        return found
+
+    def _believed(self, text: str, start: float, end: Optional[float], place: Entry, odd: Odd) -> bool:
+        latest = start if end is None else max(start, end)
+        if latest > LONGEST:
+            odd.add(place, "{} s is more than a day; are these seconds?", f"{latest:g}")
+        elif end is not None and end < start and self.kind != "characters":
+            odd.add(place, "{!r} ends at {} s, before its start {} s", text, f"{end:g}", f"{start:g}")
+        elif end is not None and end - start > _LONGEST_ITEM:
+            odd.add(place, "{!r} lasts {} s, more than an hour", text, f"{end - start:g}")
+        else:
+            return True
+        return False
+
+
+#: Text, beginning, end and place.
+_Row = Tuple[str, float, Optional[float], Entry]
+
+
+def _flat(value: Any, depth: int) -> List[Any]:
+    """The items of lists in lists; what is no list is one item."""
+    found = [value]
+    for _ in range(depth):
+        found = [item for one in found for item in (one if isinstance(one, (list, tuple)) else [one])]
+    return found
+
+
+def _held(item: Timed, after: float, hold: float) -> Optional[float]:
+    """The end of an item which lasts until the next one if the gap is short."""
+    return item.end if item.end is None or after == math.inf or item.end < after - hold else after
+
+
+def _adjoin(before: str, after: str) -> bool:
+    return bool(before and after) and before[-1].isalnum() and after[0].isalnum()
+
+
+class Service:
+    """A service of the table."""
+
+    def __init__(self, row: Dict[str, Any]) -> None:
+        self.title: str = row["title"]  #: its name, for messages
+        self.source: str = row["from"]  #: from what its entry was written
+        self.advice: str = row.get("advice", "")  #: how to ask it for timings
+        self.times: str = row.get("times", "")  #: "restart", "chained" or ""
+        self._marks = [[_Field(name) for name in fields] for fields in row.get("is", [])]
+        self._utterance = _Field(row["utterance"]) if "utterance" in row else None
+        self._tells = [_Tell(tell) for tell in row["tells"]]
+
+    @property
+    def begins(self) -> List[str]:
+        """The names by one of which an object of it can be told."""
+        return [plain_name(steps[0][0]) for fields in self._marks for steps, _, _ in fields[0].options]
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether its messages are nothing but timings: others may have fields of the same names."""
+        return all(tell.places == [[]] for tell in self._tells)
+
+    def told(self, item: Entry) -> bool:
+        """Whether an object is one of this service."""
+        return any(all(field.found(item)[0] is not _MISSING for field in fields) for fields in self._marks)
+
+    def utterance(self, item: Entry) -> Optional[str]:
+        """What identifies the utterance of a message, if anything does."""
+        value = _MISSING if self._utterance is None else self._utterance.found(item)[0]
+        return str(value) if isinstance(value, (str, int)) else None
+
+    def read(self, item: Entry, odd: Odd) -> List[Told]:
+        """What a message tells, by kinds; those of which it tells nothing are left out unless they replace others."""
+        found = []
+        for tell in self._tells:
+            items = tell.read(item, odd)
+            key = None if tell.key is None else _number(tell.key.found(item)[0], 1.0)
+            if items or (key is not None and tell.listed(item)):
+                found.append(Told(tell.kind, items, key))
+        return found
+
+
+#: Every service by its name for --from, in the order of detection.
+SERVICES: Dict[str, Service] = {name: Service(row) for name, row in _TABLE["services"].items()}
+#: By the first name of a rule, the services that it may tell, by their numbers.
+_BEGINS: Dict[str, List[int]] = {}
+for _number_of, _service in enumerate(SERVICES.values()):
+    for _name in _service.begins:
+        _BEGINS.setdefault(_name, []).append(_number_of)
+_ORDER = list(SERVICES)
+
+
+def service_of(item: Entry) -> Optional[str]:
+    """The service that an object is of, by its fields; None for others."""
+    found = sorted({number for name in _BEGINS.keys() & item.plain.keys() for number in _BEGINS[name]})
+    return next((_ORDER[number] for number in found if SERVICES[_ORDER[number]].told(item)), None)
+
+
+# ---- Files
+
+
+def read(path: PathLike, name: str, how: Pronunciation = PLAIN) -> List[SourceSegment]:
+    """Reads a file of a service's messages, in the order of their arrival. Errors are DataErrors with the line where
+    each line is a document of its own, else with the number of the entry. Words and characters get phonemes by
+    :mod:`labial.corpus.words`, as `how` says."""
+    service, odd = SERVICES[name], Odd(strict=True)
+    found: Dict[str, List[Tuple[Optional[str], Told]]] = {kind: [] for kind in KINDS}
     for item in read_entries(path):
-        characters = ["", *item.text_of("phonemes"), ""]
-        durations = [item.as_number(value, "pred_dur") for value in item.list_of("preddur")]
-        if len(durations) != len(characters):
-            raise item.error(f"{len(durations)} durations for {len(characters) - 2} characters and the silence around "
-                             "them: Kokoro left out characters that it does not know")
-        for character, duration in zip(characters, durations):
-            start, frames = frames, frames + duration
-            label = _MISAKI.get(character, character)
-            tokens.append(SourceSegment(start / KOKORO_RATE, frames / KOKORO_RATE, label, line=item.line))
-    return checked(path, phonemes_of(tokens))
+        for told in service.read(item, odd):
+            found[told.kind].append((service.utterance(item), told))
+    kind = next((kind for kind, messages in found.items() if any(told.items for _, told in messages)), "")
+    items = _all(found[kind], service.times) if kind else []
+    if not items:
+        advice = f": {service.advice}" if service.advice else ""
+        raise DataError(path, None, f"{service.title} times nothing here{advice}")
+    if kind in ("sounds", "labels", "phonemes"):
+        return checked(path, phoneme_segments_of(items, kind))
+    return checked(path, _from_visemes(items, kind) if kind in VISEMES else _from_words(path, items, kind, how))
 
 
-def read_headtts(path: PathLike) -> List[SourceSegment]:
-    """Reads HeadTTS's answers: `phonemes` with `vtimes` and `vdurations`, milliseconds; each answer begins where the
-    one before ends, as when their sounds are joined.
+def _all(messages: Sequence[Tuple[Optional[str], Told]], times: str) -> List[Timed]:
+    """The items of messages one after the other. Where messages have keys, they are in the order of these, and the
+    latest of each counts.
 
-    The times overlap and leave out blanks and h; so a phoneme lasts until the next one, or to its own end where that
-    is a pause.
+    Times begin again with an utterance, and where a service may count from the message before: in a message that begins
+    before that one began, or with it but with other words. They then count from the end of all that came before.
     """
-    segments: List[SourceSegment] = []
-    origin = 0.0
-    for item in read_entries(path):
-        if not item.has("vtimes") and isinstance(item.fields.get("data"), dict):
-            item = entry_of(path, item.line, item.number, item.fields["data"])  # as the client library returns it
-        labels = item.list_of("phonemes")
-        starts = [item.as_number(value, "vtimes") / 1000 for value in item.list_of("vtimes")]
-        lengths = [item.as_number(value, "vdurations") / 1000 for value in item.list_of("vdurations")]
-        if not len(labels) == len(starts) == len(lengths) or not all(isinstance(label, str) for label in labels):
-            raise item.error("'phonemes', 'vtimes' and 'vdurations' are not of one length")
-        nexts = [*starts[1:], math.inf]
-        for label, start, length, after in zip(labels, starts, lengths, nexts):
-            end = start + length
-            end = after if end > after or after - end <= LONGEST_BLANK else end
-            segments.append(SourceSegment(origin + start, origin + end, _MISAKI.get(label, label), line=item.line))
-        origin = segments[-1].end if segments else origin
-    return checked(path, phonemes_of(segments))
+    if any(told.key is not None for _, told in messages):
+        keyed = {number if told.key is None else told.key: told.items for number, (_, told) in enumerate(messages)}
+        return [item for key in sorted(keyed) for item in keyed[key]]
+    found: List[Timed] = []
+    origin = end = 0.0
+    before: Optional[str] = None
+    last: Optional[Timed] = None
+    for utterance, told in messages:
+        if not told.items:
+            continue
+        first = told.items[0]
+        again = last is not None and (first.start < last.start - _ROUNDING or (
+            first.start <= last.start + _ROUNDING and first.text != last.text))
+        other = last is not None and utterance != before and origin + first.start < end - _ROUNDING
+        if times == "chained" or other or (times == "restart" and again):
+            origin = end
+        found += [item._replace(start=item.start + origin, end=None if item.end is None else item.end + origin)
+                  for item in told.items]
+        end = max(end, *(item.end or item.start for item in found[-len(told.items) :]))
+        before, last = utterance, first
+    return found
 
 
-def read_azure(path: PathLike) -> List[SourceSegment]:
-    """Reads Azure's viseme events: `viseme_id` (0 .. 21) and `audio_offset`, ticks of 100 ns, under the names of any of
-    its libraries."""
-    marks = []
-    for item in read_entries(path):
-        name = shown(item.get("visemeid", "privvisemeid"))
-        marks.append((item.number_of("audiooffset", "privaudiooffset") / AZURE_RATE, name, item.line))
-    return _from_visemes(path, marks, AZURE, AZURE_PAIRS)
+def phoneme_segments_of(items: Sequence[Timed], kind: str) -> List[SourceSegment]:
+    """Segments of sounds, labels or phonemes; short gaps belong to the phoneme before."""
+    labels = "auto" if kind == "labels" else "ipa"
+    segments = [SourceSegment(item.start, item.start if item.end is None else item.end, item.text,
+                              line=item.place.line, labels=labels) for item in items]
+    if kind == "sounds":
+        return _phonemes_of(segments)
+    if kind == "phonemes":
+        nexts = [*(item.start for item in items[1:]), -1.0]
+        segments = [_grown(one, after, one.label) if one.end < after <= one.end + LONGEST_GAP else one
+                    for one, after in zip(segments, nexts)]
+    return segments
 
 
-def read_polly(path: PathLike) -> List[SourceSegment]:
-    """Reads Amazon Polly's speech marks, one object per line: those of type "viseme", `time` in milliseconds."""
-    marks = [(item.number_of("time") / 1000, item.text_of("value"), item.line)
-             for item in read_entries(path) if item.get("type") == "viseme"]
-    if not marks:
-        raise DataError(path, None, "no speech marks of type 'viseme'")
-    return _from_visemes(path, marks, POLLY, {})
+def _from_words(path: PathLike, items: Sequence[Timed], kind: str, how: Pronunciation) -> List[SourceSegment]:
+    def whole(seconds: float) -> int:
+        return round(seconds * 1000)
+
+    if kind == "words":
+        words = [Word(item.text, whole(item.start), None if item.end is None else whole(item.end)) for item in items]
+    else:
+        words = words_of_characters([item.text for item in items], [whole(item.start) for item in items],
+                                    [whole(item.end or item.start) for item in items])
+    for before, word in zip(words, words[1:]):
+        if word.start < before.start:
+            raise DataError(path, None, f"{word.text!r:.40} begins before {before.text!r:.40}, which comes first")
+    try:
+        timings = timings_of(words, how)
+    except StreamError as error:
+        raise DataError(path, None, str(error)) from None
+    segments, moment = [], 0
+    for label, length in timings:
+        segments.append(SourceSegment(moment / 1000, (moment + length) / 1000, "" if label == "SIL" else label,
+                                      labels="arpabet"))
+        moment += length
+    return segments
 
 
-def read_azure_events(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
-    """Azure's visemes, or its word boundaries (and Edge's) where the file has no others."""
-    has_visemes = any(not word_services.is_boundary(item) for item in read_entries(path))
-    return read_azure(path) if has_visemes else word_files.read(path, word_services.tell_boundary, how)
+def _from_visemes(marks: Sequence[Timed], kind: str) -> List[SourceSegment]:
+    ends = [*(mark.start for mark in marks[1:]), marks[-1].start + LAST_VISEME]
+    return [SourceSegment(marks[first].start, ends[last], phoneme, line=marks[first].place.line, labels="arpabet")
+            for (first, last), phoneme in stand_ins([mark.text for mark in marks], kind)]
 
 
-def read_polly_marks(path: PathLike, how: Pronunciation = PLAIN) -> List[SourceSegment]:
-    """Amazon Polly's visemes, or its words where there are none."""
-    kinds = [item.get("type") for item in read_entries(path)]
-    if "viseme" in kinds:
-        return read_polly(path)
-    if "word" not in kinds:
-        raise DataError(path, None, "no speech marks of type 'viseme' or 'word'")
-    return word_files.read(path, word_services.tell_word_mark, how)
+def stand_ins(names: Sequence[str], kind: str) -> List[Tuple[Tuple[int, int], str]]:
+    """The phoneme of each viseme or pair of visemes, with the first and the last one that it stands for."""
+    table = VISEMES[kind]
+    found: List[Tuple[Tuple[int, int], str]] = []
+    at = 0
+    while at < len(names):
+        joined = table.get(" ".join(names[at : at + 2])) if at + 1 < len(names) else None
+        found.append(((at, at), table[names[at]]) if joined is None else ((at, at + 1), joined))
+        at = found[-1][0][1] + 1
+    vowels = VOWELS.split()
+    return [(place, "W" if phoneme == "UW" and following in vowels and following != "UW" else phoneme)
+            for (place, phoneme), following in zip(found, [phoneme for _, phoneme in found[1:]] + [""])]
 
 
-class Service(NamedTuple):
-    """A shape of JSON."""
-
-    title: str  #: the service's name, for messages
-    read: Callable[..., List[SourceSegment]]  #: takes a path and, if it may tell words, a Pronunciation
-    told: Callable[[Entry], bool]  #: whether the first object of a file is one of it
-    words: bool = False  #: whether it may tell words or characters
+# ---- Sounds
 
 
-def _is_piper(first: Entry) -> bool:
-    known = (("phonemealignments",), ("alignments",), ("last",), ("phoneme", "numsamples"), ("phoneme", "seconds"))
-    return any(first.has(*names) for names in known) and not _is_plain(first)
-
-
-def _is_headtts(first: Entry) -> bool:
-    data = first.fields.get("data")
-    return first.has("vtimes") or (isinstance(data, dict) and "vtimes" in data)
-
-
-def _is_plain(first: Entry) -> bool:
-    return first.has("phoneme", "start", "end")
-
-
-#: Every shape by its name for --from, in the order of detection.
-SERVICES: Dict[str, Service] = {
-    "kokoro": Service("Kokoro", read_kokoro, lambda first: first.has("preddur")),
-    "headtts": Service("HeadTTS", read_headtts, _is_headtts),
-    "azure": Service("Azure", read_azure_events, lambda first: first.has("visemeid") or first.has("privvisemeid")
-                     or word_services.is_boundary(first), True),
-    "polly": Service("Polly", read_polly_marks, lambda first: first.has("type", "time", "value"), True),
-    **{name: Service(service.title, word_files.reader(name), service.told, True)
-       for name, service in word_services.SERVICES.items()},
-    "piper": Service("Piper", read_piper, _is_piper),
-    "json": Service("other programs (phoneme, start, end)", read_plain, _is_plain),
-}
-
-
-def service_of(path: PathLike) -> Optional[str]:
-    """The service in `SERVICES` that wrote a JSON file, by the fields of its first object; None for others."""
-    entries = read_entries(path)
-    return next((name for name, service in SERVICES.items() if entries and service.told(entries[0])), None)
-
-
-def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
+def _phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
     """Phonemes, in the IPA, of successive characters (see above); "" is silence, and so is every gap."""
     result: List[SourceSegment] = []
     begin: Optional[float] = None  # of the stress mark before the next phoneme
@@ -192,15 +554,15 @@ def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
         if label in _STRESS:
             begin = token.start if begin is None else begin
         elif last and begin is None and _is_mark(label):
-            result[-1] = _grown(last, token, last.label + label)
-        elif last and begin is None and joins and last.label + label in _PAIRS and token.start <= last.end:
-            result[-1] = _grown(last, token, last.label + label)
-        elif last and label.isspace() and token.duration <= LONGEST_BLANK:
-            result[-1] = _grown(last, token, last.label)
+            result[-1] = _grown(last, token.end, (last.label + label)[:LABEL])
+        elif last and begin is None and joins and last.label + label in _TABLE["pairs"] and token.start <= last.end:
+            result[-1] = _grown(last, token.end, last.label + label)
+        elif last and label.isspace() and token.duration <= LONGEST_GAP:
+            result[-1] = _grown(last, token.end, last.label)
             joins = False
         elif _is_silence(label):
             if result and not last:
-                result[-1] = _grown(result[-1], token, "")
+                result[-1] = _grown(result[-1], token.end, "")
             else:
                 result.append(SourceSegment(token.start, token.end, "", line=token.line))
             begin = None
@@ -211,8 +573,8 @@ def phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
     return result
 
 
-def _grown(segment: SourceSegment, token: SourceSegment, label: str) -> SourceSegment:
-    return SourceSegment(segment.start, token.end, label, line=segment.line, labels=segment.labels)
+def _grown(segment: SourceSegment, end: float, label: str) -> SourceSegment:
+    return SourceSegment(segment.start, end, label, line=segment.line, labels=segment.labels)
 
 
 def _is_mark(label: str) -> bool:
@@ -222,46 +584,3 @@ def _is_mark(label: str) -> bool:
 
 def _is_silence(label: str) -> bool:
     return all(unicodedata.category(c)[0] in "PSZC" for c in label)
-
-
-def _piper_phonemes(entries: Sequence[Entry]) -> List[Entry]:
-    """Objects of `phoneme` and `seconds` from any of Piper's shapes."""
-    result: List[Entry] = []
-    for item in entries:
-        if item.has("last"):
-            last = item.get("last")
-            if not isinstance(last, dict):
-                raise item.error("the server has not spoken yet: ask for /info after /synthesize")
-            item = entry_of(item.path, item.line, item.number, last)
-        if item.has("phonemealignments"):
-            if item.get("phonemealignments") is None:
-                raise item.error("Piper told no alignments: ask for them by include_alignments=True, of a voice that "
-                                 "has them; python3 -m piper.patch_voice_with_alignment VOICE.onnx adds them to one")
-            rate = item.number_of("samplerate")
-            if rate < 1:
-                raise item.error(f"'sample_rate' is {rate:g}")
-            result += [entry_of(part.path, part.line, part.number, {
-                "phoneme": part.get("phoneme"), "seconds": part.number_of("numsamples") / rate,
-            }) for part in item.parts("phonemealignments")]
-        elif item.has("alignments"):
-            result += item.parts("alignments")
-        elif item.has("phoneme", "numsamples"):
-            raise item.error("samples without a rate: keep the chunk's sample_rate beside its phoneme_alignments")
-        else:
-            result.append(item)
-    return result
-
-
-def _from_visemes(
-    path: PathLike, marks: Sequence[Tuple[float, str, Optional[int]]], table: Dict[str, str],
-    pairs: Dict[Tuple[str, str], str],
-) -> List[SourceSegment]:
-    """Segments of visemes with only their beginnings."""
-    for number, (_, name, line) in enumerate(marks, 1):
-        if name not in table:
-            raise DataError(path, line, f"{'' if line else f'entry {number}: '}no viseme is called {name!r}")
-    ends = [start for start, _, _ in marks[1:]] + [marks[-1][0] + LAST_VISEME] if marks else []
-    segments: List[SourceSegment] = []
-    for (first, last), phoneme in stand_ins([name for _, name, _ in marks], table, pairs):
-        segments.append(SourceSegment(marks[first][0], ends[last], phoneme, line=marks[first][2], labels="arpabet"))
-    return checked(path, segments)

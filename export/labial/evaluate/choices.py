@@ -8,37 +8,24 @@ and synthesis. docs/reproduction.md has the tables.
 
 from __future__ import annotations
 
-import argparse
 import sys
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.corpus import read_corpus
 from labial.corpus.phonesets import PHONE_SETS, PhoneSet
-from labial.defaults import FPS, KINDS
-from labial.errors import LabialError
-from labial.evaluate.material import Timeline, Utterance, utterances
-from labial.evaluate.measures import Judge, judged_frames
-from labial.evaluate.splits import Split, make_splits
+from labial.evaluate import variants
+from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training
-from labial.files.arguments import positive, seed
 from labial.files.faps import CHANNELS
-from labial.files.outputs import check, writing
 from labial.reference import published, synthesis
 from labial.reference.stream import targets
 from labial.reference.tables import FloatTables
 from labial.tables.model import Model
 from labial.train import codebook, pipeline, shapes, train
 from labial.train.recordings import recordings
-from labial.train.workers import Workers
-
-#: Columns of the tables: title and measure.
-COLUMNS = (("diff", "diff/mean"), ("correlation", "correlation/mean"), ("amplitude", "amplitude/mean"),
-           ("closure", "closure/rate"), ("jitter", "jitter"), ("seam", "seam/mean"))
 
 
 @dataclass(frozen=True)
@@ -179,52 +166,16 @@ def _with_full_covariances(model: Model, inverse: np.ndarray, timeline: Timeline
     return published.join(cut, [_solve_full(model, inverse, path) for path in paths])
 
 
-def run_split(task: Tuple[List[Utterance], Split, str, int]) -> List[Dict[str, float]]:
+def run_split(task: variants.Task) -> List[Dict[str, float]]:
     """The measures of every choice on one split."""
-    corpus, split, kind, first_seed = task
-    phone_set = PHONE_SETS[kind]
-    training = Training([corpus[i] for i in split.training], phone_set, FPS, first_seed + split.number)
-    test = [corpus[i] for i in split.test]
-    judge = Judge(test, judged_frames(test, phone_set, ()), training.scale, phone_set, FPS)
-    timelines = [item.timeline for item in test]
-    return [judge.measure(_motion(choice, training, timelines)) for choice in CHOICES[kind]]
-
-
-def table(kind: str, outcomes: Sequence[Sequence[Dict[str, float]]]) -> str:
-    """Markdown: choices down, means over the splits across."""
-    rows = ["| choice | " + " | ".join(name for name, _ in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
-    for index, choice in enumerate(CHOICES[kind]):
-        values = [np.mean([split[index][measure] for split in outcomes]) for _, measure in COLUMNS]
-        rows.append(f"| {choice.title} | " + " | ".join(f"{value:.4f}" if i == 0 else f"{value:.3f}"
-                                                        for i, value in enumerate(values)) + " |")
-    return "\n".join(rows) + "\n"
+    training, timelines, judge = variants.setting(task)
+    return [judge.measure(_motion(choice, training, timelines)) for choice in CHOICES[training.phone_set.kind]]
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """The command line; see the module."""
-    parser = argparse.ArgumentParser(prog="python -m labial.evaluate.choices", description=__doc__.split("\n")[0])
-    parser.add_argument("corpus", help="a corpus, as for labial train")
-    parser.add_argument("--kind", choices=KINDS, default=KINDS[0])
-    parser.add_argument("--splits", type=positive, default=4, help="random 80/20 splits by episode (4)")
-    parser.add_argument("--seed", type=seed, default=0)
-    parser.add_argument("--jobs", type=positive, default=2, help="splits at a time (2); the result is the same")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="TABLE.md")
-    options = parser.parse_args(arguments)
-    try:
-        check(options.output)
-        corpus = utterances(read_corpus(options.corpus, options.kind), PHONE_SETS[options.kind], FPS)
-        splits = make_splits(corpus, options.splits, options.seed)
-        with Workers(options.jobs, sys.stderr.isatty(), None) as workers:
-            outcomes = workers.run("splits", run_split, [(corpus, split, options.kind, options.seed)
-                                                         for split in splits])
-        text = table(options.kind, outcomes)
-        with writing(options.output, "utf-8") as out:
-            out.write(text)
-    except (LabialError, OSError) as error:
-        print(f"choices: {error}", file=sys.stderr)
-        return 1
-    print(text, end="")
-    return 0
+    return variants.main("choices", __doc__.split("\n")[0], "choice",
+                         lambda kind: [choice.title for choice in CHOICES[kind]], run_split, 4, arguments)
 
 
 if __name__ == "__main__":

@@ -8,30 +8,18 @@ docs/method.md, Where the default leaves the paper, has the figures.
 
 from __future__ import annotations
 
-import argparse
 import sys
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional
 
 import numpy as np
 
-from labial.corpus import read_corpus
-from labial.corpus.phonesets import PHONE_SETS
-from labial.defaults import FPS, KINDS
-from labial.errors import LabialError
-from labial.evaluate.choices import COLUMNS
-from labial.evaluate.material import Timeline, Utterance, utterances
-from labial.evaluate.measures import Judge, judged_frames
-from labial.evaluate.splits import Split, make_splits
-from labial.evaluate.training import Training
-from labial.files.arguments import positive, seed
+from labial.evaluate import variants
+from labial.evaluate.material import Timeline
 from labial.files.faps import CHANNELS
-from labial.files.outputs import check, writing
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
 from labial.tables.model import Model
-from labial.train.workers import Workers
 
 
 def _as_the_run_time(model: Model, timeline: Timeline) -> np.ndarray:
@@ -106,54 +94,19 @@ DEPARTURES = (
 )
 
 
-def run_split(task: Tuple[List[Utterance], Split, str, int]) -> List[Dict[str, float]]:
+def run_split(task: variants.Task) -> List[Dict[str, float]]:
     """The measures of every departure on one split, and those of the published method."""
-    corpus, split, kind, first_seed = task
-    phone_set = PHONE_SETS[kind]
-    training = Training([corpus[i] for i in split.training], phone_set, FPS, first_seed + split.number)
-    test = [corpus[i] for i in split.test]
-    judge = Judge(test, judged_frames(test, phone_set, ()), training.scale, phone_set, FPS)
+    training, timelines, judge = variants.setting(task)
     model, paper = training.model("labial"), FloatTables(training.model("paper"))
-    motions = [[item.synthesise(item.back(model), one.timeline) for one in test] for item in DEPARTURES]
-    motions.append([published.synthesise(paper, one.timeline.stream) for one in test])
+    motions = [[item.synthesise(item.back(model), timeline) for timeline in timelines] for item in DEPARTURES]
+    motions.append([published.synthesise(paper, timeline.stream) for timeline in timelines])
     return [judge.measure(motion) for motion in motions]
-
-
-def table(outcomes: Sequence[Sequence[Dict[str, float]]]) -> str:
-    """Markdown: departures down, means over the splits across."""
-    rows = ["| taken back | " + " | ".join(name for name, _ in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
-    for index, title in enumerate([item.title for item in DEPARTURES] + ["everything: the published method"]):
-        values = [np.mean([split[index][measure] for split in outcomes]) for _, measure in COLUMNS]
-        rows.append(f"| {title} | " + " | ".join(f"{value:.4f}" if i == 0 else f"{value:.3f}"
-                                                 for i, value in enumerate(values)) + " |")
-    return "\n".join(rows) + "\n"
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """The command line; see the module."""
-    parser = argparse.ArgumentParser(prog="python -m labial.evaluate.departures", description=__doc__.split("\n")[0])
-    parser.add_argument("corpus", help="a corpus, as for labial train")
-    parser.add_argument("--kind", choices=KINDS, default=KINDS[0])
-    parser.add_argument("--splits", type=positive, default=2, help="random 80/20 splits by episode (2)")
-    parser.add_argument("--seed", type=seed, default=0)
-    parser.add_argument("--jobs", type=positive, default=2, help="splits at a time (2); the result is the same")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="TABLE.md")
-    options = parser.parse_args(arguments)
-    try:
-        check(options.output)
-        corpus = utterances(read_corpus(options.corpus, options.kind), PHONE_SETS[options.kind], FPS)
-        splits = make_splits(corpus, options.splits, options.seed)
-        with Workers(options.jobs, sys.stderr.isatty(), None) as workers:
-            outcomes = workers.run("splits", run_split, [(corpus, split, options.kind, options.seed)
-                                                         for split in splits])
-        text = table(outcomes)
-        with writing(options.output, "utf-8") as out:
-            out.write(text)
-    except (LabialError, OSError) as error:
-        print(f"departures: {error}", file=sys.stderr)
-        return 1
-    print(text, end="")
-    return 0
+    titles = [*(item.title for item in DEPARTURES), "everything: the published method"]
+    return variants.main("departures", __doc__.split("\n")[0], "taken back", lambda _: titles, run_split, 2, arguments)
 
 
 if __name__ == "__main__":

@@ -23,9 +23,8 @@ import numpy as np
 import labial
 from labial.core.library import library_path
 from labial.errors import LabialError
-from labial.evaluate.material import Utterance
+from labial.evaluate.material import Example, Options, Outcome, Split, Utterance
 from labial.evaluate.methods import select
-from labial.evaluate.splits import Example, Options, Outcome, Split
 from labial.files.arrays import array, read_zip
 from labial.files.outputs import writing
 from labial.train.workers import versions

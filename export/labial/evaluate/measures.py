@@ -4,25 +4,13 @@ it is judged)."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from labial.corpus.phonesets import PhoneSet
 from labial.evaluate.material import Utterance
-from labial.evaluate.pulses import SEEN_PERCENTILE, has_pulses, rises
-from labial.evaluate.trajectories import (
-    JUDGED,
-    JUDGED_NAMES,
-    LIPS,
-    PARAMETERS,
-    amplitude,
-    correlation,
-    differences,
-    joins,
-    labial_parameters,
-    lips,
-)
+from labial.files.faps import FAP_NAMES
 from labial.reference.published import pieces
 
 #: Lips count as closed below this percentile of the openness of all training frames but silence.
@@ -244,3 +232,128 @@ def judged_frames(test: Sequence[Utterance], phone_set: PhoneSet, words: Sequenc
     silence = silence_of(phone_set)
     masks = [item.timeline.phoneme_at != silence for item in test]
     return [mask & item.in_words(words) for item, mask in zip(test, masks)] if words else masks
+
+
+# ---- Measures of one trajectory against another ----------------------------------------------------------------------
+
+#: Names of the labial parameters of the paper's Table 1.
+PARAMETERS = ("openness", "extension", "top", "bottom")
+
+#: The channels of correlation, amplitude, jitter and seams.
+JUDGED_NAMES = ("open_jaw", "raise_b_midlip_o", "stretch_l_cornerlip_o", "push_t_lip")
+JUDGED = tuple(FAP_NAMES.index(name) for name in JUDGED_NAMES)
+
+
+#: The measures of connected speech, which need no common scale of talkers: jaw, lips, a corner, and openness.
+LIPS = ("open_jaw", "lower_t_midlip_o", "raise_b_midlip_o", "stretch_l_cornerlip_o", "openness")
+
+
+def lips(frames: np.ndarray) -> np.ndarray:
+    """(T, 5) the LIPS of frames (T, 13)."""
+    return np.column_stack([frames[:, [FAP_NAMES.index(name) for name in LIPS[:-1]]], labial_parameters(frames)[:, 0]])
+
+
+def labial_parameters(frames: np.ndarray) -> np.ndarray:
+    """(T, 4) openness -(fap51 + fap52), extension fap53 + fap54, top protrusion fap17, bottom protrusion fap16."""
+    channel = {name: frames[:, index] for index, name in enumerate(FAP_NAMES)}
+    return np.stack(
+        [
+            -(channel["lower_t_midlip_o"] + channel["raise_b_midlip_o"]),
+            channel["stretch_l_cornerlip_o"] + channel["stretch_r_cornerlip_o"],
+            channel["push_t_lip"],
+            channel["push_b_lip"],
+        ],
+        axis=1,
+    )
+
+
+def correlation(human: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """(K,) Pearson correlation over the frames (T, K); 0 where either does not move."""
+    a, b = human - human.mean(axis=0), motion - motion.mean(axis=0)
+    scale = np.sqrt((a**2).sum(axis=0) * (b**2).sum(axis=0))
+    still = scale < 1e-9 * len(a)
+    return np.where(still, 0.0, (a * b).sum(axis=0) / np.where(still, 1.0, scale))
+
+
+def amplitude(human: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """(K,) standard deviation of the motion over that of the human's; NaN where that does not move."""
+    spread = human.std(axis=0)
+    moves = spread > 1e-9
+    return np.where(moves, motion.std(axis=0) / np.where(moves, spread, 1.0), np.nan)
+
+
+def differences(frames: np.ndarray, mask: np.ndarray, order: int) -> np.ndarray:
+    """(n, K) differences of this order over every window of order + 1 frames that is judged throughout."""
+    if len(frames) <= order:
+        return np.zeros((0, frames.shape[1]))
+    whole = np.lib.stride_tricks.sliding_window_view(mask, order + 1).all(axis=1)
+    return np.diff(frames, n=order, axis=0)[whole]
+
+
+def joins(begin: Sequence[int], fade: Sequence[int], frames: int) -> np.ndarray:
+    """(T - 2,) bool: second differences, of frames t, t + 1 and t + 2, that a unit's join touches.
+
+    A join is where a cross-fade begins (between begin - 1 and begin) and where it ends (between begin + fade - 1 and
+    begin + fade); it touches the two second differences that span it.
+    """
+    touched = np.zeros(max(frames - 2, 0), dtype=bool)
+    for first, count in zip(begin, fade):
+        for edge in (first, first + count):
+            for t in (edge - 2, edge - 1):
+                if 0 <= t < len(touched):
+                    touched[t] = True
+    return touched
+
+
+# ---- Pulses of laughter ----------------------------------------------------------------------------------------------
+
+#: A pulse's peak is searched in its phoneme and this many seconds to both sides.
+REACH = 0.04
+
+#: A pulse is visible if it rises further than this percentile of the original's pulses in the training part.
+SEEN_PERCENTILE = 20.0
+
+#: Vowel-like phonemes whose beginnings are further apart than this are of two trains, milliseconds.
+TRAIN_GAP = 400
+
+
+def has_pulses(phone_set: PhoneSet) -> bool:
+    """Whether this kind of motion is judged by pulses."""
+    return phone_set.kind == "laughter"
+
+
+def rises(item: Utterance, frames: np.ndarray, mask: np.ndarray, phone_set: PhoneSet, fps: int) -> np.ndarray:
+    """(n,) FAP: the rise of openness in each vowel-like phoneme that has a judged frame.
+
+    That is the greatest openness within REACH of the phoneme over the least before it, back to the middle of the
+    vowel-like phoneme that came last or to the beginning. `frames` (T, 13) FAP, `mask` (T,) bool.
+    """
+    openness = labial_parameters(frames)[:, 0]
+    reach, given = round(REACH * fps), item.timeline
+    found = []
+    since = 0
+    for segment in given.held:
+        if not phone_set.boundary[given.phoneme[segment]]:
+            continue
+        begin = int(given.start[segment])
+        end = begin + int(given.length[segment])
+        if mask[begin:end].any():
+            first = max(begin - reach, since)
+            peak = first + int(openness[first : end + reach].argmax())
+            found.append(openness[peak] - openness[since : peak + 1].min())
+        since = (begin + end) // 2
+    return np.array(found)
+
+
+def longest_train(item: Utterance, phone_set: PhoneSet) -> Optional[Tuple[int, int]]:
+    """First and last segment of the train with the most pulses, the first of equals, with the phonemes beside it."""
+    given = item.timeline
+    begin = np.cumsum(given.milliseconds) - given.milliseconds
+    trains: List[List[int]] = []
+    for segment in np.flatnonzero(np.array(phone_set.boundary)[given.phoneme]):
+        if trains and begin[segment] - begin[trains[-1][-1]] <= TRAIN_GAP:
+            trains[-1].append(int(segment))
+        else:
+            trains.append([int(segment)])
+    longest = max(trains, key=len, default=None)
+    return (max(longest[0] - 1, 0), min(longest[-1] + 1, len(given.phoneme) - 1)) if longest else None

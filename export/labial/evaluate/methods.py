@@ -8,7 +8,7 @@ from typing import Callable, List, Sequence, Tuple
 import numpy as np
 
 from labial.errors import LabialError
-from labial.evaluate.baselines import blur, dominance, hmm, mean, regression, steps, trained, window
+from labial.evaluate.baselines import dominance, hmm, ridge, steps, trained
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Predictor, Training
 
@@ -23,13 +23,13 @@ class Method:
 
 
 METHODS: Tuple[Method, ...] = (
-    Method("mean", "mean shape", mean.fit),
+    Method("mean", "mean shape", ridge.fit_mean),
     Method("steps", "steps (eq. 2)", steps.fit),
-    Method("blur", "steps + Gaussian blur", blur.fit),
+    Method("blur", "steps + Gaussian blur", steps.fit_blur),
     Method("cohen_massaro", "Cohen-Massaro dominance", dominance.fit),
-    Method("regression", "linear regression", regression.fit),
-    Method("ridge_phonemes", "ridge, phoneme window", window.fit_phonemes),
-    Method("ridge_classes", "ridge, class window + shapes", window.fit_classes),
+    Method("regression", "linear regression", ridge.fit_regression),
+    Method("ridge_phonemes", "ridge, phoneme window", ridge.fit_phonemes),
+    Method("ridge_classes", "ridge, class window + shapes", ridge.fit_classes),
     Method("hmm_synthesis", "HMM synthesis", hmm.fit),
     Method("paper", "paper", trained.fit_paper),
     Method("paper_normalised", "paper, normalised features", trained.fit_paper_normalised),

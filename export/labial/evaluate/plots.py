@@ -10,11 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from labial.corpus.phonesets import PHONE_SETS
-from labial.evaluate.material import bands
+from labial.evaluate.material import Example, Options, Outcome, bands
+from labial.evaluate.measures import JUDGED, JUDGED_NAMES
 from labial.evaluate.protocol import HUMAN
 from labial.evaluate.report import cell, grouping, methods_of, table_4, title
-from labial.evaluate.splits import Example, Options, Outcome
-from labial.evaluate.trajectories import JUDGED, JUDGED_NAMES
 from labial.see import drawing
 from labial.see.drawing import COLOURS, pyplot, style
 from labial.see.motion import Band, kind_of

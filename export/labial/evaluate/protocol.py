@@ -15,12 +15,19 @@ from labial.corpus.phonesets import PHONE_SETS, PhoneSet
 from labial.errors import LabialError
 from labial.evaluate.baselines import steps
 from labial.evaluate.kept import Kept
-from labial.evaluate.material import Utterance, utterances
-from labial.evaluate.measures import Judge, judged_frames, silence_of
+from labial.evaluate.material import (
+    Example,
+    Options,
+    Outcome,
+    Split,
+    Utterance,
+    leave_talkers_out,
+    make_splits,
+    utterances,
+)
+from labial.evaluate.measures import Judge, has_pulses, judged_frames, longest_train, silence_of
 from labial.evaluate.methods import predict_all, select
-from labial.evaluate.pulses import has_pulses, longest_train
 from labial.evaluate.readability import LipReader
-from labial.evaluate.splits import Example, Options, Outcome, Split, leave_talkers_out, make_splits
 from labial.evaluate.training import Training
 from labial.train.workers import Workers
 

@@ -32,6 +32,7 @@ from labial.hearing.measures import RATE
 from labial.hearing.model import HearingModel
 from labial.hearing.plans import CLASSES
 from labial.hearing.quantise import quantise
+from labial.runtime.mixing import with_sound
 
 #: The file of log energies, and the most bytes that it may have, unpacked: some hours.
 ENERGIES, LARGEST = "energies.npz", 128_000_000
@@ -170,8 +171,8 @@ def _padded(clip: Clip) -> np.ndarray:
 
 
 def methods(model: HearingModel) -> Dict[str, Method]:
-    """The network in floating point and in the library's integers, what follows loudness, and Labial's own frames of
-    the phonemes, whose times are known."""
+    """The network in floating point and in the library's integers, what follows loudness, Labial's own frames of the
+    phonemes, whose times are known, and these with the sound's share (:func:`labial.with_sound`)."""
     tables = quantise(model, "hear")
 
     def integers(clip: Clip) -> np.ndarray:
@@ -182,9 +183,13 @@ def methods(model: HearingModel) -> Dict[str, Method]:
         power = np.exp2(clip.energies.astype(np.float64)).sum(axis=1)[: HOPS * len(clip.real)]
         return loudness_of(10 * np.log10(power.reshape(-1, HOPS).mean(axis=1) / FRAME))
 
+    def phonemes(clip: Clip) -> np.ndarray:
+        return targets.frames(clip.timings, len(clip.real))
+
     return {"network": lambda clip: network.hear_energies(model, _padded(clip), len(clip.real)).faps,
             "integers": integers, "loudness": loudness,
-            "phonemes": lambda clip: targets.frames(clip.timings, len(clip.real))}
+            "phonemes": phonemes,
+            "phonemes and sound": lambda clip: np.array(with_sound(phonemes(clip).tolist(), integers(clip).tolist()))}
 
 
 # ---- Figures

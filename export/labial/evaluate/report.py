@@ -10,11 +10,10 @@ from typing import Dict, List, Sequence, Tuple
 import numpy as np
 
 from labial.corpus.phonesets import PHONE_SETS
-from labial.evaluate.measures import groups
+from labial.evaluate.material import Options, Outcome
+from labial.evaluate.measures import JUDGED_NAMES, LIPS, PARAMETERS, groups
 from labial.evaluate.methods import METHODS
 from labial.evaluate.protocol import HUMAN
-from labial.evaluate.splits import Options, Outcome
-from labial.evaluate.trajectories import JUDGED_NAMES, LIPS, PARAMETERS
 
 #: Column title and measure.
 Columns = Sequence[Tuple[str, str]]

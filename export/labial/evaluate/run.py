@@ -10,9 +10,9 @@ from labial.corpus import read_corpora
 from labial.corpus.laughter import is_synthetic
 from labial.evaluate import plots, report
 from labial.evaluate.kept import remove_kept
+from labial.evaluate.material import Options, Outcome
 from labial.evaluate.methods import select
 from labial.evaluate.protocol import evaluate
-from labial.evaluate.splits import Options, Outcome
 from labial.files.outputs import check_folder, folder
 from labial.train.pipeline import check_jobs
 from labial.train.talkers import check_variance

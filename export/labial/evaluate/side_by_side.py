@@ -15,7 +15,7 @@ import numpy as np
 
 from labial.errors import LabialError
 from labial.evaluate.material import bands, timeline
-from labial.evaluate.trajectories import labial_parameters
+from labial.evaluate.measures import labial_parameters
 from labial.files.faps import FAP_NUMBERS
 from labial.reference.synthesis import synthesise
 from labial.see import drawing

@@ -53,6 +53,14 @@ SOUND, SOUND_RATIO = 1_000_000_000, 100
 #: Samples per second, and channels, of a sound that is read.
 SOUND_RATES, SOUND_CHANNELS = (1_000, 768_000), 64
 
+#: Of a service's message: levels of lists and objects, documents in it, items that it times, fields of an object of a
+#: client library; characters of a text. The services' table has the same limits for JavaScript.
+MESSAGE_NESTING, MESSAGE_DOCUMENTS, MESSAGE_ITEMS, MESSAGE_FIELDS, MESSAGE_TEXT = 64, 1_000, 10_000, 200, 1_000
+#: Items that may be known ahead of the sound.
+AHEAD = 10_000
+#: Bytes of a phoneme's label that are read, as in C (LABIAL_NAME_MAX).
+LABEL = 64
+
 
 def refuse(path: PathLike, what: str, size: float, most: float, unit: str = "bytes") -> None:
     """Raises DataError if `size` is beyond `most`; its sentence begins with `what`, such as "it has"."""

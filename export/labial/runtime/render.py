@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import operator
 import os
 import re
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, TextIO, Tuple, Union
@@ -73,9 +71,9 @@ def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str
     with their milliseconds, from time 0 on and without gaps.
 
     `given` is the path of a file, an open file, such as :class:`io.StringIO`, or the parsed JSON of a service, a list
-    or a dict; the list may contain Piper's chunks unchanged. `labels` is the set of the labels, `source` the format if
-    it should not be detected. `offset_ms` is added to all times: a positive number for a voice that reports them too
-    early. Where words or characters are told, the other arguments say how they are pronounced, as for
+    or a dict, or the objects of its client library, such as Piper's chunks. `labels` is the set of the labels, `source`
+    the format if it should not be detected. `offset_ms` is added to all times: a positive number for a voice that
+    reports them too early. Where words or characters are told, the other arguments say how they are pronounced, as for
     :func:`labial.phonemes`. Raises DataError with the file and, if known, the line.
     """
     from labial.corpus.formats import read_timings as read
@@ -90,25 +88,17 @@ def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str
 
 
 def _content(given: Any) -> os.PathLike[str]:
-    """The bytes of timings that are not in a file."""
+    """Timings that are not in a file."""
+    from labial.corpus.entries import Parsed, fields_of
     from labial.files.grammar import Content
 
-    if isinstance(given, (list, dict)):
-        return Content(json.dumps(given, default=_plain).encode("utf-8"), "timings")
+    if isinstance(given, (list, tuple)):
+        return Parsed(given, "timings")
     if not hasattr(given, "read"):
-        raise TypeError(f"timings are a path, a file, a list or a dict, not {type(given).__name__}")
+        if fields_of(given) is None:
+            raise TypeError(f"timings are a path, a file, a list or a dict, not {type(given).__name__}")
+        return Parsed([given], "timings")
     data = given.read()
     name = getattr(given, "name", "timings")
     return Content(data.encode("utf-8") if isinstance(data, str) else bytes(data),
                    name if isinstance(name, str) else "timings")
-
-
-def _plain(item: Any) -> Any:
-    """The JSON equivalent of another package's number, or of one of Piper's chunks or phonemes."""
-    for names in (("sample_rate", "phoneme_alignments"), ("phoneme", "num_samples")):
-        if all(hasattr(item, name) for name in names):
-            return {name: getattr(item, name) for name in names}
-    try:
-        return operator.index(item)
-    except TypeError:
-        return float(item)

@@ -1,36 +1,51 @@
-"""A voice: messages of a speech service in, as they arrive while its sound plays; frames out, when they are due."""
+"""A voice: messages of a speech service in, as they arrive while its sound plays; frames out, when they are due.
+
+The rules are the library's (include/labial/voice.h); docs/streams.md explains them.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import ctypes
 import math
-from typing import Any, AsyncIterator, Callable, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
-from labial.core.library import CANCEL_MAX, DURATION_MAX, ERROR_STATE
+from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, checked, library, memory
 from labial.core.numbers import duration, number
+from labial.core.words import OwnWords, labels
 from labial.corpus.messages import Messages
-from labial.corpus.words import ENGLISH, pronunciation
+from labial.corpus.words import ENGLISH, Pronunciation, known_words, own_words, pronunciation, stretches_of
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
 from labial.runtime.frame import Frame
 from labial.runtime.models import LABELS, Model, bundled
-from labial.runtime.stream import Stream
-from labial.runtime.timeline import Item, Segment, Timeline, milliseconds
 from labial.runtime.words import Sounds, offset
 
-#: A changed frame fades in over so many frames.
-_FADE = 8
-#: Seconds of what was shown that a new stream is given, besides the part of a second before.
-_HISTORY = 2
-#: Seconds from the end of the last word until lips are at rest.
-_REST = 0.5
+#: Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes
+#: one place, a word up to 20 letters two (LABIAL_VOICE_SIZE of include/labial/voice.h).
+PLACES = 20_000
 #: Seconds between two looks at a clock that has not begun.
 _PATIENCE = 0.01
-#: Times are believed up to this many seconds, a year.
-_LATEST = 3.2e7
+#: The clock is believed up to this many seconds, a year; items up to a day after their utterance's beginning, and those
+#: that last an hour at most.
+_LATEST, _DAY, _HOUR = 3.2e7, 86_400.0, 3600.0
+#: Words of other languages whose pronunciations are kept.
+_SPOKEN = 10_000
+#: Kinds of items (labial_voice_kind_t), and from when on their times count (labial_voice_times_t).
+_KINDS = {"phonemes": 0, "azure": 1, "polly": 2, "words": 3, "characters": 4}
+_ABSOLUTE, _CHAINED, _JOINED = range(3)
 
-_NEUTRAL = (0,) * CHANNELS
+#: Text, beginning and end of an item in seconds; the end is None where it is not known.
+_Item = Tuple[Union[str, int], float, Optional[float]]
+
+
+class Counts(NamedTuple):
+    """What a voice was told."""
+
+    told: int  #: words, phonemes and so on that count
+    skipped: int  #: those that make no sense
+    dropped: int  #: messages of utterances that are over, and those that came twice
 
 
 class Voice:
@@ -43,9 +58,8 @@ class Voice:
         for frame in voice.played(seconds):  # often: how much of the sound was heard
             show(frame)
 
-    Frame k is due when k / :attr:`fps` seconds of the sound were heard. What becomes known late, or otherwise than
-    before, changes the frames that were not returned yet: they fade over 8 frames to what they would have been.
-    docs/streams.md has the rules.
+    Frame k is due when k / :attr:`fps` seconds of the sound were heard. Late or corrected timings change the frames not
+    yet returned; these fade to their new values over 8 frames. docs/streams.md has the rules.
 
     Calls from several threads wait for each other, as those of :class:`labial.Stream`. Closing frees the memory.
 
@@ -68,20 +82,17 @@ class Voice:
         self._labels, self._nearest = labels, bool(nearest)
         self._guard = Guard()
         self._messages = Messages(format, labels)
-        self._timeline = Timeline(self._model.number, self._model.silence, pronunciation(own, language, numbers),
-                                  offset(offset_ms))
-        self._timeline.begin(0)
-        self._closed = self._finished = self._cancelled = False
-        self._changed = True  # something was told since the last frame
-        self._next = 0  # the frame that comes next
-        self._shown: Optional[Tuple[int, ...]] = None  # FAPs of the frame before
-        # The stream that makes the frames, and the phonemes that it has; None: the face is neutral.
-        self._stream: Optional[Stream] = None
-        self._plan: List[Segment] = []
-        self._pushed: List[Segment] = []
-        # A fade: what is added to the stream's frames, less with each step.
-        self._fade: Tuple[int, ...] = _NEUTRAL
-        self._step = self._steps = 0
+        self._library = library()
+        self._memory: Any = memory(self._library.voice_size(self._model.address, PLACES))
+        self._numbers = _numbers_in(self._model)
+        checked(self._library.voice_init(self._memory, self._model.address, PLACES, self._numbers, offset(offset_ms)),
+                self._model.name)
+        self._speaker = _Speaker(pronunciation(own, language, numbers))
+        if self._speaker.asks:
+            checked(self._library.voice_pronounce(self._memory, self._speaker.callback))
+        else:
+            checked(self._library.voice_words(self._memory, self._speaker.own.place))
+        self._faps = (ctypes.c_int16 * CHANNELS)()
 
     # ---- What becomes known
 
@@ -93,65 +104,63 @@ class Voice:
         """
         self._open()
         for heard in self._messages.read(message):
-            if self._listens():
-                self._timeline.tell(heard)
+            counted = _CHAINED if heard.chained else _JOINED if heard.joins else _ABSOLUTE
+            for told in heard.told:
+                self._tell(told.kind, [(item.text, item.start, item.end) for item in told.items], counted,
+                           getattr(heard, "utterance", None), 0 if told.key is None else int(told.key) + 1,
+                           round(heard.gap * 1000))
 
     @alone
     def say(self, text: str, start: float, end: Optional[float] = None) -> None:
         """A word as it is written, with its punctuation, from `start` to `end`, seconds from the beginning of the
         utterance; without an end it lasts until the next word, or as long as it usually does.
 
-        Raises LabialError for times that are negative, turned round or beyond a year.
+        Raises LabialError for times that are negative, turned round or beyond a day, and for more than an hour.
         """
         self._open()
         if not isinstance(text, str):
             raise TypeError(f"a word is a str, not {type(text).__name__}")
-        begin, stop = _seconds(start), None if end is None else _seconds(end)
-        _check_times(begin, begin if stop is None else stop, f"{text!r:.40}")
-        if text.strip() and self._listens():
-            self._timeline.put("words", Item(milliseconds(begin), None if stop is None else milliseconds(stop),
-                                             text.strip()))
+        item = _timed(text.strip(), start, end, f"{text!r:.40}")
+        if text.strip():
+            self._tell("words", [item])
 
     @alone
     def push(self, phoneme: Union[str, int], start: float, end: float) -> None:
         """A phoneme, by its label or its number in the model, from `start` to `end`, seconds from the beginning of the
         utterance. Where an utterance has phonemes, its words are not read.
 
-        Raises StreamError for an unknown label or number; LabialError as :meth:`say`, and for more than an hour.
+        Raises StreamError for an unknown label or number; LabialError as :meth:`say`.
         """
         self._open()
         found = self._model.number(phoneme, self._labels, self._nearest)
-        begin, stop = _seconds(start), _seconds(end)
-        _check_times(begin, stop, "a phoneme")
-        if self._listens():
-            self._timeline.put("phonemes", Item(milliseconds(begin), milliseconds(stop), found))
+        self._tell("phonemes", [_timed(found, start, _seconds(end), "a phoneme")])
 
     @alone
-    def begin(self, at: Optional[float] = None) -> None:
+    def begin(self, at: Optional[float] = None, utterance: Optional[str] = None) -> None:
         """The next utterance, whose sound begins when `at` seconds were heard: times that are told count from there.
 
-        Without `at` it begins where the former one ends, as far as is known, or now if that is over.
+        Without `at` it begins where the former one ends, as far as is known, or now if that is over. `utterance` is
+        what the service calls it in its messages; without it, it is that of the first message that tells one.
         """
         self._open()
-        self._begin(None if at is None else milliseconds(_seconds(at)))
+        self._checked(self._library.voice_begin(self._memory, -1.0 if at is None else _seconds(at),
+                                                self._identity(utterance)))
 
     @alone
     def finish(self) -> None:
         """Nothing more follows: :attr:`done` tells when all was shown. What is told afterwards nevertheless begins the
         next utterance."""
         self._open()
-        self._finished = True
+        self._checked(self._library.voice_finish(self._memory))
 
     @alone
     def cancel(self, milliseconds: float = 200) -> None:
         """Drops all that is not shown yet, and eases to the neutral face over so many milliseconds, rounded up to whole
-        frames, 1 to 1,000. What is told of the cancelled utterance is ignored until :meth:`begin`."""
+        frames, 1 to 1,000. What is told of the cancelled utterance is ignored until :meth:`begin`, and if the service
+        tells which one that is, also afterwards."""
         self._open()
-        steps = math.ceil(duration(milliseconds) * self.fps / 1000.0 - 1e-6)
-        self._timeline.clear()
-        self._cancelled = self._changed = True
-        self._drop_stream()
-        self._fade_from(_NEUTRAL, max(1, min(steps, CANCEL_MAX)))
+        length = min(duration(milliseconds), CANCEL_MAX * 1000.0)
+        self._checked(self._library.voice_cancel(self._memory, math.ceil(length - 1e-6)))
 
     # ---- What is shown
 
@@ -169,64 +178,60 @@ class Voice:
         heard = number(seconds, "a time")
         if not heard <= _LATEST:
             raise LabialError(f"{heard:g} s is no time")
-        last = math.floor(heard * self.fps + 1e-6) if heard >= 0.0 else -1
-        if last < self._next:
-            return []
-        late = last - self._next >= self.fps
-        if late:
-            self._next = last
-        if self._changed or late:
-            self._follow_changes(late)
-        frames = []
-        while self._next <= last:
-            faps = self._faded(self._frame())
-            frames.append(Frame(self._next, faps))
-            self._shown = faps
-            self._next += 1
+        frames: List[Frame] = []
+        due = math.floor(heard * self.fps + 1e-6)
+        while due >= 0 and self._checked(self._library.voice_frame(self._memory, due, self._faps)) == OK:
+            frames.append(Frame(self._library.voice_next(self._memory) - 1, tuple(self._faps)))
         return frames
 
     async def follow(self, clock: Callable[[], Optional[float]]) -> AsyncIterator[Frame]:
         """The frames as they become due, until the voice is closed or, after :meth:`finish`, :attr:`done`. `clock`
         returns how many seconds of the sound were heard, or None as long as it has not begun."""
-        while not self._closed:
+        while self._memory is not None:
             heard = clock()
             for frame in self.played(heard):
                 yield frame
-                if self._closed:
+                if self._memory is None:
                     return
-            if self._finished and self.done:
+            if self._is_finished() and self.done:
                 return
-            wait = _PATIENCE if heard is None else self._next / self.fps - heard
+            wait = _PATIENCE if heard is None else self.time - heard
             await asyncio.sleep(min(max(wait, 0.001), 1.0 / self.fps))
 
     @property
+    @alone
     def done(self) -> bool:
         """Whether nothing more will move: after :meth:`finish`, half a second after the last word, if there was any;
-        after :meth:`cancel`, when the face is neutral."""
-        if self._cancelled:
-            return self._step == self._steps
-        if self._timeline.is_empty:
-            return self._finished
-        return self._finished and self._next >= (self._timeline.end / 1000 + _REST) * self.fps
+        after :meth:`cancel`, when the face is neutral; and when the voice is closed."""
+        return self._memory is None or bool(self._library.voice_done(self._memory))
 
     @property
+    @alone
     def time(self) -> float:
         """When the next frame is due, seconds of the sound."""
-        return self._next / self.fps
+        self._open()
+        return int(self._library.voice_next(self._memory)) / self.fps
 
     @property
     def fps(self) -> int:
         """Frames per second."""
         return self._model.fps
 
+    @property
+    @alone
+    def counts(self) -> Counts:
+        """What it was told so far."""
+        self._open()
+        found = (ctypes.c_uint32 * 3)()
+        self._library.voice_counts(self._memory, found)
+        return Counts(*found)
+
     # ---- Closing
 
     @alone
     def close(self) -> None:
         """Frees the memory; may be called again. Every other call then raises StreamError."""
-        self._closed = True
-        self._timeline.clear()
-        self._drop_stream()
+        self._memory = None
 
     @alone
     def __enter__(self) -> Voice:
@@ -236,91 +241,103 @@ class Voice:
     def __exit__(self, *exception: object) -> None:
         self.close()
 
+    @alone
+    def _is_finished(self) -> bool:
+        return self._memory is None or bool(self._library.voice_finished(self._memory))
+
     # ---- With the lock held
 
     def _open(self) -> None:
-        if self._closed:
+        if self._memory is None:
             raise StreamError(ERROR_STATE, "the voice is closed")
 
-    def _listens(self) -> bool:
-        """Whether what is told counts; then the stream may change."""
-        if self._finished and not self._cancelled:
-            self._begin(None)
-        self._changed = True
-        return not self._cancelled
+    def _checked(self, result: int) -> int:
+        if result == ERROR_FULL:
+            raise LabialError("too many words, phonemes or utterances are told ahead of the sound: there is room for "
+                              f"{PLACES:,} phonemes")
+        return checked(result)
 
-    def _begin(self, at: Optional[int]) -> None:
-        now = self._now()
-        self._timeline.begin(max(self._timeline.end, now) if at is None else at)
-        self._cancelled = self._finished = False
-        self._changed = True
+    def _identity(self, utterance: Optional[str]) -> int:
+        if utterance is None:
+            return 0
+        if not isinstance(utterance, str):
+            raise TypeError(f"an utterance is named by a str, not {type(utterance).__name__}")
+        name = utterance.encode("utf-8", "replace")
+        return int(self._library.voice_identity(name, len(name)))
 
-    def _now(self) -> int:
-        """When the next frame is due, milliseconds."""
-        return self._next * 1000 // self.fps
-
-    def _follow_changes(self, late: bool) -> None:
-        """Looks whether the stream has phonemes that are no longer right, and if so makes a new one."""
-        self._changed = False
-        start = max(0, self._now() // 1000 - _HISTORY) * 1000
-        self._timeline.forget(start)
-        if self._stream is None and self._timeline.is_empty and self._shown is not None:
-            return  # the neutral face after a cancel
-        plan = self._timeline.plan(start)
-        pushed = [item._replace(start=max(item.start, start)) for item in self._pushed if item.end > start]
-        if self._stream is None or late or plan[: len(pushed)] != pushed:
-            self._renew(plan)
+    def _tell(self, kind: str, items: Sequence[_Item], counted: int = _ABSOLUTE, utterance: Optional[str] = None,
+              key: int = 0, gap: int = 0) -> None:
+        """Gives the library what a message tells of one kind."""
+        if kind == "phonemes":
+            texts = [bytes([self._model.number(text)]) for text, _, _ in items]
         else:
-            self._plan, self._pushed = plan[len(pushed) :], pushed
-
-    def _renew(self, plan: List[Segment]) -> None:
-        """A new stream, which is given `plan`; the difference from what was shown fades."""
-        self._drop_stream()
-        self._stream, self._plan = Stream(self._model), plan
-        base = _NEUTRAL
-        for _ in range(plan[0].start // 1000 * self.fps, self._next):
-            base = self._frame()
-        self._fade_from(base, _FADE)
-
-    def _fade_from(self, base: Sequence[int], steps: int) -> None:
-        """Begins to fade from what was shown, where the stream is at `base`."""
-        shown = base if self._shown is None else self._shown
-        self._fade = tuple(one - other for one, other in zip(shown, base))
-        self._step, self._steps = 0, steps
-
-    def _frame(self) -> Tuple[int, ...]:
-        """The next frame of the stream."""
-        if self._stream is None:
-            return _NEUTRAL
-        while True:
-            for frame in self._stream:
-                return frame.faps
-            if self._plan:
-                self._pushed.append(self._plan.pop(0))
-            start, end, phoneme = self._pushed[-1]  # the endless silence again when an hour of it is over
-            length = DURATION_MAX if math.isinf(end) else int(end) - start
-            for passed in range(0, length, DURATION_MAX):
-                self._stream.push(phoneme, min(length - passed, DURATION_MAX))
-
-    def _faded(self, base: Tuple[int, ...]) -> Tuple[int, ...]:
-        """A frame of the stream as it is shown."""
-        if self._step == self._steps:
-            return base
-        self._step += 1
-        left = 16384 - _ease(self._step, self._steps)
-        return tuple(max(-32768, min(value + ((more * left + 8192) >> 14), 32767))
-                     for value, more in zip(base, self._fade))
-
-    def _drop_stream(self) -> None:
-        if self._stream is not None:
-            self._stream.close()
-        self._stream, self._plan, self._pushed = None, [], []
+            self._model.nearest("SIL")  # raises an error for a model of other phonemes
+            texts = [str(text).encode("utf-8", "replace")[:0xFFFF] for text, _, _ in items]
+        if kind in ("words", "characters"):
+            self._speaker.prepare([str(text) for text, _, _ in items], kind == "characters")
+        times = [time for _, start, end in items for time in (start, -1.0 if end is None else end)]
+        self._checked(self._library.voice_tell(
+            self._memory, memory(self._library.voice_items_size(len(items))), len(items),
+            (ctypes.c_double * len(times))(*times), (ctypes.c_uint16 * len(texts))(*map(len, texts)),
+            b"".join(texts), self._identity(utterance), key, gap, _KINDS[kind], counted))
 
 
-def _ease(step: int, steps: int) -> int:
-    """Progress of a smooth transition, 0 to 16384 (labial_ease of lib/fixed.h)."""
-    share = (step << 14) // steps
-    return ((share * share >> 14) * (3 * 16384 - 2 * share)) >> 14
+class _Speaker:
+    """How the words of a voice are pronounced: by the library with `own` words, or, where it `asks` for each text, by
+    `callback`."""
+
+    def __init__(self, how: Pronunciation) -> None:
+        self.asks = how.language != ENGLISH or how.numbers
+        self.own = own_words([], how)  # an error in a word of the caller's own is raised now
+        self.callback = PRONOUNCE(self._ask)
+        self._how, self._tail = how, ""
+        self._spoken: Dict[str, Sequence[str]] = {}  # what other programs said
+        self._texts: Dict[bytes, OwnWords] = {}
+
+    def prepare(self, texts: Sequence[str], joined: bool) -> None:
+        """Asks other programs for what is not known yet, once for all of these texts. Raises LabialError as
+        :func:`labial.phonemes`."""
+        if not self.asks:
+            return
+        if joined:  # characters: the last word may go on in the next message
+            text = self._tail + "".join(texts)
+            texts, self._tail = text.split(), text[len(text.rstrip()) :] and "" or text.split()[-1] if text else ""
+        asked = stretches_of(texts, {**self._spoken, **self._how.own})
+        if asked:
+            if len(self._spoken) > _SPOKEN:
+                self._spoken, self._texts = {}, {}
+            self._spoken.update(known_words(asked, self._how._replace(own={})))
+
+    def _ask(self, _: Any, text: int, size: int) -> int:
+        """The library's question: the own words for a text."""
+        said = ctypes.string_at(text, size)
+        if said not in self._texts:
+            if len(self._texts) > _SPOKEN:
+                self._texts = {}
+            wanted = stretches_of([said.decode("utf-8", "replace")], ())
+            try:
+                self.prepare(wanted, False)
+            except LabialError:
+                pass  # it said so when the text was told
+            known = {word: self._spoken[word] for word in wanted if word in self._spoken}
+            self._texts[said] = OwnWords({**known, **self._how.own})
+        return int(self._texts[said].place)
+
+
+def _numbers_in(model: Model) -> Optional[ctypes.Array[ctypes.c_uint8]]:
+    """A model's number of each phoneme of words; None where they are the same, or where it has other phonemes."""
+    if not model.phonemes or model.phonemes == labels():
+        return None
+    return (ctypes.c_uint8 * len(labels()))(*(model.nearest(label, "arpabet") for label in labels()))
+
+
+def _timed(text: Union[str, int], start: float, end: Optional[float], what: str) -> _Item:
+    begin, stop = _seconds(start), None if end is None else _seconds(end)
+    if stop is not None and not begin <= stop <= begin + _HOUR:
+        raise LabialError(f"{what} from {begin:g} to {stop:g} s ends before it begins, or lasts more than an hour")
+    if max(begin, stop or 0.0) > _DAY:
+        raise LabialError(f"{what} at {begin:g} s is more than a day after the beginning; are these seconds?")
+    return text, begin, stop
 
 
 def _seconds(value: Any) -> float:
@@ -328,8 +345,3 @@ def _seconds(value: Any) -> float:
     if not 0.0 <= found <= _LATEST:
         raise LabialError(f"{found:g} s is no time from 0 on")
     return found
-
-
-def _check_times(begin: float, end: float, what: str) -> None:
-    if not begin <= end <= begin + DURATION_MAX / 1000:
-        raise LabialError(f"{what} from {begin:g} to {end:g} s ends before it begins, or lasts more than an hour")

@@ -14,9 +14,8 @@ from labial.corpus.episode import Segment
 from labial.corpus.timings import lab_of
 from labial.errors import DataError, LabialError
 from labial.sound.confidence import LOW, Stretch, comments, stretches, unspoken, unsure
-from labial.sound.recogniser import Found, Recogniser
+from labial.sound.recogniser import LONGEST_PAUSE_UNHEARD, Found, Recogniser, with_silences
 from labial.sound.samples import RATE, prepared, read_sound, silences
-from labial.sound.silence import LONGEST_PAUSE_UNHEARD, with_silences
 from labial.sound.words import phrases_of, pronunciations
 
 PathLike = Union[str, os.PathLike[str]]

@@ -14,9 +14,8 @@ from typing import Dict, List, Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from labial.corpus.episode import Episode
+from labial.corpus.episode import Episode, with_even_sides
 from labial.corpus.phonesets import PHONE_SETS
-from labial.corpus.sides import with_even_sides
 from labial.corpus.talkers import brought_to
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS

@@ -57,7 +57,7 @@ REACH_FRAMES = LIMITS["reach"]
 BLOCK = 65536
 
 #: Least occurrences of a pair with its own correction, regardless of their weights.
-PAIR_COUNT = 20
+PAIR_COUNT = 25
 
 #: Knots of a pair: one for a constant shape, two for one that changes from the phoneme's start to its end.
 PAIR_KNOTS = 2

@@ -9,9 +9,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from labial.corpus.apex import told
-from labial.corpus.episode import Episode
+from labial.corpus.episode import Episode, with_even_sides
 from labial.corpus.phonesets import PHONE_SETS, PhoneSet
-from labial.corpus.sides import with_even_sides
 from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_COLUMNS

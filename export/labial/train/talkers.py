@@ -29,15 +29,16 @@ from labial.reference.shape import Choice
 from labial.train.kernels import Kernels, Penalties, Regression, columns_alike
 from labial.train.recordings import Recording
 
-#: How many times stronger the prior of what talkers share is than that of one talker; chosen, as SLOPE, on talkers left
-#: out, where 1 was the best v.
+#: How many times stronger the prior of what talkers share is than that of one talker; chosen on talkers left out, where 1
+#: was the best v.
 SHARED = 3.0
 
 #: The largest v: beyond it talkers share nothing.
 LARGEST_VARIANCE = 1000.0
 
-#: The penalty of slopes: how one talker's slow phonemes differ from his fast ones does not carry over to others.
-SLOPE = 150.0
+#: Its penalties, chosen on talkers left out. How one talker's slow phonemes differ from his fast ones, or what single
+#: neighbours add, carries over to others least; how a phoneme looks, and its peak, most.
+PENALTIES = Penalties(smoothness=0.1, shape=5.0, slope=300.0, pair=40.0)
 
 
 def check_variance(variance: Optional[float]) -> None:
@@ -48,7 +49,7 @@ def check_variance(variance: Optional[float]) -> None:
 
 def penalties_of(variance: Optional[float]) -> Penalties:
     """The penalties of a regression with talkers of this variance, or without talkers."""
-    return Penalties() if variance is None else Penalties(slope=SLOPE)
+    return Penalties() if variance is None else PENALTIES
 
 
 def counted_once(item: Recording) -> Recording:

@@ -1,16 +1,21 @@
-"""Ridge regression of motion on features of the timeline, shared by the regression baselines."""
+"""Baselines that regress motion on features of the timeline: the mean shape, linear regression, and ridge regression
+on the labels in a window around each frame."""
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, Sequence
+from typing import Any, Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.sparse import csr_matrix, diags, vstack
+from scipy.sparse import csr_matrix, diags, hstack, vstack
 
+from labial.evaluate.baselines import steps
 from labial.evaluate.material import Timeline, Utterance
 from labial.evaluate.training import Training, choose
+from labial.files.faps import CHANNELS
+from labial.train.recordings import neighbour_classes
 
 #: Weight of a frame of silence, which is not judged: enough to keep the mouth at rest in pauses.
 SILENCE_WEIGHT = 0.1
@@ -75,7 +80,7 @@ class Linear:
         return result
 
 
-def fit(
+def fit_ridge(
     training: Training, make_design: Callable[[Training], Design], penalties: Sequence[np.ndarray]
 ) -> Linear:
     """Chooses among `penalties`, each (K,), on the inner validation part, then fits on the whole training part.
@@ -104,3 +109,151 @@ def fit(
     penalty = choose(training, penalties, prepare)
     design = make_design(training)
     return Linear(design, base, solve(normal(design, training.utterances, base, training.silence), penalty))
+
+
+# ---- Mean shape ------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A mouth that does not move."""
+
+    shape: np.ndarray  #: (13,) FAP
+
+    def predict(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13) the shape, repeated."""
+        return np.tile(self.shape, (timeline.frames, 1))
+
+
+def fit_mean(training: Training) -> Mean:
+    """The mean of the training frames outside silence, for all frames."""
+    frames = [item.human[item.timeline.phoneme_at != training.silence] for item in training.utterances]
+    return Mean(np.concatenate(frames).mean(axis=0))
+
+
+# ---- The phoneme, its neighbours and its duration --------------------------------------------------------------------
+
+#: Penalties that are tried, frames.
+REGRESSION_PENALTIES = (0.1, 1.0, 10.0, 100.0)
+
+
+def _onehot(label: np.ndarray, count: int, value: np.ndarray) -> csr_matrix:
+    """(T, count) with `value` (T,) in the column of `label` (T,)."""
+    return csr_matrix((value, label, np.arange(len(label) + 1)), shape=(len(label), count))
+
+
+def _design_of_neighbours(training: Training) -> Design:
+    viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
+    phonemes, classes, silence = len(viseme_class), len(training.phone_set.classes), training.silence
+
+    def rows(timeline: Timeline) -> Rows:
+        held = timeline.held
+        length = timeline.length[held]
+        phoneme = timeline.phoneme[held]
+        before, after = (np.repeat(item, length) for item in neighbour_classes(phoneme, viseme_class, silence))
+        position = (np.arange(timeline.frames) + 0.5 - np.repeat(timeline.start[held], length)) / np.repeat(
+            length, length
+        )
+        seconds = np.repeat(timeline.milliseconds[held] / 1000.0, length)
+        duration = np.log(np.clip(seconds, 0.02, 1.0) / 0.1)
+        blocks: List[csr_matrix] = []
+        for course in (np.ones_like(position), position - 0.5):
+            blocks += [
+                _onehot(timeline.phoneme_at, phonemes, course),
+                _onehot(timeline.phoneme_at, phonemes, course * duration),
+                _onehot(before, classes, course),
+                _onehot(after, classes, course),
+            ]
+        return Rows(hstack(blocks).tocsr(), np.zeros((timeline.frames, 0)))
+
+    return rows
+
+
+def fit_regression(training: Training) -> Linear:
+    """Linear regression from the phoneme, its neighbours' classes and its duration; chooses the penalty on the inner
+    validation part. Each feature may also change along the phoneme: the design has it once unchanged and once times the
+    frame's relative position, so that motion need not be a step."""
+    count = 2 * 2 * (len(training.phone_set.phonemes) + len(training.phone_set.classes))
+    return fit_ridge(training, _design_of_neighbours, [np.full(count, penalty) for penalty in REGRESSION_PENALTIES])
+
+
+# ---- A window of labels ----------------------------------------------------------------------------------------------
+
+# On phoneme labels; or on viseme-class labels together with the context-aware step stream of all channels. Without
+# shapes, states and trajectories, they show what additive temporal kernels achieve alone.
+
+#: The window reaches this far to both sides; labels are read every frame, the step stream every SPACING. Seconds.
+REACH = 0.3
+SPACING = 0.04
+
+#: Penalties that are tried: of labels, and of the stream divided by its standard deviations; frames.
+LABEL_PENALTIES = (10.0, 30.0, 100.0, 300.0, 1000.0)
+STREAM_PENALTIES = (30.0, 300.0, 3000.0)
+
+
+def window(fps: int, spacing: int = 1) -> np.ndarray:
+    """(L,) int64 frames from -REACH to REACH, multiples of `spacing`."""
+    side = round(REACH * fps) // spacing
+    return np.arange(-side, side + 1, dtype=np.int64) * spacing
+
+
+def labels(label_at: np.ndarray, lag: np.ndarray, count: int, outside: int) -> csr_matrix:
+    """(T, L * count) one-hot labels at every lag from each of T frames; `outside` before and after the utterance."""
+    frames = len(label_at)
+    at = np.arange(frames)[:, None] + lag[None, :]
+    inside = (at >= 0) & (at < frames)
+    found = np.where(inside, label_at[np.clip(at, 0, max(frames - 1, 0))], outside)
+    column = found + np.arange(len(lag)) * count
+    start = np.arange(frames + 1) * len(lag)
+    return csr_matrix((np.ones(column.size), column.ravel(), start), shape=(frames, len(lag) * count))
+
+
+def shifted(stream: np.ndarray, lag: np.ndarray) -> np.ndarray:
+    """(T, L * K) the stream (T, K) at every lag, held beyond its ends."""
+    at = np.clip(np.arange(len(stream))[:, None] + lag[None, :], 0, len(stream) - 1)
+    result: np.ndarray = stream[at].reshape(len(stream), -1)
+    return result
+
+
+def _design_of_window(training: Training, of_class: bool, stream: Optional[steps.Steps]) -> Design:
+    viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
+    label_of = viseme_class if of_class else np.arange(len(viseme_class))
+    lag = window(training.fps)
+    wide = window(training.fps, max(1, round(SPACING * training.fps)))
+    count = int(label_of.max()) + 1
+    if stream is not None:
+        moving = np.concatenate([stream.predict(item.timeline) for item in training.utterances])
+        centre, spread = moving.mean(axis=0), np.maximum(moving.std(axis=0), 1e-9)
+
+    def rows(timeline: Timeline) -> Rows:
+        onehot = labels(label_of[timeline.phoneme_at], lag, count, int(label_of[training.silence]))
+        if stream is None:
+            return Rows(onehot, np.zeros((timeline.frames, 0)))
+        return Rows(onehot, shifted((stream.predict(timeline) - centre) / spread, wide))
+
+    return rows
+
+
+def _penalties(training: Training, of_class: bool, with_stream: bool) -> List[np.ndarray]:
+    phone_set = training.phone_set
+    labels_wide = len(window(training.fps)) * (len(phone_set.classes) if of_class else len(phone_set.phonemes))
+    stream_wide = len(window(training.fps, max(1, round(SPACING * training.fps)))) * CHANNELS if with_stream else 0
+    tried = itertools.product(LABEL_PENALTIES, STREAM_PENALTIES if with_stream else (1.0,))
+    return [np.repeat([label, stream], [labels_wide, stream_wide]) for label, stream in tried]
+
+
+def _fit_window(training: Training, of_class: bool, with_stream: bool) -> Linear:
+    make: Callable[[Training], Design] = lambda part: _design_of_window(  # noqa: E731
+        part, of_class, steps.fit(part, context=True) if with_stream else None
+    )
+    return fit_ridge(training, make, _penalties(training, of_class, with_stream))
+
+
+def fit_phonemes(training: Training) -> Linear:
+    """Phoneme labels within REACH."""
+    return _fit_window(training, of_class=False, with_stream=False)
+
+
+def fit_classes(training: Training) -> Linear:
+    """Viseme-class labels within REACH, and the context-aware step stream of all channels."""
+    return _fit_window(training, of_class=True, with_stream=True)

@@ -1,18 +1,21 @@
 """Baseline: the step stream, each phoneme's selected mean shape held for the phoneme (equation 2 of the paper).
 
-Also the step stream of the context-aware mixtures (docs/method.md, What Labial adds), which other baselines build on.
+Also the step stream of the context-aware mixtures (docs/method.md, What Labial adds), which other baselines build on,
+and the step stream under a Gaussian.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict
+from typing import Any, Callable, Dict
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from labial.evaluate.material import Timeline
-from labial.evaluate.training import Training
-from labial.reference.shape import ShapeTables, choose, shapes
+from labial.evaluate.training import Training, choose
+from labial.reference.shape import ShapeTables, shapes
+from labial.reference.shape import choose as chosen
 from labial.train.context import fit_context
 from labial.train.recordings import neighbour_classes, occurrences, recordings
 from labial.train.shapes import Mixture, back_off, corpus_scale, fit_mixture, shape_tables
@@ -36,7 +39,7 @@ class Steps:
         phoneme = timeline.phoneme[timeline.held]
         seconds = timeline.milliseconds[timeline.held] / 1000.0
         before, after = neighbour_classes(phoneme, self.viseme_class, self.silence)
-        return shapes(self.tables, choose(self.tables, phoneme, seconds, before, after, soft=self.soft))
+        return shapes(self.tables, chosen(self.tables, phoneme, seconds, before, after, soft=self.soft))
 
     def predict(self, timeline: Timeline) -> np.ndarray:
         """(T, 13) the shapes, each for the length of its segment."""
@@ -69,3 +72,36 @@ def _fit(training: Training, context: bool) -> Steps:
 def fit(training: Training, context: bool = False) -> Steps:
     """The step stream of equation 2; with `context` that of the context-aware mixtures."""
     return training.derived(("steps", context), lambda: _fit(training, context))
+
+
+# ---- Under a Gaussian ------------------------------------------------------------------------------------------------
+
+#: Standard deviations that are tried, seconds.
+WIDTHS = tuple(round(0.005 * n, 3) for n in range(17))
+
+
+@dataclass(frozen=True)
+class Blur:
+    """A smoothed step stream."""
+
+    steps: Steps
+    width: float  #: seconds
+    fps: int
+
+    def predict(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13); the first and the last shape extend beyond the ends."""
+        return _smooth(self.steps.predict(timeline), self.width * self.fps)
+
+
+def _smooth(frames: np.ndarray, deviation: float) -> np.ndarray:
+    return gaussian_filter1d(frames, deviation, axis=0, mode="nearest") if deviation > 0 and len(frames) else frames
+
+
+def fit_blur(training: Training) -> Blur:
+    """The step stream under a Gaussian; chooses its width on the inner validation part, with shapes from the rest."""
+
+    def prepare(part: Training) -> Callable[..., Any]:
+        rough = fit(part)
+        return lambda width: Blur(rough, width, training.fps).predict
+
+    return Blur(fit(training), choose(training, WIDTHS, prepare), training.fps)

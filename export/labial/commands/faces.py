@@ -1,0 +1,172 @@
+"""``labial rig``, ``fit``, ``plot`` and ``page``: faces that move, and motion to look at."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Dict
+
+from labial import BUNDLED
+from labial.commands.common import add_phones, put
+from labial.errors import LabialError, needs
+
+# ---- rig -------------------------------------------------------------------------------------------------------------
+
+
+def add_rig(command: argparse.ArgumentParser) -> None:
+    """The description, and the output files."""
+    command.add_argument("description", metavar="FACE.toml")
+    command.add_argument("-o", "--output", required=True, metavar="DIR")
+    command.add_argument("--name", help="of the C symbol and the files; the description's file name without it")
+    command.add_argument("--calibrate", action="store_true", help="write a sketch for Arduino instead, which finds the "
+                         "servos' pulses by commands over the serial line")
+    command.add_argument("--json", action="store_true", help="write NAME.json instead, for the npm package")
+    command.add_argument("--no-figure", action="store_true", help="do not draw NAME.svg")
+
+
+def run_rig(options: argparse.Namespace) -> int:
+    """Writes NAME.h, NAME.c and, unless --no-figure, NAME.svg; or the file of --calibrate or --json."""
+    from labial.files.c import check_name
+    from labial.files.outputs import folder
+    from labial.rig import calibrate, table, web
+    from labial.rig.description import read
+    from labial.see import figure
+
+    name = options.name or Path(options.description).stem
+    check_name(name, "rig")
+    rig = read(options.description, name)
+    if options.calibrate:
+        print(calibrate.write(rig, options.output))
+        return 0
+    if options.json:
+        print(web.write(rig, options.output))
+        return 0
+    with folder(options.output) as made:
+        paths = table.write(rig, made)
+        if not options.no_figure:
+            paths.append(made / f"{name}.svg")
+            figure.draw(rig, paths[-1])
+    for path in paths:
+        print(Path(options.output) / path.name)
+    return 0
+
+
+# ---- fit -------------------------------------------------------------------------------------------------------------
+
+
+def add_fit(command: argparse.ArgumentParser) -> None:
+    """The avatar and the output file of its rig."""
+    command.add_argument("avatar", nargs="+", metavar="AVATAR", help=".glb, .gltf or .vrm, or a table of lip points, "
+                         ".csv; several are given one rig that suits them alike")
+    command.add_argument("-o", "--output", required=True, metavar="NAME.toml", help="the rig; NAME.png is its picture")
+    command.add_argument("--shapes", metavar="KIND", help="arkit, oculus, vrm or other, or names of shapes with commas "
+                         "between them; found out from the names without it")
+    command.add_argument("--point", action="append", default=[], metavar="NAME=INDEX", help="the vertex of a point "
+                         "that is not found by itself, such as chin=1234; may be given several times")
+    command.add_argument("--no-figure", action="store_true", help="do not draw NAME.png")
+
+
+def _points(options: argparse.Namespace) -> Dict[str, int]:
+    from labial.errors import LabialError
+
+    found = {}
+    for given in options.point:
+        name, equals, number = given.partition("=")
+        if not equals or not number.isdecimal():
+            raise LabialError(f"--point is NAME=INDEX, not {given!r}")
+        found[name] = int(number)
+    if found and len(options.avatar) > 1:
+        raise LabialError("--point goes with one avatar")
+    return found
+
+
+def run_fit(options: argparse.Namespace) -> int:
+    """Writes the rig and its picture, and prints its accuracy."""
+    from labial.errors import LabialError, needs
+    from labial.files.outputs import check_folder, folder
+
+    output = Path(options.output)
+    if output.suffix != ".toml":
+        raise LabialError(f"{output}: a rig's description is a .toml file")
+    with needs("fitting", "fit"):
+        import scipy.optimize  # noqa: F401
+
+        from labial.fit.fit import fit
+    check_folder(output.parent, output)
+    points = _points(options)
+    done = fit(options.avatar, points, options.shapes, output.stem)
+    names = [output.name]
+    with folder(output.parent, output) as made:  # the rig and its picture appear together
+        (made / output.name).write_text(done.text, encoding="utf-8")
+        if not options.no_figure and done.found is not None:
+            from labial.see.picture import draw
+
+            names.append(output.with_suffix(".png").name)
+            draw(done.rig, done.found, made / names[-1])
+    print("\n".join([*done.report, *(str(output.with_name(name)) for name in names)]))
+    return 0
+
+
+# ---- plot ------------------------------------------------------------------------------------------------------------
+
+
+def add_plot(command: argparse.ArgumentParser) -> None:
+    """Motions, their phonemes, and the channels to draw."""
+    command.add_argument("frames", metavar="FRAMES", nargs="+",
+                         help="frames files (.csv), .fap, or models (.npz, or "
+                         f"{' or '.join(BUNDLED)}), which speak the timings; several are overlaid")
+    add_phones(command)
+    command.add_argument("-o", "--output", required=True, metavar="OUT.png", help=".png, .svg or .pdf")
+    command.add_argument("--channels", metavar="A,B,...", help="fap3, open_jaw, ..., opening, stretch or all; one "
+                         "panel each (fap3,opening,stretch,fap17)")
+
+
+def run_plot(options: argparse.Namespace) -> int:
+    """Writes the drawing."""
+    with needs("plotting", "plot"):
+        from labial.see.plot import DEFAULT, plot
+    from labial.files.outputs import check
+    from labial.see.motion import read_bands, read_motions
+
+    check(options.output)
+    timings = options.phones, options.labels, options.source
+    plot(read_motions(options.frames, *timings), read_bands(*timings), options.output, options.channels or DEFAULT)
+    return 0
+
+
+# ---- page ------------------------------------------------------------------------------------------------------------
+
+
+def add_page(command: argparse.ArgumentParser) -> None:
+    """A motion, its phonemes and its sound."""
+    command.add_argument("frames", metavar="FRAMES", help="a frames file (.csv), .fap, or a model (.npz, or "
+                         f"{' or '.join(BUNDLED)}), which speaks the timings")
+    add_phones(command)
+    command.add_argument("--audio", metavar="FILE", help="sound in step: WAV, MP3, Ogg, FLAC, AAC, M4A or WebM")
+    command.add_argument("--head", metavar="AVATAR.glb", help="show this avatar instead of a drawn mouth")
+    command.add_argument("--rig", metavar="FACE.toml", help="with --head: what moves it, such as labial fit writes")
+    command.add_argument("--three", metavar="DIR", help="with --head: the npm package three; node_modules/three "
+                         "without it")
+    command.add_argument("--title", help="the file's name without it")
+    command.add_argument("-o", "--output", required=True, metavar="OUT.html")
+
+
+def run_page(options: argparse.Namespace) -> int:
+    """Writes the page."""
+    from labial.files.outputs import check
+    from labial.see.motion import read_bands, read_motion
+    from labial.see.page import page
+
+    check(options.output)
+    bands = read_bands(options.phones, options.labels, options.source)
+    motion = read_motion(options.frames, options.phones, options.labels, options.source)
+    if options.head is None:
+        if options.rig is not None or options.three is not None:
+            raise LabialError("--rig and --three go with --head")
+        text = page(motion, bands, options.audio, options.title)
+    else:
+        from labial.see.page import head_page
+
+        text = head_page(motion, options.head, options.rig, options.audio, options.title, options.three)
+    put(text, options.output)
+    return 0

@@ -1,0 +1,563 @@
+/*
+ * voice.c - a voice that is followed: the calls of labial/voice.h.
+ *
+ *     message --rules--> items --plan--> segments --stream--> motion --fade--> frames
+ *
+ * The stream is given segments when it needs them. What is told of the time before may change some that it has: with
+ * the next frame they are compared, and if they differ, a new stream is given all from two to three seconds before, and
+ * the difference between its motion and what was shown fades.
+ */
+#include "voice_parts.h"
+
+#include <string.h>
+
+#include "fade.h"
+#include "fixed.h"
+
+/* No kind of items. */
+#define KIND_NONE 0xffu
+
+/* Microseconds by which rounding may move a message, and the longest time that an item lasts. */
+#define MESSAGE_ROUNDING UINT64_C(20000)
+#define ITEM_LONGEST (UINT64_C(1000) * LABIAL_DURATION_MAX)
+
+/* Keys as places keep them: 1 to so many. */
+#define KEYS_KEPT 0xffffu
+
+/* Places that are used at most. */
+#define PLACES_MAX 0x1000000u
+
+/* FNV-1a. */
+#define FNV_START UINT32_C(2166136261)
+#define FNV_PRIME UINT32_C(16777619)
+
+/* LABIAL_OK for a voice that was initialised, else the error that every call on it returns. */
+static int voice_status(const labial_voice_t *voice)
+{
+    return !voice ? LABIAL_ERROR_NULL : voice->model ? LABIAL_OK : LABIAL_ERROR_STATE;
+}
+
+/* When the next frame is due, milliseconds. */
+static int64_t voice_now(const labial_voice_t *voice)
+{
+    const uint32_t rate = voice->model->frames_per_second, seconds = labial_quotient(voice->next, rate);
+    return (int64_t)seconds * 1000 + labial_quotient((voice->next - seconds * rate) * 1000u, rate);
+}
+
+/* ---- Utterances -------------------------------------------------------------------------------------------------- */
+
+/* Appends an utterance, unless there are as many as there may be. One that nothing was told of gives its place up. */
+static int append_utterance(labial_voice_t *voice, int64_t origin, uint32_t identity, int is_queued)
+{
+    labial_voice_utterance_t *utterance;
+    if (voice->utterance_count > 0u) {
+        utterance = voice->utterances + voice->utterance_count - 1u;
+        if (utterance->places == 0u && utterance->identity == 0u)
+            voice->utterance_count--;
+        else if (voice->utterance_count == LABIAL_VOICE_UTTERANCES)
+            return LABIAL_ERROR_FULL;
+        else
+            utterance->limit = origin;
+    }
+    utterance = voice->utterances + voice->utterance_count++;
+    memset(utterance, 0, sizeof *utterance);
+    utterance->origin = origin;
+    utterance->limit = INT64_MAX;
+    utterance->identity = identity;
+    utterance->first = voice->used;
+    utterance->kind = KIND_NONE;
+    utterance->serial = ++voice->serial;
+    utterance->queued = (uint8_t)is_queued;
+    voice->changed = voice->stale = 1;
+    return LABIAL_OK;
+}
+
+/* The next utterance behind all others. */
+static int append_behind(labial_voice_t *voice, uint32_t identity)
+{
+    const int64_t now = voice_now(voice);
+    int64_t end = 0;
+    int result;
+    if (voice->utterance_count > 0u)
+        end = labial_voice_end(voice, voice->utterance_count - 1u);
+    result = append_utterance(voice, end > now ? end : now, identity, 1);
+    if (result == LABIAL_OK)
+        voice->finished = voice->cancelled = 0;
+    return result;
+}
+
+/* Moves the utterances that are queued behind one that was told more of. */
+static void requeue(labial_voice_t *voice, unsigned position)
+{
+    const int64_t now = voice_now(voice);
+    for (; position + 1u < voice->utterance_count; position++) {
+        labial_voice_utterance_t *const utterance = voice->utterances + position;
+        const int64_t end = labial_voice_end(voice, position);
+        if (!utterance[1].queued || utterance[1].origin <= now || end <= utterance[1].origin)
+            return;
+        if (utterance->limit == utterance[1].origin)
+            utterance->limit = end;
+        utterance[1].origin = end;
+        voice->stale = 1;
+    }
+}
+
+/* The position of the utterance that a message of this identity belongs to, which may be a new one; or an error. */
+static int utterance_of(labial_voice_t *voice, uint32_t identity)
+{
+    labial_voice_utterance_t *last;
+    unsigned i;
+    int result = LABIAL_OK;
+    if (identity) {
+        for (i = voice->utterance_count; i-- > 0u;)
+            if (voice->utterances[i].identity == identity)
+                return (int)i;
+        if (labial_voice_is_over(voice, identity))
+            return -1;
+    }
+    if (voice->finished)
+        result = append_behind(voice, 0);
+    last = voice->utterances + voice->utterance_count - 1u;
+    if (result == LABIAL_OK && identity && last->identity)
+        result = append_behind(voice, identity);
+    if (result != LABIAL_OK)
+        return result;
+    last = voice->utterances + voice->utterance_count - 1u;
+    if (identity)
+        last->identity = identity;
+    return (int)voice->utterance_count - 1;
+}
+
+/* ---- Messages ---------------------------------------------------------------------------------------------------- */
+
+/* What the rules need to know of a message. */
+typedef struct {
+    uint64_t begin, end; /* of all items that make sense, microseconds */
+    uint64_t reach;      /* up to which it replaces others: of the end, rounding is left out, or half of its item */
+    uint32_t count;      /* of these */
+    uint32_t places;     /* that they take */
+    uint32_t hash;
+} message_summary_t;
+
+/* Bytes of an item's text that are kept, up to a whole character. */
+static unsigned kept_bytes(const labial_voice_item_t *item)
+{
+    unsigned size = item->size;
+    if (size > LABIAL_VOICE_TEXT) {
+        size = LABIAL_VOICE_TEXT;
+        while (size > 0u && ((unsigned char)item->text[size] & 0xc0u) == 0x80u)
+            size--;
+    }
+    return size;
+}
+
+/* The end of an item; the beginning where it is not known, and of characters that end before. */
+static uint64_t item_end(const labial_voice_message_t *message, const labial_voice_item_t *item)
+{
+    if (item->end == LABIAL_VOICE_NO_END)
+        return item->start;
+    return message->kind == LABIAL_VOICE_CHARACTERS && item->end < item->start ? item->start : item->end;
+}
+
+/* Whether an item makes sense `base` microseconds after the beginning of its utterance. */
+static int makes_sense(const labial_voice_t *voice, const labial_voice_message_t *message,
+                       const labial_voice_item_t *item, uint64_t base)
+{
+    const uint64_t latest = UINT64_C(1000) * LABIAL_VOICE_LATEST - base, end = item_end(message, item);
+    if (item->start > latest || end > latest || end < item->start || end - item->start > ITEM_LONGEST)
+        return 0;
+    if (message->kind == LABIAL_VOICE_PHONEMES)
+        return item->phoneme < voice->model->phoneme_count;
+    if (!item->text)
+        return 0;
+    return message->kind >= LABIAL_VOICE_WORDS || labial_voice_viseme(message->kind, item->text, item->size) >= 0;
+}
+
+static uint32_t hash_bytes(uint32_t hash, const char *bytes, size_t size)
+{
+    for (; size > 0u; size--, bytes++)
+        hash = (hash ^ (unsigned char)*bytes) * FNV_PRIME;
+    return hash;
+}
+
+static uint32_t hash_number(uint32_t hash, uint64_t number)
+{
+    for (; number > 0u; number >>= 8)
+        hash = (hash ^ (uint32_t)(number & 255u)) * FNV_PRIME;
+    return hash * FNV_PRIME;
+}
+
+static message_summary_t summarise(const labial_voice_t *voice, const labial_voice_message_t *message, uint64_t base)
+{
+    message_summary_t found = { UINT64_MAX, 0, 0, 0, 0, FNV_START };
+    uint32_t i;
+    for (i = 0; i < message->count; i++) {
+        const labial_voice_item_t *const item = message->items + i;
+        uint64_t end;
+        if (!makes_sense(voice, message, item, base))
+            continue;
+        end = item_end(message, item);
+        if (item->start < found.begin)
+            found.begin = item->start;
+        if (end > found.end)
+            found.end = end;
+        end -= (end - item->start) / 2u < MESSAGE_ROUNDING ? (end - item->start) / 2u : MESSAGE_ROUNDING;
+        if (end < item->start + 1000u)
+            end = item->start + 1000u;
+        if (end > found.reach)
+            found.reach = end;
+        found.count++;
+        found.places += 1u;
+        found.hash = hash_number(hash_number(found.hash, item->start), item_end(message, item)) ^ item->phoneme;
+        if (message->kind >= LABIAL_VOICE_WORDS) {
+            const unsigned size = kept_bytes(item);
+            found.places += labial_voice_places(size) - 1u;
+            found.hash = hash_bytes(found.hash, item->text, size);
+        }
+    }
+    return found;
+}
+
+/* Whether a joined message was told before; notes it. */
+static int was_told(labial_voice_t *voice, uint32_t hash)
+{
+    unsigned i;
+    for (i = 0; i < LABIAL_VOICE_MESSAGES_; i++)
+        if (voice->messages[i] == hash)
+            return 1;
+    voice->messages[voice->message] = hash;
+    voice->message = (uint8_t)((voice->message + 1u) % LABIAL_VOICE_MESSAGES_);
+    return 0;
+}
+
+static uint32_t milliseconds_of(uint64_t microseconds)
+{
+    return (uint32_t)((microseconds + 500u) / 1000u);
+}
+
+/* Microseconds from `begin` to `end` that something was told of. */
+static uint64_t told_between(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint64_t begin,
+                             uint64_t end)
+{
+    const uint32_t limit = labial_voice_limit(utterance), from = milliseconds_of(begin), to = milliseconds_of(end);
+    uint32_t at = labial_voice_find(voice, utterance, from), sum = utterance->over > from ? utterance->over - from : 0u;
+    if (at > utterance->first)
+        at = labial_voice_before(voice, utterance, at);
+    for (; at < limit && voice->items[at].start < to; at = labial_voice_after(voice, at)) {
+        const labial_voice_place_t *const item = voice->items + at;
+        const uint32_t after = labial_voice_after(voice, at);
+        const uint32_t start = item->start > from ? item->start : from;
+        uint32_t until = item->end;
+        if (after < limit && voice->items[after].start < until)
+            until = voice->items[after].start;
+        if (until > to)
+            until = to;
+        if (until > start)
+            sum += until - start;
+    }
+    return (uint64_t)sum * 1000u;
+}
+
+/* Whether a joined message begins again. */
+static int begins_again(const labial_voice_t *voice, const labial_voice_utterance_t *utterance,
+                        const message_summary_t *message)
+{
+    const uint64_t begin = utterance->base + message->begin, end = utterance->base + message->end;
+    uint64_t told, shorter = utterance->told - utterance->base;
+    if (!utterance->joined || begin > utterance->last + MESSAGE_ROUNDING)
+        return 0;
+    if (message->end - message->begin < shorter)
+        shorter = message->end - message->begin;
+    told = told_between(voice, utterance, begin, end);
+    return told > MESSAGE_ROUNDING && told >= shorter / 2u;
+}
+
+/* Removes what was told of a key. Keys that count up are new, and nothing has them. */
+static void remove_key(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint32_t key)
+{
+    const uint16_t kept = (uint16_t)(1u + key % KEYS_KEPT);
+    uint32_t at = labial_voice_limit(utterance);
+    if (key > utterance->highest) {
+        utterance->highest = key;
+        return;
+    }
+    while (at > utterance->first) {
+        const uint32_t before = labial_voice_before(voice, utterance, at);
+        if (voice->items[before].key == kept)
+            labial_voice_remove(voice, utterance, before, at);
+        at = before;
+    }
+}
+
+/* Inserts the items of a message, `base` microseconds later. */
+static void insert_items(labial_voice_t *voice, labial_voice_utterance_t *utterance,
+                         const labial_voice_message_t *message, uint64_t base)
+{
+    uint32_t i;
+    for (i = 0; i < message->count; i++) {
+        const labial_voice_item_t *const item = message->items + i;
+        labial_voice_place_t place;
+        uint32_t end;
+        if (!makes_sense(voice, message, item, base)) {
+            voice->counts.skipped++;
+            continue;
+        }
+        memset(&place, 0, sizeof place);
+        place.start = milliseconds_of(base + item->start);
+        place.end = end = milliseconds_of(base + item_end(message, item));
+        if (item->end == LABIAL_VOICE_NO_END)
+            place.end = LABIAL_VOICE_OPEN;
+        if (message->key)
+            place.key = (uint16_t)(1u + message->key % KEYS_KEPT);
+        if (message->kind == LABIAL_VOICE_PHONEMES) {
+            const uint16_t gap = message->gap > 0u ? message->gap : 1u;
+            place.text[0] = item->phoneme;
+            place.text[2] = (uint8_t)gap;
+            place.text[3] = (uint8_t)(gap >> 8);
+        } else if (message->kind < LABIAL_VOICE_WORDS) {
+            place.text[0] = (uint8_t)labial_voice_viseme(message->kind, item->text, item->size);
+        } else {
+            place.size = (uint8_t)kept_bytes(item);
+        }
+        labial_voice_insert(voice, utterance, &place, message->kind >= LABIAL_VOICE_WORDS ? item->text : NULL);
+        if (end > utterance->end)
+            utterance->end = end;
+        voice->counts.told++;
+    }
+}
+
+/* Adds a message to an utterance whose kind it is of, or becomes. */
+static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utterance,
+                       const labial_voice_message_t *message)
+{
+    message_summary_t found = summarise(voice, message, 0);
+    uint64_t base = 0;
+    uint32_t from, to;
+    if (found.count == 0u && !message->key) {
+        voice->counts.skipped += message->count;
+        return LABIAL_OK;
+    }
+    if (message->kind == utterance->kind) {
+        if (message->times == LABIAL_VOICE_CHAINED)
+            base = utterance->told;
+        else if (message->times == LABIAL_VOICE_JOINED)
+            base = begins_again(voice, utterance, &found) ? utterance->told : utterance->base;
+    }
+    if (base > 0u)
+        found = summarise(voice, message, base);
+    from = to = utterance->first;
+    if (message->kind != utterance->kind) {
+        to = labial_voice_limit(utterance);
+    } else if (found.count > 0u) {
+        from = labial_voice_find(voice, utterance, milliseconds_of(base + found.begin));
+        to = labial_voice_find(voice, utterance, milliseconds_of(base + found.reach));
+    }
+    if (found.places > labial_voice_free(voice) + (to - from))
+        return LABIAL_ERROR_FULL;
+    if (message->times == LABIAL_VOICE_JOINED && was_told(voice, hash_number(found.hash, utterance->serial))) {
+        voice->counts.dropped++;
+        return LABIAL_OK;
+    }
+    labial_voice_remove(voice, utterance, from, to);
+    if (message->kind != utterance->kind) {
+        utterance->kind = message->kind;
+        utterance->told = utterance->last = 0;
+        utterance->joined = 0;
+        utterance->over = utterance->highest = 0;
+        voice->stale = 1;
+    }
+    utterance->base = base;
+    if (message->key)
+        remove_key(voice, utterance, message->key);
+    if (voice->room - voice->used < found.places)
+        labial_voice_pack(voice);
+    if (found.count > 0u) {
+        utterance->last = base + found.begin;
+        utterance->joined = message->times == LABIAL_VOICE_JOINED;
+        if (base + found.end > utterance->told)
+            utterance->told = base + found.end;
+    }
+    insert_items(voice, utterance, message, base);
+    return LABIAL_OK;
+}
+
+int labial_voice_tell(labial_voice_t *voice, const labial_voice_message_t *message)
+{
+    int result = voice_status(voice), position;
+    if (result == LABIAL_OK && (!message || (!message->items && message->count > 0u)))
+        result = LABIAL_ERROR_NULL;
+    if (result != LABIAL_OK)
+        return result;
+    if (message->kind > LABIAL_VOICE_CHARACTERS || message->times > LABIAL_VOICE_JOINED)
+        return LABIAL_ERROR_RANGE;
+    if (message->kind >= LABIAL_VOICE_WORDS && !voice->words)
+        return LABIAL_ERROR_STATE;
+    labial_voice_forget(voice, voice_now(voice) - (int64_t)LABIAL_VOICE_HISTORY * 1000);
+    position = -1;
+    if (voice->cancelled)
+        labial_voice_note_over(voice, message->utterance);
+    else
+        position = utterance_of(voice, message->utterance);
+    if (position == LABIAL_ERROR_FULL)
+        return LABIAL_ERROR_FULL;
+    if (position < 0) {
+        voice->counts.dropped++;
+        return LABIAL_CANCELLED;
+    }
+    if (message->kind > voice->utterances[position].kind)
+        return LABIAL_OK;
+    voice->changed = 1;
+    result = add_message(voice, voice->utterances + position, message);
+    if (result == LABIAL_OK)
+        requeue(voice, (unsigned)position);
+    return result;
+}
+
+int labial_voice_word(labial_voice_t *voice, const char *text, size_t size, uint32_t start, uint32_t end)
+{
+    labial_voice_item_t item = { 0, LABIAL_VOICE_NO_END, NULL, 0, 0 };
+    labial_voice_message_t message = { NULL, 1, 0, 0, 0, LABIAL_VOICE_WORDS, LABIAL_VOICE_ABSOLUTE };
+    if (!text)
+        return LABIAL_ERROR_NULL;
+    item.start = UINT64_C(1000) * start;
+    if (end != LABIAL_VOICE_OPEN)
+        item.end = UINT64_C(1000) * end;
+    item.text = text;
+    item.size = (uint16_t)(size < UINT16_MAX ? size : UINT16_MAX);
+    message.items = &item;
+    return labial_voice_tell(voice, &message);
+}
+
+int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start, uint32_t end)
+{
+    labial_voice_item_t item = { 0, 0, NULL, 0, 0 };
+    labial_voice_message_t message = { NULL, 1, 0, 0, 0, LABIAL_VOICE_PHONEMES, LABIAL_VOICE_ABSOLUTE };
+    item.start = UINT64_C(1000) * start;
+    item.end = UINT64_C(1000) * end;
+    item.phoneme = (uint8_t)(phoneme < UINT8_MAX ? phoneme : UINT8_MAX);
+    message.items = &item;
+    return labial_voice_tell(voice, &message);
+}
+
+uint32_t labial_voice_identity(const char *text, size_t size)
+{
+    const uint32_t hash = hash_bytes(FNV_START, text, text ? size : 0u);
+    return hash ? hash : 1u;
+}
+
+/* ---- Beginning and end ------------------------------------------------------------------------------------------- */
+
+int labial_voice_init(labial_voice_t *voice, const labial_model_t *model, void *memory, size_t size)
+{
+    uint32_t workspace;
+    if (!voice)
+        return LABIAL_ERROR_NULL;
+    memset(voice, 0, sizeof *voice);
+    if (!model || !memory)
+        return LABIAL_ERROR_NULL;
+    if (model->format != LABIAL_MODEL_FORMAT)
+        return LABIAL_ERROR_VERSION;
+    workspace = labial_workspace_size(model);
+    if (((uintptr_t)memory & 3u) || size < workspace + sizeof *voice->items)
+        return LABIAL_ERROR_WORKSPACE;
+    size = (size - workspace) / sizeof *voice->items;
+    voice->model = model;
+    voice->workspace = (uint32_t *)memory;
+    voice->workspace_size = workspace;
+    voice->items = (labial_voice_place_t *)(void *)((char *)memory + workspace);
+    voice->room = (uint32_t)(size < PLACES_MAX ? size : PLACES_MAX);
+    return append_utterance(voice, 0, 0, 0);
+}
+
+int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[40])
+{
+    unsigned i;
+    const int result = voice_status(voice);
+    if (result != LABIAL_OK)
+        return result;
+    for (i = 0; numbers && i < 40u; i++)
+        if (numbers[i] >= voice->model->phoneme_count)
+            return LABIAL_ERROR_PHONEME;
+    voice->numbers = numbers;
+    voice->changed = voice->stale = 1;
+    return LABIAL_OK;
+}
+
+int labial_voice_offset(labial_voice_t *voice, int32_t milliseconds)
+{
+    const int result = voice_status(voice);
+    if (result != LABIAL_OK)
+        return result;
+    if (milliseconds > (int32_t)LABIAL_VOICE_LATEST || milliseconds < -(int32_t)LABIAL_VOICE_LATEST)
+        return LABIAL_ERROR_RANGE;
+    voice->offset = milliseconds;
+    voice->changed = voice->stale = 1;
+    return LABIAL_OK;
+}
+
+int labial_voice_begin(labial_voice_t *voice, uint64_t at, uint32_t utterance)
+{
+    unsigned i;
+    int result = voice_status(voice);
+    if (result != LABIAL_OK)
+        return result;
+    if (at != LABIAL_VOICE_BEHIND && at > LABIAL_VOICE_CLOCK)
+        return LABIAL_ERROR_RANGE;
+    labial_voice_forget(voice, voice_now(voice) - (int64_t)LABIAL_VOICE_HISTORY * 1000);
+    if (at == LABIAL_VOICE_BEHIND)
+        result = append_behind(voice, utterance);
+    else
+        result = append_utterance(voice, (int64_t)at, utterance, 0);
+    if (result != LABIAL_OK)
+        return result;
+    voice->finished = voice->cancelled = 0;
+    for (i = 0; i < LABIAL_VOICE_UTTERANCES; i++)
+        if (voice->gone[i] == utterance)
+            voice->gone[i] = 0;
+    return LABIAL_OK;
+}
+
+int labial_voice_finish(labial_voice_t *voice)
+{
+    const int result = voice_status(voice);
+    if (result == LABIAL_OK)
+        voice->finished = 1;
+    return result;
+}
+
+int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds)
+{
+    const int result = voice_status(voice);
+    if (result != LABIAL_OK)
+        return result;
+    while (voice->utterance_count > 0u)
+        labial_voice_remove_utterance(voice, voice->utterance_count - 1u);
+    voice->cancelled = voice->changed = 1;
+    voice->streaming = 0;
+    memset(voice->made, 0, sizeof voice->made);
+    labial_voice_begin_fade(voice, labial_fade_frames(milliseconds, voice->model->frames_per_second));
+    return LABIAL_OK;
+}
+
+int labial_voice_done(labial_voice_t *voice)
+{
+    unsigned i;
+    uint32_t places = 0;
+    int64_t end;
+    if (voice_status(voice) != LABIAL_OK)
+        return 0;
+    if (voice->cancelled)
+        return voice->step == voice->steps;
+    for (i = 0; i < voice->utterance_count; i++)
+        places += voice->utterances[i].places;
+    if (places == 0u || !voice->finished)
+        return voice->finished;
+    end = labial_voice_end(voice, voice->utterance_count - 1u) + LABIAL_VOICE_REST;
+    return (int64_t)voice->next * 1000 >= end * voice->model->frames_per_second;
+}
+
+labial_voice_counts_t labial_voice_counts(const labial_voice_t *voice)
+{
+    static const labial_voice_counts_t none = { 0, 0, 0 };
+    return voice_status(voice) == LABIAL_OK ? voice->counts : none;
+}

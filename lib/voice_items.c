@@ -1,0 +1,175 @@
+/*
+ * voice_items.c - the items of a voice's utterances (voice_parts.h).
+ *
+ * They lie in one array, utterance behind utterance and in the order of their beginnings, so that what is told ahead of
+ * the sound is appended, and what is over is left behind at its beginning. An item knows how many places the one before
+ * it takes, an utterance how many its last one does.
+ */
+#include "voice_parts.h"
+
+#include <string.h>
+
+/* What is over is kept for so many milliseconds more. */
+#define ITEMS_KEPT 1000
+
+uint32_t labial_voice_before(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t at)
+{
+    return at - (at == labial_voice_limit(utterance) ? utterance->tail : voice->items[at].back);
+}
+
+/* The index behind the items that begin before `start`. Most items come in order, so that this looks from the end. */
+uint32_t labial_voice_find(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t start)
+{
+    uint32_t at = labial_voice_limit(utterance);
+    while (at > utterance->first) {
+        const uint32_t before = labial_voice_before(voice, utterance, at);
+        if (voice->items[before].start < start)
+            break;
+        at = before;
+    }
+    return at;
+}
+
+/* Notes that the item at `at` stands behind one of `back` places. */
+static void link_back(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint32_t at, uint32_t back)
+{
+    if (at == labial_voice_limit(utterance))
+        utterance->tail = (uint8_t)back;
+    else
+        voice->items[at].back = (uint8_t)back;
+}
+
+/* Moves all places from `from` on to `to`, and with them the utterances behind this one. */
+static void move_places(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint32_t from, uint32_t to)
+{
+    labial_voice_utterance_t *other = voice->utterances + voice->utterance_count;
+    memmove(voice->items + to, voice->items + from, (size_t)(voice->used - from) * sizeof *voice->items);
+    voice->used = voice->used - from + to;
+    utterance->places = utterance->places - from + to;
+    while (--other > utterance)
+        other->first = other->first - from + to;
+}
+
+/* What the plan had looked at from `at` on is otherwise. */
+static void touch_plan(labial_voice_t *voice, uint32_t at)
+{
+    if (at < voice->plan.seen)
+        voice->stale = 1;
+}
+
+void labial_voice_remove(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint32_t from, uint32_t to)
+{
+    uint32_t back = 0;
+    if (from == to)
+        return;
+    touch_plan(voice, from);
+    if (from > utterance->first)
+        back = from - labial_voice_before(voice, utterance, from);
+    move_places(voice, utterance, to, from);
+    link_back(voice, utterance, from, back);
+}
+
+void labial_voice_insert(labial_voice_t *voice, labial_voice_utterance_t *utterance, const labial_voice_place_t *item,
+                         const char *text)
+{
+    const uint32_t places = labial_voice_places(item->size);
+    const uint32_t at = labial_voice_find(voice, utterance, item->start + 1u);
+    uint32_t back = 0;
+    touch_plan(voice, at);
+    if (at > utterance->first)
+        back = at - labial_voice_before(voice, utterance, at);
+    move_places(voice, utterance, at, at + places);
+    voice->items[at] = *item;
+    if (text && item->size > 0u)
+        memcpy((char *)(void *)voice->items + (size_t)at * sizeof *item + offsetof(labial_voice_place_t, text), text,
+               item->size);
+    voice->items[at].back = (uint8_t)back;
+    link_back(voice, utterance, at + places, places);
+}
+
+int labial_voice_is_over(const labial_voice_t *voice, uint32_t identity)
+{
+    unsigned i;
+    for (i = 0; i < LABIAL_VOICE_UTTERANCES; i++)
+        if (voice->gone[i] == identity)
+            return 1;
+    return 0;
+}
+
+void labial_voice_note_over(labial_voice_t *voice, uint32_t identity)
+{
+    if (identity == 0u || labial_voice_is_over(voice, identity))
+        return;
+    voice->gone[voice->over] = identity;
+    voice->over = (uint8_t)((voice->over + 1u) % LABIAL_VOICE_UTTERANCES);
+}
+
+void labial_voice_remove_utterance(labial_voice_t *voice, unsigned position)
+{
+    labial_voice_utterance_t *const utterance = voice->utterances + position;
+    const unsigned behind = voice->utterance_count - position - 1u;
+    voice->stale = 1;
+    labial_voice_note_over(voice, utterance->identity);
+    if (position > 0u)
+        labial_voice_remove(voice, utterance, utterance->first, labial_voice_limit(utterance));
+    memmove(utterance, utterance + 1, behind * sizeof *utterance);
+    voice->utterance_count--;
+    if (voice->utterance_count == 0u)
+        voice->used = 0;
+}
+
+/* Forgets the first items of the first utterance, up to a blank where they are characters. */
+static void forget_items(labial_voice_t *voice, labial_voice_utterance_t *utterance, int64_t limit)
+{
+    const uint32_t last = labial_voice_limit(utterance);
+    uint32_t at = utterance->first;
+    while (at < last) {
+        const uint32_t after = labial_voice_after(voice, at);
+        const labial_voice_place_t *const item = voice->items + at;
+        const uint32_t follows = after < last ? voice->items[after].start : UINT32_MAX;
+        const uint32_t end = item->end == LABIAL_VOICE_OPEN ? follows : item->end;
+        if (after == last || end >= limit || follows >= limit)
+            return;
+        if (utterance->kind != LABIAL_VOICE_CHARACTERS || (item->size == 1u && item->text[0] == ' ')) {
+            utterance->over = end;
+            utterance->places -= after - utterance->first;
+            utterance->first = after;
+        }
+        at = after;
+    }
+}
+
+void labial_voice_forget(labial_voice_t *voice, int64_t moment)
+{
+    const int64_t limit = moment - ITEMS_KEPT - voice->offset;
+    while (voice->utterance_count > 1u) {
+        const labial_voice_utterance_t *const first = voice->utterances;
+        if (first->origin + first->end >= limit || first[1].origin >= limit)
+            break;
+        labial_voice_remove_utterance(voice, 0);
+    }
+    if (voice->utterance_count > 0u)
+        forget_items(voice, voice->utterances, limit - voice->utterances[0].origin);
+}
+
+uint32_t labial_voice_free(const labial_voice_t *voice)
+{
+    const uint32_t front = voice->utterance_count > 0u ? voice->utterances[0].first : 0u;
+    return voice->room - voice->used + front;
+}
+
+void labial_voice_pack(labial_voice_t *voice)
+{
+    labial_voice_utterance_t *const first = voice->utterances;
+    const uint32_t front = first->first;
+    unsigned i;
+    if (front == 0u)
+        return;
+    memmove(voice->items, voice->items + front, (size_t)(voice->used - front) * sizeof *voice->items);
+    voice->used -= front;
+    for (i = 0; i < voice->utterance_count; i++)
+        first[i].first -= front;
+    if (voice->plan.seen != UINT32_MAX)
+        voice->plan.seen -= voice->plan.seen < front ? voice->plan.seen : front;
+    voice->plan.at -= voice->plan.at < front ? voice->plan.at : front;
+}

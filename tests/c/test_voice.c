@@ -1,0 +1,965 @@
+/*
+ * test_voice.c - a voice that is followed (labial/voice.h): its rules by cases worked out by hand, its frames against a
+ * stream that is given everything at once, and drawn messages that are rounded, doubled, shuffled and stale.
+ * tests/voices/oracle.py compares whole sessions.
+ */
+#include "suite.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "labial/voice.h"
+#include "speech_en.h"
+#include "voice_parts.h"
+#include "words_en.h"
+
+enum { PLACES = 600, MS = 1000 };
+
+static labial_voice_t voice;
+static uint32_t memory[LABIAL_VOICE_SIZE(3, 8, PLACES) / 4];
+static labial_voice_item_t items[PLACES];
+static labial_voice_message_t message;
+static char said[4000];
+
+static void begin_with(unsigned places)
+{
+    memset(memory, 0xa5, sizeof memory);
+    assert_int_equal(labial_voice_init(&voice, &speech_en, memory, LABIAL_VOICE_SIZE(3, 8, places)), LABIAL_OK);
+    assert_int_equal(labial_voice_words(&voice, &words_en, NULL), LABIAL_OK);
+    memset(&message, 0, sizeof message);
+    message.items = items;
+}
+
+SETUP(begin)
+{
+    begin_with(PLACES);
+    return 0;
+}
+
+/* An item of the message, milliseconds; a negative end is not known. */
+static void item(const char *text, int64_t start, int64_t end)
+{
+    labial_voice_item_t *const one = &items[message.count++];
+    memset(one, 0, sizeof *one);
+    one->start = (uint64_t)(start * MS);
+    one->end = end < 0 ? LABIAL_VOICE_NO_END : (uint64_t)(end * MS);
+    if (message.kind == LABIAL_VOICE_PHONEMES) {
+        while (one->phoneme < 39u && strcmp(labial_words_label(&words_en, one->phoneme), text) != 0)
+            one->phoneme++;
+    } else {
+        one->text = text;
+        one->size = (uint16_t)strlen(text);
+    }
+}
+
+static int tell(void)
+{
+    const int result = labial_voice_tell(&voice, &message);
+    message.count = 0;
+    return result;
+}
+
+static void tell_one(const char *text, int64_t start, int64_t end)
+{
+    item(text, start, end);
+    assert_int_equal(tell(), LABIAL_OK);
+}
+
+/* The characters of a text, 50 ms each. */
+static void characters(const char *text, int64_t start)
+{
+    static char letters[PLACES][2];
+    for (unsigned i = 0; text[i]; i++) {
+        letters[i][0] = text[i];
+        item(letters[i], start + 50 * i, start + 50 * (i + 1));
+    }
+}
+
+static int64_t plan_from;
+
+/* What is known, without silences: "100-170 M, 170-300 EY". */
+static const char *known(void)
+{
+    labial_voice_segment_t segment;
+    int64_t end = plan_from;
+    size_t size = 0;
+    *said = '\0';
+    labial_voice_plan_start(&voice, plan_from);
+    for (;;) {
+        labial_voice_plan_next(&voice, &segment);
+        assert_true(segment.start == end && segment.end > segment.start);
+        if (segment.end == INT64_MAX)
+            break;
+        end = segment.end;
+        if (segment.phoneme != SPEECH_EN_SIL)
+            size += (size_t)snprintf(said + size, sizeof said - size, "%s%ld-%ld %s", size > 0 ? ", " : "",
+                                     (long)segment.start, (long)segment.end,
+                                     labial_words_label(&words_en, segment.phoneme));
+        assert_true(size < sizeof said - 40);
+    }
+    voice.stale = voice.changed = 1;
+    return said;
+}
+
+/* ---- Phonemes and visemes ---------------------------------------------------------------------------------------- */
+
+TEST_AFTER(begin, phonemes_touch_within_their_gap)
+{
+    tell_one("M", 0, 100);
+    tell_one("AA", 101, 200); /* rounding, either way */
+    tell_one("B", 199, 300);
+    tell_one("IY", 302, 400);
+    assert_string_equal(known(), "0-101 M, 101-200 AA, 200-300 B, 302-400 IY");
+    message.gap = 50;
+    tell_one("S", 450, 500);
+    item("S", 500, 520);
+    item("AA", 570, 600);
+    item("S", 651, 700);
+    item("T", 690, 702);
+    item("S", 701, 710);
+    item("AA", 705, 720);
+    item("AA", 719, 719); /* cuts the one before by no more than rounding does */
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), "0-101 M, 101-200 AA, 200-300 B, 302-400 IY, 450-500 S, 500-570 S, 570-600 AA, "
+                                 "651-690 S, 690-702 T, 702-705 S, 705-720 AA");
+}
+
+TEST_AFTER(begin, a_message_replaces_what_was_told_of_its_time)
+{
+    tell_one("M", 0, 9);
+    tell_one("AA", 15, 18);
+    tell_one("B", 16, 20);
+    item("F", 15, -1);
+    item("S", 10, 12); /* in any order */
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), "0-10 M, 10-12 S, 15-16 F, 16-20 B");
+    tell_one("IY", 0, 500);
+    assert_string_equal(known(), "0-500 IY");
+}
+
+TEST_AFTER(begin, visemes_last_until_the_next)
+{
+    static const char *const names[] = { "8", "4", "6", "19", "16", "7", "2", "7", "7", "21" };
+    message.kind = LABIAL_VOICE_AZURE;
+    for (unsigned i = 0; i < 10; i++)
+        item(names[i], 100 * (int)i, -1);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), "0-200 OW, 200-300 IH, 300-500 CH, 500-600 W, 600-700 AA, 700-800 UW, 800-900 UW, "
+                                 "900-1000 P");
+    plan_from = 450; /* within a pair, and behind what it depends on */
+    assert_string_equal(known(), "450-500 CH, 500-600 W, 600-700 AA, 700-800 UW, 800-900 UW, 900-1000 P");
+    plan_from = 0;
+    for (unsigned i = 0; i < 6; i++)
+        item(((const char *const[]){ "22", "", "01", "123", "1a", "-" })[i], 0, -1);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_int_equal(labial_voice_counts(&voice).skipped, 6);
+    assert_int_equal(labial_voice_counts(&voice).told, 10);
+    assert_int_equal(labial_voice_end(&voice, 0), 1000);
+}
+
+TEST_AFTER(begin, visemes_of_polly)
+{
+    message.kind = LABIAL_VOICE_POLLY;
+    item("sil", 0, -1);
+    item("u", 100, -1);
+    item("@", 200, -1);
+    item("sil", 300, -1);
+    item("q", 300, -1);
+    for (unsigned i = 0; i < 5; i++)
+        item(((const char *const[]){ "si", "xil", "sal", "six", "" })[i], 300, -1);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), "100-200 W, 200-300 AH");
+    assert_int_equal(labial_voice_counts(&voice).skipped, 6);
+    assert_int_equal(labial_voice_end(&voice, 0), 400);
+}
+
+TEST_AFTER(begin, the_first_kind_counts)
+{
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    characters("no", 0);
+    assert_int_equal(tell(), LABIAL_OK);
+    message.kind = LABIAL_VOICE_WORDS;
+    tell_one("hum", 0, 300);
+    assert_non_null(strstr(known(), "-300 M"));
+    assert_null(strstr(said, "OW"));
+    message.kind = LABIAL_VOICE_PHONEMES;
+    tell_one("S", 100, 200);
+    assert_string_equal(known(), "100-200 S");
+    message.kind = LABIAL_VOICE_WORDS;
+    tell_one("no", 300, 400);
+    assert_string_equal(known(), "100-200 S");
+}
+
+/* ---- Words and characters ---------------------------------------------------------------------------------------- */
+
+TEST_AFTER(begin, words_are_those_of_the_library)
+{
+    static const char *const texts[] = { "Maybe,", "people", "(", "hum", "\xe4\xbd\xa0\xe5\xa5\xbd", "strengths" };
+    static const int starts[] = { 100, 560, 700, 970, 1400, 1800 }, ends[] = { 520, 950, -1, 1200, 1700, -1 };
+    labial_words_t words;
+    unsigned phoneme;
+    uint32_t milliseconds, time = 0;
+    char wanted[2000];
+    size_t size = 0;
+    message.kind = LABIAL_VOICE_WORDS;
+    labial_words_init(&words, &words_en, NULL, 0);
+    for (unsigned i = 0; i <= 6; i++) {
+        if (i < 6) {
+            tell_one(texts[i], starts[i], ends[i]);
+            assert_int_equal(
+                labial_words_push(&words, texts[i], strlen(texts[i]), (uint32_t)starts[i], (uint32_t)ends[i]),
+                LABIAL_OK);
+        } else {
+            labial_words_end(&words);
+        }
+        while (labial_words_next(&words, &phoneme, &milliseconds) == LABIAL_OK) {
+            if (phoneme != 0)
+                size += (size_t)snprintf(wanted + size, sizeof wanted - size, "%s%u-%u %s", size > 0 ? ", " : "",
+                                         (unsigned)time, (unsigned)(time + milliseconds),
+                                         labial_words_label(&words_en, phoneme));
+            time += milliseconds;
+        }
+    }
+    assert_string_equal(known(), wanted);
+    assert_int_equal(labial_voice_end(&voice, 0), time);
+    tell_one("\xe4\xbd\xa0", 3000, -1);
+    assert_int_equal(labial_voice_end(&voice, 0), 3300); /* two phonemes that nobody knows */
+    tell_one("...", 3300, -1);
+    assert_int_equal(labial_voice_end(&voice, 0), 3300);
+    tell_one("hum", 3400, 5000);
+    assert_int_equal(labial_voice_end(&voice, 0), 5000);
+}
+
+TEST_AFTER(begin, characters_are_words_between_blanks)
+{
+    char first[1000];
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    characters("hum [softly] by", 0);
+    assert_int_equal(tell(), LABIAL_OK);
+    strcpy(first, known());
+    begin_with(PLACES);
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    item("hum ", 0, 200); /* the same in pieces, with a tag of another kind */
+    item("<a b", 200, 400);
+    item(">\xc2\xa0", 400, 600);
+    item("\xe2\x80\x83", 600, 600);
+    item("\xe3\x80\x80", 600, 600);
+    item("by", 650, 750);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), first);
+    plan_from = 640;
+    assert_string_equal(known(), strstr(first, "650"));
+    plan_from = 0;
+    tell_one("\xe2\x80\x94", 740, 760); /* no blank */
+    tell_one("\n", 760, 770);
+    tell_one("[", 800, 700); /* ends before it begins: with its beginning, and no tag, as it is not closed */
+    tell_one("hum", 800, 950);
+    tell_one("<", 950, -1);
+    assert_non_null(strstr(known(), "-950 M"));
+    assert_int_equal(labial_voice_counts(&voice).skipped, 0);
+}
+
+TEST_AFTER(begin, characters_that_overlap_and_long_words)
+{
+    char text[301];
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    item("hum by", 0, 600);
+    item(" no", 250, 300); /* begins within the word before it */
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_non_null(strstr(known(), "-400 M"));
+    begin_with(PLACES);
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    memset(text, 'o', 300);
+    text[300] = '\0';
+    characters(text, 0);
+    assert_int_equal(tell(), LABIAL_OK);
+    known();
+    assert_non_null(strstr(said, "-15000 "));
+}
+
+TEST_AFTER(begin, a_tag_is_looked_for_in_a_hundred_characters)
+{
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    item("[", 0, 10);
+    item(" oh", 10, 200);
+    for (int i = 2; i <= 101; i++)
+        item(" ", 10 * i + 180, 10 * i + 190);
+    item("]", 1200, 1210);
+    item("no", 1240, 1400);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_true(strncmp(known(), "73-", 3) == 0); /* it has no end that is near enough */
+    tell_one("]", 1180, 1190);
+    assert_true(strncmp(known(), "1200-", 5) == 0);
+}
+
+static const uint8_t own_sounds[] = { SPEECH_EN_S, SPEECH_EN_T };
+static const labial_words_entry_t own_entry = { "hum", own_sounds, 2 };
+static const labial_words_own_t own_words = { &own_entry, 1 };
+static unsigned asked;
+
+static const labial_words_own_t *ask(void *user, const char *text, size_t size)
+{
+    assert_ptr_equal(user, &asked);
+    asked++;
+    return size == 3 && memcmp(text, "hum", 3) == 0 ? &own_words : NULL;
+}
+
+TEST_AFTER(begin, pronunciations_are_the_callers)
+{
+    message.kind = LABIAL_VOICE_WORDS;
+    tell_one("hum", 0, 200);
+    assert_int_equal(labial_voice_words(&voice, &words_en, &own_words), LABIAL_OK);
+    assert_non_null(strstr(known(), "S, "));
+    assert_int_equal(labial_voice_words(&voice, &words_en, NULL), LABIAL_OK);
+    assert_non_null(strstr(known(), "HH, "));
+    assert_int_equal(labial_voice_pronounce(&voice, ask, &asked), LABIAL_OK);
+    tell_one("no", 200, -1);
+    assert_non_null(strstr(known(), "S, "));
+    assert_true(asked >= 2);
+    begin_with(PLACES);
+    assert_int_equal(labial_voice_pronounce(&voice, ask, &asked), LABIAL_OK);
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    characters("hum", 0);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_non_null(strstr(known(), "S, "));
+}
+
+/* ---- Utterances -------------------------------------------------------------------------------------------------- */
+
+static uint32_t name(const char *text)
+{
+    return labial_voice_identity(text, strlen(text));
+}
+
+TEST_AFTER(begin, utterances_queue_behind_each_other)
+{
+    assert_int_equal(name("a"), 0xe40c292c); /* FNV-1a */
+    assert_int_equal(labial_voice_identity(NULL, 7), labial_voice_identity("", 0));
+    assert_int_equal(labial_voice_identity("\x07"
+                                           "r9Q\x1f\x15",
+                                           0) != 0,
+                     1);
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    message.utterance = name("b");
+    tell_one("S", 0, 100);
+    message.utterance = name("c");
+    tell_one("F", 0, 100);
+    message.utterance = name("a"); /* more of the first one: the others come later */
+    tell_one("AA", 500, 700);
+    assert_string_equal(known(), "0-500 M, 500-700 AA, 700-800 S, 800-900 F");
+    message.utterance = name("b");
+    tell_one("S", 50, 70);
+    message.utterance = 0; /* the latest one */
+    tell_one("F", 100, 150);
+    assert_string_equal(known(), "0-500 M, 500-700 AA, 700-750 S, 750-770 S, 800-900 F, 900-950 F");
+    message.utterance = name("b");
+    tell_one("S", 100, 300);
+    assert_string_equal(known(), "0-500 M, 500-700 AA, 700-750 S, 750-770 S, 800-1000 S, 1000-1100 F, 1100-1150 F");
+}
+
+static void play(uint64_t until)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    while (labial_voice_next(&voice, until, NULL, faps) == LABIAL_OK)
+        continue;
+}
+
+TEST_AFTER(begin, what_is_heard_is_not_moved)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    message.utterance = name("b");
+    tell_one("S", 0, 900);
+    play(600);
+    message.utterance = name("a");
+    tell_one("AA", 500, 1700); /* late: it is cut where the next one began */
+    assert_string_equal(known(), "0-500 M, 500-1400 S");
+    assert_int_equal(labial_voice_begin(&voice, 2000, 0), LABIAL_OK); /* told by the caller: it is not moved, either */
+    message.utterance = name("b");
+    tell_one("AA", 900, 2700);
+    assert_string_equal(known(), "0-500 M, 500-1400 S, 1400-2000 AA");
+}
+
+TEST_AFTER(begin, stale_messages_change_nothing)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    play(100);
+    assert_int_equal(labial_voice_cancel(&voice, 100), LABIAL_OK);
+    item("M", 500, 900);
+    assert_int_equal(tell(), LABIAL_CANCELLED);
+    message.utterance = name("b"); /* of the cancelled answer as well, as it comes before the next begins */
+    item("M", 0, 900);
+    assert_int_equal(tell(), LABIAL_CANCELLED);
+    message.utterance = 0;
+    item("M", 0, 900);
+    assert_int_equal(tell(), LABIAL_CANCELLED);
+    assert_int_equal(labial_voice_begin(&voice, 1000, 0), LABIAL_OK);
+    message.utterance = name("c");
+    tell_one("S", 0, 100);
+    for (unsigned i = 0; i < 2; i++) {
+        message.utterance = name(i ? "a" : "b");
+        item("AA", 0, 900);
+        assert_int_equal(tell(), LABIAL_CANCELLED);
+    }
+    assert_string_equal(known(), "1000-1100 S");
+    assert_int_equal(labial_voice_counts(&voice).dropped, 5);
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, name("a")),
+                     LABIAL_OK); /* unless the caller says so */
+    message.utterance = name("a");
+    tell_one("AA", 0, 100);
+    assert_string_equal(known(), "1000-1100 S, 1100-1200 AA");
+}
+
+TEST_AFTER(begin, an_utterance_that_ended_is_over)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    message.utterance = name("b");
+    tell_one("S", 0, 500);
+    for (unsigned i = 1; i < 200; i++)
+        play(100 * i);
+    tell_one("S", 19500, 19900);
+    message.utterance = name("a");
+    item("M", 500, 900);
+    assert_int_equal(tell(), LABIAL_CANCELLED);
+    assert_int_equal(voice.utterance_count, 1);
+}
+
+TEST_AFTER(begin, after_the_end_the_next_one_begins)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    tell_one("AA", 500, 600); /* the one that ended goes on */
+    message.utterance = 0;
+    tell_one("S", 0, 100);
+    assert_string_equal(known(), "0-500 M, 500-600 AA, 600-700 S");
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    message.utterance = name("b");
+    tell_one("F", 0, 100);
+    assert_string_equal(known(), "0-500 M, 500-600 AA, 600-700 S, 700-800 F");
+    assert_int_equal(voice.utterance_count, 3);
+}
+
+TEST_AFTER(begin, an_utterance_ends_where_the_next_begins)
+{
+    tell_one("M", 0, 500);
+    assert_int_equal(labial_voice_begin(&voice, 300, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 400, 0), LABIAL_OK); /* the one before has nothing, but it began */
+    tell_one("S", 0, 100);
+    assert_string_equal(known(), "0-300 M, 400-500 S");
+    assert_int_equal(voice.utterance_count, 2);
+    assert_int_equal(labial_voice_begin(&voice, 100, 0), LABIAL_OK);
+    tell_one("F", 0, 50);
+    assert_string_equal(known(), "0-300 M");
+}
+
+TEST_AFTER(begin, there_are_only_so_many_utterances)
+{
+    char text[2] = "a";
+    for (; text[0] < 'a' + LABIAL_VOICE_UTTERANCES; text[0]++) {
+        message.utterance = name(text);
+        tell_one("M", 0, 100);
+    }
+    message.utterance = name(text);
+    item("M", 0, 100);
+    assert_int_equal(tell(), LABIAL_ERROR_FULL);
+    assert_int_equal(labial_voice_begin(&voice, 5, 0), LABIAL_ERROR_FULL);
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_ERROR_FULL);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    message.utterance = 0;
+    item("M", 0, 100);
+    assert_int_equal(tell(), LABIAL_ERROR_FULL);
+    play(4000); /* the first ones are over */
+    play(9000);
+    tell_one("M", 0, 100);
+}
+
+/* ---- Times of messages ------------------------------------------------------------------------------------------- */
+
+TEST_AFTER(begin, chained_messages_begin_where_the_last_one_ended)
+{
+    message.times = LABIAL_VOICE_CHAINED;
+    for (unsigned i = 0; i < 4; i++) { /* rounding does not add up */
+        item("M", 0, 0);
+        items[0].end = 100400;
+        assert_int_equal(tell(), LABIAL_OK);
+    }
+    assert_string_equal(known(), "0-100 M, 100-201 M, 201-301 M, 301-402 M");
+}
+
+TEST_AFTER(begin, joined_messages_that_begin_again)
+{
+    message.times = LABIAL_VOICE_JOINED;
+    message.utterance = name("a");
+    item("M", 100, 200);
+    item("AA", 200, 400);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("M", 400, 500); /* goes on, */
+    item("AA", 500, 700);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("S", 0, 150); /* begins again, */
+    item("F", 150, 300);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("S", 300, 400); /* and goes on from there */
+    assert_int_equal(tell(), LABIAL_OK);
+    item("F", 0, 100);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("F", 0, 100); /* comes twice */
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), "100-200 M, 200-400 AA, 400-500 M, 500-700 AA, 700-850 S, 850-1000 F, 1000-1100 S, "
+                                 "1100-1200 F");
+    assert_int_equal(labial_voice_counts(&voice).dropped, 1);
+    item("S", 5, 24); /* less than rounding, and nothing at all */
+    assert_int_equal(tell(), LABIAL_OK);
+    item("S", 0, 0);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("S", -0, -1);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_int_equal(voice.utterances[0].base, 1100 * MS);
+}
+
+TEST_AFTER(begin, joined_messages_fill_gaps)
+{
+    message.times = LABIAL_VOICE_JOINED;
+    item("M", 0, 200);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("S", 400, 600);
+    item("T", 600, 700);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("AA", 195, 405); /* late, and rounded */
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), "0-195 M, 195-400 AA, 400-600 S, 600-700 T");
+}
+
+TEST_AFTER(begin, joined_messages_begin_again_after_what_is_forgotten)
+{
+    message.times = LABIAL_VOICE_JOINED;
+    for (unsigned i = 0; i < 40; i++) {
+        item("M", 300 * (int)i, 300 * (int)i + 250);
+        assert_int_equal(tell(), LABIAL_OK);
+        play(300 * (uint64_t)i + 200);
+    }
+    assert_true(voice.utterances[0].over > 5000 && voice.utterances[0].places < 20);
+    item("S", 0, 200);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_int_equal(voice.utterances[0].base, (39 * 300 + 250) * MS);
+    item("S", 200, 300);
+    assert_int_equal(tell(), LABIAL_OK);
+    plan_from = 11000;
+    assert_non_null(strstr(known(), "11700-11950 M, 11950-12150 S, 12150-12250 S"));
+    plan_from = 0;
+}
+
+TEST_AFTER(begin, a_key_replaces_what_was_told_of_it)
+{
+    message.kind = LABIAL_VOICE_WORDS;
+    message.key = 1;
+    tell_one("hum", 0, 200);
+    message.key = 2;
+    item("no", 200, 300);
+    item("no", 300, 500);
+    assert_int_equal(tell(), LABIAL_OK);
+    message.key = 70000; /* another one, though it is kept in 16 bits */
+    tell_one("by", 500, 700);
+    message.key = 2;
+    tell_one("by", 250, 400);
+    assert_int_equal(voice.utterances[0].places, 3);
+    message.key = 1;
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_int_equal(voice.utterances[0].places, 2);
+    assert_int_equal(voice.items[labial_voice_find(&voice, voice.utterances, 0)].start, 250);
+}
+
+/* ---- Memory ------------------------------------------------------------------------------------------------------ */
+
+TEST_AFTER(begin, memory_is_bounded)
+{
+    begin_with(12);
+    message.kind = LABIAL_VOICE_WORDS;
+    for (int i = 0; i < 6; i++)
+        tell_one("people", 300 * i, 300 * i + 200); /* two places each */
+    item("a", 1800, 1900);
+    assert_int_equal(tell(), LABIAL_ERROR_FULL);
+    tell_one("pupils", 1500, 1700); /* in place of one that was there */
+    play(6000);
+    for (int i = 0; i < 200; i++) {
+        tell_one(i % 3 ? "a" : "people", 4500 + 600 * i, 4800 + 600 * i);
+        play((uint64_t)(6000 + 600 * i));
+    }
+    assert_true(voice.used <= 12);
+    assert_true(labial_voice_counts(&voice).told == 207 && labial_voice_counts(&voice).skipped == 0);
+    assert_int_equal(labial_voice_init(&voice, &speech_en, memory, LABIAL_VOICE_SIZE(3, 8, 1) - 1),
+                     LABIAL_ERROR_WORKSPACE);
+}
+
+TEST_AFTER(begin, texts_are_kept_up_to_255_bytes)
+{
+    char text[301];
+    message.kind = LABIAL_VOICE_WORDS;
+    memset(text, 'a', 300);
+    text[300] = '\0';
+    memcpy(text + 253, "\xe4\xbd\xa0", 3);
+    tell_one(text, 0, 500);
+    assert_int_equal(voice.items[0].size, 253);
+    assert_int_equal(voice.utterances[0].places, labial_voice_places(253));
+    memset(text, 0x80, 300); /* no character begins anywhere */
+    tell_one(text, 500, 600);
+    assert_int_equal(voice.items[labial_voice_places(253)].size, 0);
+    assert_int_equal(labial_voice_word(&voice, text, 100000, 700, 800), LABIAL_OK);
+    message.kind = LABIAL_VOICE_CHARACTERS;
+}
+
+TEST_AFTER(begin, items_that_make_no_sense_are_skipped)
+{
+    static const int64_t times[][2] = { { 200, 100 }, { 0, 3600001 }, { 86400001, 86400001 }, { 86399999, 86400001 } };
+    for (unsigned i = 0; i < 4; i++)
+        item("M", times[i][0], times[i][1]);
+    item("M", 100, 200);
+    item("M", 0, 0);
+    items[5].phoneme = 40;
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_string_equal(known(), "100-200 M");
+    assert_int_equal(labial_voice_counts(&voice).skipped, 5);
+    assert_int_equal(labial_voice_phoneme(&voice, 1000, 0, 5), LABIAL_OK);
+    message.kind = LABIAL_VOICE_AZURE;
+    assert_int_equal(labial_voice_begin(&voice, 300, 0), LABIAL_OK);
+    item("1", 0, 5);
+    items[0].text = NULL;
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_int_equal(labial_voice_counts(&voice).skipped, 7);
+    message.times = LABIAL_VOICE_CHAINED; /* beyond a day once it is chained */
+    message.kind = LABIAL_VOICE_PHONEMES;
+    item("M", 86000000, 86400000);
+    assert_int_equal(tell(), LABIAL_OK);
+    item("M", 0, 1);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_int_equal(labial_voice_counts(&voice).skipped, 8);
+}
+
+/* ---- Frames ------------------------------------------------------------------------------------------------------ */
+
+enum { FRAMES = 130 };
+
+static int16_t wanted[FRAMES][LABIAL_CHANNELS], shown[FRAMES][LABIAL_CHANNELS];
+static unsigned frame_count;
+
+static void on_wanted(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+{
+    (void)user;
+    if (frame < FRAMES)
+        memcpy(wanted[frame], faps, sizeof wanted[frame]);
+}
+
+static const struct {
+    unsigned phoneme, milliseconds;
+} sentence[] = { { SPEECH_EN_SIL, 100 }, { SPEECH_EN_M, 70 },    { SPEECH_EN_EY, 130 },     { SPEECH_EN_B, 60 },
+                 { SPEECH_EN_IY, 140 },  { SPEECH_EN_SIL, 250 }, { SPEECH_EN_G, 70 },       { SPEECH_EN_OW, 180 },
+                 { SPEECH_EN_P, 80 },    { SPEECH_EN_UW, 220 },  { SPEECH_EN_SIL, 3600000 } };
+enum { SENTENCE = sizeof sentence / sizeof *sentence };
+
+/* The frames of the sentence, `later` milliseconds later, from a stream that has all of it. */
+static void want(unsigned later)
+{
+    static labial_t stream;
+    static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
+    labial_init(&stream, &speech_en, workspace, sizeof workspace, on_wanted, NULL);
+    for (unsigned i = 0; i < SENTENCE; i++)
+        assert_int_equal(labial_push(&stream, sentence[i].phoneme, sentence[i].milliseconds + (i == 0 ? later : 0)),
+                         LABIAL_OK);
+    while (labial_latency(&stream).frames > 180000 - FRAMES)
+        labial_tick(&stream);
+}
+
+static void tell_sentence(unsigned from, unsigned to)
+{
+    uint32_t time = 0;
+    for (unsigned i = 0; i < to && i < SENTENCE - 1u; time += sentence[i++].milliseconds)
+        if (i >= from && sentence[i].phoneme != SPEECH_EN_SIL)
+            assert_int_equal(labial_voice_phoneme(&voice, sentence[i].phoneme, time, time + sentence[i].milliseconds),
+                             LABIAL_OK);
+}
+
+static void show_until(unsigned milliseconds)
+{
+    uint32_t frame = 77;
+    for (unsigned now = 20 * frame_count; now <= milliseconds; now += 20) {
+        assert_int_equal(labial_voice_next(&voice, now, &frame, shown[frame_count]), LABIAL_OK);
+        assert_int_equal(labial_voice_next(&voice, now, &frame, shown[frame_count]), LABIAL_WAITING);
+        assert_int_equal(frame, frame_count);
+        frame_count++;
+    }
+}
+
+SETUP(begin_frames)
+{
+    begin_with(PLACES);
+    frame_count = 0;
+    want(0);
+    return 0;
+}
+
+TEST_AFTER(begin_frames, what_is_told_in_time_is_exact)
+{
+    tell_sentence(0, 5);
+    for (unsigned t = 0; t < 2400; t += 13) {
+        if (t >= 200 && t < 213)
+            tell_sentence(5, 9);
+        if (t >= 494 && t < 507)
+            tell_sentence(9, SENTENCE);
+        show_until(t);
+    }
+    assert_int_equal(frame_count, 120);
+    assert_memory_equal(shown, wanted, 120 * sizeof *shown);
+}
+
+TEST_AFTER(begin_frames, what_is_told_late_fades_in)
+{
+    tell_sentence(0, 6);
+    show_until(700);
+    tell_sentence(6, SENTENCE);
+    tell_sentence(6, SENTENCE);   /* again: nothing new */
+    labial_voice_t moved = voice; /* the structure may be moved */
+    memset(&voice, 0xa5, sizeof voice);
+    voice = moved;
+    show_until(2300);
+    assert_memory_equal(shown, wanted, 20 * sizeof *shown); /* those that do not see the end of the pause */
+    assert_memory_not_equal(shown[36], wanted[36], sizeof *shown);
+    assert_memory_equal(shown[43], wanted[43], (116 - 43) * sizeof *shown);
+    tell_sentence(0, 2); /* long over */
+    show_until(2400);
+    assert_memory_equal(shown[116], wanted[116], 5 * sizeof *shown);
+}
+
+TEST_AFTER(begin_frames, a_change_and_its_opposite_are_none)
+{
+    tell_sentence(0, SENTENCE);
+    show_until(300);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_F, 300, 360), LABIAL_OK);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_B, 300, 360), LABIAL_OK);
+    show_until(2300);
+    assert_memory_equal(shown, wanted, 116 * sizeof *shown);
+}
+
+TEST_AFTER(begin_frames, clocks_jump)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    uint32_t frame;
+    tell_sentence(0, SENTENCE);
+    show_until(200);
+    assert_int_equal(labial_voice_next(&voice, 100, &frame, faps), LABIAL_WAITING);
+    assert_int_equal(labial_voice_next(&voice, 1240, &frame, faps), LABIAL_OK);
+    assert_int_equal(frame, 62);
+    assert_int_equal(labial_voice_next(&voice, 1240, &frame, faps), LABIAL_WAITING);
+    for (unsigned k = 63; k < 80; k++) {
+        assert_int_equal(labial_voice_next(&voice, 20 * k, &frame, faps), LABIAL_OK);
+        assert_true(frame == k);
+    }
+    assert_memory_equal(faps, wanted[79], sizeof faps);
+    assert_int_equal(labial_voice_next(&voice, LABIAL_VOICE_CLOCK, &frame, faps), LABIAL_OK);
+    assert_int_equal(frame, 1600000000);
+}
+
+TEST_AFTER(begin_frames, a_cancel_eases_to_rest)
+{
+    static const int16_t rest[LABIAL_CHANNELS];
+    tell_sentence(0, SENTENCE);
+    show_until(900);
+    assert_memory_equal(shown, wanted, 46 * sizeof *shown);
+    assert_int_equal(labial_voice_cancel(&voice, 90), LABIAL_OK);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    show_until(960);
+    assert_memory_not_equal(shown[48], rest, sizeof rest);
+    show_until(1000);
+    assert_memory_equal(shown[50], rest, sizeof rest);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_int_equal(labial_voice_begin(&voice, 1100, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_SIL, 0, 200), LABIAL_OK); /* that is nothing */
+    show_until(1200);
+    assert_memory_equal(shown[60], rest, sizeof rest);
+    tell_sentence(0, SENTENCE);
+    want(1100);
+    show_until(2400);
+    assert_memory_equal(shown[70], wanted[70], 51 * sizeof *shown);
+}
+
+TEST_AFTER(begin_frames, done)
+{
+    assert_int_equal(labial_voice_done(&voice), 0);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_done(&voice), 1); /* nothing was told */
+    tell_sentence(0, SENTENCE);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    show_until(1760); /* the last one ends at 1300 */
+    assert_int_equal(labial_voice_done(&voice), 0);
+    show_until(1780);
+    assert_int_equal(labial_voice_done(&voice), 1);
+}
+
+TEST_AFTER(begin_frames, a_silence_of_hours)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    tell_sentence(0, SENTENCE);
+    show_until(500);
+    for (uint64_t k = 1; k <= 4; k++) /* the clock jumps, and goes on for longer than an hour */
+        assert_int_equal(labial_voice_next(&voice, 3000000 * k, NULL, faps), LABIAL_OK);
+    for (unsigned k = 600001; k < 600001 + 185000; k++)
+        assert_int_equal(labial_voice_next(&voice, UINT64_C(20) * k, NULL, faps), LABIAL_OK);
+}
+
+TEST_AFTER(begin_frames, phonemes_of_a_millisecond)
+{
+    for (unsigned i = 0; i < 400; i++)
+        assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA + i % 2u, i, i + 1u), LABIAL_OK);
+    show_until(300); /* the stream was given more of them than are noted */
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_M, 350, 400), LABIAL_OK);
+    show_until(1000);
+    assert_int_equal(frame_count, 51);
+}
+
+/* ---- Drawn sentences --------------------------------------------------------------------------------------------- */
+
+enum { WORDS = 24 };
+
+/* The largest distance of a word's first phoneme from where it is spoken, of messages that are told in a drawn way. */
+static int64_t shift_of(fixture_random_t *random, unsigned way)
+{
+    static const unsigned grids[] = { 1, 1000, 1000, 10000, 20000 };
+    const unsigned grid = grids[fixture_below(random, 5)], spans = fixture_below(random, 3);
+    uint64_t starts[WORDS + 1];
+    unsigned order[WORDS], firsts[WORDS + 1], messages = 0, told = 0;
+    int64_t worst = 0;
+    labial_voice_segment_t segment;
+    starts[0] = fixture_below(random, 400000);
+    for (unsigned i = 0; i < WORDS; i++)
+        starts[i + 1] = starts[i] + 60000 + fixture_below(random, 400000);
+    for (unsigned i = 0; i < WORDS; i += 1u + fixture_below(random, 5))
+        firsts[messages++] = i;
+    firsts[messages] = WORDS;
+    for (unsigned i = 0; i < messages; i++)
+        order[i] = i;
+    if (way == 2) /* shuffled with the next one */
+        for (unsigned i = 0; i + 1 < messages; i += 2) {
+            order[i] = i + 1;
+            order[i + 1] = i;
+        }
+    begin_with(PLACES);
+    message.times = LABIAL_VOICE_JOINED;
+    message.utterance = name("answer");
+    for (unsigned m = 0; m < messages; m++) {
+        const unsigned first = firsts[order[m]], last = firsts[order[m] + 1];
+        const uint64_t origin = way == 3 ? starts[first] : 0; /* each from its own sound */
+        for (unsigned repeat = 0; repeat < (way == 1 ? 2u : 1u); repeat++) {
+            for (unsigned i = first; i < last; i++) {
+                const uint64_t start = starts[i] - origin, end = starts[i + 1] - origin;
+                item(i % 2 ? "M" : "S", 0, 0);
+                items[i - first].start = (start + grid / 2) / grid * grid; /* rounded, */
+                if (spans == 0) /* and so is the end, or the duration, or both are cut */
+                    items[i - first].end = (end + grid / 2) / grid * grid;
+                else if (spans == 1)
+                    items[i - first].end = items[i - first].start + (end - start + grid / 2) / grid * grid;
+                else
+                    items[i - first].end = items[i - first].start + (end - start) / grid * grid;
+            }
+            told++;
+            assert_int_equal(tell(), LABIAL_OK);
+        }
+        message.utterance = name("stale");
+        if (voice.cancelled == 0 && m == 0) { /* of an answer that was interrupted before */
+            labial_voice_note_over(&voice, message.utterance);
+        }
+        item("AA", 0, 300);
+        assert_int_equal(tell(), LABIAL_CANCELLED);
+        message.utterance = name("answer");
+    }
+    assert_true(told >= messages);
+    labial_voice_plan_start(&voice, 0);
+    for (unsigned i = 0; i < WORDS;) {
+        int64_t distance;
+        labial_voice_plan_next(&voice, &segment);
+        assert_true(segment.end != INT64_MAX);
+        if (segment.phoneme == SPEECH_EN_SIL)
+            continue;
+        assert_int_equal(segment.phoneme, i % 2 ? SPEECH_EN_M : SPEECH_EN_S);
+        distance = llabs(segment.start - (int64_t)(starts[i] / 1000) + (way == 3 ? (int64_t)(starts[0] / 1000) : 0));
+        worst = distance > worst ? distance : worst;
+        i++;
+    }
+    return worst;
+}
+
+TEST_AFTER(begin, drawn_messages_are_not_shifted)
+{
+    fixture_random_t random = { fixture_seed(34) };
+    for (unsigned way = 0; way < 3; way++)
+        for (int i = 0; i < FIXTURE_ROUNDS(1000); i++)
+            assert_in_range(shift_of(&random, way), 0, 20);
+}
+
+/* ---- Misuse ------------------------------------------------------------------------------------------------------ */
+
+TEST_AFTER(begin, misuse)
+{
+    static const uint8_t numbers[40] = { SPEECH_EN_SIL, SPEECH_EN_M }, wrong[40] = { 39, 40 };
+    static labial_model_t other;
+    static labial_words_model_t other_words;
+    int16_t faps[LABIAL_CHANNELS];
+    labial_voice_t none;
+    memset(&none, 0, sizeof none);
+    message.count = 1;
+    for (unsigned i = 0; i < 2; i++) {
+        labial_voice_t *const bad = i ? &none : NULL;
+        const int error = i ? LABIAL_ERROR_STATE : LABIAL_ERROR_NULL;
+        assert_int_equal(labial_voice_words(bad, &words_en, NULL), error);
+        assert_int_equal(labial_voice_pronounce(bad, NULL, NULL), error);
+        assert_int_equal(labial_voice_numbers(bad, NULL), error);
+        assert_int_equal(labial_voice_offset(bad, 0), error);
+        assert_int_equal(labial_voice_tell(bad, &message), error);
+        assert_int_equal(labial_voice_word(bad, "a", 1, 0, 5), error);
+        assert_int_equal(labial_voice_phoneme(bad, 1, 0, 5), error);
+        assert_int_equal(labial_voice_begin(bad, 0, 0), error);
+        assert_int_equal(labial_voice_finish(bad), error);
+        assert_int_equal(labial_voice_cancel(bad, 0), error);
+        assert_int_equal(labial_voice_next(bad, 0, NULL, faps), error);
+        assert_int_equal(labial_voice_done(bad), 0);
+        assert_int_equal(labial_voice_counts(bad).told, 0);
+    }
+    assert_int_equal(labial_voice_tell(&voice, NULL), LABIAL_ERROR_NULL);
+    message.items = NULL;
+    assert_int_equal(labial_voice_tell(&voice, &message), LABIAL_ERROR_NULL);
+    message.count = 0;
+    assert_int_equal(labial_voice_tell(&voice, &message), LABIAL_OK);
+    message.kind = LABIAL_VOICE_CHARACTERS + 1;
+    assert_int_equal(labial_voice_tell(&voice, &message), LABIAL_ERROR_RANGE);
+    message.kind = 0;
+    message.times = LABIAL_VOICE_JOINED + 1;
+    assert_int_equal(labial_voice_tell(&voice, &message), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_voice_word(&voice, NULL, 1, 0, 5), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_words(&voice, NULL, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_words(&voice, &other_words, NULL), LABIAL_ERROR_VERSION);
+    assert_int_equal(labial_voice_numbers(&voice, wrong), LABIAL_ERROR_PHONEME);
+    assert_int_equal(labial_voice_offset(&voice, (int32_t)LABIAL_VOICE_LATEST + 1), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_voice_offset(&voice, -(int32_t)LABIAL_VOICE_LATEST - 1), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_CLOCK + 1, 0), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_voice_next(&voice, LABIAL_VOICE_CLOCK + 1, NULL, faps), LABIAL_ERROR_RANGE);
+    assert_int_equal(labial_voice_next(&voice, 0, NULL, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_word(&voice, "a", 1, 100, LABIAL_VOICE_OPEN), LABIAL_OK);
+    assert_int_equal(labial_voice_numbers(&voice, numbers), LABIAL_OK); /* every word is now of silences and M */
+    assert_int_equal(labial_voice_offset(&voice, 50), LABIAL_OK);
+    known();
+    assert_int_equal(labial_voice_init(NULL, &speech_en, memory, sizeof memory), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_init(&voice, NULL, memory, sizeof memory), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_init(&voice, &speech_en, NULL, sizeof memory), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_init(&voice, &other, memory, sizeof memory), LABIAL_ERROR_VERSION);
+    assert_int_equal(labial_voice_init(&voice, &speech_en, (char *)memory + 1, sizeof memory - 1),
+                     LABIAL_ERROR_WORKSPACE);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_voice_init(&voice, &speech_en, memory, sizeof memory), LABIAL_OK);
+    assert_int_equal(labial_voice_word(&voice, "a", 1, 0, 5), LABIAL_ERROR_STATE); /* no words */
+}
+
+SUITE(NULL, NULL)

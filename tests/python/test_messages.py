@@ -1,0 +1,197 @@
+"""Messages of services as they arrive: what users hold, what makes no sense, and limits for those of strangers."""
+
+from __future__ import annotations
+
+import json
+import logging
+import re
+import time
+from collections import namedtuple
+from dataclasses import dataclass
+from datetime import timedelta
+from enum import Enum
+from functools import partial
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Tuple
+
+import pytest
+
+from labial.corpus.labels import LONGEST
+from labial.corpus.messages import Messages, Stats
+from labial.corpus.phonesets import PHONE_SETS
+from labial.corpus.services import SERVICES, read
+from labial.errors import LabialError
+from labial.files import limits
+from packages import SOURCE
+from services import SAMPLES
+
+GO = {"word": "go", "start": 0.5, "end": 0.75}
+
+
+def told(*messages: Any) -> List[Tuple[str, float, Any]]:
+    """The items that messages tell."""
+    reader = Messages()
+    return [(item.text, item.start, item.end) for message in messages for heard in reader.read(message)
+            for one in heard.told for item in one.items]
+
+
+class _Dumps:
+    """An object of a client library: `name` is what makes a dictionary of it."""
+
+    def __init__(self, name: str, fields: Dict[str, Any]) -> None:
+        setattr(self, name, lambda: fields)
+
+
+@dataclass
+class _Word:
+    word: str
+    start: float
+    end: float
+
+
+class _Boundary(Enum):
+    WORD = "WordBoundary"
+
+
+class _Event:
+    """As Azure's event arguments are: properties, one of which has no value."""
+
+    audio_offset, duration, boundary_type = 5_000_000, timedelta(seconds=0.25), _Boundary.WORD
+
+    @property
+    def text(self) -> str:
+        return "go"
+
+    @property
+    def result_id(self) -> str:
+        raise RuntimeError("no result")
+
+
+@pytest.mark.parametrize("message", [
+    GO, [GO], json.dumps(GO), json.dumps(GO).encode(), f"data: {json.dumps(GO)}\n\n",
+    b"data: " + json.dumps(GO).encode(),
+    f"event: word\nid: 7\ndata: {json.dumps(GO)}\n\n: waits\ndata: [DONE]\n\n", f"{{}}\n{json.dumps(GO)}\n",
+    _Word("go", 0.5, 0.75), [_Word("go", 0.5, 0.75)], namedtuple("Word", GO)(**GO), _Event(),
+    *(_Dumps(name, GO) for name in ("model_dump", "to_dict", "dict")),
+    {"text": "go", "audio_offset": 5_000_000, "duration": timedelta(milliseconds=250)},
+    {"word_timestamps": _Dumps("model_dump", {"words": ["go"], "start": [0.5], "end": [0.75]})},
+    {"word": "go", "start": timedelta(seconds=0.5), "end": timedelta(seconds=0.75)},
+])  # fmt: skip
+def test_what_users_hold(message: Any) -> None:
+    """The same word from each; catches a timedelta that is divided by a unit, and events that are no documents."""
+    assert told(message) == [("go", 0.5, 0.75)]
+
+
+@pytest.mark.parametrize("message", [7, None, {1}, 1.5, True, Messages, object()])
+def test_other_types_are_refused(message: Any) -> None:
+    with pytest.raises(TypeError, match="a message is a dict, an object"):
+        told(message)
+
+
+def test_stats_count_what_became_of_messages() -> None:
+    reader = Messages()
+    odd = [{**GO, "end": None}, {**GO, "start": -1}, {**GO, "start": 0.76}, {**GO, "word": None}]
+    for message in (b"\x00\x01", {}, [GO, *odd, GO]):
+        reader.read(message)
+    assert reader.stats == Stats(messages=3, told=2, skipped=4) and reader.skipped == 4
+
+
+@pytest.mark.parametrize("message, words", [
+    ({"type": "SentenceBoundary", "offset": 0, "duration": 5, "text": "Go."}, r"boundary='WordBoundary'$"),
+    ({"audio": "", "normalizedAlignment": None, "isFinal": None}, r"ElevenLabs .*with-timestamps"),
+    (b"\x00\x01\x02", r"none is of a known service \(kokoro, .*words"),
+])  # fmt: skip
+def test_silence_is_said_once(message: Any, words: str, caplog: pytest.LogCaptureFixture) -> None:
+    """One sentence, after 50 messages that told nothing, which says what to ask the service for."""
+    reader = Messages()
+    with caplog.at_level(logging.INFO, "labial"):
+        for _ in range(200):
+            reader.read(message)
+    assert len(caplog.records) == 1 and re.search(words, caplog.records[0].getMessage()), caplog.text
+
+
+# ---- Limits
+
+
+def _hostile() -> Dict[str, Any]:
+    """Messages of 100 kB that told nothing of use when this was written."""
+    def phonemes(*texts: str) -> str:
+        times = list(range(len(texts)))
+        return json.dumps({"phoneme_timestamps": {"phonemes": texts, "start": times, "end": times}})
+
+    chars = {"chars": ["a"] * 9000, "charStartTimesMs": [-1] * 9000, "charDurationsMs": [-1] * 9000}
+    return {
+        "brackets": "[" * 100_000, "objects in each other": '{"a":' * 20_000,
+        "objects": "[" + ",".join(["{}"] * 33_000) + "]",
+        "objects of nothing": json.dumps([{"type": "x" * 36}] * 1000),
+        "words": json.dumps([{**GO, "start": -1}] * 1000),
+        "fields": json.dumps({f"k{number}": number for number in range(7000)}), "label": phonemes("q" * 99_000),
+        "digits": phonemes("7" * 99_000), "marks": phonemes("?" * 99_000), "labels": phonemes(*["ЖЯ" * 8] * 3000),
+        "characters": json.dumps({"alignment": chars}),
+        "lines": '{"a":1}\n' * 12_500, "text": "lorem { ipsum " * 7000, "number": "9" * 100_000,
+        "bytes": bytes(range(256)) * 400, "bytes of an object": b"{" + bytes(range(256)) * 400,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name, message", _hostile().items(), ids=list(_hostile()))
+def test_garbage_is_answered_at_once(name: str, message: Any) -> None:
+    """100 kB within 20 ms of processor time on the machine where this was written; here the best of several runs, with
+    room for slower ones. Catches rules that are quadratic: they took seconds to minutes."""
+    def run() -> None:
+        try:
+            Messages().read(message)
+        except LabialError as error:
+            assert "\n" not in str(error) and len(str(error)) < 200
+
+    assert _seconds(run, 5) < 0.1
+
+
+def test_limits_are_the_same_in_javascript_and_c() -> None:
+    text = (SOURCE / "web" / "services.js").read_text(encoding="utf-8")
+    found = re.search(r"LIMITS = \{ nesting: (\d+), documents: (\d+), items: (\d+), text: (\d+) \}", text)
+    assert found and [int(value) for value in found.groups()] == [
+        limits.MESSAGE_NESTING, limits.MESSAGE_DOCUMENTS, limits.MESSAGE_ITEMS, limits.MESSAGE_TEXT]
+    header = (SOURCE / "include" / "labial" / "timings.h").read_text(encoding="utf-8")
+    assert f"LABIAL_TIMINGS_LABEL_MAX {limits.LABEL - 1}\n" in header
+    assert max(len(name) for phones in PHONE_SETS.values() for name in phones.names()) <= LONGEST
+
+
+def _seconds(run: Callable[[], Any], count: int) -> float:
+    """The least processor time of several runs."""
+    times = []
+    for _ in range(count):
+        begin = time.process_time()
+        run()
+        times.append(time.process_time() - begin)
+    return min(times)
+
+
+def _assert_linear(run: Callable[[int], Any]) -> None:
+    """Twice as much takes at most three times as long."""
+    count = 64
+    while _seconds(partial(run, count), 1) < 0.005:
+        count *= 2
+    assert any(_seconds(partial(run, 2 * count), 3) <= 3 * _seconds(partial(run, count), 3) for _ in range(3))
+
+
+@pytest.mark.parametrize("name", {sample.service: name for name, sample in SAMPLES.items()}.values())
+def test_readers_are_linear(name: str, tmp_path: Path) -> None:
+    """Catches a rule that looks at all that came before with each message, of files and of messages as they arrive."""
+    sample = SAMPLES[name]
+
+    def follow(count: int) -> None:
+        reader = Messages(sample.service)
+        for _ in range(count):
+            for message in sample.messages:
+                reader.read(message)
+
+    _assert_linear(follow)
+    if SERVICES[sample.service].times != "chained":
+        return
+    path = tmp_path / "a.json"
+
+    def read_file(count: int) -> None:
+        path.write_text(json.dumps(sample.messages * count), encoding="utf-8")
+        read(path, sample.service)
+
+    _assert_linear(read_file)
