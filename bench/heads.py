@@ -18,13 +18,12 @@ import numpy as np
 
 from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
-from labial.fit.fit import fit
+from labial.fit.fit import fit, output_name
 from labial.fit.head import Head, read_table
-from labial.fit.judge import judge, matrix, opening
 from labial.fit.kinds import KINDS, kind_of, known
 from labial.fit.landmarks import read_head
+from labial.fit.meaning import judge, matrix, opening
 from labial.fit.sentences import Motion, read_sentences
-from labial.fit.write import output_name
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
 

@@ -14,7 +14,7 @@
 
 #if !LABIAL_PAPER /* published.c is in its place then */
 
-void labial_channels_init(labial_channels_t *channels, unsigned stride, unsigned width, void *workspace)
+labial_shape_t *labial_channels_init(labial_channels_t *channels, unsigned stride, unsigned width, void *workspace)
 {
     channels->stride = (uint8_t)stride;
     channels->width = (uint8_t)width;
@@ -22,6 +22,7 @@ void labial_channels_init(labial_channels_t *channels, unsigned stride, unsigned
     channels->frames = (labial_frame_t *)(void *)(channels->progress + width);
     channels->motion = (int16_t *)(void *)(channels->frames + stride + LABIAL_LAG);
     labial_channels_reset(channels);
+    return (labial_shape_t *)(void *)(channels->motion + stride * width);
 }
 
 void labial_channels_reset(labial_channels_t *channels)

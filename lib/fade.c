@@ -30,20 +30,23 @@ void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
 {
     const unsigned step = fade->step, halvings = step < 15u ? step : 15u;
-    const int is_on_way = step > 0 && step < fade->length;
-    const int32_t share = is_on_way ? labial_ease(step, fade->length) : 0;
+    int32_t share;
     unsigned k;
+    if (step == 0 || step >= fade->length) { /* not on a way, or at its end */
+        for (k = 0; k < LABIAL_CHANNELS; k++) {
+            fade->earlier[k] = fade->pose[k];
+            fade->pose[k] = (int16_t)(motion ? motion[k] : 0);
+        }
+        fade->step = 0;
+        return;
+    }
+    share = labial_ease(step, fade->length);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const int32_t aim = motion ? motion[k] : 0;
-        if (is_on_way) {
-            const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
-            fade->pose[k] = (int16_t)labial_clamp(from + (((aim - from) * share + 8192) >> 14), INT16_MAX);
-        } else {
-            fade->earlier[k] = fade->pose[k];
-            fade->pose[k] = (int16_t)aim;
-        }
+        const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
+        fade->pose[k] = (int16_t)labial_clamp(from + (((aim - from) * share + 8192) >> 14), INT16_MAX);
     }
-    fade->step = (uint16_t)(is_on_way ? step + 1u : 0u);
+    fade->step = (uint16_t)(step + 1u);
 }
 
 void labial_fade_stand(labial_fade_t *fade)

@@ -30,13 +30,14 @@
 /* The cost of a state that no path reaches; above every other one. */
 #define UNREACHED ((uint32_t)1 << 30)
 
-void labial_channels_init(labial_channels_t *channels, unsigned stride, unsigned width, void *workspace)
+labial_shape_t *labial_channels_init(labial_channels_t *channels, unsigned stride, unsigned width, void *workspace)
 {
     (void)width;
     channels->width = LABIAL_CHANNELS;
     channels->stride = (uint8_t)stride;
     channels->pieces = (labial_pieces_t *)workspace;
     labial_channels_reset(channels);
+    return (labial_shape_t *)(void *)(channels->pieces + 1);
 }
 
 void labial_channels_reset(labial_channels_t *channels)

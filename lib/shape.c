@@ -36,6 +36,14 @@ static uint16_t likelihood(uint32_t cost)
     return (uint16_t)(((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15);
 }
 
+/* part / sum in Q12, rounded down; `inverse` is 2^31 / sum, rounded down, with which the product is short of the
+ * quotient by less than 1 / 16. */
+static uint32_t likelihood_share(uint32_t part, uint32_t sum, uint32_t inverse)
+{
+    const uint32_t share = (part * inverse) >> 19;
+    return share + ((share + 1u) * sum <= part * ONE);
+}
+
 /* Costs and signed, limited z of a phoneme's components; returns the best one's index within the phoneme. */
 static unsigned score(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms,
                       unsigned previous_class, unsigned next_class, uint32_t *costs, int16_t *deviations)
@@ -71,7 +79,7 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     uint32_t costs[LABIAL_PHONEME_COMPONENTS_MAX], likelihoods[LABIAL_PHONEME_COMPONENTS_MAX];
     int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
     const unsigned best = score(model, phoneme, ms, previous_class, next_class, costs, deviations);
-    uint32_t sum = 0, rest = ONE;
+    uint32_t sum = 0, rest = ONE, inverse;
     unsigned i, c = best, counting = 0;
     for (i = 0; i < count; i++) {
         likelihoods[i] = model->mixture_mean || i == best ? likelihood(costs[i] - costs[best]) : 0u;
@@ -80,15 +88,16 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     /* The best one's likelihood alone is that. */
     /*@ assert sum >= 32768; */
     LABIAL_CHECK(sum >= 32768u);
+    inverse = labial_quotient(0x80000000u, sum);
     for (i = 1; i <= count; i++) {
-        uint16_t share;                   /* of the mixture, Q12 */
+        uint32_t share;                   /* of the mixture, Q12 */
         c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
-        share = (uint16_t)(i < count ? labial_quotient(likelihoods[c] * ONE, sum) : rest);
+        share = i < count ? likelihood_share(likelihoods[c], sum, inverse) : rest;
         rest -= share;
         if (share > 0) {
             selection->components[counting] = (uint8_t)c;
-            selection->shares[counting] = share;
-            selection->tilts[counting++] = (int16_t)((share * (int32_t)deviations[c]) >> 6);
+            selection->shares[counting] = (uint16_t)share;
+            selection->tilts[counting++] = (int16_t)(((int32_t)share * deviations[c]) >> 6);
         }
     }
     selection->count = (uint8_t)counting;
@@ -116,8 +125,13 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
         mean = ((mean >> 4) * channel->shape_scale + 32768) >> 16;
         change = ((change >> 4) * channel->slope_scale + 32768) >> 16;
         mean = labial_clamp(mean + change, LABIAL_POSITION_MAX);
-        selection->shape.knots[0][k] = selection->shape.knots[1][k] = (int16_t)mean;
+        selection->shape[k].knots[0] = selection->shape[k].knots[1] = (int16_t)mean;
     }
+}
+
+static inline void shift_position(int16_t *position, int32_t change)
+{
+    *position = (int16_t)labial_clamp(*position + change, LABIAL_POSITION_MAX);
 }
 
 /* Adds what a neighbour adds to the shape of a phoneme; nothing for pairs that the model does not know. `key` is theirs
@@ -125,7 +139,8 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
 static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *shape)
 {
     const unsigned knots = model->pair_knots, width = model->channel_count;
-    unsigned low = 0, high = model->pair_count, j, k;
+    const int8_t *start, *end;
+    unsigned low = 0, high = model->pair_count, k;
     while (low < high) {
         const unsigned middle = (low + high) / 2u;
         if (model->pair_keys[middle] < key)
@@ -135,12 +150,12 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
     }
     if (low >= model->pair_count || model->pair_keys[low] != key)
         return;
-    for (j = 0; j < 2u; j++) {
-        const int8_t *row = model->pairs + ((size_t)low * knots + (knots > 1u ? j : 0u)) * width;
-        for (k = 0; k < width; k++) {
-            const int32_t added = labial_scaled(row[k], model->channels[k].pair_scale);
-            shape->knots[j][k] = (int16_t)labial_clamp(shape->knots[j][k] + added, LABIAL_POSITION_MAX);
-        }
+    start = model->pairs + (size_t)low * knots * width;
+    end = knots > 1u ? start + width : start;
+    for (k = 0; k < width; k++) {
+        const uint16_t scale = model->channels[k].pair_scale;
+        shift_position(&shape[k].knots[0], labial_scaled(start[k], scale));
+        shift_position(&shape[k].knots[1], labial_scaled(end[k], scale));
     }
 }
 
@@ -153,8 +168,8 @@ void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t
                           selection);
     mix(model, &phonemes[phoneme], selection);
     if (selection->halves++ > 0) {
-        add_pair(model, phoneme << 8 | previous, &selection->shape);
-        add_pair(model, phoneme << 8 | 128u | next, &selection->shape);
+        add_pair(model, phoneme << 8 | previous, selection->shape);
+        add_pair(model, phoneme << 8 | 128u | next, selection->shape);
     }
 }
 
@@ -272,7 +287,8 @@ static void find_taps(const labial_model_t *model, const uint8_t *labels, const 
         words[tap] = model->kernels + ((size_t)labels[lag] * taps + tap) * size;
 }
 
-/* What the taps add up to on the four channels of word `group`, in steps. Two channels of a word are summed at once. */
+/* What the taps add up to on the four channels of word `group`, in steps. Two channels of a word are summed at once; with
+ * them the sum of the words, modulo 2^32, tells the other two. */
 static void add_taps(const uint32_t *const *words, unsigned taps, unsigned group, int16_t sums[4])
 {
     const uint32_t halves = 0x00ff00ffu;
@@ -281,9 +297,10 @@ static void add_taps(const uint32_t *const *words, unsigned taps, unsigned group
     uint32_t even = 0, odd = 0;
     for (; words < end; words++) {
         const uint32_t word = (*words)[group];
-        even += word & halves;
+        even += word;
         odd += word >> 8 & halves;
     }
+    even -= odd << 8;
     sums[0] = (int16_t)((int32_t)(even & 0xffffu) - bias);
     sums[1] = (int16_t)((int32_t)(odd & 0xffffu) - bias);
     sums[2] = (int16_t)((int32_t)(even >> 16) - bias);
@@ -302,8 +319,8 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
         int16_t sums[4];
         add_taps(words, model->kernel_taps, group, sums);
         for (i = 0; i < 4u && k < width; i++, k++) {
-            const int32_t start = shape->knots[0][k];
-            const int32_t position = start + (((shape->knots[1][k] - start) * share + 8192) >> 14) +
+            const int32_t start = shape[k].knots[0];
+            const int32_t position = start + (((shape[k].knots[1] - start) * share + 8192) >> 14) +
                                      labial_scaled(sums[i], model->channels[k].kernel_scale);
             target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
         }

@@ -8,8 +8,8 @@
 #include "units.h"
 
 /*
- * Shape selection (equation 2 of docs/method.md, with its context, conditional mean and pairs): the shape of `phoneme`,
- * which lasts `ms` milliseconds, between the given neighbours. Each of two calls with the same arguments does half of
+ * Shape selection (equation 2 of docs/method.md, with its context, conditional mean and pairs) into `selection->shape`,
+ * which has the model's channels: the shape of `phoneme`, which lasts `ms` milliseconds, between the given neighbours. Each of two calls with the same arguments does half of
  * it, so that two ticks may share it; `selection->halves` counts them from 0.
  */
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,

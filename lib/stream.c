@@ -72,11 +72,13 @@ static void select_ahead(labial_t *stream)
 static void store(labial_t *stream, const labial_taken_t *taken)
 {
     labial_frame_t *frame = labial_channels_enter(&stream->channels, stream->models, taken->slot);
-    if (taken->is_first) {
+    if (taken->is_first) { /* its place is free for the one after it */
+        labial_shape_t *const before = stream->shape;
         stream->shape = stream->next.shape;
+        stream->next.shape = before;
         stream->next.halves = 0;
     }
-    frame->contacts = labial_shape_target(stream->models[taken->slot], &stream->shape, taken, frame->target);
+    frame->contacts = labial_shape_target(stream->models[taken->slot], stream->shape, taken, frame->target);
     frame->marks = taken->marks;
     labial_articulation_step(&stream->articulation);
     if (taken->marks & LABIAL_BEGINS)
@@ -192,7 +194,8 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     stream->user = user;
     stream->articulation.wanted = 100;
     stream->resting = 1;
-    labial_channels_init(&stream->channels, model->search_stride, width_of(model, size), workspace);
+    stream->shape = labial_channels_init(&stream->channels, model->search_stride, width_of(model, size), workspace);
+    stream->next.shape = stream->shape + stream->channels.width;
     stream->magic = LABIAL_MAGIC_;
     reset_input(stream);
     return LABIAL_OK;

@@ -46,18 +46,21 @@ static int64_t voice_now(const labial_voice_t *voice)
 
 /* ---- Utterances -------------------------------------------------------------------------------------------------- */
 
-/* Appends an utterance, unless there are as many as there may be. One that nothing was told of gives its place up. */
+/* Appends an utterance, unless there are as many as there may be. One that nothing was told of gives its place up; what
+ * is queued behind it is then queued as it was. */
 static int append_utterance(labial_voice_t *voice, int64_t origin, uint32_t identity, int is_queued)
 {
     labial_voice_utterance_t *utterance;
     if (voice->utterance_count > 0u) {
         utterance = voice->utterances + voice->utterance_count - 1u;
-        if (utterance->places == 0u && utterance->identity == 0u)
+        if (utterance->places == 0u && utterance->identity == 0u) {
             voice->utterance_count--;
-        else if (voice->utterance_count == LABIAL_VOICE_UTTERANCES)
+            is_queued &= utterance->queued;
+        } else if (voice->utterance_count == LABIAL_VOICE_UTTERANCES) {
             return LABIAL_ERROR_FULL;
-        else
+        } else {
             utterance->limit = origin;
+        }
     }
     utterance = voice->utterances + voice->utterance_count++;
     memset(utterance, 0, sizeof *utterance);
@@ -95,9 +98,7 @@ static void requeue(labial_voice_t *voice, unsigned position)
         const int64_t end = labial_voice_end(voice, position);
         if (!utterance[1].queued || utterance[1].origin <= now || end <= utterance[1].origin)
             return;
-        if (utterance->limit == utterance[1].origin)
-            utterance->limit = end;
-        utterance[1].origin = end;
+        utterance->limit = utterance[1].origin = end;
         voice->stale = 1;
     }
 }

@@ -154,8 +154,7 @@ void labial_voice_forget(labial_voice_t *voice, int64_t moment)
 
 uint32_t labial_voice_free(const labial_voice_t *voice)
 {
-    const uint32_t front = voice->utterance_count > 0u ? voice->utterances[0].first : 0u;
-    return voice->room - voice->used + front;
+    return voice->room - voice->used + voice->utterances[0].first;
 }
 
 void labial_voice_pack(labial_voice_t *voice)
@@ -163,13 +162,9 @@ void labial_voice_pack(labial_voice_t *voice)
     labial_voice_utterance_t *const first = voice->utterances;
     const uint32_t front = first->first;
     unsigned i;
-    if (front == 0u)
-        return;
     memmove(voice->items, voice->items + front, (size_t)(voice->used - front) * sizeof *voice->items);
     voice->used -= front;
     for (i = 0; i < voice->utterance_count; i++)
         first[i].first -= front;
-    if (voice->plan.seen != UINT32_MAX)
-        voice->plan.seen -= voice->plan.seen < front ? voice->plan.seen : front;
-    voice->plan.at -= voice->plan.at < front ? voice->plan.at : front;
+    voice->stale = 1;
 }

@@ -75,7 +75,7 @@ void labial_voice_remove_utterance(labial_voice_t *voice, unsigned position);
 /* Forgets what ended a while before `moment`, but the last item of an utterance. */
 void labial_voice_forget(labial_voice_t *voice, int64_t moment);
 
-/* Places that are free; after labial_voice_pack() they lie behind those that are used. */
+/* Places that are free, while there is an utterance; after labial_voice_pack() they lie behind those that are used. */
 uint32_t labial_voice_free(const labial_voice_t *voice);
 void labial_voice_pack(labial_voice_t *voice);
 

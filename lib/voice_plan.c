@@ -122,8 +122,7 @@ static int next_phoneme(labial_voice_t *voice, const labial_voice_utterance_t *u
     labial_voice_look(plan, after);
     plan->start = item->start;
     plan->end = item->end == LABIAL_VOICE_OPEN ? item->start : item->end;
-    if (plan->joins && plan->start <= plan->previous + PHONEME_ROUNDING &&
-        plan->previous <= plan->start + PHONEME_ROUNDING)
+    if (plan->joins && plan->start <= plan->previous + PHONEME_ROUNDING) /* and not much before it, as it ended here */
         plan->start = plan->previous;
     if (after < labial_voice_limit(utterance)) {
         const uint32_t gap = item->text[2] | (uint32_t)item->text[3] << 8, next = voice->items[after].start;

@@ -96,6 +96,24 @@ static unsigned leaf_of(const view_t *view, const uint8_t *node)
     }
 }
 
+/* The label of a letter with an accent, which its leaves may have; else `none`. An e behind an acute one is silent. */
+static unsigned accented(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
+                         unsigned place, unsigned none)
+{
+    const unsigned letter = letters[place].letter - 1u;
+    unsigned sound = letters[place].sound, i;
+    if (sound == 0u)
+        return letter == 'e' - 'a' && place > 0u && letters[place - 1u].sound == PHONEME_EY ? 0u : none;
+    if (sound == (PHONEME_EH | ACCENT_LAST))
+        sound = place + 1u == count || letters[place + 1u].letter == 27u ? PHONEME_IY : PHONEME_EH;
+    for (i = model->bases[letter]; letter < 26u && i < model->bases[letter + 1u]; i++) {
+        const uint8_t *const label = model->labels + 2u * model->leaves[i];
+        if (label[0] == sound && (label[1] & ~VOWEL_LAST) == 0)
+            return model->leaves[i];
+    }
+    return none;
+}
+
 /* Changes labels where the word is an exception. */
 static void patch(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
                   uint8_t *labels)
@@ -137,18 +155,27 @@ void labial_words_spell(const labial_words_model_t *model, const labial_words_le
 {
     uint8_t labels[LABIAL_WORDS_LETTERS];
     view_t view = { model->labels, letters, labels, count, 0, 0, 0 };
-    unsigned place, first = 1, k;
-    for (place = 0; place < count; place++) /* a group begins where the letter before is no vowel */
+    unsigned place, first = 1, is_accented = 0, k;
+    for (place = 0; place < count; place++) { /* a group begins where the letter before is no vowel */
         view.left += has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
+        is_accented |= letters[place].sound;
+    }
     for (place = count; place-- > 0u;) {
         const unsigned letter = letters[place].letter - 1u;
         view.place = place;
         view.left -= has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
         if (place + 1u < count && has_vowel(&view, place + 1u))
             view.right += place + 2u == count || !has_vowel(&view, place + 2u);
+        if (is_accented) {
+            const unsigned label = accented(model, letters, count, place, NO_LABEL);
+            labels[place] = (uint8_t)label;
+            if (label != NO_LABEL)
+                continue;
+        }
         labels[place] = model->leaves[model->bases[letter] + leaf_of(&view, model->trees + model->roots[letter])];
     }
-    patch(model, letters, count, labels);
+    if (!is_accented)
+        patch(model, letters, count, labels);
     for (place = 0; place < count; place++)
         for (k = 0; k < 2u; k++) {
             const unsigned phoneme = model->labels[2u * labels[place] + k] & ~VOWEL_LAST;

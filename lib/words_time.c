@@ -215,6 +215,7 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
                 const uint32_t *ends, unsigned count)
 {
     struct labial_words_span *span, *before;
+    labial_words_context_t context;
     if (!stream || !text)
         return LABIAL_ERROR_NULL;
     if (!stream->model || stream->ended)
@@ -227,10 +228,15 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
         return LABIAL_ERROR_FULL;
     before = &stream->spans[stream->held];
     span = &stream->spans[stream->held ^ 1u];
-    (void)labial_words_read(stream->model, stream->own, text, size, &span->word); /* its arguments were checked */
+    context = stream->context;
+    (void)labial_words_read_next(stream->model, stream->own, &context, text, size,
+                                 &span->word); /* arguments are valid */
     if (ends && span->word.characters != count)
         return LABIAL_ERROR_WORD;
+    stream->context = context;
     stream->latest = start;
+    if (stream->holding && context.dropped < before->word.count)
+        before->word.count = (uint8_t)(before->word.count - context.dropped);
     if (span->word.kind == LABIAL_WORDS_SILENT) {
         if (stream->holding && before->open && start > before->start) {
             before->end = start;
@@ -274,8 +280,10 @@ int labial_words_push_characters(labial_words_t *stream, const char *text, size_
 int labial_words_end(labial_words_t *stream)
 {
     const int result = words_status(stream);
-    if (result == LABIAL_OK)
+    if (result == LABIAL_OK) {
         stream->ended = 1;
+        memset(&stream->context, 0, sizeof stream->context);
+    }
     return result;
 }
 
@@ -286,6 +294,7 @@ int labial_words_cancel(labial_words_t *stream)
         stream->speaking = stream->holding = 0;
         stream->latest = 0;
         stream->ended = 1;
+        memset(&stream->context, 0, sizeof stream->context);
     }
     return result;
 }

@@ -283,9 +283,9 @@ def esp32_hear(source: Sources) -> Iterator[Sentence]:
                    count(source.bench("esp32-hear, lips.c: RAM", "m4")))
     yield sentence("| flash: `lips.c` {}, the library's clock {}, its hearing with `hear_small` {} | {} |", count(own),
                    count(clock), count(heard), count(own + clock + heard))
-    for text in ("when it has the {} ms of sound from the frame's begin on", "A frame needs the {} ms of sound "
-                 "after its begin", "holds less than {} ms, the lips are late", "task of its own writes it to I2S, {} ms later.",
-                 "**The answer comes {} ms later**"):
+    for text in ("when it has the {} ms of sound from the frame's begin on",
+                 "A frame needs the {} ms of sound after its begin", "holds less than {} ms, the lips are late",
+                 "task of its own writes it to I2S, {} ms later.", "**The answer comes {} ms later**"):
         yield sentence(text, source.latency())
 
 

@@ -28,7 +28,7 @@ MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 #: rounding to four.
 PARTS = {
     "labial_t: queue and labels": "sizeof(labial_units_t)",
-    "labial_t: shapes": "sizeof(labial_shape_t) + sizeof(labial_selection_t)",
+    "labial_t: selection of shapes": "sizeof(labial_shape_t *) + sizeof(labial_selection_t)",
     "labial_t: poses": "3 * LABIAL_CHANNELS * sizeof(int16_t)",
     "workspace: searches": "COUNT * (sizeof(labial_progress_t) - sizeof(labial_solver_t)"
                            " - sizeof(labial_kept_t))",
@@ -36,6 +36,7 @@ PARTS = {
     "workspace: factors": "COUNT * sizeof(labial_kept_t)",
     "workspace: frames": "(STRIDE + LABIAL_LAG) * sizeof(labial_frame_t)",
     "workspace: motion": "STRIDE * COUNT * sizeof(int16_t)",
+    "workspace: shapes": "2 * COUNT * sizeof(labial_shape_t)",
 }
 
 #: Frames that share a state in the voice, and its channels.

@@ -12,7 +12,7 @@ WHICH_FACE = ("largest", "left", "right")
 FPS = 50
 
 #: States of each channel and components of each phoneme's mixture, the published ones; and those of Labial's method by
-#: kind. States that track the motion (labial.train.tracking) are few, so that the search sees most of them.
+#: kind. States that track the motion (labial.train.states) are few, so that the search sees most of them.
 CODEBOOK = 50
 COMPONENTS = 5
 SIZES = {"speech": (CODEBOOK, COMPONENTS), "laughter": (10, 1)}

@@ -82,8 +82,8 @@ typedef struct labial_beside labial_beside_t;
 
 /*
  * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of 1 .. 50,000,000 `samples_per_second`.
- * `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest power of two up
- * to LABIAL_BESIDE_FRAMES_MAX. Where the outputs stand is not known: the first packet puts them at rest,
+ * `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest power of two
+ * up to LABIAL_BESIDE_FRAMES_MAX. Where the outputs stand is not known: the first packet puts them at rest,
  * without a limit. Outputs have no limits until labial_beside_limit().
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RANGE (outputs), LABIAL_ERROR_SAMPLE_RATE, or
@@ -94,8 +94,8 @@ int labial_beside_init(labial_beside_t *player, unsigned outputs, uint32_t sampl
 
 /*
  * The largest change of an output, 0 .. outputs - 1, from one call of labial_beside_tick() to the next: `most` steps of
- * the 255 between its ends, 1 .. 255. It is the servo's, and holds for every packet; give the server's description of the
- * face the same (`slew`), so that what it sends arrives unchanged.
+ * the 255 between its ends, 1 .. 255. It is the servo's, and holds for every packet; give the server's description of
+ * the face the same (`slew`), so that what it sends arrives unchanged.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised) or LABIAL_ERROR_RANGE.
  */
@@ -146,7 +146,7 @@ int labial_beside_cancel(labial_beside_t *player, uint32_t milliseconds);
  */
 int32_t labial_beside_value(uint8_t byte, int32_t at_0, int32_t at_255);
 
-/* ---- Private ------------------------------------------------------------------------------------------------------ */
+/* ---- Private ----------------------------------------------------------------------------------------------------- */
 
 /* 32 bytes where a pointer has 4. */
 struct labial_beside {

@@ -87,10 +87,11 @@ typedef void (*labial_frame_fn)(void *user, uint32_t frame, const int16_t faps[L
  * are still needed; the motion that is not yet delivered. LABIAL_CHANNELS are enough for any model.
  */
 #if LABIAL_PAPER
-#define LABIAL_WORKSPACE_SIZE(stride, channels) ((uint32_t)(sizeof(labial_pieces_t) + 0u * (stride) * (channels)))
+#define LABIAL_WORKSPACE_SIZE(stride, channels)                                                                        \
+    ((uint32_t)(sizeof(labial_pieces_t) + 2u * LABIAL_CHANNELS * sizeof(labial_shape_t) + 0u * (stride) * (channels)))
 #else
 #define LABIAL_WORKSPACE_SIZE(stride, channels)                                                                        \
-    ((uint32_t)((channels) * sizeof(labial_progress_t) +                                                               \
+    ((uint32_t)((channels) * (sizeof(labial_progress_t) + 2u * sizeof(labial_shape_t)) +                               \
                 (((stride) + LABIAL_LAG) * sizeof(labial_frame_t) + (stride)*2u * (channels) + 3u) / 4u * 4u))
 #endif
 

@@ -32,14 +32,14 @@ typedef struct {
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
 
-/* The shape of a phoneme (shape.c): at its start and at its end, positions. */
+/* A channel of the shape of a phoneme (shape.c): at its start and at its end, positions. */
 typedef struct {
-    int16_t knots[2][LABIAL_CHANNELS];
+    int16_t knots[2];
 } labial_shape_t;
 
 /* The selection of a shape (shape.c). */
 typedef struct {
-    labial_shape_t shape;                              /* first, so that it is copied by words */
+    labial_shape_t *shape;                             /* of the model's channels, in the workspace */
     uint8_t halves;                                    /* that are done */
     uint8_t count;                                     /* components that have a share */
     uint8_t components[LABIAL_PHONEME_COMPONENTS_MAX]; /* of the phoneme's */
@@ -180,7 +180,7 @@ typedef struct {
     const labial_model_t *models[LABIAL_MODELS];
     void (*callback)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
     void *user;
-    labial_shape_t shape;    /* of the phoneme that the latest frame belongs to */
+    labial_shape_t *shape;   /* of the phoneme that the latest frame belongs to, in the workspace */
     labial_selection_t next; /* that of the phoneme that begins next */
     labial_fade_t fade;
     labial_units_t units;

@@ -36,9 +36,9 @@ void oracle_shape(const labial_model_t *model, unsigned phoneme, unsigned ms, un
 {
     labial_selection_t selection;
     memset(&selection, 0x5a, sizeof selection);
+    selection.shape = shape;
     for (selection.halves = 0; selection.halves < 2;)
         labial_shape_select(model, phoneme, (uint16_t)ms, previous, next, &selection);
-    *shape = selection.shape;
 }
 
 /* What the frame's target is without floors. */
@@ -48,15 +48,15 @@ static void aim(const labial_model_t *const *models, const oracle_frame_t *frame
     const oracle_frame_t *frame = &frames[at];
     labial_model_t bare = *model_of(models, frame);
     uint8_t labels[2 * LABIAL_REACH + 1];
-    labial_shape_t shape;
+    labial_shape_t shape[LABIAL_CHANNELS];
     labial_taken_t taken = { 0, 0, 0, 0, 0, 0, 0 };
     bare.floor_count = 0;
     for (int k = -LABIAL_REACH; k <= LABIAL_REACH; k++)
         labels[LABIAL_REACH + k] = (uint8_t)oracle_label(models, frames, count, at, k);
     taken.labels = labels + LABIAL_REACH;
     taken.share = (uint16_t)(16384.0 * ((double)frame->number + 0.5) / (double)frame->whole);
-    oracle_shape(&bare, frame->phoneme, frame->ms, frame->previous, frame->next, &shape);
-    (void)labial_shape_target(&bare, &shape, &taken, target);
+    oracle_shape(&bare, frame->phoneme, frame->ms, frame->previous, frame->next, shape);
+    (void)labial_shape_target(&bare, shape, &taken, target);
 }
 
 /* Whether a contact of `whole` frames is made in frame `number`: in as many in the middle as half of them, rounded up, or

@@ -67,17 +67,17 @@ static size_t aim(void)
 {
     labial_taken_t taken;
     labial_spoken_t spoken;
-    labial_shape_t shape = { 0 };
+    labial_shape_t shape[LABIAL_CHANNELS] = { { { 0, 0 } } };
     size_t n = 0;
     for (;;) {
         if (units.count > 0 && labial_units_left(&units, models) == 0) {
             assert_int_equal(labial_units_next(&units, models, 1, &spoken), 1);
-            oracle_shape(models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next, &shape);
+            oracle_shape(models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next, shape);
         }
         if (labial_units_take(&units, models, 1, &taken) != LABIAL_OK)
             return n;
         assert_true(n < MANY);
-        contacts[n] = labial_shape_target(models[taken.slot], &shape, &taken, targets[n]);
+        contacts[n] = labial_shape_target(models[taken.slot], shape, &taken, targets[n]);
         n++;
     }
 }

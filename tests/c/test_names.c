@@ -1,14 +1,18 @@
 /*
- * test_names.c - phonemes by name: labels, aliases, and the marks that do not change the mouth's shape.
+ * test_names.c - phonemes by name: labels, aliases, and the marks that do not change the mouth's shape; FAP numbers, against
+ * MPEG-4's own numbering; the sentences for results, in step with the enumeration.
  */
 #include "suite.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "fixture.h"
+#include "labial/faps.h"
 #include "labial/labial.h"
 #include "labial/names.h"
+#include "labial/result.h"
 
 #define ARPABET LABIAL_LABELS_ARPABET
 #define IPA LABIAL_LABELS_IPA
@@ -229,6 +233,119 @@ TEST(tables_of_every_size)
         }
         free(bytes);
     }
+}
+
+/* ---- FAPs --------------------------------------------------------------------------------------------------------- */
+
+/* Would catch a channel out of order: every model trained with the right order would move the wrong point. */
+TEST(channels_have_their_numbers)
+{
+    static const uint8_t numbers[LABIAL_CHANNELS] = { 3, 16, 17, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60 };
+    assert_memory_equal(labial_fap_numbers, numbers, sizeof numbers);
+}
+
+TEST(expanded_numbers_ascend)
+{
+    unsigned i = 0;
+    for (unsigned fap = 3; fap <= 60; fap++)
+        if (fap <= 13 || fap == 16 || fap == 17 || fap >= 51)
+            assert_int_equal(labial_fap_numbers_expanded[i++], fap);
+    assert_int_equal(i, LABIAL_FAPS_EXPANDED);
+}
+
+/* Value of one FAP in a frame whose FAP n is `1000 + n`, inner lips as the outer ones (4 as 51 .. 13 as 60). */
+static int wanted(unsigned fap)
+{
+    return 1000 + (int)(fap >= 4 && fap <= 13 ? fap - 4 + 51 : fap);
+}
+
+TEST(inner_lip_moves_as_the_outer)
+{
+    struct {
+        int16_t before, faps[LABIAL_FAPS_EXPANDED], after;
+    } out = { -77, { 0 }, -78 };
+    int16_t in[LABIAL_CHANNELS];
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
+        in[i] = (int16_t)(1000 + labial_fap_numbers[i]);
+    labial_expand(in, out.faps);
+    for (unsigned i = 0; i < LABIAL_FAPS_EXPANDED; i++)
+        assert_int_equal(out.faps[i], wanted(labial_fap_numbers_expanded[i]));
+    assert_int_equal(out.before, -77);
+    assert_int_equal(out.after, -78);
+}
+
+/* Would catch arithmetic on the values, which must be copies. */
+TEST(extreme_values_are_copied)
+{
+    int16_t in[LABIAL_CHANNELS], out[LABIAL_FAPS_EXPANDED];
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
+        in[i] = i % 2 ? INT16_MIN : INT16_MAX;
+    labial_expand(in, out);
+    for (unsigned i = 0; i < LABIAL_FAPS_EXPANDED; i++)
+        assert_true(out[i] == INT16_MIN || out[i] == INT16_MAX);
+    assert_int_equal(out[0], INT16_MAX);  /* 3, channel 0 */
+    assert_int_equal(out[1], INT16_MIN);  /* 4 as 51, channel 3 */
+    assert_int_equal(out[22], INT16_MAX); /* 60, channel 12 */
+}
+
+TEST(null_does_nothing)
+{
+    const int16_t in[LABIAL_CHANNELS] = { 1 };
+    int16_t out[LABIAL_FAPS_EXPANDED], kept[LABIAL_FAPS_EXPANDED];
+    memset(out, 0x33, sizeof out);
+    memcpy(kept, out, sizeof out);
+    labial_expand(NULL, out);
+    labial_expand(in, NULL);
+    labial_expand(NULL, NULL);
+    assert_memory_equal(out, kept, sizeof out);
+}
+
+/* ---- Results ------------------------------------------------------------------------------------------------------ */
+
+#define UNKNOWN "unknown result"
+
+static const int codes[] = {
+    LABIAL_OK,           LABIAL_WAITING,       LABIAL_STARVED,        LABIAL_DONE,          LABIAL_CANCELLED,
+    LABIAL_NEW_SESSION,  LABIAL_ERROR_NULL,    LABIAL_ERROR_VERSION,  LABIAL_ERROR_MODEL,   LABIAL_ERROR_WORKSPACE,
+    LABIAL_ERROR_STATE,  LABIAL_ERROR_PHONEME, LABIAL_ERROR_DURATION, LABIAL_ERROR_FULL,    LABIAL_ERROR_FRAME_RATE,
+    LABIAL_ERROR_MODELS, LABIAL_ERROR_NAME,    LABIAL_ERROR_RIG,      LABIAL_ERROR_TIMINGS, LABIAL_ERROR_SAMPLE_RATE,
+    LABIAL_ERROR_WORD,   LABIAL_ERROR_RANGE,   LABIAL_ERROR_PACKET
+};
+
+#define CODES (sizeof codes / sizeof codes[0])
+
+/* Would catch a renumbering, which breaks programs linked against an older library. */
+TEST(zero_is_success_and_errors_are_negative)
+{
+    assert_int_equal(LABIAL_OK, 0);
+    for (unsigned i = 1; i < 6; i++)
+        assert_int_equal(codes[i], (int)i);
+    for (unsigned i = 6; i < CODES; i++)
+        assert_int_equal(codes[i], 5 - (int)i);
+    assert_int_equal(LABIAL_RESULT_LAST_, codes[CODES - 1]);
+}
+
+/* Would catch a text of the wrong row, and two codes with one text. */
+TEST(every_code_has_its_own_text)
+{
+    for (unsigned i = 0; i < CODES; i++) {
+        const char *text = labial_result_text(codes[i]);
+        assert_non_null(text);
+        assert_true(strlen(text) > 0);
+        assert_string_not_equal(text, UNKNOWN);
+        for (unsigned k = 0; k < i; k++)
+            assert_string_not_equal(text, labial_result_text(codes[k]));
+    }
+    assert_string_equal(labial_result_text(LABIAL_OK), "success");
+    assert_string_equal(labial_result_text(LABIAL_DONE), "the stream has ended and every frame was delivered");
+    assert_string_equal(labial_result_text(LABIAL_ERROR_NAME), "no phoneme of this name is known");
+}
+
+TEST(other_numbers_are_unknown)
+{
+    static const int others[] = { 6, 7, 8, 255, -18, -19, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
+    for (unsigned i = 0; i < sizeof others / sizeof others[0]; i++)
+        assert_string_equal(labial_result_text(others[i]), UNKNOWN);
 }
 
 SUITE(set_up, tear_down)

@@ -101,10 +101,10 @@ static double tolerance(unsigned channel, unsigned count)
 /* Compares one selection; `soft` as the model says. */
 static void compare(unsigned count, unsigned ms, unsigned previous, unsigned next)
 {
-    labial_shape_t shape;
+    labial_shape_t shape[LABIAL_CHANNELS];
     double costs[COMPONENTS], shares[COMPONENTS], sum = 0;
     unsigned best = 0;
-    oracle_shape(&f.model, 0, (uint16_t)ms, previous, next, &shape);
+    oracle_shape(&f.model, 0, (uint16_t)ms, previous, next, shape);
     for (unsigned c = 0; c < count; c++) {
         costs[c] = cost_of(c, ms, previous, next);
         best = costs[c] < costs[best] ? c : best; /* equation 2; the first of several that are alike */
@@ -118,10 +118,10 @@ static void compare(unsigned count, unsigned ms, unsigned previous, unsigned nex
         shares[c] /= sum;
     for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
         const double wanted = oracle(shares, count, ms, k);
-        if (fabs(shape.knots[0][k] - wanted) > tolerance(k, count))
-            fail_msg("%u components, %u ms, channel %u: %d, not %g (+- %g)", count, ms, k, shape.knots[0][k], wanted,
+        if (fabs(shape[k].knots[0] - wanted) > tolerance(k, count))
+            fail_msg("%u components, %u ms, channel %u: %d, not %g (+- %g)", count, ms, k, shape[k].knots[0], wanted,
                      tolerance(k, count));
-        assert_int_equal(shape.knots[1][k], shape.knots[0][k]); /* no pair moves it */
+        assert_int_equal(shape[k].knots[1], shape[k].knots[0]); /* no pair moves it */
     }
 }
 
@@ -148,7 +148,7 @@ TEST(extremes_stay_within_the_range)
     fixture_random_t random = { 33 };
     unsigned at_ends = 0;
     for (unsigned round = 0; round < FIXTURE_ROUNDS(600); round++) {
-        labial_shape_t shape;
+        labial_shape_t shape[LABIAL_CHANNELS];
         const unsigned count = 1 + round % COMPONENTS;
         make(&random, count);
         f.model.mixture_mean = (uint8_t)(round & 1);
@@ -165,9 +165,9 @@ TEST(extremes_stay_within_the_range)
             components[i].duration_gain = (uint16_t)fixture_random(&random);
             components[i].duration_mean = (uint16_t)fixture_random(&random);
         }
-        oracle_shape(&f.model, 0, (uint16_t)fixture_random(&random), 0, 1, &shape);
+        oracle_shape(&f.model, 0, (uint16_t)fixture_random(&random), 0, 1, shape);
         for (unsigned i = 0; i < 2 * LABIAL_CHANNELS; i++) {
-            const int value = shape.knots[i / LABIAL_CHANNELS][i % LABIAL_CHANNELS];
+            const int value = shape[i % LABIAL_CHANNELS].knots[i / LABIAL_CHANNELS];
             assert_in_range(value + LABIAL_POSITION_MAX, 0, 2 * LABIAL_POSITION_MAX);
             at_ends |= value == LABIAL_POSITION_MAX ? 1u : value == -LABIAL_POSITION_MAX ? 2u : 0u;
         }
@@ -197,7 +197,7 @@ TEST(targets_are_shapes_kernels_and_floors)
     for (unsigned round = 0; round < FIXTURE_ROUNDS(2000); round++) {
         uint8_t labels[2 * LABIAL_REACH + 1];
         int16_t target[LABIAL_CHANNELS];
-        labial_shape_t shape;
+        labial_shape_t shape[LABIAL_CHANNELS];
         labial_taken_t taken = { 0 };
         const unsigned taps = fixture_below(&random, LABIAL_KERNEL_TAPS_MAX + 1);
         const unsigned channels = 1 + round % LABIAL_CHANNELS;
@@ -220,13 +220,13 @@ TEST(targets_are_shapes_kernels_and_floors)
             labels[i] = (uint8_t)fixture_below(&random, FIXTURE_SPEECH_COUNT);
         for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             for (unsigned i = 0; i < 2; i++)
-                shape.knots[i][k] =
+                shape[k].knots[i] =
                     (int16_t)((int)fixture_below(&random, 2 * LABIAL_POSITION_MAX + 1) - LABIAL_POSITION_MAX);
             f.channels[k].kernel_scale = (uint16_t)(fixture_random(&random) >> (16 + k));
         }
-        assert_int_equal(labial_shape_target(&f.model, &shape, &taken, target), 0);
+        assert_int_equal(labial_shape_target(&f.model, shape, &taken, target), 0);
         for (unsigned k = 0; k < channels; k++) {
-            const double start = shape.knots[0][k], end = shape.knots[1][k];
+            const double start = shape[k].knots[0], end = shape[k].knots[1];
             double sum = 0;
             for (unsigned i = 0; i < f.model.kernel_taps; i++) {
                 const int at = LABIAL_REACH + ((int)i - f.model.kernel_behind) * f.model.kernel_stride;
@@ -261,20 +261,20 @@ static double pair_of(unsigned number, unsigned neighbour, unsigned side, unsign
 /* One phoneme between two neighbours; returns on how many channels both of these add something. */
 static unsigned compare_pairs(unsigned number, unsigned previous, unsigned next)
 {
-    labial_shape_t without, shape;
+    labial_shape_t without[LABIAL_CHANNELS], shape[LABIAL_CHANNELS];
     unsigned added = 0;
     f.model.pair_count = 0;
-    oracle_shape(&f.model, number, 100, previous, next, &without);
+    oracle_shape(&f.model, number, 100, previous, next, without);
     f.model.pair_count = FIXTURE_PAIRS;
-    oracle_shape(&f.model, number, 100, previous, next, &shape);
+    oracle_shape(&f.model, number, 100, previous, next, shape);
     for (unsigned j = 0; j < 2; j++)
         for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double before = pair_of(number, previous, 0, j, k), behind = pair_of(number, next, 128, j, k);
-            const double wanted = limited(limited(without.knots[j][k] + before) + behind);
+            const double wanted = limited(limited(without[k].knots[j] + before) + behind);
             added += before != 0.0 && behind != 0.0;
-            if (fabs(shape.knots[j][k] - wanted) > 1.02)
+            if (fabs(shape[k].knots[j] - wanted) > 1.02)
                 fail_msg("phoneme %u between %u and %u, knot %u, channel %u: %d, not %g", number, previous, next, j, k,
-                         shape.knots[j][k], wanted);
+                         shape[k].knots[j], wanted);
         }
     return added;
 }

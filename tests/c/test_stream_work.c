@@ -89,7 +89,7 @@ typedef struct {
 static int next_work(unsigned ms, unsigned *left, work_t *work)
 {
     const uint8_t was = place.stream.next.halves;
-    const labial_shape_t spoken = place.stream.shape;
+    const labial_shape_t *const spoken = place.stream.shape;
     for (; *left > 0 && labial_room(&place.stream) > 0; --*left)
         assert_int_equal(labial_push(&place.stream, *left * 7u % SPEECH_EN_PHONEMES, ms ? ms : 60u + *left % 5u * 20u),
                          LABIAL_OK);
@@ -97,7 +97,7 @@ static int next_work(unsigned ms, unsigned *left, work_t *work)
         assert_int_equal(labial_end(&place.stream), LABIAL_OK);
     if (labial_tick(&place.stream) == LABIAL_DONE)
         return 0;
-    work->begun = memcmp(&spoken, &place.stream.shape, sizeof spoken) != 0;
+    work->begun = place.stream.shape != spoken;
     work->halves = place.stream.next.halves + (work->begun ? 2u : 0u) - was;
     work->tick++;
     return 1;

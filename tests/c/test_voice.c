@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "labial/voice.h"
+#include "laughter_synthetic.h"
 #include "speech_en.h"
 #include "voice_parts.h"
 #include "words_en.h"
@@ -21,6 +22,7 @@ static uint32_t memory[LABIAL_VOICE_SIZE(3, 8, PLACES) / 4];
 static labial_voice_item_t items[PLACES];
 static labial_voice_message_t message;
 static char said[4000];
+static int64_t plan_from; /* where known() begins */
 
 static void begin_with(unsigned places)
 {
@@ -34,6 +36,7 @@ static void begin_with(unsigned places)
 SETUP(begin)
 {
     begin_with(PLACES);
+    plan_from = 0;
     return 0;
 }
 
@@ -76,8 +79,6 @@ static void characters(const char *text, int64_t start)
     }
 }
 
-static int64_t plan_from;
-
 /* What is known, without silences: "100-170 M, 170-300 EY". */
 static const char *known(void)
 {
@@ -100,6 +101,13 @@ static const char *known(void)
     }
     voice.stale = voice.changed = 1;
     return said;
+}
+
+static void play(uint64_t until)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    while (labial_voice_next(&voice, until, NULL, faps) == LABIAL_OK)
+        continue;
 }
 
 /* ---- Phonemes and visemes ---------------------------------------------------------------------------------------- */
@@ -149,13 +157,18 @@ TEST_AFTER(begin, visemes_last_until_the_next)
                                  "900-1000 P");
     plan_from = 450; /* within a pair, and behind what it depends on */
     assert_string_equal(known(), "450-500 CH, 500-600 W, 600-700 AA, 700-800 UW, 800-900 UW, 900-1000 P");
+    for (plan_from = 0; plan_from < 1000; plan_from += 50) /* from everywhere the same */
+        assert_non_null(strstr(known(), "900-1000 P") ? said : strstr(said, "950-1000 P"));
     plan_from = 0;
+    tell_one("4", 1000, -1);
+    tell_one("1", 1100, -1);
+    assert_non_null(strstr(known(), "1000-1100 EH, 1100-1200 AH"));
     for (unsigned i = 0; i < 6; i++)
         item(((const char *const[]){ "22", "", "01", "123", "1a", "-" })[i], 0, -1);
     assert_int_equal(tell(), LABIAL_OK);
     assert_int_equal(labial_voice_counts(&voice).skipped, 6);
-    assert_int_equal(labial_voice_counts(&voice).told, 10);
-    assert_int_equal(labial_voice_end(&voice, 0), 1000);
+    assert_int_equal(labial_voice_counts(&voice).told, 12);
+    assert_int_equal(labial_voice_end(&voice, 0), 1200);
 }
 
 TEST_AFTER(begin, visemes_of_polly)
@@ -253,11 +266,37 @@ TEST_AFTER(begin, characters_are_words_between_blanks)
     plan_from = 0;
     tell_one("\xe2\x80\x94", 740, 760); /* no blank */
     tell_one("\n", 760, 770);
+    tell_one("\xc3\xa9", 770, 775);
+    tell_one("\x0e", 775, 777);                     /* no blank */
+    tell_one("\xf0\x80\x80\x80\x80\xff", 777, 780); /* no UTF-8 */
+    tell_one(" ", 780, 790);
     tell_one("[", 800, 700); /* ends before it begins: with its beginning, and no tag, as it is not closed */
     tell_one("hum", 800, 950);
     tell_one("<", 950, -1);
     assert_non_null(strstr(known(), "-950 M"));
     assert_int_equal(labial_voice_counts(&voice).skipped, 0);
+}
+
+TEST_AFTER(begin, old_characters_are_forgotten_up_to_a_blank)
+{
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    for (unsigned i = 0; i < 20; i++) {
+        characters("no hum by ", 1000 * (int)i);
+        item("\xc3\xa9", 1000 * (int)i + 500, 1000 * (int)i + 550);
+        assert_int_equal(tell(), LABIAL_OK);
+        play(1000 * (uint64_t)i);
+    }
+    assert_in_range(voice.utterances[0].places, 20, 60);
+    for (unsigned i = 20; i < 40; i++) {
+        characters("no hum by ", 1000 * (int)i);
+        item("\xc3\xa9", 1000 * (int)i + 500, 1000 * (int)i + 550);
+        assert_int_equal(tell(), LABIAL_OK);
+    }
+    for (plan_from = 35000; plan_from < 36000; plan_from += 50) { /* more than a hundred characters are known before */
+        assert_non_null(strstr(known(), "36500-"));
+        assert_true(atol(said) >= plan_from);
+    }
+    plan_from = 0;
 }
 
 TEST_AFTER(begin, characters_that_overlap_and_long_words)
@@ -336,10 +375,7 @@ TEST_AFTER(begin, utterances_queue_behind_each_other)
 {
     assert_int_equal(name("a"), 0xe40c292c); /* FNV-1a */
     assert_int_equal(labial_voice_identity(NULL, 7), labial_voice_identity("", 0));
-    assert_int_equal(labial_voice_identity("\x07"
-                                           "r9Q\x1f\x15",
-                                           0) != 0,
-                     1);
+    assert_int_equal(labial_voice_identity("\xcc\x24\x31\xc4", 4), 1); /* whose hash is 0 */
     message.utterance = name("a");
     tell_one("M", 0, 500);
     message.utterance = name("b");
@@ -357,13 +393,6 @@ TEST_AFTER(begin, utterances_queue_behind_each_other)
     message.utterance = name("b");
     tell_one("S", 100, 300);
     assert_string_equal(known(), "0-500 M, 500-700 AA, 700-750 S, 750-770 S, 800-1000 S, 1000-1100 F, 1100-1150 F");
-}
-
-static void play(uint64_t until)
-{
-    int16_t faps[LABIAL_CHANNELS];
-    while (labial_voice_next(&voice, until, NULL, faps) == LABIAL_OK)
-        continue;
 }
 
 TEST_AFTER(begin, what_is_heard_is_not_moved)
@@ -411,6 +440,35 @@ TEST_AFTER(begin, stale_messages_change_nothing)
     message.utterance = name("a");
     tell_one("AA", 0, 100);
     assert_string_equal(known(), "1000-1100 S, 1100-1200 AA");
+}
+
+TEST_AFTER(begin, utterances_that_were_not_told_of_yet)
+{
+    static const char *const names[] = { "c", "b", "a" };
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    assert_int_equal(labial_voice_begin(&voice, 1000, name("b")), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 2000, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, name("c")), LABIAL_OK);
+    for (unsigned i = 0; i < 3; i++) {
+        message.utterance = name(names[i]);
+        tell_one("S", 600, 700);
+    }
+    assert_string_equal(known(), "0-500 M, 600-700 S, 1600-1700 S, 2600-2700 S");
+    message.utterance = name("b");
+    tell_one("F", 700, 5000); /* nobody is queued behind it: the next one begins at 2000 */
+    assert_string_equal(known(), "0-500 M, 600-700 S, 1600-1700 S, 1700-2000 F, 2600-2700 S");
+    assert_int_equal(labial_voice_cancel(&voice, 100), LABIAL_OK);
+    assert_int_equal(voice.used, 0);
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
+    message.utterance = 0;
+    tell_one("M", 0, 100);
+    assert_string_equal(known(), "0-100 M");
+    assert_int_equal(labial_voice_begin(&voice, 20000, 0), LABIAL_OK); /* until then the one before is kept */
+    tell_one("S", 0, 500);
+    play(15000);
+    tell_one("S", 500, 600);
+    assert_int_equal(voice.utterance_count, 2);
 }
 
 TEST_AFTER(begin, an_utterance_that_ended_is_over)
@@ -493,9 +551,10 @@ TEST_AFTER(begin, chained_messages_begin_where_the_last_one_ended)
 
 TEST_AFTER(begin, joined_messages_that_begin_again)
 {
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_M, 100, 400), LABIAL_OK);
     message.times = LABIAL_VOICE_JOINED;
     message.utterance = name("a");
-    item("M", 100, 200);
+    item("M", 100, 200); /* the program's own phonemes do not count */
     item("AA", 200, 400);
     assert_int_equal(tell(), LABIAL_OK);
     item("M", 400, 500); /* goes on, */
@@ -744,6 +803,36 @@ TEST_AFTER(begin_frames, a_change_and_its_opposite_are_none)
     assert_memory_equal(shown, wanted, 116 * sizeof *shown);
 }
 
+TEST_AFTER(begin_frames, another_phoneme_of_the_same_time)
+{
+    tell_sentence(0, SENTENCE);
+    show_until(300);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA, 170, 300), LABIAL_OK);
+    show_until(400);
+    assert_memory_not_equal(shown[19], wanted[19], sizeof *shown);
+}
+
+TEST_AFTER(begin_frames, an_utterance_in_two_months)
+{
+    tell_sentence(0, SENTENCE);
+    assert_int_equal(labial_voice_begin(&voice, UINT64_C(5000000000), 0), LABIAL_OK);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA, 0, 100), LABIAL_OK);
+    show_until(2000);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA, 100, 200), LABIAL_OK);
+    show_until(2200);
+    assert_memory_equal(shown, wanted, 111 * sizeof *shown);
+}
+
+TEST_AFTER(begin_frames, phonemes_that_the_model_does_not_have)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    assert_int_equal(labial_voice_init(&voice, &laughter_synthetic, memory, sizeof memory), LABIAL_OK);
+    assert_int_equal(labial_voice_words(&voice, &words_en, NULL), LABIAL_OK);
+    assert_int_equal(labial_voice_word(&voice, "zoo", 3, 0, 500), LABIAL_OK); /* no numbers were given */
+    for (unsigned k = 0; k < 40; k++)
+        assert_int_equal(labial_voice_next(&voice, 20 * k, NULL, faps), LABIAL_OK);
+}
+
 TEST_AFTER(begin_frames, clocks_jump)
 {
     int16_t faps[LABIAL_CHANNELS];
@@ -948,6 +1037,7 @@ TEST_AFTER(begin, misuse)
     assert_int_equal(labial_voice_next(&voice, LABIAL_VOICE_CLOCK + 1, NULL, faps), LABIAL_ERROR_RANGE);
     assert_int_equal(labial_voice_next(&voice, 0, NULL, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_voice_word(&voice, "a", 1, 100, LABIAL_VOICE_OPEN), LABIAL_OK);
+    assert_int_equal(labial_voice_numbers(&voice, NULL), LABIAL_OK);
     assert_int_equal(labial_voice_numbers(&voice, numbers), LABIAL_OK); /* every word is now of silences and M */
     assert_int_equal(labial_voice_offset(&voice, 50), LABIAL_OK);
     known();
@@ -958,6 +1048,8 @@ TEST_AFTER(begin, misuse)
     assert_int_equal(labial_voice_init(&voice, &speech_en, (char *)memory + 1, sizeof memory - 1),
                      LABIAL_ERROR_WORKSPACE);
     assert_int_equal(labial_voice_finish(&voice), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_voice_init(&voice, &speech_en, memory, SIZE_MAX / 2), LABIAL_OK);
+    assert_int_equal(voice.room, 0x1000000); /* that is enough */
     assert_int_equal(labial_voice_init(&voice, &speech_en, memory, sizeof memory), LABIAL_OK);
     assert_int_equal(labial_voice_word(&voice, "a", 1, 0, 5), LABIAL_ERROR_STATE); /* no words */
 }

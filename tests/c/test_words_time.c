@@ -119,6 +119,29 @@ TEST(phonemes_keep_the_words_times)
     assert_int_equal(until(&spoken, spoken.count), 1600);
 }
 
+/* Would catch phonemes that are said twice where the next word takes them, and a context that survives an end. */
+TEST(a_word_takes_phonemes_from_the_one_before)
+{
+    static const uint8_t expected[] = { 14, 6, 35, 22, 17, 21, 37, 3, 23, 9, 1, 21, 12, 38 }; /* five million dollars */
+    spoken_t spoken = { 0 };
+    unsigned i;
+    begin(0);
+    say(&spoken, "$5", 0, 300);
+    say(&spoken, "million", 300, 900);
+    flush(&spoken);
+    assert_int_equal(spoken.count, sizeof expected);
+    for (i = 0; i < spoken.count; i++)
+        assert_int_equal(spoken.phonemes[i], expected[i]);
+    assert_int_equal(until(&spoken, 3), 300);
+    assert_int_equal(until(&spoken, spoken.count), 900);
+    spoken.count = 0;
+    say(&spoken, "$5", 900, 1200);
+    flush(&spoken);
+    say(&spoken, "million", 1200, 1500);
+    flush(&spoken);
+    assert_int_equal(spoken.count, 8 + 6);
+}
+
 /* Would catch a word that runs into the next one, and one without time that is spoken nevertheless. */
 TEST(a_word_ends_where_the_next_begins)
 {

@@ -49,15 +49,15 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
 void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
                          labial_selection_t *selection)
 {
-    labial_shape_t *shape = &selection->shape;
+    labial_shape_t *shape = selection->shape;
     unsigned k;
     selection->halves++;
     /*@ assert selection->halves <= 2; */
     for (k = 0; k < LABIAL_CHANNELS; k++) {
-        shape->knots[0][k] = any_position();
-        shape->knots[1][k] = any_position();
+        shape[k].knots[0] = any_position();
+        shape[k].knots[1] = any_position();
     }
-    shape->knots[0][0] = model->phonemes[phoneme].floor + ms + previous + next > 0 ? any_position() : 0;
+    shape[0].knots[0] = model->phonemes[phoneme].floor + ms + previous + next > 0 ? any_position() : 0;
 }
 
 uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
@@ -65,14 +65,17 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
 {
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        target[k] = shape->knots[0][k] + shape->knots[1][k] + taken->labels[0] + taken->share > 0 ? any_position() : 0;
+        target[k] = shape[k].knots[0] + shape[k].knots[1] + taken->labels[0] + taken->share > 0 ? any_position() : 0;
     return model->floor_count ? any_uint16 : (uint16_t)0;
 }
 
 static void advance(int stride)
 {
-    static labial_t stream; /* zero, as labial_init() makes it */
+    static labial_t stream; /* zero but for these, as labial_init() makes it */
+    static labial_shape_t shapes[2][LABIAL_CHANNELS];
     unsigned i;
+    stream.shape = shapes[0];
+    stream.next.shape = shapes[1];
     for (i = 0; i < LABIAL_MODELS; i++)
         stream.models[i] = &model;
     stream.channels.stride = (uint8_t)stride;

@@ -15,6 +15,9 @@ static void select_among(int count, int knots)
     const unsigned next = (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
     const uint16_t ms = any_uint16;
     labial_selection_t selection = { 0 }; /* as labial_init() makes it */
+    labial_shape_t shape[LABIAL_CHANNELS];
+    FILL(shape); /* the workspace */
+    selection.shape = shape;
     any_phonemes(count);
     model.pair_knots = (uint8_t)knots;
     labial_shape_select(&model, phoneme, ms, previous, next, &selection);
@@ -25,15 +28,15 @@ static void select_among(int count, int knots)
 static void take(void)
 {
     labial_taken_t taken;
-    labial_shape_t shape;
+    labial_shape_t shape[LABIAL_CHANNELS];
     uint8_t labels[2 * LABIAL_REACH + 1];
     int16_t target[LABIAL_CHANNELS];
     int i;
     FILL(target); /* the workspace, which a reset sets to zero: EVA cannot tell that a model's channels were written */
     for (i = 0; i < LABIAL_CHANNELS; i++)
-        shape.knots[0][i] = any_position();
+        shape[i].knots[0] = any_position();
     for (i = 0; i < LABIAL_CHANNELS; i++)
-        shape.knots[1][i] = any_position();
+        shape[i].knots[1] = any_position();
     for (i = 0; i < 2 * LABIAL_REACH + 1; i++)
         labels[i] = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
     taken.labels = labels + LABIAL_REACH;
@@ -43,7 +46,7 @@ static void take(void)
     taken.is_open = (uint8_t)Frama_C_interval(0, 1);
     taken.rest = (uint8_t)Frama_C_interval(0, LABIAL_REST_FRAMES);
     taken.marks = any_uint8;
-    labial_shape_target(&model, &shape, &taken, target);
+    labial_shape_target(&model, shape, &taken, target);
 }
 
 /* Kernels of every length and place with this stride: `room` taps at most to either side of the frame. */

@@ -12,8 +12,8 @@ import pytest
 
 from labial.corpus.phonesets import LAUGHTER
 from labial.files.faps import CHANNELS, FAP_NUMBERS
-from labial.train import pipeline, tracking
-from labial.train.closures import HELD, floors
+from labial.train import pipeline
+from labial.train import states as tracking
 from labial.train.codebook import (
     INITIAL_COUNT,
     NEIGHBOUR_COUNT,
@@ -25,6 +25,7 @@ from labial.train.codebook import (
     train_channel,
     transitions,
 )
+from labial.train.expression import HELD, floors
 from labial.train.recordings import Recording
 from labial.train.states import StateTables, decode
 from packages import sptk

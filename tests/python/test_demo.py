@@ -1,4 +1,5 @@
-"""The demo page from outside: one file that needs nothing else. LABIAL_DEMO_PAGE holds the built page's path."""
+"""The demo page and those of `labial page`: one file that needs nothing else, what is drawn and what is heard in a
+browser. LABIAL_DEMO_PAGE holds the built page's path."""
 
 from __future__ import annotations
 
@@ -9,17 +10,18 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, Iterator, List, Tuple
 
 import numpy as np
 import pytest
 
+from browser import CHROMIUM, REASON, Browser, Page
 from labial.__main__ import main
 from labial.reference.fade import EASE
-from test_see import data_of
+from test_see import data_of, frames
 
 PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
-pytestmark = pytest.mark.skipif(not PAGE, reason="LABIAL_DEMO_PAGE does not name the built page")
+needs_page = pytest.mark.skipif(not PAGE, reason="LABIAL_DEMO_PAGE does not name the built page")
 
 DEMO = Path(__file__).resolve().parents[2] / "examples" / "demo"
 SEE = DEMO.parents[1] / "export" / "labial" / "see"
@@ -88,6 +90,7 @@ def opening(frame: List[int]) -> int:
     return -(frame[3] + frame[4])
 
 
+@needs_page
 def test_frames_last_as_long_as_the_timings(data: Dict[str, Any]) -> None:
     """No frame is lost or added, not even where one model hands over to the other or both run side by side; then the
     mouth comes to rest."""
@@ -96,6 +99,7 @@ def test_frames_last_as_long_as_the_timings(data: Dict[str, Any]) -> None:
     assert any(data["frames"][-EASE - 1]) and not any(data["frames"][-1])
 
 
+@needs_page
 def test_frames_are_13_integers_that_move(data: Dict[str, Any]) -> None:
     """Every frame has the 13 channels within FAP limits, and the jaw and the lips move in all three parts."""
     assert data["channels"] == [f"fap{n}" for n in (3, 16, 17, *range(51, 61))]
@@ -109,6 +113,7 @@ def test_frames_are_13_integers_that_move(data: Dict[str, Any]) -> None:
             assert max(values) - min(values) >= 20
 
 
+@needs_page
 def test_phonemes_tile_the_frames(data: Dict[str, Any]) -> None:
     """Phonemes follow each other from the first frame to the way to rest: speech, laughter, and both."""
     at = 0
@@ -122,6 +127,7 @@ def test_phonemes_tile_the_frames(data: Dict[str, Any]) -> None:
     assert order == ["speech", "laughter", "speech", "laughing", "laughter", "laughing", "speech"]
 
 
+@needs_page
 def test_the_sentence_breaks_into_laughter_and_recovers(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
     """Before and after, the frames are those of plain speech; in between the corners rise with every word, and in the
     pause the mouth laughs. Would catch streams out of step, and laughter that stays."""
@@ -141,6 +147,7 @@ def test_the_sentence_breaks_into_laughter_and_recovers(data: Dict[str, Any], pl
     assert len(tops) >= 4 and max(openings) >= 100 > min(openings)
 
 
+@needs_page
 def test_lips_close_in_words_spoken_laughing(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
     """In p, b, m lips that meet in plain speech meet in the same place, over a jaw that is no wider open; and they do
     meet in nearly all of them."""
@@ -157,6 +164,7 @@ def test_lips_close_in_words_spoken_laughing(data: Dict[str, Any], plain: Dict[s
     assert met >= len(closures) - 1
 
 
+@needs_page
 def test_laughing_words_do_not_jerk(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
     """From frame to frame nothing moves farther than plain speech does anywhere."""
 
@@ -166,6 +174,7 @@ def test_laughing_words_do_not_jerk(data: Dict[str, Any], plain: Dict[str, Any])
     assert leaps(data["frames"][parts(data)[1] :]) <= leaps(plain["frames"])
 
 
+@needs_page
 def test_sound_is_that_of_the_timings(data: Dict[str, Any]) -> None:
     """Catches a sound that is not the committed one, not as long as the motion, whose words are not where the phonemes
     are, or that is heard in laughs, which have no voice."""
@@ -189,6 +198,7 @@ def test_sound_is_that_of_the_timings(data: Dict[str, Any]) -> None:
     assert all(level(p) < loud / 20 for p in data["phonemes"] if p["kind"] == "laughter")  # the word before it ends
 
 
+@needs_page
 def test_sound_is_what_flite_says(tmp_path: Path) -> None:
     """Sound and timings are of one utterance: what flite's voice slt says; README.md has the commands."""
     soundfile = pytest.importorskip("soundfile")
@@ -216,6 +226,7 @@ def test_sound_is_what_flite_says(tmp_path: Path) -> None:
         assert np.array_equal(samples[at : at + length], spoken[:length]), name
 
 
+@needs_page
 def test_the_kiosks_sound_is_what_flite_says(tmp_path: Path) -> None:
     """examples/kiosk: sound and timings are what the commands of its README.md make."""
     soundfile = pytest.importorskip("soundfile")
@@ -231,6 +242,7 @@ def test_the_kiosks_sound_is_what_flite_says(tmp_path: Path) -> None:
     assert sound[1] == wanted[1] and np.array_equal(sound[0], wanted[0])
 
 
+@needs_page
 def test_nothing_is_requested(text: str) -> None:
     """No address, no external source or link, no style import: the page works from a disk, offline."""
     text = text.replace("http://www.w3.org/2000/svg", "")  # a name, which nothing fetches
@@ -242,6 +254,7 @@ def test_nothing_is_requested(text: str) -> None:
     assert re.search(r"""<meta [^>]*content="[^"]*default-src 'none'""", text)
 
 
+@needs_page
 def test_title_and_placeholder(text: str, data: Dict[str, Any]) -> None:
     """The title is set from the data, and the template's placeholder is gone."""
     assert data["title"]
@@ -249,9 +262,141 @@ def test_title_and_placeholder(text: str, data: Dict[str, Any]) -> None:
     assert "@LABIAL_" not in text
 
 
+@needs_page
 def test_controls_have_names(text: str) -> None:
     """Drawing, button and scrubber have labels for those who do not see them."""
     labels = re.findall(r'aria-label="([^"]*)"', text)
     assert "Play" in labels and "Speed" in labels
     assert any(label.startswith("Position") for label in labels)
     assert re.search(r'<svg [^>]*aria-label="[^"]*mouth', text)
+
+
+# ---- The demo page and those of `labial page` in a real browser, from the disk ---------------------------------------
+
+
+DEMO_PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
+needs_chromium = pytest.mark.skipif(not CHROMIUM, reason=REASON)
+
+#: The line that is drawn between closed lips, in drawing units; lips that are nearer look closed.
+LINE = 1.8
+#: Plays, and takes down in every animation frame the sound's time before and after the page draws, and the motion's, in
+#: seconds. Functions for a frame are called in the order in which they ask for it.
+WATCH = """{
+const {audio} = window.labialPlayer, seen = window.seen = [];
+let before = 0;
+(function first() {
+  before = audio.currentTime;
+  requestAnimationFrame(first);
+})();
+document.getElementById("play").click();
+(function second() {
+  if (!audio.paused) seen.push([before, audio.currentTime, window.labialPlayer.position / FPS]);
+  requestAnimationFrame(second);
+})();
+}"""
+#: The widest distance between the inner contours of the lips as they are drawn: the path goes along the upper lip and
+#: back along the lower one.
+GAP = """(() => {
+  const points = document.querySelector("#mouth path[data-d=inner]").getAttribute("d").match(/-?[0-9.]+/g).map(Number);
+  const y = points.filter((_, i) => i % 2), n = y.length;
+  return Math.max(...y.slice(0, n / 2).map((top, i) => y[n - 1 - i] - top));
+})()"""
+
+
+@pytest.fixture
+def demo(browser: Browser) -> Iterator[Page]:
+    """The demo page."""
+    if not DEMO_PAGE:
+        pytest.skip("LABIAL_DEMO_PAGE does not name the built page")
+    page = browser.page(Path(DEMO_PAGE).as_uri())
+    yield page
+    assert page.errors() == []
+
+
+def demo_data() -> Dict[str, Any]:
+    return data_of(Path(DEMO_PAGE).read_text(encoding="utf-8"))
+
+
+def in_step(seen: List[List[float]], fps: float) -> None:
+    """Sound and lips are never more than a frame apart while the sound plays."""
+    before, after, drawn = np.array([frame for frame in seen if frame[0] > 0]).T
+    assert len(drawn) >= 3  # on a machine that is busy otherwise, too
+    assert np.maximum(before - drawn, drawn - after).max() <= 1 / fps
+
+
+@needs_chromium
+def test_demo_plays_pauses_and_seeks_in_step(demo: Page) -> None:
+    """Catches a sound that does not play, lips that run ahead or behind, and either going on or elsewhere alone."""
+    fps = demo_data()["fps"]
+    watch, press = WATCH.replace("FPS", str(fps)), "document.getElementById('play').click()"
+    demo.evaluate(watch)
+    demo.wait_for("labialPlayer.audio.currentTime > 0.8")
+    demo.evaluate(press)
+    in_step(demo.evaluate("seen"), fps)
+    where = demo.evaluate("[labialPlayer.audio.paused, labialPlayer.audio.currentTime, labialPlayer.position]")
+    assert where[0] and abs(where[1] - where[2] / fps) <= 1 / fps
+    demo.evaluate("new Promise(resolve => setTimeout(resolve, 200))")
+    assert demo.evaluate("[labialPlayer.audio.currentTime, labialPlayer.position]") == where[1:]
+
+    demo.evaluate(f"labialPlayer.seek(9 * {fps}); {watch}")
+    demo.wait_for("labialPlayer.audio.currentTime > 9.5")
+    demo.evaluate(press)
+    seen = demo.evaluate("seen")
+    assert seen[0][0] >= 8.9
+    in_step(seen, fps)
+
+
+@needs_chromium
+def test_demo_closes_the_lips_it_draws(demo: Page) -> None:
+    """In every p, b and m a frame is drawn with the lips closed; vowels are open, f and v are not closed."""
+    data = demo_data()
+    demo.evaluate(f"window.gap = frame => {{ labialPlayer.seek(frame); return {GAP}; }}")
+    least = {}
+    for p in data["phonemes"]:
+        frames = range(p["start_frame"], p["start_frame"] + p["frames"])
+        gaps = demo.evaluate(f"{list(frames)}.map(gap)")
+        least.setdefault(p["label"], []).append(min(gaps))
+        if p["label"] in ("AA", "AE", "AY", "EH"):
+            assert max(gaps) > 4 * LINE, p
+    closed = least["P"] + least["B"] + least["M"]
+    assert len(closed) >= 25 and max(closed) < LINE
+    assert min(least["F"] + least["V"]) > 0.7 * LINE
+
+
+def page_of(folder: Path, sound: str) -> str:
+    """The address of the page of a.csv in `folder`, with a sound there."""
+    out = folder / "a.html"
+    assert main(["page", str(folder / "a.csv"), "--audio", str(folder / sound), "-o", str(out)]) == 0
+    return out.as_uri()
+
+
+@needs_chromium
+@pytest.mark.parametrize("options", [
+    {"format": "WAV", "subtype": "PCM_16"}, {"format": "WAV", "subtype": "FLOAT"}, {"format": "FLAC"},
+    {"format": "MP3"}, {"format": "OGG", "subtype": "VORBIS"}, {"format": "OGG", "subtype": "OPUS"},
+], ids=lambda options: "-".join(options.values()))  # fmt: skip
+def test_page_plays_ones_own_sound(browser: Browser, tmp_path: Path, options: Dict[str, str]) -> None:
+    """Catches a kind of sound that the browser refuses, and a sound that begins elsewhere."""
+    soundfile = pytest.importorskip("soundfile")
+    soundfile.write(tmp_path / "sound", np.sin(np.arange(48000) / 10) / 2, 48000, **options)
+    (tmp_path / "a.lab").write_text("0 0.1 sil\n0.1 0.4 m\n0.4 1 ah\n")
+    model = Path(__file__).resolve().parents[2] / "export" / "models" / "speech_en.npz"
+    assert main(["synth", str(model), str(tmp_path / "a.lab"), "-o", str(tmp_path / "a.csv")]) == 0
+    page = browser.page(page_of(tmp_path, "sound"))
+    page.wait_for("labialPlayer.audio.readyState >= 3")
+    assert page.evaluate("labialPlayer.audio.duration") == pytest.approx(1.0, abs=0.03)
+    page.evaluate(WATCH.replace("FPS", "50"))
+    page.wait_for("labialPlayer.audio.currentTime > 0.4")
+    in_step(page.evaluate("seen"), 50)
+    assert page.evaluate("document.getElementById('mute').hidden") and page.errors() == []
+
+
+@needs_chromium
+def test_page_says_that_its_sound_cannot_be_played(browser: Browser, tmp_path: Path) -> None:
+    """Without its sound the page still moves, and says why nothing is heard."""
+    (tmp_path / "a.csv").write_text(frames(100))
+    (tmp_path / "a.wav").write_bytes(b"RIFF\x24\x00\x00\x00WAVEfmt " + bytes(40))
+    page = browser.page(page_of(tmp_path, "a.wav"))
+    page.wait_for("!document.getElementById('mute').hidden")
+    page.evaluate("document.getElementById('play').click()")
+    page.wait_for("labialPlayer.position > 10")

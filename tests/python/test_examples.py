@@ -1,5 +1,5 @@
-"""Examples in Python: text to sound and servos in step on a Pi, and a mouth that follows a file, sounddevice and
-arecord."""
+"""Examples: in Python, text to sound and servos in step on a Pi, and a mouth that follows a file, sounddevice and
+arecord; the programs of examples/rig: what a face would do with their output, on the bundled models."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import subprocess
 import sys
 import types
 import wave
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
@@ -22,6 +23,8 @@ import servos
 import speak
 from labial.errors import LabialError
 from labial.program import run
+from labial.rig.description import read
+from labial.rig.table import convert
 from packages import SOURCE
 from runtime import needs_runtime
 from test_hearing import voice
@@ -30,7 +33,7 @@ from voices import Piper
 
 PI = SOURCE / "examples" / "pi"
 
-pytestmark = needs_runtime
+in_python = needs_runtime
 
 SAY = os.environ.get("LABIAL_SAY_ESPEAK", "")
 PATH = f"{Path(SAY).parent}{os.pathsep}{os.environ['PATH']}"
@@ -43,6 +46,7 @@ def program(*arguments: object, folder: Path, path: str = PATH) -> subprocess.Co
                           env={**os.environ, "PATH": path, "PYTHONPATH": str(SOURCE / "export")})
 
 
+@in_python
 @needs_espeak
 def test_speaks_and_prints(tmp_path: Path) -> None:
     """The sound goes to aplay, the servos move while it is due, close in m and end at rest."""
@@ -67,6 +71,7 @@ def test_speaks_and_prints(tmp_path: Path) -> None:
     assert max(jaw) > rest["jaw"] + 40
 
 
+@in_python
 @pytest.mark.parametrize(("arguments", "complaint"), [
     (["--face", "nothing.toml", "x"], "nothing.toml"),
     (["--piper", "nothing.onnx", "x"], "this voice needs the package piper: pip install 'piper-tts[alignment]'"),
@@ -80,6 +85,7 @@ def test_what_fails_says_so(tmp_path: Path, arguments: List[str], complaint: str
     assert done.stderr.startswith("speak: ") and complaint in done.stderr and done.stderr.count("\n") == 1
 
 
+@in_python
 @needs_espeak
 def test_without_aplay_it_says_what_to_install(tmp_path: Path) -> None:
     """Catches "[Errno 2] No such file or directory: 'aplay'"."""
@@ -89,6 +95,7 @@ def test_without_aplay_it_says_what_to_install(tmp_path: Path) -> None:
     assert done.stderr == "speak: the sound needs aplay: apt-get install alsa-utils, or --sound none\n"
 
 
+@in_python
 def test_without_the_program_it_says_where_that_is(tmp_path: Path) -> None:
     done = program("--servos", "print", "x", folder=tmp_path, path=str(tmp_path))
     assert done.returncode == 1 and "this voice needs labial-say-espeak: build it (docs/install.md)" in done.stderr
@@ -110,6 +117,7 @@ class Clock:
         self.now += self.stalls.get(number, 0.001)
 
 
+@in_python
 @pytest.mark.parametrize("stalls", [{}, {10: 0.05, 20: 0.2}, {49: 0.1}, {0: 1.3}, {k: 0.025 for k in range(60)}])
 @pytest.mark.parametrize("frames", [1, 60, 200])
 def test_lips_follow_the_clock(tmp_path: Path, stalls: Dict[int, float], frames: int) -> None:
@@ -127,6 +135,7 @@ def test_lips_follow_the_clock(tmp_path: Path, stalls: Dict[int, float], frames:
     assert len(numbers) == numbers[-1] + 1 or stalls
 
 
+@in_python
 def test_no_stall_moves_a_servo_faster_than_its_limit() -> None:
     motion = list(labial.render([("M", 100), ("AA", 300), ("M", 100), ("AY", 300)]))
     clock, face = Clock({5: 0.1, 9: 0.3, 25: 0.2}), labial.Face(PI / "face.toml", ahead=speak.AHEAD)
@@ -157,6 +166,7 @@ class Bus:
         self.written.append((address, register, values))
 
 
+@in_python
 def test_pca9685_gets_its_registers(monkeypatch: pytest.MonkeyPatch) -> None:
     """As its data sheet has it: asleep for the prescaler, four registers for each channel from 6 on, off at the end.
     One servo after the other begins, at rest."""
@@ -180,6 +190,7 @@ def test_pca9685_gets_its_registers(monkeypatch: pytest.MonkeyPatch) -> None:
         servos.PCA9685(labial.Rig(SOURCE / "examples" / "faces" / "jaw.toml"), bus)
 
 
+@in_python
 def test_without_i2c_the_servos_are_printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
     rig = labial.Rig(PI / "face.toml")
 
@@ -195,6 +206,7 @@ def test_without_i2c_the_servos_are_printed(monkeypatch: pytest.MonkeyPatch, cap
     assert isinstance(servos.open_servos(rig), servos.PCA9685)
 
 
+@in_python
 def test_piper_tells_its_phonemes(monkeypatch: pytest.MonkeyPatch) -> None:
     """With a stand-in for Piper's package: sound joined, samples as milliseconds, characters as phonemes."""
 
@@ -239,6 +251,7 @@ def shown(text: str) -> List[List[int]]:
     return [item["faps"] for item in items]
 
 
+@in_python
 def test_a_file_in_place_of_the_microphone(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """Catches another rate, a channel of two, and the bar of another motion."""
     stereo = np.stack([SOUND, SOUND], axis=1)
@@ -252,6 +265,7 @@ def test_a_file_in_place_of_the_microphone(tmp_path: Path, capsys: pytest.Captur
         assert item.count("#") == min(max(round(-(faps[3] + faps[4]) / 15), 0), 40)
 
 
+@in_python
 def test_blocks_come_as_from_a_microphone(tmp_path: Path) -> None:
     """Catches a file that is heard at once, and one that falls behind."""
     now = [5.0]
@@ -264,6 +278,7 @@ def test_blocks_come_as_from_a_microphone(tmp_path: Path) -> None:
     assert number == 60
 
 
+@in_python
 def test_sounddevice(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
     """Catches arguments that RawInputStream does not have; Ctrl-C ends."""
     opened: List[Any] = []
@@ -302,6 +317,7 @@ def test_sounddevice(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixt
     assert "follow: the microphone: Error querying device -1\n" in capsys.readouterr().err
 
 
+@in_python
 @pytest.mark.skipif(os.name != "posix", reason="a script in place of arecord")
 def test_arecord(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
     """Catches options of arecord that are not those of the sound, and one that cannot record."""
@@ -324,6 +340,7 @@ def test_arecord(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest
                     "or apt-get install alsa-utils\n")
 
 
+@in_python
 @pytest.mark.parametrize(("sound", "message"), [
     (None, "No such file"),
     (b"a text and no sound", "a.wav: file does not start with RIFF id"),
@@ -341,3 +358,119 @@ def test_wrong_files_are_named(sound: Any, message: str, tmp_path: Path, capsys:
     assert command(["--sound", str(path)]) == 1
     told = capsys.readouterr().err
     assert message in told and told.startswith("follow: ") and told.count("\n") == 1
+
+
+# ---- The example programs of examples/rig ----------------------------------------------------------------------------
+
+
+FOLDER = os.environ.get("LABIAL_RIG_EXAMPLES", "")
+needs_programs = pytest.mark.skipif(not FOLDER, reason="LABIAL_RIG_EXAMPLES does not name the folder of the programs")
+
+
+
+def output(name: str) -> List[str]:
+    """The lines that an example prints."""
+    program = Path(FOLDER) / f"labial-rig-{name}"
+    return subprocess.run([str(program)], capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+def script() -> List[Tuple[str, int, int]]:
+    """Label, first frame and end of each phoneme of examples/rig/script.c, 50 frames per second."""
+    text = (SOURCE / "examples" / "rig" / "script.c").read_text()
+    phonemes, begin = [], 0
+    for model, label, length in re.findall(r"\{ (SPEECH|LAUGHTER), \w+?_(?:EN|SYNTHETIC)_(\w+), (\d+) \}", text):
+        end = begin + int(length)
+        phonemes.append((label if model == "SPEECH" else label.lower(), (begin + 10) // 20, (end + 10) // 20))
+        begin = end
+    return phonemes
+
+
+CLOSURES = [(begin, end) for label, begin, end in script() if label in ("P", "B", "M")]
+SPEECH_END = max(end for label, _, end in script() if label.isupper())
+EASE = 12  # of the way to rest, after the last phoneme
+FRAMES = script()[-1][2] + EASE
+
+
+@needs_programs
+def test_script_is_found() -> None:
+    """The tests below would say nothing about a script that they cannot read."""
+    assert len(script()) == 34 + 23 and len(CLOSURES) == 6 and SPEECH_END == 187 and FRAMES == 314 + EASE
+
+
+@needs_programs
+def test_jaw_opens_wide_and_closes() -> None:
+    """The default gain must use the servo's range, and p, b, m must close a mouth that has nothing but a jaw."""
+    rows = np.array([[int(x) for x in line.split(",")] for line in output("jaw")])
+    assert rows[:, 0].tolist() == list(range(len(rows))) and FRAMES < len(rows) < FRAMES + 40
+    pulse = rows[:, 1]
+    assert pulse[-1] == 1400
+    assert pulse.min() >= 1400 and pulse.max() <= 1900 and pulse.max() >= 1800
+    for begin, end in CLOSURES:
+        assert pulse[begin:end].min() < 1400 + 0.2 * 500
+    assert np.ptp(pulse[SPEECH_END:]) > 80  # the laugh's pulses are smaller than speech, but seen
+
+
+@needs_programs
+def test_servos_are_written_to_the_chip() -> None:
+    """Set-up in the order the chip needs; servo after servo, half a second each; then 20 bytes per frame, within each
+    servo's limits and its slew, and rest at the end."""
+    rig = read(SOURCE / "examples" / "faces" / "servos.toml", "servos")
+    outputs = convert(rig)
+    lines = [[int(x, 16) for x in line.split()] for line in output("servos")]
+    assert lines[:3] == [[0x00, 0x10], [0xFE, rig.unit.prescale], [0x00, 0x20]]
+    start, lines = lines[3:3 + 25 * len(outputs)], lines[3 + 25 * len(outputs):]
+    assert [len(line) for line in start] == [1 + 4 * min(1 + tick // 25, 5) for tick in range(1, 126)]
+    begin = next(number for number, line in enumerate(lines) if line != start[-1])
+    frames = np.array(lines)
+    assert frames.shape[1] == 1 + 4 * len(outputs) and (frames[:, 0] == 0x06).all()
+    assert all(line == start[-1][:len(line)] for line in start) and lines[-1] == start[-1]
+    assert FRAMES <= len(frames) < FRAMES + 60
+    pairs = frames[:, 1:].reshape(len(frames), len(outputs), 4)
+    assert (pairs[:, :, :2] == 0).all()
+    ticks = pairs[:, :, 2] + 256 * pairs[:, :, 3]
+    for column, servo in zip(ticks.T, outputs):
+        assert column.min() >= servo.minimum and column.max() <= servo.maximum
+        assert np.ptp(column) > 0.5 * (servo.maximum - servo.minimum), servo.name
+        if servo.slew:
+            assert np.abs(np.diff(column)).max() <= servo.slew
+    # The corners are mirror images: in the laugh one goes up as the other goes down.
+    left, right = ticks[begin + SPEECH_END + 10:begin + FRAMES - 20, 3:].T
+    assert left.min() > outputs[3].neutral and right.max() < outputs[4].neutral
+
+
+@needs_programs
+def test_blendshapes_are_weights() -> None:
+    """Every shape is used and stays a weight; lips close over the open jaw; the laugh smiles and speech hardly does."""
+    header, *rows = output("arkit")
+    names = header.split(",")[1:]
+    assert names == [item.name for item in read(SOURCE / "export" / "labial" / "rig" / "arkit.toml", "arkit").outputs]
+    values = np.array([[float(x) for x in row.split(",")] for row in rows])
+    assert np.allclose(values[:, 0], np.arange(FRAMES) / 50)
+    weights = dict(zip(names, values[:, 1:].T))
+    for name, column in weights.items():
+        assert column.min() >= 0 and column.max() <= 1 and column.max() > (0.04 if name == "mouthClose" else 0.1), name
+    for begin, end in CLOSURES:
+        gap = (weights["jawOpen"] - weights["mouthClose"])[begin:end]
+        assert gap.min() < 0.05
+    smile = (weights["mouthSmileLeft"] + weights["mouthSmileRight"]) / 2
+    assert smile[SPEECH_END + 15:].mean() > 0.2 and smile[:SPEECH_END - 15].mean() < 0.09
+
+
+@needs_programs
+def test_pictures_are_chosen() -> None:
+    """An animation of one picture per frame: closed in p, b, m, smiling in the laugh, without flicker."""
+    text = "\n".join(output("sprites"))
+    root = ET.fromstring(text)
+    space = "{http://www.w3.org/2000/svg}"
+    animation = next(root.iter(f"{space}animateTransform"))
+    shown = np.array([-int(x) // 120 for x in animation.attrib["values"].split(";")])
+    names = [item.text for item in root.iter(f"{space}text")]
+    assert len(names) == 12 and len(shown) == FRAMES and 0 <= shown.min() and shown.max() < 12
+    assert animation.attrib["dur"] == f"{20 * FRAMES}ms"
+    for begin, end in CLOSURES:
+        assert "p b m" in {names[number] for number in shown[begin:end]}
+    assert {names[number] for number in shown[SPEECH_END + 15:-EASE]} <= {"smile", "laugh"}
+    assert names[shown[-1]] == "rest"
+    assert len(set(shown)) >= 7
+    runs = np.diff(np.flatnonzero(np.diff(np.concatenate([[-1], shown, [-1]]))))
+    assert runs[:-1].min() >= 2 and len(runs) < FRAMES / 4

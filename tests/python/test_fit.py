@@ -21,10 +21,9 @@ from labial.errors import DataError
 from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
-from labial.fit.judge import judge, matrix, opening, shown
 from labial.fit.kinds import kind_of, known
 from labial.fit.landmarks import read_head
-from labial.fit.meaning import bend, fap
+from labial.fit.meaning import bend, fap, judge, matrix, opening, shown
 from labial.fit.sentences import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.rig.description import read

@@ -18,19 +18,24 @@ from labial.reference.shape import choose, shapes
 from labial.reference.stream import synthesise, targets
 from labial.reference.tables import FloatTables
 from labial.tables.amplitude import mean_pose, widened
-from labial.train.closures import floors
-from labial.train.context import LOG_FLOOR, Samples, climb, fit_context, log_joint, log_normal, maximise
-from labial.train.expression import AMPLITUDE, gains
+from labial.train.expression import AMPLITUDE, floors, gains
 from labial.train.recordings import Recording
 from labial.train.shapes import (
     DURATION,
+    LOG_FLOOR,
     MINIMUM_SAMPLES,
     REGULARISATION,
     SAMPLES_PER_COMPONENT,
+    Samples,
     back_off,
+    climb,
     component_limit,
     corpus_scale,
+    fit_context,
     fit_mixture,
+    log_joint,
+    log_normal,
+    maximise,
     shape_tables,
 )
 from labial.train.workers import Workers

@@ -25,9 +25,8 @@ from labial.errors import DataError, LabialError
 from labial.files.grammar import read_lines
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
-from labial.fit.judge import Figures, judge, matrix, opening
 from labial.fit.landmarks import read_head
-from labial.fit.meaning import fap
+from labial.fit.meaning import Figures, fap, judge, matrix, opening
 
 #: Oculus's names that avatars spell in another way.
 _OCULUS = {"ih": "I", "oh": "O", "ou": "U"}

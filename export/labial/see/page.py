@@ -20,11 +20,10 @@ from labial.files.faps import FAP_COLUMNS
 from labial.files.frames import even
 from labial.files.grammar import read_bytes
 from labial.fit.avatar import read as read_avatar
-from labial.fit.judge import matrix, opening
+from labial.fit.fit import output_name
 from labial.fit.kinds import KINDS, kind_of, known
 from labial.fit.landmarks import Found, read_head
-from labial.fit.meaning import fap
-from labial.fit.write import output_name
+from labial.fit.meaning import fap, matrix, opening
 from labial.rig.animation import face, outputs
 from labial.rig.description import Rig, read
 from labial.see.motion import Band, Motion, laughs

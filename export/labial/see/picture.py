@@ -8,8 +8,8 @@ from typing import List, Tuple, Union
 import numpy as np
 
 from labial.errors import needs
+from labial.fit.fit import output_name
 from labial.fit.landmarks import Found
-from labial.fit.write import output_name
 from labial.rig.animation import outputs
 from labial.rig.description import Rig
 from labial.runtime.render import render

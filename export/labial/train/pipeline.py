@@ -21,10 +21,8 @@ from labial.tables.followers import FAP_17, columns, every, mirrored, solved
 from labial.tables.model import Model
 from labial.tables.quantise import LIMITS
 from labial.train.adapt import about_talkers
-from labial.train.closures import FIRMNESS, floors
 from labial.train.codebook import Codebook, Division, lbg, train_channel
-from labial.train.context import fit_context
-from labial.train.expression import deviation_of, gains, shared_gains
+from labial.train.expression import FIRMNESS, deviation_of, floors, gains, shared_gains
 from labial.train.kernels import (
     PAIR_KNOTS,
     REACH,
@@ -37,10 +35,20 @@ from labial.train.kernels import (
 )
 from labial.train.protrusion import with_protrusion
 from labial.train.recordings import Occurrences, Recording, occurrences, recordings, taught, with_pauses_cut
-from labial.train.shapes import Mixture, Plan, back_off, corpus_scale, fit_mixture, shape_tables
-from labial.train.states import Scales, StateTables, codebook_tables, decode, match_states
+from labial.train.shapes import Mixture, Plan, back_off, corpus_scale, fit_context, fit_mixture, shape_tables
+from labial.train.states import (
+    SCALES,
+    ChannelTask,
+    Scales,
+    StateTables,
+    balance_states,
+    chain,
+    chain_tables,
+    codebook_tables,
+    decode,
+    match_states,
+)
 from labial.train.talkers import check_variance, counted_once, fit_talkers, penalties_of, weights_of
-from labial.train.tracking import SCALES, ChannelTask, balance_states, chain, chain_tables
 from labial.train.workers import Workers
 
 #: Utterances that are decoded at once.

@@ -29,8 +29,8 @@ from labial.reference.shape import Choice
 from labial.train.kernels import Kernels, Penalties, Regression, columns_alike
 from labial.train.recordings import Recording
 
-#: How many times stronger the prior of what talkers share is than that of one talker; chosen on talkers left out, where 1
-#: was the best v.
+#: How many times stronger the prior of what talkers share is than that of one talker; chosen on talkers left out, where
+#: 1 was the best v.
 SHARED = 3.0
 
 #: The largest v: beyond it talkers share nothing.

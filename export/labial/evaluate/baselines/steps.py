@@ -16,9 +16,8 @@ from labial.evaluate.material import Timeline
 from labial.evaluate.training import Training, choose
 from labial.reference.shape import ShapeTables, shapes
 from labial.reference.shape import choose as chosen
-from labial.train.context import fit_context
 from labial.train.recordings import neighbour_classes, occurrences, recordings
-from labial.train.shapes import Mixture, back_off, corpus_scale, fit_mixture, shape_tables
+from labial.train.shapes import Mixture, back_off, corpus_scale, fit_context, fit_mixture, shape_tables
 
 #: Components of each phoneme's mixture (C of equation 1).
 COMPONENTS = 5
