@@ -1,5 +1,5 @@
 // One mouth that moves while its phonemes are still arriving.
-import { CHANNELS, LabialError, NO_LAUGHTER, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, NO_LAUGHTER, VISEMES, amount, shown } from "./memory.js";
 
 const DURATION_MAX = 3600000;
 /** Milliseconds: where no duration of a stream is longer, they are seconds, as in export/labial/core/numbers.py. */
@@ -151,7 +151,9 @@ export class Stream {
 
     #shown(at) {
         const place = this.#labial.wasm.mouth_faps(at);
-        if (this.#output !== "faps") return this.#labial.weigh(place, this.#output, this.#frame);
+        if (this.#output !== "faps") {
+            return this.#labial.weigh(place, this.#output, this.#frame, this.#labial.wasm.mouth_visemes(at));
+        }
         this.#frame.set(this.#labial.memory.int16(place, CHANNELS));
         return this.#frame;
     }
@@ -188,6 +190,11 @@ export class Stream {
     set exact(exact) {
         this.#check(this.#labial.wasm.mouth_exact(this.#open(), exact ? 1 : 0));
         this.#exact = Boolean(exact);
+    }
+
+    get visemes() {
+        const place = this.#labial.wasm.mouth_visemes(this.#open());
+        return this.#labial.memory.bytes.slice(place, place + VISEMES);
     }
 
     get number() {
