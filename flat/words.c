@@ -12,6 +12,11 @@ uint32_t words_size(void)
     return sizeof(labial_words_t);
 }
 
+uint32_t words_context_size(void)
+{
+    return sizeof(labial_words_context_t);
+}
+
 uint32_t words_own_size(unsigned count)
 {
     return (uint32_t)(sizeof(labial_words_own_t) + count * sizeof(labial_words_entry_t));
@@ -38,14 +43,16 @@ const char *words_label(unsigned phoneme)
     return labial_words_label(&words_en, phoneme);
 }
 
-int words_read(const labial_words_own_t *own, const char *text, uint32_t size, uint8_t *out)
+int words_read(const labial_words_own_t *own, labial_words_context_t *context, const char *text, uint32_t size,
+               uint8_t *out)
 {
     labial_word_t word;
-    const int result = labial_words_read(&words_en, own, text, size, &word);
+    const int result = labial_words_read_next(&words_en, own, context, text, size, &word);
     if (result != LABIAL_OK)
         return result;
     *out++ = word.count;
     *out++ = word.characters;
+    *out++ = context->dropped;
     for (unsigned i = 0; i < word.count; i++) {
         *out++ = word.phonemes[i].phoneme;
         *out++ = word.phonemes[i].character;

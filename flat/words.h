@@ -8,8 +8,9 @@
 #include "flat.h"
 #include "labial/words.h"
 
-/* Bytes of a stream of words, and of `count` words of the caller's own. */
+/* Bytes of a stream of words, of what goes from word to word, and of `count` words of the caller's own. */
 FLAT(words_size) uint32_t words_size(void);
+FLAT(words_context_size) uint32_t words_context_size(void);
 FLAT(words_own_size) uint32_t words_own_size(unsigned count);
 
 /* Words of the caller's own from `packed`, which must stay where it is: of each the text, NUL, the number of its
@@ -19,9 +20,12 @@ FLAT(words_own) const labial_words_own_t *words_own(void *memory, unsigned count
 /* The label of a phoneme, "" beyond the last. */
 FLAT(words_label) const char *words_label(unsigned phoneme);
 
-/* Reads a text; `out` has 2 + 3 * LABIAL_WORDS_PHONEMES bytes: the number of phonemes, that of the text's characters,
- * then of each phoneme its number, its character and whether a spoken word begins. Returns the text's kind. */
-FLAT(words_read) int words_read(const labial_words_own_t *own, const char *text, uint32_t size, uint8_t *out);
+/* Reads the next word of a text; `context` is all zero at its beginning. `out` has 3 + 3 * LABIAL_WORDS_PHONEMES bytes:
+ * the number of phonemes, that of the word's characters, how many phonemes the word before loses at its end; then of each
+ * phoneme its number, its character and whether a spoken word begins. Returns the word's kind. */
+FLAT(words_read)
+int words_read(const labial_words_own_t *own, labial_words_context_t *context, const char *text, uint32_t size,
+               uint8_t *out);
 
 /* A stream of words; words_next() writes a phoneme and its milliseconds. */
 FLAT(words_init) int words_init(labial_words_t *stream, const labial_words_own_t *own, int32_t offset);

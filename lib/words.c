@@ -39,13 +39,8 @@ static unsigned asks_letter(const view_t *view, unsigned question)
 {
     static const uint32_t sets[] = { VOWEL_LETTERS, FRONT_VOWELS, SONORANTS, CONSONANTS };
     const unsigned distance = (question >> 5 & 3u) + 1u, what = question & 31u;
-    unsigned letter = 0;
-    if (question < 128u) {
-        if (view->place >= distance)
-            letter = view->letters[view->place - distance].letter;
-    } else if (view->place + distance < view->count) {
-        letter = view->letters[view->place + distance].letter;
-    }
+    const unsigned other = question < 128u ? view->place - distance : view->place + distance;
+    const unsigned letter = other < view->count ? view->letters[other].letter : 0u; /* before the first one it wraps */
     return what < 28u ? letter == what : (unsigned)(sets[what - 28u] >> letter) & 1u;
 }
 
@@ -96,6 +91,24 @@ static unsigned leaf_of(const view_t *view, const uint8_t *node)
     }
 }
 
+/* The label of a letter with an accent, which its leaves may have; else `none`. An e behind an acute one is silent. */
+static unsigned accented(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
+                         unsigned place, unsigned none)
+{
+    const unsigned letter = letters[place].letter - 1u;
+    unsigned sound = letters[place].sound, i;
+    if (sound == 0u)
+        return letter == 'e' - 'a' && place > 0u && letters[place - 1u].sound == PHONEME_EY ? 0u : none;
+    if (sound == (PHONEME_EH | ACCENT_LAST))
+        sound = place + 1u >= count || letters[place + 1u].letter == 27u ? PHONEME_IY : PHONEME_EH;
+    for (i = model->bases[letter]; letter < 26u && i < model->bases[letter + 1u]; i++) {
+        const uint8_t *const label = model->labels + 2u * model->leaves[i];
+        if (label[0] == sound && (label[1] & ~VOWEL_LAST) == 0)
+            return model->leaves[i];
+    }
+    return none;
+}
+
 /* Changes labels where the word is an exception. */
 static void patch(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
                   uint8_t *labels)
@@ -135,20 +148,29 @@ void labial_words_append(labial_word_t *word, unsigned phoneme, unsigned charact
 void labial_words_spell(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
                         labial_word_t *word)
 {
-    uint8_t labels[LABIAL_WORDS_LETTERS];
+    uint8_t labels[LABIAL_WORDS_LETTERS] = { 0 };
     view_t view = { model->labels, letters, labels, count, 0, 0, 0 };
-    unsigned place, first = 1, k;
-    for (place = 0; place < count; place++) /* a group begins where the letter before is no vowel */
+    unsigned place, first = 1, is_accented = 0, k;
+    for (place = 0; place < count; place++) { /* a group begins where the letter before is no vowel */
         view.left += has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
-    for (place = count; place-- > 0u;) {
-        const unsigned letter = letters[place].letter - 1u;
+        is_accented |= letters[place].sound;
+    }
+    for (place = count; place > 0u;) {
+        const unsigned letter = letters[--place].letter - 1u;
         view.place = place;
         view.left -= has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
         if (place + 1u < count && has_vowel(&view, place + 1u))
-            view.right += place + 2u == count || !has_vowel(&view, place + 2u);
+            view.right += place + 2u >= count || !has_vowel(&view, place + 2u);
+        if (is_accented) {
+            const unsigned label = accented(model, letters, count, place, NO_LABEL);
+            labels[place] = (uint8_t)label;
+            if (label != NO_LABEL)
+                continue;
+        }
         labels[place] = model->leaves[model->bases[letter] + leaf_of(&view, model->trees + model->roots[letter])];
     }
-    patch(model, letters, count, labels);
+    if (!is_accented)
+        patch(model, letters, count, labels);
     for (place = 0; place < count; place++)
         for (k = 0; k < 2u; k++) {
             const unsigned phoneme = model->labels[2u * labels[place] + k] & ~VOWEL_LAST;

@@ -1,20 +1,54 @@
 /*
- * words_characters.c - the characters of a text: UTF-8, marks, letters with and without accents.
- * export/labial/words/text.py has the reference.
+ * words_characters.c - the characters of a text as the rules see them: UTF-8, marks, accents, ligatures, signs.
+ * export/labial/words/characters.py is the reference.
  */
 #include "labial/words.h"
 
 #include "labial/labial.h"
 #include "words_parts.h"
 
+/* Accents that tell a sound. */
+enum { GRAVE = 1, ACUTE, CIRCUMFLEX, TILDE, DIAERESIS, CEDILLA };
+
 /* Letters of U+00C0 to U+017F without their marks; a blank stands for a sign. */
-static const char plain_letters[] = "AAAAAAECEEEEIIIIDNOOOOO OUUUUYTsaaaaaaeceeeeiiiidnooooo ouuuuyty"
+static const char plain_letters[] = "AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
                                     "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlL"
-                                    "lLlNnNnNnnNnOoOoOoEeRrRrRrSsSsSsSsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs";
+                                    "lLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs";
+
+/* The accents of U+00C0 to U+00DF, as of the small letters 32 behind. */
+static const char accents[] = "\1\2\3\4\5\0\0\6\1\2\3\5\1\2\3\5\0\4\1\2\3\4\5\0\0\1\2\3\5\2\0";
+
+/* Characters that are other ones, or ligatures: the second letter is in the second byte, the third in the third. */
+static const struct {
+    uint16_t character;
+    uint8_t code, more, most;
+} others[] = { { 0xa2u, SIGN_CENT, 0, 0 },    { 0xa3u, SIGN_POUND, 0, 0 },   { 0xa5u, SIGN_YEN, 0, 0 },
+               { 0xb0u, SIGN_DEGREE, 0, 0 },  { 0xb2u, SIGN_SQUARE, 0, 0 },  { 0xb5u, 'u', 0, 0 },
+               { 0xbcu, SIGN_QUARTER, 0, 0 }, { 0xbdu, SIGN_HALF, 0, 0 },    { 0xbeu, SIGN_QUARTERS, 0, 0 },
+               { 0xc6u, 'A', 'E', 0 },        { 0xd7u, SIGN_TIMES, 0, 0 },   { 0xe6u, 'a', 'e', 0 },
+               { 0x152u, 'O', 'E', 0 },       { 0x153u, 'o', 'e', 0 },       { 0x2bcu, '\'', 0, 0 },
+               { 0x3bcu, 'u', 0, 0 },         { 0x2013u, SIGN_DASH, 0, 0 },  { 0x2019u, '\'', 0, 0 },
+               { 0x20acu, SIGN_EURO, 0, 0 },  { 0x20b9u, SIGN_RUPEE, 0, 0 }, { 0x2212u, SIGN_MINUS, 0, 0 },
+               { 0xfb00u, 'f', 'f', 0 },      { 0xfb01u, 'f', 'i', 0 },      { 0xfb02u, 'f', 'l', 0 },
+               { 0xfb03u, 'f', 'f', 'i' },    { 0xfb04u, 'f', 'f', 'l' },    { 0xfb05u, 's', 't', 0 },
+               { 0xfb06u, 's', 't', 0 } };
 
 /* Ranges of letters of other scripts; what is between them are signs and private characters. */
 static const uint32_t foreign[][2] = { { 0x180u, 0x2ffu },   { 0x370u, 0x1fffu },  { 0x2c00u, 0x2dffu },
                                        { 0x3041u, 0xd7ffu }, { 0xf900u, 0xfaffu }, { 0x20000u, 0x3ffffu } };
+
+/* What accented letters sound like. */
+static const struct {
+    char letter;
+    uint8_t accent, sound;
+} sounds[] = { { 'a', GRAVE, PHONEME_AA },      { 'a', ACUTE, PHONEME_AA },
+               { 'a', CIRCUMFLEX, PHONEME_AA }, { 'c', CEDILLA, PHONEME_S },
+               { 'e', GRAVE, PHONEME_EH },      { 'e', ACUTE, PHONEME_EY },
+               { 'e', CIRCUMFLEX, PHONEME_EH }, { 'e', DIAERESIS, PHONEME_EH | ACCENT_LAST },
+               { 'i', ACUTE, PHONEME_IY },      { 'i', CIRCUMFLEX, PHONEME_IY },
+               { 'i', DIAERESIS, PHONEME_IY },  { 'o', ACUTE, PHONEME_OW },
+               { 'o', CIRCUMFLEX, PHONEME_OW }, { 'u', ACUTE, PHONEME_UW },
+               { 'u', CIRCUMFLEX, PHONEME_UW } };
 
 /* The next code point, moving `at`; 0 for a byte that begins none. */
 static uint32_t code_point(labial_words_place_t *here)
@@ -26,14 +60,14 @@ static uint32_t code_point(labial_words_place_t *here)
     unsigned i;
     if (lead < 0x80u)
         return code;
-    if (more == 0u || lead > 0xf4u || here->size - here->at < more)
+    if (more == 0u || lead > 0xf4u)
         return 0;
     code &= 0x3fu >> more;
     for (i = 0; i < more; i++) {
-        const unsigned char byte = here->text[here->at + i];
-        if ((byte & 0xc0u) != 0x80u)
+        const size_t next = here->at + i;
+        if (next >= here->size || (here->text[next] & 0xc0u) != 0x80u)
             return 0;
-        code = code << 6 | (byte & 0x3fu);
+        code = code << 6 | (here->text[next] & 0x3fu);
     }
     if (code < least[more])
         return 0;
@@ -48,27 +82,62 @@ static int is_mark(uint32_t code)
            (code >= 0xfe00u && code <= 0xfe0fu) || code == 0xfeffu;
 }
 
-static unsigned simplified(uint32_t code)
+static int is_white_space(uint32_t code)
+{
+    return (code >= 9u && code <= 13u) || code == ' ' || code == 0x85u || code == 0xa0u ||
+           (code >= 0x2000u && code <= 0x200au) || code == 0x2028u || code == 0x2029u || code == 0x202fu ||
+           code == 0x205fu || code == 0x3000u;
+}
+
+/* Simplifies a character that is no mark; what a ligature has more goes to `pending`. */
+static unsigned simplified(uint32_t code, unsigned *pending)
 {
     unsigned i;
+    if (is_white_space(code))
+        return ' ';
     if (code >= 0xff01u && code <= 0xff5eu) /* as wide as ideographs */
         code -= 0xfee0u;
     if (code < 0x80u)
-        return code > ' ' && code < 0x7fu ? (unsigned)code : NOTHING;
+        return code > ' ' && code < 0x7fu ? (unsigned)code : (unsigned)NO_CHARACTER;
+    for (i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (others[i].character == code) {
+            *pending = others[i].more | (unsigned)others[i].most << 8;
+            return others[i].code;
+        }
     if (code >= 0xc0u && code < 0x180u)
-        return plain_letters[code - 0xc0u] == ' ' ? NOTHING : (unsigned char)plain_letters[code - 0xc0u];
-    if (code == 0x2019u || code == 0x2bcu)
-        return '\'';
+        return plain_letters[code - 0xc0u] == ' ' ? (unsigned)NO_CHARACTER : (unsigned char)plain_letters[code - 0xc0u];
     for (i = 0; i < sizeof foreign / sizeof foreign[0]; i++)
         if (code >= foreign[i][0] && code <= foreign[i][1])
             return FOREIGN;
-    return NOTHING;
+    return NO_CHARACTER;
 }
 
-/* Moves on to the next character, passing over marks. */
+/* The accent of a letter, which may be a mark behind it. */
+static unsigned accent_of(const labial_words_place_t *here, uint32_t code)
+{
+    static const uint16_t marks[] = { 0x300u, 0x301u, 0x302u, 0x303u, 0x308u, 0x327u };
+    labial_words_place_t next = *here;
+    unsigned i;
+    if (code >= 0xc0u && code < 0x100u && accents[(code - 0xc0u) & 31u] != 0)
+        return (unsigned char)accents[(code - 0xc0u) & 31u];
+    if (next.at >= next.size || next.characters >= LABIAL_WORDS_CHARACTERS)
+        return 0;
+    code = code_point(&next);
+    for (i = 0; i < sizeof marks / sizeof marks[0]; i++)
+        if (marks[i] == code)
+            return i + 1u;
+    return 0;
+}
+
 void labial_words_advance(labial_words_place_t *here)
 {
     uint32_t code;
+    here->before = here->code;
+    if (here->pending != 0u) {
+        here->code = here->pending & 0xffu;
+        here->pending >>= 8;
+        return;
+    }
     do {
         here->start = here->at;
         here->code = TEXT_END;
@@ -77,15 +146,26 @@ void labial_words_advance(labial_words_place_t *here)
         code = code_point(here);
         here->characters++;
     } while (is_mark(code));
-    here->code = simplified(code);
+    here->code = simplified(code, &here->pending);
+    here->accent = labial_words_is_latin(here->code) ? accent_of(here, code) : 0u;
 }
 
-/* The code of the character behind the current one. */
 unsigned labial_words_following(const labial_words_place_t *here)
 {
     labial_words_place_t next = *here;
     labial_words_advance(&next);
     return next.code;
+}
+
+unsigned labial_words_accented(const labial_words_place_t *here)
+{
+    unsigned i;
+    if (here->accent != 0u)
+        for (i = 0; i < sizeof sounds / sizeof sounds[0]; i++)
+            if (sounds[i].accent == here->accent &&
+                (unsigned char)sounds[i].letter == labial_words_small_letter(here->code))
+                return sounds[i].sound;
+    return 0;
 }
 
 int labial_words_is_capital(unsigned code)
@@ -111,4 +191,9 @@ int labial_words_is_decimal(unsigned code)
 int labial_words_is_inside(unsigned code)
 {
     return labial_words_is_latin(code) || labial_words_is_decimal(code) || code == FOREIGN;
+}
+
+int labial_words_is_blank(unsigned code)
+{
+    return code == ' ' || code == TEXT_END;
 }

@@ -1,83 +1,200 @@
 /*
- * words_numbers.c - numbers in a text as they are said. export/labial/words/text.py has the reference.
+ * words_numbers.c - numbers, sums, dates and times as they are said. export/labial/words/numbers.py is the reference.
  */
 #include "labial/words.h"
+
+#include <string.h>
 
 #include "labial/labial.h"
 #include "words_parts.h"
 
 /* Spoken for numbers, and the same as ordinals. */
-enum { TEN = 10, TWENTY = 20, HUNDRED = 28, THOUSAND, MILLION };
 static const char cardinals[] = "zero\0one\0two\0three\0four\0five\0six\0seven\0eight\0nine\0ten\0eleven\0twelve\0"
                                 "thirteen\0fourteen\0fifteen\0sixteen\0seventeen\0eighteen\0nineteen\0twenty\0thirty\0"
-                                "forty\0fifty\0sixty\0seventy\0eighty\0ninety\0hundred\0thousand\0million\0";
+                                "forty\0fifty\0sixty\0seventy\0eighty\0ninety\0hundred\0thousand\0million\0billion\0"
+                                "trillion\0";
 static const char ordinals[] = "zeroth\0first\0second\0third\0fourth\0fifth\0sixth\0seventh\0eighth\0ninth\0tenth\0"
                                "eleventh\0twelfth\0thirteenth\0fourteenth\0fifteenth\0sixteenth\0seventeenth\0"
                                "eighteenth\0nineteenth\0twentieth\0thirtieth\0fortieth\0fiftieth\0sixtieth\0"
-                               "seventieth\0eightieth\0ninetieth\0hundredth\0thousandth\0millionth\0";
+                               "seventieth\0eightieth\0ninetieth\0hundredth\0thousandth\0millionth\0billionth\0"
+                               "trillionth\0";
+
+/* Signs of money, the names of whole units, and of their hundredths. */
+static const uint8_t currency_signs[] = { '$', SIGN_EURO, SIGN_POUND, SIGN_YEN, SIGN_RUPEE };
+static const char currencies[] = "dollar_\0euro_\0pound_\0yen\0rupee_\0";
+static const char hundredths[] = "cent_\0cent_\0penny|pence\0\0paisa|paise\0";
+
+/* ---- Whole numbers ---------------------------------------------------------------------------------------------- */
+
+unsigned labial_words_here(const labial_words_reading_t *reading)
+{
+    return reading->here.characters - 1u;
+}
 
 /* Says part of a number, the word `last`, which is said later, before it. */
 static void say_part(labial_words_reading_t *reading, unsigned *last, unsigned next, unsigned character)
 {
-    if (*last <= MILLION)
-        labial_words_say(reading, labial_words_listed(cardinals, *last), character);
+    if (*last < NO_WORD)
+        labial_words_say(reading, labial_words_listed(cardinals, *last), SAID_PLAIN, character);
     *last = next;
 }
 
 /* Up to 999; nothing for 0. */
-static void say_hundreds(labial_words_reading_t *reading, unsigned *last, uint32_t value, unsigned character)
+static void say_hundreds(labial_words_reading_t *reading, unsigned *last, unsigned value, unsigned character)
 {
-    uint32_t rest = value % 100u;
+    unsigned rest = value % 100u;
     if (value >= 100u) {
-        say_part(reading, last, (unsigned)(value / 100u), character);
+        say_part(reading, last, value / 100u, character);
         say_part(reading, last, HUNDRED, character);
     }
     if (rest >= TWENTY) {
-        say_part(reading, last, (unsigned)(TWENTY - 2u + rest / TEN), character);
+        say_part(reading, last, TWENTY - 2u + rest / TEN, character);
         rest %= TEN;
     }
     if (rest > 0u)
-        say_part(reading, last, (unsigned)rest, character);
+        say_part(reading, last, rest, character);
 }
 
-/* A whole number up to 999,999,999, or its ordinal. */
-static void say_number(labial_words_reading_t *reading, uint32_t value, int is_ordinal, unsigned character)
+/* Says the last word of a number. */
+void labial_words_say_last(labial_words_reading_t *reading, unsigned last, unsigned ending, unsigned character)
 {
-    unsigned last = MILLION + 1u; /* none */
-    if (value >= 1000000u) {
-        say_hundreds(reading, &last, value / 1000000u, character);
-        say_part(reading, &last, MILLION, character);
-    }
-    if (value / 1000u % 1000u > 0u) {
-        say_hundreds(reading, &last, value / 1000u % 1000u, character);
+    labial_words_say(reading, labial_words_listed(ending == ORDINAL || ending == ORDINALS ? ordinals : cardinals, last),
+                     ending >= PLURALS ? SAID_PLURAL : SAID_PLAIN, character);
+}
+
+/* Says up to 9,999, of which years need no more. */
+void labial_words_say_small(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character)
+{
+    unsigned last = NO_WORD;
+    if (value >= 1000u) {
+        say_hundreds(reading, &last, value / 1000u, character);
         say_part(reading, &last, THOUSAND, character);
     }
     say_hundreds(reading, &last, value % 1000u, character);
-    if (value == 0u)
-        last = 0;
-    labial_words_say(reading, labial_words_listed(is_ordinal ? ordinals : cardinals, last), character);
+    labial_words_say_last(reading, value == 0u ? 0u : last, ending, character);
 }
 
-/* Digits one by one; behind a point without commas. */
-static void say_digits(labial_words_reading_t *reading, int with_commas)
+/* Whether digits are said one by one. */
+static int is_coded(const labial_words_number_t *number)
 {
-    labial_words_place_t *here = &reading->here;
-    for (; labial_words_is_decimal(here->code) ||
-           (with_commas && here->code == ',' && labial_words_is_decimal(labial_words_following(here)));
-         labial_words_advance(here))
-        if (here->code != ',')
-            labial_words_say(reading, labial_words_listed(cardinals, here->code - '0'), here->characters - 1u);
+    return number->count > MOST_DIGITS || (number->count > 1u && number->digits[0] == 0u);
+}
+
+/* Says at most MOST_DIGITS digits as one number, three by three. */
+static void say_number(labial_words_reading_t *reading, const labial_words_number_t *number, unsigned ending,
+                       unsigned character)
+{
+    unsigned last = NO_WORD, part = 0, i;
+    for (i = 0; i < number->count && i < MOST_DIGITS; i++) {
+        const unsigned behind = number->count - 1u - i;
+        part = part * TEN + number->digits[i];
+        if (behind % 3u != 0u)
+            continue;
+        say_hundreds(reading, &last, part, character);
+        if (part > 0u && behind > 0u)
+            say_part(reading, &last, HUNDRED + behind / 3u, character);
+        part = 0;
+    }
+    labial_words_say_last(reading, last == NO_WORD ? 0u : last, ending, character);
+}
+
+static void say_digit(labial_words_reading_t *reading, unsigned digit, unsigned character)
+{
+    labial_words_say(reading, labial_words_listed(cardinals, digit), SAID_PLAIN, character);
+}
+
+/* Adds the digit here to a number. */
+static void add_digit(labial_words_number_t *number, const labial_words_place_t *here)
+{
+    const unsigned digit = here->code - '0';
+    if (number->count < MOST_DIGITS)
+        number->digits[number->count] = (uint8_t)digit;
+    if (number->count < 9u)
+        number->value = number->value * TEN + digit;
+    number->count++;
+    number->is_other |= digit;
+    number->last = here->characters - 1u;
+}
+
+/* Takes digits. */
+labial_words_number_t labial_words_take_digits(labial_words_place_t *here)
+{
+    labial_words_number_t number;
+    memset(&number, 0, sizeof number);
+    for (; labial_words_is_decimal(here->code); labial_words_advance(here))
+        add_digit(&number, here);
+    return number;
 }
 
 /* Whether three digits and no fourth one follow. */
 static int has_group(const labial_words_place_t *here)
 {
     labial_words_place_t next = *here;
-    unsigned count = 0;
-    for (labial_words_advance(&next); labial_words_is_decimal(next.code); labial_words_advance(&next))
-        count++;
-    return count == 3u;
+    labial_words_advance(&next);
+    return labial_words_take_digits(&next).count == 3u;
 }
+
+/* Takes a whole number, also with commas. */
+static labial_words_number_t take_whole(labial_words_place_t *here)
+{
+    labial_words_number_t number;
+    memset(&number, 0, sizeof number);
+    for (; labial_words_is_decimal(here->code) || (number.count > 0u && here->code == ',' && has_group(here));
+         labial_words_advance(here))
+        if (here->code != ',')
+            add_digit(&number, here);
+    return number;
+}
+
+/* Digits one by one; behind a point without commas. */
+void labial_words_say_digits(labial_words_reading_t *reading, int with_commas)
+{
+    labial_words_place_t *here = &reading->here;
+    for (; labial_words_is_decimal(here->code) ||
+           (with_commas && here->code == ',' && labial_words_is_decimal(labial_words_following(here)));
+         labial_words_advance(here))
+        if (here->code != ',')
+            say_digit(reading, here->code - '0', labial_words_here(reading));
+}
+
+/* Passes over digits, also with commas; returns the character of the last one. */
+static unsigned skip_digits(labial_words_place_t *here)
+{
+    unsigned last = here->characters - 1u;
+    for (; labial_words_is_decimal(here->code) ||
+           (here->code == ',' && labial_words_is_decimal(labial_words_following(here)));
+         labial_words_advance(here))
+        last = here->characters - 1u;
+    return last;
+}
+
+int labial_words_has_fraction(const labial_words_place_t *here)
+{
+    return here->code == '.' && labial_words_is_decimal(labial_words_following(here));
+}
+
+static void say_fraction(labial_words_reading_t *reading)
+{
+    labial_words_say(reading, "point", SAID_PLAIN, labial_words_here(reading));
+    labial_words_advance(&reading->here);
+    labial_words_say_digits(reading, 0);
+}
+
+/* "to" and another number behind a number. */
+int labial_words_read_range(labial_words_reading_t *reading)
+{
+    labial_words_place_t next = reading->here;
+    if (next.code != '-' && next.code != SIGN_DASH)
+        return 0;
+    labial_words_advance(&next);
+    if (!labial_words_is_decimal(next.code) && !labial_words_is_sum(&next))
+        return 0;
+    labial_words_say(reading, "to", SAID_PLAIN, labial_words_here(reading));
+    reading->here = next;
+    return 1;
+}
+
+/* ---- Numbers of one part ---------------------------------------------------------------------------------------- */
 
 /* st, nd, rd, th behind a number: moves behind it. */
 static int takes_ordinal(labial_words_place_t *here)
@@ -88,35 +205,187 @@ static int takes_ordinal(labial_words_place_t *here)
     first = labial_words_small_letter(next.code);
     labial_words_advance(&next);
     second = labial_words_small_letter(next.code);
-    if (labial_words_is_inside(labial_words_following(&next)))
+    labial_words_advance(&next);
+    if (labial_words_is_inside(next.code))
         return 0;
     for (i = 0; i < 8u; i += 2u)
         if (first == (unsigned char)endings[i] && second == (unsigned char)endings[i + 1u]) {
-            labial_words_advance(&next);
             *here = next;
             return 1;
         }
     return 0;
 }
 
-void labial_words_read_digits(labial_words_reading_t *reading)
+/* What may follow a number: halves, another one up to which it reaches or by which it is multiplied. */
+static void read_behind(labial_words_reading_t *reading)
+{
+    labial_words_place_t *here = &reading->here;
+    const unsigned code = here->code;
+    if (code == SIGN_HALF || code == SIGN_QUARTER || code == SIGN_QUARTERS) {
+        labial_words_say(reading,
+                         code == SIGN_HALF      ? "and a half"
+                         : code == SIGN_QUARTER ? "and a quarter"
+                                                : "and three quarters",
+                         SAID_PLAIN, labial_words_here(reading));
+        reading->context->after = AFTER_NUMBER;
+        labial_words_advance(here);
+    } else if ((code == 'x' || code == SIGN_TIMES) && labial_words_is_decimal(labial_words_following(here))) {
+        labial_words_say(reading, "by", SAID_PLAIN, labial_words_here(reading));
+        labial_words_advance(here);
+    } else {
+        (void)labial_words_read_range(reading);
+    }
+}
+
+static void read_plain(labial_words_reading_t *reading, int is_start)
 {
     labial_words_place_t *here = &reading->here;
     const labial_words_place_t first = *here;
-    uint32_t value = 0;
-    unsigned count = 0;
-    for (; labial_words_is_decimal(here->code) || (here->code == ',' && has_group(here)); labial_words_advance(here))
-        if (here->code != ',' && ++count <= 9u)
-            value = value * 10u + (here->code - '0');
-    if (count > 9u || (count > 1u && first.code == '0')) {
+    const labial_words_number_t number = take_whole(here);
+    if (is_coded(&number)) {
         *here = first;
-        say_digits(reading, 1);
+        labial_words_say_digits(reading, 1);
+    } else if (takes_ordinal(here)) {
+        say_number(reading, &number, ORDINAL, first.characters - 1u);
+        reading->context->after = AFTER_NOTHING;
+        return;
     } else {
-        say_number(reading, value, takes_ordinal(here), first.characters - 1u);
+        say_number(reading, &number, CARDINAL, first.characters - 1u);
+        if (number.count == 1u && number.value == 1u)
+            reading->context->after = AFTER_ONE;
     }
-    if (here->code == '.' && labial_words_is_decimal(labial_words_following(here))) {
-        labial_words_say(reading, "point", here->characters - 1u);
-        labial_words_advance(here);
-        say_digits(reading, 0);
+    while (labial_words_has_fraction(here)) {
+        say_fraction(reading);
+        reading->context->after = AFTER_NUMBER;
     }
+    if (is_start)
+        read_behind(reading);
+}
+
+void labial_words_read_number(labial_words_reading_t *reading)
+{
+    labial_words_context_t *context = reading->context;
+    const unsigned after = context->after;
+    const int is_start = !labial_words_is_inside(reading->here.before);
+    context->after = AFTER_NUMBER;
+    context->tail = 0;
+    if (is_start && labial_words_read_special(reading, after))
+        return;
+    read_plain(reading, is_start);
+}
+
+/* ---- Sums of money ---------------------------------------------------------------------------------------------- */
+
+int labial_words_currency(unsigned code)
+{
+    int i;
+    for (i = 0; i < (int)sizeof currency_signs; i++)
+        if (currency_signs[i] == code)
+            return i;
+    return -1;
+}
+
+const char *labial_words_currency_name(unsigned currency)
+{
+    return labial_words_listed(currencies, currency);
+}
+
+int labial_words_is_sum(const labial_words_place_t *here)
+{
+    labial_words_place_t next = *here;
+    if (labial_words_currency(here->code) < 0)
+        return 0;
+    labial_words_advance(&next);
+    if (next.code == '.')
+        labial_words_advance(&next);
+    return labial_words_is_decimal(next.code);
+}
+
+/* k, M, bn and others behind a sum: THOUSAND and so on, moving behind it, or NO_WORD. */
+static unsigned take_scale(labial_words_place_t *here)
+{
+    static const char suffixes[] = "kmbt";
+    labial_words_place_t next = *here;
+    const unsigned letter = labial_words_small_letter(next.code);
+    unsigned i;
+    for (i = 0; i < 4u; i++)
+        if (letter == (unsigned char)suffixes[i])
+            break;
+    if (i == 4u)
+        return NO_WORD;
+    labial_words_advance(&next);
+    if (i > 0u && labial_words_small_letter(next.code) == 'n')
+        labial_words_advance(&next);
+    if (labial_words_is_inside(next.code))
+        return NO_WORD;
+    *here = next;
+    return THOUSAND + i;
+}
+
+void labial_words_read_sum(labial_words_reading_t *reading)
+{
+    labial_words_context_t *context = reading->context;
+    labial_words_place_t *here = &reading->here, behind;
+    const unsigned currency = (unsigned)labial_words_currency(here->code) & 7u, character = labial_words_here(reading);
+    const char *const name = labial_words_listed(currencies, currency);
+    const char *const part = labial_words_listed(hundredths, currency);
+    labial_words_number_t whole, cents;
+    unsigned scale, point, last, first;
+    int has_point, has_cents, is_plural;
+    labial_words_advance(here);
+    behind = *here;
+    whole = take_whole(&behind);
+    last = whole.last;
+    if (is_coded(&whole)) {
+        behind = *here;
+        last = skip_digits(&behind);
+    }
+    point = behind.characters - 1u;
+    has_point = labial_words_has_fraction(&behind);
+    memset(&cents, 0, sizeof cents);
+    if (has_point) {
+        labial_words_advance(&behind);
+        cents = labial_words_take_digits(&behind);
+    }
+    last = has_point ? cents.last : last;
+    scale = take_scale(&behind);
+    has_cents = has_point && cents.count == 2u && scale == NO_WORD && *part != '\0';
+    is_plural = whole.count != 1u || whole.value != 1u || (has_point && !has_cents);
+    context->after = AFTER_SUM;
+    context->currency = (uint8_t)currency;
+    context->tail = 0;
+    if (!has_cents || whole.is_other || cents.value == 0u) {
+        if (is_coded(&whole))
+            labial_words_say_digits(reading, 1);
+        else
+            say_number(reading, &whole, CARDINAL, character);
+    }
+    if (has_cents) {
+        if (whole.is_other || cents.value == 0u)
+            labial_words_say_name(reading, name, is_plural, point);
+        if (whole.is_other && cents.value > 0u)
+            labial_words_say(reading, "and", SAID_PLAIN, point);
+        if (cents.value > 0u) {
+            labial_words_say_small(reading, cents.value, CARDINAL, point);
+            labial_words_say_name(reading, part, cents.value != 1u, point);
+        }
+    } else {
+        if (has_point) {
+            labial_words_say(reading, "point", SAID_PLAIN, point);
+            while (here->code != '.' && here->code != TEXT_END)
+                labial_words_advance(here);
+            labial_words_advance(here);
+            labial_words_say_digits(reading, 0);
+        }
+        first = reading->word->count;
+        if (scale != NO_WORD) {
+            labial_words_say(reading, labial_words_listed(cardinals, scale), SAID_PLAIN, last);
+            context->after = AFTER_NOTHING;
+        }
+        labial_words_say_name(reading, name, is_plural || scale != NO_WORD, last);
+        if (scale == NO_WORD)
+            labial_words_keep_tail(reading, first);
+    }
+    *here = behind;
+    (void)labial_words_read_range(reading);
 }

@@ -9,15 +9,47 @@
 
 #include "labial/words.h"
 
-/* A letter of a word: its number, 1 to 27 (a to z, apostrophe), and the character of the text that it is. */
+/* A letter of a word: its number, 1 to 27 (a to z, apostrophe), the character of the text that it is, and the phoneme
+ * that it has by its accent, 0 for none; ACCENT_LAST beside EH makes it IY at the end of a word. */
 typedef struct {
-    uint8_t letter, character;
+    uint8_t letter, character, sound;
 } labial_words_letter_t;
 
-/* Codes of characters that are not ASCII: the end, letters of other scripts, and what is not said. */
-#define TEXT_END 0u
-#define FOREIGN 1u
-#define NOTHING 2u
+#define ACCENT_LAST 0x80u
+
+/* Phonemes that rules name. */
+#define PHONEME_AA 1u
+#define PHONEME_EH 11u
+#define PHONEME_EY 13u
+#define PHONEME_IY 18u
+#define PHONEME_OW 25u
+#define PHONEME_S 29u
+#define PHONEME_UW 34u
+#define PHONEME_Z 38u
+
+/* Codes of simple characters that are not printable ASCII: the end, letters of other scripts, what is not said, and
+ * signs. The blank is ASCII's. */
+enum {
+    TEXT_END,
+    FOREIGN,
+    NO_CHARACTER,
+    SIGN_EURO,
+    SIGN_POUND,
+    SIGN_YEN,
+    SIGN_RUPEE,
+    SIGN_CENT,
+    SIGN_DEGREE,
+    SIGN_SQUARE,
+    SIGN_TIMES,
+    SIGN_MINUS,
+    SIGN_DASH,
+    SIGN_HALF,
+    SIGN_QUARTER,
+    SIGN_QUARTERS
+};
+
+/* What was said last, in `after` of labial_words_context_t. */
+enum { AFTER_NOTHING, AFTER_ONE, AFTER_NUMBER, AFTER_TIME, AFTER_SUM, AFTER_UNIT, AFTER_PER, AFTER_MONTH };
 
 /* A place in a text. */
 typedef struct {
@@ -26,38 +58,133 @@ typedef struct {
     size_t at;           /* behind the current character */
     size_t start;        /* of the current character */
     unsigned characters; /* so far, the current one included */
-    unsigned code;       /* of the current one: ASCII, TEXT_END, FOREIGN or NOTHING */
+    unsigned code;       /* of the current one: ASCII or one of the above */
+    unsigned before;     /* of the one before, a blank at the beginning */
+    unsigned accent;     /* of the current one, 0 for none */
+    unsigned pending;    /* further letters of a ligature, the next one in the low byte */
 } labial_words_place_t;
 
 /* A place in a text, and the word that it becomes. */
 typedef struct {
     const labial_words_model_t *model;
     labial_word_t *word;
+    labial_words_context_t *context;
     labial_words_place_t here;
+    unsigned is_tail_here; /* what may be taken back is at the end of `word` */
+    unsigned is_address;   /* a web address was recognised in this word */
 } labial_words_reading_t;
 
-/* Moves on to the next character, passing over marks. */
+/* ---- Characters ------------------------------------------------------------------------------------------------- */
+
+/* Moves on to the next simple character, passing over marks. */
 void labial_words_advance(labial_words_place_t *here);
 
 /* The code of the character behind the current one. */
 unsigned labial_words_following(const labial_words_place_t *here);
 
-/* Whether a code is a capital, a Latin letter, a digit, or any of these or a letter of another script; a capital's
- * small letter, and other codes as they are. */
+/* The phoneme of the current letter by its accent, as in labial_words_letter_t. */
+unsigned labial_words_accented(const labial_words_place_t *here);
+
+/* Whether a code is a capital, a Latin letter, a digit, any of these or a letter of another script, or a blank or the
+ * end; a capital's small letter, and other codes as they are. */
 int labial_words_is_capital(unsigned code);
 int labial_words_is_latin(unsigned code);
 int labial_words_is_decimal(unsigned code);
 int labial_words_is_inside(unsigned code);
+int labial_words_is_blank(unsigned code);
 unsigned labial_words_small_letter(unsigned code);
 
-/* Says words of small letters, separated by blanks, where the text's `character` is. */
-void labial_words_say(labial_words_reading_t *reading, const char *words, unsigned character);
+/* ---- What is said ----------------------------------------------------------------------------------------------- */
 
-/* The text of this number in a list of texts that end with NUL. */
+/* How the last of several words ends. */
+enum { SAID_PLAIN, SAID_PLURAL };
+
+/* Says words of small letters, separated by blanks, where the text's `character` is. With SAID_PLURAL the last one gets
+ * an s, or -ies for -y. */
+void labial_words_say(labial_words_reading_t *reading, const char *words, unsigned ending, unsigned character);
+
+/* Says a name in singular or plural: "foot|feet", or with _ where an s goes. */
+void labial_words_say_name(labial_words_reading_t *reading, const char *name, int is_plural, unsigned character);
+
+/* Says words where the current character is. */
+void labial_words_say_here(labial_words_reading_t *reading, const char *words);
+
+/* Notes that the phonemes from `first` on may be taken back by the next word; takes such phonemes back. */
+void labial_words_keep_tail(labial_words_reading_t *reading, unsigned first);
+void labial_words_take_back(labial_words_reading_t *reading);
+
+/* What was said last matters no more; returns what it was. */
+unsigned labial_words_forget(labial_words_reading_t *reading);
+
+/* Lists are texts that end with NUL, and an empty one. The text of a number in a list. */
 const char *labial_words_listed(const char *list, unsigned number);
 
-/* Reads the number that begins with the current character, a digit. */
-void labial_words_read_digits(labial_words_reading_t *reading);
+/* What is said of a sign in a list, whose texts begin with it; or null. */
+const char *labial_words_said_of(const char *list, unsigned sign);
+
+/* Which of the texts of a list, `step` of which belong together, `count` capitals are, or -1; whether they are one. The
+ * letters of the list may be small. */
+int labial_words_find(const char *letters, unsigned count, const char *list, unsigned step);
+int labial_words_is_listed(const char *letters, unsigned count, const char *list);
+
+/* Reads letters from the current one on. */
+void labial_words_read_letters(labial_words_reading_t *reading);
+
+/* ---- Numbers ---------------------------------------------------------------------------------------------------- */
+
+/* Digits of a number that is said as one, at most: 999 trillion. */
+#define MOST_DIGITS 15u
+
+/* Numbers of words that are said: those up to TWENTY themselves, then tens. */
+enum { TEN = 10, TWENTY = 20, HUNDRED = 28, THOUSAND, MILLION, BILLION, TRILLION, NO_WORD };
+
+/* How a number ends. */
+enum { CARDINAL, ORDINAL, PLURALS, ORDINALS };
+
+/* Digits as they stand in a text. */
+typedef struct {
+    uint8_t digits[MOST_DIGITS]; /* the first ones */
+    unsigned count;
+    uint32_t value;    /* of at most nine */
+    unsigned is_other; /* it is not 0 */
+    unsigned last;     /* character of the last digit */
+} labial_words_number_t;
+
+/* The character that is here, from 0. */
+unsigned labial_words_here(const labial_words_reading_t *reading);
+
+/* Takes digits; says digits one by one, also with commas. */
+labial_words_number_t labial_words_take_digits(labial_words_place_t *here);
+void labial_words_say_digits(labial_words_reading_t *reading, int with_commas);
+
+/* Whether a point and a digit are at a place. */
+int labial_words_has_fraction(const labial_words_place_t *here);
+
+/* Says a number up to 9,999; the last word of a number. */
+void labial_words_say_small(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character);
+void labial_words_say_last(labial_words_reading_t *reading, unsigned last, unsigned ending, unsigned character);
+
+/* Reads "to" behind a number where another one follows; whether it does. */
+int labial_words_read_range(labial_words_reading_t *reading);
+
+/* Reads dates, times and whatever is more than a number, `after` what was said before; whether there is any. */
+int labial_words_read_special(labial_words_reading_t *reading, unsigned after);
+
+/* Names of months, as a list. */
+extern const char labial_words_months[];
+
+/* The number of a sign of money, or -1; its name. */
+int labial_words_currency(unsigned code);
+const char *labial_words_currency_name(unsigned currency);
+
+/* Whether a sign of money and its number are at a place. */
+int labial_words_is_sum(const labial_words_place_t *here);
+
+/* Reads the number that begins with the current character, a digit or a sign of money. */
+void labial_words_read_number(labial_words_reading_t *reading);
+void labial_words_read_sum(labial_words_reading_t *reading);
+
+/* ---- Letters and time ------------------------------------------------------------------------------------------- */
 
 /* Appends the phonemes of a spoken word of 1 to LABIAL_WORDS_LETTERS letters; those without room are dropped. */
 void labial_words_spell(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,

@@ -1,6 +1,7 @@
 /*
- * words_text.c - what is said where a text stands: letters, abbreviations, signs. The rules are those of
- * labial/words.h; export/labial/words/text.py is their reference.
+ * words_text.c - what is said where a text stands: signs, addresses, stage directions, the caller's own words; letters
+ * and numbers have files of their own. The rules are those of labial/words.h; export/labial/words/text.py is their
+ * reference.
  */
 #include "labial/words.h"
 
@@ -9,47 +10,102 @@
 #include "labial/labial.h"
 #include "words_parts.h"
 
-/* Names of letters, as words that the trees read so. */
-static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0jay\0kay\0ell\0em\0en\0oh\0pee\0cue\0"
-                                   "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
+/* Words of a tag or stage direction, at most. */
+#define DIRECTION 8u
 
-/* Letters of the longest word in these lists: "seventeenth". */
-#define LONGEST_SAID 11
+/* Letters of the longest word that is said: "approximately". */
+#define LONGEST_SAID 16u
 
-/* Signs that are said, and abbreviations with what they stand for; a blank separates spoken words. */
+/* Signs that are said; a blank separates spoken words. */
 static const char signs[] = "&and\0@at\0%percent\0+plus\0=equals\0";
-static const char abbreviations[] = "mr\0mister\0mrs\0missiz\0ms\0mizz\0dr\0doctor\0st\0saint\0prof\0professor\0"
-                                    "jr\0junior\0sr\0senior\0vs\0versus\0etc\0etcetera\0";
 
-/* Capitals with a vowel that are read letter by letter nevertheless. */
-static const char initials[] =
-    "AI\0API\0ATM\0CEO\0CPU\0DIY\0EU\0EV\0GPU\0ID\0IOS\0IP\0IQ\0LED\0OK\0PA\0UFO\0UI\0UK\0UN\0"
-    "URL\0USA\0USB\0UX\0";
+/* Signs that are said within an address. */
+static const char joints[] = "/slash\0-dash\0_underscore\0:colon\0";
 
-/* A E I O U Y, a bit for each letter's number. */
-#define VOWEL_CAPITALS 0x02208222u
+/* Stage directions: the beginnings of verbs, behind which s, es or ing stands; words that stand alone; and words in -s
+ * that are no verbs. */
+static const char verbs[] =
+    "applaud\0beam\0blink\0blush\0breath\0burp\0chuckl\0clap\0clear\0cough\0cr\0cri\0exhal\0frown\0gasp\0giggl\0glanc\0"
+    "grin\0groan\0gulp\0hum\0inhal\0laugh\0mumbl\0mutter\0nod\0nodd\0paus\0pout\0scream\0shout\0shrug\0sigh\0sing\0"
+    "smil\0smirk\0snap\0snapp\0snicker\0sniff\0snort\0sob\0sobb\0swallow\0wav\0whisper\0whistl\0wink\0yawn\0yell\0";
+static const char alone[] =
+    "applause\0beat\0blush\0breath\0chuckle\0clap\0cough\0cry\0gasp\0giggle\0grin\0groan\0gulp\0"
+    "hum\0laugh\0laughter\0mumble\0music\0mutter\0nod\0pause\0quietly\0scream\0shout\0shrug\0sigh\0silence\0smile\0"
+    "smirk\0sniff\0snort\0sob\0softly\0whisper\0whistle\0wink\0yawn\0yell\0";
+static const char not_verbs[] = "always\0perhaps\0sometimes\0things\0this\0does\0yours\0ours\0theirs\0hers\0towards\0"
+                                "besides\0";
+#define LONGEST_VERB 12u
 
-/* ---- Words that the rules say ----------------------------------------------------------------------------------- */
+/* ---- What is said ----------------------------------------------------------------------------------------------- */
 
-/* Says words of small letters, separated by blanks, where the text's `character` is. */
-void labial_words_say(labial_words_reading_t *reading, const char *words, unsigned character)
+/* Says one word of small letters; with SAID_PLURAL an s behind it, or -ies for -y. */
+static void say_word(labial_words_reading_t *reading, const char *word, size_t size, unsigned ending,
+                     unsigned character)
 {
     labial_words_letter_t letters[LONGEST_SAID];
     unsigned count = 0;
-    for (;; words++) {
-        if (*words > ' ') {
-            letters[count].letter = (uint8_t)(*words - 'a' + 1);
-            letters[count++].character = (uint8_t)character;
-            continue;
+    memset(letters, 0, sizeof letters);
+    for (; count < size && count < LONGEST_SAID - 3u; count++)
+        letters[count].letter = (uint8_t)(word[count] == '\'' ? 27 : word[count] - 'a' + 1);
+    if (ending == SAID_PLURAL && count > 0u) {
+        if (word[count - 1u] == 'y') {
+            letters[count - 1u].letter = 'i' - 'a' + 1;
+            letters[count++].letter = 'e' - 'a' + 1;
         }
+        letters[count++].letter = 's' - 'a' + 1;
+    }
+    for (size = 0; size < count; size++)
+        letters[size].character = (uint8_t)character;
+    if (count > 0u)
         labial_words_spell(reading->model, letters, count, reading->word);
-        count = 0;
-        if (*words == '\0')
-            return;
+}
+
+void labial_words_say(labial_words_reading_t *reading, const char *words, unsigned ending, unsigned character)
+{
+    while (*words != '\0') {
+        size_t size = 0;
+        while (words[size] > ' ')
+            size++;
+        say_word(reading, words, size, words[size] == '\0' ? ending : SAID_PLAIN, character);
+        words += size;
+        if (*words == ' ')
+            words++;
     }
 }
 
-/* The text of this number in a list. */
+void labial_words_say_name(labial_words_reading_t *reading, const char *name, int is_plural, unsigned character)
+{
+    const char *first = name;
+    size_t size;
+    for (size = 0; name[size] != '\0'; size++)
+        if (name[size] == '|' && is_plural)
+            first = name + size + 1;
+    while (*first > '\0' && *first != '|') {
+        for (size = 0; (first[size] >= 'a' && first[size] <= 'z') || first[size] == '\''; size++)
+            ;
+        say_word(reading, first, size, first[size] == '_' && is_plural ? SAID_PLURAL : SAID_PLAIN, character);
+        first += size;
+        while (*first == '_' || *first == ' ')
+            first++;
+    }
+}
+
+void labial_words_keep_tail(labial_words_reading_t *reading, unsigned first)
+{
+    reading->context->tail = (uint8_t)(reading->word->count - first);
+    reading->is_tail_here = 1;
+}
+
+void labial_words_take_back(labial_words_reading_t *reading)
+{
+    labial_words_context_t *context = reading->context;
+    if (!reading->is_tail_here)
+        context->dropped = context->tail;
+    else if (context->tail <= reading->word->count)
+        reading->word->count = (uint8_t)(reading->word->count - context->tail);
+    context->tail = 0;
+}
+
 const char *labial_words_listed(const char *list, unsigned number)
 {
     for (; number > 0u; list++)
@@ -57,125 +113,51 @@ const char *labial_words_listed(const char *list, unsigned number)
     return list;
 }
 
-/* ---- Letters ---------------------------------------------------------------------------------------------------- */
-
-/* Letters that stand together. */
-typedef struct {
-    labial_words_letter_t letters[LABIAL_WORDS_LETTERS];
-    char capitals[6]; /* the first five, in capitals, as far as they are letters */
-    unsigned count;
-    unsigned small; /* of them, small letters and apostrophes */
-} run_t;
-
-static void say_name(labial_words_reading_t *reading, labial_words_letter_t letter)
+void labial_words_say_here(labial_words_reading_t *reading, const char *words)
 {
-    labial_words_say(reading, labial_words_listed(letter_names, letter.letter - 1u), letter.character);
+    labial_words_say(reading, words, SAID_PLAIN, reading->here.characters - 1u);
 }
 
-/* Takes the letters that belong together from a letter on, up to a capital behind a small letter. */
-static void take_run(labial_words_place_t *here, run_t *run)
+/* What is said of a sign in a list, or null. */
+const char *labial_words_said_of(const char *list, unsigned sign)
 {
-    unsigned before = TEXT_END;
-    memset(run, 0, sizeof *run);
-    while (run->count < LABIAL_WORDS_LETTERS) {
-        const unsigned code = here->code;
-        const int is_inner = code == '\'' && labial_words_is_latin(labial_words_following(here));
-        if (!is_inner && !labial_words_is_latin(code))
-            return;
-        if (labial_words_is_capital(code) && before > 'Z')
-            return;
-        if (run->count < 5u)
-            run->capitals[run->count] = (char)(labial_words_small_letter(code) - ('a' - 'A'));
-        run->letters[run->count].letter = (uint8_t)(is_inner ? 27u : labial_words_small_letter(code) - 'a' + 1u);
-        run->letters[run->count++].character = (uint8_t)(here->characters - 1u);
-        run->small += !labial_words_is_capital(code);
-        before = code;
-        labial_words_advance(here);
-    }
+    for (; *list != '\0'; list = labial_words_listed(list, 1))
+        if ((unsigned char)*list == sign)
+            return list + 1;
+    return NULL;
 }
 
-/* Whether a run of at most five letters is in a list, `step` texts of which belong together; which one, or -1. */
-static int find_run(const run_t *run, const char *list, unsigned step)
+/* What was said last matters no more; returns what it was. */
+unsigned labial_words_forget(labial_words_reading_t *reading)
+{
+    const unsigned after = reading->context->after;
+    reading->context->after = AFTER_NOTHING;
+    return after;
+}
+
+/* Whether `count` letters are a text of a list, whose letters may be small. */
+static int is_text(const char *letters, unsigned count, const char *text)
+{
+    unsigned i;
+    for (i = 0; i < count; i++)
+        if (text[i] != letters[i] && text[i] - ('a' - 'A') != letters[i])
+            return 0;
+    return text[count] == '\0';
+}
+
+/* Which of the texts of a list, `step` of which belong together, letters are; or -1. */
+int labial_words_find(const char *letters, unsigned count, const char *list, unsigned step)
 {
     int number;
-    for (number = 0; *list != '\0'; number++, list = labial_words_listed(list, step)) {
-        unsigned i;
-        for (i = 0; list[i] != '\0' && (char)(list[i] & ~0x20) == run->capitals[i]; i++)
-            ;
-        if (list[i] == '\0' && i == run->count)
+    for (number = 0; *list != '\0'; number++, list = labial_words_listed(list, step))
+        if (is_text(letters, count, list))
             return number;
-    }
     return -1;
 }
 
-/* Whether letters are capitals that are read one by one. */
-static int is_spelt(const run_t *run)
+int labial_words_is_listed(const char *letters, unsigned count, const char *list)
 {
-    unsigned i;
-    if (run->small > 0u || run->count < 2u || run->count > 5u)
-        return 0;
-    for (i = 0; i < run->count; i++)
-        if ((VOWEL_CAPITALS >> (run->letters[i].letter)) & 1u)
-            return find_run(run, initials, 1) >= 0;
-    return 1;
-}
-
-/* Whether a point and a single letter follow. */
-static int has_pointed(const labial_words_place_t *here)
-{
-    labial_words_place_t next = *here;
-    if (here->code != '.')
-        return 0;
-    labial_words_advance(&next);
-    return labial_words_is_latin(next.code) && !labial_words_is_inside(labial_words_following(&next));
-}
-
-/* Letters with points between them, "e.g." and "i.e." among them; `letter` is the first one, and its point is next. */
-static void read_pointed(labial_words_reading_t *reading, labial_words_letter_t letter)
-{
-    labial_words_place_t *here = &reading->here;
-    const labial_words_place_t first = *here;
-    const char *meaning = NULL;
-    labial_words_advance(here);
-    if (letter.letter == 5u && labial_words_small_letter(here->code) == 'g')
-        meaning = "for example";
-    else if (letter.letter == 9u && labial_words_small_letter(here->code) == 'e')
-        meaning = "that is";
-    if (meaning) {
-        labial_words_say(reading, meaning, letter.character);
-        labial_words_advance(here);
-        return;
-    }
-    *here = first;
-    say_name(reading, letter);
-    while (has_pointed(here)) {
-        labial_words_advance(here);
-        letter.letter = (uint8_t)(labial_words_small_letter(here->code) - 'a' + 1u);
-        letter.character = (uint8_t)(here->characters - 1u);
-        say_name(reading, letter);
-        labial_words_advance(here);
-    }
-}
-
-static void read_letters(labial_words_reading_t *reading)
-{
-    labial_words_place_t *here = &reading->here;
-    run_t run;
-    unsigned i;
-    int abbreviation;
-    take_run(here, &run);
-    abbreviation = find_run(&run, abbreviations, 2);
-    if (run.count == 1u && has_pointed(here)) {
-        read_pointed(reading, run.letters[0]);
-    } else if (abbreviation >= 0) {
-        labial_words_say(reading, labial_words_listed(abbreviations, 2u * (unsigned)abbreviation + 1u),
-                         run.letters[0].character);
-    } else if (is_spelt(&run) || (run.count == 1u && run.capitals[0] != 'A' && run.capitals[0] != 'I')) {
-        for (i = 0; i < run.count; i++)
-            say_name(reading, run.letters[i]);
-    } else {
-        labial_words_spell(reading->model, run.letters, run.count, reading->word);
-    }
+    return labial_words_find(letters, count, list, 1) >= 0;
 }
 
 /* ---- The caller's own words ------------------------------------------------------------------------------------- */
@@ -221,65 +203,203 @@ static int reads_own(labial_words_reading_t *reading, const labial_words_own_t *
     return 0;
 }
 
-/* ---- The whole -------------------------------------------------------------------------------------------------- */
+/* ---- Signs ------------------------------------------------------------------------------------------------------ */
 
-/* Passes over a tag. */
-static void skip_tag(labial_words_place_t *here)
+/* Whether a word in brackets or asterisks is a stage direction; the bracket is here. */
+static int is_direction(const labial_words_place_t *here, unsigned closing)
 {
-    const unsigned end = here->code == '[' ? ']' : '>';
-    while (here->code != TEXT_END && here->code != end)
-        labial_words_advance(here);
+    labial_words_place_t next = *here;
+    char word[LONGEST_VERB + 1u];
+    unsigned count = 0, capitals = 0;
+    const char *verb;
+    labial_words_advance(&next);
+    for (; labial_words_is_latin(next.code); labial_words_advance(&next)) {
+        if (count >= LONGEST_VERB)
+            return 0;
+        capitals += (unsigned)labial_words_is_capital(next.code);
+        word[count++] = (char)(labial_words_small_letter(next.code) - ('a' - 'A'));
+    }
+    word[count] = '\0';
+    if (count == 0u || labial_words_is_inside(next.code))
+        return 0;
+    if (next.code == closing && labial_words_is_listed(word, count, alone))
+        return 1;
+    for (verb = verbs; *verb != '\0'; verb = labial_words_listed(verb, 1)) {
+        unsigned i;
+        for (i = 0; i < count && verb[i] != '\0' && verb[i] - ('a' - 'A') == word[i]; i++)
+            ;
+        if (verb[i] == '\0' && i < count && labial_words_is_listed(word + i, count - i, "s\0es\0ing\0"))
+            return 1;
+    }
+    return closing == '*' && labial_words_is_blank(next.code) && capitals == 0u && count > 3u &&
+           word[count - 1u] == 'S' && word[count - 2u] != 'S' && !labial_words_is_listed(word, count, not_verbs);
 }
 
-/* Says a sign. */
-static void read_sign(labial_words_reading_t *reading)
+static void open_tag(labial_words_reading_t *reading, unsigned closing)
 {
-    unsigned number;
-    for (number = 0; number < 5u; number++) {
-        const char *const sign = labial_words_listed(signs, number);
-        if ((unsigned char)*sign == reading->here.code)
-            labial_words_say(reading, sign + 1, reading->here.characters - 1u);
+    (void)labial_words_forget(reading);
+    reading->context->closing = (uint8_t)closing;
+    reading->context->left = DIRECTION;
+    labial_words_advance(&reading->here);
+}
+
+static void read_degrees(labial_words_reading_t *reading, unsigned after)
+{
+    labial_words_place_t next = reading->here;
+    labial_words_say_here(reading, after == AFTER_ONE ? "degree" : "degrees");
+    labial_words_advance(&next);
+    if ((next.code == 'C' || next.code == 'F') && !labial_words_is_inside(labial_words_following(&next))) {
+        reading->here = next;
+        labial_words_say_here(reading, next.code == 'C' ? "celsius" : "fahrenheit");
     }
 }
 
-int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
-                      labial_word_t *word)
+/* Reads a point, slash, hyphen, underscore or colon: a part of an address, or a minus. */
+static void read_joint(labial_words_reading_t *reading)
+{
+    labial_words_place_t *here = &reading->here, next = *here, third;
+    const unsigned before = here->before;
+    labial_words_advance(&next);
+    third = next;
+    labial_words_advance(&third);
+    if (here->code == '.' && next.code >= 'a' && next.code <= 'z' &&
+        (labial_words_is_inside(before) || before == ' ')) {
+        labial_words_say_here(reading, "dot");
+        reading->is_address = 1;
+    } else if (here->code == ':' && labial_words_is_inside(before) && next.code == '/' && third.code == '/') {
+        labial_words_say_here(reading, "colon slash slash");
+        reading->is_address = 1;
+        *here = third;
+    } else if (here->code == '-' && (labial_words_is_decimal(next.code) || labial_words_is_sum(&next)) &&
+               (before == ' ' || before == '(')) {
+        labial_words_say_here(reading, "minus");
+    } else if (reading->is_address && labial_words_is_inside(next.code) && here->code != '.') {
+        labial_words_say_here(reading, labial_words_said_of(joints, here->code));
+    }
+}
+
+/* Reads what is no letter and no digit. */
+static void read_sign(labial_words_reading_t *reading)
+{
+    labial_words_place_t *here = &reading->here;
+    const unsigned code = here->code, follows = labial_words_following(here);
+    const unsigned closing = code == '(' ? ')' : '*';
+    const char *const said = labial_words_said_of(signs, code);
+    const int currency = labial_words_currency(code);
+    unsigned after;
+    int is_counted;
+    if ((code == '[' && !labial_words_is_blank(follows)) ||
+        (code == '<' && (labial_words_is_latin(follows) || follows == '/' || follows == '!' || follows == '?'))) {
+        open_tag(reading, code == '[' ? ']' : '>');
+        return;
+    }
+    if ((code == '(' || code == '*') && here->before != '*' && is_direction(here, closing)) {
+        open_tag(reading, closing);
+        return;
+    }
+    after = labial_words_forget(reading);
+    is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
+    if (code == SIGN_DEGREE) {
+        read_degrees(reading, after);
+    } else if (code == '/' && (after == AFTER_UNIT || after == AFTER_SUM) && labial_words_is_latin(follows)) {
+        labial_words_say_here(reading, "per");
+        reading->context->after = AFTER_PER;
+    } else if (code == '.' || code == '/' || code == '-' || code == '_' || code == ':') {
+        read_joint(reading);
+    } else if (code == SIGN_HALF || code == SIGN_QUARTER || code == SIGN_QUARTERS) {
+        labial_words_say_here(reading, code == SIGN_HALF      ? "one half"
+                                       : code == SIGN_QUARTER ? "one quarter"
+                                                              : "three quarters");
+        reading->context->after = AFTER_NUMBER;
+    } else if (code == SIGN_MINUS) {
+        labial_words_say_here(reading, "minus");
+    } else if (code == SIGN_TIMES) {
+        labial_words_say_here(reading, "times");
+    } else if (code == SIGN_CENT && is_counted) {
+        labial_words_say_here(reading, after == AFTER_NUMBER ? "cents" : "cent");
+    } else if (currency >= 0 && is_counted) {
+        labial_words_say_name(reading, labial_words_currency_name((unsigned)currency), after == AFTER_NUMBER,
+                              here->characters - 1u);
+    } else if (code == '#' && labial_words_is_decimal(follows)) {
+        labial_words_say_here(reading, "number");
+    } else if (code == '<' && labial_words_is_decimal(follows)) {
+        labial_words_say_here(reading, "less than");
+    } else if (said) {
+        labial_words_say_here(reading, said);
+    }
+    labial_words_advance(here);
+}
+
+/* ---- The whole -------------------------------------------------------------------------------------------------- */
+
+/* A blank, or the end of the text. */
+static void end_word(labial_words_reading_t *reading)
+{
+    labial_words_context_t *const context = reading->context;
+    reading->is_address = 0;
+    if (context->closing != 0u && --context->left == 0u)
+        context->closing = 0;
+}
+
+/* Reads what is at the current place, and moves behind it. */
+static void read_next(labial_words_reading_t *reading, const labial_words_own_t *own)
+{
+    labial_words_place_t *const here = &reading->here;
+    labial_words_context_t *const context = reading->context;
+    if (context->closing != 0u || here->code == ' ') {
+        if (here->code == ' ')
+            end_word(reading);
+        else if (here->code == context->closing)
+            context->closing = 0;
+        labial_words_advance(here);
+    } else if (!labial_words_is_inside(here->before) && reads_own(reading, own)) {
+        (void)labial_words_forget(reading);
+        here->before = NO_CHARACTER;
+    } else if (labial_words_is_latin(here->code)) {
+        labial_words_read_letters(reading);
+    } else if (labial_words_is_decimal(here->code)) {
+        labial_words_read_number(reading);
+    } else if (labial_words_is_sum(here)) {
+        labial_words_read_sum(reading);
+    } else {
+        read_sign(reading);
+    }
+}
+
+int labial_words_read_next(const labial_words_model_t *model, const labial_words_own_t *own,
+                           labial_words_context_t *context, const char *text, size_t size, labial_word_t *word)
 {
     labial_words_reading_t reading;
     labial_words_place_t *const here = &reading.here;
-    unsigned before = NOTHING, is_foreign = 0;
-    if (!model || !text || !word)
+    unsigned is_foreign = 0;
+    if (!model || !context || !text || !word)
         return LABIAL_ERROR_NULL;
     if (model->format != LABIAL_WORDS_FORMAT)
         return LABIAL_ERROR_VERSION;
     memset(&reading, 0, sizeof reading);
     memset(word, 0, sizeof *word);
+    context->dropped = 0;
     reading.model = model;
     reading.word = word;
+    reading.context = context;
     here->text = (const unsigned char *)text;
     here->size = size;
+    here->code = ' ';
     labial_words_advance(here);
     while (here->code != TEXT_END) {
-        const unsigned code = here->code;
-        is_foreign |= code == FOREIGN;
-        if (!labial_words_is_inside(before) && reads_own(&reading, own)) {
-            before = NOTHING;
-            continue;
-        }
-        before = code;
-        if (labial_words_is_latin(code)) {
-            read_letters(&reading);
-        } else if (labial_words_is_decimal(code)) {
-            labial_words_read_digits(&reading);
-        } else {
-            if (code == '[' || code == '<')
-                skip_tag(here);
-            else
-                read_sign(&reading);
-            labial_words_advance(here);
-        }
+        is_foreign |= here->code == FOREIGN;
+        read_next(&reading, own);
     }
+    end_word(&reading);
     word->characters = (uint8_t)here->characters;
     word->kind = word->count > 0u ? LABIAL_WORDS_READ : is_foreign ? LABIAL_WORDS_UNKNOWN : LABIAL_WORDS_SILENT;
     return LABIAL_OK;
+}
+
+int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
+                      labial_word_t *word)
+{
+    labial_words_context_t context;
+    memset(&context, 0, sizeof context);
+    return labial_words_read_next(model, own, &context, text, size, word);
 }

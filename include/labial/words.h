@@ -22,21 +22,34 @@
  * Texts, times and the order of calls are not trusted.
  *
  * What is read
- * - Letters: through decision trees (docs/words.md), in parts of at most LABIAL_WORDS_LETTERS. Letters of Latin-1 and
- *   Latin Extended-A lose their marks, and combining marks are passed over. A capital behind a small letter begins a
- *   word (iPhone), and so do the hyphen, the slash, the underscore and all other punctuation. Apostrophes are read
- *   within a word.
- * - Letter by letter: two to five capitals without a vowel (TV, HTTP), some with one (USA, AI), single letters with
- *   points (U.S.), and single letters but "a" and "I".
- * - Digits: whole numbers to 999,999,999, also with commas, and digits behind a point; longer ones, and those that
- *   begin with 0, digit by digit; 1st, 22nd, 3rd, 4th. Years, sums of money, dates and times of day are the caller's to
- *   write out, or the voice's.
- * - & @ % + = as and, at, percent, plus, equals.
- * - Mr Mrs Ms Dr St Prof Jr Sr vs etc, e.g. and i.e.
- * - [tags] and <tags>, emoji and other punctuation: nothing, that is silence.
+ * - Letters: through decision trees (docs/words.md), in parts of at most LABIAL_WORDS_LETTERS. A capital behind a small
+ *   letter begins a word (iPhone), and so do the hyphen, the slash, the underscore and all other punctuation.
+ *   Apostrophes are read within a word. Letters of Latin-1 and Latin Extended-A lose their marks, but those whose accent
+ *   tells their sound have it: cafe with an acute accent ends in EY, Zoe with a diaeresis in IY. Ligatures are letters.
+ * - Letter by letter: two to five capitals that do not look like a word of English (TV, HTTP, FBI, CIA), and some that
+ *   do (VIP, MIT), also with s or 's; AM, IT, US and WHO unless the word before is in capitals, too; single letters with
+ *   points (U.S.), and single letters but "a" and "I". Others are words: NASA, STOP.
+ * - Whole numbers to 999 trillion, also with commas, and digits behind a point; longer ones, those that begin with 0 and
+ *   numbers of telephones (555-1234) digit by digit; 1st, 22nd; 3/4, 2 1/2; -5; 10-20 ("to").
+ * - Years of four digits (1984, 2024, but 2005 as a number), 1990s, 80s. Dates: March 5, Dec. 25, 2024-03-05, 3/5/2024
+ *   with the month first, 5.3.2024 with the day first. Times: 3:30, 9:00 ("o'clock"), 9:00 a.m., 15:00 ("hundred").
+ * - Sums with $, the signs of euro, pound, yen and rupee, cents: $5.50, $1.5 million, $2M, $20/hour.
+ * - Units behind a number: 5 km, 16GB, 60 mph, 100 km/h, degrees, and single letters behind a blank, too: 5 m, 3 h.
+ * - Addresses: www.example.com, info@example.com, https://example.com/maps.
+ * - Mr Mrs Ms Dr St Prof Jr Sr vs etc and other abbreviations, e.g. and i.e., months and days in short (Jan., Tues.).
+ * - & @ % + = # and signs of multiplication as and, at, percent, plus, equals, number (before a digit), times.
+ * - Nothing, that is silence: emoji, other punctuation, [tags] and <tags> where no blank follows, and in <tags> a
+ *   letter or one of / ! ?. A tag may have blanks, and ends after eight words at the latest.
+ * - Stage directions are silent as well, and may be as long: in (parentheses) or *asterisks* a verb of speech or
+ *   gestures in -s or -ing comes first, or such a word stands alone: (sighs), (laughing softly), (pause), *smiles*; in
+ *   asterisks any small word in -s with another one behind it: *leans in*. All others are said: (for example), *really*,
+ *   **never**.
  * - Letters of other scripts are unknown: a word of nothing else moves the lips a little for its time, without closing
  *   them.
  * - Bytes that are not UTF-8, and control characters: nothing.
+ *
+ * What a word means may depend on those before it: "5" behind "March", "km" behind "5". A stream of words knows them;
+ * labial_words_read_next() takes them from a labial_words_context_t.
  */
 #ifndef LABIAL_WORDS_H
 #define LABIAL_WORDS_H
@@ -130,17 +143,38 @@ typedef struct {
     labial_words_phoneme_t phonemes[LABIAL_WORDS_PHONEMES];
 } labial_word_t;
 
+/* What the words so far mean for the next one: all zero at the beginning of a text. The other members are private. */
+typedef struct {
+    uint8_t dropped;  /* phonemes at the end of the word before that are not said there: those of "dollars" in "$5
+                      * million", which labial_words_read_next() found only when it read "million" */
+    uint8_t after;    /* what was said last */
+    uint8_t currency; /* of a sum */
+    uint8_t tail;     /* phonemes that the next word may drop */
+    uint8_t shouting; /* the word before is in capitals and not spelt */
+    uint8_t closing;  /* what ends the tag or stage direction that the text is in */
+    uint8_t left;     /* words that it may still have */
+} labial_words_context_t;
+
 /* Words in time on their way to phonemes; the members are private. It may be moved or copied between calls. */
 typedef struct labial_words labial_words_t;
 
 /*
- * Reads a text of `size` bytes of UTF-8: a word, or all between two blanks. `own` may be null.
+ * Reads a text of `size` bytes of UTF-8: one word or several. `own` may be null.
  *
  * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for a model of
  * another format.
  */
 int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
                       labial_word_t *word);
+
+/*
+ * The same for the next word of a text, or the next part of it: `context` goes from word to word. Where it says
+ * `dropped` afterwards, remove so many phonemes from the end of the word before.
+ *
+ * Returns as labial_words_read().
+ */
+int labial_words_read_next(const labial_words_model_t *model, const labial_words_own_t *own,
+                           labial_words_context_t *context, const char *text, size_t size, labial_word_t *word);
 
 /* The label of a phoneme in ARPABET, "" for numbers beyond the last and a null model. */
 const char *labial_words_label(const labial_words_model_t *model, unsigned phoneme);
@@ -246,6 +280,7 @@ struct labial_words {
     uint8_t held;              /* which of `spans` waits; the other one is being spoken */
     uint8_t paused;            /* behind the word being spoken there is a pause */
     uint8_t ended;             /* no word follows */
+    labial_words_context_t context;
     struct labial_words_span spans[2];
 };
 

@@ -254,6 +254,32 @@ TEST(patches_stay_within_the_word)
     assert_string_equal(shown(&word), "_OW:1");
 }
 
+/* Would catch a word that does not know those before it: a sum, a month, a stage direction. */
+TEST(words_know_those_before)
+{
+    static const struct {
+        const char *text, *reading;
+        unsigned dropped;
+    } cases[] = { { "$5", "_F:0 AY:0 V:0 _D:1 AA:1 L:1 ER:1 Z:1", 0 },
+                  { "million", "_M:0 IH:0 L:0 Y:0 AH:0 N:0 _D:0 AA:0 L:0 ER:0 Z:0", 5 },
+                  { "May", "_M:0 EY:1", 0 },
+                  { "5", "_F:0 IH:0 F:0 TH:0", 0 },
+                  { "*leans", "silent", 0 },
+                  { "in*", "silent", 0 },
+                  { "in", "_IH:0 N:1", 0 },
+                  { "9:00", "_N:0 AY:0 N:0 _AH:0 K:0 L:0 AA:0 K:0", 0 },
+                  { "a.m.", "_EY:0 _EH:2 M:2", 5 } };
+    labial_words_context_t context = { 0, 0, 0, 0, 0, 0, 0 };
+    labial_word_t word;
+    unsigned i;
+    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        assert_int_equal(labial_words_read_next(&words_en, NULL, &context, cases[i].text, strlen(cases[i].text), &word),
+                         LABIAL_OK);
+        assert_string_equal(shown(&word), cases[i].reading);
+        assert_int_equal(context.dropped, cases[i].dropped);
+    }
+}
+
 TEST(misuse_is_an_error)
 {
     labial_words_model_t other = words_en;
@@ -261,6 +287,7 @@ TEST(misuse_is_an_error)
     assert_int_equal(labial_words_read(NULL, NULL, "a", 1, &word), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_read(&words_en, NULL, NULL, 1, &word), LABIAL_ERROR_NULL);
     assert_int_equal(labial_words_read(&words_en, NULL, "a", 1, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_words_read_next(&words_en, NULL, NULL, "a", 1, &word), LABIAL_ERROR_NULL);
     other.format++;
     assert_int_equal(labial_words_read(&other, NULL, "a", 1, &word), LABIAL_ERROR_VERSION);
 }

@@ -119,6 +119,29 @@ TEST(phonemes_keep_the_words_times)
     assert_int_equal(until(&spoken, spoken.count), 1600);
 }
 
+/* Would catch phonemes that are said twice where the next word takes them, and a context that survives an end. */
+TEST(a_word_takes_phonemes_from_the_one_before)
+{
+    static const uint8_t expected[] = { 14, 6, 35, 22, 17, 21, 37, 3, 23, 9, 1, 21, 12, 38 }; /* five million dollars */
+    spoken_t spoken = { 0 };
+    unsigned i;
+    begin(0);
+    say(&spoken, "$5", 0, 300);
+    say(&spoken, "million", 300, 900);
+    flush(&spoken);
+    assert_int_equal(spoken.count, sizeof expected);
+    for (i = 0; i < spoken.count; i++)
+        assert_int_equal(spoken.phonemes[i], expected[i]);
+    assert_int_equal(until(&spoken, 3), 300);
+    assert_int_equal(until(&spoken, spoken.count), 900);
+    spoken.count = 0;
+    say(&spoken, "$5", 900, 1200);
+    flush(&spoken);
+    say(&spoken, "million", 1200, 1500);
+    flush(&spoken);
+    assert_int_equal(spoken.count, 8 + 6);
+}
+
 /* Would catch a word that runs into the next one, and one without time that is spoken nevertheless. */
 TEST(a_word_ends_where_the_next_begins)
 {
@@ -406,6 +429,27 @@ TEST(latency_tells_what_is_inside)
     assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_OK);
     assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
     assert_int_equal(labial_words_push(&stream, "me", 2, 300, 600), LABIAL_OK); /* the first one takes no room */
+}
+
+/* Would catch a word of the caller's that is read before its beginning, and a division by weights that are all zero. */
+TEST(words_and_models_without_sense_do_no_harm)
+{
+    static const uint8_t nothing[256] = { 0 };
+    static const uint32_t ends[] = { 10, 50, 400 };
+    labial_words_model_t still = words_en;
+    labial_word_t word;
+    uint32_t length, lasts;
+    unsigned phoneme;
+    assert_int_equal(labial_words_read(&words_en, NULL, "me", 2, &word), LABIAL_OK);
+    length = labial_words_length(&words_en, &word);
+    assert_true(length > 100 && word.phonemes[0].first);
+    word.phonemes[0].first = 0;
+    assert_int_equal(labial_words_length(&words_en, &word), length);
+    still.milliseconds = nothing;
+    assert_int_equal(labial_words_init(&stream, &still, NULL, 0), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, ends, 3), LABIAL_OK);
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_DONE);
 }
 
 TEST(misuse_is_an_error)

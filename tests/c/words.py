@@ -30,9 +30,23 @@ U.S.based a.b1 x.yz a. I. B. Mr. Mrs Ms. MR dr. Dr St. prof Prof. jr Jr. sr vs. 
 1000000th 0th 3Rd 1stx 2ndly 1st2 007th 5x x5 24h [laughs] [a]b a[b]c [open x<tag/>y <open ] > Привет 你好 日本語
 한국어 ελ Привет! aПривет中 [中] 😀 😀! ♥ na\u036fme \u0180 a\u0180 \u07ff \u0800 \uffff \U00010000
 \u0080 rock-n-roll and/or snake_case a.b,c;d (a)(b)
+Zoë Noël Citroën résumé fiancée façade ﬁne ﬂow ﬀ œuf Æon 1999 2005 1905 1900 2000 2100 1990s 80s 80's 2000s 20s
+2024-03-05 3/5/2024 13/5/2024 3/5/24 5.3.2024 12-25-2024 2024-13-05 0/0/2024 555-1234 1-800-555-0199 10-20 1914–1918
+3:30 3:05 9:00 15:00 0:30 24:61 10:30:15 10:00:00 7:45am 5pm 5p.m. 3/4 1/2 2/3 7/16 5/12 10/3 5'10" 6'2 9'x
+$5 $1 $5.50 $0.99 $.50 $1.5 $1.01 $00.50 $2M $10k $3bn $5k- $5/hour €20 £3.20 £1.01 ¥500 ¥5.50 ₹1,000 5€ 1€ 50¢
+$1,250 $1234567890123456 $5-$10 $5million 5km 1km 5kmx 100km/h 16GB 5M 2bn 6in 1in 3A 20C 25°C 98.6°F 1° 5m² 20m/s
+60mph 3ft 1ft 3½ ½ ¼ ¾ 3x4 3×4 -5 −5 -$5 (-5) a-5 #1 #a <3 <b>x</b> 50 999,999,999,999,999 9999999999999999
+FBI NBA CIA VIP PhD PhDs TVs FBI's FBIs CEO's NASA's USAs STOP WHO IRS SUV NYPD HELLO X's A's As As' H's DVDs AT&T
+Q&A A+ A-1 B2B MP3 YMCA UNESCO ESPN JPEG json Wi-Fi WiFi Jan. Sept Tues. Mar approx. www.example.com x@b.io .com
+https://a.org/b-c_d node.js a.b.c end.Start wait...what (sighs) (pause) (pauses) (yes) *smiles* *leans *really*
+**bold** [a]b (laughing)x *x
 abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab
 Pneumonoultramicroscopicsilicovolcanoconiosis bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb'b don't-can't-won't
 """.split()
+PHRASES = ["$5 million", "3:00 pm", "9:00 a.m.", "9:00 o'clock", "March 5", "Dec. 25", "May 5-7", "March 5.5", "5 km",
+           "1 h", "10 AM", "I AM", "IS IT", "IT is", "(laughs softly) yes", "<break time='1s'/> go", "[a b] c",
+           "[a b c d e f g h i j", "*leans in* yes", "*really* no", "2 1/2", "1 1/4", "20 €", "20 °C", "$20 / hour",
+           "5 km / h", "5 in 6", "$5. Million"]
 LONG = ["111111111" * 30, "ab" * 150, "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
 TIMED = """the a I computer banana strengths idea go tv's reiteration 21 we're asthma B&B hmm spaghetti queue onion boy
  Mississippi extraordinary rhythm""".split()
@@ -69,7 +83,7 @@ def header() -> str:
     """The file's text."""
     tables = load(MODEL)
     common = read_common(COMMON)
-    words = [*TEXTS, *LONG, *common[:60], *random.Random(0).sample(common, 300)]
+    words = [*TEXTS, *PHRASES, *LONG, *common[:60], *random.Random(0).sample(common, 300)]
     readings = "\n".join(f"    {{ {quoted(word)}, {quoted(shown(tables, word))} }}," for word in dict.fromkeys(words))
     rows = []
     for number, word in enumerate(TIMED):

@@ -32,6 +32,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static const labial_words_entry_t entry = { "go", sounds, sizeof sounds };
     static const labial_words_own_t own = { &entry, 1 };
     labial_words_t words;
+    labial_words_context_t context = { 0, 0, 0, 0, 0, 0, 0 };
+    unsigned before = 0;
     uint32_t start = 0;
     uint64_t sum = 0;
     const int32_t offset = size > 0 ? (int8_t)data[0] : 0;
@@ -48,7 +50,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memcpy(text, data + 4, length);
         text = (char *)realloc(text, length > 0 ? length : 1);
         start += data[1] * 8u;
-        REQUIRE(labial_words_read(&words_en, &own, text, length, &word) == LABIAL_OK);
+        REQUIRE(labial_words_read_next(&words_en, &own, &context, text, length, &word) == LABIAL_OK);
+        REQUIRE(context.dropped == 0 || context.dropped < before);
+        before = word.count > 0 ? word.count : before;
         REQUIRE(word.count <= LABIAL_WORDS_PHONEMES && word.characters <= length);
         REQUIRE((word.kind == LABIAL_WORDS_READ) == (word.count > 0));
         if (kind == 2 && word.characters > 0) {

@@ -22,7 +22,7 @@ const words = await labial.words();
 WebAssembly.instantiate = instantiate;
 const SAID = [{ text: "Maybe", start: 0.1, end: 0.42 }, { text: "people", start: 0.45, end: 0.9 },
     { text: "in", start: 0.9 }, { text: "1984.", start: 1.1, end: 1.9 }, { text: "Hum", start: 2.5, end: 3 }];
-const numbers = (digits) => (digits === "1984" ? "nineteen eighty-four" : "many");
+const numbers = (digits) => (digits === "1984" ? "the year of Orwell" : "many");
 const labels = (segments) => segments.map(({ label }) => label || "-").join(" ");
 
 test("words become segments that render() takes, without gaps", () => {
@@ -31,7 +31,7 @@ test("words become segments that render() takes, without gaps", () => {
         assert.equal(start, i ? segments[i - 1].end : 0);
         assert.ok(end > start && labels === "arpabet");
     });
-    assert.match(labels(segments), /^- M EY B IY P IY P AH L IH N W AH N .* - HH AH M$/);
+    assert.match(labels(segments), /^- M EY B IY P IY P AH L IH N N AY N T IY N EY T IY F AO R - HH AH M$/);
     assert.equal(labial.render(segments, { exact: true }).length, 150);
 });
 
@@ -39,7 +39,7 @@ test("numbers are written out by the caller, once each", () => {
     const asked = [];
     const spy = (digits) => (asked.push(digits), numbers(digits));
     const spelt = labels(words.wordTimings(SAID, { numbers: spy }));
-    assert.match(spelt, / N AY N T IY N EY T IY F AO R - /);
+    assert.match(spelt, / IH N DH AH Y IH R .* L - HH AH M$/);
     assert.deepEqual(asked, ["1984"]);
     const own = new Map([["1984", "M"]]);
     assert.equal(words.phonemes("1984, 1,234.5 3rd", { numbers: spy, own }).join(" "), "M M EH N IY TH ER D");

@@ -7,7 +7,7 @@ import random
 import subprocess
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 import pytest
@@ -22,6 +22,7 @@ from packages import CC, SOURCE
 from runtime import needs_runtime
 
 TRAINED = SOURCE / "export" / "models" / "words_en.npz"
+SPOKEN = Path(__file__).with_name("spoken.tsv")
 #: A dictionary of one's own, for all of its words: LABIAL_CMUDICT=cmudict.dict.
 CMUDICT = os.environ.get("LABIAL_CMUDICT", "")
 
@@ -250,18 +251,59 @@ def test_the_c_suite_knows_the_cases() -> None:
     assert (SOURCE / "tests/c/words_cases.h").read_text(encoding="ascii") == cases.header()
 
 
-def in_c(given: List[str]) -> List[Tuple[str, Tuple[str, ...], Tuple[int, ...]]]:
-    from labial.core.words import read
-    return [tuple(read(word)) for word in given]
+Read = Tuple[str, Tuple[str, ...], Tuple[int, ...], int]
 
 
-def by_reference(found: tables.WordTables, given: List[str]) -> List[Tuple[str, Tuple[str, ...], Tuple[int, ...]]]:
+def in_c(given: Sequence[Sequence[str]]) -> List[List[Read]]:
+    """How the library reads texts of words: kind, phonemes, their characters, phonemes that the word before loses."""
+    from labial.core.words import Reader
+    found = []
+    for words in given:
+        reader = Reader()
+        found.append([(*spoken, dropped) for spoken, dropped in map(reader.read, words)])
+    return found
+
+
+def by_reference(found: tables.WordTables, given: Sequence[Sequence[str]]) -> List[List[Read]]:
     result = []
-    for word in given:
-        reading = text.read(found, word)
-        result.append((reading.kind, tuple(dictionary.PHONEMES[p] for p, _, _ in reading.phonemes),
-                       tuple(place for _, place, _ in reading.phonemes)))
+    for words in given:
+        context, part = None, []
+        for word in words:
+            reading = text.read(found, word, context)
+            context = reading.context
+            part.append((reading.kind, tuple(dictionary.PHONEMES[p] for p, _, _ in reading.phonemes),
+                         tuple(place for _, place, _ in reading.phonemes), context.dropped))
+        result.append(part)
     return result
+
+
+def spoken(found: tables.WordTables, said: str) -> str:
+    """The phonemes of a text by the reference."""
+    phonemes: List[int] = []
+    context = None
+    for word in said.split():
+        reading = text.read(found, word, context)
+        context = reading.context
+        del phonemes[len(phonemes) - context.dropped :]
+        phonemes += [phoneme for phoneme, _, _ in reading.phonemes]
+    return tables.names(phonemes)
+
+
+def test_texts_are_read_as_a_voice_reads_them(trained: tables.WordTables) -> None:
+    """Dates, sums, times, units, addresses and initials, of which no more than one in a hundred may be wrong."""
+    lines = [line.split("\t") for line in SPOKEN.read_text(encoding="utf-8").splitlines() if line and line[0] != "#"]
+    wrong = [given for given, said in lines if spoken(trained, given) not in
+             [tables.names([p for word in one.replace("_", " ").split() for p in decoder.phonemes(trained, word)])
+              for one in said.split(" | ")]]
+    assert len(lines) > 230 and len(wrong) <= len(lines) // 100, wrong
+
+
+def test_capitals_of_words_are_words() -> None:
+    """Common words that are written in capitals are not spelt, as in "STOP THAT"."""
+    words = dictionary.read_common(dictionary.COMMON)
+    common = [word.upper() for word in words if 3 <= len(word) <= 5 and word.isalpha()]
+    spelt = [word for word in common if not (word in text._WORDS or text.is_pronounceable(word))]
+    assert len(spelt) < len(common) // 100, spelt
 
 
 @needs_runtime
@@ -270,7 +312,7 @@ def test_c_reads_words_as_the_reference_does(trained: tables.WordTables) -> None
     given = dictionary.read_common(dictionary.COMMON)[::3]
     if CMUDICT:
         given = sorted({entry.word for entry in dictionary.read_dictionary(CMUDICT)})
-    assert in_c(given) == by_reference(trained, given)
+    assert in_c([given]) == by_reference(trained, [given])
 
 
 if CMUDICT:
@@ -282,13 +324,35 @@ if CMUDICT:
         assert np.array_equal(again.question, known.question) and again.exceptions == known.exceptions
 
 
+#: What rules tell apart: characters, and parts of words.
+ALPHABET = ("abeigxyzAEIXYZTVUSmrstndhkKMBGCF0123456789012345..,,''-–--/:://&%@+=[]<>()**_  $€£¥₹¢°²½¼¾×−#\" "
+            "éñÆßœŁ’Жﬁëïç中😀\u0301\u0308\u200b\u00a0Ａµ")
+PARTS = """1999 2005 1990s 80s 5 1 12 0 007 3:30 9:00 15:00 10:30:15 2024-03-05 3/5/2024 3/5/24 5.3.2024 1/2 3/4 5/12
+    555-1234 1-800-555-0199 10-20 5'10 22nd $5 $1 $5.50 $0.99 $.50 $1.5 €20 ¥5.50 ₹1,000 5€ 50¢ $2M $10k $5/hour
+    1,234,567 1,00 999,999,999,999,999 1234567890123456 million billion a.m. p.m. am PM o'clock km kg m s h GB km/h
+    m² °C
+    °F ° 5km 16GB 5M 2bn 6in 3A March May Jan. Sept. Tues FBI CIA VIP NASA STOP IT US WHO AM I A PhDs TVs FBI's CEOs
+    U.S. e.g. i.e. Ph.D. www.example.com https://a.org/b-c_d info@b.io .com (sighs) (pause) (laughing (softly)
+    *smiles* *leans in* *really* **bold** [tag] <break <b> x<3 -5 −5
+    -$5 – - # #1 #tag ½ 3½ 3x4
+    café Zoë Noël naïve ﬁn œuvre AT&T Q&A A+
+    MP3 4K ’s Mr. Dr St. approx. Wi-Fi jpeg 50% ... ! ? . , ; :""".split()
+
+
 @needs_runtime
 def test_c_reads_any_text_as_the_reference_does(trained: tables.WordTables) -> None:
-    """Texts of the characters by which rules tell things apart, in any order."""
-    alphabet = "abeigxyzAEIXYZTVUSmrstndh0123456789..,,''-–&%@+=[]<>_ éñÆßœŁ’Ж中😀\u0301\u200b½Ａ"
+    """Texts of these, in any order, word by word or at once."""
     numbers = random.Random(7)
-    given = ["".join(numbers.choice(alphabet) for _ in range(numbers.randint(0, numbers.choice([3, 6, 12, 40, 300]))))
-             for _ in range(3000)]
+    given: List[List[str]] = []
+    for number in range(900):
+        words = []
+        for _ in range(numbers.randint(1, 5)):
+            if number % 2:
+                length = numbers.randint(0, numbers.choice([3, 6, 12, 40, 300]))
+                words.append("".join(numbers.choice(ALPHABET) for _ in range(length)))
+            else:
+                words.append("".join(numbers.choice(PARTS) for _ in range(numbers.choice([1, 1, 1, 2, 3]))))
+        given.append(words if number % 3 else [" ".join(words)])
     assert in_c(given) == by_reference(trained, given)
 
 

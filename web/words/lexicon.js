@@ -24,14 +24,23 @@ export class Lexicon {
         for (let label; (label = this.memory.text(wasm.words_label(this.labels.length))); ) this.labels.push(label);
     }
 
-    /** The phonemes of a text without blanks; `table` is what table() made. */
-    read(text, table = { place: 0 }) {
-        const room = 2 + 3 * PHONEMES_MAX;
-        return this.withBytes(room, (out) => {
-            this.check(this.withText(text, (at, size) => this.wasm.words_read(table.place, at, size, out)));
-            const found = this.memory.bytes.subarray(out, out + room);
-            return Array.from({ length: found[0] }, (_, i) => this.labels[found[2 + 3 * i]]);
+    /** The phonemes of words that follow each other; `table` is what table() made. A word may take phonemes from the end
+     * of the one before: "dollars", where "million" follows "$5". */
+    read(words, table = { place: 0 }) {
+        const room = 3 + 3 * PHONEMES_MAX;
+        const size = this.wasm.words_context_size();
+        const found = [];
+        this.withBytes(size + room, (context) => {
+            const out = context + size;
+            this.memory.bytes.fill(0, context, out);
+            for (const word of words) {
+                this.check(this.withText(word, (at, bytes) => this.wasm.words_read(table.place, context, at, bytes, out)));
+                const read = this.memory.bytes.subarray(out, out + room);
+                found.length -= Math.min(read[2], found.length);
+                for (let i = 0; i < read[0]; i++) found.push(this.labels[read[3 + 3 * i]]);
+            }
         });
+        return found;
     }
 
     /** Words of one's own, as a Map of lists, and with them what stands in digits in these texts, as `numbers` writes
@@ -48,7 +57,7 @@ export class Lexicon {
             if (found.has(item) || !NUMBER.test(item)) continue;
             const text = numbers(item);
             if (typeof text !== "string") throw new LabialError(`numbers(${shown(item)}) is ${shown(text)}, not text`);
-            found.set(item, split(text).flatMap((word) => this.read(word)).slice(0, PHONEMES_MAX));
+            found.set(item, this.read(split(text)).slice(0, PHONEMES_MAX));
         }
         return found;
     }

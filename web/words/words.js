@@ -20,7 +20,7 @@ export class Words {
         const texts = split(text);
         const table = lexicon.table(lexicon.known(own, numbers, texts));
         try {
-            return texts.flatMap((one) => lexicon.read(one, table));
+            return lexicon.read(texts, table);
         } finally {
             lexicon.release(table);
         }

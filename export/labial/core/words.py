@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from labial.core.library import OK, checked, library, memory
 from labial.errors import LabialError
@@ -71,14 +71,44 @@ def _encoded(text: str) -> bytes:
     return text.encode("utf-8", "replace")
 
 
+class Reader:
+    """Reads the words of a text one after the other: what one means may depend on those before it."""
+
+    def __init__(self, own: Optional[OwnWords] = None) -> None:
+        self._own, self._context = own, memory(library().words_context_size())
+
+    def read(self, text: str) -> Tuple[Spoken, int]:
+        """What the next word sounds like, and how many phonemes the word before loses at its end: "dollars", where
+        "million" follows "$5"."""
+        data = _encoded(text)
+        out = (ctypes.c_uint8 * (3 + 3 * PHONEMES_MAX))()
+        own = self._own.place if self._own else None
+        kind = checked(library().words_read(own, self._context, data, len(data), out))
+        names = labels()
+        triples = [out[3 + 3 * i : 6 + 3 * i] for i in range(out[0])]
+        found = Spoken(_KINDS[kind], tuple(names[item[0]] for item in triples), tuple(item[1] for item in triples))
+        return found, out[2]
+
+
+def read_words(texts: Iterable[str], own: Optional[OwnWords] = None) -> List[Spoken]:
+    """What words that follow each other sound like."""
+    reader = Reader(own)
+    found: List[Spoken] = []
+    spoken = -1  # the last one with phonemes
+    for text in texts:
+        item, dropped = reader.read(text)
+        if dropped and spoken >= 0:
+            before = found[spoken]
+            found[spoken] = Spoken(before.kind, before.phonemes[:-dropped], before.characters[:-dropped])
+        if item.phonemes:
+            spoken = len(found)
+        found.append(item)
+    return found
+
+
 def read(text: str, own: Optional[OwnWords] = None) -> Spoken:
-    """What a text without blanks sounds like."""
-    data = _encoded(text)
-    out = (ctypes.c_uint8 * (2 + 3 * PHONEMES_MAX))()
-    kind = checked(library().words_read(own.place if own else None, data, len(data), out))
-    names = labels()
-    triples = [out[2 + 3 * i : 5 + 3 * i] for i in range(out[0])]
-    return Spoken(_KINDS[kind], tuple(names[item[0]] for item in triples), tuple(item[1] for item in triples))
+    """What a text sounds like on its own."""
+    return Reader(own).read(text)[0]
 
 
 class WordStream:

@@ -12,7 +12,7 @@ import shutil
 import subprocess
 from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
-from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read
+from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read, read_words
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError, apt, missing, needs
 
@@ -59,8 +59,7 @@ def phonemes_of(texts: Iterable[str], how: Pronunciation = PLAIN) -> List[Spoken
     """What words sound like. Raises LabialError for an unknown language or phoneme, and where a program or package that
     `how` asks for is not installed."""
     given = list(texts)
-    own = own_words(given, how)
-    return [read(text, own) for text in given]
+    return read_words(given, own_words(given, how))
 
 
 def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 0) -> List[Tuple[str, int]]:

@@ -1,48 +1,85 @@
 """The reference of ``lib/words_text.c``: what is said where a text stands. ``include/labial/words.h`` has the rules.
 
-The text becomes a string of simple characters - ASCII, `FOREIGN` for a letter of another script, `NOTHING` for what is
-not said - with the place of each in the text; patterns then find words, numbers and signs in it.
+Words follow each other in a text, and texts follow each other in a stream: `Context` goes from each to the next.
 """
 
 from __future__ import annotations
 
 import re
-import unicodedata
-from typing import Callable, List, NamedTuple, Sequence, Tuple
+from dataclasses import replace
+from typing import Dict, NamedTuple, Optional, Tuple
 
-from labial.words import decoder
+from labial.words import characters as signs
+from labial.words import numbers
+from labial.words.characters import BLANK, FOREIGN, simple_characters
 from labial.words.dictionary import LONGEST
+from labial.words.said import Context, Said, inflected
 from labial.words.tables import WordTables
 
 #: Characters that are read, and phonemes that they become at most (LABIAL_WORDS_CHARACTERS, LABIAL_WORDS_PHONEMES).
 CHARACTERS, PHONEMES = 255, 96
+#: Words of a tag or stage direction, at most.
+_DIRECTION = 8
 
-FOREIGN, NOTHING = "\1", "\2"
-_FOREIGN = ((0x180, 0x2FF), (0x370, 0x1FFF), (0x2C00, 0x2DFF), (0x3041, 0xD7FF), (0xF900, 0xFAFF), (0x20000, 0x3FFFF))
-_MARKS = ((0x300, 0x36F), (0xAD, 0xAD), (0x200B, 0x200D), (0xFE00, 0xFE0F), (0xFEFF, 0xFEFF))
-#: Latin letters that do not come apart into a letter and a mark.
-_LETTERS = {"Æ": "E", "Ð": "D", "Ø": "O", "Þ": "T", "ß": "s", "æ": "e", "ð": "d", "ø": "o", "þ": "t", "Đ": "D",
-            "đ": "d", "Ħ": "H", "ħ": "h", "ı": "i", "Ĳ": "I", "ĳ": "i", "ĸ": "k", "Ŀ": "L", "ŀ": "l", "Ł": "L",
-            "ł": "l", "ŉ": "n", "Ŋ": "N", "ŋ": "n", "Œ": "E", "œ": "e", "Ŧ": "T", "ŧ": "t", "ſ": "s"}  # fmt: skip
+_SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals", signs.TIMES: "times"}
+_PARTS = {signs.HALF: "one half", signs.QUARTER: "one quarter", signs.QUARTERS: "three quarters"}
+_MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
+prof professor;jr junior;sr senior;vs versus;etc etcetera;approx approximately;dept department;govt government
+blvd boulevard;ave avenue;rd road;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
+wi why;fi fie;wifi why fie;ph pee aitch;phd pee aitch dee;www double_you double_you double_you
+http aitch tee tee pee;https aitch tee tee pee ess;ftp eff tee pee;edu ee dee you;ascii askey;jpeg jay peg
+jpg jay peg;mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new"""
+                               .replace("\n", ";").split(";"))
+_DATES = dict(zip("Jan Feb Mar Apr Jun Jul Aug Sep Sept Oct Nov Dec Mon Tue Tues Wed Thu Thur Thurs Fri".split(),
+                  "January February March April June July August September September October November December Monday "
+                  "Tuesday Tuesday Wednesday Thursday Thursday Thursday Friday".lower().split()))
+_SCALES = "hundred thousand million billion trillion".split()
 
-_UNITS = ("zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
-          "seventeen eighteen nineteen").split()
-_TENS = "twenty thirty forty fifty sixty seventy eighty ninety".split()
-_ORDINALS = {"one": "first", "two": "second", "three": "third", "five": "fifth", "eight": "eighth", "nine": "ninth",
-             "twelve": "twelfth"}
-_NAMES = dict(zip("abcdefghijklmnopqrstuvwxyz", "ay bee see dee e eff gee aitch eye jay kay ell em en oh pee cue are "
-                  "ess tee you vee double_you ex why zee".split()))
-_SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals"}
-_MEANINGS = {"mr": "mister", "mrs": "missiz", "ms": "mizz", "dr": "doctor", "st": "saint", "prof": "professor",
-             "jr": "junior", "sr": "senior", "vs": "versus", "etc": "etcetera"}
-_INITIALS = "AI API ATM CEO CPU DIY EU EV GPU ID IOS IP IQ LED OK PA UFO UI UK UN URL USA USB UX".split()
+#: Units behind a number, with names in singular and plural; those after the blank only where nothing is between.
+_UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m meter_;cm centimeter_;mm millimeter_
+nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_
+ft foot|feet;yd yard_;mi mile_;mph mile_ per hour;kph kilometer_ per hour;L liter_;l liter_;ml milliliter_
+mL milliliter_;cl centiliter_;dl deciliter_;gal gallon_;s second_;sec second_;secs second_;ms millisecond_
+us microsecond_;ns nanosecond_;min minute_;mins minute_;h hour_;hr hour_;hrs hour_;Hz hertz;kHz kilohertz
+MHz megahertz;GHz gigahertz
+kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_;kbps kilobit_ per second;Mbps megabit_ per second
+Gbps gigabit_ per second;W watt_;kW kilowatt_;MW megawatt_;GW gigawatt_;Wh watt hour_;kWh kilowatt hour_;V volt_
+mV millivolt_;kV kilovolt_;mA milliamp_;mAh milliamp hour_;dB decibel_;px pixel_;cal calorie_;kcal kilocalorie_
+rpm are pee em;bpm bee pee em;fps eff pee ess;mpg mile_ per gallon;EUR euro_;GBP pound_;USD you ess dollar_
+M million;bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenheit""".replace("\n", ";").split(";"))
+_ATTACHED = ("M", "bn", "in", "A", "C", "F")
 
-_TOKEN = re.compile(
-    r"""(?P<tag>\[[^\]]*\]?|<[^>]*>?)
-    |(?P<number>[0-9]+(?:,[0-9]{3}(?![0-9]))*)(?P<ordinal>(?:st|nd|rd|th)(?![a-z0-9\1]))?
-    |(?P<letters>[a-z](?:[a-z]|'(?=[a-z]))*)
-    |(?P<sign>[&@%+=])|(?P<other>.)""", re.IGNORECASE | re.VERBOSE | re.DOTALL)  # fmt: skip
-_POINTED = re.compile(r"[a-z](?:\.[a-z](?![a-z0-9\1]))+", re.IGNORECASE)
+#: Capitals that are read letter by letter although a word could look so, and words of two letters, of three that begin
+#: with a vowel, and others that are words although they do not look so.
+_SPELT = frozenset("""VIP MIT SOS POW SAP SAT GED RIP SEC GOP DOD LAX LED DEA NEA GRE SLA COO NIH ASAP UCLA USDA USAF
+    USPS NYSE IMHO AFAIK MOU SME STI TWA CLI COD DOB GIS VOD LIDL NES CIS UTEP HBCU ICAO""".split())
+_WORDS = frozenset("""AN AS AT BE BY DO GO HE HI IF IN IS ME MY NO OF OH ON OR OX SO TO UP WE YO HA AH UH UM EH
+    ACE ACT ADD AGE AGO AHA AID AIM AIR ALL AND ANT ANY APP ARC ARE ARM ART ASH ASK ATE AXE EAR EAT EGG END EVE EYE ICE
+    ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA""".split())
+#: Words unless the word before is not in capitals.
+_SHOUTED = frozenset(["AM", "IT", "US", "WHO"])
+_ONSETS = frozenset("""BL BR CH CL CR DR DW FL FR GH GL GR KN PH PL PR SC SH SK SL SM SN SP ST SQ SW TH TR TW WH WR SCR
+    SHR SPL SPR STR THR""".split())
+_CODAS = frozenset("""B C D F G H K L M N P R S T W X Z BB BT CH CK CT DD FF FT GG GH GN LD LF LK LL LM LP LT MB MN MP
+    NG NK NN NT ND PH PT RB RC RD RF RK RL RM RN RP RT SH SK SM SP SS ST TH TT WD WL WN XT DTH FTH GHT LDT LTH NCH NTH
+    PTH RCH RLD RNT RSH RST RTH TCH XTH DST HN PP RR SC""".split())
+_PAIRS = frozenset("""AI AU AY EA EE EI EU EY IA IE IO OA OE OI OO OU OY UA UE UI UO UY YE YI EO AO UIE UEE EYE OYA AYE
+    IOU""".split())
+_LAST_PAIRS = frozenset("AY EA EE EY IE OE OO OU OY UE UY".split())
+
+#: Stage directions: the beginnings of verbs, behind which s, es or ing stands, and words that stand alone.
+_VERBS = """applaud beam blink blush breath burp chuckl clap clear cough cr cri exhal frown gasp giggl glanc grin groan
+    gulp hum inhal laugh mumbl mutter nod nodd paus pout scream shout shrug sigh sing smil smirk snap snapp snicker
+    sniff snort sob sobb swallow wav whisper whistl wink yawn yell""".split()
+_ALONE = frozenset("""applause beat blush breath chuckle clap cough cry gasp giggle grin groan gulp hum
+    laugh laughter mumble music mutter nod pause quietly scream shout shrug sigh silence smile smirk sniff snort sob
+    softly whisper whistle wink yawn yell""".split())
+_ENDINGS, _LONGEST_VERB = ("s", "es", "ing"), 12
+#: Words in -s that are not verbs.
+_NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours theirs hers towards besides".split())
+
+_RUN = re.compile(r"[A-Za-z](?:[A-Za-z]|'(?=[A-Za-z]))*")
+_POINTED = re.compile(r"[A-Za-z](?:\.[A-Za-z](?![A-Za-z0-9\1]))+")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
 
@@ -52,146 +89,268 @@ class Reading(NamedTuple):
     kind: str  #: "silent", "read" or "unknown"
     phonemes: Tuple[Tuple[int, int, bool], ...]  #: phoneme, place of its character, whether a spoken word begins
     characters: int  #: of the text, `CHARACTERS` at most
+    context: Context  #: for the next text
 
 
-def read(tables: WordTables, text: str) -> Reading:
-    """Reads a text that has no blank, or stretches between which blanks do not matter."""
-    kept = [(plain, place) for place, character in enumerate(text[:CHARACTERS])
-            for plain in [simplified(character)] if plain]
-    said = _Said(tables, [place for _, place in kept])
-    simple = "".join(plain for plain, _ in kept)
+def read(tables: WordTables, text: str, before: Optional[Context] = None) -> Reading:
+    """Reads a text behind those that led to `before`."""
+    context = replace(before) if before else Context()
+    context.dropped, context.is_old = 0, True
+    said = Said(tables, simple_characters(text[:CHARACTERS]), context)
+    reader = _Reader(said)
     place = 0
-    while place < len(simple):
-        place = _read_token(simple, place, said)
+    while place < len(said.simple):
+        place = reader.read_at(place)
+    reader.end_word()
     kind = "read" if said.phonemes else "unknown" if said.foreign else "silent"
-    return Reading(kind, tuple(said.phonemes[:PHONEMES]), min(len(text), CHARACTERS))
+    return Reading(kind, tuple(said.phonemes), min(len(text), CHARACTERS), context)
 
 
-def simplified(character: str) -> str:
-    """One simple character, or none for a mark."""
-    code = ord(character)
-    if any(low <= code <= high for low, high in _MARKS):
-        return ""
-    if 0xFF01 <= code <= 0xFF5E:
-        return chr(code - 0xFEE0)
-    if code < 0x80:
-        return character if 0x20 < code < 0x7F else NOTHING
-    if character in "\u2019\u02bc":
-        return "'"
-    if 0xC0 <= code < 0x180:
-        plain = _LETTERS.get(character, unicodedata.normalize("NFD", character)[0])
-        return plain if plain.isascii() else NOTHING
-    return FOREIGN if any(low <= code <= high for low, high in _FOREIGN) else NOTHING
+def is_inside(character: str) -> bool:
+    """Whether a simple character is a letter or a digit."""
+    return character == FOREIGN or (character.isascii() and character.isalnum())
 
 
-class _Said:
-    """Phonemes as they are added."""
+class _Reader:
+    """The rules, one character, word or sign after the other."""
 
-    def __init__(self, tables: WordTables, places: Sequence[int]) -> None:
-        self.tables, self.places = tables, places
-        self.phonemes: List[Tuple[int, int, bool]] = []
-        self.foreign = False  #: there was a letter of another script
+    def __init__(self, said: Said) -> None:
+        self.said, self.context, self.simple = said, said.context, said.simple
+        self.address = False  #: a web address was recognised in this word
 
-    def spell(self, word: str, place_of: Callable[[int], int]) -> None:
-        """Adds a spoken word, whose letter i belongs to the simple character ``place_of(i)``."""
-        first = True
-        for phoneme, letter in decoder.read(self.tables, word):
-            self.phonemes.append((phoneme, self.places[place_of(letter)], first))
-            first = False
+    def read_at(self, place: int) -> int:
+        """Reads what begins at a place; returns the place behind it."""
+        said, context, here = self.said, self.context, self.simple[place]
+        before = said.at(place - 1)
+        said.foreign |= here == FOREIGN
+        if context.closing:
+            return self._skip(place)
+        if here == BLANK:
+            self.end_word()
+            return place + 1
+        if here.isdigit():
+            return numbers.read_number(said, place)
+        if here.isascii() and here.isalpha():
+            return self._read_letters(place)
+        if numbers.is_sum(said, place):
+            return numbers.read_sum(said, place)
+        return self._read_sign(place, here, before)
 
-    def say(self, words: str, place: int) -> None:
-        """Adds words, which are separated by blanks, at one simple character."""
-        for word in words.replace("_", " ").split():
-            self.spell(word, lambda _: place)
+    def end_word(self) -> None:
+        """A blank, or the end of the text."""
+        self.address = False
+        if self.context.closing:
+            self.context.left -= 1
+            if not self.context.left:
+                self.context.closing = ""
 
+    def _forget(self) -> str:
+        """What was said last is no matter any more; returns what it was."""
+        after, self.context.after = self.context.after, ""
+        return after
 
-def _read_token(simple: str, place: int, said: _Said) -> int:
-    """Reads what begins at a place; returns the place behind it."""
-    pointed = _POINTED.match(simple, place)
-    if pointed:
-        return _read_pointed(pointed[0], place, said)
-    token = _TOKEN.match(simple, place)
-    assert token is not None  # "other" takes any character
-    if token["number"]:
-        return _read_number(simple, place, token, said)
-    if token["letters"]:
-        run = _CAMEL.split(token["letters"])[0][:LONGEST]
+    # ---- Tags and stage directions
+
+    def _skip(self, place: int) -> int:
+        if self.simple[place] == BLANK:
+            self.end_word()
+        elif self.simple[place] == self.context.closing:
+            self.context.closing = ""
+        return place + 1
+
+    def _open(self, closing: str, place: int) -> int:
+        self.context.closing, self.context.left = closing, _DIRECTION
+        self._forget()
+        return place + 1
+
+    def _is_direction(self, place: int, closing: str) -> bool:
+        found = re.compile("[A-Za-z]+").match(self.simple, place + 1)
+        if not found or is_inside(self.said.at(found.end())):
+            return False
+        word = found[0].lower()
+        follows = self.said.at(found.end())
+        if len(word) > _LONGEST_VERB:
+            return False
+        if (follows == closing and word in _ALONE) or any(word == verb + end for verb in _VERBS for end in _ENDINGS):
+            return True
+        return (closing == "*" and follows == BLANK and found[0] == word and len(word) > 3 and word.endswith("s")
+                and not word.endswith("ss") and word not in _NOT_VERBS)
+
+    # ---- Signs
+
+    def _read_sign(self, place: int, here: str, before: str) -> int:
+        said, follows = self.said, self.said.at(place + 1)
+        is_tag = here == "<" and (follows in "/!?" or (follows.isascii() and follows.isalpha()))
+        if is_tag or (here == "[" and follows != BLANK):
+            return self._open("]" if here == "[" else ">", place)
+        if here in "(*" and before != "*" and self._is_direction(place, ")" if here == "(" else "*"):
+            return self._open(")" if here == "(" else "*", place)
+        after = self._forget()
+        is_counted = after in ("one", "number")
+        if here == signs.DEGREE:
+            return self._read_degrees(place, after)
+        if here == "/" and after in ("unit", "sum") and follows.isascii() and follows.isalpha():
+            said.say("per", place)
+            self.context.after = "per"
+        elif here in (".", "/", "-", "_", ":"):
+            return self._read_joint(place, here, before, follows)
+        elif here in (signs.HALF, signs.QUARTER, signs.QUARTERS):
+            said.say(_PARTS[here], place)
+            self.context.after = "number"
+        elif here == signs.MINUS:
+            said.say("minus", place)
+        elif here == signs.CENT and is_counted:
+            said.say(inflected("cent_", after == "number"), place)
+        elif numbers.currency_of(here) >= 0 and is_counted:
+            said.say(inflected(numbers.CURRENCIES[numbers.currency_of(here)], after == "number"), place)
+        elif here == "#" and follows.isdigit():
+            said.say("number", place)
+        elif here == "<" and follows.isdigit():
+            said.say("less than", place)
+        elif here in _SIGNS:
+            said.say(_SIGNS[here], place)
+        return place + 1
+
+    def _read_degrees(self, place: int, after: str) -> int:
+        self.said.say("degree" if after == "one" else "degrees", place)
+        scale = self.said.at(place + 1)
+        if scale in ("C", "F") and not is_inside(self.said.at(place + 2)):
+            self.said.say("celsius" if scale == "C" else "fahrenheit", place + 1)
+            return place + 2
+        return place + 1
+
+    def _read_joint(self, place: int, here: str, before: str, follows: str) -> int:
+        """Signs that are said within an address, a minus before a number."""
+        said = self.said
+        is_small = follows.isascii() and follows.islower()
+        if here == "." and is_small and (is_inside(before) or before == BLANK):
+            said.say("dot", place)
+            self.address = True
+        elif here == ":" and is_inside(before) and self.simple.startswith("//", place + 1):
+            said.say("colon slash slash", place)
+            self.address = True
+            return place + 3
+        elif here == "-" and (follows.isdigit() or numbers.is_sum(said, place + 1)) and before in (BLANK, "("):
+            said.say("minus", place)
+        elif self.address and is_inside(follows) and here != ".":
+            said.say({"/": "slash", "-": "dash", "_": "underscore", ":": "colon"}[here], place)
+        return place + 1
+
+    # ---- Letters
+
+    def _read_letters(self, place: int) -> int:
+        before = self.said.at(place - 1)
+        after = self._forget()
+        pointed = _POINTED.match(self.simple, place)
+        if pointed:
+            return self._read_pointed(pointed[0], place, after)
+        if after in ("one", "number", "per"):
+            end = self._read_unit(place, after, before == BLANK)
+            if end:
+                return end
+        found = _RUN.match(self.simple, place)
+        assert found is not None
+        run = _CAMEL.split(found[0])[0][:LONGEST]
         while run.endswith("'"):
             run = run[:-1]
-        _read_letters(run, place, said)
-        return place + len(run)
-    if token["sign"]:
-        said.say(_SIGNS[token["sign"]], place)
-    said.foreign |= token["other"] == FOREIGN
-    return token.end()
+        self._read_run(run, place, after, before)
+        place += len(run)
+        return place + (run in _DATES and self.said.at(place) == ".")
+
+    def _read_pointed(self, text: str, place: int, after: str) -> int:
+        meaning = {"e.g": "for example", "i.e": "that is"}.get(text[:3].lower())
+        if meaning:
+            self.said.say(meaning, place)
+            return place + 3
+        if text.lower() in ("a.m", "p.m") and after == "time":
+            self.said.take_back()
+        self.said.say_names(text[::2].lower(), range(place, place + len(text), 2), False)
+        return place + len(text)
+
+    def _read_unit(self, place: int, after: str, is_apart: bool) -> int:
+        """Reads a unit behind a number; returns the place behind it, or 0."""
+        found = re.compile(r"[A-Za-z]{1,4}(?![A-Za-z0-9\1]|'[A-Za-z])").match(self.simple, place)
+        if not found or found[0] not in _UNITS or (is_apart and found[0] in _ATTACHED):
+            return 0
+        name = inflected(_UNITS[found[0]], after == "number")
+        power = {signs.SQUARE: "square "}.get(self.said.at(found.end()), "")
+        self.said.say(power + name, place)
+        self.context.after = "unit" if found[0] not in ("M", "bn") else "number"
+        return found.end() + bool(power)
+
+    def _read_run(self, run: str, place: int, after: str, before: str) -> None:
+        said, context, small = self.said, self.context, run.lower()
+        follows = said.at(place + len(run))
+        shouting, context.shouting = context.shouting, False
+        if small in ("am", "pm") and run in (small, small.upper()) and after in ("one", "number", "time"):
+            said.take_back() if after == "time" else None
+            said.say_names(small, range(place, place + 2), False)
+        elif small == "o'clock" and after == "time":
+            said.take_back()
+            self._spell(run, place)
+        elif small in _SCALES and after == "sum":
+            said.take_back()
+            said.say(f"{small} {inflected(numbers.CURRENCIES[context.currency], True)}", place)
+        elif run in _DATES:
+            said.say(_DATES[run], place)
+            context.after = "month" if list(_DATES).index(run) < 12 else ""
+        elif small in _MEANINGS:
+            said.say(_MEANINGS[small], place)
+        elif self.address and before == "." and self._is_spelt_in_address(small):
+            said.say_names(small, range(place, place + len(small)), False)
+        elif self._is_spelt(run, before, follows, shouting):
+            letters = _capitals(run)
+            said.say_names(letters.lower(), range(place, place + len(letters)), letters != run)
+        else:
+            self._spell(run, place)
+            context.shouting = run.isupper() and (len(run) > 1 or run == "I")
+            context.after = "month" if run in numbers.MONTHS else ""
+
+    def _spell(self, run: str, place: int) -> None:
+        sounds = [item.sound for item in self.said.characters[place : place + len(run)]]
+        self.said.spell(run.lower(), lambda letter: place + letter, sounds)
+
+    def _is_spelt_in_address(self, small: str) -> bool:
+        """Whether a part of an address is read letter by letter: a country, or what has no vowel."""
+        return small.isalpha() and (len(small) == 2 and small not in ("co", "go", "me") or len(small) <= 4
+                                    and not re.search("[aeiouy]", small))
+
+    def _is_spelt(self, run: str, before: str, follows: str, shouting: bool) -> bool:
+        """Whether letters are read one by one."""
+        if len(run) == 1:
+            beside = before + follows
+            return run not in "aAiI" or (run == "A" and bool(re.search("[0-9&+]", beside) or follows == "-"))
+        letters = _capitals(run)
+        if not (letters.isalpha() and letters.isupper() and 2 <= len(letters) <= 5):
+            return False
+        if "&" in (before, follows) and letters == run:
+            return True
+        if letters in _SHOUTED:
+            return not shouting
+        return letters in _SPELT or not (letters in _WORDS or is_pronounceable(letters))
 
 
-def _read_pointed(text: str, place: int, said: _Said) -> int:
-    meaning = {"e.g": "for example", "i.e": "that is"}.get(text[:3].lower())
-    if meaning:
-        said.say(meaning, place)
-        return place + 3
-    for offset in range(0, len(text), 2):
-        said.say(_NAMES[text[offset].lower()], place + offset)
-    return place + len(text)
+def _capitals(run: str) -> str:
+    """A run without the s or 's behind it."""
+    return re.sub("(?<=.)'?s$", "", run)
 
 
-def _read_letters(run: str, place: int, said: _Said) -> None:
-    small = run.lower()
-    is_short = run.isalpha() and run.isupper() and 2 <= len(run) <= 5
-    if small in _MEANINGS:
-        said.say(_MEANINGS[small], place)
-    elif (is_short and (run in _INITIALS or not re.search("[AEIOUY]", run))) or (len(run) == 1 and small not in "ai"):
-        for offset, letter in enumerate(small):
-            said.say(_NAMES[letter], place + offset)
-    else:
-        said.spell(small, lambda letter: place + letter)
+def is_pronounceable(letters: str) -> bool:
+    """Whether three to five capitals look like a word: as words of English begin and end, with vowels that stand
+    together in them."""
+    vowels = [letter in "AEIOU" or (letter == "Y" and place > 0) for place, letter in enumerate(letters)]
+    if len(letters) < 3 or True not in vowels or (len(letters) == 3 and vowels[0]):
+        return False
+    first, last = vowels.index(True), len(letters) - vowels[::-1].index(True)
+    onset, coda = letters[:first], letters[last:]
+    if (len(onset) > 1 and onset not in _ONSETS) or not _is_coda(coda):
+        return False
+    if not re.search("[AEIOU]", letters) and coda:
+        return False
+    runs = re.findall("[AEIOUY]+", letters[first:last])
+    allowed = _LAST_PAIRS if len(letters) == 3 else _PAIRS
+    return all(len(run) == 1 or run in allowed for run in runs)
 
 
-def _read_number(simple: str, place: int, token: re.Match[str], said: _Said) -> int:
-    digits = token["number"].replace(",", "")
-    end = token.end("number")
-    if len(digits) > 9 or (len(digits) > 1 and digits[0] == "0"):
-        found = re.compile(r"[0-9](?:,?[0-9])*").match(simple, place)
-        assert found is not None
-        for offset, digit in enumerate(found[0]):
-            if digit != ",":
-                said.say(_UNITS[int(digit)], place + offset)
-        end = found.end()
-    else:
-        words = _cardinal(int(digits))
-        if token["ordinal"]:
-            words[-1] = _ordinal(words[-1])
-            end = token.end()
-        said.say(" ".join(words), place)
-    fraction = re.compile(r"\.([0-9]+)").match(simple, end)
-    if not fraction:
-        return end
-    said.say("point", end)
-    for offset, digit in enumerate(fraction[1], 1):
-        said.say(_UNITS[int(digit)], end + offset)
-    return fraction.end()
-
-
-def _cardinal(value: int) -> List[str]:
-    """The words of 0 to 999,999,999."""
-    words: List[str] = []
-    for scale, name in ((1_000_000, "million"), (1000, "thousand"), (1, "")):
-        part = value // scale % 1000
-        words += _below_thousand(part) + [name] * bool(part and name)
-    return words or ["zero"]
-
-
-def _below_thousand(value: int) -> List[str]:
-    words = [_UNITS[value // 100], "hundred"] if value >= 100 else []
-    rest = value % 100
-    if rest >= 20:
-        words.append(_TENS[rest // 10 - 2])
-        rest %= 10
-    return words + [_UNITS[rest]] * bool(rest)
-
-
-def _ordinal(word: str) -> str:
-    if word in _ORDINALS:
-        return _ORDINALS[word]
-    return word[:-1] + "ieth" if word.endswith("y") else word + "th"
+def _is_coda(coda: str) -> bool:
+    return not coda or coda in _CODAS or (coda[-1] == "S" and coda[:-1] in _CODAS)

@@ -1,0 +1,77 @@
+"""The reference of ``lib/words_characters.c``: the characters of a text as the rules see them.
+
+Each becomes a string of simple characters: ASCII, `FOREIGN` for a letter of another script, `NOTHING` for what is not
+said, or one of the signs below; ligatures become two or three letters, and marks none. A letter whose accent tells how
+it sounds has that sound as well.
+"""
+
+from __future__ import annotations
+
+from typing import Dict, List, NamedTuple, Optional, Tuple
+
+FOREIGN, NOTHING, BLANK = "\1", "\2", " "
+EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DASH = (chr(code) for code in range(3, 13))
+HALF, QUARTER, QUARTERS = (chr(code) for code in range(13, 16))
+
+_SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "×": TIMES, "−": MINUS,
+          "–": DASH, "½": HALF, "¼": QUARTER, "¾": QUARTERS, "’": "'", "ʼ": "'", "µ": "u", "μ": "u"}  # fmt: skip
+_BLANKS = ((9, 13), (0x20, 0x20), (0x85, 0x85), (0xA0, 0xA0), (0x2000, 0x200A), (0x2028, 0x2029), (0x202F, 0x202F),
+           (0x205F, 0x205F), (0x3000, 0x3000))
+_FOREIGN = ((0x180, 0x2FF), (0x370, 0x1FFF), (0x2C00, 0x2DFF), (0x3041, 0xD7FF), (0xF900, 0xFAFF), (0x20000, 0x3FFFF))
+_MARKS = ((0x300, 0x36F), (0xAD, 0xAD), (0x200B, 0x200D), (0xFE00, 0xFE0F), (0xFEFF, 0xFEFF))
+#: Letters of U+00C0 to U+017F without their accents; a blank stands for a sign.
+_PLAIN = ("AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
+          "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUu"
+          "UuUuUuWwYyYZzZzZzs")  # fmt: skip
+_LIGATURES = {"Æ": "AE", "æ": "ae", "Œ": "OE", "œ": "oe", "ﬀ": "ff", "ﬁ": "fi", "ﬂ": "fl", "ﬃ": "ffi", "ﬄ": "ffl",
+              "ﬅ": "st", "ﬆ": "st"}  # fmt: skip
+#: The accents that tell a sound, as combining marks: grave, acute, circumflex, tilde, diaeresis, cedilla; and those of
+#: U+00C0 to U+00DF, as of the small letters 32 behind.
+_ACCENTS = {0x300: "`", 0x301: "'", 0x302: "^", 0x303: "~", 0x308: ":", 0x327: ","}
+_ACCENTED = "`'^~:  ,`'^:`'^: ~`'^~:  `'^:'  "
+#: What accented letters sound like; ë like EH, and at the end of a word like IY.
+_SOUNDS: Dict[str, str] = {"a`": "AA", "a'": "AA", "a^": "AA", "c,": "S", "e`": "EH", "e'": "EY", "e^": "EH",
+                           "e:": "EH IY", "i'": "IY", "i^": "IY", "i:": "IY", "n~": "N Y", "o'": "OW", "o^": "OW",
+                           "u'": "UW", "u^": "UW"}  # fmt: skip
+
+
+class Simple(NamedTuple):
+    """A simple character."""
+
+    plain: str
+    place: int  #: of its character in the text
+    sound: Optional[Tuple[str, ...]]  #: phonemes that a letter has by its accent
+
+
+def simple_characters(text: str) -> List[Simple]:
+    """The simple characters of a text."""
+    found: List[Simple] = []
+    for place, character in enumerate(text):
+        accent = _accent(character) or _ACCENTS.get(ord(text[place + 1]) if place + 1 < len(text) else 0, " ")
+        for plain in simplified(character):
+            sound = _SOUNDS.get(plain.lower() + accent)
+            found.append(Simple(plain, place, tuple(sound.split()) if sound else None))
+    return found
+
+
+def simplified(character: str) -> str:
+    """One simple character, none for a mark, or the letters of a ligature."""
+    code = ord(character)
+    if any(low <= code <= high for low, high in _MARKS):
+        return ""
+    if any(low <= code <= high for low, high in _BLANKS):
+        return BLANK
+    if 0xFF01 <= code <= 0xFF5E:
+        return chr(code - 0xFEE0)
+    if code < 0x80:
+        return character if 0x20 < code < 0x7F else NOTHING
+    if character in _SIGNS or character in _LIGATURES:
+        return _SIGNS.get(character) or _LIGATURES[character]
+    if 0xC0 <= code < 0x180:
+        return _PLAIN[code - 0xC0].replace(" ", NOTHING)
+    return FOREIGN if any(low <= code <= high for low, high in _FOREIGN) else NOTHING
+
+
+def _accent(character: str) -> str:
+    code = ord(character)
+    return _ACCENTED[code - 0xC0 & 31].strip() if 0xC0 <= code < 0x100 else ""

@@ -1,0 +1,309 @@
+"""The reference of ``lib/words_numbers.c``: numbers, sums, dates and times as they are said."""
+
+from __future__ import annotations
+
+import re
+from typing import List, Optional
+
+from labial.words import characters as signs
+from labial.words.said import Said, inflected
+
+_UNITS = ("zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
+          "seventeen eighteen nineteen").split()
+_TENS = "twenty thirty forty fifty sixty seventy eighty ninety".split()
+_SCALES = ("trillion", "billion", "million", "thousand", "")
+_ORDINALS = {"one": "first", "two": "second", "three": "third", "five": "fifth", "eight": "eighth", "nine": "ninth",
+             "twelve": "twelfth"}
+MONTHS = ("January February March April May June July August September October November December").split()
+_MOST_DIGITS = 15
+
+#: Signs of money, the names of whole units and of their hundredths.
+_SIGNS = "$" + signs.EURO + signs.POUND + signs.YEN + signs.RUPEE
+CURRENCIES = ("dollar_", "euro_", "pound_", "yen", "rupee_")
+_HUNDREDTHS = ("cent_", "cent_", "penny|pence", "", "paisa|paise")
+_LETTER_SCALES = {"k": "thousand", "m": "million", "mn": "million", "b": "billion", "bn": "billion", "t": "trillion",
+                  "tn": "trillion"}  # fmt: skip
+
+#: What ends a word: no letter and no digit.
+END = r"(?![A-Za-z0-9\1])"
+_WHOLE = re.compile(r"[0-9]+(?:,[0-9]{3}(?![0-9]))*")
+_FRACTION = re.compile(r"\.([0-9]+)")
+_DIGITS = re.compile(r"[0-9](?:,?[0-9])*")
+_ISO = re.compile(r"([0-9]{4})-([0-9]{1,2})-([0-9]{1,2})" + END)
+_DATE = re.compile(r"([0-9]{1,2})([/.-])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})" + END)
+_PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4})(?![A-Za-z0-9\1-])")
+_TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})(?::([0-9]{2}))?(?![0-9:])")
+_SHARE = re.compile(r"([0-9]{1,2})/([0-9]{1,3})(?![A-Za-z0-9\1/])")
+_FEET = re.compile(r"([0-9]{1,2})'([0-9]{1,2})" + END)
+_ORDINAL = re.compile("(?:st|nd|rd|th)" + END, re.IGNORECASE)
+_DAY = re.compile(r"([0-9]{1,2})(?![A-Za-z0-9\1:/]|[.,][0-9])")
+_YEAR = re.compile(r"(?:1[1-9]|20)[0-9]{2}(?![A-Za-z0-9\1%]|\.[0-9])")
+_DECADE = re.compile(r"((?:1[1-9]|20)[0-9]0|[2-9]0)'?s" + END)
+_SCALE = re.compile(r"(bn|mn|tn|[kmbt])" + END, re.IGNORECASE)
+_DENOMINATORS = {2, 3, 4, 5, 6, 7, 8, 9, 10, 16, 32, 64, 100}
+
+
+def is_sum(said: Said, place: int) -> bool:
+    """Whether a sign of money and its number begin here."""
+    return said.at(place) in _SIGNS and said.at(place + 1 + (said.at(place + 1) == ".")).isdigit()
+
+
+def currency_of(sign: str) -> int:
+    """The number of a sign of money, or -1."""
+    return _SIGNS.find(sign)
+
+
+def read_sum(said: Said, place: int) -> int:
+    """Reads a sign of money and its number; returns the place behind them."""
+    currency, name = _SIGNS.index(said.simple[place]), CURRENCIES[_SIGNS.index(said.simple[place])]
+    whole = _WHOLE.match(said.simple, place + 1)
+    digits = whole[0].replace(",", "") if whole else ""
+    end = whole.end() if whole else place + 1
+    coded = _DIGITS.match(said.simple, place + 1) if _is_coded(digits) else None
+    end = coded.end() if coded else end
+    fraction = _FRACTION.match(said.simple, end)
+    after = fraction.end() if fraction else end
+    scale = _SCALE.match(said.simple, after)
+    cents = fraction[1] if fraction and len(fraction[1]) == 2 and not scale and _HUNDREDTHS[currency] else None
+    main = digits.lstrip("0")
+    context = said.context
+    context.after, context.currency, context.tail = "sum", currency, 0
+    if cents is None or main or cents == "00":
+        if coded:
+            _say_digits(said, coded[0], place + 1)
+        else:
+            said.say(" ".join(cardinal(digits)), place)
+    if fraction and cents is None:
+        _say_fraction(said, end, fraction[1])
+    if scale:
+        said.say(_LETTER_SCALES[scale[1].lower()] + " " + inflected(name, True), after - 1)
+        context.after = ""
+        return _range(said, scale.end())
+    plural = digits != "1" or (fraction is not None and cents is None)
+    if cents is None:
+        said.say_tail(inflected(name, plural), after - 1)
+    elif main or cents == "00":
+        said.say(inflected(name, plural), end)
+    if cents is not None and cents != "00":
+        if main:
+            said.say("and", end)
+        said.say(" ".join(cardinal(cents)) + " " + inflected(_HUNDREDTHS[currency], cents != "01"), end)
+    return _range(said, after)
+
+
+def read_number(said: Said, place: int) -> int:
+    """Reads what begins with a digit; returns the place behind it."""
+    is_start = not re.match("[A-Za-z0-9\1]", said.at(place - 1))
+    month = said.context.after == "month"
+    is_counted = said.context.after in ("one", "number")
+    said.context.after, said.context.tail = "number", 0
+    for rule in (_read_date, _read_phone, _read_time, _read_share, _read_feet, _read_decade) if is_start else ():
+        end = rule(said, place, is_counted)
+        if end is not None:
+            return end
+    day = _DAY.match(said.simple, place) if month and is_start else None
+    if day and 1 <= int(day[1]) <= 31:
+        _say_ordinal(said, day[1], place)
+        end = _range(said, day.end())
+        said.context.after = "month" if end > day.end() else ""
+        return end
+    year = _YEAR.match(said.simple, place) if is_start else None
+    if year and not year[0].startswith("200"):
+        said.say(" ".join(_year(year[0])), place)
+        return _range(said, year.end())
+    return _read_plain(said, place, is_start)
+
+
+def _read_plain(said: Said, place: int, is_start: bool) -> int:
+    whole = _WHOLE.match(said.simple, place)
+    assert whole is not None
+    digits, end = whole[0].replace(",", ""), whole.end()
+    if _is_coded(digits):
+        found = _DIGITS.match(said.simple, place)
+        assert found is not None
+        _say_digits(said, found[0], place)
+        end = found.end()
+    else:
+        ordinal = _ORDINAL.match(said.simple, end)
+        if ordinal:
+            _say_ordinal(said, digits, place)
+            said.context.after = ""
+            return ordinal.end()
+        said.say(" ".join(cardinal(digits)), place)
+        if digits == "1":
+            said.context.after = "one"
+    while fraction := _FRACTION.match(said.simple, end):
+        _say_fraction(said, end, fraction[1])
+        said.context.after = "number"
+        end = fraction.end()
+    return _behind(said, end) if is_start else end
+
+
+def _behind(said: Said, end: int) -> int:
+    """What may follow a number: another one up to which it reaches, or by which it is multiplied; halves."""
+    halves = {signs.HALF: "half", signs.QUARTER: "quarter", signs.QUARTERS: "three quarters"}.get(said.at(end))
+    if halves:
+        said.say("and" + (" a" if halves[0] != "t" else "") + " " + halves, end)
+        said.context.after = "number"
+        return end + 1
+    if said.at(end) in ("x", signs.TIMES) and said.at(end + 1).isdigit():
+        said.say("by", end)
+        return end + 1
+    return _range(said, end)
+
+
+def _range(said: Said, end: int) -> int:
+    if said.at(end) in ("-", signs.DASH) and (said.at(end + 1).isdigit() or is_sum(said, end + 1)):
+        said.say("to", end)
+        return end + 1
+    return end
+
+
+def _read_date(said: Said, place: int, _: bool) -> Optional[int]:
+    found = _ISO.match(said.simple, place)
+    if found:
+        year, month, day = found[1], int(found[2]), int(found[3])
+    else:
+        found = _DATE.match(said.simple, place)
+        if not found or (found[2] != "/" and len(found[4]) == 2):
+            return None
+        month, day = int(found[1]), int(found[3])
+        if found[2] == "." or month > 12:
+            month, day = day, month
+        year = found[4] if len(found[4]) == 4 else "20" + found[4]
+    if not (1 <= month <= 12 and 1 <= day <= 31):
+        return None
+    said.say(MONTHS[month - 1].lower(), place)
+    _say_ordinal(said, str(day), place)
+    said.say(" ".join(_year(year)), place)
+    said.context.after = ""
+    return found.end()
+
+
+def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
+    found = _PHONE.match(said.simple, place)
+    if not found:
+        return None
+    _say_digits(said, found[0], place)
+    said.context.after = ""
+    return found.end()
+
+
+def _read_time(said: Said, place: int, _: bool) -> Optional[int]:
+    found = _TIME.match(said.simple, place)
+    if not found or int(found[1]) > 24 or int(found[2]) > 59:
+        return None
+    hour = int(found[1])
+    said.context.after = "time"
+    said.say(" ".join(cardinal(str(hour))), place)
+    if found[2] != "00" or found[3]:
+        _say_minutes(said, found[2], found.start(2))
+    elif 1 <= hour <= 12:
+        said.say_tail("o'clock", place)
+    else:
+        said.say_tail("hundred", place)
+    if found[3]:
+        _say_minutes(said, found[3], found.start(3))
+    return _range(said, found.end())
+
+
+def _say_minutes(said: Said, digits: str, place: int) -> None:
+    if digits[0] == "0" and digits != "00":
+        said.say("oh", place)
+    said.say(" ".join(cardinal(digits)), place)
+
+
+def _read_share(said: Said, place: int, is_counted: bool) -> Optional[int]:
+    found = _SHARE.match(said.simple, place)
+    if not found or int(found[2]) not in _DENOMINATORS or not 0 < int(found[1]) < int(found[2]):
+        return None
+    count, parts = int(found[1]), int(found[2])
+    if is_counted:
+        said.say("and", place)
+    said.say("a" if is_counted and (count, parts) == (1, 2) else " ".join(cardinal(found[1])), place)
+    name = {2: "half", 4: "quarter"}.get(parts)
+    if name:
+        said.say(name + "s" * (count > 1), place)
+    else:
+        words = cardinal(found[2])
+        said.say(" ".join([*words[:-1], _ordinal(words[-1]) + "s" * (count > 1)]), place)
+    return found.end()
+
+
+def _read_feet(said: Said, place: int, _: bool) -> Optional[int]:
+    found = _FEET.match(said.simple, place)
+    if not found:
+        return None
+    said.say(" ".join([*cardinal(found[1]), "foot", *cardinal(found[2])]), place)
+    return found.end()
+
+
+def _read_decade(said: Said, place: int, _: bool) -> Optional[int]:
+    found = _DECADE.match(said.simple, place)
+    if not found:
+        return None
+    words = _year(found[1]) if len(found[1]) == 4 else cardinal(found[1])
+    said.say(" ".join([*words[:-1], _plural(words[-1])]), place)
+    said.context.after = ""
+    return found.end()
+
+
+def _is_coded(digits: str) -> bool:
+    """Whether digits are said one by one."""
+    return len(digits) > _MOST_DIGITS or (len(digits) > 1 and digits[0] == "0")
+
+
+def _say_digits(said: Said, text: str, place: int) -> None:
+    """Says digits one by one."""
+    for offset, digit in enumerate(text):
+        if digit.isdigit():
+            said.say(_UNITS[int(digit)], place + offset)
+
+
+def _say_fraction(said: Said, point: int, digits: str) -> None:
+    said.say("point", point)
+    _say_digits(said, digits, point + 1)
+
+
+def _say_ordinal(said: Said, digits: str, place: int) -> None:
+    words = cardinal(digits)
+    said.say(" ".join([*words[:-1], _ordinal(words[-1])]), place)
+
+
+def cardinal(digits: str) -> List[str]:
+    """The words of up to 15 digits."""
+    filled = digits.rjust(15, "0")
+    words: List[str] = []
+    for number, name in enumerate(_SCALES):
+        part = _below_thousand(int(filled[3 * number : 3 * number + 3]))
+        words += part + [name] * bool(part and name)
+    return words or ["zero"]
+
+
+def _below_thousand(value: int) -> List[str]:
+    words = [_UNITS[value // 100], "hundred"] if value >= 100 else []
+    rest = value % 100
+    if rest >= 20:
+        words.append(_TENS[rest // 10 - 2])
+        rest %= 10
+    return words + [_UNITS[rest]] * bool(rest)
+
+
+def _year(digits: str) -> List[str]:
+    """A year of four digits: two by two, except 2000 to 2009 and years below 1100 or above 2099."""
+    century, rest = int(digits[:2]), int(digits[2:])
+    if not (11 <= century <= 19 or (century == 20 and rest > 9)):
+        return cardinal(digits)
+    if rest == 0:
+        return [*cardinal(digits[:2]), "hundred"]
+    return [*cardinal(digits[:2]), *(["oh"] if rest < 10 else []), *cardinal(digits[2:])]
+
+
+def _ordinal(word: str) -> str:
+    if word in _ORDINALS:
+        return _ORDINALS[word]
+    return word[:-1] + "ieth" if word.endswith("y") else word + "th"
+
+
+def _plural(word: str) -> str:
+    return word[:-1] + "ies" if word.endswith("y") else word + "s"

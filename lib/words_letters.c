@@ -1,0 +1,399 @@
+/*
+ * words_letters.c - letters in a text as they are said: words, abbreviations, units, and capitals that are read one by
+ * one. export/labial/words/text.py is the reference.
+ */
+#include "labial/words.h"
+
+#include <string.h>
+
+#include "labial/labial.h"
+#include "words_parts.h"
+
+/* Names of letters, as words that the trees read so; with an s where that is more than an added Z. */
+static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0jay\0kay\0ell\0em\0en\0oh\0pee\0cue\0"
+                                   "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
+static const char plural_names[] = "haitches\0sesses\0xexes\0";
+
+/* Abbreviations by their first letter, each with what it stands for. */
+static const char *const meanings[] = {
+    "approx\0approximately\0ave\0avenue\0ascii\0askey\0",
+    "blvd\0boulevard\0",
+    "capt\0captain\0cmos\0sea moss\0",
+    "dr\0doctor\0dept\0department\0",
+    "etc\0etcetera\0edu\0ee dee you\0",
+    "fi\0fie\0ftp\0eff tee pee\0",
+    "govt\0government\0gnu\0new\0",
+    "http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0",
+    "",
+    "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
+    "",
+    "ltd\0limited\0lt\0lieutenant\0",
+    "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0",
+    "",
+    "",
+    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0",
+    "",
+    "rd\0road\0",
+    "st\0saint\0sr\0senior\0sgt\0sergeant\0",
+    "",
+    "",
+    "vs\0versus\0",
+    "wi\0why\0wifi\0why fie\0www\0double you double you double you\0",
+    "",
+    "yaml\0yamel\0",
+    "",
+};
+
+/* Months and days in short, and what they stand for; the first DATE_MONTHS are months. */
+#define DATE_MONTHS 12
+static const char dates[] =
+    "jan\0january\0feb\0february\0mar\0march\0apr\0april\0jun\0june\0jul\0july\0aug\0august\0sep\0september\0"
+    "sept\0september\0oct\0october\0nov\0november\0dec\0december\0mon\0monday\0tue\0tuesday\0tues\0tuesday\0"
+    "wed\0wednesday\0thu\0thursday\0thur\0thursday\0thurs\0thursday\0fri\0friday\0";
+
+static const char large_numbers[] = "hundred\0thousand\0million\0billion\0trillion\0";
+
+/* Units behind a number; behind a blank only the second list. */
+static const char attached_units[] = "M\0million\0bn\0billion\0in\0inch|inches\0A\0amp_\0C\0degree_ celsius\0"
+                                     "F\0degree_ fahrenheit\0";
+static const char units[] =
+    "km\0kilometer_\0m\0meter_\0cm\0centimeter_\0mm\0millimeter_\0nm\0nanometer_\0um\0micrometer_\0kg\0kilogram_\0"
+    "g\0gram_\0mg\0milligram_\0ug\0microgram_\0lb\0pound_\0lbs\0pound_\0oz\0ounce_\0ft\0foot|feet\0yd\0yard_\0"
+    "mi\0mile_\0mph\0mile_ per hour\0kph\0kilometer_ per hour\0L\0liter_\0l\0liter_\0ml\0milliliter_\0"
+    "mL\0milliliter_\0cl\0centiliter_\0dl\0deciliter_\0gal\0gallon_\0s\0second_\0sec\0second_\0secs\0second_\0"
+    "ms\0millisecond_\0us\0microsecond_\0ns\0nanosecond_\0min\0minute_\0mins\0minute_\0h\0hour_\0hr\0hour_\0"
+    "hrs\0hour_\0Hz\0hertz\0kHz\0kilohertz\0MHz\0megahertz\0GHz\0gigahertz\0kB\0kilobyte_\0KB\0kilobyte_\0"
+    "MB\0megabyte_\0GB\0gigabyte_\0TB\0terabyte_\0kbps\0kilobit_ per second\0Mbps\0megabit_ per second\0"
+    "Gbps\0gigabit_ per second\0W\0watt_\0kW\0kilowatt_\0MW\0megawatt_\0GW\0gigawatt_\0Wh\0watt hour_\0"
+    "kWh\0kilowatt hour_\0V\0volt_\0mV\0millivolt_\0kV\0kilovolt_\0mA\0milliamp_\0mAh\0milliamp hour_\0dB\0decibel_\0"
+    "px\0pixel_\0cal\0calorie_\0kcal\0kilocalorie_\0rpm\0are pee em\0bpm\0bee pee em\0fps\0eff pee ess\0"
+    "mpg\0mile_ per gallon\0EUR\0euro_\0GBP\0pound_\0USD\0you ess dollar_\0";
+
+/* Capitals that are read letter by letter although a word could look so, words of two letters, of three that begin with
+ * a vowel and others that do not look like words, and words unless the word before is not in capitals. */
+static const char spelt_words[] =
+    "VIP\0MIT\0SOS\0POW\0SAP\0SAT\0GED\0RIP\0SEC\0GOP\0DOD\0LAX\0LED\0DEA\0NEA\0GRE\0SLA\0COO\0NIH\0ASAP\0UCLA\0USDA\0"
+    "USAF\0USPS\0NYSE\0IMHO\0AFAIK\0MOU\0SME\0STI\0TWA\0CLI\0COD\0DOB\0GIS\0VOD\0LIDL\0NES\0CIS\0UTEP\0HBCU\0ICAO\0";
+static const char short_words[] =
+    "AN\0AS\0AT\0BE\0BY\0DO\0GO\0HE\0HI\0IF\0IN\0IS\0ME\0MY\0NO\0OF\0OH\0ON\0OR\0OX\0SO\0TO\0UP\0WE\0YO\0HA\0AH\0UH\0"
+    "UM\0EH\0ACE\0ACT\0ADD\0AGE\0AGO\0AHA\0AID\0AIM\0AIR\0ALL\0AND\0ANT\0ANY\0APP\0ARC\0ARE\0ARM\0ART\0ASH\0ASK\0ATE\0"
+    "AXE\0EAR\0EAT\0EGG\0END\0EVE\0EYE\0ICE\0ILL\0INK\0INN\0ITS\0OAK\0ODD\0OFF\0OIL\0OLD\0ONE\0OUR\0OUT\0OWE\0OWN\0"
+    "UGH\0USE\0GYM\0VIA\0";
+static const char shouted_words[] = "AM\0IT\0US\0WHO\0";
+
+/* How words begin and end, and vowels that stand together in them; at the end of three letters the second list. */
+static const char word_onsets[] =
+    "BL\0BR\0CH\0CL\0CR\0DR\0DW\0FL\0FR\0GH\0GL\0GR\0KN\0PH\0PL\0PR\0SC\0SH\0SK\0SL\0SM\0SN\0SP\0"
+    "ST\0SQ\0SW\0TH\0TR\0TW\0WH\0WR\0SCR\0SHR\0SPL\0SPR\0STR\0THR\0";
+static const char codas[] =
+    "B\0C\0D\0F\0G\0H\0K\0L\0M\0N\0P\0R\0S\0T\0W\0X\0Z\0BB\0BT\0CH\0CK\0CT\0DD\0FF\0FT\0GG\0GH\0GN\0LD\0LF\0LK\0LL\0"
+    "LM\0LP\0LT\0MB\0MN\0MP\0NG\0NK\0NN\0NT\0ND\0PH\0PT\0RB\0RC\0RD\0RF\0RK\0RL\0RM\0RN\0RP\0RT\0SH\0SK\0SM\0SP\0SS\0"
+    "ST\0TH\0TT\0WD\0WL\0WN\0XT\0DTH\0FTH\0GHT\0LDT\0LTH\0NCH\0NTH\0PTH\0RCH\0RLD\0RNT\0RSH\0RST\0RTH\0TCH\0XTH\0DST\0"
+    "HN\0PP\0RR\0SC\0";
+static const char vowel_runs[] = "AI\0AU\0AY\0EA\0EE\0EI\0EU\0EY\0IA\0IE\0IO\0OA\0OE\0OI\0OO\0OU\0OY\0UA\0UE\0UI\0UO\0"
+                                 "UY\0YE\0YI\0EO\0AO\0UIE\0UEE\0EYE\0OYA\0AYE\0IOU\0";
+static const char last_runs[] = "AY\0EA\0EE\0EY\0IE\0OE\0OO\0OU\0OY\0UE\0UY\0";
+
+/* Letters that stand together. */
+typedef struct {
+    labial_words_letter_t letters[LABIAL_WORDS_LETTERS];
+    char capitals[12]; /* the first eleven, in capitals, the apostrophe too */
+    unsigned count;
+    uint32_t small;  /* a bit for each that is a small letter or an apostrophe */
+    unsigned before; /* the character before it */
+    int is_title;    /* a capital, and none behind it */
+} run_t;
+
+static void say_letter(labial_words_reading_t *reading, labial_words_letter_t letter)
+{
+    labial_words_say(reading, labial_words_listed(letter_names, letter.letter - 1u), SAID_PLAIN, letter.character);
+}
+
+/* Takes the letters that belong together from a letter on, up to a capital behind a small letter. */
+static void take_run(labial_words_place_t *here, run_t *run)
+{
+    unsigned before = TEXT_END;
+    memset(run, 0, sizeof *run);
+    run->before = here->before;
+    while (run->count < LABIAL_WORDS_LETTERS) {
+        const unsigned code = here->code;
+        const int is_inner = code == '\'' && labial_words_is_latin(labial_words_following(here));
+        if (!is_inner && !labial_words_is_latin(code))
+            break;
+        if (labial_words_is_capital(code) && before > 'Z')
+            break;
+        if (run->count < sizeof run->capitals - 1u)
+            run->capitals[run->count] = (char)(is_inner ? code : labial_words_small_letter(code) - ('a' - 'A'));
+        run->letters[run->count].letter = (uint8_t)(is_inner ? 27u : labial_words_small_letter(code) - 'a' + 1u);
+        run->letters[run->count].sound = (uint8_t)(is_inner ? 0u : labial_words_accented(here));
+        run->letters[run->count].character = (uint8_t)(here->characters - 1u);
+        if (!labial_words_is_capital(code))
+            run->small |= (uint32_t)1 << run->count;
+        run->count++;
+        before = code;
+        labial_words_advance(here);
+    }
+    run->is_title = run->count > 1u && run->small == (0xffffffffu >> (LABIAL_WORDS_LETTERS - run->count) & ~1u);
+}
+
+static int find_run(const run_t *run, const char *list, unsigned step)
+{
+    return run->count < sizeof run->capitals ? labial_words_find(run->capitals, run->count, list, step) : -1;
+}
+
+/* ---- Capitals --------------------------------------------------------------------------------------------------- */
+
+static int is_vowel(const char *letters, unsigned place)
+{
+    const char letter = letters[place];
+    return letter == 'A' || letter == 'E' || letter == 'I' || letter == 'O' || letter == 'U' ||
+           (letter == 'Y' && place > 0u);
+}
+
+/* Whether three to five capitals look like a word: as words of English begin and end, with vowels that stand together in
+ * them. */
+static int is_pronounceable(const char *letters, unsigned count)
+{
+    unsigned first = 0, last = count, begin = 0, i, is_other = 0;
+    while (first < count && !is_vowel(letters, first))
+        first++;
+    while (last > 0u && !is_vowel(letters, last - 1u))
+        last--;
+    if (count < 3u || first == count || (count == 3u && first == 0u) ||
+        (first > 1u && !labial_words_is_listed(letters, first, word_onsets)))
+        return 0;
+    if (last < count && !labial_words_is_listed(letters + last, count - last, codas) &&
+        !(count - last > 1u && letters[count - 1u] == 'S' &&
+          labial_words_is_listed(letters + last, count - last - 1u, codas)))
+        return 0;
+    for (i = 0; i < count; i++) {
+        is_other |= is_vowel(letters, i) && letters[i] != 'Y';
+        if (i > 0u && is_vowel(letters, i) && !is_vowel(letters, i - 1u))
+            begin = i;
+        if (is_vowel(letters, i) && (i + 1u == count || !is_vowel(letters, i + 1u)) && i > begin &&
+            !labial_words_is_listed(letters + begin, i + 1u - begin, count == 3u ? last_runs : vowel_runs))
+            return 0;
+    }
+    return is_other || last == count;
+}
+
+/* How many letters at the beginning of a run are capitals that are read one by one; behind them there is nothing, an s
+ * or 's. */
+static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shouting)
+{
+    const char *const letters = run->capitals;
+    unsigned count = run->count;
+    if (count == 1u)
+        return (letters[0] != 'A' && letters[0] != 'I') ||
+               (letters[0] == 'A' && run->small == 0u &&
+                (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
+                 labial_words_is_decimal(follows) || follows == '&' || follows == '+' || follows == '-'));
+    if (run->small != 0u) {
+        if (run->letters[count - 1u].letter != 19u) /* s */
+            return 0;
+        count -= count > 2u && run->letters[count - 2u].letter == 27u ? 2u : 1u;
+        if ((run->small & (((uint32_t)1 << count) - 1u)) != 0u)
+            return 0;
+    }
+    if (count < 2u || count > 5u)
+        return 0;
+    if ((run->before == '&' || follows == '&') && count == run->count)
+        return count;
+    if (labial_words_is_listed(letters, count, shouted_words))
+        return shouting ? 0u : count;
+    return labial_words_is_listed(letters, count, spelt_words) ||
+                   !(labial_words_is_listed(letters, count, short_words) || is_pronounceable(letters, count))
+               ? count
+               : 0u;
+}
+
+/* Says the names of the first letters of a run; an s if there are more. */
+static void say_letters(labial_words_reading_t *reading, const run_t *run, unsigned count)
+{
+    unsigned i;
+    for (i = 0; i < count; i++) {
+        const labial_words_letter_t letter = run->letters[i];
+        const char *const plural =
+            i + 1u == count && count < run->count ? labial_words_said_of(plural_names, letter.letter + 'a' - 1u) : NULL;
+        if (plural) {
+            labial_words_say(reading, plural, SAID_PLAIN, letter.character);
+            return;
+        }
+        say_letter(reading, letter);
+    }
+    if (count > 0u && count < run->count)
+        labial_words_append(reading->word, PHONEME_Z, run->letters[count - 1u].character, 0);
+}
+
+/* ---- Runs of letters -------------------------------------------------------------------------------------------- */
+
+/* Whether a point and a single letter follow. */
+static int has_pointed(const labial_words_place_t *here)
+{
+    labial_words_place_t next = *here;
+    if (here->code != '.')
+        return 0;
+    labial_words_advance(&next);
+    return labial_words_is_latin(next.code) && !labial_words_is_inside(labial_words_following(&next));
+}
+
+/* Letters with points between them, "e.g." and "i.e." among them, from the first one on. */
+static void read_pointed(labial_words_reading_t *reading, unsigned after)
+{
+    labial_words_place_t *here = &reading->here, next = *here;
+    const unsigned first = labial_words_small_letter(here->code);
+    unsigned second;
+    const char *meaning = NULL;
+    labial_words_advance(&next);
+    labial_words_advance(&next);
+    second = labial_words_small_letter(next.code);
+    if (first == 'e' && second == 'g')
+        meaning = "for example";
+    else if (first == 'i' && second == 'e')
+        meaning = "that is";
+    if (meaning) {
+        labial_words_say_here(reading, meaning);
+        labial_words_advance(&next);
+        *here = next;
+        return;
+    }
+    labial_words_advance(&next);
+    if ((first == 'a' || first == 'p') && second == 'm' && after == AFTER_TIME && !has_pointed(&next))
+        labial_words_take_back(reading);
+    for (;;) {
+        labial_words_say_here(reading, labial_words_listed(letter_names, labial_words_small_letter(here->code) - 'a'));
+        labial_words_advance(here);
+        if (!has_pointed(here))
+            return;
+        labial_words_advance(here);
+    }
+}
+
+/* The name of a unit in a list; moves behind it. */
+static const char *takes_unit(labial_words_place_t *here, const char *list)
+{
+    for (; *list != '\0'; list = labial_words_listed(list, 2)) {
+        labial_words_place_t next = *here;
+        size_t i;
+        for (i = 0; list[i] != '\0' && (unsigned char)list[i] == next.code; i++)
+            labial_words_advance(&next);
+        if (list[i] == '\0' && !labial_words_is_inside(next.code) &&
+            !(next.code == '\'' && labial_words_is_latin(labial_words_following(&next)))) {
+            *here = next;
+            return labial_words_listed(list, 1);
+        }
+    }
+    return NULL;
+}
+
+/* Reads a unit behind a number, if there is one. */
+static int read_unit(labial_words_reading_t *reading, unsigned after)
+{
+    labial_words_place_t *here = &reading->here;
+    const int is_apart = here->before == ' ';
+    const unsigned character = here->characters - 1u;
+    const char *name = takes_unit(here, units);
+    reading->context->after = AFTER_UNIT;
+    if (!name && !is_apart) {
+        name = takes_unit(here, attached_units);
+        if (name == labial_words_listed(attached_units, 1) || name == labial_words_listed(attached_units, 3))
+            reading->context->after = AFTER_NUMBER; /* M, bn */
+    }
+    if (!name) {
+        reading->context->after = AFTER_NOTHING;
+        return 0;
+    }
+    if (here->code == SIGN_SQUARE) {
+        labial_words_say(reading, "square", SAID_PLAIN, character);
+        labial_words_advance(here);
+    }
+    labial_words_say_name(reading, name, after == AFTER_NUMBER, character);
+    return 1;
+}
+
+/* Whether a part of an address is read letter by letter: a country, or what has no vowel. */
+static int is_spelt_in_address(const run_t *run)
+{
+    unsigned i, vowel_count = 0;
+    for (i = 0; i < run->count; i++) {
+        if (run->letters[i].letter == 27u)
+            return 0;
+        vowel_count += (0x02208222u >> run->letters[i].letter) & 1u; /* a e i o u y */
+    }
+    return run->count == 2u ? !labial_words_is_listed(run->capitals, 2, "co\0go\0me\0")
+                            : run->count <= 4u && vowel_count == 0u;
+}
+
+/* Reads a run that rules say otherwise than by its letters. */
+static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned after, unsigned shouting)
+{
+    const unsigned character = run->letters[0].character;
+    const unsigned follows = reading->here.code;
+    unsigned count;
+    int found;
+    if (run->count == 2u && (run->small == 0u || run->small == 3u) &&
+        labial_words_is_listed(run->capitals, 2, "am\0pm\0") &&
+        (after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_TIME)) {
+        if (after == AFTER_TIME)
+            labial_words_take_back(reading);
+        say_letters(reading, run, 2);
+        return 1;
+    }
+    if (after == AFTER_TIME && find_run(run, "o'clock\0", 1) >= 0) {
+        labial_words_take_back(reading);
+        labial_words_spell(reading->model, run->letters, run->count, reading->word);
+        return 1;
+    }
+    found = after == AFTER_SUM ? find_run(run, large_numbers, 1) : -1;
+    if (found >= 0) {
+        labial_words_take_back(reading);
+        labial_words_say(reading, labial_words_listed(large_numbers, (unsigned)found), SAID_PLAIN, character);
+        labial_words_say_name(reading, labial_words_currency_name(reading->context->currency), 1, character);
+        return 1;
+    }
+    found = run->is_title ? find_run(run, dates, 2) : -1;
+    if (found >= 0) {
+        labial_words_say(reading, labial_words_listed(dates, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
+        if (found < DATE_MONTHS)
+            reading->context->after = AFTER_MONTH;
+        if (follows == '.')
+            labial_words_advance(&reading->here);
+        return 1;
+    }
+    if (run->letters[0].letter <= 26u) {
+        const char *const list = meanings[run->letters[0].letter - 1u];
+        found = find_run(run, list, 2);
+        if (found >= 0) {
+            labial_words_say(reading, labial_words_listed(list, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
+            return 1;
+        }
+    }
+    count = reading->is_address && run->before == '.' && is_spelt_in_address(run)
+                ? run->count
+                : spelt_letters(run, follows, shouting);
+    say_letters(reading, run, count);
+    return count > 0u;
+}
+
+void labial_words_read_letters(labial_words_reading_t *reading)
+{
+    labial_words_context_t *const context = reading->context;
+    labial_words_place_t next = reading->here;
+    const unsigned after = labial_words_forget(reading), shouting = context->shouting;
+    run_t run;
+    labial_words_advance(&next);
+    if (has_pointed(&next)) {
+        read_pointed(reading, after);
+        return;
+    }
+    if ((after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_PER) && read_unit(reading, after))
+        return;
+    take_run(&reading->here, &run);
+    context->shouting = 0;
+    if (read_rule(reading, &run, after, shouting))
+        return;
+    labial_words_spell(reading->model, run.letters, run.count, reading->word);
+    context->shouting = run.small == 0u && (run.count > 1u || run.capitals[0] == 'I');
+    if (run.is_title && find_run(&run, labial_words_months, 1) >= 0)
+        context->after = AFTER_MONTH;
+}
