@@ -38,7 +38,7 @@ static uint16_t likelihood(uint32_t cost)
 
 /* part / sum in Q12, rounded down; `inverse` is 2^31 / sum, rounded down, with which the product is short of the
  * quotient by less than 1 / 16. */
-static uint32_t share_of(uint32_t part, uint32_t sum, uint32_t inverse)
+static uint32_t likelihood_share(uint32_t part, uint32_t sum, uint32_t inverse)
 {
     const uint32_t share = (part * inverse) >> 19;
     return share + ((share + 1u) * sum <= part * ONE);
@@ -90,14 +90,14 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     LABIAL_CHECK(sum >= 32768u);
     inverse = labial_quotient(0x80000000u, sum);
     for (i = 1; i <= count; i++) {
-        uint32_t share;                   /* of the mixture, Q12 */
+        uint16_t share;                   /* of the mixture, Q12 */
         c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
-        share = i < count ? share_of(likelihoods[c], sum, inverse) : rest;
+        share = (uint16_t)(i < count ? likelihood_share(likelihoods[c], sum, inverse) : rest);
         rest -= share;
         if (share > 0) {
             selection->components[counting] = (uint8_t)c;
-            selection->shares[counting] = (uint16_t)share;
-            selection->tilts[counting++] = (int16_t)(((int32_t)share * deviations[c]) >> 6);
+            selection->shares[counting] = share;
+            selection->tilts[counting++] = (int16_t)((share * (int32_t)deviations[c]) >> 6);
         }
     }
     selection->count = (uint8_t)counting;
@@ -129,7 +129,7 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
     }
 }
 
-static inline void add(int16_t *position, int32_t change)
+static inline void shift_position(int16_t *position, int32_t change)
 {
     *position = (int16_t)labial_clamp(*position + change, LABIAL_POSITION_MAX);
 }
@@ -154,8 +154,8 @@ static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *
     end = knots > 1u ? start + width : start;
     for (k = 0; k < width; k++) {
         const uint16_t scale = model->channels[k].pair_scale;
-        add(&shape[k].knots[0], labial_scaled(start[k], scale));
-        add(&shape[k].knots[1], labial_scaled(end[k], scale));
+        shift_position(&shape[k].knots[0], labial_scaled(start[k], scale));
+        shift_position(&shape[k].knots[1], labial_scaled(end[k], scale));
     }
 }
 

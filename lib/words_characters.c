@@ -60,14 +60,14 @@ static uint32_t code_point(labial_words_place_t *here)
     unsigned i;
     if (lead < 0x80u)
         return code;
-    if (more == 0u || lead > 0xf4u || here->size - here->at < more)
+    if (more == 0u || lead > 0xf4u)
         return 0;
     code &= 0x3fu >> more;
     for (i = 0; i < more; i++) {
-        const unsigned char byte = here->text[here->at + i];
-        if ((byte & 0xc0u) != 0x80u)
+        const size_t next = here->at + i;
+        if (next >= here->size || (here->text[next] & 0xc0u) != 0x80u)
             return 0;
-        code = code << 6 | (byte & 0x3fu);
+        code = code << 6 | (here->text[next] & 0x3fu);
     }
     if (code < least[more])
         return 0;
@@ -82,7 +82,7 @@ static int is_mark(uint32_t code)
            (code >= 0xfe00u && code <= 0xfe0fu) || code == 0xfeffu;
 }
 
-static int is_blank(uint32_t code)
+static int is_white_space(uint32_t code)
 {
     return (code >= 9u && code <= 13u) || code == ' ' || code == 0x85u || code == 0xa0u ||
            (code >= 0x2000u && code <= 0x200au) || code == 0x2028u || code == 0x2029u || code == 0x202fu ||
@@ -93,23 +93,23 @@ static int is_blank(uint32_t code)
 static unsigned simplified(uint32_t code, unsigned *pending)
 {
     unsigned i;
-    if (is_blank(code))
+    if (is_white_space(code))
         return ' ';
     if (code >= 0xff01u && code <= 0xff5eu) /* as wide as ideographs */
         code -= 0xfee0u;
     if (code < 0x80u)
-        return code > ' ' && code < 0x7fu ? (unsigned)code : (unsigned)NOTHING;
+        return code > ' ' && code < 0x7fu ? (unsigned)code : (unsigned)NO_CHARACTER;
     for (i = 0; i < sizeof others / sizeof others[0]; i++)
         if (others[i].character == code) {
             *pending = others[i].more | (unsigned)others[i].most << 8;
             return others[i].code;
         }
     if (code >= 0xc0u && code < 0x180u)
-        return plain_letters[code - 0xc0u] == ' ' ? (unsigned)NOTHING : (unsigned char)plain_letters[code - 0xc0u];
+        return plain_letters[code - 0xc0u] == ' ' ? (unsigned)NO_CHARACTER : (unsigned char)plain_letters[code - 0xc0u];
     for (i = 0; i < sizeof foreign / sizeof foreign[0]; i++)
         if (code >= foreign[i][0] && code <= foreign[i][1])
             return FOREIGN;
-    return NOTHING;
+    return NO_CHARACTER;
 }
 
 /* The accent of a letter, which may be a mark behind it. */

@@ -51,7 +51,7 @@ static const char dates[] =
     "sept\0september\0oct\0october\0nov\0november\0dec\0december\0mon\0monday\0tue\0tuesday\0tues\0tuesday\0"
     "wed\0wednesday\0thu\0thursday\0thur\0thursday\0thurs\0thursday\0fri\0friday\0";
 
-static const char scales[] = "hundred\0thousand\0million\0billion\0trillion\0";
+static const char large_numbers[] = "hundred\0thousand\0million\0billion\0trillion\0";
 
 /* Units behind a number; behind a blank only the second list. */
 static const char attached_units[] = "M\0million\0bn\0billion\0in\0inch|inches\0A\0amp_\0C\0degree_ celsius\0"
@@ -82,7 +82,7 @@ static const char short_words[] =
 static const char shouted_words[] = "AM\0IT\0US\0WHO\0";
 
 /* How words begin and end, and vowels that stand together in them; at the end of three letters the second list. */
-static const char onsets[] =
+static const char word_onsets[] =
     "BL\0BR\0CH\0CL\0CR\0DR\0DW\0FL\0FR\0GH\0GL\0GR\0KN\0PH\0PL\0PR\0SC\0SH\0SK\0SL\0SM\0SN\0SP\0"
     "ST\0SQ\0SW\0TH\0TR\0TW\0WH\0WR\0SCR\0SHR\0SPL\0SPR\0STR\0THR\0";
 static const char codas[] =
@@ -160,7 +160,7 @@ static int is_pronounceable(const char *letters, unsigned count)
     while (last > 0u && !is_vowel(letters, last - 1u))
         last--;
     if (count < 3u || first == count || (count == 3u && first == 0u) ||
-        (first > 1u && !labial_words_is_listed(letters, first, onsets)))
+        (first > 1u && !labial_words_is_listed(letters, first, word_onsets)))
         return 0;
     if (last < count && !labial_words_is_listed(letters + last, count - last, codas) &&
         !(count - last > 1u && letters[count - 1u] == 'S' &&
@@ -314,14 +314,14 @@ static int read_unit(labial_words_reading_t *reading, unsigned after)
 /* Whether a part of an address is read letter by letter: a country, or what has no vowel. */
 static int is_spelt_in_address(const run_t *run)
 {
-    unsigned i, vowels = 0;
+    unsigned i, vowel_count = 0;
     for (i = 0; i < run->count; i++) {
         if (run->letters[i].letter == 27u)
             return 0;
-        vowels += (0x02208222u >> run->letters[i].letter) & 1u; /* a e i o u y */
+        vowel_count += (0x02208222u >> run->letters[i].letter) & 1u; /* a e i o u y */
     }
     return run->count == 2u ? !labial_words_is_listed(run->capitals, 2, "co\0go\0me\0")
-                            : run->count <= 4u && vowels == 0u;
+                            : run->count <= 4u && vowel_count == 0u;
 }
 
 /* Reads a run that rules say otherwise than by its letters. */
@@ -344,10 +344,10 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
         labial_words_spell(reading->model, run->letters, run->count, reading->word);
         return 1;
     }
-    found = after == AFTER_SUM ? find_run(run, scales, 1) : -1;
+    found = after == AFTER_SUM ? find_run(run, large_numbers, 1) : -1;
     if (found >= 0) {
         labial_words_take_back(reading);
-        labial_words_say(reading, labial_words_listed(scales, (unsigned)found), SAID_PLAIN, character);
+        labial_words_say(reading, labial_words_listed(large_numbers, (unsigned)found), SAID_PLAIN, character);
         labial_words_say_name(reading, labial_words_currency_name(reading->context->currency), 1, character);
         return 1;
     }

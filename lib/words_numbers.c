@@ -304,12 +304,12 @@ int labial_words_is_sum(const labial_words_place_t *here)
 /* k, M, bn and others behind a sum: THOUSAND and so on, moving behind it, or NO_WORD. */
 static unsigned take_scale(labial_words_place_t *here)
 {
-    static const char scales[] = "kmbt";
+    static const char suffixes[] = "kmbt";
     labial_words_place_t next = *here;
     const unsigned letter = labial_words_small_letter(next.code);
     unsigned i;
     for (i = 0; i < 4u; i++)
-        if (letter == (unsigned char)scales[i])
+        if (letter == (unsigned char)suffixes[i])
             break;
     if (i == 4u)
         return NO_WORD;

@@ -32,7 +32,7 @@ typedef struct {
 enum {
     TEXT_END,
     FOREIGN,
-    NOTHING,
+    NO_CHARACTER,
     SIGN_EURO,
     SIGN_POUND,
     SIGN_YEN,

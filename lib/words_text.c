@@ -366,7 +366,7 @@ static void read_next(labial_words_reading_t *reading, const labial_words_own_t 
         labial_words_advance(here);
     } else if (!labial_words_is_inside(here->before) && reads_own(reading, own)) {
         (void)labial_words_forget(reading);
-        here->before = NOTHING;
+        here->before = NO_CHARACTER;
     } else if (labial_words_is_latin(here->code)) {
         labial_words_read_letters(reading);
     } else if (labial_words_is_decimal(here->code)) {

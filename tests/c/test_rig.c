@@ -462,13 +462,18 @@ static double limited(double value, double low, double high)
 }
 
 /* The header's equations in double precision. */
-static double expected(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], double last)
+static double expected(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares,
+                       double last)
 {
     double move = 0;
     for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
         move += (double)output->weights[i] / 4096.0 * faps[i];
     move = floor(move * output->gain / 65536.0 + 0.5);
-    double value = limited(output->neutral + (output->invert ? -move : move), output->minimum, output->maximum);
+    double sounds = 0;
+    for (unsigned i = 0; i < LABIAL_VISEMES && shares && output->visemes; i++)
+        sounds += output->visemes[i] * (double)shares[i] / LABIAL_VISEME_ONE;
+    double value = output->neutral + (output->invert ? -move : move) + floor(sounds + 0.5);
+    value = limited(value, output->minimum, output->maximum);
     if (output->contact)
         value =
             floor(value + (output->closed - value) * limited((136.0 + faps[FAP51] + faps[FAP52]) / 64.0, 0, 1) + .5);
@@ -476,6 +481,33 @@ static double expected(const labial_rig_output_t *output, const int16_t faps[LAB
     if (fabs(value - last) < output->deadband)
         return last;
     return output->slew > 0 ? limited(value, last - output->slew, last + output->slew) : value;
+}
+
+/* By hand: what sounds add counts before contact closes and limits apply, and not where they are not known. */
+TEST(sounds_add_to_the_faps)
+{
+    static const int16_t amounts[LABIAL_VISEMES] = { [LABIAL_VISEME_TH] = 400, [LABIAL_VISEME_PP] = -300 };
+    uint8_t shares[LABIAL_VISEMES] = { [LABIAL_VISEME_TH] = LABIAL_VISEME_ONE / 2 };
+    int16_t faps[LABIAL_CHANNELS] = { [FAP3] = 100, [FAP52] = -400 };
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int32_t value = 0;
+    output.visemes = amounts;
+    assert_int_equal(labial_rig_apply_visemes(&rig, faps, shares, &value), LABIAL_OK);
+    assert_int_equal(value, 1800);
+    assert_int_equal(labial_rig_apply_visemes(&rig, faps, NULL, &value), LABIAL_OK);
+    assert_int_equal(value, 1600);
+    shares[LABIAL_VISEME_PP] = LABIAL_VISEME_ONE;
+    labial_rig_apply_visemes(&rig, faps, shares, &value);
+    assert_int_equal(value, 1500);
+    shares[LABIAL_VISEME_TH] = 255; /* more than all, from elsewhere */
+    labial_rig_apply_visemes(&rig, faps, shares, &value);
+    assert_int_equal(value, 2000);
+    output.contact = 1;
+    output.closed = 1000;
+    faps[FAP52] = 0;
+    labial_rig_apply_visemes(&rig, faps, shares, &value);
+    assert_int_equal(value, 1000);
 }
 
 /* Would catch an overflow, a wrong rounding or a limit that is left, anywhere in the range of a checked table. All sums
@@ -486,9 +518,13 @@ TEST(random_rigs_equal_double)
     unsigned off = 0;
     dice.state = 1;
     for (unsigned round = 0; round < 4000; round++) {
-        const labial_rig_output_t output = any_sound_output();
+        int16_t amounts[LABIAL_VISEMES];
+        labial_rig_output_t output = any_sound_output();
         const labial_rig_t rig = { &output, 1 };
         int32_t value;
+        for (unsigned i = 0; i < LABIAL_VISEMES; i++)
+            amounts[i] = (int16_t)between(round % 3u ? -1000 : INT16_MIN, round % 3u ? 1000 : INT16_MAX);
+        output.visemes = chance() % 2u ? amounts : NULL;
         assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
         assert_int_equal(labial_rig_rest(&rig, &value), LABIAL_OK);
         for (unsigned frame = 0; frame < 12; frame++) {
@@ -496,8 +532,12 @@ TEST(random_rigs_equal_double)
             const int32_t last = value;
             for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
                 faps[i] = any_fap();
-            const double wanted = expected(&output, faps, last);
-            labial_rig_apply(&rig, faps, &value);
+            uint8_t shares[LABIAL_VISEMES];
+            for (unsigned i = 0; i < LABIAL_VISEMES; i++)
+                shares[i] = (uint8_t)chance();
+            const uint8_t *const known = frame % 3u ? shares : NULL;
+            const double wanted = expected(&output, faps, known, last);
+            assert_int_equal(labial_rig_apply_visemes(&rig, faps, known, &value), LABIAL_OK);
             if (fabs(wanted - value) > 1.0)
                 fail_msg("rig %u, frame %u: %ld instead of %.1f", round, frame, (long)value, wanted);
             off += wanted < value || wanted > value;
@@ -629,6 +669,7 @@ TEST(null_and_empty_are_refused)
     assert_int_equal(labial_rig_apply(&hollow, faps, &value), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&rig, NULL, &value), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&rig, faps, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply_visemes(&rig, faps, NULL, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&empty, faps, &value), LABIAL_OK);
     assert_int_equal(labial_rig_apply_ahead(NULL, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply_ahead(&hollow, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
@@ -636,7 +677,7 @@ TEST(null_and_empty_are_refused)
     assert_int_equal(labial_rig_apply_ahead(&rig, faps, 1, NULL, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_delayed(&hollow, &delay, faps, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(value, 5);
-    assert_int_equal(sizeof output, sizeof(void *) == 4 ? 64 : 72);
+    assert_int_equal(sizeof output, sizeof(void *) == 4 ? 68 : 80);
     assert_int_equal(sizeof(labial_rig_curve_t), 100);
 }
 

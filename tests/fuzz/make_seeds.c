@@ -190,13 +190,17 @@ static void make_face(void)
 static void make_rig(void)
 {
     static const int32_t values[OUTPUTS] = { 300, 300, 300, 300 }, changes[OUTPUTS] = { 0, 0, 0, 0 };
-    static const uint8_t curved_and_sound[] = { 6, 31, 0, 0 };
+    static const int16_t visemes[LABIAL_VISEMES] = { 0, 40, -40, 300 };
+    static const uint8_t shares[LABIAL_VISEMES] = { 20, 0, 8, 100 };
+    static const uint8_t curved_and_sound[] = { 6, 31, 0 };
     FILE *file = create("fuzz_rig", "sentence");
     for (int i = 0; i < OUTPUTS; i++)
         put_output(file, i);
     fwrite(&curve, sizeof curve, 1, file);
     fwrite(values, sizeof values, 1, file);
     fwrite(changes, sizeof changes, 1, file);
+    fwrite(visemes, sizeof visemes, 1, file);
+    fwrite(shares, sizeof shares, 1, file);
     fwrite(curved_and_sound, sizeof curved_and_sound, 1, file);
     put_sentence(file, put_frame);
 }
@@ -286,6 +290,23 @@ static void make_packets(void)
     finish(file);
 }
 
+/* Words of a voice, in messages of each way to count times, and the clock. */
+static void make_messages(void)
+{
+    FILE *file = create("fuzz_voice", "words");
+    uint32_t k;
+    put(file, 40, 1);
+    for (k = 0; k < 12; k++) {
+        put(file, 4u << 16 | (3u + 6u * (k % 3u)) << 8 | 1u, 3); /* a message of a word */
+        put(file, 5u << 16 | k / 3u << 8 | 7u * k, 3);           /* of five letters, and when it begins */
+        put(file, 1u << 8 | 100u, 2);                            /* 300 ms long */
+        put(file, (uint32_t)('h' << 16 | 'e' << 8 | 'l'), 3);
+        put(file, (uint32_t)('l' << 8 | 'o'), 2);
+        put(file, 20, 2); /* 200 ms are heard */
+    }
+    finish(file);
+}
+
 int main(int argc, char **argv)
 {
     REQUIRE(argc == 3);
@@ -295,6 +316,7 @@ int main(int argc, char **argv)
     make_rig();
     make_face();
     make_packets();
+    make_messages();
     make_sounds();
     make_labels(argv[2]);
     return 0;

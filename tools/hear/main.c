@@ -172,7 +172,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
     hear_t *hear = user;
     (void)frame;
     if (!hear->classes)
-        frames_put(&hear->frames, faps);
+        frames_put(&hear->frames, faps, NULL);
 }
 
 static void write_time(uint32_t frame)

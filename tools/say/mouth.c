@@ -20,7 +20,10 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 {
     mouth_t *mouth = user;
     (void)frame;
-    frames_put(&mouth->frames, faps);
+    uint8_t shares[LABIAL_VISEMES] = { LABIAL_VISEME_ONE };
+    if (mouth->voice->model->phoneme_count == LABIAL_ARPABET_PHONEMES)
+        (void)labial_visemes(&mouth->stream, mouth->voice->model, labial_arpabet_visemes, shares);
+    frames_put(&mouth->frames, faps, shares);
 }
 
 static int failed(const mouth_t *mouth, const char *where, const char *why)
