@@ -39,7 +39,9 @@ def joined(motions: Sequence[Motion]) -> Motion:
     for motion in motions:
         phonemes += [(label, first + begin, first + end) for label, begin, end in motion.phonemes]
         first += len(motion.frames)
-    return Motion(np.concatenate([motion.frames for motion in motions]), phonemes)
+    shares = [motion.shares for motion in motions if motion.shares is not None]
+    return Motion(np.concatenate([motion.frames for motion in motions]), phonemes,
+                  np.concatenate(shares) if len(shares) == len(motions) else None)
 
 
 def row(name: str, head: Head, weights: Mapping[str, np.ndarray], motion: Motion) -> str:
@@ -60,7 +62,7 @@ def built_in(head: Head, kind: str, motion: Motion) -> Dict[str, np.ndarray]:
     names = known(head, kind)
     if len(names) < _LEAST[kind] or ("jawOpen" if kind == "arkit" else "aa") not in names.values():
         return {}
-    values = outputs(face(kind), motion.frames)
+    values = outputs(face(kind), motion.frames, motion.shares)
     spelled = {shape: _SPELLED.get(name, name) if kind == "oculus" else name for shape, name in names.items()}
     return {shape: values[name] for shape, name in spelled.items() if name in values}
 

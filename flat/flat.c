@@ -47,6 +47,12 @@ const char *function(unsigned number)
 }
 #endif
 
+/* What an output of a rig refers to. */
+typedef struct {
+    labial_rig_curve_t curve;
+    int16_t visemes[LABIAL_VISEMES];
+} more_t;
+
 /* ---- Sizes ------------------------------------------------------------------------------------------------------- */
 
 uint32_t mouth_size(void)
@@ -76,7 +82,7 @@ uint32_t rig_output_size(void)
 
 uint32_t rig_curve_size(void)
 {
-    return sizeof(labial_rig_curve_t);
+    return sizeof(more_t);
 }
 
 /* ---- Models and names -------------------------------------------------------------------------------------------- */
@@ -154,19 +160,34 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 {
     mouth_t *mouth = (mouth_t *)user;
     memcpy(mouth->faps, faps, sizeof mouth->faps);
+    if (labial_visemes(&mouth->stream, mouth->speech, labial_arpabet_visemes, mouth->shares) != LABIAL_OK) {
+        memset(mouth->shares, 0, sizeof mouth->shares);
+        mouth->shares[LABIAL_VISEME_SIL] = LABIAL_VISEME_ONE;
+    }
     mouth->moved = 1;
     (void)frame;
+}
+
+/* Models of speech are told by the number of their phonemes. */
+static void take_model(mouth_t *mouth, const labial_model_t *model)
+{
+    if (model->phoneme_count == LABIAL_ARPABET_PHONEMES)
+        mouth->speech = model;
 }
 
 int mouth_init(mouth_t *mouth, const labial_model_t *model)
 {
     memset(mouth, 0, sizeof *mouth);
+    take_model(mouth, model);
     return labial_init(&mouth->stream, model, mouth->workspace, sizeof mouth->workspace, on_frame, mouth);
 }
 
 int mouth_use(mouth_t *mouth, const labial_model_t *model)
 {
-    return labial_use(&mouth->stream, model);
+    const int result = labial_use(&mouth->stream, model);
+    if (result == LABIAL_OK)
+        take_model(mouth, model);
+    return result;
 }
 
 int mouth_push(mouth_t *mouth, unsigned phoneme, uint32_t milliseconds)
@@ -227,6 +248,11 @@ const int16_t *mouth_faps(const mouth_t *mouth)
     return mouth->faps;
 }
 
+const uint8_t *mouth_visemes(const mouth_t *mouth)
+{
+    return mouth->shares;
+}
+
 int mouth_state(const mouth_t *mouth)
 {
     return mouth->state;
@@ -252,15 +278,17 @@ unsigned mouth_delay(const mouth_t *mouth)
     return labial_latency(&mouth->stream).delay;
 }
 
-int mouth_run(mouth_t *mouth, int16_t *out, unsigned count)
+int mouth_run(mouth_t *mouth, int16_t *out, uint8_t *shares, unsigned count)
 {
     unsigned underway = labial_latency(&mouth->stream).delay, frames = 0;
     int result = labial_exact(&mouth->stream, mouth->exact || !mouth->ended);
     while (result >= 0 && frames < count) {
         result = mouth_tick(mouth);
-        if (result == LABIAL_OK)
+        if (result == LABIAL_OK) {
+            if (shares)
+                memcpy(&shares[LABIAL_VISEMES * frames], mouth->shares, sizeof mouth->shares);
             memcpy(&out[LABIAL_CHANNELS * frames++], mouth->faps, sizeof mouth->faps);
-        else if (result != LABIAL_WAITING || underway-- == 0)
+        } else if (result != LABIAL_WAITING || underway-- == 0)
             break;
     }
     (void)labial_exact(&mouth->stream, mouth->exact);
@@ -289,9 +317,10 @@ int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16
 
 /* ---- Rigs -------------------------------------------------------------------------------------------------------- */
 
-void rig_output(labial_rig_output_t *output, labial_rig_curve_t *curve, const int32_t *numbers)
+void rig_output(labial_rig_output_t *output, void *more, const int32_t *numbers)
 {
-    const int32_t *const rest = &numbers[LABIAL_CHANNELS];
+    const int32_t *const rest = &numbers[LABIAL_CHANNELS], *const amounts = &rest[11 + 3 * LABIAL_RIG_SEGMENTS];
+    more_t *own = (more_t *)more;
     memset(output, 0, sizeof *output);
     for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
         output->weights[i] = (int16_t)numbers[i];
@@ -305,12 +334,17 @@ void rig_output(labial_rig_output_t *output, labial_rig_curve_t *curve, const in
     output->slew = rest[7];
     output->deadband = rest[8];
     output->acceleration = rest[9];
-    if (rest[10] == 0)
-        return;
-    memset(curve, 0, sizeof *curve);
-    curve->count = (uint16_t)rest[10];
-    memcpy(curve->segments, &rest[11], sizeof curve->segments);
-    output->curve = curve;
+    memset(own, 0, sizeof *own);
+    if (rest[10] != 0) {
+        own->curve.count = (uint16_t)rest[10];
+        memcpy(own->curve.segments, &rest[11], sizeof own->curve.segments);
+        output->curve = &own->curve;
+    }
+    if (amounts[0] != 0) {
+        for (unsigned i = 0; i < LABIAL_VISEMES; i++)
+            own->visemes[i] = (int16_t)amounts[1 + i];
+        output->visemes = own->visemes;
+    }
 }
 
 int rig_check(const labial_rig_output_t *outputs, unsigned count)
@@ -332,11 +366,19 @@ int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t 
     return labial_rig_apply_ahead(&rig, faps, (uint16_t)frames, values, changes);
 }
 
-void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, int32_t *values)
+int rig_show(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
+             int32_t *values)
+{
+    const labial_rig_t rig = { outputs, (uint16_t)count };
+    return labial_rig_apply_visemes(&rig, faps, shares, values);
+}
+
+void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
+               int32_t *values)
 {
     const labial_rig_t rig = { outputs, (uint16_t)count };
     labial_rig_rest(&rig, values);
-    labial_rig_apply(&rig, faps, values);
+    labial_rig_apply_visemes(&rig, faps, shares, values);
 }
 
 /* ---- Timings ----------------------------------------------------------------------------------------------------- */
@@ -420,10 +462,10 @@ const char *weight_name(unsigned face, unsigned weight)
     return weight < faces[face].rig->count ? faces[face].outputs[weight] : NULL;
 }
 
-void weigh(unsigned face, const int16_t *faps, int32_t *out)
+void weigh(unsigned face, const int16_t *faps, const uint8_t *shares, int32_t *out)
 {
     labial_rig_rest(faces[face].rig, out);
-    labial_rig_apply(faces[face].rig, faps, out);
+    labial_rig_apply_visemes(faces[face].rig, faps, shares, out);
 }
 
 const char *attribution(void)

@@ -15,9 +15,10 @@
 #include "labial/names.h"
 #include "labial/rig.h"
 #include "labial/timings.h"
+#include "labial/visemes.h"
 
 /* Version of this interface; the Python package refuses a library of another one. */
-#define FLAT_INTERFACE 7
+#define FLAT_INTERFACE 8
 
 /* Stands before each function that other languages call; nothing else leaves the module or the shared library, where
  * their symbols begin with flat_. flat/CMakeLists.txt makes the list of them that Python binds, so that they are declared
@@ -34,10 +35,12 @@
 /* A stream with all that belongs to it. */
 typedef struct {
     labial_t stream;
-    int16_t faps[LABIAL_CHANNELS]; /* of the frame delivered last */
-    int32_t state;                 /* result of the last tick */
-    uint8_t moved;                 /* whether the last tick delivered a face */
-    uint8_t exact, ended;          /* what mouth_exact() was told; whether no more phonemes will come */
+    int16_t faps[LABIAL_CHANNELS];  /* of the frame delivered last */
+    uint8_t shares[LABIAL_VISEMES]; /* of its sounds */
+    const labial_model_t *speech;   /* the model whose phonemes have visemes; null before one was used */
+    int32_t state;                  /* result of the last tick */
+    uint8_t moved;                  /* whether the last tick delivered a face */
+    uint8_t exact, ended;           /* what mouth_exact() was told; whether no more phonemes will come */
     uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4u];
 } mouth_t;
 
@@ -97,6 +100,10 @@ FLAT(mouth_exact) int mouth_exact(mouth_t *mouth, unsigned exact);
 FLAT(mouth_tick) int mouth_tick(mouth_t *mouth);
 FLAT(mouth_moved) unsigned mouth_moved(const mouth_t *mouth);
 FLAT(mouth_faps) const int16_t *mouth_faps(const mouth_t *mouth);
+
+/* The shares of the sounds of the frame that was delivered last, LABIAL_VISEMES of them (labial/visemes.h). */
+FLAT(mouth_visemes) const uint8_t *mouth_visemes(const mouth_t *mouth);
+
 FLAT(mouth_state) int mouth_state(const mouth_t *mouth);
 
 /* What it holds: frames, milliseconds, phonemes, and its delay in frames (labial_latency_t). */
@@ -105,10 +112,10 @@ FLAT(mouth_milliseconds) uint32_t mouth_milliseconds(const mouth_t *mouth);
 FLAT(mouth_waiting) unsigned mouth_waiting(const mouth_t *mouth);
 FLAT(mouth_delay) unsigned mouth_delay(const mouth_t *mouth);
 
-/* Ticks until `count` frames lie at `out` or no more can be had; they are as many as it returns, unless it is an error.
+/* Ticks until `count` frames lie at `out`, and their shares at `shares` unless that is null, or no more can be had; they are as many as it returns, unless it is an error.
  * Ticks that bring nothing before the first frame are made, too. As these follow no clock, the face stays where it is
  * while phonemes are late. */
-FLAT(mouth_run) int mouth_run(mouth_t *mouth, int16_t *out, unsigned count);
+FLAT(mouth_run) int mouth_run(mouth_t *mouth, int16_t *out, uint8_t *shares, unsigned count);
 
 /* A laugh; laugh_next() writes a phoneme and its milliseconds. */
 FLAT(laugh_init) int laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed);
@@ -117,19 +124,24 @@ FLAT(laugh_next) int laugh_next(labial_laugh_t *laugh, uint32_t *out);
 FLAT(blend) int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out);
 
 /* An output of a rig from FLAT_OUTPUT numbers: 13 weights; gain, neutral, minimum, maximum, invert, contact, closed; slew,
- * deadband, acceleration; how many segments its curve has, 0 for none, and three numbers of each. The curve lies at
- * `curve` and must stay there. */
-#define FLAT_OUTPUT (LABIAL_CHANNELS + 11 + 3 * LABIAL_RIG_SEGMENTS)
-FLAT(rig_output) void rig_output(labial_rig_output_t *output, labial_rig_curve_t *curve, const int32_t *numbers);
+ * deadband, acceleration; how many segments its curve has, 0 for none, and three numbers of each; 1 where it has
+ * amounts of visemes, and these. Curve and amounts lie at `more`, rig_curve_size() bytes, and must stay there. */
+#define FLAT_OUTPUT (LABIAL_CHANNELS + 11 + 3 * LABIAL_RIG_SEGMENTS + 1 + LABIAL_VISEMES)
+FLAT(rig_output) void rig_output(labial_rig_output_t *output, void *more, const int32_t *numbers);
 FLAT(rig_check) int rig_check(const labial_rig_output_t *outputs, unsigned count);
 
-/* Values of a rig at rest; moved on by the first of `frames` frames (labial_rig_apply_ahead()); those of a frame alone. */
+/* Values of a rig at rest; moved on by the first of `frames` frames (labial_rig_apply_ahead()), or by a frame with the
+ * shares of its sounds (labial_rig_apply_visemes()); those of a frame alone, `shares` null where they are not known. */
 FLAT(rig_rest) int rig_rest(const labial_rig_output_t *outputs, unsigned count, int32_t *values);
 FLAT(rig_apply)
 int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, unsigned frames, int32_t *values,
               int32_t *changes);
+FLAT(rig_show)
+int rig_show(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
+             int32_t *values);
 FLAT(rig_weigh)
-void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, int32_t *values);
+void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
+               int32_t *values);
 
 /* Formats of timings by number: name and suffix; null beyond the last. */
 FLAT(timings_name) const char *timings_name(unsigned format);
@@ -155,7 +167,7 @@ FLAT(timings_line) uint32_t timings_line(const labial_timings_t *timings);
  * weights of a frame. What the licence of the speech model's data asks to be said. */
 FLAT(face_name) const char *face_name(unsigned face);
 FLAT(weight_name) const char *weight_name(unsigned face, unsigned weight);
-FLAT(weigh) void weigh(unsigned face, const int16_t *faps, int32_t *out);
+FLAT(weigh) void weigh(unsigned face, const int16_t *faps, const uint8_t *shares, int32_t *out);
 FLAT(attribution) const char *attribution(void);
 #endif
 

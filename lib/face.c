@@ -95,7 +95,7 @@ void labial_face_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHA
         int32_t *const to = face_enter(face);
         unsigned i;
         for (i = 0; i < face->rig->count; i++)
-            to[i] = labial_rig_target(&face->rig->outputs[i], faps);
+            to[i] = labial_rig_target(&face->rig->outputs[i], faps, NULL);
     }
 }
 

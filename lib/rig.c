@@ -98,7 +98,17 @@ static int32_t bent(const labial_rig_curve_t *curve, int32_t linear)
     return labial_add(segment->to, scaled(labial_sub(linear, segment->from), segment->slope, 20));
 }
 
-int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS])
+/* What the shares of a frame's sounds add: below 2^23, since no amount exceeds 2^15 and no share 2^8. */
+static int32_t sounding(const int16_t amounts[LABIAL_VISEMES], const uint8_t shares[LABIAL_VISEMES])
+{
+    int32_t sum = LABIAL_VISEME_ONE / 2;
+    unsigned i;
+    for (i = 0; i < LABIAL_VISEMES; i++)
+        sum += (int32_t)amounts[i] * shares[i];
+    return sum >> 7;
+}
+
+int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares)
 {
     /* Q12 FAP. The weights' limit keeps it within 65,535 * 2^15, below 2^31; the gain's limit then keeps the product of
      * Q12 and Q16 below 2^59, and the move below 2^31. */
@@ -108,6 +118,8 @@ int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t faps[
         mix = labial_add(mix, (int32_t)output->weights[i] * faps[i]);
     move = labial_clamp(scaled(mix, output->gain, 28), MOVE_MAX);
     value = labial_add(output->neutral, output->invert ? -move : move);
+    if (shares && output->visemes)
+        value = labial_add(value, sounding(output->visemes, shares));
     value = labial_rig_limited(output, output->curve ? bent(output->curve, value) : value);
     if (output->contact) /* both values are within the limits, and so is what lies between them */
         value =
@@ -164,13 +176,19 @@ static int32_t moved(const labial_rig_output_t *output, int32_t last, int32_t wa
 
 int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values)
 {
+    return labial_rig_apply_visemes(rig, faps, NULL, values);
+}
+
+int labial_rig_apply_visemes(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares,
+                             int32_t *values)
+{
     unsigned i;
     if (!rig || !rig->outputs || !faps || !values)
         return LABIAL_ERROR_NULL;
     for (i = 0; i < rig->count; i++) {
         const labial_rig_output_t *output = &rig->outputs[i];
-        values[i] =
-            moved(output, labial_rig_limited(output, values[i]), labial_rig_target(output, faps), output->deadband);
+        values[i] = moved(output, labial_rig_limited(output, values[i]), labial_rig_target(output, faps, shares),
+                          output->deadband);
     }
     return LABIAL_OK;
 }
@@ -309,10 +327,11 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
         if (changes && output->acceleration > 0) {
             sight.count = count < LABIAL_RIG_SIGHT ? count : LABIAL_RIG_SIGHT;
             for (k = 0; k < LABIAL_RIG_SIGHT; k++)
-                sight.wanted[k] = k < sight.count ? labial_rig_target(output, frames + (size_t)LABIAL_CHANNELS * k) : 0;
+                sight.wanted[k] =
+                    k < sight.count ? labial_rig_target(output, frames + (size_t)LABIAL_CHANNELS * k, NULL) : 0;
             values[i] = steered(output, &sight, last, changes[i], output->deadband);
         } else {
-            values[i] = slewed(output, labial_rig_target(output, frames), touch, last, output->deadband);
+            values[i] = slewed(output, labial_rig_target(output, frames, NULL), touch, last, output->deadband);
         }
         if (changes)
             changes[i] = labial_sub(values[i], last);

@@ -26,8 +26,10 @@ int32_t labial_rig_limited(const labial_rig_output_t *output, int32_t value);
 /* The value of the face at rest. */
 int32_t labial_rig_resting(const labial_rig_output_t *output);
 
-/* The value that FAPs mean, within the output's limits. */
-int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS]);
+/* The value that FAPs and the shares of sounds mean, within the output's limits; `shares` is null where they are not
+ * known. */
+int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS],
+                          const uint8_t *shares);
 
 /*
  * The value that follows `last`, which the last frame changed by `change`, on the way to those of `sight`: `count` of them

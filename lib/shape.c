@@ -90,14 +90,14 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     LABIAL_CHECK(sum >= 32768u);
     inverse = labial_quotient(0x80000000u, sum);
     for (i = 1; i <= count; i++) {
-        uint32_t share;                   /* of the mixture, Q12 */
+        uint16_t share;                   /* of the mixture, Q12 */
         c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
-        share = i < count ? likelihood_share(likelihoods[c], sum, inverse) : rest;
+        share = (uint16_t)(i < count ? likelihood_share(likelihoods[c], sum, inverse) : rest);
         rest -= share;
         if (share > 0) {
             selection->components[counting] = (uint8_t)c;
-            selection->shares[counting] = (uint16_t)share;
-            selection->tilts[counting++] = (int16_t)(((int32_t)share * deviations[c]) >> 6);
+            selection->shares[counting] = share;
+            selection->tilts[counting++] = (int16_t)((share * (int32_t)deviations[c]) >> 6);
         }
     }
     selection->count = (uint8_t)counting;

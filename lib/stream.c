@@ -23,8 +23,6 @@
 #include "units.h"
 #include "unlocked.h"
 
-#define MAGIC 0x4c41424cu /* "LABL" */
-
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
     return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, model->channel_count) : 0;
@@ -42,7 +40,7 @@ static unsigned width_of(const labial_model_t *model, size_t size)
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
 static int status(const labial_t *stream)
 {
-    return !stream ? LABIAL_ERROR_NULL : stream->magic != MAGIC ? LABIAL_ERROR_STATE : LABIAL_OK;
+    return !stream ? LABIAL_ERROR_NULL : stream->magic != LABIAL_MAGIC_ ? LABIAL_ERROR_STATE : LABIAL_OK;
 }
 
 /* ---- One frame in ------------------------------------------------------------------------------------------------ */
@@ -51,10 +49,11 @@ static int status(const labial_t *stream)
 static void select_halves(labial_t *stream, unsigned halves)
 {
     labial_spoken_t spoken;
+    if (stream->next.halves == 2u || !labial_units_next(&stream->units, stream->models, stream->ended, &spoken))
+        return;
     for (; halves > 0 && stream->next.halves < 2u; halves--)
-        if (labial_units_next(&stream->units, stream->models, stream->ended, &spoken))
-            labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
-                                &stream->next);
+        labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
+                            &stream->next);
 }
 
 /* Does its share of selecting the shape of the phoneme that begins next. The last of a stride's ticks has the fewest
@@ -198,7 +197,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     stream->resting = 1;
     stream->shape = labial_channels_init(&stream->channels, model->search_stride, width_of(model, size), workspace);
     stream->next.shape = stream->shape + stream->channels.width;
-    stream->magic = MAGIC;
+    stream->magic = LABIAL_MAGIC_;
     reset_input(stream);
     return LABIAL_OK;
 }

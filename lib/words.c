@@ -39,13 +39,8 @@ static unsigned asks_letter(const view_t *view, unsigned question)
 {
     static const uint32_t sets[] = { VOWEL_LETTERS, FRONT_VOWELS, SONORANTS, CONSONANTS };
     const unsigned distance = (question >> 5 & 3u) + 1u, what = question & 31u;
-    unsigned letter = 0;
-    if (question < 128u) {
-        if (view->place >= distance)
-            letter = view->letters[view->place - distance].letter;
-    } else if (view->place + distance < view->count) {
-        letter = view->letters[view->place + distance].letter;
-    }
+    const unsigned other = question < 128u ? view->place - distance : view->place + distance;
+    const unsigned letter = other < view->count ? view->letters[other].letter : 0u; /* before the first one it wraps */
     return what < 28u ? letter == what : (unsigned)(sets[what - 28u] >> letter) & 1u;
 }
 
@@ -105,7 +100,7 @@ static unsigned accented(const labial_words_model_t *model, const labial_words_l
     if (sound == 0u)
         return letter == 'e' - 'a' && place > 0u && letters[place - 1u].sound == PHONEME_EY ? 0u : none;
     if (sound == (PHONEME_EH | ACCENT_LAST))
-        sound = place + 1u == count || letters[place + 1u].letter == 27u ? PHONEME_IY : PHONEME_EH;
+        sound = place + 1u >= count || letters[place + 1u].letter == 27u ? PHONEME_IY : PHONEME_EH;
     for (i = model->bases[letter]; letter < 26u && i < model->bases[letter + 1u]; i++) {
         const uint8_t *const label = model->labels + 2u * model->leaves[i];
         if (label[0] == sound && (label[1] & ~VOWEL_LAST) == 0)
@@ -153,19 +148,19 @@ void labial_words_append(labial_word_t *word, unsigned phoneme, unsigned charact
 void labial_words_spell(const labial_words_model_t *model, const labial_words_letter_t *letters, unsigned count,
                         labial_word_t *word)
 {
-    uint8_t labels[LABIAL_WORDS_LETTERS];
+    uint8_t labels[LABIAL_WORDS_LETTERS] = { 0 };
     view_t view = { model->labels, letters, labels, count, 0, 0, 0 };
     unsigned place, first = 1, is_accented = 0, k;
     for (place = 0; place < count; place++) { /* a group begins where the letter before is no vowel */
         view.left += has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
         is_accented |= letters[place].sound;
     }
-    for (place = count; place-- > 0u;) {
-        const unsigned letter = letters[place].letter - 1u;
+    for (place = count; place > 0u;) {
+        const unsigned letter = letters[--place].letter - 1u;
         view.place = place;
         view.left -= has_vowel(&view, place) && (place == 0u || !has_vowel(&view, place - 1u));
         if (place + 1u < count && has_vowel(&view, place + 1u))
-            view.right += place + 2u == count || !has_vowel(&view, place + 2u);
+            view.right += place + 2u >= count || !has_vowel(&view, place + 2u);
         if (is_accented) {
             const unsigned label = accented(model, letters, count, place, NO_LABEL);
             labels[place] = (uint8_t)label;

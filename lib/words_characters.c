@@ -60,14 +60,14 @@ static uint32_t code_point(labial_words_place_t *here)
     unsigned i;
     if (lead < 0x80u)
         return code;
-    if (more == 0u || lead > 0xf4u || here->size - here->at < more)
+    if (more == 0u || lead > 0xf4u)
         return 0;
     code &= 0x3fu >> more;
     for (i = 0; i < more; i++) {
-        const unsigned char byte = here->text[here->at + i];
-        if ((byte & 0xc0u) != 0x80u)
+        const size_t next = here->at + i;
+        if (next >= here->size || (here->text[next] & 0xc0u) != 0x80u)
             return 0;
-        code = code << 6 | (byte & 0x3fu);
+        code = code << 6 | (here->text[next] & 0x3fu);
     }
     if (code < least[more])
         return 0;

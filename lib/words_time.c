@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "fixed.h"
 #include "labial/labial.h"
 #include "words_parts.h"
 
@@ -28,8 +29,9 @@
  * a voiceless consonant, before a vowel, at the end of the word, in the last syllable before a pause - and of
  * consonants - the first, the last, after another, before another, behind the last vowel before a pause, between
  * vowels. */
-static const uint16_t vowel_factors[] = { 276, 241, 264, 276, 271, 279, 261, 340 };
-static const uint16_t consonant_factors[] = { 300, 261, 225, 243, 353, 279 };
+#define FACTORS 8u
+static const uint16_t vowel_factors[FACTORS] = { 276, 241, 264, 276, 271, 279, 261, 340 };
+static const uint16_t consonant_factors[FACTORS] = { 300, 261, 225, 243, 353, 279, 256, 256 };
 
 /* ---- Weights ---------------------------------------------------------------------------------------------------- */
 
@@ -47,7 +49,7 @@ uint32_t labial_words_weight(const labial_words_model_t *model, const labial_wor
     unsigned holds, i;
     const uint16_t *factor = consonant_factors;
     uint32_t weight = 64u * model->milliseconds[word->phonemes[place].phoneme];
-    while (!word->phonemes[first].first)
+    while (first > 0u && !word->phonemes[first].first)
         first--;
     while (end < word->count && !word->phonemes[end].first)
         end++;
@@ -63,18 +65,19 @@ uint32_t labial_words_weight(const labial_words_model_t *model, const labial_wor
         after = class_of(model, word, place + 1u);
     pause = pause && end == word->count && vowels_right == 0u;
     if (own == VOWEL) {
-        holds = (vowel_count == 1u) | (unsigned)(vowel_count >= 3u) << 1 | (unsigned)(vowels_right == 0u) << 2 |
-                (unsigned)(vowels_left == 0u) << 3 | (unsigned)(after == VOICELESS) << 4 |
-                (unsigned)(after == VOWEL) << 5 | (unsigned)(after == NONE) << 6 | pause << 7;
+        holds = (unsigned)(vowel_count == 1u) | (unsigned)(vowel_count >= 3u) << 1 |
+                (unsigned)(vowels_right == 0u) << 2 | (unsigned)(vowels_left == 0u) << 3 |
+                (unsigned)(after == VOICELESS) << 4 | (unsigned)(after == VOWEL) << 5 | (unsigned)(after == NONE) << 6 |
+                pause << 7;
         factor = vowel_factors;
     } else {
-        holds = (before == NONE) | (unsigned)(after == NONE) << 1 | (unsigned)(before != NONE && before != VOWEL) << 2 |
-                (unsigned)(after != NONE && after != VOWEL) << 3 | pause << 4 |
-                (unsigned)(before == VOWEL && after == VOWEL) << 5;
+        holds = (unsigned)(before == NONE) | (unsigned)(after == NONE) << 1 |
+                (unsigned)(before != NONE && before != VOWEL) << 2 | (unsigned)(after != NONE && after != VOWEL) << 3 |
+                pause << 4 | (unsigned)(before == VOWEL && after == VOWEL) << 5;
     }
-    for (; holds > 0u; holds >>= 1, factor++)
-        if (holds & 1u)
-            weight = (weight * *factor) >> 8;
+    for (i = 0; i < FACTORS; i++)
+        if (holds >> i & 1u)
+            weight = (weight * factor[i]) >> 8;
     return weight;
 }
 
@@ -95,10 +98,10 @@ uint32_t labial_words_length(const labial_words_model_t *model, const labial_wor
     return (weigh_words(model, word, 0, word->count, 0) + 32u) / 64u;
 }
 
-/* value * part / whole, rounded; part <= whole. */
+/* value * part / whole, rounded; part <= whole; 0 of nothing. */
 static uint32_t portion(uint32_t value, uint32_t part, uint32_t whole)
 {
-    return (uint32_t)(((uint64_t)value * part + whole / 2u) / whole);
+    return whole == 0u ? 0u : (uint32_t)(((uint64_t)value * part + whole / 2u) / whole);
 }
 
 /* ---- Characters ------------------------------------------------------------------------------------------------- */
@@ -127,8 +130,13 @@ static void reach_characters(const labial_words_model_t *model, struct labial_wo
         uint32_t until = span->end - span->start, whole, part = 0;
         for (end = first + 1u; end < word->count && word->phonemes[end].character == word->phonemes[first].character;)
             end++;
-        if (end < word->count)
-            until = ends[word->phonemes[end].character - 1u] - span->start;
+        if (end < word->count) {
+            const unsigned character = word->phonemes[end].character;
+            /* Behind that of the phoneme before. */
+            /*@ assert character > 0; */
+            LABIAL_CHECK(character > 0u);
+            until = ends[character - 1u] - span->start;
+        }
         whole = weigh_words(model, word, first, end, 0);
         for (i = first; i < end; i++) {
             uint32_t reach;
@@ -235,8 +243,12 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
         return LABIAL_ERROR_WORD;
     stream->context = context;
     stream->latest = start;
-    if (stream->holding && context.dropped < before->word.count)
-        before->word.count = (uint8_t)(before->word.count - context.dropped);
+    if (stream->holding && context.dropped < before->word.count) {
+        const unsigned left = (unsigned)before->word.count - context.dropped;
+        /*@ assert left <= 96; */
+        LABIAL_CHECK(left <= LABIAL_WORDS_PHONEMES);
+        before->word.count = (uint8_t)left;
+    }
     if (span->word.kind == LABIAL_WORDS_SILENT) {
         if (stream->holding && before->open && start > before->start) {
             before->end = start;
@@ -247,9 +259,11 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
     span->start = start;
     span->end = end;
     span->open = end == LABIAL_WORDS_NO_END;
-    span->spelt = ends && !are_equal(start, ends, count);
-    if (span->spelt)
+    span->spelt = 0;
+    if (ends && !are_equal(start, ends, count)) {
+        span->spelt = 1;
         reach_characters(stream->model, span, ends);
+    }
     if (stream->holding)
         speak(stream, start);
     else
@@ -332,20 +346,26 @@ labial_latency_t labial_words_latency(const labial_words_t *stream)
     return latency;
 }
 
-/* When the next phoneme of the word being spoken ends, from the word's beginning on; moves `reached` behind it. */
-static uint32_t boundary(const labial_words_t *stream, uint32_t *reached)
+/* The next phoneme of the word being spoken, and when it ends, from the word's beginning on; moves `reached` behind it. */
+static uint32_t boundary(const labial_words_t *stream, uint32_t *reached, unsigned *phoneme)
 {
     const struct labial_words_span *const span = &stream->spans[stream->held ^ 1u];
     const uint32_t length = stream->until - stream->start;
+    const unsigned place = stream->place;
     uint32_t end;
     if (span->word.kind != LABIAL_WORDS_READ) {
+        *phoneme = stream->model->filler[stream->reached & 1u];
         *reached = stream->reached + 1u;
         return portion(length, *reached, stream->weight);
     }
-    *reached = stream->reached + labial_words_weight(stream->model, &span->word, stream->place, stream->paused);
+    /* With the last phoneme `reached` came to the word's weight. */
+    /*@ assert place < 96; */
+    LABIAL_CHECK(place < span->word.count);
+    *phoneme = span->word.phonemes[place].phoneme;
+    *reached = stream->reached + labial_words_weight(stream->model, &span->word, place, stream->paused);
     end = portion(length, *reached, stream->weight);
     if (span->spelt && *reached < stream->weight) {
-        const uint32_t reach = span->reach[stream->place];
+        const uint32_t reach = span->reach[place];
         end = (end + (reach < length ? reach : length)) / 2u;
     }
     return end;
@@ -359,22 +379,17 @@ int labial_words_next(labial_words_t *stream, unsigned *phoneme, uint32_t *milli
     if (!stream->model)
         return LABIAL_ERROR_STATE;
     do {
-        const struct labial_words_span *span;
         if (stream->speaking && stream->reached == stream->weight)
             stream->speaking = 0;
         if (!stream->speaking && stream->holding && stream->ended)
             speak(stream, 0xffffffffu);
         if (!stream->speaking)
             return stream->ended ? LABIAL_DONE : LABIAL_WAITING;
-        span = &stream->spans[stream->held ^ 1u];
         reached = stream->reached;
         *phoneme = 0;
         end = stream->start;
-        if (stream->time >= stream->start) {
-            end += boundary(stream, &reached);
-            *phoneme = span->word.kind == LABIAL_WORDS_READ ? span->word.phonemes[stream->place].phoneme
-                                                            : stream->model->filler[stream->reached & 1u];
-        }
+        if (stream->time >= stream->start)
+            end += boundary(stream, &reached, phoneme);
         if (end - stream->time > LABIAL_DURATION_MAX) {
             end = stream->time + LABIAL_DURATION_MAX;
         } else if (stream->time >= stream->start) {

@@ -98,6 +98,9 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     exact: boolean;
     /** Number of the frame that was delivered last, from 0; -1 before the first. */
     readonly number: number;
+    /** How much of each sound that frame shows: 15 shares of together 128, in the order sil, PP, FF, TH, DD, kk, CH, SS,
+     * nn, RR, aa, E, ih, oh, ou. The weights of faces already follow them. */
+    readonly visemes: Uint8Array;
     /** When that frame is due, seconds after the first. */
     readonly time: number;
     /** Frames per second. */
@@ -127,6 +130,8 @@ export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly duration: number;
     /** The FAPs of all frames, 13 for each, whatever the output is. */
     readonly faps: Int16Array;
+    /** How much of each sound each frame shows, 15 shares for each, as a stream's `visemes`. */
+    readonly visemes: Uint8Array;
     /** The mouth at a time of the sound, seconds, interpolated between two frames. Before the beginning it is the first
      * frame, after the end the last one. The same object each time. */
     at(seconds: number): O extends "faps" ? Float32Array : FrameOf<O>;
@@ -385,8 +390,11 @@ export class Voice<O extends Output = "faps"> {
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;
-    /** Words, phonemes and so on that were told and that made no sense; messages of utterances that are over. */
-    readonly counts: { readonly told: number; readonly skipped: number; readonly dropped: number };
+    /** What became so far of the messages: how many there were; words, phonemes and so on that were told and that made no
+     * sense; messages of utterances that are over, and those that came twice. */
+    readonly stats: {
+        readonly messages: number; readonly told: number; readonly skipped: number; readonly dropped: number;
+    };
     /** "ended": all of the utterance was shown, after finish(). */
     addEventListener(type: "ended", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
     removeEventListener(type: "ended", listener: (event: { readonly type: string }) => void): void;
@@ -438,8 +446,10 @@ export class Labial {
     /** FAPs of speaking while laughing: `intensity` is the amount of laughter, `words` how far it gives way to words,
      * both 0 .. 1. */
     blend(speech: ArrayLike<number>, laugh: ArrayLike<number>, intensity: number, words: number, out?: Int16Array): Faps;
-    /** The weights of a face for 13 FAPs. */
-    convert<F extends Face | Rig>(faps: ArrayLike<number>, output: F, out?: Partial<FrameOf<F>>): FrameOf<F>;
+    /** The weights of a face for 13 FAPs, and for the shares of the sounds that they show, if these are known: a tongue,
+     * teeth and pressed lips need them. */
+    convert<F extends Face | Rig>(faps: ArrayLike<number>, output: F, out?: Partial<FrameOf<F>>,
+                                  visemes?: ArrayLike<number> | null): FrameOf<F>;
 }
 
 /** Readers of voices' timings; `source` is their JSON, parsed or as text. */

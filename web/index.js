@@ -1,5 +1,5 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, allowed, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
@@ -21,7 +21,7 @@ const UNLIMITED = [0, 0, 0];
 const SEGMENTS_MAX = 8;
 const SEGMENT = [2 ** 24, 2 ** 24, 2 ** 25];
 /** All numbers of an output. */
-const RIG_NUMBERS = CHANNELS + NUMBERS.length + UNLIMITED.length + 1 + SEGMENTS_MAX * SEGMENT.length;
+const RIG_NUMBERS = CHANNELS + NUMBERS.length + UNLIMITED.length + 1 + SEGMENTS_MAX * SEGMENT.length + 1 + VISEMES;
 
 /** Bytes of the buffer for labels, frames and weights. */
 const SCRATCH = 16384;
@@ -252,12 +252,17 @@ export class Labial {
         return out;
     }
 
-    convert(faps, output, out = {}) {
+    convert(faps, output, out = {}, visemes = null) {
         if (this.checkOutput(output) === "faps") {
             throw new LabialError('FAPs are what "faps" are already; convert them to a face');
         }
         this.#put(faps, this.#scratch);
-        return this.weigh(this.#scratch, output, out);
+        const shares = visemes ? this.#scratch + 32 : 0;
+        if (visemes && visemes.length !== VISEMES) {
+            throw new TypeError(`the shares of sounds are ${shown(visemes)}, not ${VISEMES} numbers`);
+        }
+        if (visemes) this.memory.bytes.set(visemes, shares);
+        return this.weigh(this.#scratch, output, out, shares);
     }
 
     async #fetch() {
@@ -274,13 +279,13 @@ export class Labial {
 
     // ---- For streams and tracks -------------------------------------------------------------------------------------
 
-    /** The weights of the FAPs at an address of the module's memory. */
-    weigh(at, output, out) {
+    /** The weights of the FAPs, and of the shares of sounds, at addresses of the module's memory; 0: not known. */
+    weigh(at, output, out, shares = 0) {
         const rig = this.#rigs.get(output);
         const names = rig === undefined ? this.faces[output] : output.outputs;
         const values = this.#scratch + 64;
-        if (rig === undefined) this.wasm.weigh(Object.keys(this.faces).indexOf(output), at, values);
-        else this.wasm.rig_weigh(rig, names.length, at, values);
+        if (rig === undefined) this.wasm.weigh(Object.keys(this.faces).indexOf(output), at, shares, values);
+        else this.wasm.rig_weigh(rig, names.length, at, shares, values);
         const thousandths = this.memory.int32(values, names.length);
         for (let i = 0; i < names.length; i++) out[names[i]] = thousandths[i] / 1000;
         return out;
@@ -300,16 +305,17 @@ export class Labial {
         return found;
     }
 
-    /** Runs a stream until no more frames are ready, and returns their number. Calls `add` with pieces, which are valid
-     * only during the call. */
+    /** Runs a stream until no more frames are ready, and returns their number. Calls `add` with pieces, FAPs and shares of
+     * sounds, which are valid only during the call. */
     run(mouth, add) {
-        const most = Math.floor(SCRATCH / 2 / CHANNELS);
+        const most = Math.floor(SCRATCH / (2 * CHANNELS + VISEMES));
+        const shares = this.#scratch + 2 * CHANNELS * most;
         let count;
         let frames = 0;
         do {
-            count = this.wasm.mouth_run(mouth, this.#scratch, most);
+            count = this.wasm.mouth_run(mouth, this.#scratch, shares, most);
             if (count < 0) throw this.failure(count);
-            add(this.memory.int16(this.#scratch, CHANNELS * count));
+            add(this.memory.int16(this.#scratch, CHANNELS * count), this.memory.bytes.subarray(shares, shares + VISEMES * count));
             frames += count;
         } while (count === most);
         return frames;
@@ -317,7 +323,7 @@ export class Labial {
 
     /** One frame, which then lies at mouth_faps(); returns their number, 0 if the stream waits. */
     next(mouth) {
-        return this.wasm.mouth_run(mouth, this.#scratch, 1);
+        return this.wasm.mouth_run(mouth, this.#scratch, 0, 1);
     }
 
     owns(model) {
@@ -370,12 +376,15 @@ function facesOf({ wasm, memory }) {
 
 /** The numbers of an output of a rig's file; the library checks them. */
 function numbersOf(name, row) {
-    const { weights, curve = [] } = row ?? {};
+    const { weights, curve = [], visemes } = row ?? {};
     const right = Array.isArray(weights) && weights.length === CHANNELS && weights.every((one) => whole(one, 32767)) &&
         NUMBERS.every(([key, most]) => whole(row[key], most)) &&
-        Array.isArray(curve) && curve.length <= SEGMENTS_MAX && curve.every(isSegment);
+        Array.isArray(curve) && curve.length <= SEGMENTS_MAX && curve.every(isSegment) &&
+        (visemes === undefined || (Array.isArray(visemes) && visemes.length === VISEMES && visemes.every((one) => whole(one, 32767))));
     if (!right) throw new LabialError(`output ${shown(name)} is not one that labial rig --json wrote`);
-    return [...weights, ...NUMBERS.map(([key]) => row[key]), ...UNLIMITED, curve.length, ...curve.flat()];
+    const bends = [curve.length, ...curve.flat(), ...new Array((SEGMENTS_MAX - curve.length) * SEGMENT.length).fill(0)];
+    const sounds = visemes ? [1, ...visemes] : [0];
+    return [...weights, ...NUMBERS.map(([key]) => row[key]), ...UNLIMITED, ...bends, ...sounds];
 }
 
 function isSegment(given) {

@@ -2,6 +2,8 @@
 
 /** Numbers of a frame. */
 export const CHANNELS = 13;
+/** Shares of sounds in a frame. */
+export const VISEMES = 15;
 /** No timing is later, in seconds; beyond it the unit is not seconds. */
 export const LONGEST = 86400;
 /** The error for a laugh without the model. */

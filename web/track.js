@@ -1,5 +1,5 @@
 // A whole utterance: converts timings to frames for every moment of its sound.
-import { CHANNELS, LONGEST, LabialError, amount, shown } from "./memory.js";
+import { CHANNELS, LONGEST, LabialError, VISEMES, amount, shown } from "./memory.js";
 
 /** Overlaps and gaps up to this many microseconds come from rounding. */
 const TOLERANCE = 1000;
@@ -9,13 +9,15 @@ const BATCH = 4096;
 export class Track {
     #labial;
     #between = new Float32Array(CHANNELS);
+    #shares = new Uint8Array(VISEMES);
     #weights = {};
 
-    constructor(labial, output, fps, faps) {
+    constructor(labial, output, fps, { faps, visemes }) {
         this.#labial = labial;
         this.output = output;
         this.fps = fps;
         this.faps = faps;
+        this.visemes = visemes;
         this.length = faps.length / CHANNELS;
         this.duration = this.length / fps;
     }
@@ -28,13 +30,15 @@ export class Track {
         const last = this.length - 1;
         const place = Math.max(0, Math.min(last, seconds * this.fps));
         const first = Math.floor(place);
-        const from = CHANNELS * first;
-        const to = CHANNELS * Math.min(last, first + 1);
-        for (let i = 0; i < CHANNELS; i++) {
-            const value = last < 0 ? 0 : this.faps[from + i];
-            between[i] = last < 0 ? 0 : value + (this.faps[to + i] - value) * (place - first);
-        }
-        return this.output === "faps" ? between : this.#labial.convert(between, this.output, this.#weights);
+        const next = Math.min(last, first + 1);
+        const mix = (all, width, i) => {
+            const value = all[width * first + i];
+            return value + (all[width * next + i] - value) * (place - first);
+        };
+        for (let i = 0; i < CHANNELS; i++) between[i] = last < 0 ? 0 : mix(this.faps, CHANNELS, i);
+        if (this.output === "faps") return between;
+        for (let i = 0; i < VISEMES && last >= 0; i++) this.#shares[i] = Math.round(mix(this.visemes, VISEMES, i));
+        return this.#labial.convert(between, this.output, this.#weights, last < 0 ? null : this.#shares);
     }
 
     frame(number) {
@@ -42,7 +46,8 @@ export class Track {
             throw new RangeError(`there is no frame ${shown(number)}; the track has ${this.length}`);
         }
         const faps = this.faps.subarray(CHANNELS * number, CHANNELS * (number + 1));
-        return this.output === "faps" ? faps : this.#labial.convert(faps, this.output);
+        if (this.output === "faps") return faps;
+        return this.#labial.convert(faps, this.output, {}, this.visemes.subarray(VISEMES * number, VISEMES * (number + 1)));
     }
 
     *[Symbol.iterator]() {
@@ -50,21 +55,15 @@ export class Track {
     }
 }
 
-/** The FAPs of all frames of the segments, 13 for each. */
+/** The FAPs of all frames of the segments, 13 for each, and the shares of their sounds, 15 for each. */
 export function speak(stream, segments) {
     if (!segments || typeof segments[Symbol.iterator] !== "function" || typeof segments === "string") {
         throw new TypeError(`the timings are ${shown(segments)}, not a list of { start, end, label }`);
     }
-    let faps = new Int16Array(CHANNELS * 512);
-    let used = 0;
-    const add = (piece) => {
-        if (used + piece.length > faps.length) {
-            const larger = new Int16Array(2 * faps.length + piece.length);
-            larger.set(faps.subarray(0, used));
-            faps = larger;
-        }
-        faps.set(piece, used);
-        used += piece.length;
+    const [faps, visemes] = [growing(new Int16Array(CHANNELS * 512)), growing(new Uint8Array(VISEMES * 512))];
+    const add = (piece, shares) => {
+        faps.add(piece);
+        visemes.add(shares);
     };
     let position = 0; // microseconds
     let number = 0;
@@ -84,7 +83,22 @@ export function speak(stream, segments) {
     }
     stream.end();
     stream.drain(add);
-    return faps.slice(0, used);
+    return { faps: faps.all(), visemes: visemes.all() };
+}
+
+/** An array that grows as pieces are added to it. */
+function growing(array) {
+    let used = 0;
+    const add = (piece) => {
+        if (used + piece.length > array.length) {
+            const larger = new array.constructor(2 * array.length + piece.length);
+            larger.set(array.subarray(0, used));
+            array = larger;
+        }
+        array.set(piece, used);
+        used += piece.length;
+    };
+    return { add, all: () => array.slice(0, used) };
 }
 
 function times(segment, number) {

@@ -6,7 +6,7 @@
 
 #include "labial/rig.h"
 
-#if LABIAL_RIG_FORMAT != 2
+#if LABIAL_RIG_FORMAT != 3
 #error "arkit was written for another version of Labial: run labial rig again."
 #endif
 
@@ -14,12 +14,14 @@
 extern "C" {
 #endif
 
-#define ARKIT_OUTPUTS 10
+#define ARKIT_OUTPUTS 17
 
 /* What initialises an array of the outputs' names. */
 #define ARKIT_OUTPUT_NAMES { \
     "jawOpen", "mouthClose", "mouthPucker", "mouthSmileLeft", "mouthSmileRight", "mouthStretchLeft", \
-    "mouthStretchRight", "mouthUpperUpLeft", "mouthUpperUpRight", "mouthRollLower" \
+    "mouthStretchRight", "mouthUpperUpLeft", "mouthUpperUpRight", "mouthRollLower", "mouthRollUpper", \
+    "mouthPressLeft", "mouthPressRight", "mouthFunnel", "mouthLowerDownLeft", "mouthLowerDownRight", \
+    "tongueOut" \
 }
 
 /* Places of the outputs among the values. */
@@ -33,7 +35,14 @@ enum {
     ARKIT_MOUTHSTRETCHRIGHT = 6,
     ARKIT_MOUTHUPPERUPLEFT = 7,
     ARKIT_MOUTHUPPERUPRIGHT = 8,
-    ARKIT_MOUTHROLLLOWER = 9
+    ARKIT_MOUTHROLLLOWER = 9,
+    ARKIT_MOUTHROLLUPPER = 10,
+    ARKIT_MOUTHPRESSLEFT = 11,
+    ARKIT_MOUTHPRESSRIGHT = 12,
+    ARKIT_MOUTHFUNNEL = 13,
+    ARKIT_MOUTHLOWERDOWNLEFT = 14,
+    ARKIT_MOUTHLOWERDOWNRIGHT = 15,
+    ARKIT_TONGUEOUT = 16
 };
 
 extern const labial_rig_t arkit;

@@ -6,7 +6,7 @@
 
 #include "labial/rig.h"
 
-#if LABIAL_RIG_FORMAT != 2
+#if LABIAL_RIG_FORMAT != 3
 #error "oculus was written for another version of Labial: run labial rig again."
 #endif
 
@@ -14,11 +14,11 @@
 extern "C" {
 #endif
 
-#define OCULUS_OUTPUTS 10
+#define OCULUS_OUTPUTS 15
 
 /* What initialises an array of the outputs' names. */
 #define OCULUS_OUTPUT_NAMES { \
-    "sil", "PP", "FF", "TH", "DD", "kk", "nn", "aa", "oh", "ou" \
+    "sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou" \
 }
 
 /* Places of the outputs among the values. */
@@ -29,10 +29,15 @@ enum {
     OCULUS_TH = 3,
     OCULUS_DD = 4,
     OCULUS_KK = 5,
-    OCULUS_NN = 6,
-    OCULUS_AA = 7,
-    OCULUS_OH = 8,
-    OCULUS_OU = 9
+    OCULUS_CH = 6,
+    OCULUS_SS = 7,
+    OCULUS_NN = 8,
+    OCULUS_RR = 9,
+    OCULUS_AA = 10,
+    OCULUS_E = 11,
+    OCULUS_IH = 12,
+    OCULUS_OH = 13,
+    OCULUS_OU = 14
 };
 
 extern const labial_rig_t oculus;

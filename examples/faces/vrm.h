@@ -6,7 +6,7 @@
 
 #include "labial/rig.h"
 
-#if LABIAL_RIG_FORMAT != 2
+#if LABIAL_RIG_FORMAT != 3
 #error "vrm was written for another version of Labial: run labial rig again."
 #endif
 
@@ -14,18 +14,20 @@
 extern "C" {
 #endif
 
-#define VRM_OUTPUTS 3
+#define VRM_OUTPUTS 5
 
 /* What initialises an array of the outputs' names. */
 #define VRM_OUTPUT_NAMES { \
-    "aa", "ih", "ou" \
+    "aa", "ih", "ou", "ee", "oh" \
 }
 
 /* Places of the outputs among the values. */
 enum {
     VRM_AA = 0,
     VRM_IH = 1,
-    VRM_OU = 2
+    VRM_OU = 2,
+    VRM_EE = 3,
+    VRM_OH = 4
 };
 
 extern const labial_rig_t vrm;

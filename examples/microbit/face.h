@@ -6,7 +6,7 @@
 
 #include "labial/rig.h"
 
-#if LABIAL_RIG_FORMAT != 2
+#if LABIAL_RIG_FORMAT != 3
 #error "face was written for another version of Labial: run labial rig again."
 #endif
 

@@ -158,6 +158,7 @@ typedef struct {
     uint8_t present; /* of the latest frame */
 } labial_articulation_t;
 
+#define LABIAL_MAGIC_ 0x4c41424cu /* "LABL" */
 #define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
 /* The stream's state (stream.c). Small members come first, where small instructions reach them. */

@@ -13,6 +13,7 @@
  *
  *     move   = gain * (weights[0] * f[0] + ... + weights[12] * f[12])    rounded to the nearest, halves up
  *     linear = neutral + move, or neutral - move when inverted
+ *              + visemes[0] * share[0] + ... + visemes[14] * share[14]   where shares of sounds are known, rounded
  *     target = curve(linear), or linear without a curve                  within minimum .. maximum
  *     wanted = target + contact * (closed - target) for an output with `closed`; else the target
  *     value  = wanted, or as near to it as `slew` and `acceleration` allow; the previous value within `deadband`
@@ -40,13 +41,14 @@
 #include <stdint.h>
 
 #include "labial/labial.h"
+#include "labial/visemes.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* Version of this format. Tables that `labial rig` wrote for another version do not compile. */
-#define LABIAL_RIG_FORMAT 2
+#define LABIAL_RIG_FORMAT 3
 
 /* ---- Limits, beyond which labial_rig_check() refuses a table. With them no sum or product overflows. ------------- */
 
@@ -86,7 +88,7 @@ typedef struct {
     labial_rig_segment_t segments[LABIAL_RIG_SEGMENTS];
 } labial_rig_curve_t;
 
-/* One output. 64 bytes where a pointer has 4. */
+/* One output. 68 bytes where a pointer has 4. */
 typedef struct {
     int16_t weights[LABIAL_CHANNELS]; /* Q12, in the order of labial_fap_numbers (labial/faps.h) */
     uint8_t invert;                   /* 1 when the output moves the other way, else 0 */
@@ -103,6 +105,8 @@ typedef struct {
                                        * successive frames; 0 for no limit. An output that would take more than
                                        * LABIAL_RIG_SIGHT frames to reach `slew` stays slower */
     const labial_rig_curve_t *curve;  /* NULL for none */
+    const int16_t *visemes;           /* LABIAL_VISEMES amounts, units at a share of one (labial/visemes.h); NULL for an
+                                       * output that follows FAPs alone */
 } labial_rig_output_t;
 
 /* A rig: `count` outputs, 1 or more. */
@@ -126,7 +130,7 @@ typedef struct {
     {                                                                                                                  \
         { 0, 0, 0, -LABIAL_RIG_ONE, -LABIAL_RIG_ONE, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 1,                                   \
             LABIAL_RIG_GAIN((open) - (closed), LABIAL_RIG_OPENING), (closed), (closed) < (open) ? (closed) : (open),   \
-            (closed) < (open) ? (open) : (closed), (slew), (closed), 0, 0, 0                                           \
+            (closed) < (open) ? (open) : (closed), (slew), (closed), 0, 0, 0, 0                                        \
     }
 
 /* ---- Calls ------------------------------------------------------------------------------------------------------- */
@@ -161,6 +165,16 @@ int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
  * Returns LABIAL_OK or LABIAL_ERROR_NULL.
  */
 int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values);
+
+/*
+ * The same for a frame of which it is known what sounds it shows: `shares` are LABIAL_VISEMES of them, as
+ * labial_visemes() gives them; with NULL it is labial_rig_apply(). Outputs with `visemes` show more of a sound than the
+ * FAPs of lips and jaw tell: a tongue, teeth, lips that are pressed. Limits and contact apply to the sum.
+ *
+ * Returns LABIAL_OK or LABIAL_ERROR_NULL.
+ */
+int labial_rig_apply_visemes(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares,
+                             int32_t *values);
 
 /* The largest look-ahead of an output with a limit of acceleration, in frames, this one included. */
 #define LABIAL_RIG_SIGHT 32

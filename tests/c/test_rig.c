@@ -266,6 +266,40 @@ TEST(full_curve_bends_everywhere)
     }
 }
 
+/* What is LABIAL_RIG_SIGHT frames ahead is seen, the present one included: from standing at 2720, with 10 more in each frame,
+ * a servo comes to 0 in just as many, half of them ever faster. And its speed is what it reaches in as many. */
+TEST(sight_is_32_frames)
+{
+    enum { CLOSES = 90, FASTEST = 10 * LABIAL_RIG_SIGHT };
+    static int16_t frames[CLOSES + 2 * LABIAL_RIG_SIGHT][LABIAL_CHANNELS];
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int32_t value = 0, change = 0, most = 0;
+    memset(output.weights, 0, sizeof output.weights);
+    output.weights[FAP52] = -LABIAL_RIG_ONE;
+    output.gain = LABIAL_RIG_GAIN(10, 1);
+    output.neutral = output.minimum = output.slew = output.contact = 0;
+    output.closed = 0;
+    output.maximum = 2720;
+    output.acceleration = 10;
+    for (unsigned t = 0; t < CLOSES; t++)
+        frames[t][FAP52] = -272;
+    for (unsigned t = 0; t <= CLOSES; t++) {
+        assert_int_equal(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change), LABIAL_OK);
+        if (t + LABIAL_RIG_SIGHT == CLOSES)
+            assert_int_equal(value, 2720); /* nothing is seen of it yet */
+    }
+    assert_int_equal(value, 0);
+    output.maximum = 30000;
+    for (unsigned t = 0; t < CLOSES; t++)
+        frames[t][FAP52] = -3000;
+    for (unsigned t = 0; t < CLOSES - LABIAL_RIG_SIGHT; t++) {
+        assert_int_equal(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change), LABIAL_OK);
+        most = change > most ? change : most;
+    }
+    assert_int_equal(most, FASTEST);
+}
+
 /* A servo with a limit of acceleration, on its way down from 1600 to 1400 in the frame 8 with all in sight: it sets out
  * where it must, comes to rest there and goes no further; with nothing in sight it is late, and does not go beyond. */
 TEST(acceleration_comes_to_rest)
@@ -462,13 +496,18 @@ static double limited(double value, double low, double high)
 }
 
 /* The header's equations in double precision. */
-static double expected(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], double last)
+static double expected(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares,
+                       double last)
 {
     double move = 0;
     for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
         move += (double)output->weights[i] / 4096.0 * faps[i];
     move = floor(move * output->gain / 65536.0 + 0.5);
-    double value = limited(output->neutral + (output->invert ? -move : move), output->minimum, output->maximum);
+    double sounds = 0;
+    for (unsigned i = 0; i < LABIAL_VISEMES && shares && output->visemes; i++)
+        sounds += output->visemes[i] * (double)shares[i] / LABIAL_VISEME_ONE;
+    double value = output->neutral + (output->invert ? -move : move) + floor(sounds + 0.5);
+    value = limited(value, output->minimum, output->maximum);
     if (output->contact)
         value =
             floor(value + (output->closed - value) * limited((136.0 + faps[FAP51] + faps[FAP52]) / 64.0, 0, 1) + .5);
@@ -476,6 +515,33 @@ static double expected(const labial_rig_output_t *output, const int16_t faps[LAB
     if (fabs(value - last) < output->deadband)
         return last;
     return output->slew > 0 ? limited(value, last - output->slew, last + output->slew) : value;
+}
+
+/* By hand: what sounds add counts before contact closes and limits apply, and not where they are not known. */
+TEST(sounds_add_to_the_faps)
+{
+    static const int16_t amounts[LABIAL_VISEMES] = { [LABIAL_VISEME_TH] = 400, [LABIAL_VISEME_PP] = -300 };
+    uint8_t shares[LABIAL_VISEMES] = { [LABIAL_VISEME_TH] = LABIAL_VISEME_ONE / 2 };
+    int16_t faps[LABIAL_CHANNELS] = { [FAP3] = 100, [FAP52] = -400 };
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int32_t value = 0;
+    output.visemes = amounts;
+    assert_int_equal(labial_rig_apply_visemes(&rig, faps, shares, &value), LABIAL_OK);
+    assert_int_equal(value, 1800);
+    assert_int_equal(labial_rig_apply_visemes(&rig, faps, NULL, &value), LABIAL_OK);
+    assert_int_equal(value, 1600);
+    shares[LABIAL_VISEME_PP] = LABIAL_VISEME_ONE;
+    labial_rig_apply_visemes(&rig, faps, shares, &value);
+    assert_int_equal(value, 1500);
+    shares[LABIAL_VISEME_TH] = 255; /* more than all, from elsewhere */
+    labial_rig_apply_visemes(&rig, faps, shares, &value);
+    assert_int_equal(value, 2000);
+    output.contact = 1;
+    output.closed = 1000;
+    faps[FAP52] = 0;
+    labial_rig_apply_visemes(&rig, faps, shares, &value);
+    assert_int_equal(value, 1000);
 }
 
 /* Would catch an overflow, a wrong rounding or a limit that is left, anywhere in the range of a checked table. All sums
@@ -486,9 +552,13 @@ TEST(random_rigs_equal_double)
     unsigned off = 0;
     dice.state = 1;
     for (unsigned round = 0; round < 4000; round++) {
-        const labial_rig_output_t output = any_sound_output();
+        int16_t amounts[LABIAL_VISEMES];
+        labial_rig_output_t output = any_sound_output();
         const labial_rig_t rig = { &output, 1 };
         int32_t value;
+        for (unsigned i = 0; i < LABIAL_VISEMES; i++)
+            amounts[i] = (int16_t)between(round % 3u ? -1000 : INT16_MIN, round % 3u ? 1000 : INT16_MAX);
+        output.visemes = chance() % 2u ? amounts : NULL;
         assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
         assert_int_equal(labial_rig_rest(&rig, &value), LABIAL_OK);
         for (unsigned frame = 0; frame < 12; frame++) {
@@ -496,8 +566,12 @@ TEST(random_rigs_equal_double)
             const int32_t last = value;
             for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
                 faps[i] = any_fap();
-            const double wanted = expected(&output, faps, last);
-            labial_rig_apply(&rig, faps, &value);
+            uint8_t shares[LABIAL_VISEMES];
+            for (unsigned i = 0; i < LABIAL_VISEMES; i++)
+                shares[i] = (uint8_t)chance();
+            const uint8_t *const known = frame % 3u ? shares : NULL;
+            const double wanted = expected(&output, faps, known, last);
+            assert_int_equal(labial_rig_apply_visemes(&rig, faps, known, &value), LABIAL_OK);
             if (fabs(wanted - value) > 1.0)
                 fail_msg("rig %u, frame %u: %ld instead of %.1f", round, frame, (long)value, wanted);
             off += wanted < value || wanted > value;
@@ -629,6 +703,7 @@ TEST(null_and_empty_are_refused)
     assert_int_equal(labial_rig_apply(&hollow, faps, &value), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&rig, NULL, &value), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&rig, faps, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_rig_apply_visemes(&rig, faps, NULL, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&empty, faps, &value), LABIAL_OK);
     assert_int_equal(labial_rig_apply_ahead(NULL, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply_ahead(&hollow, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
@@ -636,7 +711,7 @@ TEST(null_and_empty_are_refused)
     assert_int_equal(labial_rig_apply_ahead(&rig, faps, 1, NULL, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_delayed(&hollow, &delay, faps, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(value, 5);
-    assert_int_equal(sizeof output, sizeof(void *) == 4 ? 64 : 72);
+    assert_int_equal(sizeof output, sizeof(void *) == 4 ? 68 : 80);
     assert_int_equal(sizeof(labial_rig_curve_t), 100);
 }
 

@@ -198,6 +198,13 @@ TEST(ends_that_are_not_known_are_guessed)
     say(&spoken, ".", 20 * length, LABIAL_WORDS_NO_END); /* but not with the word */
     flush(&spoken);
     assert_int_equal(until(&spoken, spoken.count), 21 * length);
+    for (unsigned longer = 0; longer < 2; longer++) { /* one and a half times is the most */
+        begin(0);
+        memset(&spoken, 0, sizeof spoken);
+        say(&spoken, "banana", 0, LABIAL_WORDS_NO_END);
+        say(&spoken, "banana", length / 4 * 6 + longer, LABIAL_WORDS_NO_END);
+        assert_int_equal(until(&spoken, spoken.count), longer ? length : length / 4 * 6);
+    }
     say(&spoken, "banana", 0xfffffff0u, LABIAL_WORDS_NO_END); /* hours of silence, in parts */
     flush(&spoken);
     assert_int_equal(until(&spoken, spoken.count), 0xffffffffu);
@@ -429,6 +436,27 @@ TEST(latency_tells_what_is_inside)
     assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_OK);
     assert_int_equal(labial_words_restart(&stream), LABIAL_OK);
     assert_int_equal(labial_words_push(&stream, "me", 2, 300, 600), LABIAL_OK); /* the first one takes no room */
+}
+
+/* Would catch a word of the caller's that is read before its beginning, and a division by weights that are all zero. */
+TEST(words_and_models_without_sense_do_no_harm)
+{
+    static const uint8_t nothing[256] = { 0 };
+    static const uint32_t ends[] = { 10, 50, 400 };
+    labial_words_model_t still = words_en;
+    labial_word_t word;
+    uint32_t length, lasts;
+    unsigned phoneme;
+    assert_int_equal(labial_words_read(&words_en, NULL, "me", 2, &word), LABIAL_OK);
+    length = labial_words_length(&words_en, &word);
+    assert_true(length > 100 && word.phonemes[0].first);
+    word.phonemes[0].first = 0;
+    assert_int_equal(labial_words_length(&words_en, &word), length);
+    still.milliseconds = nothing;
+    assert_int_equal(labial_words_init(&stream, &still, NULL, 0), LABIAL_OK);
+    assert_int_equal(labial_words_push_characters(&stream, "box", 3, 0, ends, 3), LABIAL_OK);
+    assert_int_equal(labial_words_end(&stream), LABIAL_OK);
+    assert_int_equal(labial_words_next(&stream, &phoneme, &lasts), LABIAL_DONE);
 }
 
 TEST(misuse_is_an_error)

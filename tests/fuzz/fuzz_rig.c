@@ -17,6 +17,8 @@ typedef struct {
     uint8_t outputs[OUTPUTS][offsetof(labial_rig_output_t, curve)];
     labial_rig_curve_t curve;
     int32_t values[OUTPUTS], changes[OUTPUTS];
+    int16_t visemes[LABIAL_VISEMES];
+    uint8_t shares[LABIAL_VISEMES];
     uint8_t curved; /* which outputs have the curve */
     uint8_t sound;  /* which outputs have their ranges put right, so that the checks behind the first are
                     * reached, and whether the curve has */
@@ -37,6 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     for (unsigned i = 0; i < OUTPUTS; i++) {
         memcpy(&outputs[i], input.outputs[i], sizeof input.outputs[i]);
         outputs[i].curve = input.curved >> i & 1u ? &input.curve : NULL;
+        outputs[i].visemes = input.curved >> (i + 1u) & 1u ? input.visemes : NULL;
         if (input.sound >> i & 1u)
             mend(&outputs[i]);
     }
@@ -56,7 +59,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memcpy(values, input.values, sizeof input.values);
         memcpy(changes, input.changes, sizeof input.changes);
         if (input.curved >> OUTPUTS & 1u)
-            REQUIRE(labial_rig_apply(&rig, frames, values) == LABIAL_OK);
+            REQUIRE(labial_rig_apply_visemes(&rig, frames, input.shares, values) == LABIAL_OK);
         else
             REQUIRE(labial_rig_apply_ahead(&rig, frames, count, values, changes) == LABIAL_OK);
         for (unsigned i = 0; i < OUTPUTS && checked == LABIAL_OK; i++) {

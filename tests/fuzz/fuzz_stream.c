@@ -14,6 +14,7 @@
 
 #include "fixture.h"
 #include "fuzz.h"
+#include "labial/visemes.h"
 
 /* The bundled models look 18 frames back; a library that is built for less plays the small ones alone. */
 #define HAS_BUNDLED (LABIAL_REACH >= 18)
@@ -61,6 +62,13 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 {
     watch_t *watch = (watch_t *)user;
     REQUIRE(frame == watch->next);
+    static const uint8_t visemes[LABIAL_PHONEMES_MAX] = { 0, 10, 13, 1, 7, 255, 99 };
+    uint8_t shares[LABIAL_VISEMES];
+    unsigned sum = 0;
+    REQUIRE(labial_visemes(watch->stream, watch->models[0], visemes, shares) == LABIAL_OK);
+    for (unsigned v = 0; v < LABIAL_VISEMES; v++)
+        sum += shares[v];
+    REQUIRE(sum >= LABIAL_VISEME_ONE - 8u && sum <= LABIAL_VISEME_ONE + 8u);
     watch->calls++;
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         REQUIRE(faps[c] >= -2048 && faps[c] <= 2048);

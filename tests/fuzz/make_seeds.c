@@ -190,13 +190,17 @@ static void make_face(void)
 static void make_rig(void)
 {
     static const int32_t values[OUTPUTS] = { 300, 300, 300, 300 }, changes[OUTPUTS] = { 0, 0, 0, 0 };
-    static const uint8_t curved_and_sound[] = { 6, 31, 0, 0 };
+    static const int16_t visemes[LABIAL_VISEMES] = { 0, 40, -40, 300 };
+    static const uint8_t shares[LABIAL_VISEMES] = { 20, 0, 8, 100 };
+    static const uint8_t curved_and_sound[] = { 6, 31, 0 };
     FILE *file = create("fuzz_rig", "sentence");
     for (int i = 0; i < OUTPUTS; i++)
         put_output(file, i);
     fwrite(&curve, sizeof curve, 1, file);
     fwrite(values, sizeof values, 1, file);
     fwrite(changes, sizeof changes, 1, file);
+    fwrite(visemes, sizeof visemes, 1, file);
+    fwrite(shares, sizeof shares, 1, file);
     fwrite(curved_and_sound, sizeof curved_and_sound, 1, file);
     put_sentence(file, put_frame);
 }

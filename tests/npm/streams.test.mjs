@@ -153,7 +153,10 @@ test("a cancel drops what waits, and what follows a restart fades in", () => {
 test("weights are the rig's, by name", () => {
     for (const output of Object.keys(mouth.faces)) {
         const frames = speak({ output });
-        rows(speak()).forEach((faps, i) => assert.deepEqual(frames[i], mouth.convert(faps, output)));
+        const { visemes } = mouth.render(segments());
+        rows(speak()).forEach((faps, i) => {
+            assert.deepEqual(frames[i], mouth.convert(faps, output, {}, visemes.subarray(15 * i, 15 * i + 15)));
+        });
         const all = frames.flatMap((weights) => Object.values(weights));
         assert.ok(Math.min(...all) === 0 && Math.max(...all) > 0.2 && Math.max(...all) <= 1);
     }
@@ -163,6 +166,21 @@ test("weights are the rig's, by name", () => {
         const open = mouth.convert([700, 0, 0, -100, -700, 0, 0, 0, 0, 0, 0, 0, 0], output);
         assert.ok(rest[name] === 0 && open[name] > 0.4, output);
     }
+});
+
+test("a frame tells how much of each sound it shows", () => {
+    const stream = mouth.stream();
+    [["sil", 100], ["AA", 200], ["M", 100], ["AA", 200], ["TH", 100], ["sil", 200]].forEach(([label, ms]) => stream.push(label, ms));
+    stream.end();
+    const shown = [];
+    for (const frame of stream) shown.push([...stream.visemes]);
+    stream.free();
+    for (const shares of shown) assert.ok(Math.abs(shares.reduce((sum, one) => sum + one, 0) - 128) <= 8);
+    const most = [2, 10, 17, 25, 32, 43].map((frame) => shown[frame].indexOf(Math.max(...shown[frame])));
+    assert.deepEqual(most, [0, 10, 1, 10, 3, 0]); // sil aa PP aa TH sil
+    const { visemes } = mouth.render([{ start: 0, end: 0.3, label: "S" }]);
+    assert.ok(visemes.length % 15 === 0 && visemes[15 * 5 + 7] === 128 && visemes.at(-15) === 128);
+    assert.throws(() => mouth.convert(new Array(13).fill(0), "vrm", {}, [1, 2]), TypeError);
 });
 
 test("faces and names of weights are those of the rigs' descriptions, and the types name each", () => {
@@ -188,7 +206,9 @@ test("a track is the stream's frames, and between them a line", () => {
     assert.deepEqual([...track.at(99)], frames.at(-1));
     assert.equal(track.at(0.1), track.at(0.2), "no garbage");
     const weights = mouth.render(segments(), { output: "arkit" });
-    assert.deepEqual(weights.at(0.2), mouth.convert(frames[10], "arkit"));
+    const shares = weights.visemes.subarray(150, 165);
+    assert.deepEqual(weights.at(0.2), mouth.convert(frames[10], "arkit", {}, shares));
+    assert.notDeepEqual(weights.at(0.2), mouth.convert(frames[10], "arkit"));
     assert.deepEqual(weights.frame(10), weights.at(0.2));
     assert.deepEqual([...weights.faps], frames.flat());
 });

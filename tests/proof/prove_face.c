@@ -29,7 +29,8 @@ int32_t labial_rig_resting(const labial_rig_output_t *output)
     return read_output(output);
 }
 
-int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t frame[LABIAL_CHANNELS])
+int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t frame[LABIAL_CHANNELS],
+                          const uint8_t *shares)
 {
     return frame[any_unsigned % LABIAL_CHANNELS] > 0 ? any_int32 : read_output(output);
 }

@@ -11,6 +11,7 @@
 static labial_rig_output_t outputs[OUTPUTS];
 static labial_rig_curve_t curve;
 static int32_t values[OUTPUTS], changes[OUTPUTS];
+static int16_t visemes[LABIAL_VISEMES];
 static int16_t frames[FRAMES * LABIAL_CHANNELS];
 
 int main(void)
@@ -19,10 +20,14 @@ int main(void)
     labial_rig_delay_t delay;
     labial_sight_t sight;
     int16_t faps[LABIAL_CHANNELS];
+    uint8_t shares[LABIAL_VISEMES];
     FILL(curve);
+    FILL(visemes);
+    FILL(shares);
     for (unsigned i = 0; i < OUTPUTS; i++) {
         Frama_C_make_unknown((char *)&outputs[i], offsetof(labial_rig_output_t, curve));
         outputs[i].curve = OR_NULL(const labial_rig_curve_t *, &curve);
+        outputs[i].visemes = OR_NULL(const int16_t *, visemes);
     }
     FILL(values);
     FILL(changes);
@@ -33,6 +38,8 @@ int main(void)
     labial_rig_check(OR_NULL(const labial_rig_t *, &rig));
     labial_rig_rest(OR_NULL(const labial_rig_t *, &rig), OR_NULL(int32_t *, values));
     labial_rig_apply(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, faps), OR_NULL(int32_t *, values));
+    labial_rig_apply_visemes(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, faps),
+                             OR_NULL(const uint8_t *, shares), OR_NULL(int32_t *, values));
     labial_rig_apply_ahead(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, frames), any_uint16,
                            OR_NULL(int32_t *, values), OR_NULL(int32_t *, changes));
     FILL(sight.wanted);

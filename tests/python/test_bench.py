@@ -242,7 +242,7 @@ def test_rows_of_a_head() -> None:
     head, motion = read_table(TESTS / "heads" / "ict_lips.csv"), read_sentences(TESTS / "sentences.flite")
     assert heads.built_in(head, "oculus", motion) == {}
     cells = heads.row("ict", head, heads.built_in(head, "arkit", motion), motion).split(" | ")
-    assert float(cells[1]) == pytest.approx(0.89, abs=0.02) and float(cells[6]) == 1.0 and float(cells[9]) < 0.85
+    assert float(cells[1]) == pytest.approx(0.99, abs=0.02) and float(cells[6]) == 1.0 and float(cells[9]) < 0.85
 
 
 # ---- Figures of pages ------------------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ SAY = os.environ.get("LABIAL_SAY", "")
 pytestmark = pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")
 FPS = 50
 #: What opens the mouth.
-VOWELS = {"vrm": "aa ih ou".split(), "oculus": "aa oh ou".split()}
+VOWELS = {"vrm": "aa ih ou ee oh".split(), "oculus": "aa E ih oh ou".split()}
 
 
 def say(timings: str, form: str) -> str:
@@ -94,7 +94,7 @@ def test_weights_are_weights(spoken: Tuple[Motion, List[Tuple[str, slice]]]) -> 
     for name in FACES:
         shown = [np.stack(list(outputs(face(name), faps).values()), axis=1) for faps in every]
         assert all(((values >= 0.0) & (values <= 1.0)).all() for values in shown), name
-        assert (shown[0].max(axis=0) >= 0.05).all(), name
+        assert all(column.max() >= 0.05 for column in spoken[0].weights[name].values()), name
     for name in VOWELS:
         total = sum(column for key, column in spoken[0].weights[name].items() if key != "sil")
         assert np.percentile(total, 90) <= 1.3 and share(total <= 1.6) >= 0.98, name
@@ -132,10 +132,10 @@ def test_lower_lip_meets_the_teeth(spoken: Tuple[Motion, List[Tuple[str, slice]]
 #: A word, the vowel that is looked at, and for VRM and Oculus: what must show by how much, and what must show less.
 WORDS = {
     "father": ("F 100 AA 250 DH 70 ER 200", "AA", {"aa": 0.4}, {"ou": 0.1}),
-    "go": ("G 80 OW 350", "OW", {"aa": 0.25, "ou": 0.25}, {"aa": 0.45}),
-    "do": ("D 80 UW 300", "UW", {"ou": 0.12}, {"aa": 0.3}),
-    "see": ("S 120 IY 300", "IY", {"aa": 0.2}, {"ou": 0.05, "aa": 0.35}),
-    "sit": ("S 120 IH 150 T 100", "IH", {"aa": 0.2}, {"ou": 0.05, "aa": 0.35}),
+    "go": ("G 80 OW 350", "OW", {"oh": 0.4}, {"aa": 0.25, "ih": 0.05}),
+    "do": ("D 80 UW 300", "UW", {"ou": 0.5}, {"aa": 0.1, "oh": 0.1, "ih": 0.05}),
+    "see": ("S 120 IY 300", "IY", {"ih": 0.5}, {"ou": 0.05, "aa": 0.2, "oh": 0.05}),
+    "sit": ("S 120 IH 150 T 100", "IH", {"ih": 0.4}, {"ou": 0.05, "aa": 0.2, "oh": 0.05}),
 }
 
 

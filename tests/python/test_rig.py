@@ -152,7 +152,7 @@ def test_another_format_does_not_compile(tmp_path: Path) -> None:
     (tmp_path / "jaw.toml").write_text(JAW)
     table.write(read(tmp_path / "jaw.toml", "jaw"), tmp_path)
     header = tmp_path / "jaw.h"
-    header.write_text(header.read_text().replace("LABIAL_RIG_FORMAT != 2", "LABIAL_RIG_FORMAT != 1"))
+    header.write_text(header.read_text().replace("LABIAL_RIG_FORMAT != 3", "LABIAL_RIG_FORMAT != 2"))
     assert "run labial rig again" in run(CC, f"-I{SOURCE / 'include'}", "-fsyntax-only", tmp_path / "jaw.c", status=1)
 
 

@@ -59,8 +59,8 @@ static const char usage_begin[] =
     "Hears speech and writes the motion of lips and jaw, frame by frame, while the sound is still arriving. Frame k\n"
     "shows the lips in the 20 ms that begin at 20 k ms; it is written when the model has heard what follows.\n"
     "\n"
-    "  SOUND.wav       PCM, floating point, A-law or mu-law; one or two channels; 8000, 12000, 16000, 22050, 24000, 32000,\n"
-    "                  44100 or 48000 samples per second\n"
+    "  SOUND.wav       PCM, floating point, A-law or mu-law; one or two channels; 8000, 12000, 16000, 22050, 24000,\n"
+    "                  32000, 44100 or 48000 samples per second\n"
     "  -               samples from standard input, 16 bits, low byte first\n"
     "  --rate RATE     with -: samples per second (16000)\n"
     "  --channels N    with -: 1, or 2, of which the mean is heard (1)\n"
@@ -172,7 +172,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
     hear_t *hear = user;
     (void)frame;
     if (!hear->classes)
-        frames_put(&hear->frames, faps);
+        frames_put(&hear->frames, faps, NULL);
 }
 
 static void write_time(uint32_t frame)

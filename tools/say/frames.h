@@ -5,7 +5,7 @@
  *             and the 13 channels in FAP units.
  *   fap       MPEG-4 text: a header `2.1 NAME FPS NFRAMES`, then two lines per frame: a mask of 68 zeros and ones, and
  *             the frame's number followed by the value of each FAP whose mask is one, here the 23 of inner and outer
- *             lips. The header needs the number of frames, so they are kept in memory and written by frames_finish().
+ *             lips, and the 5 of the tongue where sounds are known. The header needs the number of frames, so they are kept in memory and written by frames_finish().
  *   livelink  what Epic's Live Link Face records: `Timecode,BlendShapeCount,` and 61 columns, ARKit's blendshapes from
  *             0 to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
  *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
@@ -26,8 +26,15 @@
 #include "faces.h"
 #include "labial/faps.h"
 #include "labial/labial.h"
+#include "labial/visemes.h"
 
 typedef struct frames_format frames_format_t; /* of frames.c */
+
+/* A frame that is kept. Private. */
+typedef struct {
+    int16_t faps[LABIAL_CHANNELS], tongue[LABIAL_TONGUE_FAPS];
+    uint8_t has_tongue;
+} frames_kept_t;
 
 /* A writer. Private. */
 typedef struct {
@@ -39,7 +46,7 @@ typedef struct {
     int failed;
     const face_t *face;                 /* null where a format has no weights */
     int32_t weights[FACES_OUTPUTS_MAX]; /* of the latest frame */
-    int16_t (*kept)[LABIAL_CHANNELS];   /* fap: `count` frames in room for `room`, owned */
+    frames_kept_t *kept;                /* fap: `count` frames in room for `room`, owned */
     size_t room;
 } frames_t;
 
@@ -53,8 +60,8 @@ void frames_help(FILE *out);
  * valid. frames_finish() releases what the writer owns. */
 void frames_init(frames_t *frames, FILE *out, unsigned format, const char *name, unsigned frames_per_second);
 
-/* Appends a frame. Failures are remembered and returned by frames_flush() and frames_finish(). */
-void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS]);
+/* Appends a frame with the shares of its sounds (labial/visemes.h), null where they are not known. Failures are remembered and returned by frames_flush() and frames_finish(). */
+void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares);
 
 /* Sends what is written so far on its way. Returns 0, or -1 when writing failed or memory was short. */
 int frames_flush(frames_t *frames);

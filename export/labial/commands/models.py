@@ -53,20 +53,25 @@ def add_synth(command: argparse.ArgumentParser) -> None:
 
 def run_synth(options: argparse.Namespace) -> int:
     """Writes the frames."""
+    import numpy as np
+
     from labial.files.frames import at_rate, count_at
     from labial.files.outputs import check, writing
     from labial.reference.synthesis import delivered
+    from labial.rig.animation import with_shares
     from labial.tables.model import load
     from labial.tables.phones import read_stream
 
     check(options.output)
+    form = format_of(options)
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source)
-    form = format_of(options)
     fps, name = options.fps or model.fps, Path(options.model).stem
     frames = list(delivered(model, phonemes, whole=options.whole, articulation=options.articulation,
                             exact=options.exact))  # all of them: some formats tell their number first
     count = sum(map(len, frames))
+    spoken = [(model.phonemes[phoneme], milliseconds) for phoneme, milliseconds in phonemes]
+    frames = [with_shares(np.concatenate(frames), spoken, model.fps)] if count else []
     parts = at_rate(frames, count, model.fps, fps)
     opened: ContextManager[Any] = writing(options.output, "ascii") if options.output else nullcontext(sys.stdout)
     with opened as out:

@@ -18,6 +18,7 @@ from ctypes import (
     c_int32,
     c_int64,
     c_size_t,
+    c_uint8,
     c_uint32,
     c_uint64,
     c_void_p,
@@ -33,7 +34,7 @@ from labial.errors import LabialError, StreamError, pip
 #: Environment variable that names another library than the one in this folder, such as a build of the sources.
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
-_INTERFACE = 7
+_INTERFACE = 8
 
 #: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
@@ -45,6 +46,8 @@ DURATION_MAX = 3_600_000
 CANCEL_MAX = 1000
 #: LABIAL_ARTICULATION_MAX, percent.
 ARTICULATION_MAX = 200
+#: LABIAL_VISEMES.
+VISEMES = 15
 #: LABIAL_LAUGH_FULL.
 LAUGH_FULL = 256
 
@@ -53,6 +56,7 @@ LAUGH_FULL = 256
 _TYPES: Dict[str, Any] = {
     "void": None, "int": c_int, "int32_t": c_int32, "int64_t": c_int64, "uint64_t": c_uint64, "size_t": c_size_t,
     "number": c_uint32, "double": c_double, "text": c_char_p, "pointer": c_void_p, "frame": POINTER(c_int16),
+    "shares": POINTER(c_uint8),
 }  # fmt: skip
 #: A function that the library asks for a word's pronunciation (labial_voice_own_fn of include/labial/voice.h).
 PRONOUNCE = ctypes.CFUNCTYPE(c_void_p, c_void_p, c_void_p, c_size_t)

@@ -9,13 +9,15 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from labial.errors import DataError
 from labial.fit.meaning import fap
 from labial.runtime.render import render
+from labial.runtime.stream import Stream
+from labial.tables.visemes import ONE, VISEMES
 
 #: The bundled sentences.
 SENTENCES = Path(__file__).with_name("sentences.flite")
@@ -30,6 +32,7 @@ class Motion:
 
     frames: np.ndarray  #: (T, 13) FAP units
     phonemes: Sequence[Tuple[str, int, int]]  #: label, first frame and end, a frame wider than spoken on either side
+    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds in each frame, 0 .. 1; None where they are not known
 
     @property
     def closures(self) -> List[Tuple[int, int]]:
@@ -50,6 +53,7 @@ def read_sentences(path: Union[str, os.PathLike[str]] = SENTENCES, laughs: Seque
     """The motion of a file of sentences, one a line, with the bundled English model; after them laughs of these
     intensities, two seconds each. Raises DataError naming file and line."""
     parts: List[np.ndarray] = []
+    shares: List[np.ndarray] = []
     phonemes: List[Tuple[str, int, int]] = []
     first = 0
     for number, line in enumerate(Path(path).read_text(encoding="ascii").splitlines(), 1):
@@ -65,7 +69,13 @@ def read_sentences(path: Union[str, os.PathLike[str]] = SENTENCES, laughs: Seque
         if not timings:
             continue
         lengths = [(label, round(1000.0 * (end - begin))) for label, begin, end in timings]
-        frames = np.asarray(render(lengths, exact=True))
+        with Stream(exact=True) as stream:
+            for label, milliseconds in lengths:
+                stream.push(label, milliseconds)
+            stream.end()
+            spoken = list(stream)
+        frames = np.array([frame.faps for frame in spoken])
+        shares.append(np.array([frame.visemes for frame in spoken]) / ONE)
         for label, start, end in timings:
             phonemes.append((label, first + max(int((start - _AROUND) * _FPS), 0),
                              first + min(int((end + _AROUND) * _FPS) + 1, len(frames))))
@@ -73,4 +83,5 @@ def read_sentences(path: Union[str, os.PathLike[str]] = SENTENCES, laughs: Seque
         first += len(frames)
     for intensity in laughs:
         parts.append(np.asarray(render([(f"<laugh:{intensity:g}>", 2000), ("SIL", 200)], exact=True)))
-    return Motion(np.concatenate(parts).astype(np.float64), phonemes)
+        shares.append(np.eye(len(VISEMES))[np.zeros(len(parts[-1]), dtype=int)])  # silence, the first one
+    return Motion(np.concatenate(parts).astype(np.float64), phonemes, np.concatenate(shares))

@@ -10,9 +10,9 @@ from __future__ import annotations
 import functools
 import json
 import re
-from typing import TYPE_CHECKING, Callable, Dict, Iterable, NamedTuple, Optional, TextIO
+from typing import TYPE_CHECKING, Callable, Dict, Iterable, NamedTuple, Optional, Sequence, TextIO, Tuple
 
-from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS
+from labial.files.faps import CHANNELS, FAP_COLUMNS, FAP_NUMBERS
 from labial.rig import FACES, description_of
 
 if TYPE_CHECKING:
@@ -44,21 +44,32 @@ def face(name: str) -> Rig:
     return read(description_of(name), name)
 
 
-def outputs(rig: Rig, frames: np.ndarray) -> Dict[str, np.ndarray]:
-    """(T,) values of each output of a rig from (T, 13) frames in FAP units, in the unit of the description: for weights
-    0 .. 1, for servos microseconds. Limits of values apply, limits of speed do not."""
+def outputs(rig: Rig, frames: np.ndarray, shares: Optional[np.ndarray] = None) -> Dict[str, np.ndarray]:
+    """(T,) values of each output of a rig from (T, 13) frames in FAP units and, if known, (T, 15) shares of sounds
+    (:mod:`labial.reference.visemes`), in the unit of the description: for weights 0 .. 1, for servos microseconds.
+    Limits of values apply, limits of speed do not."""
     import numpy as np
 
     from labial.rig.table import convert, expected
 
-    values = expected(rig, convert(rig), np.asarray(frames, dtype=np.float64)) / rig.unit.scale
+    values = expected(rig, convert(rig), np.asarray(frames, dtype=np.float64), shares) / rig.unit.scale
     return {output.name: column for output, column in zip(rig.outputs, values.T)}
 
 
-def arkit(frames: np.ndarray) -> Dict[str, np.ndarray]:
-    """(T,) weights 0 .. 1 of each of ARKit's blendshapes that lips and jaw move, in the order of `LIVE_LINK`, from
-    (T, 13) frames in FAP units."""
-    found = outputs(face("arkit"), frames)
+def with_shares(frames: np.ndarray, phonemes: Sequence[Tuple[str, int]], fps: int) -> np.ndarray:
+    """(T, 28) frames with the shares of the sounds that they show, of (T, 13) frames that `phonemes`, ARPABET and
+    milliseconds, lead to. Every format takes either."""
+    import numpy as np
+
+    from labial.reference.visemes import shares
+
+    return np.concatenate([frames, shares(phonemes, fps, len(frames))], axis=1)
+
+
+def arkit(frames: np.ndarray, shares: Optional[np.ndarray] = None) -> Dict[str, np.ndarray]:
+    """(T,) weights 0 .. 1 of each of ARKit's blendshapes of the mouth that the rig moves, in the order of `LIVE_LINK`,
+    from (T, 13) frames in FAP units and, if known, (T, 15) shares of sounds."""
+    found = outputs(face("arkit"), frames, shares)
     return {name: found[name] for name in map(_arkit_name, LIVE_LINK) if name in found}
 
 
@@ -70,12 +81,23 @@ def _fap_head(name: str, fps: int, count: int) -> str:
     return f"2.1 {re.sub(r'[^0-9A-Za-z_.-]+', '_', name) or 'labial'} {fps} {count}\n"
 
 
+def _parts_of(frames: np.ndarray) -> Tuple[np.ndarray, Optional[np.ndarray]]:
+    """The FAPs of frames, and the shares of their sounds if they are known."""
+    return frames[:, :CHANNELS], frames[:, CHANNELS:] if frames.shape[1] > CHANNELS else None
+
+
 def _fap_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
     """MPEG-4 text: per frame a mask of 68 and the values of the 23 FAPs of the mouth, inner lips (4 to 13) moving as
-    the outer ones (51 to 60)."""
+    the outer ones (51 to 60), and those of the tongue (43 to 47) where the sounds are known."""
     import numpy as np
 
+    from labial.reference.visemes import tongue
+
+    frames, shares = _parts_of(frames)
     columns = {fap: index for index, fap in enumerate(FAP_NUMBERS)}
+    if shares is not None:
+        columns.update({43 + k: CHANNELS + k for k in range(5)})
+        frames = np.concatenate([frames, tongue(shares)], axis=1)
     columns.update({fap: columns[fap + 47] for fap in range(4, 14)})
     used = sorted(columns)
     mask = " ".join("1" if fap in columns else "0" for fap in range(1, _FAPS + 1))
@@ -91,7 +113,7 @@ def _live_link_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> No
     """Like a recording of Live Link Face: timecode ``HH:MM:SS:FF.000``, 61, then the columns."""
     import numpy as np
 
-    weights = arkit(frames)
+    weights = arkit(*_parts_of(frames))
     still = np.zeros(len(frames))
     columns = np.stack([weights.get(_arkit_name(column), still) for column in LIVE_LINK], axis=1)
     for number, row in enumerate(columns, first):
@@ -108,7 +130,8 @@ def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Op
     import numpy as np
 
     rig = rig or face("arkit")
-    values = outputs(rig, frames)
+    frames, shares = _parts_of(frames)
+    values = outputs(rig, frames, shares)
     for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1)), first):
         out.write(json.dumps({
             "frame": number,
@@ -131,7 +154,7 @@ def _csv_head(name: str, fps: int, count: int) -> str:
 def _csv_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
     from labial.files.frames import write_csv_rows
 
-    write_csv_rows(out, frames, first, fps)
+    write_csv_rows(out, frames[:, :CHANNELS], first, fps)
 
 
 def _weight_rows(name: str, out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
@@ -142,7 +165,8 @@ class Format(NamedTuple):
     """A format of output."""
 
     about: str  #: its text in ``--help``
-    #: Writes to a text file: (n, 13) frames in FAP units, the number of the first, frames per second.
+    #: Writes to a text file: (n, 13) frames in FAP units, or (n, 28) with shares, the number of the first, frames per
+    #: second.
     rows: Callable[[TextIO, np.ndarray, int, int], None]
     #: The header, from the motion's name, frames per second and number of frames.
     head: Callable[[str, int, int], str] = _no_head

@@ -13,6 +13,7 @@ from labial.files.faps import CHANNELS
 from labial.files.toml import Table, meant, read_toml
 from labial.rig.gestures import SOURCES, Row
 from labial.rig.units import UNITS, Unit, make_unit
+from labial.tables.visemes import VISEMES
 
 #: Range of a servo's pulses, microseconds: wider than that of any common servo, narrow enough to detect typing errors.
 PULSE_MIN, PULSE_MAX = 400.0, 2600.0
@@ -23,7 +24,7 @@ _PLACES, _STEPS = ("neutral", "full", "minimum", "maximum", "closed"), ("gain", 
 
 _TOP_KEYS = ("unit", "frequency", "clock", "pulses", "output")
 _OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum", "invert", "slew", "closed",
-                "deadband", "acceleration", "curve")
+                "deadband", "acceleration", "curve", "visemes")
 #: Points of a linkage's curve.
 CURVE_POINTS = (2, 9)
 
@@ -46,6 +47,8 @@ class Output:
     acceleration: float = 0.0  #: units per frame, per frame; 0 for no limit
     #: Curve of a linkage: values for an even linkage, and the values that have the same effect.
     curve: Tuple[Tuple[float, float], ...] = ()
+    #: What a share of one of each of `labial.tables.visemes.VISEMES` adds; empty for an output of FAPs alone.
+    visemes: Row = ()
 
 
 @dataclass(frozen=True)
@@ -166,9 +169,12 @@ def _source(table: Table) -> Tuple[Row, Union[float, None]]:
 
 def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Output:
     table = Table(path, f"output.{name}.", content, _OUTPUT_KEYS)
-    weights, reach = _source(table)
+    alone = "from" not in content and "visemes" in content  # it follows sounds, not FAPs
+    weights, reach = ((0.0,) * CHANNELS, 1.0) if alone else _source(table)
     closed = table.number("closed") if "closed" in content else None
     neutral = closed if closed is not None and "neutral" not in content else table.number("neutral")
+    if alone and "gain" in content:
+        raise table.error("gain", "goes with from: how many units is a FAP unit?")
     if ("full" in content) == ("gain" in content):
         raise table.error("full", "either full (the value at full extent) or gain (units per FAP unit) is needed"
                                   + (", not both" if "full" in content else ""))
@@ -180,13 +186,15 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
         if full == neutral:
             raise table.error("full", "is the same as neutral: the output would not move")
         if "reach" in content:
+            if alone:
+                raise table.error("reach", "goes with from: how many FAP units is full?")
             reach = table.number("reach")
         if reach is None:
             raise table.error("reach", "is missing: how many FAP units is full? Only gestures know it by themselves")
         if not reach > 0:
             raise table.error("reach", f"{reach:g} is not positive")
         ends = (neutral, full) if closed is None else (neutral, full, closed)
-        gain, low, high = (full - neutral) / reach, min(ends), max(ends)
+        gain, low, high = 0.0 if alone else (full - neutral) / reach, min(ends), max(ends)
         minimum = table.number("minimum") if "minimum" in content else low
         maximum = table.number("maximum") if "maximum" in content else high
     else:
@@ -208,7 +216,20 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
     if closed is not None and not minimum <= closed <= maximum:
         raise table.error("closed", f"{closed:g} is not within {minimum:g} .. {maximum:g}")
     return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content, closed, deadband,
-                  acceleration, _curve(table, unit, neutral))
+                  acceleration, _curve(table, unit, neutral), _visemes(table))
+
+
+def _visemes(table: Table) -> Row:
+    """What sounds add, in the order of `VISEMES`."""
+    given = table.content.get("visemes")
+    if given is None:
+        return ()
+    if not isinstance(given, dict) or not given:
+        raise table.error("visemes", "is a table { VISEME = AMOUNT, ... }")
+    for name in given:
+        if name not in VISEMES:
+            raise table.error("visemes", f"no viseme is called {name!r}{meant(name, VISEMES)}")
+    return tuple(table.as_number(f"visemes.{name}", given[name]) if name in given else 0.0 for name in VISEMES)
 
 
 def _curve(table: Table, unit: Unit, neutral: float) -> Tuple[Tuple[float, float], ...]:

@@ -16,15 +16,16 @@ from labial.files.faps import FAP_NAMES
 from labial.files.outputs import folder
 from labial.rig.description import Output, Rig
 from labial.rig.gestures import Row
+from labial.tables.visemes import VISEMES
 
 if TYPE_CHECKING:
     import numpy as np
 
 #: Version and limits of include/labial/rig.h.
-FORMAT = 2
+FORMAT = 3
 TOUCHING, APART = 72, 136
 WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 65535, 268435455, 16777215
-SLOPE_MAX, SEGMENTS = 1 << 25, 8
+SLOPE_MAX, SEGMENTS, VISEME_MAX = 1 << 25, 8, 32767
 _SLOPE_ONE = 1 << 20
 
 #: FAPs up to which a table is within one unit of the description; faces stay well below.
@@ -47,6 +48,7 @@ class TableOutput:
     deadband: int = 0
     acceleration: int = 0
     curve: Tuple[Tuple[int, int, int], ...] = ()  #: segments: where each begins, its value there, its slope, Q20
+    visemes: Tuple[int, ...] = ()  #: 15 amounts, or none
 
     @property
     def rest(self) -> int:
@@ -90,7 +92,16 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
     weights, gain = found
     return TableOutput(output.name, weights, gain, values["neutral"], values["minimum"],
                        values["maximum"], values["slew"], output.invert, values.get("closed"), values["deadband"],
-                       values["acceleration"], _segments(output, scale, fail))
+                       values["acceleration"], _segments(output, scale, fail), _amounts(output, scale, fail))
+
+
+def _amounts(output: Output, scale: float, fail: Callable[[str, str], DataError]) -> Tuple[int, ...]:
+    """What sounds add, in the table's units."""
+    amounts = tuple(math.floor(amount * scale + 0.5) for amount in output.visemes)
+    for name, amount in zip(VISEMES, amounts):
+        if abs(amount) > VISEME_MAX:
+            raise fail(f"visemes.{name}", f"{amount} is beyond {VISEME_MAX}")
+    return amounts
 
 
 def _segments(output: Output, scale: float, fail: Callable[[str, str], DataError]) -> Tuple[Tuple[int, int, int], ...]:
@@ -134,8 +145,10 @@ def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]
     return None if best is None or best[0] > 0.49 else best[1:]
 
 
-def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray) -> np.ndarray:
-    """(T, N) float64 values for (T, 13) FAPs, in units of the hardware, neither rounded nor limited in speed.
+def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray,
+             shares: Optional[np.ndarray] = None) -> np.ndarray:
+    """(T, N) float64 values for (T, 13) FAPs and, if known, (T, 15) shares of sounds, 0 .. 1, in units of the hardware,
+    neither rounded nor limited in speed.
 
     Weights and gains are those of the description; neutral and limits are the table's whole units.
     """
@@ -145,6 +158,8 @@ def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray) -> np.ndarr
     for output, whole in zip(rig.outputs, table):
         move = (frames @ output.weights) * (output.gain * rig.unit.scale)
         values = whole.neutral + (-move if output.invert else move)
+        if output.visemes and shares is not None:
+            values = values + shares @ (np.array(output.visemes) * rig.unit.scale)
         if output.curve:
             values = _bent(np.array(output.curve) * rig.unit.scale, values)
         values = np.clip(values, whole.minimum, whole.maximum)
@@ -174,6 +189,11 @@ def touching(frames: np.ndarray) -> np.ndarray:
 
 def _comment(rig: Rig, what: str) -> str:
     return written_by("rig", f"{what}. Values are {rig.unit.text}.")
+
+
+#: The members of a row of a table.
+_COLUMNS = ("weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband, acceleration, curve, "
+            "visemes")
 
 
 def header(rig: Rig) -> str:
@@ -225,12 +245,21 @@ def _row(rig: Rig, output: Output, whole: TableOutput) -> str:
     rate = f", at most {whole.slew} per frame" if whole.slew else ""
     rate += f", {whole.closed} where lips touch" if whole.closed is not None else ""
     rate += f", {whole.acceleration} more or less per frame" if whole.acceleration else ""
+    rate += "".join(f", {amount:+d} {name}" for name, amount in zip(VISEMES, whole.visemes) if amount)
     note = f"{output.name}: {output.gain * rig.unit.scale:.6g} per FAP unit of ({mixed}){rate}"
     lines = textwrap.fill(note, width=108, initial_indent="    /* ", subsequent_indent="     * ") + " */\n"
     return (lines + f"    {{ {{ {', '.join(map(str, whole.weights))} }},\n"
             f"      {int(whole.invert)}, {int(whole.closed is not None)}, {whole.gain}, {whole.neutral}, "
             f"{whole.minimum}, {whole.maximum}, {whole.slew}, {whole.closed or 0}, {whole.deadband}, "
-            f"{whole.acceleration}, {f'&{output.name}_curve' if whole.curve else '0'} }}")
+            f"{whole.acceleration}, {f'&{output.name}_curve' if whole.curve else '0'}, "
+            f"{f'{output.name}_visemes' if whole.visemes else '0'} }}")
+
+
+def _tables(whole: TableOutput) -> str:
+    """The tables that an output refers to."""
+    visemes = ", ".join(map(str, whole.visemes))
+    return _curve(whole) + (f"static const int16_t {whole.name}_visemes[LABIAL_VISEMES] = {{ {visemes} }};\n\n"
+                            if visemes else "")
 
 
 def _curve(whole: TableOutput) -> str:
@@ -245,10 +274,10 @@ def _curve(whole: TableOutput) -> str:
 def source(rig: Rig, table: List[TableOutput]) -> str:
     """NAME.c: the table."""
     rows = ",\n".join(_row(rig, output, whole) for output, whole in zip(rig.outputs, table))
-    curves = "".join(map(_curve, table))
+    tables = "".join(map(_tables, table))
     return f"""{_comment(rig, f"{rig.name}.c - what moves a face")}#include "{rig.name}.h"
 
-{curves}/* weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband, acceleration, curve */
+{tables}/* {_COLUMNS} */
 static const labial_rig_output_t outputs[{len(table)}] = {{
 {rows}
 }};

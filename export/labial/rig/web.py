@@ -25,7 +25,8 @@ def text(rig: Rig) -> str:
         outputs[output.name] = {
             "weights": output.weights, "gain": output.gain, "neutral": output.neutral, "minimum": output.minimum,
             "maximum": output.maximum, "invert": int(output.invert), "contact": int(output.closed is not None),
-            "closed": output.closed or 0, **({"curve": output.curve} if output.curve else {})}  # fmt: skip
+            "closed": output.closed or 0, **({"curve": output.curve} if output.curve else {}),
+            **({"visemes": output.visemes} if output.visemes else {})}  # fmt: skip
     rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in outputs.items())
     return f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n'
 

@@ -7,11 +7,28 @@ from typing import NamedTuple, Tuple, Union
 from labial.runtime.rig import Rig, Values
 
 
-class Frame(NamedTuple):
-    """The mouth at one moment."""
+class _Moment(NamedTuple):
+    number: int
+    faps: Tuple[int, ...]
 
-    number: int  #: counted from 0 since the stream was made; it is due number / fps seconds after the first
-    faps: Tuple[int, ...]  #: 13 values, FAP units, in the order of ``labial.files.faps.FAP_NUMBERS``
+
+class Frame(_Moment):
+    """The mouth at one moment: a pair, `number` and `faps`.
+
+    Attributes:
+        number: counted from 0 since the stream was made; it is due number / fps seconds after the first.
+        faps: 13 values, FAP units, in the order of ``labial.files.faps.FAP_NUMBERS``.
+        visemes: how much of each sound the frame shows, 15 shares of together 128 in the order of
+        ``labial.tables.visemes.VISEMES``; empty where it is not known.
+    """
+
+    visemes: Tuple[int, ...]
+
+    def __new__(cls, number: int, faps: Tuple[int, ...], visemes: Tuple[int, ...] = ()) -> Frame:
+        """A frame."""
+        frame = super().__new__(cls, number, faps)
+        frame.visemes = visemes
+        return frame
 
     def rig(self, face: Union[Rig, str]) -> Values:
         """The values of `face`: one for each output, by name, in the rig's unit; weights are 0 .. 1.
@@ -19,7 +36,7 @@ class Frame(NamedTuple):
         `face` is a :class:`labial.Rig`. Outputs with a limit of speed continue from the previous frame, so call this
         once per frame, in order. `face` may also be the name of a built-in rig, such as "arkit".
         """
-        return (Rig.builtin(face) if isinstance(face, str) else face).apply(self.faps)
+        return (Rig.builtin(face) if isinstance(face, str) else face).apply(self.faps, visemes=self.visemes)
 
 
 class Latency(NamedTuple):

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Deque, Dict, Iterable, Iterator, List, Tuple, Union
 
 from labial.core.guard import Guard, alone
-from labial.core.library import checked, library, memory
+from labial.core.library import VISEMES, checked, library, memory
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.rig import FACES, description_of
@@ -88,16 +88,17 @@ class Rig:
         size, curve = core.rig_output_size(), core.rig_curve_size()
         self._rows = memory((size + curve) * len(rows))  # the outputs, then their curves
         self._table = ctypes.addressof(self._rows), len(rows)
-        at, most = self._table[0], CHANNELS + 11 + 3 * SEGMENTS  # numbers of an output, FLAT_OUTPUT
+        at, most = self._table[0], CHANNELS + 12 + 3 * SEGMENTS + VISEMES  # numbers of an output, FLAT_OUTPUT
         for place, row in enumerate(rows):
             numbers = [*row.weights, row.gain, row.neutral, row.minimum, row.maximum, row.invert,
                        row.closed is not None, row.closed or 0, row.slew, row.deadband, row.acceleration,
                        len(row.curve or ()), *chain.from_iterable(row.curve or ())]
+            numbers += [0] * (most - 1 - VISEMES - len(numbers)) + [len(row.visemes) > 0, *row.visemes]
             core.rig_output(at + size * place, at + size * len(rows) + curve * place,
                             (ctypes.c_int32 * most)(*map(int, numbers)))
         checked(core.rig_check(*self._table), os.fspath(rig.path))
         self._values, self._changes = (ctypes.c_int32 * len(rows))(), (ctypes.c_int32 * len(rows))()
-        self._apply = core.rig_apply
+        self._apply, self._show = core.rig_apply, core.rig_show
         self._guard = Guard(whole=True)  # held from updating the values until they are read
         self.rest()
 
@@ -124,15 +125,23 @@ class Rig:
         ctypes.memset(self._changes, 0, ctypes.sizeof(self._changes))
         return self.values
 
-    def apply(self, faps: Iterable[int], following: Iterable[int] = ()) -> Values:
+    def apply(self, faps: Iterable[int], following: Iterable[int] = (), *, visemes: Iterable[int] = ()) -> Values:
         """Applies one frame of 13 FAPs, integers of 16 bits; returns the values. `following` are the FAPs of the frames
         after it, one frame after the other: with them a servo with a `closed` position starts early enough to be closed
-        in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream."""
+        in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. `visemes` are the shares of the
+        frame's sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. They are
+        for faces without limits of acceleration, and need no frames that follow."""
         numbers, ahead = one_frame(faps), _whole_faps(following)
         if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
             raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
                               "numbers in all")
-        return self._moved(numbers + ahead)
+        shares = bytes(visemes)
+        if not shares:
+            return self._moved(numbers + ahead)
+        if len(shares) != VISEMES or ahead:
+            raise LabialError(f"a frame has {VISEMES} shares of sounds, and they go with this frame alone, not "
+                              f"{len(shares)} and {len(ahead)} FAPs that follow")
+        return self._shown(numbers, shares)
 
     def ahead(self, frames: Iterable[Iterable[int]], count: int) -> Iterator[Values]:
         """Applies the frames of a stream, each when the `count` frames after it are known: the face is late by as many.
@@ -164,6 +173,11 @@ class Rig:
     def _moved(self, numbers: array[int]) -> Values:
         checked(self._apply(*self._table, numbers.buffer_info()[0], len(numbers) // CHANNELS, self._values,
                             self._changes))
+        return self.values
+
+    @alone
+    def _shown(self, numbers: array[int], shares: bytes) -> Values:
+        checked(self._show(*self._table, numbers.buffer_info()[0], shares, self._values))
         return self.values
 
     def __repr__(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 from array import array
-from typing import Any, List, Optional, Union
+from typing import Any, List, Optional, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import (
@@ -17,6 +17,7 @@ from labial.core.library import (
     LAUGH_FULL,
     OK,
     STARVED,
+    VISEMES,
     checked,
     failure,
     library,
@@ -183,7 +184,7 @@ class Stream:
     def __next__(self) -> Frame:
         self._open()
         if self._run(self._place_of_faps, 1):
-            return Frame(self._number, tuple(self._faps))
+            return Frame(self._number, tuple(self._faps), self._visemes())
         raise StopIteration
 
     @alone
@@ -202,7 +203,8 @@ class Stream:
         self._number += result == OK
         if not self._library.mouth_moved(self._address):
             return None
-        return Frame(self._number + (result != OK), tuple(self._library.mouth_faps(self._address)[:13]))
+        return Frame(self._number + (result != OK), tuple(self._library.mouth_faps(self._address)[:13]),
+                     self._visemes())
 
     @alone
     def drain(self) -> array[int]:
@@ -317,11 +319,15 @@ class Stream:
             self._used = 0
         return fed
 
+    def _visemes(self) -> Tuple[int, ...]:
+        """The shares of the frame that was delivered last."""
+        return tuple(self._library.mouth_visemes(self._address)[:VISEMES])
+
     def _run(self, frames: int, most: int) -> int:
         """Writes the next frames, at most so many, to an address; returns their number, 0 if the stream waits."""
         while True:
             fed = self._feed()
-            count = checked(self._library.mouth_run(self._address, frames, most))
+            count = checked(self._library.mouth_run(self._address, frames, None, most))
             if count or not fed:
                 self._number += count
                 self._done = not count and self._library.mouth_state(self._address) == DONE

@@ -1,9 +1,9 @@
-"""A picture of a head that says ten phonemes, in millimetres as its rig moves it."""
+"""Pictures of a head that says phonemes, in millimetres as its rig moves it."""
 
 from __future__ import annotations
 
 import os
-from typing import List, Tuple, Union
+from typing import Callable, List, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -14,8 +14,14 @@ from labial.rig.animation import outputs
 from labial.rig.description import Rig
 from labial.runtime.render import render
 
-#: The drawn phonemes: a caption, a word that contains it, and the phoneme's place in the word.
-_SAID: Tuple[Tuple[str, Tuple[Tuple[str, int], ...], int], ...] = (
+#: A caption, phonemes with milliseconds, mostly of a word, and the place of the one that is drawn; a laugh has none.
+Sound = Tuple[str, Tuple[Tuple[str, int], ...], int]
+
+#: What makes frames (T, 13), FAP, 50 a second, of phonemes with milliseconds.
+Speak = Callable[[List[Tuple[str, int]]], np.ndarray]
+
+#: The drawn phonemes.
+_SAID: Tuple[Sound, ...] = (
     ("rest", (("SIL", 200),), 0),
     ("m (may)", (("M", 100), ("EY", 200)), 0),
     ("f (fee)", (("F", 120), ("IY", 200)), 0),
@@ -29,31 +35,43 @@ _SAID: Tuple[Tuple[str, Tuple[Tuple[str, int], ...], int], ...] = (
 )
 
 
-def said() -> Tuple[List[str], np.ndarray]:
-    """Captions, and (10, 13) FAPs of the middle of each phoneme."""
+def _rendered(phonemes: List[Tuple[str, int]]) -> np.ndarray:
+    return np.asarray(render(phonemes))
+
+
+def said(sounds: Sequence[Sound] = _SAID, speak: Speak = _rendered) -> Tuple[List[str], np.ndarray]:
+    """Captions, and (N, 13) FAPs of the middle of each phoneme; of the frame in which the lips are nearest in one that
+    closes them."""
     frames = []
-    for _, word, place in _SAID:
+    for _, word, place in sounds:
         if not word:
-            laugh = np.asarray(render([("<laugh:1>", 2000)]))
+            laugh = speak([("<laugh:1>", 2000)])
             frames.append(laugh[int(np.argmin(laugh[:, 4]))])
             continue
-        motion = np.asarray(render([("SIL", 300), *word, ("SIL", 300)]))
+        motion = speak([("SIL", 300), *word, ("SIL", 300)])
         begin = 300 + sum(length for _, length in word[:place])
         middle = motion[begin // 20 : (begin + word[place][1]) // 20]
         closed = word[place][0] in ("M", "F")
         frames.append(middle[int(np.argmin(-(middle[:, 3] + middle[:, 4])))] if closed else middle[len(middle) // 2])
-    return [caption for caption, _, _ in _SAID], np.array(frames, dtype=np.float64)
+    return [caption for caption, _, _ in sounds], np.array(frames, dtype=np.float64)
 
 
 def draw(rig: Rig, found: Found, path: Union[str, os.PathLike[str]]) -> None:
-    """Writes the picture, PNG. Raises LabialError without matplotlib."""
+    """Writes the picture of :data:`_SAID`, PNG. Raises LabialError without matplotlib."""
+    sheet(rig, found, path, *said())
+
+
+def sheet(rig: Rig, found: Found, path: Union[str, os.PathLike[str]], captions: Sequence[str], frames: np.ndarray,
+          columns: int = 5, inches: float = 2.2) -> None:
+    """Writes the head in each of the frames (N, 13), FAP, in rows of `columns`, each `inches` wide and with its
+    caption: PNG. Raises LabialError without matplotlib."""
     with needs("drawing (--no-figure leaves it out)", "fit"):
         from matplotlib.collections import PolyCollection
 
         from labial.see.drawing import pyplot, style
 
-    captions, frames = said()
     weights = outputs(rig, frames)
+    rows = -(-len(frames) // columns)
     head, mesh = found.head, found.mesh
     middle = (head.rest["corner_left"] + head.rest["corner_right"]) / 2.0
     low, high = middle - 1.15 * head.mw, middle + 1.15 * head.mw
@@ -64,7 +82,8 @@ def draw(rig: Rig, found: Found, path: Union[str, os.PathLike[str]]) -> None:
     triangles = mesh.triangles[near[mesh.triangles].any(axis=1)]
     light = np.array([0.25, 0.35, 0.9])
     with style():
-        figure, every = pyplot.subplots(2, 5, figsize=(11, 5), layout="constrained")
+        figure, every = pyplot.subplots(rows, columns, figsize=(columns * inches, rows * inches * 2.5 / 2.2),
+                                        squeeze=False, layout="constrained")
         for number, (axes, caption) in enumerate(zip(every.flat, captions)):
             moved = rest.copy()
             for name, move in mesh.shapes.items():

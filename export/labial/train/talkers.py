@@ -36,8 +36,8 @@ SHARED = 3.0
 #: The largest v: beyond it talkers share nothing.
 LARGEST_VARIANCE = 1000.0
 
-#: Its penalties, chosen on talkers left out. How one talker's slow phonemes differ from his fast ones, or what single
-#: neighbours add, carries over to others least; how a phoneme looks, and its peak, most.
+#: Penalties with talkers, chosen on talkers left out. How one talker's slow phonemes differ from his fast ones, or what
+#: single neighbours add, carries over to others least; how a phoneme looks, and its peak, most.
 PENALTIES = Penalties(smoothness=0.1, shape=5.0, slope=300.0, pair=40.0)
 
 
