@@ -41,6 +41,8 @@ sys.path.insert(0, str(TESTS))
 from browser import THREE_D, Browser, served  # noqa: E402
 
 TOKENS, PIXELS, FPS = 12, 48, 50
+#: Pictures that are asked for at a time: a slow machine answers within a minute.
+_PIECE = 10
 #: The sounds that must be told apart, and their visemes.
 SOUNDS: Mapping[str, str] = {"oo": "ou", "oh": "oh", "ee": "ih", "ah": "aa", "m": "PP", "f": "FF", "th": "TH", "s": "SS",
                              "sh": "CH"}  # fmt: skip
@@ -73,6 +75,7 @@ window.load = async (address, name, vertices, back) => {
     model.updateMatrixWorld(true);
     const moving = all((one) => one.morphTargetDictionary);
     for (const mesh of moving) mesh.frustumCulled = false;
+    for (const mesh of all((one) => one.isMesh && !one.morphTargetDictionary)) mesh.visible = false; // clothes, hair
     const named = moving.filter((one) => one.name === name || one.parent.name === name);
     const [nose, upper, lower] = vertices.map((vertex) => {
         for (const mesh of named.length ? named : moving) {
@@ -156,8 +159,8 @@ class Stage:
 
     def pictures(self, weights: Sequence[Mapping[str, float]]) -> np.ndarray:
         """(n, 3 PIXELS PIXELS) float, what the head looks like."""
-        found = [np.frombuffer(base64.b64decode(item), np.uint8) for first in range(0, len(weights), 100)
-                 for item in self._page.evaluate(f"pictures({json.dumps(weights[first:first + 100])}, {PIXELS})")]
+        found = [np.frombuffer(base64.b64decode(item), np.uint8) for first in range(0, len(weights), _PIECE)
+                 for item in self._page.evaluate(f"pictures({json.dumps(weights[first:first + _PIECE])}, {PIXELS})")]
         return np.stack(found).astype(np.float64)
 
 

@@ -207,7 +207,7 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
         fps, frames = even(motion.times, motion.frames)
     except ValueError as error:
         raise LabialError(f"{motion.name}: {error}") from None
-    weights = outputs(chosen, frames)
+    weights = outputs(chosen, frames, motion.shares if len(frames) == len(motion.frames) else None)
     if rig is None:
         _warn(where, found, {shape: weights[name] for name, shape in used.items()}, frames)
     columns: Dict[str, np.ndarray] = {}  # by the mesh's own shapes, of which VRM's expressions are made
