@@ -392,8 +392,11 @@ export class Voice<O extends Output = "faps"> {
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;
-    /** Words, phonemes and so on that were told and that made no sense; messages of utterances that are over. */
-    readonly counts: { readonly told: number; readonly skipped: number; readonly dropped: number };
+    /** What became so far of the messages: how many there were; words, phonemes and so on that were told and that made no
+     * sense; messages of utterances that are over, and those that came twice. */
+    readonly stats: {
+        readonly messages: number; readonly told: number; readonly skipped: number; readonly dropped: number;
+    };
     /** "ended": all of the utterance was shown, after finish(). */
     addEventListener(type: "ended", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
     removeEventListener(type: "ended", listener: (event: { readonly type: string }) => void): void;

@@ -2,6 +2,8 @@
 import { CHANNELS, LabialError, NO_LAUGHTER, VISEMES, amount, shown } from "./memory.js";
 
 const DURATION_MAX = 3600000;
+/** Milliseconds: where no duration of a stream is longer, they are seconds, as in export/labial/core/numbers.py. */
+const SHORTEST = 5;
 const ARTICULATION_MAX = 200;
 /** Phonemes that may wait in addition to those in the library's queue. */
 const WAITING_MAX = 65536;
@@ -28,6 +30,7 @@ export class Stream {
     #models; // all that were used, which stay alive as long as the stream does
     #waiting = []; // model, phoneme, milliseconds of what waits for its turn
     #head = 0;
+    #longest = 0; // of the durations
     #asked = 0; // milliseconds since the beginning, as they were given
     #given = 0; // and in whole ones
     #closed = false; // no more pushes
@@ -75,6 +78,7 @@ export class Stream {
         const whole = Math.round(asked) - this.#given;
         if (whole > DURATION_MAX) throw this.#labial.failure(ERROR_DURATION, shown(milliseconds));
         this.#wait([phoneme, whole]);
+        this.#longest = Math.max(this.#longest, milliseconds);
         this.#asked = asked;
         this.#given += whole;
     }
@@ -103,6 +107,10 @@ export class Stream {
 
     end() {
         this.#open();
+        if (this.#longest > 0 && this.#longest < SHORTEST) {
+            console.warn(`labial: no duration is longer than ${this.#longest} ms: push() takes milliseconds, not seconds`);
+        }
+        this.#longest = 0;
         this.#closed = true;
     }
 

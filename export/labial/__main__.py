@@ -17,7 +17,7 @@ from typing import Iterator, List, Optional, Sequence
 
 from labial import __version__
 from labial.commands import COMMANDS
-from labial.errors import LabialError, needs
+from labial.errors import LabialError, did_you_mean, needs
 from labial.program import Parser, complain, drop_output
 
 
@@ -64,7 +64,13 @@ def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command and returns its exit status: 0; 1 when an input cannot be used; 3 for an internal error; 128
     plus the signal's number when a signal ended it."""
     given = sys.argv[1:] if arguments is None else arguments
-    options = parser(given).parse_args(given)
+    top = parser(given)
+    if not given:
+        top.print_help()
+        return 0
+    if not given[0].startswith("-") and given[0] not in COMMANDS:
+        top.error(f"{given[0]!r} is no command: {did_you_mean(given[0], COMMANDS)}")
+    options = top.parse_args(given)
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # file names are written unchanged
     with warnings.catch_warnings():

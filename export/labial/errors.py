@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from typing import Iterator, Optional, Union
+from difflib import get_close_matches
+from typing import Iterable, Iterator, Optional, Union
 
 
 class LabialError(Exception):
@@ -33,6 +34,13 @@ class StreamError(LabialError):
     def __init__(self, result: int, message: str) -> None:
         super().__init__(message)
         self.result = result  #: LABIAL_ERROR_PHONEME and so on, a negative number (labial/labial.h)
+
+
+def did_you_mean(name: object, known: Iterable[str]) -> str:
+    """The end of a message about an unknown name: the known one that looks most like it, or all of them."""
+    names = list(known)
+    near = get_close_matches(str(name).lower(), names, 1, 0.7) if len(str(name)) <= 100 else []
+    return f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
 
 
 def missing(what: str, thing: str, command: str) -> LabialError:

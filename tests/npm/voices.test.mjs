@@ -246,7 +246,7 @@ test("utterances have names: those that are over change nothing", async () => {
     one.feed(message("c"));
     for (const name of ["b", "c", "b"]) other.feed(message(name));
     for (const seconds of [0.99, 1.9]) assert.deepEqual(rows(one.played(seconds)), rows(other.played(seconds)));
-    assert.deepEqual([one.counts.dropped, other.counts.dropped], [0, 2]);
+    assert.deepEqual([one.stats.dropped, other.stats.dropped], [0, 2]);
 });
 
 test("a loaded model moves lips as the bundled one", async () => {
@@ -266,7 +266,7 @@ test("a server that tells without end is refused, and what is over is forgotten"
     voice.feed(words(9999, 0, 1));
     voice.feed(words(9999, 9999, 1));
     assert.throws(() => voice.feed(words(3, 20000, 1)), { name: "LabialError", message: /there is room for 20000/ });
-    assert.deepEqual(voice.counts, { told: 19998, skipped: 0, dropped: 0 });
+    assert.deepEqual(voice.stats, { messages: 3, told: 19998, skipped: 0, dropped: 0 });
     const long = await labial.voice();
     const memory = labial.memory.bytes.length;
     let frames = 0;

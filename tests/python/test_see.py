@@ -28,7 +28,8 @@ from labial.reference.tables import FloatTables
 from labial.reference.units import frame_counts
 from labial.rig.animation import face, outputs
 from labial.see.motion import read_bands, read_fap, read_motion, read_motions
-from labial.see.page import DATA_PLACE, MOUTH, MOUTH_PLACE, PLAYER, page
+from labial.see.page import page
+from labial.see.player import DATA_PLACE, MOUTH, MOUTH_PLACE, PLAYER
 from labial.tables.model import save
 from models import random_model, write_motion
 

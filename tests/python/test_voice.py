@@ -319,7 +319,7 @@ def test_misuse() -> None:
                      lambda: labial.Voice(model="a")):
             with pytest.raises(TypeError):
                 call()
-        for call, problem in ((lambda: labial.Voice("morse"), "'morse' is no format of messages: kokoro"),
+        for call, problem in ((lambda: labial.Voice("morse"), "'morse' is no format of messages: there are kokoro"),
                               (lambda: labial.Voice(labels="x"), "no set of labels"),
                               (lambda: labial.Voice(own={"a": "QQ"}), "no phoneme of ARPABET"),
                               (lambda: voice.say("a", 2, 1), "ends before it begins"),
@@ -363,7 +363,7 @@ def test_a_server_cannot_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> Non
             voice.say("hum", second % 20 + 0.1, second % 20 + 0.5)
             voice.say("by", second % 20 + 0.6, second % 20 + 0.9)
             voice.played(second + 0.1)
-        assert voice.counts == (4000, 0, 0)
+        assert voice.stats[1:] == (4000, 0, 0)
 
 
 def test_contexts_queue_and_stale_ones_change_nothing() -> None:
@@ -395,7 +395,7 @@ def test_contexts_queue_and_stale_ones_change_nothing() -> None:
                     voice._tell("words", [("people", k * 0.3, k * 0.3 + 0.9)], utterance="a")
                 shown += played(voice, 1.0 + 0.3 * k, 1.28 + 0.3 * k)
             frames.append(shown + played(voice, 1.9, 3))
-            assert voice.counts.dropped == (4 if stale else 0)
+            assert voice.stats.dropped == (4 if stale else 0)
     assert frames[0] == frames[1]
 
 

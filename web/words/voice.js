@@ -238,13 +238,13 @@ export class Voice extends EventTarget {
         return this.#closed || this.#lexicon.wasm.voice_done(this.#at) !== 0;
     }
 
-    /** Items told and skipped, messages dropped. */
-    get counts() {
+    get stats() {
         this.#open();
         return this.#lexicon.withBytes(12, (at) => {
             this.#lexicon.wasm.voice_counts(this.#at, at);
             const [told, skipped, dropped] = this.#lexicon.memory.int32(at, 3);
-            return { told, skipped, dropped };
+            const read = this.#messages.stats;
+            return { messages: read.messages, told, skipped: read.skipped + skipped, dropped };
         });
     }
 

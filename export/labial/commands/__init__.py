@@ -12,6 +12,7 @@ from typing import Dict, Tuple
 
 #: Of each command, in its order: the module in ``labial.commands``, and its help.
 COMMANDS: Dict[str, Tuple[str, str]] = {
+    "say": ("say", "show how a mouth says a text"),
     "train": ("train", "train a model on a corpus"),
     "train-words": ("train_words", "train how words sound on a pronouncing dictionary"),
     "synth": ("models", "synthesise frames with the float64 reference"),

@@ -60,16 +60,20 @@ def add_format(command: argparse.ArgumentParser) -> None:
     for name, item in FORMATS.items():
         names.setdefault(item.about, []).append(name)
     about = "; ".join(f"{', '.join(same)}: {text}" for text, same in names.items())
-    command.add_argument("--to", choices=tuple(FORMATS), metavar="FORMAT", default="csv", help=f"{about} (csv)")
+    command.add_argument("--to", choices=tuple(FORMATS), metavar="FORMAT", help=f"{about} (told by the "
+                         "output's name; csv)")
     command.add_argument("--rig", metavar="FACE.toml", help="with --to jsonl: a face of your own in place of ARKit's, "
                          "as labial rig reads it")
 
 
 def format_of(options: argparse.Namespace) -> Format:
     """The format of frames that the options of :func:`add_format` name."""
+    from labial.files.outputs import check_suffix
     from labial.rig.animation import FORMATS
     from labial.rig.description import read
 
+    if options.to is None:
+        options.to = check_suffix(options.output, ".csv", ".fap", ".jsonl")[1:] if options.output else "csv"
     if not options.rig:
         return FORMATS[options.to]
     if options.to != "jsonl":

@@ -30,9 +30,11 @@ def run_timings(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     from labial.corpus.formats import as_lab
     from labial.corpus.words import Pronunciation
-    from labial.files.outputs import check
+    from labial.files.outputs import check, check_suffix
 
     check(options.output)
+    if options.output:
+        check_suffix(options.output, ".lab")
     how = Pronunciation(language=options.language)
     put(as_lab(options.phones, options.labels, options.source, how, options.offset_ms / 1000.0), options.output)
     return 0
@@ -54,9 +56,11 @@ def run_align(options: argparse.Namespace) -> int:
     with needs("aligning", "align"):
         from labial.sound.align import align_with_bar
         from labial.sound.confidence import summary
-    from labial.files.outputs import check
+    from labial.files.outputs import check, check_suffix
 
     check(options.output)
+    if options.output:
+        check_suffix(options.output, ".lab")
     found = align_with_bar(options.sound, said(options), shows_progress(options))
     put(found.lab(), options.output)
     if found.stretches and not options.quiet:

@@ -153,11 +153,12 @@ def add_page(command: argparse.ArgumentParser) -> None:
 
 def run_page(options: argparse.Namespace) -> int:
     """Writes the page."""
-    from labial.files.outputs import check
+    from labial.files.outputs import check, check_suffix
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
     check(options.output)
+    check_suffix(options.output, ".html", ".htm")
     bands = read_bands(options.phones, options.labels, options.source)
     motion = read_motion(options.frames, options.phones, options.labels, options.source)
     if options.head is None:

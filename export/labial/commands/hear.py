@@ -72,7 +72,7 @@ def run_hear(options: argparse.Namespace) -> int:
         rate, channels, whole_sound = options.rate or 16000, options.channels or 1, None
         blocks = iter(lambda: sys.stdin.buffer.read(_BLOCK), b"")
     else:
-        rate, channels, whole_sound = _sound(options.sound)
+        rate, channels, whole_sound = sound_of(options.sound)
         blocks = iter([whole_sound])
     words = None if whole_sound is None else _words(options)
     with Hearing(rate, channels, model=f"hear_{options.model}", exact=options.exact or words is not None) as hearing:
@@ -153,13 +153,13 @@ def _mixed(words: _Words, heard: np.ndarray, exact: bool) -> np.ndarray:
     return np.concatenate([frames, np.rint(eased(frames[-1]))])
 
 
-def _sound(path: str) -> Tuple[int, int, bytes]:
+def sound_of(path: str) -> Tuple[int, int, bytes]:
     """Rate, channels and samples of a file. A WAV file of 16 bits is heard as it is, all else as the reader of ``labial
     align`` converts it."""
     try:
         with wave.open(path, "rb") as file:
             if file.getsampwidth() == 2 and file.getnchannels() <= 2 and file.getframerate() in _RATES:
-                return file.getframerate(), file.getnchannels(), b"".join(wav.blocks(file))
+                return file.getframerate(), file.getnchannels(), b"".join(wav.blocks(file, path))
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
     except wav.ERRORS:

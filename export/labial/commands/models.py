@@ -63,9 +63,9 @@ def run_synth(options: argparse.Namespace) -> int:
     from labial.tables.phones import read_stream
 
     check(options.output)
+    form = format_of(options)
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source)
-    form = format_of(options)
     fps, name = options.fps or model.fps, Path(options.model).stem
     frames = list(delivered(model, phonemes, whole=options.whole, articulation=options.articulation,
                             exact=options.exact))  # all of them: some formats tell their number first

@@ -14,7 +14,7 @@ from labial.corpus.entries import Entry, documents, fields_of, shown
 from labial.corpus.phonesets import AUTO, SPEECH
 from labial.corpus.services import LONGEST_GAP, SERVICES, Odd, Timed, Told, phoneme_segments_of, service_of
 from labial.corpus.timings import SourceSegment, meaning
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, did_you_mean
 from labial.files.limits import MESSAGE_DOCUMENTS, MESSAGE_ITEMS, MESSAGE_TEXT
 
 #: After so many messages without a timing, one sentence is logged.
@@ -39,7 +39,7 @@ class Stats(NamedTuple):
     messages: int = 0  #: those that were fed, sound included
     told: int = 0  #: words, characters, phonemes and visemes with their times
     skipped: int = 0  #: those that made no sense
-    dropped: int = 0  #: messages of utterances that are over
+    dropped: int = 0  #: messages of utterances that are over, and those that came twice
 
 
 class Messages:
@@ -52,7 +52,7 @@ class Messages:
 
     def __init__(self, form: Optional[str] = None, labels: str = AUTO) -> None:
         if form is not None and form not in SERVICES:
-            raise LabialError(f"{shown(form)!r} is no format of messages: {', '.join(SERVICES)}")
+            raise LabialError(f"{shown(form)!r} is no format of messages: {did_you_mean(form, SERVICES)}")
         self._form, self._labels = form, labels
         self._silent: Optional[str] = None  # a service whose messages had no timings
         self._phonemes: Dict[Tuple[str, str], str] = {}

@@ -34,6 +34,17 @@ SUFFIX = ".part"
 _NAMED = 200
 
 
+def check_suffix(path: PathLike, *known: str) -> str:
+    """How a file's name ends, one of `known` in small letters, such as ".html". Raises LabialError for another end;
+    devices and pipes may have any, for which the first one counts."""
+    suffix = Path(path).suffix.lower()
+    if suffix in known:
+        return suffix
+    if os.fspath(path).startswith("/dev/") or (os.path.exists(path) and not os.path.isfile(path)):
+        return known[0]
+    raise LabialError(f"{os.fspath(path)}: the name of the output ends in {' or '.join(known)}")
+
+
 @contextmanager
 def writing(path: PathLike, encoding: Optional[str] = None) -> Iterator[IO[Any]]:
     """A file object for the content of `path`: text in `encoding` with LF line ends, or bytes without an encoding.

@@ -12,7 +12,7 @@ from typing import Any, AsyncIterable, AsyncIterator, Iterable, Iterator, List, 
 from labial.core.guard import Guard, alone
 from labial.core.library import ARTICULATION_MAX, CANCEL_MAX, ERROR_STATE, checked, library, memory
 from labial.core.numbers import duration, number, whole
-from labial.errors import LabialError, StreamError
+from labial.errors import LabialError, StreamError, did_you_mean
 from labial.files.faps import CHANNELS
 from labial.runtime.frame import Frame
 
@@ -75,7 +75,7 @@ class Hearing:
                  exact: bool = False) -> None:
         core, names = library(), models()
         if model not in names:
-            raise LabialError(f"{model!r} is no model of hearing: {', '.join(names) or 'there is none'}")
+            raise LabialError(f"{model!r} is no model of hearing: {did_you_mean(model, names)}")
         self._sample_rate, self._channels = whole(sample_rate, "a sample rate"), whole(channels, "a number of channels")
         number = next(k for k in range(len(names)) if core.hearing_name(k).decode("ascii") == model)
         self._names = [core.hearing_class(number, k).decode("ascii") for k in range(core.hearing_classes(number))]

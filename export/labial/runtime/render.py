@@ -16,12 +16,27 @@ from labial.runtime.words import offset
 #: A phoneme, by label or number, or a laugh (``<laugh:0.7>``), and how many milliseconds it lasts.
 Timing = Tuple[Union[str, int], float]
 
+class Motion(List[Tuple[int, ...]]):
+    """Frames of an utterance, each 13 FAPs, :attr:`fps` frames per second."""
+
+    def __init__(self, frames: Iterable[Tuple[int, ...]] = (), fps: int = 50) -> None:
+        super().__init__(frames)
+        self.fps = fps
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the page of ``labial page``."""
+        from labial.see.player import framed, player
+
+        return framed(player("", self.fps, self))
+
+
 _LAUGH = re.compile(r"<laugh(?:[: ]\s*([^\s>]+))?>")
 
 
 def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter: Optional[Model] = None,
-           labels: str = "auto", nearest: bool = False, exact: bool = False) -> List[Tuple[int, ...]]:
-    """All frames of an utterance at once: T tuples of 13 ints, FAP units, ``model.fps`` frames per second.
+           labels: str = "auto", nearest: bool = False, exact: bool = False) -> Motion:
+    """All frames of an utterance at once: T tuples of 13 ints, FAP units, ``model.fps`` frames per second. They are a
+    list, which a notebook shows as a mouth that moves.
 
     `timings` are pairs of a phoneme, by label or number, and its milliseconds; the label ``<laugh>`` or ``<laugh:0.7>``
     is a laugh of that intensity. The other arguments, and the frames, are those of :class:`labial.Stream`: they begin
@@ -36,7 +51,7 @@ def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter
         stream.end()
         frames = stream.drain()
     expect_milliseconds(longest)
-    return list(zip(*[iter(frames)] * CHANNELS))
+    return Motion(zip(*[iter(frames)] * CHANNELS), stream.fps)
 
 
 def _push(stream: Stream, place: int, timing: Any) -> float:

@@ -8,13 +8,13 @@ from __future__ import annotations
 import asyncio
 import ctypes
 import math
-from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, VISEMES, checked, library, memory
 from labial.core.numbers import duration, number
 from labial.core.words import OwnWords, labels
-from labial.corpus.messages import Messages
+from labial.corpus.messages import Messages, Stats
 from labial.corpus.words import ENGLISH, Pronunciation, known_words, own_words, pronunciation, stretches_of
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
@@ -38,14 +38,6 @@ _ABSOLUTE, _CHAINED, _JOINED = range(3)
 
 #: Text, beginning and end of an item in seconds; the end is None where it is not known.
 _Item = Tuple[Union[str, int], float, Optional[float]]
-
-
-class Counts(NamedTuple):
-    """What a voice was told."""
-
-    told: int  #: words, phonemes and so on that count
-    skipped: int  #: those that make no sense
-    dropped: int  #: messages of utterances that are over, and those that came twice
 
 
 class Voice:
@@ -98,16 +90,19 @@ class Voice:
 
     @alone
     def feed(self, message: Any) -> None:
-        """A message of the service: parsed JSON, its text or bytes. Messages without timings are passed over.
+        """A message of the service: parsed JSON, an object of its client library, a list of these; text or bytes of
+        JSON, of lines of JSON or of server-sent events. Messages without timings are passed over, and items that make
+        no sense are skipped: :attr:`stats` counts them, and the logger ``labial`` names them at level DEBUG.
 
-        Raises DataError for one that is malformed and TypeError for one of another type; what was known stays known.
+        Raises DataError for a message that is no JSON or beyond a limit of :mod:`labial.files.limits`, and TypeError
+        for one of another type; what was known stays known.
         """
         self._open()
         for heard in self._messages.read(message):
             counted = _CHAINED if heard.chained else _JOINED if heard.joins else _ABSOLUTE
             for told in heard.told:
                 self._tell(told.kind, [(item.text, item.start, item.end) for item in told.items], counted,
-                           getattr(heard, "utterance", None), 0 if told.key is None else int(told.key) + 1,
+                           heard.utterance, 0 if told.key is None else int(told.key) + 1,
                            round(heard.gap * 1000))
 
     @alone
@@ -220,12 +215,13 @@ class Voice:
 
     @property
     @alone
-    def counts(self) -> Counts:
-        """What it was told so far."""
+    def stats(self) -> Stats:
+        """What became so far of the messages and of all that was told."""
         self._open()
         found = (ctypes.c_uint32 * 3)()
         self._library.voice_counts(self._memory, found)
-        return Counts(*found)
+        read = self._messages.stats
+        return Stats(read.messages, found[0], read.skipped + found[1], found[2])
 
     # ---- Closing
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Union
 
 from labial import BUNDLED
-from labial.errors import LabialError
+from labial.errors import LabialError, did_you_mean
 
 PathLike = Union[str, os.PathLike[str]]
 
@@ -23,6 +23,8 @@ def model_file(model: PathLike) -> Path:
     tree. For a file of the same name write ``./NAME``. Raises LabialError if a bundled model is not installed."""
     name = os.fspath(model)
     if name not in BUNDLED:
+        if not Path(name).suffix and os.sep not in name and not os.path.exists(name):
+            raise LabialError(f"{name!r} is neither a file nor a bundled model: {did_you_mean(name, BUNDLED)}")
         return Path(name)
     package = Path(__file__).resolve().parents[1]
     for folder in (package / "models", package.parent / "models"):

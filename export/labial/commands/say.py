@@ -1,0 +1,173 @@
+"""``labial say``: the motion of a text, at once."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import tempfile
+import wave
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
+
+from labial.commands.common import put
+from labial.errors import LabialError
+
+if TYPE_CHECKING:
+    from labial.hearing.voices import Spoken
+
+#: Milliseconds of silence after a word that ends with such a sign.
+_PAUSES = {",": 150, ";": 200, ":": 200, ".": 350, "!": 350, "?": 350}
+#: Milliseconds of silence before the first word.
+_BEFORE = 100
+#: Voices that are looked for, and their programs.
+_VOICES = {"flite:slt": "flite", "espeak:en-us": "espeak-ng"}
+_SUFFIXES = (".html", ".lab", ".csv", ".fap", ".jsonl")
+
+#: A phoneme, SIL for silence, and its milliseconds.
+Timings = List[Tuple[str, int]]
+
+
+def add_say(command: argparse.ArgumentParser) -> None:
+    """A text, its voice and the output."""
+    command.add_argument("text", metavar="TEXT", help="what is said")
+    command.add_argument("-o", "--output", metavar="OUT", help="a page (.html), frames (.csv, .fap, .jsonl) or timings "
+                         "(.lab); timings on standard output without it")
+    group = command.add_mutually_exclusive_group()
+    group.add_argument("--audio", metavar="FILE.wav", help="a recording of the text, whose lips are heard")
+    group.add_argument("--voice", metavar="VOICE", help="flite:NAME or espeak:NAME; none: no sound, every phoneme as "
+                       f"long as it usually is; without it the first that is installed of {', '.join(_VOICES)}")
+    command.add_argument("--language", default="en", help="en, or what espeak-ng calls a language; for others than en "
+                         "espeak-ng is needed (en)")
+
+
+def run_say(options: argparse.Namespace) -> int:
+    """Writes the page, the frames or the timings."""
+    from labial.files.outputs import check, check_suffix
+
+    check(options.output)
+    form = check_suffix(options.output, *_SUFFIXES) if options.output else ".lab"
+    if not options.text.strip():
+        raise LabialError("there is nothing to say: the text is empty")
+    with ExitStack() as stack:
+        audio, timings = options.audio, None
+        if audio is None:
+            spoken = _spoken(options, form)
+            timings = _timed(options.text, options.language) if spoken is None else _of_segments(spoken)
+            if spoken is not None and form == ".html":
+                audio = str(Path(stack.enter_context(tempfile.TemporaryDirectory())) / "said.wav")
+                _write_sound(spoken, audio)
+        elif form == ".lab":
+            raise LabialError(f"{audio}: labial align finds the phonemes of a recording")
+        if form == ".lab":
+            rows = [f"{begin / 1000:.3f} {end / 1000:.3f} {label}\n" for label, begin, end in _placed(timings or [])]
+            put("".join(rows), options.output)
+            return 0
+        frames = _heard(audio) if timings is None else _rendered(timings)
+        if form == ".html":
+            from labial.see.player import player
+
+            put(player(options.text.strip()[:80], 50, frames, _bands(timings or []), 0.0, audio), options.output)
+            return 0
+        _write_frames(frames, form[1:], options.output)
+    return 0
+
+
+def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
+    """The text as a synthesiser says it; None without one."""
+    voice = options.voice
+    if voice is None and options.language != "en":
+        voice = f"espeak:{options.language}" if shutil.which("espeak-ng") else "none"
+    if voice is None:
+        voice = next((name for name, program in _VOICES.items() if shutil.which(program)), "none")
+        try:
+            import numpy  # noqa: F401
+        except ImportError:  # the synthesisers' sound needs it, and nothing else here
+            voice = "none"
+    if voice == "none":
+        return None
+    from labial.hearing.voices import speak
+
+    try:
+        return next(iter(speak(voice, [options.text])))
+    except LabialError:
+        if options.voice is not None:
+            raise
+        return None  # a synthesiser that nobody asked for
+
+
+def _of_segments(spoken: Spoken) -> Timings:
+    ends = [round(1000 * segment.end) for segment in spoken.segments]
+    return [(segment.label, end - begin) for segment, begin, end in zip(spoken.segments, [0, *ends], ends)]
+
+
+def _timed(text: str, language: str) -> Timings:
+    """Every word as long as it usually is, and a pause at each sign."""
+    from labial.corpus.words import Word, pronunciation, timings_of
+
+    how = pronunciation(None, language, False)
+    found: Timings = [("SIL", _BEFORE)]
+    for word in text.split():
+        said = [(label, length) for label, length in timings_of([Word(word, 0, None)], how) if label != "SIL"]
+        found += said
+        sign = re.search(r"[,;:.!?](?=\W*$)", word)
+        if sign and said:
+            found.append(("SIL", _PAUSES[sign[0]]))
+    if len(found) == 1:
+        raise LabialError(f"{text!r:.60} has no word that can be said")
+    return found
+
+
+def _placed(timings: Timings) -> List[Tuple[str, int, int]]:
+    """Phonemes with their beginnings and ends."""
+    found, moment = [], 0
+    for label, length in timings:
+        found.append((label, moment, moment + length))
+        moment += length
+    return found
+
+
+def _bands(timings: Timings) -> List[Dict[str, Any]]:
+    """Phonemes as the page shows them."""
+    found = []
+    for label, begin, end in _placed(timings):
+        first, last = (begin + 10) // 20, (end + 10) // 20
+        if last > first:
+            found.append({"label": label, "start_frame": first, "frames": last - first,
+                          "kind": "silence" if label == "SIL" else "speech"})
+    return found
+
+
+def _rendered(timings: Timings) -> List[Tuple[int, ...]]:
+    from labial.runtime.render import render
+
+    return list(render(timings))
+
+
+def _heard(path: str) -> List[Tuple[int, ...]]:
+    """The lips of a recording."""
+    from labial.commands.hear import sound_of
+    from labial.runtime.hearing import Hearing
+
+    rate, channels, sound = sound_of(path)
+    with Hearing(rate, channels) as hearing:
+        hearing.measure(sound)
+        return [frame.faps for frame in hearing.frames([sound])]
+
+
+def _write_sound(spoken: Spoken, path: str) -> None:
+    with wave.open(path, "wb") as file:
+        file.setparams((1, 2, spoken.rate, 0, "NONE", ""))
+        file.writeframes(spoken.samples.astype("<i2").tobytes())
+
+
+def _write_frames(frames: Sequence[Tuple[int, ...]], form: str, output: str) -> None:
+    import numpy as np
+
+    from labial.files.outputs import writing
+    from labial.rig.animation import FORMATS
+
+    out: Any
+    with writing(output, "ascii") as out:
+        FORMATS[form].write(out, [np.array(frames, dtype=np.float64)], 50, Path(output).stem, len(frames))

@@ -1,0 +1,128 @@
+"""``labial say`` and what a first user meets: pages, notebooks, unknown outputs, names that are nearly right."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import wave
+from pathlib import Path
+from typing import List, Tuple
+
+import pytest
+
+import labial
+from labial.__main__ import main
+from labial.commands import COMMANDS
+from labial.errors import LabialError
+from runtime import needs_runtime
+
+pytestmark = needs_runtime
+
+
+def timings(text: str, *options: str, capsys: pytest.CaptureFixture[str]) -> List[Tuple[float, float, str]]:
+    assert main(["say", text, *options]) == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    return [(float(start), float(end), label) for start, end, label in rows]
+
+
+def test_a_text_is_said_at_once(capsys: pytest.CaptureFixture[str]) -> None:
+    """Every word in its order, signs as pauses, no gaps; as fast as people speak."""
+    found = timings("Hello there, how are you?", "--voice", "none", capsys=capsys)
+    assert [label for _, _, label in found] == "SIL HH EH L OW DH EH R SIL HH AW AA R Y UW SIL".split()
+    assert all(one[1] == other[0] for one, other in zip(found, found[1:])) and 1.0 < found[-1][1] < 3.0
+
+
+@pytest.mark.parametrize("suffix", ["html", "csv", "fap", "jsonl", "lab"])
+def test_outputs_by_their_names(suffix: str, tmp_path: Path) -> None:
+    """What each holds is read back by the commands that take it."""
+    path = tmp_path / f"a.{suffix}"
+    assert main(["say", "Maybe people hum.", "--voice", "none", "-o", str(path)]) == 0
+    text = path.read_text(encoding="utf-8")
+    if suffix == "html":
+        data = json.loads(re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.DOTALL)[1])
+        assert data["title"] == "Maybe people hum." and max(frame[0] for frame in data["frames"]) > 100
+        assert [item["label"] for item in data["phonemes"]][:4] == ["SIL", "M", "EY", "B"]
+    elif suffix in ("csv", "fap"):
+        assert main(["page", str(path), "-o", str(tmp_path / "b.html")]) == 0
+    elif suffix == "jsonl":
+        assert "jawOpen" in json.loads(text.splitlines()[20])["arkit"]
+    else:
+        assert labial.read_timings(path)[1][0] == "M"
+
+
+def test_it_needs_nothing_but_python(tmp_path: Path) -> None:
+    """Right after `pip install`: without numpy, and without a synthesiser."""
+    code = ("import sys; sys.modules['numpy'] = None\n"
+            "from labial.__main__ import main; sys.exit(main(['say', 'Hello there', '-o', sys.argv[1]]))")
+    done = subprocess.run([sys.executable, "-c", code, str(tmp_path / "a.html")], capture_output=True, text=True,
+                          check=False, env={"PATH": "", **_environment()})
+    assert done.returncode == 0, done.stderr
+    assert "labial-mouth" in (tmp_path / "a.html").read_text(encoding="utf-8")
+
+
+def _environment() -> dict:
+    import os
+
+    return {name: os.environ[name] for name in ("PYTHONPATH", "LABIAL_RUNTIME") if name in os.environ}
+
+
+def test_a_recording_is_heard(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its sound is in the page; where it is cut off or empty, that is said."""
+    sound, page = tmp_path / "a.wav", tmp_path / "a.html"
+    with wave.open(str(sound), "wb") as file:
+        file.setparams((1, 2, 16000, 0, "NONE", ""))
+        file.writeframes(bytes(64000))
+    assert main(["say", "Hello", "--audio", str(sound), "-o", str(page)]) == 0
+    assert "data:audio/wav;base64," in page.read_text(encoding="utf-8") and not capsys.readouterr().err
+    sound.write_bytes(sound.read_bytes()[:32044])
+    assert main(["hear", str(sound), "-o", str(tmp_path / "a.csv")]) == 0
+    assert "warning: " in (said := capsys.readouterr().err) and "the file is cut off: 1.00 of 2.00 s are there" in said
+    sound.write_bytes(sound.read_bytes()[:44])
+    assert main(["hear", str(sound), "-o", str(tmp_path / "a.csv")]) == 1
+    assert "a.wav: the sound is empty: it has no samples" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments, problem", [
+    (["say", " \n"], "there is nothing to say: the text is empty"),
+    (["say", "...", "--voice", "none"], "'...' has no word that can be said"),
+    (["say", "a", "-o", "a.txt"], "a.txt: the name of the output ends in .html or .lab or .csv"),
+    (["say", "a", "--voice", "siri"], "'siri' is not a voice"),
+    (["say", "a", "--audio", "a.wav"], "labial align finds the phonemes"),
+    (["timings", "a.json", "-o", "a.txt"], "a.txt: the name of the output ends in .lab"),
+    (["page", "a.csv", "-o", "a.png"], "a.png: the name of the output ends in .html or .htm"),
+    (["synth", "speech_en", "a.lab", "-o", "a.xyz"], "a.xyz: the name of the output ends in .csv or .fap or .jsonl"),
+    (["synth", "speech-en", "a.lab", "-o", "a.csv"], "a bundled model: did you mean speech_en?"),
+])  # fmt: skip
+def test_errors_say_what_to_do(arguments: List[str], problem: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                               capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.lab").write_text("0 0.1 M\n")
+    assert main(arguments) == 1
+    assert problem in capsys.readouterr().err and sorted(path.name for path in tmp_path.iterdir()) == ["a.lab"]
+
+
+def test_names_that_are_nearly_right(capsys: pytest.CaptureFixture[str]) -> None:
+    for given, meant in (("trian", "train"), ("hera", "hear"), ("Page", "page")):
+        with pytest.raises(SystemExit):
+            main([given])
+        assert f"{given!r} is no command: did you mean {meant}?" in capsys.readouterr().err
+    with pytest.raises(LabialError, match="did you mean elevenlabs?"):
+        labial.Voice("eleven-labs")
+    with pytest.raises(LabialError, match="did you mean hear_small?"):
+        labial.Hearing(model="hear-small")
+
+
+def test_alone_it_prints_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    said = capsys.readouterr().out
+    assert all(re.search(rf"^    {name}\b", said, re.MULTILINE) for name in COMMANDS)
+
+
+def test_a_notebook_shows_motion() -> None:
+    """A page within the notebook's, in which nothing of it can end the attribute; and still a list of frames."""
+    motion = labial.render([("HH", 70), ("AY", 230)])
+    html = motion._repr_html_()
+    assert re.fullmatch(r'<iframe srcdoc="[^"<>]*" style="[^"]*"></iframe>', html) and "labial-mouth" in html
+    assert motion == list(motion) and motion.fps == 50 and isinstance(motion[0], tuple)
