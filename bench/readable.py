@@ -3,12 +3,12 @@
     readable.py THREE HEAD.glb ... [--sheet SHEET.webp]
 
 prints for each head and method the share of sounds that a nearest-picture rule names right, of nine (docs/avatar.md):
-oo, oh, ee, ah, m, f, th, s, sh, in the middle of up to TOKENS phonemes of each, from sentences.flite of the tests. The rule
-compares pictures of PIXELS by PIXELS around the mouth. *Learned*: with the mean picture of each sound in the same method's
-motion, of every second token, the others being judged. *Own*: with the head's own visemes at full. Methods are Labial's
-rigs, with the sounds and by FAPs alone; the head's own visemes, each for its phoneme with ramps of 80 ms; and
-TalkingHead's animation of them (its version 1.7: from two thirds of a phoneme's length before it to half of it behind, .6
-at the middle, .9 in PP and FF). --sheet writes a picture of heads by sounds in words.
+oo, oh, ee, ah, m, f, th, s, sh, in the middle of up to TOKENS phonemes of each, from sentences.flite of the tests. The
+rule compares pictures of PIXELS by PIXELS around the mouth. *Learned*: with the mean picture of each sound in the same
+method's motion, of every second token, the others being judged. *Own*: with the head's own visemes at full. Methods are
+Labial's rigs, with the sounds and by FAPs alone; the head's own visemes, each for its phoneme with ramps of 80 ms; and
+TalkingHead's animation of them (its version 1.7: from two thirds of a phoneme's length before it to half of it behind,
+.6 at the middle, .9 in PP and FF). --sheet writes a picture of heads by sounds in words.
 
 THREE is the folder of the npm package three. It needs chromium, numpy, and the exporter with its run-time.
 """
@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
+from labial.rig.visemes import ONE, VISEME_OF
 
 from labial.errors import LabialError
 from labial.fit.avatar import Mesh
@@ -33,7 +34,6 @@ from labial.fit.kinds import shapes_for
 from labial.fit.landmarks import read_head
 from labial.fit.sentences import Motion, read_sentences
 from labial.rig.animation import face, outputs
-from labial.rig.visemes import ONE, VISEME_OF, VISEMES
 from labial.runtime.stream import Stream
 
 TESTS = Path(__file__).resolve().parent.parent / "tests" / "python"
@@ -44,8 +44,8 @@ TOKENS, PIXELS, FPS = 12, 48, 50
 #: Pictures that are asked for at a time: a slow machine answers within a minute.
 _PIECE = 10
 #: The sounds that must be told apart, and their visemes.
-SOUNDS: Mapping[str, str] = {"oo": "ou", "oh": "oh", "ee": "ih", "ah": "aa", "m": "PP", "f": "FF", "th": "TH", "s": "SS",
-                             "sh": "CH"}  # fmt: skip
+SOUNDS: Mapping[str, str] = {"oo": "ou", "oh": "oh", "ee": "ih", "ah": "aa", "m": "PP", "f": "FF", "th": "TH",
+                             "s": "SS", "sh": "CH"}  # fmt: skip
 #: The sheet: words, their phonemes, and which of them are drawn under which name.
 WORDS: Sequence[Tuple[str, Mapping[int, str]]] = (
     ("M AA M AA", {0: "m", 1: "ah"}), ("F AE N", {0: "f"}), ("TH IH N", {0: "th"}), ("S IY", {0: "s", 1: "ee"}),
@@ -66,7 +66,11 @@ scene.add(light, new THREE.HemisphereLight(0xffffff, 0x888888, 1.6));
 const camera = new THREE.PerspectiveCamera(20, 1);
 const canvas = document.createElement("canvas");
 let model = null;
-const all = (wanted) => { const found = []; model.traverse((one) => { if (wanted(one)) found.push(one); }); return found; };
+const all = (wanted) => {
+    const found = [];
+    model.traverse((one) => { if (wanted(one)) found.push(one); });
+    return found;
+};
 /** Loads a head and looks at its mouth: vertices of the mesh `name` at the nose, the inner lips. */
 window.load = async (address, name, vertices, back) => {
     if (model) scene.remove(model);
@@ -80,7 +84,8 @@ window.load = async (address, name, vertices, back) => {
     const [nose, upper, lower] = vertices.map((vertex) => {
         for (const mesh of named.length ? named : moving) {
             const count = mesh.geometry.attributes.position.count;
-            if (vertex < count) return mesh.getVertexPosition(vertex, new THREE.Vector3()).applyMatrix4(mesh.matrixWorld);
+            const place = new THREE.Vector3();
+            if (vertex < count) return mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld);
             vertex -= count;
         }
     });
@@ -127,7 +132,10 @@ window.begin = (rows, names, size) => {
 window.row = (row, name, list, size) => {
     const context = sheet.getContext("2d");
     name.split(" ").forEach((word, i) => context.fillText(word, 4, 20 + (row + 0.4) * size + 16 * i));
-    list.forEach((weights, i) => { draw(weights, size); context.drawImage(renderer.domElement, 90 + i * size, 20 + row * size); });
+    list.forEach((weights, i) => {
+        draw(weights, size);
+        context.drawImage(renderer.domElement, 90 + i * size, 20 + row * size);
+    });
 };
 window.picture = () => sheet.toDataURL("image/webp", 0.8);
 window.ready = true;

@@ -110,7 +110,9 @@ def shapes_for(head: Head, kind: str, outputs: Sequence[str]) -> Dict[str, str]:
             own = {"ih": "I", "oh": "O", "ou": "U"}.get(output, output)
             names += ["viseme" + plain(own), "viseme" + plain(output)] if kind == "oculus" else [
                 name for name, meaning in _ALSO.items() if meaning == output]
-        found.update({output: named[name] for name in reversed(names) if name in named})
+        own_names = [named[name] for name in names if name in named]
+        if own_names:
+            found[output] = own_names[0]
     return found
 
 
