@@ -25,7 +25,6 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
-from labial.rig.visemes import ONE, VISEME_OF
 
 from labial.errors import LabialError
 from labial.fit.avatar import Mesh
@@ -35,6 +34,7 @@ from labial.fit.landmarks import read_head
 from labial.fit.sentences import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.runtime.stream import Stream
+from labial.tables.visemes import ONE, VISEME_OF
 
 TESTS = Path(__file__).resolve().parent.parent / "tests" / "python"
 sys.path.insert(0, str(TESTS))
