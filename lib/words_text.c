@@ -66,7 +66,7 @@ void labial_words_say(labial_words_reading_t *reading, const char *words, unsign
         size_t size = 0;
         while (words[size] > ' ')
             size++;
-        say_word(reading, words, size, words[size] == '\0' ? ending : SAID_PLAIN, character);
+        say_word(reading, words, size, words[size] == '\0' ? ending : (unsigned)SAID_PLAIN, character);
         words += size;
         if (*words == ' ')
             words++;
@@ -200,6 +200,18 @@ static int reads_own(labial_words_reading_t *reading, const labial_words_own_t *
                                 first.characters - 1u + k * length / entry->count, k == 0u);
         return 1;
     }
+    return 0;
+}
+
+/* Whether an own word stands behind the current character: the number of a sum, in another language. */
+static int has_own_behind(const labial_words_place_t *here, const labial_words_own_t *own)
+{
+    labial_words_place_t next = *here;
+    unsigned i;
+    labial_words_advance(&next);
+    for (i = 0; own && i < own->count; i++)
+        if (takes_own(&next, own->entries[i].word))
+            return 1;
     return 0;
 }
 
@@ -359,7 +371,7 @@ static void read_next(labial_words_reading_t *reading, const labial_words_own_t 
         labial_words_read_letters(reading);
     } else if (labial_words_is_decimal(here->code)) {
         labial_words_read_number(reading);
-    } else if (labial_words_is_sum(here)) {
+    } else if (labial_words_is_sum(here) && !has_own_behind(here, own)) {
         labial_words_read_sum(reading);
     } else {
         read_sign(reading);

@@ -13,7 +13,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Dict, List
 
-from notices import notice
+from source import notice
 
 Item = Dict[str, Any]
 

@@ -20,11 +20,9 @@ import sys
 from pathlib import Path
 from typing import List, Optional
 
-import amalgamation
 import arduino
 import trees
-from notices import notices
-from source import ROOT, URL, PackError, Source, exit_status, set_version, version, write_text
+from source import ROOT, URL, PackError, Source, exit_status, notices, set_version, version, write_text
 
 
 def _empty_folder(path: Path) -> Path:
@@ -39,7 +37,7 @@ def _pack(options: argparse.Namespace) -> None:
     source = Source(Path(options.models) if options.models else None, getattr(options, "url", URL))
     folder = _empty_folder(Path(options.output))
     if options.kind == "amalgamation":
-        amalgamation.write(source, folder)
+        trees.amalgamate(source, folder)
     elif options.kind == "arduino":
         arduino.write(source, folder)
         if options.zip:

@@ -266,6 +266,40 @@ TEST(full_curve_bends_everywhere)
     }
 }
 
+/* What is LABIAL_RIG_SIGHT frames ahead is seen, the present one included: from standing at 2720, with 10 more in each frame,
+ * a servo comes to 0 in just as many, half of them ever faster. And its speed is what it reaches in as many. */
+TEST(sight_is_32_frames)
+{
+    enum { CLOSES = 90, FASTEST = 10 * LABIAL_RIG_SIGHT };
+    static int16_t frames[CLOSES + 2 * LABIAL_RIG_SIGHT][LABIAL_CHANNELS];
+    labial_rig_output_t output = plain();
+    const labial_rig_t rig = { &output, 1 };
+    int32_t value = 0, change = 0, most = 0;
+    memset(output.weights, 0, sizeof output.weights);
+    output.weights[FAP52] = -LABIAL_RIG_ONE;
+    output.gain = LABIAL_RIG_GAIN(10, 1);
+    output.neutral = output.minimum = output.slew = output.contact = 0;
+    output.closed = 0;
+    output.maximum = 2720;
+    output.acceleration = 10;
+    for (unsigned t = 0; t < CLOSES; t++)
+        frames[t][FAP52] = -272;
+    for (unsigned t = 0; t <= CLOSES; t++) {
+        assert_int_equal(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change), LABIAL_OK);
+        if (t + LABIAL_RIG_SIGHT == CLOSES)
+            assert_int_equal(value, 2720); /* nothing is seen of it yet */
+    }
+    assert_int_equal(value, 0);
+    output.maximum = 30000;
+    for (unsigned t = 0; t < CLOSES; t++)
+        frames[t][FAP52] = -3000;
+    for (unsigned t = 0; t < CLOSES - LABIAL_RIG_SIGHT; t++) {
+        assert_int_equal(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change), LABIAL_OK);
+        most = change > most ? change : most;
+    }
+    assert_int_equal(most, FASTEST);
+}
+
 /* A servo with a limit of acceleration, on its way down from 1600 to 1400 in the frame 8 with all in sight: it sets out
  * where it must, comes to rest there and goes no further; with nothing in sight it is late, and does not go beyond. */
 TEST(acceleration_comes_to_rest)

@@ -189,6 +189,19 @@ TEST(calls_do_as_the_header_says)
     wrong |= timing.laugh != 179 || strcmp(timing.label, "<laugh:0.7>") != 0 || !timing.xsampa || timing.has_apex;
     wrong |= labial_timings_next(&timings, laughs + used, strlen(laughs) - used, &used, &timing) != LABIAL_OK;
     wrong |= timing.laugh != 128 || timing.label || timing.end != 1100000000u || timing.line != 2;
+    /* An apex may be a millisecond outside its segment. */
+    static const struct {
+        const char *row;
+        int result;
+    } apexes[] = { { "1 2 m 0.999 w\n", LABIAL_OK },
+                   { "1 2 m 0.9989 w\n", LABIAL_ERROR_TIMINGS },
+                   { "1 2 m 2.001 w\n", LABIAL_OK },
+                   { "1 2 m 2.0011 w\n", LABIAL_ERROR_TIMINGS } };
+    for (size_t i = 0; i < sizeof apexes / sizeof apexes[0]; i++) {
+        labial_timings_init(&timings, LABIAL_TIMINGS_LAB);
+        assert_int_equal(labial_timings_next(&timings, apexes[i].row, strlen(apexes[i].row), &used, &timing),
+                         apexes[i].result);
+    }
     static const char usual[] = "flite:0.1 <laugh 1> m:0.2\n";
     labial_timings_init(&timings, LABIAL_TIMINGS_FLITE);
     wrong |= labial_timings_next(&timings, usual, strlen(usual), &used, &timing) != LABIAL_OK;

@@ -198,6 +198,13 @@ TEST(ends_that_are_not_known_are_guessed)
     say(&spoken, ".", 20 * length, LABIAL_WORDS_NO_END); /* but not with the word */
     flush(&spoken);
     assert_int_equal(until(&spoken, spoken.count), 21 * length);
+    for (unsigned longer = 0; longer < 2; longer++) { /* one and a half times is the most */
+        begin(0);
+        memset(&spoken, 0, sizeof spoken);
+        say(&spoken, "banana", 0, LABIAL_WORDS_NO_END);
+        say(&spoken, "banana", length / 4 * 6 + longer, LABIAL_WORDS_NO_END);
+        assert_int_equal(until(&spoken, spoken.count), longer ? length : length / 4 * 6);
+    }
     say(&spoken, "banana", 0xfffffff0u, LABIAL_WORDS_NO_END); /* hours of silence, in parts */
     flush(&spoken);
     assert_int_equal(until(&spoken, spoken.count), 0xffffffffu);

@@ -1,6 +1,6 @@
 /*
  * conformance.c - an image that plays every stream, in every way of feeding it, and compares the digests of its frames
- * with those of vectors.c. Where there is room for the frames themselves, CONFORMANCE_FRAMES names a file of them, and
+ * with those of vectors.c. CONFORMANCE_FRAMES names a file of the frames themselves, if there is room for them: then
  * the image says which frame is the first that differs.
  */
 #include "board.h"

@@ -20,21 +20,28 @@ from mutants import Mutant
 ROOT = Path(__file__).resolve().parents[2]
 #: The tests that must notice changes of a file, the quickest first: modules of tests/python, suites of tests/npm.
 COVERED: Dict[str, Tuple[str, ...]] = {
-    "export/labial/tables/quantise.py": ("test_quantise.py", "test_emit.py"),
-    "export/labial/tables/fixed.py": ("test_quantise.py", "test_emit.py"),
+    "export/labial/tables/quantise.py": ("test_quantise.py", "test_model.py", "test_runtime_models.py"),
+    "export/labial/tables/fixed.py": ("test_quantise.py", "test_model.py", "test_runtime_models.py"),
     "export/labial/hearing/quantise.py": ("test_hearing.py", "test_runtime_hearing.py"),
     "export/labial/runtime/hearing.py": ("test_runtime_hearing.py", "test_hear_program.py"),
-    "export/labial/runtime/rig.py": ("test_rig.py", "test_face.py", "test_examples.py", "test_beside.py"),
+    "export/labial/runtime/rig.py": ("test_rig.py", "test_face.py", "test_beside.py"),
     "export/labial/runtime/face.py": ("test_face.py", "test_esp32_hear.py"),
     "export/labial/runtime/beside.py": ("test_beside.py", "test_esp32_beside.py"),
-    "export/labial/rig/table.py": ("test_rig.py", "test_examples.py"),
+    "export/labial/runtime/voice.py": ("test_voice.py", "test_voice_sessions.py"),
+    "export/labial/corpus/services.py": ("test_services.py", "test_messages.py"),
+    "export/labial/corpus/messages.py": ("test_messages.py", "test_services.py", "test_voice.py"),
+    "export/labial/rig/table.py": ("test_rig.py", "test_outputs.py"),
     "export/labial/rig/description.py": ("test_rig.py", "test_outputs.py"),
-    "web/hearing/hearing.js": ("hearing.test.mjs", "test_npm_hearing.py"),
-    "web/hearing/tap.js": ("hearing.test.mjs", "test_npm_hearing.py"),
+    "web/hearing/hearing.js": ("hearing.test.mjs", "test_runtime_hearing.py", "test_browser_hearing.py"),
+    "web/hearing/tap.js": ("hearing.test.mjs", "test_browser_hearing.py"),
     "web/labial-face.js": ("mouth.test.mjs", "test_browser_elements.py"),
     "web/track.js": ("streams.test.mjs", "test_npm.py"),
     "web/stream.js": ("streams.test.mjs", "conformance.test.mjs", "test_npm.py"),
     "web/memory.js": ("streams.test.mjs", "conformance.test.mjs", "test_npm.py"),
+    "web/services.js": ("words.test.mjs", "test_npm_words.py", "test_services.py"),
+    "web/words/voice.js": ("voices.test.mjs", "test_npm_words.py", "test_voice_sessions.py"),
+    "web/words/messages.js": ("voices.test.mjs", "words.test.mjs", "test_npm_words.py"),
+    "web/words/readers.js": ("words.test.mjs", "test_npm_words.py"),
 }
 #: The packages of npm and the folders of their sources.
 PACKAGES = {"npm": "web", "npm-words": "web/words", "npm-hearing": "web/hearing", "npm-laughter": "web/laughter"}
@@ -101,9 +108,8 @@ class Packages:
             call = _Call(test, [self.python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist",
                                 "--rootdir", str(ROOT), str(ROOT / "tests" / "python" / test)])
         place = folder / test
-        self._lay_out(place, "export/" if test.endswith(".py") else "web/")
-        if test.startswith(("test_npm", "test_browser")):
-            self._lay_out(place, "web/")
+        self._lay_out(place, "export/")
+        self._lay_out(place, "web/")
         began = resource.getrusage(resource.RUSAGE_CHILDREN)
         if self._fails(call, place, 600):
             raise SystemExit(f"{test} fails on the sources as they are")

@@ -24,7 +24,6 @@ from labial.rig.table import convert, expected
 from labial.tables.model import load
 from labial.tables.phones import read_stream
 from labial.tables.quantise import quantise
-from notices import notices
 from packages import (
     CC,
     CMAKE,
@@ -38,6 +37,7 @@ from packages import (
     single_spaced,
     warnings,
 )
+from source import notices
 
 STUB = SOURCE / "tests" / "packages" / "arduino_stub"
 SKETCHES = sorted(path.parent.name for path in (SOURCE / "examples" / "arduino").glob("*/*.ino"))

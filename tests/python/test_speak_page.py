@@ -1,5 +1,5 @@
 """examples/speak-page as a browser opens its files, without a server: espeak-ng's sound is heard, and lips close in its
-p, b, m, in every language of the page."""
+p, b, m, in every language of the page; what labial/espeak.js makes of espeak-ng's events, against the exporter."""
 
 from __future__ import annotations
 

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
+import unicodedata
 import warnings
+from types import SimpleNamespace
 from typing import List, Tuple
 
 import pytest
 
 import labial
+from labial.core import espeak
+from labial.corpus import languages
 from labial.corpus import words as spoken
 from labial.corpus.words import Pronunciation, Word, timings_of, words_of_characters
 from labial.errors import LabialError, StreamError
+from packages import SOURCE
 from runtime import needs_runtime
 
 pytestmark = needs_runtime
@@ -145,7 +151,82 @@ def test_other_languages_are_espeaks() -> None:
         labial.phonemes("a", language="xx-none")
 
 
+VOWELS = "AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split()
+#: The sentences of docs/words.md, with their syllables and p, b, m.
+SENTENCES = re.findall(r"^\| \w[^|]* \| `([\w-]+)` \| ([^|]+) \| (\d+) \| (\d+) \|$",
+                       (SOURCE / "docs" / "words.md").read_text(encoding="utf-8"), re.MULTILINE)
+
+
+@needs_espeak
+@pytest.mark.parametrize("language, sentence, syllables, closures", SENTENCES, ids=[item[0] for item in SENTENCES])
+def test_languages_have_their_syllables_and_closures(language: str, sentence: str, syllables: str,
+                                                     closures: str) -> None:
+    """As many as a speaker hears, also where letters and marks come apart or words come one by one."""
+    for text in (sentence, unicodedata.normalize("NFD", sentence)):
+        found = labial.phonemes(text, language=language)
+        assert sum(item in VOWELS for item in found) == int(syllables), found
+        assert sum(item in ("P", "B", "M") for item in found) == int(closures), found
+    words = [(word, 300.0 * n, 300.0 * n + 300) for n, word in enumerate(sentence.split())]
+    timed = [label for label, _ in labial.word_timings(words, language=language) if label != "SIL"]
+    assert timed == labial.phonemes(sentence, language=language)
+
+
+def test_there_are_ten_languages_and_more() -> None:
+    assert len({language for language, *_ in SENTENCES}) >= 15
+
+
+@needs_espeak
+def test_kanji_become_kana(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    """By fugashi, for which a stand-in has what it says; without it kana alone are spoken, and kanji alone logged."""
+    said = {"私は話します": ("ワタクシ", "ワ", "ハナシ", "マス")}
+
+    def tagger(text: str) -> List[SimpleNamespace]:
+        return [SimpleNamespace(surface="", feature=SimpleNamespace(pron=kana, kana=kana)) for kana in said[text]]
+
+    monkeypatch.setattr(languages, "_tagger", lambda: tagger)
+    assert labial.phonemes("私は話します", language="ja") == "W AE T AE SH IY W AE HH AE N AE SH IY M AE S".split()
+    monkeypatch.setattr(languages, "_tagger", lambda: None)
+    assert labial.phonemes("話します", language="ja") == "SH IY M AE S".split()
+    assert labial.phonemes("世界", language="ja") == []
+    assert "kanji need fugashi: pip install '.[japanese]'" in caplog.text
+
+
+@needs_espeak
+def test_pinyin_is_read() -> None:
+    """With tones as digits or marks, and words of several syllables; words that are none are English."""
+    expected = "N IY HH AW JH UH NG G W AO N UW".split()
+    for text in ("ni3 hao3 zhong1guo2 nv3", "nǐ hǎo zhōngguó nǚ", "nihao Zhongguo nü"):
+        assert labial.phonemes(text, language="zh") == expected
+    assert labial.phonemes("Labial", language="zh") == labial.phonemes("Labial")
+
+
+@needs_espeak
+def test_words_that_cannot_be_spoken_are_said_once(monkeypatch: pytest.MonkeyPatch,
+                                                   caplog: pytest.LogCaptureFixture) -> None:
+    """They move the lips for their time, as words of other scripts do."""
+    monkeypatch.setattr(languages, "_ipa", lambda texts, language: ["_" for _ in texts])
+    for _ in range(2):
+        assert labial.word_timings([("מהמה", 0, 300)], language="he") == labial.word_timings([("מהמה", 0, 300)])
+    assert [record.getMessage() for record in caplog.records] == [
+        "espeak-ng cannot speak 'מהמה' in the language 'he': the lips move for its time alone"]
+
+
+@needs_espeak
+def test_espeaks_program_takes_the_place_of_its_library(monkeypatch: pytest.MonkeyPatch) -> None:
+    by_library = labial.phonemes("Guten Tag, Bücher", language="de")
+
+    def missing(*_: object) -> None:
+        raise LabialError("no library")
+
+    monkeypatch.setattr(espeak, "library", missing)
+    assert labial.phonemes("Guten Tag, Bücher", language="de") == by_library
+
+
 def test_languages_that_cannot_be_had_are_errors(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: object) -> None:
+        raise LabialError("no library")
+
+    monkeypatch.setattr(espeak, "library", missing)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     with pytest.raises(LabialError, match="needs espeak-ng: apt-get install"):
         labial.phonemes("a", language="de")

@@ -9,7 +9,6 @@
 
 #include "arkit.h"
 #include "grow.h"
-#include "livelink.h"
 
 /* FAPs of MPEG-4, each with an entry in the mask of a fap file. */
 #define FAP_COUNT 68
@@ -56,6 +55,33 @@ static void put_csv(frames_t *frames, const int16_t faps[LABIAL_CHANNELS], const
 static void write_weight(FILE *out, int32_t weight)
 {
     fprintf(out, "%" PRId32 ".%03" PRId32, weight / LABIAL_RIG_WEIGHT_ONE, weight % LABIAL_RIG_WEIGHT_ONE);
+}
+
+/* Columns of a Live Link Face recording behind Timecode and BlendShapeCount: ARKit's 52 blendshapes, whose own names
+ * begin with a small letter, and 9 rotations. */
+/* clang-format off */
+static const char *const livelink_columns[] = {
+    "EyeBlinkLeft", "EyeLookDownLeft", "EyeLookInLeft", "EyeLookOutLeft", "EyeLookUpLeft", "EyeSquintLeft",
+    "EyeWideLeft", "EyeBlinkRight", "EyeLookDownRight", "EyeLookInRight", "EyeLookOutRight", "EyeLookUpRight",
+    "EyeSquintRight", "EyeWideRight", "JawForward", "JawRight", "JawLeft", "JawOpen", "MouthClose", "MouthFunnel",
+    "MouthPucker", "MouthRight", "MouthLeft", "MouthSmileLeft", "MouthSmileRight", "MouthFrownLeft",
+    "MouthFrownRight", "MouthDimpleLeft", "MouthDimpleRight", "MouthStretchLeft", "MouthStretchRight",
+    "MouthRollLower", "MouthRollUpper", "MouthShrugLower", "MouthShrugUpper", "MouthPressLeft", "MouthPressRight",
+    "MouthLowerDownLeft", "MouthLowerDownRight", "MouthUpperUpLeft", "MouthUpperUpRight", "BrowDownLeft",
+    "BrowDownRight", "BrowInnerUp", "BrowOuterUpLeft", "BrowOuterUpRight", "CheekPuff", "CheekSquintLeft",
+    "CheekSquintRight", "NoseSneerLeft", "NoseSneerRight", "TongueOut", "HeadYaw", "HeadPitch", "HeadRoll",
+    "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll", "RightEyeYaw", "RightEyePitch", "RightEyeRoll",
+};
+/* clang-format on */
+#define LIVELINK_COLUMNS ((int)(sizeof livelink_columns / sizeof *livelink_columns))
+
+/* The place of a column's blendshape among the values of the rig arkit, or -1 where neither lips nor jaw move it. */
+static int livelink_output(const char *column)
+{
+    for (int i = 0; i < ARKIT_OUTPUTS; i++)
+        if (arkit_outputs[i][0] == column[0] - 'A' + 'a' && strcmp(arkit_outputs[i] + 1, column + 1) == 0)
+            return i;
+    return -1;
 }
 
 static void begin_livelink(frames_t *frames)

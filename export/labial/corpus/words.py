@@ -8,13 +8,12 @@ everything else; then numbers, if they are to be written out by num2words; then 
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
+import unicodedata
 from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read, read_words
-from labial.corpus.phonesets import SPEECH
-from labial.errors import LabialError, apt, missing, needs
+from labial.corpus.languages import pronounced
+from labial.errors import LabialError, needs
 
 #: The language of the library's tables.
 ENGLISH = "en"
@@ -122,20 +121,31 @@ def known_words(texts: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[
             if _NUMBER.fullmatch(item):
                 known[item] = _spoken(_written_out(item, how.language).split(), how)
     if how.language != ENGLISH:
-        missing = [item for item in stretches if item not in known]
-        known.update(zip(missing, _by_espeak(missing, how.language)))
+        asked = [item for item in stretches if item not in known]
+        said = zip(asked, pronounced(asked, how.language))
+        known.update((word, phonemes) for word, phonemes in said if phonemes is not None)
     return {word: known[word] if word in how.own else known[word][:PHONEMES_MAX] for word in known}
 
 
 def stretches_of(texts: Iterable[str], known: Container[str]) -> List[str]:
     """What these texts' words are looked up by, without those that are known."""
-    return list(dict.fromkeys(item for text in texts for item in _STRETCH.findall(text) if item not in known))
+    return list(dict.fromkeys(item for text in texts for item in _stretches(text) if item not in known))
+
+
+def _stretches(text: str) -> List[str]:
+    """The stretches of a text. Marks and joiners belong to the letter before them: without them Hindi falls apart."""
+    plain = "".join("x" if _is_mark(character) else character for character in text)
+    return [text[found.start() : found.end()] for found in _STRETCH.finditer(plain)]
+
+
+def _is_mark(character: str) -> bool:
+    return character > "\x7f" and (unicodedata.category(character)[0] == "M" or character in "\u200c\u200d")
 
 
 def _spoken(words: Sequence[str], how: Pronunciation) -> List[str]:
     """The phonemes of words one after the other."""
     if how.language != ENGLISH:
-        return [phoneme for found in _by_espeak(words, how.language) for phoneme in found]
+        return [phoneme for found in pronounced(words, how.language) for phoneme in found or ()]
     return [phoneme for word in words for phoneme in read(word).phonemes]
 
 
@@ -152,32 +162,3 @@ def _written_out(digits: str, language: str) -> str:
     except (NotImplementedError, OverflowError, ValueError):
         raise LabialError(f"num2words cannot write {digits!r:.40} in the language {language!r:.40}") from None
     return re.sub(r"\band\b", " ", text) if language == ENGLISH else text
-
-
-def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
-    """The phonemes of words as espeak-ng says them, as those of ARPABET that look most like them."""
-    if not words:
-        return []
-    program = shutil.which("espeak-ng")
-    if program is None:
-        raise missing(f"the language {language!r:.40}", "espeak-ng", apt("espeak-ng"))
-    if not re.fullmatch(r"[a-z][\w+-]*(?:/[\w+-]+)*", language):
-        raise LabialError(f"{language!r:.40} is no language of espeak-ng")
-    lines = _ipa(program, words, language)
-    if len(lines) != len(words):  # a word that is silent, or that makes two clauses
-        lines = [" ".join(_ipa(program, [word], language)) for word in words]
-    return [[_nearest(label) for label in re.split(r"[_\s]+", line) if label] for line in lines]
-
-
-def _ipa(program: str, words: Sequence[str], language: str) -> List[str]:
-    """A line of the IPA for each word."""
-    done = subprocess.run([program, "-q", "-v", language, "--ipa", "--sep=_", "--stdin"],
-                          input="\n\n".join(words).encode("utf-8", "replace"), capture_output=True)
-    if done.returncode != 0:
-        problem = " ".join(done.stderr.decode("utf-8", "replace").split())
-        raise LabialError(f"espeak-ng cannot speak {language!r:.40}: {problem[:200]}")
-    return [line for line in done.stdout.decode("utf-8", "replace").splitlines() if line.strip("_ ")]
-
-
-def _nearest(label: str) -> str:
-    return SPEECH.nearest(label, "ipa")

@@ -15,9 +15,9 @@ import numpy as np
 
 from labial.errors import DataError
 from labial.fit.meaning import fap
-from labial.rig.visemes import ONE, VISEMES
 from labial.runtime.render import render
 from labial.runtime.stream import Stream
+from labial.tables.visemes import ONE, VISEMES
 
 #: The bundled sentences.
 SENTENCES = Path(__file__).with_name("sentences.flite")

@@ -7,17 +7,15 @@ reports p, t and k at their burst, and the silence before it, while lips or tong
 from __future__ import annotations
 
 import ctypes
-import ctypes.util
 import unicodedata
-from functools import cache
 from typing import Any, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import LabialError, apt, missing
+from labial.core import espeak
+from labial.errors import LabialError
 
 #: Values of espeak-ng's speak_lib.h.
-_SYNCHRONOUS, _PHONEME_EVENTS, _IPA, _DONT_EXIT = 2, 0x1, 0x2, 0x8000
 _END, _PHONEME = 0, 7
 _RATE, _PITCH = 1, 3
 _NORMAL_RATE, _NORMAL_PITCH = 175, 50
@@ -50,7 +48,7 @@ class Speaker:
         the library or the voice, and for MBROLA's."""
         if "mb" in voice.replace("/", "-").split("+")[0].split("-"):
             raise LabialError(f"espeak-ng's {voice!r} is a voice of MBROLA, which is not for every use")
-        self._library, self.rate = _library()
+        self._library, self.rate = espeak.library()
         self._samples: List[np.ndarray] = []
         self._events: List[Tuple[int, str]] = []
         self._callback = _CALLBACK(self._heard)  # kept: the library holds its address
@@ -135,17 +133,3 @@ def _levels(samples: np.ndarray, rate: int) -> np.ndarray:
     sums = np.concatenate([[0], np.cumsum(np.abs(samples.astype(np.int64)))])
     result: np.ndarray = (sums[bounds[1:]] - sums[bounds[:-1]]) // np.maximum(np.diff(bounds), 1)
     return result
-
-
-@cache
-def _library() -> Tuple[Any, int]:
-    """The library, and the rate of its sound. It stays loaded: after espeak_Terminate() it cannot begin again."""
-    name = ctypes.util.find_library("espeak-ng") or "libespeak-ng.so.1"
-    try:
-        library = ctypes.CDLL(name)
-    except OSError:
-        raise missing("this voice", "espeak-ng", apt("libespeak-ng1")) from None
-    rate = int(library.espeak_Initialize(_SYNCHRONOUS, 0, None, _PHONEME_EVENTS | _IPA | _DONT_EXIT))
-    if rate <= 0:
-        raise missing("espeak-ng", "its data", apt("espeak-ng-data"))
-    return library, rate

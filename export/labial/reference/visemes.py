@@ -8,7 +8,7 @@ import numpy as np
 
 from labial.reference.fade import EASE
 from labial.reference.units import frame_counts
-from labial.rig.visemes import AROUND, DOMINANCES, TONGUES, VISEME_OF, VISEMES
+from labial.tables.visemes import AROUND, DOMINANCES, TONGUES, VISEME_OF, VISEMES
 
 _PLACE = {viseme: place for place, viseme in enumerate(VISEMES)}
 

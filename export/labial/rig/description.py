@@ -13,7 +13,7 @@ from labial.files.faps import CHANNELS
 from labial.files.toml import Table, meant, read_toml
 from labial.rig.gestures import SOURCES, Row
 from labial.rig.units import UNITS, Unit, make_unit
-from labial.rig.visemes import VISEMES
+from labial.tables.visemes import VISEMES
 
 #: Range of a servo's pulses, microseconds: wider than that of any common servo, narrow enough to detect typing errors.
 PULSE_MIN, PULSE_MAX = 400.0, 2600.0
@@ -47,7 +47,7 @@ class Output:
     acceleration: float = 0.0  #: units per frame, per frame; 0 for no limit
     #: Curve of a linkage: values for an even linkage, and the values that have the same effect.
     curve: Tuple[Tuple[float, float], ...] = ()
-    #: What a share of one of each of `labial.rig.visemes.VISEMES` adds; empty for an output of FAPs alone.
+    #: What a share of one of each of `labial.tables.visemes.VISEMES` adds; empty for an output of FAPs alone.
     visemes: Row = ()
 
 

@@ -16,7 +16,7 @@ from labial.files.faps import FAP_NAMES
 from labial.files.outputs import folder
 from labial.rig.description import Output, Rig
 from labial.rig.gestures import Row
-from labial.rig.visemes import VISEMES
+from labial.tables.visemes import VISEMES
 
 if TYPE_CHECKING:
     import numpy as np
@@ -191,6 +191,11 @@ def _comment(rig: Rig, what: str) -> str:
     return written_by("rig", f"{what}. Values are {rig.unit.text}.")
 
 
+#: The members of a row of a table.
+_COLUMNS = ("weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband, acceleration, curve, "
+            "visemes")
+
+
 def header(rig: Rig) -> str:
     """NAME.h: the rig's symbol and the numbers of its outputs."""
     upper = rig.name.upper()
@@ -272,7 +277,7 @@ def source(rig: Rig, table: List[TableOutput]) -> str:
     tables = "".join(map(_tables, table))
     return f"""{_comment(rig, f"{rig.name}.c - what moves a face")}#include "{rig.name}.h"
 
-{tables}/* weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband, acceleration, curve, visemes */
+{tables}/* {_COLUMNS} */
 static const labial_rig_output_t outputs[{len(table)}] = {{
 {rows}
 }};

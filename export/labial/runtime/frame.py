@@ -19,12 +19,13 @@ class Frame(_Moment):
         number: counted from 0 since the stream was made; it is due number / fps seconds after the first.
         faps: 13 values, FAP units, in the order of ``labial.files.faps.FAP_NUMBERS``.
         visemes: how much of each sound the frame shows, 15 shares of together 128 in the order of
-        ``labial.rig.visemes.VISEMES``; empty where it is not known.
+        ``labial.tables.visemes.VISEMES``; empty where it is not known.
     """
 
     visemes: Tuple[int, ...]
 
     def __new__(cls, number: int, faps: Tuple[int, ...], visemes: Tuple[int, ...] = ()) -> Frame:
+        """A frame."""
         frame = super().__new__(cls, number, faps)
         frame.visemes = visemes
         return frame

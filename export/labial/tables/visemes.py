@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Dict, Mapping, NamedTuple, Tuple
 
-#: The visemes in the order of a frame's shares, and the ARPABET phonemes of each. /HH/ has none: its neighbours share its
-#: time.
+#: The visemes in the order of a frame's shares, and the ARPABET phonemes of each. /HH/ has none: its neighbours share
+#: its time.
 VISEMES: Mapping[str, Tuple[str, ...]] = {
     "sil": ("SIL",), "PP": ("P", "B", "M"), "FF": ("F", "V"), "TH": ("TH", "DH"), "DD": ("T", "D"),
     "kk": ("K", "G", "NG"), "CH": ("CH", "JH", "SH", "ZH"), "SS": ("S", "Z"), "nn": ("N", "L"), "RR": ("R", "ER"),
@@ -32,9 +32,10 @@ class Dominance(NamedTuple):
 _VOWEL, _TONGUE, _TIGHT = Dominance(640, 10, 10), Dominance(512, 10, 12), Dominance(2048, 51, 51)
 #: Lips round early (onsets of 112 ms and less), and closed lips and teeth on the lip part fast (40 ms).
 DOMINANCES: Mapping[str, Dominance] = {
-    "sil": Dominance(384, 6, 6), "PP": _TIGHT, "FF": _TIGHT, "TH": Dominance(1536, 34, 51), "DD": _TONGUE, "kk": _TONGUE,
-    "CH": Dominance(1280, 16, 21), "SS": Dominance(1024, 20, 25), "nn": _TONGUE, "RR": Dominance(768, 12, 12),
-    "aa": _VOWEL, "E": _VOWEL, "ih": _VOWEL, "oh": Dominance(896, 9, 11), "ou": Dominance(896, 8, 11),
+    "sil": Dominance(384, 6, 6), "PP": _TIGHT, "FF": _TIGHT, "TH": Dominance(1536, 34, 51), "DD": _TONGUE,
+    "kk": _TONGUE, "CH": Dominance(1280, 16, 21), "SS": Dominance(1024, 20, 25), "nn": _TONGUE,
+    "RR": Dominance(768, 12, 12), "aa": _VOWEL, "E": _VOWEL, "ih": _VOWEL, "oh": Dominance(896, 9, 11),
+    "ou": Dominance(896, 8, 11),
 }  # fmt: skip
 #: Milliseconds from which on no sound counts.
 AROUND = 120

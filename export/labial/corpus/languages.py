@@ -1,0 +1,279 @@
+"""How words of languages other than English sound: by espeak-ng, as the phonemes of ARPABET that look most like its
+own.
+
+Chinese goes by pinyin, of the package pypinyin or else of espeak-ng's own dictionary, since espeak-ng speaks Chinese
+characters as English names of pinyin. Japanese with kanji needs fugashi and unidic-lite. Arabic without vowel marks
+gets a vowel where a syllable of Arabic must have one.
+"""
+
+from __future__ import annotations
+
+import difflib
+import logging
+import re
+import shutil
+import subprocess
+import unicodedata
+from functools import cache
+from typing import Any, Dict, List, Optional, Sequence
+
+from labial.core import espeak
+from labial.core.words import read
+from labial.corpus.phonesets import SPEECH
+from labial.errors import LabialError, apt, missing, pip
+
+_logger = logging.getLogger("labial")
+
+#: Words that are said to be unspeakable, at most.
+_SAID_MOST = 1000
+#: Words of which a sentence for espeak-ng has, at most.
+_SENTENCE = 60
+#: How much of a word in its sentence must be as it is alone, for the two to be the same word.
+_ALIKE = 0.5
+
+_VOICE = re.compile(r"[a-z][\w+-]*(?:/[\w+-]+)*")
+_CHINESE = re.compile(r"(?:zh|cmn|zho)(?:-.*)?")
+_HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
+#: Marks of espeak-ng's: where words of another language begin, tones, and retroflex consonants.
+_MARKED = re.compile(r"\([a-z][\w-]*\)|[0-9.]")
+#: The vowel of Japanese "desu" and "masu", which is whispered.
+_DEVOICED = re.compile("(?<=(?:D EH|M AE) S) UH(?= K|$)")
+_VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
+
+_INITIALS = {"b": "B", "p": "P", "m": "M", "f": "F", "d": "D", "t": "T", "n": "N", "l": "L", "g": "G", "k": "K",
+             "h": "HH", "j": "JH", "q": "CH", "x": "SH", "zh": "JH", "ch": "CH", "sh": "SH", "r": "R", "z": "D Z",
+             "c": "T S", "s": "S", "": ""}  # fmt: skip
+#: Finals of pinyin as they are written behind an initial.
+_FINALS = {"a": "AA", "o": "AO", "e": "AH", "ai": "AY", "ei": "EY", "ao": "AW", "ou": "OW", "an": "AA N", "en": "AH N",
+           "ang": "AA NG", "eng": "AH NG", "ong": "UH NG", "er": "ER", "i": "IY", "ia": "Y AA", "ie": "Y EH",
+           "iao": "Y AW", "iu": "Y OW", "ian": "Y EH N", "in": "IH N", "iang": "Y AA NG", "ing": "IH NG",
+           "iong": "Y UH NG", "u": "UW", "ua": "W AA", "uo": "W AO", "uai": "W AY", "ui": "W EY", "uan": "W AA N",
+           "un": "W AH N", "uang": "W AA NG", "ueng": "W AH NG", "ü": "UW", "üe": "Y EH", "üan": "Y EH N",
+           "ün": "UW N"}  # fmt: skip
+_SYLLABLE = re.compile(f"(zh|ch|sh|[bpmfdtnlgkhjqxrzcs]?)({'|'.join(sorted(_FINALS, key=len, reverse=True))})")
+#: How finals without an initial are written, and what they are.
+_WRITTEN = (("yi", "i"), ("yu", "ü"), ("yong", "iong"), ("you", "iu"), ("y", "i"), ("wu", "u"), ("wei", "ui"),
+            ("wen", "un"), ("weng", "ueng"), ("w", "u"))  # fmt: skip
+
+
+def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]:
+    """The phonemes of words that follow each other; None for one that cannot be spoken, which is logged once. Raises
+    LabialError for an unknown language, and where espeak-ng is missing."""
+    if not words:
+        return []
+    if not _VOICE.fullmatch(language):
+        raise LabialError(f"{language!r:.40} is no language of espeak-ng")
+    given = [unicodedata.normalize("NFC", word) for word in words]
+    if _CHINESE.fullmatch(language):
+        found = [_by_pinyin(word) for word in given]
+    else:
+        if language.split("-")[0] == "ja":
+            given = [_kana(word) for word in given]
+        found = [phonemes or None for phonemes in _by_espeak(given, language)]
+        if language.split("-")[0] == "ja":
+            found = [phonemes and _DEVOICED.sub("", " ".join(phonemes)).split() for phonemes in found]
+    for word, phonemes in zip(words, found):
+        if phonemes is None:
+            _say_unspeakable(word, language)
+    return found
+
+
+_unspeakable: Dict[str, None] = {}
+
+
+def _say_unspeakable(word: str, language: str) -> None:
+    """Logs that a word cannot be spoken, once for each word."""
+    key = f"{language} {word}"
+    if key in _unspeakable or len(_unspeakable) >= _SAID_MOST:
+        return
+    _unspeakable[key] = None
+    is_kanji = language.split("-")[0] == "ja" and _HAN.search(word)
+    hint = f"; kanji need fugashi: {pip('japanese')}" if is_kanji else ""
+    _logger.warning("espeak-ng cannot speak %.40r in the language %r: the lips move for its time alone%s", word,
+                    language, hint)
+
+
+# ---- espeak-ng
+
+
+def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
+    """The phonemes of words, as they sound in their sentence where that can be told."""
+    found = _spoken(words, language)
+    for first in range(0, len(words), _SENTENCE):
+        part = [word for word in words[first : first + _SENTENCE] if word]
+        places = [place for place in range(first, min(first + _SENTENCE, len(words))) if words[place]]
+        said = _spoken([" ".join(part)], language, " ")
+        if len(part) < 2 or len(said) != len(part):
+            continue
+        for place, phonemes in zip(places, said):
+            if difflib.SequenceMatcher(None, found[place], phonemes, autojunk=False).ratio() >= _ALIKE:
+                found[place] = phonemes
+    return found
+
+
+def _spoken(texts: Sequence[str], language: str, between: str = "") -> List[List[str]]:
+    """The phonemes of texts; with `between`, of the words of a single one."""
+    lines = _ipa(texts, language)
+    if between:
+        lines = [word for word in lines[0].split(between) if word.strip("_")]
+    tonal = language.split("-")[0] in ("yue", "th", "vi", "my", "hak", "nan")
+    result = [_phonemes(line, tonal) for line in lines]
+    return [_with_vowels(phonemes) for phonemes in result] if language.split("-")[0] == "ar" else result
+
+
+def _phonemes(line: str, tonal: bool) -> List[str]:
+    """The phonemes of espeak-ng's IPA."""
+    labels = (_MARKED.sub("", label) for label in re.split(r"[_\s]+", line))
+    if tonal:  # a tone is written with this sign as well
+        labels = (re.sub("(?<=.)ɜ$", "", label) for label in labels)
+    found = (SPEECH.nearest(label, "ipa") for label in labels if label)
+    return [phoneme for phoneme in found if phoneme != SPEECH.silence]
+
+
+def _ipa(texts: Sequence[str], language: str) -> List[str]:
+    """The IPA of each text, by espeak-ng's library, or its program where that is not found."""
+    try:
+        found = espeak.ipa(list(texts), language)
+    except LabialError:
+        return _by_program(texts, language)
+    if found is None:
+        raise LabialError(f"espeak-ng cannot speak {language!r:.40}: it has no such voice")
+    return found
+
+
+def _by_program(texts: Sequence[str], language: str) -> List[str]:
+    program = shutil.which("espeak-ng")
+    if program is None:
+        raise missing(f"the language {language!r:.40}", "espeak-ng", apt("espeak-ng"))
+    lines = _printed(program, "\n\n".join(texts), language)
+    if len(lines) != len(texts):  # a text that is silent, or that makes two clauses
+        lines = [" ".join(_printed(program, text, language)) for text in texts]
+    return lines
+
+
+def _printed(program: str, text: str, language: str) -> List[str]:
+    done = subprocess.run([program, "-q", "-v", language, "--ipa", "--sep=_", "--stdin"],
+                          input=text.encode("utf-8", "replace"), capture_output=True)
+    if done.returncode != 0:
+        problem = " ".join(done.stderr.decode("utf-8", "replace").split())
+        raise LabialError(f"espeak-ng cannot speak {language!r:.40}: {problem[:200]}")
+    return [line for line in done.stdout.decode("utf-8", "replace").splitlines() if line.strip("_ ")]
+
+
+# ---- Arabic
+
+
+def _with_vowels(phonemes: Sequence[str]) -> List[str]:
+    """Arabic as it is usually written, without short vowels: AE where a syllable has none. A syllable is a consonant, a
+    vowel and perhaps a second consonant; a word may end in two consonants. AE IY and AE UW are diphthongs."""
+    phonemes = re.sub("AE IY(?! AE)", "AY", re.sub("AE UW(?! AE)", "AW", " ".join(phonemes))).split()
+    result: List[str] = []
+    place = 0
+    while place < len(phonemes):
+        is_open = bool(result) and result[-1] in _VOWELS
+        run = next((n for n, item in enumerate(phonemes[place:]) if item in _VOWELS), len(phonemes) - place)
+        ends = place + run == len(phonemes)
+        if run == 0:
+            result.append(phonemes[place])
+            place += 1
+        elif is_open and run >= 2 and not (ends and run == 2):
+            result.append(phonemes[place])  # closes the syllable before
+            place += 1
+            result.append(phonemes[place])
+            if run > 2 or ends:
+                result.append("AE")
+            place += 1
+        elif is_open and ends:
+            result += phonemes[place:]
+            place = len(phonemes)
+        else:
+            result.append(phonemes[place])
+            if run > 1 or (ends and run == 1 and not result[:-1]):
+                result.append("AE")
+            place += 1
+    return result
+
+
+# ---- Chinese
+
+
+def _by_pinyin(word: str) -> Optional[List[str]]:
+    """The phonemes of Chinese characters or of pinyin, with or without tones; other words in Latin letters are
+    English."""
+    text = _pinyin(word) if _HAN.search(word) else word
+    found: List[str] = []
+    for part in re.findall(r"[^\W\d_]+", _without_tones(text)):
+        syllables = _syllables(part.lower())
+        found += syllables if syllables is not None else read(part).phonemes
+    return found or None
+
+
+def _pinyin(word: str) -> str:
+    """A word whose Chinese characters are written in pinyin."""
+    try:
+        from pypinyin import lazy_pinyin
+    except ImportError:
+        return "".join(part if not _HAN.match(part) else f" {_dictionary(part)} "
+                       for part in re.findall(f"(?:{_HAN.pattern})+|[^{_HAN.pattern[1:]}+", word))
+    return " ".join(lazy_pinyin(word, v_to_u=True))
+
+
+def _dictionary(characters: str) -> str:
+    try:
+        return espeak.replacements(characters, "cmn")
+    except LabialError:
+        raise missing("Chinese", "espeak-ng's library, or pypinyin", pip("chinese")) from None
+
+
+def _without_tones(text: str) -> str:
+    """Pinyin without marks and digits of tones; the two dots of ü stay."""
+    apart = unicodedata.normalize("NFD", re.sub("(?<=[A-Za-z\u0308])[1-5]", " ", text))
+    return unicodedata.normalize("NFC", re.sub("[\u0300\u0301\u0304\u030c]", "", apart)).replace("v", "ü")
+
+
+def _syllables(part: str) -> Optional[List[str]]:
+    """The phonemes of syllables of pinyin that stand together; None if they are none."""
+    found: List[str] = []
+    place = 0
+    while place < len(part):
+        rest = part[place:]
+        written = next(((a, b) for a, b in _WRITTEN if rest.startswith(a)), ("", ""))
+        match = _SYLLABLE.match(written[1] + rest[len(written[0]) :])
+        if not match:
+            return None
+        initial, final = match.groups()
+        size = match.end() - len(written[1]) + len(written[0])
+        if part[place + size :] and not re.match(r"[a-zü]", part[place + size]):
+            return None
+        if final[0] == "u" and initial in ("j", "q", "x"):
+            final = "ü" + final[1:]
+        vowels = _FINALS[final]
+        if final == "i" and initial in ("zh", "ch", "sh", "r", "z", "c", "s"):
+            vowels = "IH"
+        found += [*_INITIALS[initial].split(), *vowels.split()]
+        place += size
+    return found
+
+
+# ---- Japanese
+
+
+def _kana(word: str) -> str:
+    """A word in kana, by fugashi where it has kanji; without it kanji are left out."""
+    if not _HAN.search(word):
+        return word
+    tagger = _tagger()
+    if tagger is None:
+        return _HAN.sub("", word)
+    said = (item.feature.pron or item.feature.kana or _HAN.sub("", item.surface) for item in tagger(word))
+    return "".join(said).replace("ワタクシ", "ワタシ")  # which dictionaries have for "I", and few say
+
+
+@cache
+def _tagger() -> Any:
+    try:
+        import fugashi
+
+        return fugashi.Tagger()
+    except (ImportError, RuntimeError):
+        return None
