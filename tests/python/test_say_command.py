@@ -133,15 +133,15 @@ def test_a_notebook_shows_motion() -> None:
 def test_eight_seconds_are_too_little_to_train_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                                   capsys: pytest.CaptureFixture[str]) -> None:
     """Such a model's mouth stays shut: it is refused before the time that it takes. Of little more is warned."""
-    length, trained = 8.0, random_model(3)
-    monkeypatch.setattr("labial.corpus.read_corpora",
-                        lambda *_, **__: [[SimpleNamespace(times=[0.0, length], segments=[])]])
+    episode, trained = SimpleNamespace(times=[0.0, 8.0], segments=[]), random_model(3)
+    monkeypatch.setattr("labial.corpus.read_corpora", lambda *_, **__: [[episode]])
     monkeypatch.setattr("labial.train.train", lambda *_, **__: trained)
     monkeypatch.setattr("labial.train.without_apex", lambda _: [])
     monkeypatch.setattr("labial.train.backed_off", lambda _: [])
     assert main(["train", "c", "-o", str(tmp_path / "m.npz")]) == 1
     assert "8.0 s of motion are too little to train on: 15 s are the least" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
-    for length, warned in ((60.0, True), (600.0, False)):
+    for seconds, warned in ((60.0, True), (600.0, False)):
+        episode.times = [0.0, seconds]
         assert main(["train", "c", "-o", str(tmp_path / "m.npz")]) == 0
         assert ("60 s of motion are little" in capsys.readouterr().err) == warned
