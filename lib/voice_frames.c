@@ -156,6 +156,28 @@ static void show_frame(labial_voice_t *voice)
     voice->begun = 1;
 }
 
+int labial_voice_visemes(const labial_voice_t *voice, uint8_t shares[LABIAL_VISEMES])
+{
+    const int most = LABIAL_VISEME_ONE / 4;
+    uint8_t wanted[LABIAL_VISEMES] = { LABIAL_VISEME_ONE };
+    unsigned i;
+    if (!voice || !shares)
+        return LABIAL_ERROR_NULL;
+    if (!voice->model)
+        return LABIAL_ERROR_STATE;
+    if (voice->streaming && voice->model->phoneme_count == LABIAL_ARPABET_PHONEMES)
+        (void)labial_visemes(&voice->stream, voice->model, labial_arpabet_visemes, wanted);
+    for (i = 0; i < LABIAL_VISEMES; i++) {
+        const int change = (int)wanted[i] - (int)shares[i];
+        if (voice->step < voice->steps && change > most)
+            wanted[i] = (uint8_t)(shares[i] + most);
+        else if (voice->step < voice->steps && change < -most)
+            wanted[i] = (uint8_t)(shares[i] - most);
+        shares[i] = wanted[i];
+    }
+    return LABIAL_OK;
+}
+
 int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *frame, int16_t faps[LABIAL_CHANNELS])
 {
     uint32_t rate, due;
