@@ -11,7 +11,7 @@ import math
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
-from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, checked, library, memory
+from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, VISEMES, checked, library, memory
 from labial.core.numbers import duration, number
 from labial.core.words import OwnWords, labels
 from labial.corpus.messages import Messages, Stats
@@ -84,7 +84,7 @@ class Voice:
             checked(self._library.voice_pronounce(self._memory, self._speaker.callback))
         else:
             checked(self._library.voice_words(self._memory, self._speaker.own.place))
-        self._faps = (ctypes.c_int16 * CHANNELS)()
+        self._faps, self._shares = (ctypes.c_int16 * CHANNELS)(), (ctypes.c_uint8 * VISEMES)()
 
     # ---- What becomes known
 
@@ -176,7 +176,8 @@ class Voice:
         frames: List[Frame] = []
         due = math.floor(heard * self.fps + 1e-6)
         while due >= 0 and self._checked(self._library.voice_frame(self._memory, due, self._faps)) == OK:
-            frames.append(Frame(self._library.voice_next(self._memory) - 1, tuple(self._faps)))
+            checked(self._library.voice_visemes(self._memory, self._shares))
+            frames.append(Frame(self._library.voice_next(self._memory) - 1, tuple(self._faps), tuple(self._shares)))
         return frames
 
     async def follow(self, clock: Callable[[], Optional[float]]) -> AsyncIterator[Frame]:
