@@ -49,6 +49,20 @@ async function told(options) {
 
 const rows = (frames) => Array.from(frames, (faps) => [...faps]);
 
+test("the end is told once when all was shown, and not of what was cancelled", async () => {
+    for (const cancelled of [false, true]) {
+        const voice = await told({});
+        let ended = 0;
+        voice.addEventListener("ended", () => ended++);
+        voice.played(0.5);
+        if (cancelled) voice.cancel();
+        else voice.finish();
+        for (const seconds of [0.6, 1, 2, 3, 4]) voice.played(seconds);
+        assert.equal(voice.done, true);
+        assert.equal(ended, cancelled ? 0 : 1);
+    }
+});
+
 test("a clock that was not given is asked for, and a time stands for it", async () => {
     const voice = await told({});
     assert.throws(() => voice.played(), { name: "LabialError", message: /^the voice has no clock/ });
