@@ -20,15 +20,13 @@ from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
 from labial.fit.fit import fit, output_name
 from labial.fit.head import Head, read_table
-from labial.fit.kinds import KINDS, kind_of, known
+from labial.fit.kinds import KINDS, kind_of, known, shapes_for
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import judge, matrix, opening
 from labial.fit.sentences import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
 
-#: Names in the built-in rig that differ from those of the kind `oculus`.
-_SPELLED = {"I": "ih", "O": "oh", "U": "ou"}
 #: Shapes that a head needs for a built-in rig.
 _LEAST = {"arkit": 4, "oculus": 8, "vrm": 3}
 
@@ -63,8 +61,7 @@ def built_in(head: Head, kind: str, motion: Motion) -> Dict[str, np.ndarray]:
     if len(names) < _LEAST[kind] or ("jawOpen" if kind == "arkit" else "aa") not in names.values():
         return {}
     values = outputs(face(kind), motion.frames, motion.shares)
-    spelled = {shape: _SPELLED.get(name, name) if kind == "oculus" else name for shape, name in names.items()}
-    return {shape: values[name] for shape, name in spelled.items() if name in values}
+    return {shape: values[name] for name, shape in shapes_for(head, kind, list(values)).items()}
 
 
 def rows(path: str, motion: Motion) -> List[str]:

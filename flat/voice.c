@@ -110,6 +110,11 @@ int voice_frame(labial_voice_t *voice, uint32_t due, int16_t *faps)
     return labial_voice_next(voice, ((uint64_t)due * 1000u + rate - 1u) / rate, NULL, faps);
 }
 
+int voice_visemes(const labial_voice_t *voice, uint8_t *shares)
+{
+    return labial_voice_visemes(voice, shares);
+}
+
 uint32_t voice_next(const labial_voice_t *voice)
 {
     return voice->next;

@@ -41,6 +41,9 @@ FLAT(voice_cancel) int voice_cancel(labial_voice_t *voice, uint32_t milliseconds
 /* The next frame if it is due, which it is when `due` or a later one is. */
 FLAT(voice_frame) int voice_frame(labial_voice_t *voice, uint32_t due, int16_t *faps);
 
+/* The shares of its sounds; `shares` are those of the frame before, all 0 at first. */
+FLAT(voice_visemes) int voice_visemes(const labial_voice_t *voice, uint8_t *shares);
+
 /* The number of the frame that comes next; whether nothing more moves; whether it was finished, or cancelled, and
    nothing
  * begun since; whether it eases to rest after that; items told and skipped, messages dropped. */

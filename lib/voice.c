@@ -21,9 +21,6 @@
 #define MESSAGE_ROUNDING UINT64_C(20000)
 #define ITEM_LONGEST (UINT64_C(1000) * LABIAL_DURATION_MAX)
 
-/* Keys as places keep them: 1 to so many. */
-#define KEYS_KEPT 0xffffu
-
 /* Places that are used at most. */
 #define PLACES_MAX 0x1000000u
 
@@ -56,7 +53,7 @@ static int append_utterance(labial_voice_t *voice, int64_t origin, uint32_t iden
         if (utterance->places == 0u && utterance->identity == 0u) {
             voice->utterance_count--;
             is_queued &= utterance->queued;
-        } else if (voice->utterance_count == LABIAL_VOICE_UTTERANCES) {
+        } else if (voice->utterance_count >= LABIAL_VOICE_UTTERANCES) {
             return LABIAL_ERROR_FULL;
         } else {
             utterance->limit = origin;
@@ -152,6 +149,12 @@ static unsigned kept_bytes(const labial_voice_item_t *item)
     return size;
 }
 
+/* A key as places keep it: 1 to 65,535. */
+static uint16_t key_kept(uint32_t key)
+{
+    return (uint16_t)(1u + key % 0xffffu);
+}
+
 /* The end of an item; the beginning where it is not known, and of characters that end before. */
 static uint64_t item_end(const labial_voice_message_t *message, const labial_voice_item_t *item)
 {
@@ -236,29 +239,6 @@ static uint32_t milliseconds_of(uint64_t microseconds)
     return (uint32_t)((microseconds + 500u) / 1000u);
 }
 
-/* Microseconds from `begin` to `end` that something was told of. */
-static uint64_t told_between(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint64_t begin,
-                             uint64_t end)
-{
-    const uint32_t limit = labial_voice_limit(utterance), from = milliseconds_of(begin), to = milliseconds_of(end);
-    uint32_t at = labial_voice_find(voice, utterance, from), sum = utterance->over > from ? utterance->over - from : 0u;
-    if (at > utterance->first)
-        at = labial_voice_before(voice, utterance, at);
-    for (; at < limit && voice->items[at].start < to; at = labial_voice_after(voice, at)) {
-        const labial_voice_place_t *const item = voice->items + at;
-        const uint32_t after = labial_voice_after(voice, at);
-        const uint32_t start = item->start > from ? item->start : from;
-        uint32_t until = item->end;
-        if (after < limit && voice->items[after].start < until)
-            until = voice->items[after].start;
-        if (until > to)
-            until = to;
-        if (until > start)
-            sum += until - start;
-    }
-    return (uint64_t)sum * 1000u;
-}
-
 /* Whether a joined message begins again. */
 static int begins_again(const labial_voice_t *voice, const labial_voice_utterance_t *utterance,
                         const message_summary_t *message)
@@ -269,25 +249,8 @@ static int begins_again(const labial_voice_t *voice, const labial_voice_utteranc
         return 0;
     if (message->end - message->begin < shorter)
         shorter = message->end - message->begin;
-    told = told_between(voice, utterance, begin, end);
+    told = UINT64_C(1000) * labial_voice_told(voice, utterance, milliseconds_of(begin), milliseconds_of(end));
     return told > MESSAGE_ROUNDING && told >= shorter / 2u;
-}
-
-/* Removes what was told of a key. Keys that count up are new, and nothing has them. */
-static void remove_key(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint32_t key)
-{
-    const uint16_t kept = (uint16_t)(1u + key % KEYS_KEPT);
-    uint32_t at = labial_voice_limit(utterance);
-    if (key > utterance->highest) {
-        utterance->highest = key;
-        return;
-    }
-    while (at > utterance->first) {
-        const uint32_t before = labial_voice_before(voice, utterance, at);
-        if (voice->items[before].key == kept)
-            labial_voice_remove(voice, utterance, before, at);
-        at = before;
-    }
 }
 
 /* Inserts the items of a message, `base` microseconds later. */
@@ -309,7 +272,7 @@ static void insert_items(labial_voice_t *voice, labial_voice_utterance_t *uttera
         if (item->end == LABIAL_VOICE_NO_END)
             place.end = LABIAL_VOICE_OPEN;
         if (message->key)
-            place.key = (uint16_t)(1u + message->key % KEYS_KEPT);
+            place.key = key_kept(message->key);
         if (message->kind == LABIAL_VOICE_PHONEMES) {
             const uint16_t gap = message->gap > 0u ? message->gap : 1u;
             place.text[0] = item->phoneme;
@@ -368,8 +331,10 @@ static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utteranc
         voice->stale = 1;
     }
     utterance->base = base;
-    if (message->key)
-        remove_key(voice, utterance, message->key);
+    if (message->key > utterance->highest) /* nothing has a key that counts up */
+        utterance->highest = message->key;
+    else if (message->key)
+        labial_voice_remove_key(voice, utterance, key_kept(message->key));
     if (voice->room - voice->used < found.places)
         labial_voice_pack(voice);
     if (found.count > 0u) {

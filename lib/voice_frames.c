@@ -27,12 +27,18 @@ static uint32_t length_of(const labial_voice_segment_t *segment, int64_t start)
     return (uint32_t)(segment->end - start);
 }
 
+/* The end of a noted segment; INT64_MAX without one. */
+static int64_t given_end(int64_t start, uint32_t length)
+{
+    return length > 0u ? (int64_t)((uint64_t)start + length) : INT64_MAX;
+}
+
 /* Notes a segment that the stream is given; the oldest is left out where there is no room. */
 static void note_given(labial_voice_t *voice, const labial_voice_segment_t *segment)
 {
     unsigned at;
     if (voice->given_count == GIVEN_MOST) {
-        voice->from += voice->given[voice->given_first];
+        voice->from = given_end(voice->from, voice->given[voice->given_first]);
         voice->given_first = (uint8_t)((voice->given_first + 1u) % GIVEN_MOST);
         voice->given_count--;
     }
@@ -51,7 +57,7 @@ static int is_given(labial_voice_t *voice, int64_t moment)
     labial_voice_plan_start(voice, moment);
     for (i = 0; i < voice->given_count; i++) {
         const unsigned at = (voice->given_first + i) % GIVEN_MOST;
-        const int64_t end = voice->given[at] > 0u ? start + voice->given[at] : INT64_MAX;
+        const int64_t end = given_end(start, voice->given[at]);
         if (end > moment) {
             labial_voice_segment_t segment;
             labial_voice_plan_next(voice, &segment);
@@ -150,10 +156,34 @@ static void show_frame(labial_voice_t *voice)
     if (voice->step < voice->steps) {
         voice->step++;
         left = 16384 - labial_ease(voice->step, voice->steps);
+        LABIAL_CHECK(left >= 0 && left <= 16384); /* a progress is 0 .. 1 in Q14 */
+        /*@ assert 0 <= left <= 16384; */
     }
     for (k = 0; k < LABIAL_CHANNELS; k++)
         voice->shown[k] = (int16_t)labial_clamp(voice->made[k] + ((voice->fade[k] * left + 8192) >> 14), INT16_MAX);
     voice->begun = 1;
+}
+
+int labial_voice_visemes(const labial_voice_t *voice, uint8_t shares[LABIAL_VISEMES])
+{
+    const int most = LABIAL_VISEME_ONE / 4;
+    uint8_t wanted[LABIAL_VISEMES] = { LABIAL_VISEME_ONE };
+    unsigned i;
+    if (!voice || !shares)
+        return LABIAL_ERROR_NULL;
+    if (!voice->model)
+        return LABIAL_ERROR_STATE;
+    if (voice->streaming && voice->model->phoneme_count == LABIAL_ARPABET_PHONEMES)
+        (void)labial_visemes(&voice->stream, voice->model, labial_arpabet_visemes, wanted);
+    for (i = 0; i < LABIAL_VISEMES; i++) {
+        const int change = (int)wanted[i] - (int)shares[i];
+        if (voice->step < voice->steps && change > most)
+            wanted[i] = (uint8_t)(shares[i] + most);
+        else if (voice->step < voice->steps && change < -most)
+            wanted[i] = (uint8_t)(shares[i] - most);
+        shares[i] = wanted[i];
+    }
+    return LABIAL_OK;
 }
 
 int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *frame, int16_t faps[LABIAL_CHANNELS])

@@ -87,6 +87,39 @@ void labial_voice_insert(labial_voice_t *voice, labial_voice_utterance_t *uttera
     link_back(voice, utterance, at + places, places);
 }
 
+uint32_t labial_voice_told(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t from,
+                           uint32_t to)
+{
+    const uint32_t limit = labial_voice_limit(utterance);
+    uint32_t at = labial_voice_find(voice, utterance, from), sum = utterance->over > from ? utterance->over - from : 0u;
+    if (at > utterance->first)
+        at = labial_voice_before(voice, utterance, at);
+    for (; at < limit && voice->items[at].start < to; at = labial_voice_after(voice, at)) {
+        const labial_voice_place_t *const item = voice->items + at;
+        const uint32_t after = labial_voice_after(voice, at);
+        const uint32_t start = item->start > from ? item->start : from;
+        uint32_t until = item->end;
+        if (after < limit && voice->items[after].start < until)
+            until = voice->items[after].start;
+        if (until > to)
+            until = to;
+        if (until > start)
+            sum += until - start;
+    }
+    return sum;
+}
+
+void labial_voice_remove_key(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint16_t key)
+{
+    uint32_t at = labial_voice_limit(utterance);
+    while (at > utterance->first) {
+        const uint32_t before = labial_voice_before(voice, utterance, at);
+        if (voice->items[before].key == key)
+            labial_voice_remove(voice, utterance, before, at);
+        at = before;
+    }
+}
+
 int labial_voice_is_over(const labial_voice_t *voice, uint32_t identity)
 {
     unsigned i;

@@ -65,6 +65,13 @@ void labial_voice_remove(labial_voice_t *voice, labial_voice_utterance_t *uttera
 void labial_voice_insert(labial_voice_t *voice, labial_voice_utterance_t *utterance, const labial_voice_place_t *item,
                          const char *text);
 
+/* Milliseconds from `from` to `to` that something was told of, or was forgotten. */
+uint32_t labial_voice_told(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t from,
+                           uint32_t to);
+
+/* Removes all items of a key, as places keep it. */
+void labial_voice_remove_key(labial_voice_t *voice, labial_voice_utterance_t *utterance, uint16_t key);
+
 /* Whether an identity is one of an utterance that is over; notes that it is, unless it is 0. */
 int labial_voice_is_over(const labial_voice_t *voice, uint32_t identity);
 void labial_voice_note_over(labial_voice_t *voice, uint32_t identity);

@@ -68,7 +68,7 @@ void labial_words_say(labial_words_reading_t *reading, const char *words, unsign
         size_t size = 0;
         while (words[size] > ' ')
             size++;
-        say_word(reading, words, size, words[size] == '\0' ? ending : SAID_PLAIN, character);
+        say_word(reading, words, size, words[size] == '\0' ? ending : (unsigned)SAID_PLAIN, character);
         words += size;
         if (*words == ' ')
             words++;

@@ -377,6 +377,8 @@ export class Voice<O extends Output = "faps"> {
     at(seconds?: number | null): FrameOf<O>;
     /** The frames as they become due, until the voice is closed or, after finish(), done; by default by its own clock. */
     follow(clock?: () => number | null | undefined): AsyncIterableIterator<FrameOf<O>>;
+    /** How much of each sound the frame that was shown last shows, as a stream's `visemes`. */
+    readonly visemes: Uint8Array;
     /** Number of the frame that was shown last, from 0; -1 before the first. */
     readonly number: number;
     /** When that frame was due. */

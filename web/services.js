@@ -379,9 +379,15 @@ function withoutDigits(text) {
     return text.slice(0, length);
 }
 
-/** A text without the blanks around it, as Python has them. */
+/** What Python's str.isspace() says of. */
+const BLANK = /[\s\x1c-\x1f\x85]/;
+
+/** A text without the blanks around it. */
 function strip(text) {
-    return text.replace(/^[\s\x1c-\x1f\x85]+/, "").replace(/[\s\x1c-\x1f\x85]+$/, "");
+    let [first, last] = [0, text.length]; // a regular expression would be quadratic
+    while (first < last && BLANK.test(text[first])) first++;
+    while (first < last && BLANK.test(text[last - 1])) last--;
+    return text.slice(first, last);
 }
 
 /** A service of the table. */

@@ -11,8 +11,11 @@ from measure.boards import Board, compiler
 from measure.core import Bench, run, version
 from measure.sizes import LEVELS, compile_command
 
-#: The node of a call through a pointer; the only one is the program's callback, whose stack does not count.
+#: The node of a call through a pointer: to the program's callback, whose stack does not count, or from the follower of
+#: voices to its words.
 _INDIRECT = "__indirect_call"
+_VOICE = re.compile(r"voice(?!_words)")
+_WORDS = ("voice_words.c:next_spoken", "voice_words.c:last_word_lasts")
 
 _NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
 _EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
@@ -36,6 +39,13 @@ class CallGraph:
                 self.frames[title] = int(frame.group(1))
         for caller, callee in _EDGE.findall(text):
             self.calls.setdefault(caller, set()).add(callee)
+
+    def link_words(self) -> None:
+        """Adds the calls from the follower of voices to its words."""
+        words = {title for title in self.frames if title.endswith(_WORDS)}
+        for caller, callees in self.calls.items():
+            if _INDIRECT in callees and _VOICE.search(caller):
+                callees |= words
 
     def missing(self) -> Set[str]:
         """Called functions whose frame is unknown."""
@@ -103,8 +113,8 @@ def public_functions(bench: Bench, header: str = "labial.h") -> List[str]:
 
 
 def measure(bench: Bench, board: Board) -> None:
-    """The deepest call of labial_tick(), of all functions of labial.h, of those of all headers but words.h, which few
-    programs use, and of words.h, at each level."""
+    """The deepest call of labial_tick(), of all functions of labial.h, of those of all headers but words.h and voice.h,
+    which few programs use, and of these two, at each level."""
     tool_version = version(compiler(board))
     for level in LEVELS:
         graph = CallGraph()
@@ -116,9 +126,10 @@ def measure(bench: Bench, board: Board) -> None:
                 run([*command, *own, path, "-o", Path(scratch) / f"{path.stem}.o"])
             for found in sorted(Path(scratch).glob("*.ci")):
                 graph.add_ci(found.read_text(encoding="utf-8"))
+        graph.link_words()
         add_archive(graph, board, list(board.options))
         headers = sorted(path.name for path in (bench.source / "include" / "labial").glob("*.h")
-                         if path.name != "words.h")
+                         if path.name not in ("words.h", "voice.h"))
         everything = [name for header in headers for name in public_functions(bench, header)]
         shown = [*command, "lib/*.c"]
         for figure, depth in (
@@ -126,5 +137,6 @@ def measure(bench: Bench, board: Board) -> None:
             (f"stack {level}: every function", max(graph.deepest(name) for name in public_functions(bench))),
             (f"stack {level}: all of lib", max(graph.deepest(name) for name in everything)),
             (f"stack {level}: words.h", max(graph.deepest(name) for name in public_functions(bench, "words.h"))),
+            (f"stack {level}: voice.h", max(graph.deepest(name) for name in public_functions(bench, "voice.h"))),
         ):
             bench.add(board.preset, figure, depth[0], "bytes", [*shown, "#", " > ".join(depth[1])], tool_version)

@@ -49,6 +49,7 @@
 
 #include "labial/labial.h"
 #include "labial/result.h"
+#include "labial/visemes.h"
 #include "labial/words.h"
 
 #ifdef __cplusplus
@@ -227,6 +228,15 @@ int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds);
  * beyond LABIAL_VOICE_CLOCK.
  */
 int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *frame, int16_t faps[LABIAL_CHANNELS]);
+
+/*
+ * The shares of the sounds (labial/visemes.h) in the frame that labial_voice_next() gave last. `shares` are those of the
+ * frame before, all 0 at first: while a frame fades to what became known, or to rest, each changes by a quarter of
+ * LABIAL_VISEME_ONE at most, so that no tongue jumps. For models of the ARPABET; others are silent.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_voice_visemes(const labial_voice_t *voice, uint8_t shares[LABIAL_VISEMES]);
 
 /* Whether nothing more will move: after labial_voice_finish(), LABIAL_VOICE_REST milliseconds after the last item, if
  * there was any; after labial_voice_cancel(), when the face is neutral. 0 for a null or uninitialised voice. */

@@ -21,32 +21,8 @@
  * they were English; where a voice reports phonemes or visemes, use these. The model is trusted, as those of motion are.
  * Texts, times and the order of calls are not trusted.
  *
- * What is read
- * - Letters: through decision trees (docs/words.md), in parts of at most LABIAL_WORDS_LETTERS. A capital behind a small
- *   letter begins a word (iPhone), and so do the hyphen, the slash, the underscore and all other punctuation.
- *   Apostrophes are read within a word. Letters of Latin-1 and Latin Extended-A lose their marks, but those whose accent
- *   tells their sound have it: cafe with an acute accent ends in EY, Zoe with a diaeresis in IY. Ligatures are letters.
- * - Letter by letter: two to five capitals that do not look like a word of English (TV, HTTP, FBI, CIA), and some that
- *   do (VIP, MIT), also with s or 's; AM, IT, US and WHO unless the word before is in capitals, too; single letters with
- *   points (U.S.), and single letters but "a" and "I". Others are words: NASA, STOP.
- * - Whole numbers to 999 trillion, also with commas, and digits behind a point; longer ones, those that begin with 0 and
- *   numbers of telephones (555-1234) digit by digit; 1st, 22nd; 3/4, 2 1/2; -5; 10-20 ("to").
- * - Years of four digits (1984, 2024, but 2005 as a number), 1990s, 80s. Dates: March 5, Dec. 25, 2024-03-05, 3/5/2024
- *   with the month first, 5.3.2024 with the day first. Times: 3:30, 9:00 ("o'clock"), 9:00 a.m., 15:00 ("hundred").
- * - Sums with $, the signs of euro, pound, yen and rupee, cents: $5.50, $1.5 million, $2M, $20/hour.
- * - Units behind a number: 5 km, 16GB, 60 mph, 100 km/h, degrees, and single letters behind a blank, too: 5 m, 3 h.
- * - Addresses: www.example.com, info@example.com, https://example.com/maps.
- * - Mr Mrs Ms Dr St Prof Jr Sr vs etc and other abbreviations, e.g. and i.e., months and days in short (Jan., Tues.).
- * - & @ % + = # and signs of multiplication as and, at, percent, plus, equals, number (before a digit), times.
- * - Nothing, that is silence: emoji, other punctuation, [tags] and <tags> where no blank follows, and in <tags> a
- *   letter or one of / ! ?. A tag may have blanks, and ends after eight words at the latest.
- * - Stage directions are silent as well, and may be as long: in (parentheses) or *asterisks* a verb of speech or
- *   gestures in -s or -ing comes first, or such a word stands alone: (sighs), (laughing softly), (pause), *smiles*; in
- *   asterisks any small word in -s with another one behind it: *leans in*. All others are said: (for example), *really*,
- *   **never**.
- * - Letters of other scripts are unknown: a word of nothing else moves the lips a little for its time, without closing
- *   them.
- * - Bytes that are not UTF-8, and control characters: nothing.
+ * docs/words.md says what is read: letters, spelt words, numbers, dates, times, sums, units, addresses, abbreviations,
+ * tags and stage directions. Letters of other scripts are unknown; bytes that are not UTF-8 are nothing.
  *
  * What a word means may depend on those before it: "5" behind "March", "km" behind "5". A stream of words knows them;
  * labial_words_read_next() takes them from a labial_words_context_t.

@@ -202,6 +202,9 @@ TEST(calls_do_as_the_header_says)
         assert_int_equal(labial_timings_next(&timings, apexes[i].row, strlen(apexes[i].row), &used, &timing),
                          apexes[i].result);
     }
+    labial_timings_init(&timings, LABIAL_TIMINGS_LAB);
+    assert_int_equal(labial_timings_next(&timings, "0 1 <laugh>\n", 12, &used, &timing), LABIAL_OK);
+    assert_int_equal(timing.laugh, 128);
     static const char usual[] = "flite:0.1 <laugh 1> m:0.2\n";
     labial_timings_init(&timings, LABIAL_TIMINGS_FLITE);
     wrong |= labial_timings_next(&timings, usual, strlen(usual), &used, &timing) != LABIAL_OK;

@@ -1054,4 +1054,28 @@ TEST_AFTER(begin, misuse)
     assert_int_equal(labial_voice_word(&voice, "a", 1, 0, 5), LABIAL_ERROR_STATE); /* no words */
 }
 
+/* Shares are those of the stream; while a frame fades they change by a quarter at most, and at rest they are silence. */
+TEST_AFTER(begin, frames_tell_their_sounds)
+{
+    uint8_t shares[LABIAL_VISEMES] = { 0 }, before[LABIAL_VISEMES];
+    int16_t faps[LABIAL_CHANNELS];
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_TH, 200, 600), LABIAL_OK);
+    for (uint64_t heard = 0; heard < 400; heard += 20)
+        while (labial_voice_next(&voice, heard, NULL, faps) == LABIAL_OK)
+            assert_int_equal(labial_voice_visemes(&voice, shares), LABIAL_OK);
+    assert_true(shares[LABIAL_VISEME_TH] > 110);
+    assert_int_equal(labial_voice_cancel(&voice, 200), LABIAL_OK);
+    for (uint64_t heard = 400; heard < 700; heard += 20) {
+        while (labial_voice_next(&voice, heard, NULL, faps) == LABIAL_OK) {
+            memcpy(before, shares, sizeof before);
+            labial_voice_visemes(&voice, shares);
+            assert_true(before[LABIAL_VISEME_TH] - shares[LABIAL_VISEME_TH] <= LABIAL_VISEME_ONE / 4);
+        }
+    }
+    assert_int_equal(shares[LABIAL_VISEME_TH], 0);
+    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    assert_int_equal(labial_voice_visemes(NULL, shares), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_visemes(&voice, NULL), LABIAL_ERROR_NULL);
+}
+
 SUITE(NULL, NULL)

@@ -15,8 +15,8 @@
 /* A servo that looks ahead, one with a limit of acceleration, and one without limits, in units of a Maestro. */
 static const labial_rig_output_t outputs[OUTPUTS] = {
     LABIAL_RIG_SERVO(5600, 7600, 240),
-    { { 0, 0, 0, 0, -4096, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 1, 218453, 5600, 5600, 7600, 360, 5600, 0, 120, 0 },
-    { { 3277, 0, 0, 0, 0, 4096, 4096, 0, 0, 0, 0, 4096, 4096 }, 1, 0, 136533, 6000, 5200, 7120, 0, 0, 24, 0, 0 },
+    { { 0, 0, 0, 0, -4096, 0, 0, 0, 0, 0, 0, 0, 0 }, 0, 1, 218453, 5600, 5600, 7600, 360, 5600, 0, 120, 0, NULL },
+    { { 3277, 0, 0, 0, 0, 4096, 4096, 0, 0, 0, 0, 4096, 4096 }, 1, 0, 136533, 6000, 5200, 7120, 0, 0, 24, 0, 0, NULL },
 };
 static const labial_rig_t rig = { outputs, OUTPUTS };
 static labial_face_t face;

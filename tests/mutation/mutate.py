@@ -232,7 +232,7 @@ def main() -> int:
     parser.add_argument("--unfriendly", action="store_const", dest="kinds", const=UNFRIENDLY,
                         help="those kinds that users would notice")
     parser.add_argument("--files", nargs="*", help="of lib/ or of packages, instead of all")
-    parser.add_argument("--suites", nargs="*", default=[], help="of tests/c, instead of all")
+    parser.add_argument("--suites", nargs="*", default=[], help="of tests/c or of packages, instead of all")
     parser.add_argument("--survivors", action="store_true", help="only the mutants in survivors.txt")
     parser.add_argument("--list", action="store_true", help="print the mutants and do nothing")
     options = parser.parse_args()
@@ -251,7 +251,7 @@ def main() -> int:
     cmocka = [f"-I{options.cmocka[0]}", options.cmocka[1]] if options.cmocka else ["-lcmocka"]
     bench: Union[Bench, Packages]
     if options.packages:
-        bench = Packages(options.build.resolve(), options.packages.resolve(), files)
+        bench = Packages(options.build.resolve(), options.packages.resolve(), files, options.suites)
     elif options.unity:
         bench = Bench(options.build.resolve(), options.compiler, cmocka, options.unity, options.suites)
     else:

@@ -61,7 +61,7 @@ class _Call:
 class Packages:
     """The Python package and the npm packages, of which each mutant replaces a file in a copy."""
 
-    def __init__(self, folder: Path, build: Path, files: List[str]) -> None:
+    def __init__(self, folder: Path, build: Path, files: List[str], suites: List[str]) -> None:
         self.folder, self.calls = folder, {}  # type: Path, Dict[str, List[_Call]]
         folder.mkdir(parents=True, exist_ok=True)
         command = ["ctest", "--test-dir", str(build), "--show-only=json-v1"]
@@ -75,7 +75,10 @@ class Packages:
         known: Dict[str, _Call] = {}
         with tempfile.TemporaryDirectory(dir=self.folder) as name:
             for file in files:
-                self.calls[file] = [known.setdefault(test, self._measured(test, Path(name))) for test in COVERED[file]]
+                for test in COVERED[file]:
+                    if test not in known and (not suites or test in suites):
+                        known[test] = self._measured(test, Path(name))
+                self.calls[file] = [known[test] for test in COVERED[file] if test in known]
 
     def verdict(self, mutant: Mutant) -> Optional[str]:
         """What kills a mutant: the name of a test, or `compiler`. Empty for a survivor; None if nothing changed."""

@@ -49,6 +49,20 @@ async function told(options) {
 
 const rows = (frames) => Array.from(frames, (faps) => [...faps]);
 
+test("the end is told once when all was shown, and not of what was cancelled", async () => {
+    for (const cancelled of [false, true]) {
+        const voice = await told({});
+        let ended = 0;
+        voice.addEventListener("ended", () => ended++);
+        voice.played(0.5);
+        if (cancelled) voice.cancel();
+        else voice.finish();
+        for (const seconds of [0.6, 1, 2, 3, 4]) voice.played(seconds);
+        assert.equal(voice.done, true);
+        assert.equal(ended, cancelled ? 0 : 1);
+    }
+});
+
 test("a clock that was not given is asked for, and a time stands for it", async () => {
     const voice = await told({});
     assert.throws(() => voice.played(), { name: "LabialError", message: /^the voice has no clock/ });
@@ -64,11 +78,14 @@ test("at() is the frame that played() returned last, in one object", async () =>
         const frames = one.played(seconds);
         const weights = other.at(seconds);
         assert.equal(other.at(seconds), weights);
-        if (frames.length) assert.deepEqual(weights, labial.convert(frames.at(-1), "arkit"));
+        if (frames.length) assert.deepEqual(weights, labial.convert(frames.at(-1), "arkit", {}, other.visemes));
         assert.deepEqual([...one.at(seconds)], frames.length ? [...frames.at(-1)] : [...one.at(seconds)]);
     }
-    const [faps, weights] = [await told({}), await told({ output: "vrm" })].map((voice) => voice.played(0.6)[30]);
-    assert.deepEqual(weights, labial.convert(faps, "vrm"));
+    const [plain, vrm] = [await told({}), await told({ output: "vrm" })];
+    const [faps, weights] = [plain, vrm].map((voice) => voice.played(0.6)[30]);
+    assert.deepEqual(weights, labial.convert(faps, "vrm", {}, vrm.visemes));
+    assert.deepEqual(plain.visemes, vrm.visemes);
+    assert.ok(Math.abs(vrm.visemes.reduce((sum, one) => sum + one, 0) - 128) <= 8);
 });
 
 test("an AudioContext counts from begin(), less what its device needs", async () => {

@@ -61,5 +61,7 @@ int prove_words_characters(void)
     any_int = labial_words_is_capital(any_unsigned) + labial_words_is_latin(any_unsigned) +
               labial_words_is_decimal(any_unsigned) + labial_words_is_inside(any_unsigned);
     any_int = (int)labial_words_small_letter(any_unsigned);
+    any_int = labial_words_is_blank(any_unsigned);
+    any_int = (int)labial_words_accented(&here);
     return 0;
 }

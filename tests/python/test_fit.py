@@ -21,7 +21,7 @@ from labial.errors import DataError
 from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
-from labial.fit.kinds import kind_of, known
+from labial.fit.kinds import kind_of, known, shapes_for
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import bend, fap, judge, matrix, opening, shown
 from labial.fit.sentences import Motion, read_sentences
@@ -264,6 +264,17 @@ def test_figures_are_those_of_a_case_by_hand() -> None:
     assert (through.closed, through.through, through.deepest) == (1.0, 1.0, pytest.approx(-4.0))
     assert shown(made, np.array([[0.5, 1.0]]))["corner_left"][0] == pytest.approx([30.6, 0, 0])
     assert bend(np.array([-1.0, 0.0, 1.0, 8.0, 20.0])) == pytest.approx([0.0, 0.0, 0.0, 8.0, 20.0])
+
+
+def test_shapes_of_built_in_rigs() -> None:
+    """Catches an output of a built-in rig that a head has under another spelling, and that would move nothing."""
+    names = ("mouthPress_L", "mouthPress_R", "tongueOut", "viseme_I", "viseme_CH", "Fcl_MTH_E", "v_aa", "aa")
+    still = {point: np.zeros((len(names), 3)) for point in ("nose",)}
+    made = Head("made", names, {"nose": np.zeros(3)}, still)
+    assert shapes_for(made, "arkit", ["mouthPressLeft", "mouthPressRight", "tongueOut", "jawOpen"]) == {
+        "mouthPressLeft": "mouthPress_L", "mouthPressRight": "mouthPress_R", "tongueOut": "tongueOut"}
+    assert shapes_for(made, "oculus", ["ih", "CH", "oh", "aa"]) == {"ih": "viseme_I", "CH": "viseme_CH", "aa": "aa"}
+    assert shapes_for(made, "vrm", ["ee", "aa", "ou"]) == {"ee": "Fcl_MTH_E", "aa": "aa"}
 
 
 @needs_runtime

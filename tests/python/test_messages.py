@@ -16,6 +16,7 @@ from typing import Any, Callable, Dict, List, Tuple
 
 import pytest
 
+import labial
 from labial.corpus.labels import LONGEST
 from labial.corpus.messages import Messages, Stats
 from labial.corpus.phonesets import PHONE_SETS
@@ -23,6 +24,7 @@ from labial.corpus.services import SERVICES, read
 from labial.errors import LabialError
 from labial.files import limits
 from packages import SOURCE
+from runtime import needs_runtime
 from services import SAMPLES
 
 GO = {"word": "go", "start": 0.5, "end": 0.75}
@@ -195,3 +197,18 @@ def test_readers_are_linear(name: str, tmp_path: Path) -> None:
         read(path, sample.service)
 
     _assert_linear(read_file)
+
+
+@needs_runtime
+@pytest.mark.parametrize("ahead", [True, False])
+def test_feed_is_linear(ahead: bool) -> None:
+    """Words that become known one by one, all before the sound begins, or each while the one before is heard."""
+    def run(count: int) -> None:
+        with labial.Voice() as voice:
+            for number in range(count):
+                voice.feed({"word": "go", "start": number * 0.1, "end": number * 0.1 + 0.1})
+                if not ahead:
+                    voice.played(number * 0.1)
+            voice.played(1.0)
+
+    _assert_linear(run)

@@ -209,7 +209,7 @@ def test_cancel_and_restart() -> None:
     ({"channels": 3}, StreamError, "channels: 3"),
     ({"sample_rate": -1}, LabialError, "not supported"),
     ({"sample_rate": "x"}, TypeError, "a sample rate"),
-    ({"model": "speech_en"}, LabialError, "'speech_en' is no model of hearing: hear_small"),
+    ({"model": "speech_en"}, LabialError, "'speech_en' is no model of hearing: there are hear_small"),
 ])
 def test_wrong_arguments_are_refused(given: Any, error: type, message: str) -> None:
     """Catches a number that is passed to C as it is."""

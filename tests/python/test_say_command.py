@@ -8,6 +8,7 @@ import subprocess
 import sys
 import wave
 from pathlib import Path
+from types import SimpleNamespace
 from typing import List, Tuple
 
 import pytest
@@ -16,6 +17,7 @@ import labial
 from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.errors import LabialError
+from models import random_model
 from runtime import needs_runtime
 
 pytestmark = needs_runtime
@@ -126,3 +128,20 @@ def test_a_notebook_shows_motion() -> None:
     html = motion._repr_html_()
     assert re.fullmatch(r'<iframe srcdoc="[^"<>]*" style="[^"]*"></iframe>', html) and "labial-mouth" in html
     assert motion == list(motion) and motion.fps == 50 and isinstance(motion[0], tuple)
+
+
+def test_eight_seconds_are_too_little_to_train_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                                  capsys: pytest.CaptureFixture[str]) -> None:
+    """Such a model's mouth stays shut: it is refused before the time that it takes. Of little more is warned."""
+    episode, trained = SimpleNamespace(times=[0.0, 8.0], segments=[]), random_model(3)
+    monkeypatch.setattr("labial.corpus.read_corpora", lambda *_, **__: [[episode]])
+    monkeypatch.setattr("labial.train.train", lambda *_, **__: trained)
+    monkeypatch.setattr("labial.train.without_apex", lambda _: [])
+    monkeypatch.setattr("labial.train.backed_off", lambda _: [])
+    assert main(["train", "c", "-o", str(tmp_path / "m.npz")]) == 1
+    assert "8.0 s of motion are too little to train on: 15 s are the least" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+    for seconds, warned in ((60.0, True), (600.0, False)):
+        episode.times = [0.0, seconds]
+        assert main(["train", "c", "-o", str(tmp_path / "m.npz")]) == 0
+        assert ("60 s of motion are little" in capsys.readouterr().err) == warned

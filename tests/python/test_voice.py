@@ -53,6 +53,23 @@ def test_words_in_time_are_rendered() -> None:
     assert frames == motion(said(WORDS), 150)
 
 
+def test_frames_tell_their_sounds() -> None:
+    """Shares of sounds are those of a stream of the same phonemes, but in the first frames, which fade in."""
+    spoken = [("SIL", 200), ("TH", 100), ("IY", 200), ("M", 100), ("AA", 200), ("SIL", 3_600_000)]
+    with labial.Voice() as voice, labial.Stream() as stream:
+        start = 0
+        for label, length in spoken[:-1]:
+            voice.push(label, start / 1000, (start + length) / 1000)
+            start += length
+        for label, length in spoken:
+            stream.push(label, length)
+        frames = [frame for number in range(40) for frame in voice.played(number / 50)]
+        expected = [next(stream).visemes for _ in range(40)]
+    assert [frame.visemes for frame in frames[8:]] == expected[8:]
+    assert frames[12].visemes[3] > 100 and frames[27].visemes[1] > 100  # thin, mama
+    assert frames[12].rig("oculus")["TH"] > 0.7 > 0.1 > labial.Frame(12, frames[12].faps).rig("oculus")["TH"]
+
+
 @pytest.mark.parametrize("lead, exact", [(0.3, True), (0.1, False)])
 def test_how_early_a_phoneme_must_be_known(lead: float, exact: bool) -> None:
     """The 300 ms of docs/streams.md: so long before what precedes it is heard, which may be a pause."""
@@ -435,13 +452,19 @@ def test_pronunciations_and_labels() -> None:
 def test_other_pronouncers_are_asked_once(options: Dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     """espeak-ng and num2words are asked for each word once, however many messages follow it."""
     asked: List[str] = []
-    monkeypatch.setattr("labial.corpus.words._by_espeak", lambda words, language: asked.extend(words) or [
-        ["AA", "M"] for _ in words])
+    monkeypatch.setattr("labial.corpus.words.pronounced", lambda words, language: asked.extend(words) or [
+        None if word == "?" else ["AA", "M"] for word in words])
     monkeypatch.setattr("labial.corpus.words._written_out", lambda digits, language: asked.append(digits) or "two")
     with labial.Voice(**options) as voice:
         for k in range(5):
             voice.say("ja" if k % 2 else "21", k / 2, k / 2 + 0.4)
         assert max(frame[0] for frame in played(voice, 0, 2)) > 100
+        voice.begin()
+        for text in (" ", "j", "a", " "):  # characters: a word that is not whole yet is asked for as well
+            voice._tell("characters", [(text, 0.1, 0.2)])
+        assert voice._speaker._tail == ""
+    if "language" in options:
+        asked.remove("j")
     assert sorted(asked) == (["21", "ja"] if "language" in options else ["21"])
 
 

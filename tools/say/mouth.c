@@ -8,6 +8,9 @@
 #include "labial/laugh.h"
 #include "models.h"
 
+/* Seconds of motion from which on a warning says why a program takes long. */
+#define LONG 3600u
+
 const mouth_voice_t mouth_voices[] = { LABIAL_BUNDLED };
 static const mouth_voice_t laughter = { "laughter_synthetic", &laughter_synthetic, &laughter_synthetic_names };
 
@@ -19,7 +22,9 @@ const char *mouth_voice_name(unsigned number)
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     mouth_t *mouth = user;
-    (void)frame;
+    if (frame == LONG * mouth->voice->model->frames_per_second)
+        fprintf(stderr, "%s: warning: the motion lasts for more than an hour, which takes time and room\n",
+                mouth->program);
     uint8_t shares[LABIAL_VISEMES] = { LABIAL_VISEME_ONE };
     if (mouth->voice->model->phoneme_count == LABIAL_ARPABET_PHONEMES)
         (void)labial_visemes(&mouth->stream, mouth->voice->model, labial_arpabet_visemes, shares);

@@ -11,6 +11,7 @@ export class Messages {
     #format; // null to recognise it by the first message with timings
     #silent = null; // a service whose messages had no timings
     #labels; // the set of labels where the format does not tell it
+    #phonemes = new Map(); // of labels: the nearest one takes long to find
     #stats = { messages: 0, told: 0, skipped: 0 };
 
     constructor({ tools, labial }, { format, labels }) {
@@ -117,7 +118,13 @@ export class Messages {
     /** The label of the phoneme that a label means, or the one nearest to it; an empty one is silence. */
     #phoneme(label, hint) {
         if (label === "") return "SIL";
-        return this.#labial.label(this.#labial.phoneme(label, { labels: this.#labels, hint, nearest: true }));
+        const key = `${hint} ${label}`;
+        if (!this.#phonemes.has(key)) {
+            if (this.#phonemes.size >= this.#tools.timings.LIMITS.items) this.#phonemes.clear();
+            const found = this.#labial.phoneme(label, { labels: this.#labels, hint, nearest: true });
+            this.#phonemes.set(key, this.#labial.label(found));
+        }
+        return this.#phonemes.get(key);
     }
 
     #complain() {

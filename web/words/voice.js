@@ -5,6 +5,7 @@ import { clockOf } from "./clocks.js";
 import { Messages } from "./messages.js";
 
 const CHANNELS = 13;
+const VISEMES = 15;
 /** Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes
  * one place, a word up to 20 letters two. */
 const PLACES = 20000;
@@ -69,7 +70,9 @@ export class Voice extends EventTarget {
     #known; // words of one's own,
     #numbers; // what writes numbers out,
     #tail = ""; // and the characters of a word that may go on
-    #faps; // where a frame is written
+    #faps; // where a frame is written,
+    #shares; // and the shares of its sounds
+    #sounds = null; // these, of the frame before
     #shown = null; // FAPs of the frame before,
     #number = -1; // and its number
     #frame; // what at() returns
@@ -104,6 +107,8 @@ export class Voice extends EventTarget {
         const found = this.#numbersInModel();
         this.#at = this.#blocks.take(wasm.voice_size(copy, PLACES));
         this.#faps = this.#blocks.take(2 * CHANNELS);
+        this.#shares = this.#blocks.take(VISEMES);
+        memory.bytes.fill(0, this.#shares, this.#shares + VISEMES);
         memory.bytes.fill(0, this.#at, this.#at + wasm.voice_size(copy, 0));
         abandoned.register(this, this.#blocks, this);
         lexicon.check(wasm.voice_init(this.#at, copy, PLACES, found, milliseconds));
@@ -182,9 +187,13 @@ export class Voice extends EventTarget {
     at(seconds = this.now) {
         this.#due(seconds, () => null);
         const faps = this.#shown ?? new Array(CHANNELS).fill(0);
-        if (this.#output !== "faps") return this.#labial.convert(faps, this.#output, this.#frame);
+        if (this.#output !== "faps") return this.#labial.convert(faps, this.#output, this.#frame, this.#sounds);
         this.#frame.set(faps);
         return this.#frame;
+    }
+
+    get visemes() {
+        return this.#sounds ?? Uint8Array.from({ length: VISEMES }, (_, i) => (i === 0 ? 128 : 0));
     }
 
     async *follow(clock) {
@@ -272,7 +281,7 @@ export class Voice extends EventTarget {
 
     /** A frame in the voice's output. */
     #form(faps) {
-        return this.#output === "faps" ? Int16Array.from(faps) : this.#labial.convert(faps, this.#output);
+        return this.#output === "faps" ? Int16Array.from(faps) : this.#labial.convert(faps, this.#output, {}, this.#sounds);
     }
 
     #open() {
@@ -388,6 +397,8 @@ export class Voice extends EventTarget {
         const frames = [];
         while (this.#checked(this.#lexicon.wasm.voice_frame(this.#at, last, this.#faps)) === 0) {
             this.#shown = Int16Array.from(this.#lexicon.memory.int16(this.#faps, CHANNELS));
+            this.#lexicon.wasm.voice_visemes(this.#at, this.#shares);
+            this.#sounds = this.#lexicon.memory.bytes.slice(this.#shares, this.#shares + VISEMES);
             this.#number = this.#next - 1;
             frames.push(take(this.#shown));
         }

@@ -6,12 +6,18 @@ import argparse
 import functools
 import os
 import warnings
-from typing import Any, Dict
+from typing import TYPE_CHECKING, Any, Dict, Sequence
 
 from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, shows_progress
 from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
-from labial.errors import needs
+from labial.errors import LabialError, needs
 from labial.files.arguments import positive, seed, whole
+
+if TYPE_CHECKING:
+    from labial.corpus.episode import Episode
+
+#: Seconds of speech that a model is trained on at the least, and below which a warning says that it is little.
+LEAST, FEW = 15, 120
 
 
 def add_train(command: argparse.ArgumentParser) -> None:
@@ -67,16 +73,27 @@ def run_train(options: argparse.Namespace) -> int:
     corpora = read_corpora(options.corpus, options.kind,
                            even_sides=options.method == "labial" and not options.asymmetric)
     episodes = [episode for corpus in corpora for episode in corpus]
+    seconds = _seconds(episodes)
+    if options.kind == "speech" and 0.0 < seconds < LEAST:
+        raise LabialError(f"{seconds:.1f} s of motion are too little to train on: {LEAST} s are the least, and a voice "
+                          "needs minutes; --adapt gives a trained model the motion of one talker from half a minute")
     model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
                   codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
                   engine=options.engine, progress=shows_progress(options), attribution=options.attribution,
                   normalise=options.normalise, symmetric=not options.asymmetric, **own)
     save(model, options.output)
+    if options.kind == "speech" and seconds < FEW:
+        warnings.warn(f"{seconds:.0f} s of motion are little to train on: rare phonemes have the shapes of others; ten "
+                      "minutes are better", stacklevel=1)
     for line in [*without_apex(episodes), *backed_off(model)]:
         print(line)
     print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
           f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")
     return 0
+
+
+def _seconds(episodes: Sequence[Episode]) -> float:
+    return sum(float(episode.times[-1] - episode.times[0]) for episode in episodes)
 
 
 def _adapt(options: argparse.Namespace) -> int:

@@ -7,6 +7,7 @@ names may follow everything.
 
 from __future__ import annotations
 
+import re
 import warnings
 from typing import Dict, List, Mapping, NamedTuple, Sequence, Tuple
 
@@ -94,6 +95,24 @@ def known(head: Head, kind: str) -> Dict[str, str]:
         known = names.get(plain(shape))
         if known is not None and known not in found.values():
             found[shape] = known
+    return found
+
+
+def shapes_for(head: Head, kind: str, outputs: Sequence[str]) -> Dict[str, str]:
+    """The head's shape for each output of the built-in rig of a kind, as far as it has them."""
+    named = {plain(shape): shape for shape in reversed(head.shapes)}
+    found = {}
+    for output in outputs:
+        names = [plain(output)]
+        if kind == "arkit":  # mouthSmile_L
+            names.append(plain(re.sub("(Left|Right)$", lambda side: side[0][0], output)))
+        else:
+            own = {"ih": "I", "oh": "O", "ou": "U"}.get(output, output)
+            names += ["viseme" + plain(own), "viseme" + plain(output)] if kind == "oculus" else [
+                name for name, meaning in _ALSO.items() if meaning == output]
+        own_names = [named[name] for name in names if name in named]
+        if own_names:
+            found[output] = own_names[0]
     return found
 
 

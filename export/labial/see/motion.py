@@ -33,6 +33,7 @@ class Motion:
     name: str  #: the file's name without its suffix
     times: np.ndarray  #: (T,) seconds, strictly increasing
     frames: np.ndarray  #: (T, 13) FAP units
+    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds that a model speaks (labial.reference.visemes)
 
 
 @dataclass(frozen=True)
@@ -64,12 +65,15 @@ def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[st
     """The motion of a model (a file, or a bundled one's name) that speaks phoneme timings of any format. Raises
     DataError."""
     from labial.reference.synthesis import delivered
+    from labial.reference.visemes import shares
     from labial.tables.model import load
     from labial.tables.phones import read_stream
 
     read = load(model)
-    frames = np.concatenate(list(delivered(read, read_stream(timings, read, labels, source))))
-    return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames)
+    phonemes = read_stream(timings, read, labels, source)
+    frames = np.concatenate(list(delivered(read, phonemes)))
+    sounds = shares([(read.phonemes[number], milliseconds) for number, milliseconds in phonemes], read.fps, len(frames))
+    return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames, sounds)
 
 
 def read_motions(

@@ -19,7 +19,7 @@ from labial.files.frames import even
 from labial.files.grammar import read_bytes
 from labial.fit.avatar import read as read_avatar
 from labial.fit.fit import output_name
-from labial.fit.kinds import KINDS, kind_of, known
+from labial.fit.kinds import KINDS, kind_of, shapes_for
 from labial.fit.landmarks import Found, read_head
 from labial.fit.meaning import fap, matrix, opening
 from labial.rig.animation import face, outputs
@@ -116,8 +116,7 @@ def _shapes(found: Found, rig: Optional[PathLike]) -> Tuple[Rig, Dict[str, str]]
             raise LabialError(f"{head.name}: its shapes are neither ARKit's nor visemes: `labial fit` makes a rig for "
                               "it, and --rig takes that")
         chosen = face(kind)
-        named = {name: shape for shape, name in known(head, kind).items()}
-        named.update({other: named[name] for other, name in (("ih", "I"), ("oh", "O"), ("ou", "U")) if name in named})
+        named = shapes_for(head, kind, [output.name for output in chosen.outputs])
     used = {output.name: named[output.name] for output in chosen.outputs if output.name in named}
     if not used:
         raise LabialError(f"{head.name}: it has none of the rig's shapes, {', '.join(o.name for o in chosen.outputs)}")
@@ -154,7 +153,7 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
         fps, frames = even(motion.times, motion.frames)
     except ValueError as error:
         raise LabialError(f"{motion.name}: {error}") from None
-    weights = outputs(chosen, frames)
+    weights = outputs(chosen, frames, motion.shares if len(frames) == len(motion.frames) else None)
     if rig is None:
         _warn(where, found, {shape: weights[name] for name, shape in used.items()}, frames)
     columns: Dict[str, np.ndarray] = {}  # by the mesh's own shapes, of which VRM's expressions are made
