@@ -69,8 +69,8 @@ extern const uint8_t labial_arpabet_visemes[LABIAL_ARPABET_PHONEMES];
  * viseme of each phoneme of `model`; numbers that are none, and frames of other models, such as laughter, count as
  * silence. The callback does not call it on another stream that is in use elsewhere.
  *
- * It takes about as long as a tenth of a tick. It needs LABIAL_REACH of at least LABIAL_DELAY(stride); with less, and in
- * a build with LABIAL_PAPER, all frames are silence.
+ * It needs LABIAL_REACH of at least LABIAL_DELAY(stride); with less, and in a build with LABIAL_PAPER, all frames are
+ * silence.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (before labial_init()).
  */

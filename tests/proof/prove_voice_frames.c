@@ -44,6 +44,16 @@ int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
     return any_int;
 }
 
+const uint8_t labial_arpabet_visemes[LABIAL_ARPABET_PHONEMES] = { 0 };
+
+int labial_visemes(const labial_t *stream, const labial_model_t *any, const uint8_t *visemes,
+                   uint8_t shares[LABIAL_VISEMES])
+{
+    shares[0] = (uint8_t)(stream->held + any->channel_count + visemes[LABIAL_ARPABET_PHONEMES - 1]);
+    shares[LABIAL_VISEMES - 1] = any_uint8;
+    return any_int;
+}
+
 static int64_t any_moment(void)
 {
     return any_int ? INT64_MAX : (int64_t)any_uint32 * 8;
@@ -105,6 +115,7 @@ static void any_state(void)
 int main(void)
 {
     int16_t faps[LABIAL_CHANNELS];
+    uint8_t shares[LABIAL_VISEMES];
     uint32_t frame;
     static labial_voice_t unprepared;
     labial_voice_next(&unprepared, any_uint32, &frame, faps);
@@ -113,5 +124,10 @@ int main(void)
                       OR_NULL(uint32_t *, &frame), OR_NULL(int16_t *, faps));
     any_state();
     labial_voice_begin_fade(&voice, any_uint32);
+    any_state();
+    model.phoneme_count = any_uint8;
+    FILL(shares);
+    labial_voice_visemes(&unprepared, shares);
+    labial_voice_visemes(OR_NULL(labial_voice_t *, &voice), OR_NULL(uint8_t *, shares));
     return 0;
 }

@@ -452,13 +452,19 @@ def test_pronunciations_and_labels() -> None:
 def test_other_pronouncers_are_asked_once(options: Dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     """espeak-ng and num2words are asked for each word once, however many messages follow it."""
     asked: List[str] = []
-    monkeypatch.setattr("labial.corpus.words._by_espeak", lambda words, language: asked.extend(words) or [
-        ["AA", "M"] for _ in words])
+    monkeypatch.setattr("labial.corpus.words.pronounced", lambda words, language: asked.extend(words) or [
+        None if word == "?" else ["AA", "M"] for word in words])
     monkeypatch.setattr("labial.corpus.words._written_out", lambda digits, language: asked.append(digits) or "two")
     with labial.Voice(**options) as voice:
         for k in range(5):
             voice.say("ja" if k % 2 else "21", k / 2, k / 2 + 0.4)
         assert max(frame[0] for frame in played(voice, 0, 2)) > 100
+        voice.begin()
+        for text in (" ", "j", "a", " "):  # characters: a word that is not whole yet is asked for as well
+            voice._tell("characters", [(text, 0.1, 0.2)])
+        assert voice._speaker._tail == ""
+    if "language" in options:
+        asked.remove("j")
     assert sorted(asked) == (["21", "ja"] if "language" in options else ["21"])
 
 

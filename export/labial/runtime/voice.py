@@ -288,7 +288,7 @@ class _Speaker:
         self.own = own_words([], how)  # an error in a word of the caller's own is raised now
         self.callback = PRONOUNCE(self._ask)
         self._how, self._tail = how, ""
-        self._spoken: Dict[str, Sequence[str]] = {}  # what other programs said
+        self._spoken: Dict[str, Optional[Sequence[str]]] = {}  # what other programs said; None for nothing
         self._texts: Dict[bytes, OwnWords] = {}
 
     def prepare(self, texts: Sequence[str], joined: bool) -> None:
@@ -298,12 +298,13 @@ class _Speaker:
             return
         if joined:  # characters: the last word may go on in the next message
             text = self._tail + "".join(texts)
-            texts, self._tail = text.split(), text[len(text.rstrip()) :] and "" or text.split()[-1] if text else ""
+            texts = text.split()
+            self._tail = texts[-1] if texts and not text[-1].isspace() else ""
         asked = stretches_of(texts, {**self._spoken, **self._how.own})
         if asked:
             if len(self._spoken) > _SPOKEN:
                 self._spoken, self._texts = {}, {}
-            self._spoken.update(known_words(asked, self._how._replace(own={})))
+            self._spoken.update({**dict.fromkeys(asked), **known_words(asked, self._how._replace(own={}))})
 
     def _ask(self, _: Any, text: int, size: int) -> int:
         """The library's question: the own words for a text."""
@@ -316,7 +317,8 @@ class _Speaker:
                 self.prepare(wanted, False)
             except LabialError:
                 pass  # it said so when the text was told
-            known = {word: self._spoken[word] for word in wanted if word in self._spoken}
+            spoken = {word: self._spoken.get(word) for word in wanted}
+            known = {word: phonemes for word, phonemes in spoken.items() if phonemes is not None}
             self._texts[said] = OwnWords({**known, **self._how.own})
         return int(self._texts[said].place)
 
