@@ -96,14 +96,15 @@ static unsigned accented(const labial_words_model_t *model, const labial_words_l
                          unsigned place, unsigned none)
 {
     const unsigned letter = letters[place].letter - 1u;
-    unsigned sound = letters[place].sound, i;
+    unsigned sound = letters[place].sound, part, i;
     if (sound == 0u)
         return letter == 'e' - 'a' && place > 0u && letters[place - 1u].sound == PHONEME_EY ? 0u : none;
     if (sound == (PHONEME_EH | ACCENT_LAST))
         sound = place + 1u >= count || letters[place + 1u].letter == 27u ? PHONEME_IY : PHONEME_EH;
-    for (i = model->bases[letter]; letter < 26u && i < model->bases[letter + 1u]; i++) {
+    part = letter - letter / 26u; /* the apostrophe, which has no accents, is the last */
+    for (i = model->bases[part]; i < model->bases[part + 1u]; i++) {
         const uint8_t *const label = model->labels + 2u * model->leaves[i];
-        if (label[0] == sound && (label[1] & ~VOWEL_LAST) == 0)
+        if (((label[0] ^ sound) | (label[1] & ~VOWEL_LAST)) == 0u)
             return model->leaves[i];
     }
     return none;

@@ -189,7 +189,7 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
                 (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
                  labial_words_is_decimal(follows) || follows == '&' || follows == '+' || follows == '-'));
     if (run->small != 0u) {
-        if (run->letters[count - 1u].letter != 19u) /* s */
+        if (run->letters[count - 1u].letter != 19u || (run->small >> (count - 1u)) == 0u) /* a small s */
             return 0;
         count -= count > 2u && run->letters[count - 2u].letter == 27u ? 2u : 1u;
         if ((run->small & (((uint32_t)1 << count) - 1u)) != 0u)
@@ -329,6 +329,7 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
 {
     const unsigned character = run->letters[0].character;
     const unsigned follows = reading->here.code;
+    const char *list;
     unsigned count;
     int found;
     if (run->count == 2u && (run->small == 0u || run->small == 3u) &&
@@ -360,13 +361,11 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
             labial_words_advance(&reading->here);
         return 1;
     }
-    if (run->letters[0].letter <= 26u) {
-        const char *const list = meanings[run->letters[0].letter - 1u];
-        found = find_run(run, list, 2);
-        if (found >= 0) {
-            labial_words_say(reading, labial_words_listed(list, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
-            return 1;
-        }
+    list = meanings[(run->letters[0].letter - 1u) % 26u];
+    found = find_run(run, list, 2);
+    if (found >= 0) {
+        labial_words_say(reading, labial_words_listed(list, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
+        return 1;
     }
     count = reading->is_address && run->before == '.' && is_spelt_in_address(run)
                 ? run->count

@@ -85,8 +85,11 @@ static void say_number(labial_words_reading_t *reading, const labial_words_numbe
                        unsigned character)
 {
     unsigned last = NO_WORD, part = 0, i;
-    for (i = 0; i < number->count && i < MOST_DIGITS; i++) {
-        const unsigned behind = number->count - 1u - i;
+    for (i = 0; i < MOST_DIGITS; i++) {
+        unsigned behind;
+        if (i >= number->count)
+            break;
+        behind = number->count - 1u - i;
         part = part * TEN + number->digits[i];
         if (behind % 3u != 0u)
             continue;
@@ -325,7 +328,7 @@ static unsigned take_scale(labial_words_place_t *here)
 void labial_words_read_sum(labial_words_reading_t *reading)
 {
     labial_words_context_t *context = reading->context;
-    labial_words_place_t *here = &reading->here, behind;
+    labial_words_place_t *here = &reading->here, behind, dot;
     const unsigned currency = (unsigned)labial_words_currency(here->code) & 7u, character = labial_words_here(reading);
     const char *const name = labial_words_listed(currencies, currency);
     const char *const part = labial_words_listed(hundredths, currency);
@@ -340,6 +343,7 @@ void labial_words_read_sum(labial_words_reading_t *reading)
         behind = *here;
         last = skip_digits(&behind);
     }
+    dot = behind;
     point = behind.characters - 1u;
     has_point = labial_words_has_fraction(&behind);
     memset(&cents, 0, sizeof cents);
@@ -372,8 +376,7 @@ void labial_words_read_sum(labial_words_reading_t *reading)
     } else {
         if (has_point) {
             labial_words_say(reading, "point", SAID_PLAIN, point);
-            while (here->code != '.' && here->code != TEXT_END)
-                labial_words_advance(here);
+            *here = dot;
             labial_words_advance(here);
             labial_words_say_digits(reading, 0);
         }

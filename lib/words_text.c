@@ -45,9 +45,12 @@ static void say_word(labial_words_reading_t *reading, const char *word, size_t s
     labial_words_letter_t letters[LONGEST_SAID];
     unsigned count = 0;
     memset(letters, 0, sizeof letters);
-    for (; count < size && count < LONGEST_SAID - 3u; count++)
+    for (; count < LONGEST_SAID - 3u; count++) {
+        if (count >= size)
+            break;
         letters[count].letter = (uint8_t)(word[count] == '\'' ? 27 : word[count] - 'a' + 1);
-    if (ending == SAID_PLURAL && count > 0u) {
+    }
+    if (ending == SAID_PLURAL) {
         if (word[count - 1u] == 'y') {
             letters[count - 1u].letter = 'i' - 'a' + 1;
             letters[count++].letter = 'e' - 'a' + 1;
@@ -56,8 +59,7 @@ static void say_word(labial_words_reading_t *reading, const char *word, size_t s
     }
     for (size = 0; size < count; size++)
         letters[size].character = (uint8_t)character;
-    if (count > 0u)
-        labial_words_spell(reading->model, letters, count, reading->word);
+    labial_words_spell(reading->model, letters, count, reading->word);
 }
 
 void labial_words_say(labial_words_reading_t *reading, const char *words, unsigned ending, unsigned character)
@@ -81,7 +83,7 @@ void labial_words_say_name(labial_words_reading_t *reading, const char *name, in
         if (name[size] == '|' && is_plural)
             first = name + size + 1;
     while (*first > '\0' && *first != '|') {
-        for (size = 0; (first[size] >= 'a' && first[size] <= 'z') || first[size] == '\''; size++)
+        for (size = 0; first[size] >= 'a' && first[size] <= 'z'; size++)
             ;
         say_word(reading, first, size, first[size] == '_' && is_plural ? SAID_PLURAL : SAID_PLAIN, character);
         first += size;
@@ -101,7 +103,7 @@ void labial_words_take_back(labial_words_reading_t *reading)
     labial_words_context_t *context = reading->context;
     if (!reading->is_tail_here)
         context->dropped = context->tail;
-    else if (context->tail <= reading->word->count)
+    else
         reading->word->count = (uint8_t)(reading->word->count - context->tail);
     context->tail = 0;
 }

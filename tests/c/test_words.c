@@ -128,7 +128,9 @@ TEST(own_words_come_first)
         { "google", google, 5 },   { "C++", wrong, 3 },      { "", google, 5 },      { "many", many, 255 },
         { "\xd0\x9f", google, 1 }, { "nothing", google, 0 }, { "don't", google, 2 },
     };
-    static const labial_words_own_t own = { entries, sizeof entries / sizeof entries[0] }, none = { NULL, 0 };
+    static const labial_words_entry_t five = { "5", google, 1 };
+    static const labial_words_own_t own = { entries, sizeof entries / sizeof entries[0] }, none = { NULL, 0 },
+                                    sums = { &five, 1 };
     labial_word_t word;
     expect(NULL, "Google", 6, "_G:0 UW:1 G:3 AH:4 L:4");
     expect(&own, "Google", 6, "_G:0 UW:1 G:2 AH:3 L:4");
@@ -145,6 +147,8 @@ TEST(own_words_come_first)
     expect(&own, "nothing", 7, "silent");
     expect(&own, "don't", 5, "_G:0 UW:2");
     expect(&none, "go", 2, "_G:0 OW:1");
+    expect(&sums, "$5", 2, "_G:1");
+    expect(&sums, "$6", 2, "_S:0 IH:0 K:0 S:0 _D:1 AA:1 L:1 ER:1 Z:1");
     assert_int_equal(read_text(&own, "many", 4, &word), LABIAL_OK);
     assert_int_equal(word.count, LABIAL_WORDS_PHONEMES);
 }
@@ -218,6 +222,7 @@ TEST(questions_are_those_of_the_format)
     unsigned i;
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++)
         assert_string_equal(answers(cases[i].question, cases[i].text), cases[i].answers);
+    assert_string_equal(answers(20, "\xc3\xa9t"), "_D:1"); /* tables without a label for the accent */
 }
 
 /* Would catch a hash of more letters than the word has, a word that is no exception but has the hash of one, and an
