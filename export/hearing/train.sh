@@ -41,6 +41,6 @@ taught() {
         --takes 5,2,3,2,2,2,1,1 --shares .37,.13,.13,.07,.08,.10,.05,.07 --smoothness 3 \
         --attribution-file "$here/attribution.txt" --teacher "$out/hear_ahead.npz" --sounds "$lj" "$kathleen" "$@"
 }
-taught --model host --start "$out/hear_ahead.npz" --rate .001 --steps HOST -o "$out/hear_host.npz"
-taught --model large --start "$out/first_large.npz" --rate .0012 --steps LARGE -o "$out/hear_large.npz"
-taught --model small --start "$out/first_small.npz" --rate .0012 --steps SMALL -o "$out/hear_small.npz"
+taught --model host --start "$out/hear_ahead.npz" --rate .001 --steps 2216 -o "$out/hear_host.npz"
+taught --model large --start "$out/first_large.npz" --rate .0012 --steps 9288 -o "$out/hear_large.npz"
+taught --model small --start "$out/first_small.npz" --rate .0012 --steps 3413 -o "$out/hear_small.npz"

@@ -593,7 +593,8 @@ def _given(folder: Path) -> Dict[str, List[str]]:
             "a.npz": ["synth", "a.npz", "no.lab", "-o", "o.csv"], "a.lab": ["timings", "a.lab", "-o", "o.lab"],
             "a.json": ["timings", "a.json", "-o", "o.lab"], "a.TextGrid": ["timings", "a.TextGrid", "-o", "o.lab"],
             "a.fap": ["page", "a.fap", "-o", "o.html"], "a.csv": ["bake", "a.csv", "-o", "o.h"],
-            "seen.npz": ["record", "seen.npz", "-o", "r"], "a.wav": ["hear", "a.wav", "--sound-alone", "-o", "o.csv"]}  # fmt: skip
+            "seen.npz": ["record", "seen.npz", "-o", "r"],
+            "a.wav": ["hear", "a.wav", "--sound-alone", "-o", "o.csv"]}  # fmt: skip
 
 
 def _mutated(data: bytes, chance: random.Random) -> bytes:
