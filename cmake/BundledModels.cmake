@@ -10,11 +10,25 @@ function(labial_bundled_models variable)
   set(${variable} ${speech} ${models} PARENT_SCOPE)
 endfunction()
 
-# labial_hearing_models(<variable>): the names of the models of hearing in lib/models, which begin with hear_.
+# labial_hearing_models(<variable> [<units>]): the names of the models of hearing in lib/models, which begin with hear_, for
+# builds whose LABIAL_HEAR_UNITS_MAX is <units>; without it, the one that the library is built with.
 function(labial_hearing_models variable)
+  set(limit 128)
+  if(ARGN)
+    set(limit "${ARGN}")
+  elseif(LABIAL_HEAR_UNITS_MAX)
+    set(limit "${LABIAL_HEAR_UNITS_MAX}")
+  endif()
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../lib/models")
   file(GLOB models RELATIVE "${folder}" CONFIGURE_DEPENDS "${folder}/hear_*.h")
   list(TRANSFORM models REPLACE "\\.h$" "")
+  foreach(model IN LISTS models)
+    file(STRINGS "${folder}/${model}.h" needs REGEX "LABIAL_HEAR_UNITS_MAX >= ")
+    string(REGEX MATCH "[0-9]+" needs "${needs} 0")
+    if(needs GREATER limit)
+      list(REMOVE_ITEM models "${model}")
+    endif()
+  endforeach()
   set(${variable} ${models} PARENT_SCOPE)
 endfunction()
 
@@ -36,7 +50,7 @@ function(labial_models_header file)
 endfunction()
 
 # labial_hearing_header(<file> [<model> ...]): writes a header with LABIAL_BUNDLED_HEARING, the rows of the models of
-# hearing, or of those that are given, as { name, model, names of its classes }.
+# hearing that the library has room for, or of those that are given, as { name, model, names of its classes }.
 function(labial_hearing_header file)
   labial_hearing_models(models)
   if(ARGN)

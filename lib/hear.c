@@ -154,7 +154,7 @@ int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint
         return LABIAL_ERROR_NULL;
     if (model->format != LABIAL_HEAR_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
-    if (channels < 1u || channels > 2u)
+    if (channels < 1u || channels > 2u || model->units > LABIAL_HEAR_UNITS_MAX)
         return LABIAL_ERROR_RANGE;
     if (labial_hear_convert_init(&hear->convert, samples_per_second) != LABIAL_OK)
         return LABIAL_ERROR_SAMPLE_RATE;

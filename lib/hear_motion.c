@@ -14,22 +14,29 @@
 #include "articulation.h"
 #include "hear_network.h"
 
-/* A frame is silent when it, as many before it and all known ones after it are; the face comes to rest, and leaves it, in
- * as many frames as are known after the first of them. */
+/* A frame is silent when it, as many before it and the next ones are, as far as they are known; the face comes to rest,
+ * and leaves it, in as many frames as these. */
 #define SILENT_BEFORE 2u
 #define RESTING 5u
 
 void labial_hear_motion_reset(labial_hear_motion_t *motion)
 {
     motion->held = 0;
-    motion->silent = UINT8_MAX;
+    motion->loud = 0;
     motion->rest = RESTING;
     motion->articulation.present = motion->articulation.wanted;
 }
 
 void labial_hear_motion_hear(labial_hear_motion_t *motion, int loud)
 {
-    motion->silent = (uint8_t)(loud ? 0u : motion->silent < UINT8_MAX ? motion->silent + 1u : UINT8_MAX);
+    motion->loud = motion->loud << 1 | (loud != 0);
+}
+
+/* Whether the frame is silent that is due when so many after it are known. */
+static int is_silent(const labial_hear_motion_t *motion, unsigned known)
+{
+    const unsigned after = known < RESTING ? known : RESTING;
+    return (motion->loud >> (known - after) & ((1u << (SILENT_BEFORE + 1u + after)) - 1u)) == 0;
 }
 
 int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_model_t *model, const int16_t *heads,
@@ -47,7 +54,7 @@ int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_mode
         memcpy(motion->now, next, sizeof motion->now);
         return 0;
     }
-    if (motion->silent > SILENT_BEFORE + model->ahead + 1u)
+    if (is_silent(motion, model->ahead + 1u))
         motion->rest = (uint8_t)(motion->rest < RESTING ? motion->rest + 1u : RESTING);
     else
         motion->rest = (uint8_t)(motion->rest > 0 ? motion->rest - 1u : 0u);

@@ -5,8 +5,8 @@
  * their own input, which is added when the frames ahead of it are known. So the output of a block is later than its
  * input by ahead * dilation frames, and a block waits until its first input comes.
  *
- * No sum overflows: 128 products of a weight and an activation are below 2^29, a bias of 16 bits, shifted by 15, below
- * 2^30, and a memory's 16 products below 2^26.
+ * No sum overflows: 252 products of a weight and an activation are below 2^30, and so is a bias of 16 bits, shifted by
+ * 15; a memory's 16 products are below 2^26.
  */
 #include "hear_network.h"
 
@@ -132,7 +132,7 @@ const int16_t *labial_hear_network(labial_hear_network_t *network, const int16_t
         return NULL;
     }
     multiply(&model->last, units, units, x, y, 0);
-    multiply(&model->heads, (unsigned)model->classes + LABIAL_CHANNELS, units, y, x, -32768);
+    multiply(&model->heads, (unsigned)model->classes + 1u + LABIAL_CHANNELS, units, y, x, -32768);
     return x;
 }
 
@@ -149,21 +149,18 @@ void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, in
                       int16_t pose[LABIAL_CHANNELS])
 {
     const int32_t closing = gain < 256 ? gain : 256;
-    int32_t rival = -32768, over, share, value;
+    int32_t over, share, value;
     unsigned k;
-    for (k = 0; k < model->classes; k++)
-        if (k != model->closure && heads[k] > rival)
-            rival = heads[k];
-    over = heads[model->closure] - rival - model->close_from;
+    heads += model->classes;
+    over = *heads++ - model->close_from;
     over = over < 0 ? 0 : over > model->close_width ? model->close_width : over;
     share = (int32_t)labial_quotient((uint32_t)over << 8, (uint32_t)model->close_width); /* Q8 */
     /*@ assert 0 <= share <= 256; */
     LABIAL_CHECK(share >= 0 && share <= 256);
-    heads += model->classes;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         value = model->mean[k] + ((heads[k] * model->scale[k]) >> 9);
         value = (value * gain + 128) >> 8;
-        value += ((((model->closed[k] * closing + 128) >> 8) - value) * share) >> 8;
+        value += ((((model->closed[k] * closing + 128) >> 8) - value) * ((share * model->closing[k]) >> 8)) >> 8;
         pose[k] = (int16_t)labial_clamp(value, INT16_MAX);
     }
 }

@@ -12,7 +12,7 @@
 /* Forgets all frames. */
 void labial_hear_network_reset(labial_hear_network_t *network);
 
-/* Hears the features of a frame. Returns the heads for the frame that is known by now, classes and FAPs in Q9, which lie
+/* Hears the features of a frame. Returns the heads for the frame that is known by now, in Q9, which lie
  * in `scratch`; null for the first `ahead` frames. */
 const int16_t *labial_hear_network(labial_hear_network_t *network, const int16_t features[LABIAL_HEAR_INPUTS],
                                    int16_t scratch[LABIAL_HEAR_SCRATCH]);
@@ -20,7 +20,7 @@ const int16_t *labial_hear_network(labial_hear_network_t *network, const int16_t
 /* The class that leads. */
 unsigned labial_hear_leader(const labial_hear_model_t *model, const int16_t *heads);
 
-/* The pose, Q4, times an articulation, 0 .. 512 in 1/256; with closed lips as far as the closure leads, which the
+/* The pose, Q4, times an articulation, 0 .. 512 in 1/256; with lips closed as far as their score says, which the
  * articulation moves by 256 at most. */
 void labial_hear_pose(const labial_hear_model_t *model, const int16_t *heads, int32_t gain,
                       int16_t pose[LABIAL_CHANNELS]);

@@ -19,6 +19,7 @@ VERSIONS: Dict[str, str] = {
     "web/package.json": r'^  "version": "([^"]*)",$',
     "web/laughter/package.json": r'^  "version": "([^"]*)",$',
     "web/hearing/package.json": r'^  "version": "([^"]*)",$',
+    "web/hearing-host/package.json": r'^  "version": "([^"]*)",$',
     "web/words/package.json": r'^  "version": "([^"]*)",$',
 }
 #: The project's address, unless a release names another.

@@ -152,8 +152,9 @@ export type Sound =
 export interface HearOptions<O extends Output = Output> {
     /** Default: "faps". */
     output?: O;
-    /** Default: "small". "large" hears better. A page fetches the one that it uses. */
-    model?: "small" | "large";
+    /** Default: "small". "large" hears better, and better still what the package labial-hearing-host has, as in
+     * `model: () => import("labial-hearing-host")`. A page fetches the one that it uses. */
+    model?: "small" | "large" | object | (() => object);
     /** Of a sound that is pushed: samples per second, 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. */
     sampleRate?: number;
     /** Of a sound that is pushed: 1, the default, or 2, whose samples come in pairs, left first. */

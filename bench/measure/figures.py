@@ -329,8 +329,10 @@ _SOUNDS = {"125 people (169 clips)": "talkers/judge", "flite's awb": "flite:awb"
 
 #: Groups of real lips and their names in the pages; methods, and the records that have them.
 _GROUPS = {"grid_singles+grid_more": "GRID", "addresses": "addresses"}
-_LIPS = {"`hear_large`": ("hear_large", "integers"), "`hear_small`": ("hear_small", "integers"),
-         "loudness": ("hear_large", "loudness"), "phonemes, known": ("hear_large", "phonemes")}
+_LIPS = {"`hear_ahead`": ("hear_ahead", "integers"), "`hear_host`": ("hear_host", "integers"),
+         "`hear_large`": ("hear_large", "integers"), "`hear_small`": ("hear_small", "integers"),
+         "loudness": ("hear_large", "loudness"), "phonemes, known": ("hear_large", "phonemes"),
+         "phonemes with 30 % of `hear_host`": ("hear_host", "phonemes and sound")}
 
 
 def _real_lips(source: Sources, heads: Sequence[str]) -> Iterator[Tuple[str, str, List[str]]]:

@@ -36,7 +36,7 @@ OTHER_VOICE = "flite:awb"
 Figures = Dict[str, float]
 
 #: What hearing depends on besides.
-HEARD = ("export/models/hear_large.npz", "export/models/hear_small.npz", "tests/c/hears.h")
+HEARD = (*(f"export/models/hear_{name}.npz" for name in ("ahead", "host", "large", "small")), "tests/c/hears.h")
 
 
 @dataclass(frozen=True)
@@ -110,8 +110,8 @@ def _lips(text: str) -> Figures:
 def _by_lips(model: str) -> Command:
     folder = "export/corpora"
     return Command((f"python -m labial evaluate-hear export/models/{model}.npz --lips {folder}/grid_singles "
-                    f"{folder}/grid_more --lips {folder}/addresses --methods integers,loudness,phonemes",), _lips,
-                   MOTION + HEARD)
+                    f"{folder}/grid_more --lips {folder}/addresses --methods "
+                    "'integers,loudness,phonemes,phonemes and sound'",), _lips, MOTION + HEARD)
 
 
 _SENTENCES = "tests/python/sentences.txt"
@@ -126,8 +126,7 @@ COMMANDS: Dict[str, Command] = {
     "closures of awb": Command((f"python bench/closures.py {_SENTENCES} {OTHER_VOICE}",), _closures),
     "window": Command(("python bench/window.py tests/python/sentences.flite",), _window),
     "laughs": Command(("python bench/laughs.py tests/python/sentences.flite",), _laughs),
-    "real lips, hear_large": _by_lips("hear_large"),
-    "real lips, hear_small": _by_lips("hear_small"),
+    **{f"real lips, {model}": _by_lips(model) for model in ("hear_ahead", "hear_host", "hear_large", "hear_small")},
     "first split": Command(("python export/reproduce.py split",), _split),
 }
 

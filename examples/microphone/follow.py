@@ -106,7 +106,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     parser = Parser(prog="follow", description="Follows the microphone with a mouth.")
     parser.add_argument("--sound", metavar="FILE.wav", help="in place of the microphone")
     parser.add_argument("--to", choices=("bar", "jsonl"), default="bar", help="a bar in the terminal, or text (bar)")
-    parser.add_argument("--model", choices=("small", "large"), default="small")
+    parser.add_argument("--model", choices=("small", "large", "host", "ahead"), default="host")
     options = parser.parse_args(arguments)
     write = bar if options.to == "bar" else line
     try:

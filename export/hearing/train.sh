@@ -17,10 +17,30 @@ labial speech-corpus "$out/espeak" --minutes 50 --sentences "$lj/metadata.csv" "
     espeak:en-us+m1 espeak:en-us+whisper espeak:en-us+steph espeak:en-us+grandpa
 labial speech-corpus "$out/flite" --minutes 55 --sentences "$lj/metadata.csv" "$talkers"/*.txt --voices \
     flite:slt flite:rms flite:kal16 festival:kal_diphone festival:cmu_us_slt_arctic_hts
+mkdir "$out/languages"
+for language in es fr it pt ru hi ja cmn de nl; do
+    sed -n "s/^$language|//p" "$here/languages.txt" >"$out/$language.txt"
+    labial speech-corpus "$out/languages/$language" --minutes 4 --sentences "$out/$language.txt" --voices \
+        "espeak:$language" "espeak:$language+f2" "espeak:$language+m3" "espeak:$language+klatt" "espeak:$language+f4" \
+        "espeak:$language+m7"
+done
 
 train() {
     labial train-hear "$talkers" "$out/espeak" "$out/flite" "$lj" "$kathleen" --cache "$out/cache" \
         --takes 8,3,3,4,4 --shares .40,.18,.18,.10,.14 --smoothness 3 --attribution-file "$here/attribution.txt" "$@"
 }
-train --model small --steps 45000 -o "$out/hear_small.npz"
-train --model large --steps 38000 -o "$out/hear_large.npz"
+train --model small --steps 45000 -o "$out/first_small.npz"
+train --model large --steps 38000 -o "$out/first_large.npz"
+
+# The network that looks ahead begins with the large one; it teaches the others, which also hear sound without a text.
+labial train-hear "$talkers" "$out/espeak" "$out/flite" "$lj" "$kathleen" "$out/languages" --cache "$out/cache" \
+    --takes 5,2,3,2,2,2 --shares .40,.15,.15,.09,.11,.10 --smoothness 3 --attribution-file "$here/attribution.txt" \
+    --model ahead --start "$out/first_large.npz" --rate .0012 --steps 10800 -o "$out/hear_ahead.npz"
+taught() {
+    labial train-hear "$talkers" "$out/espeak" "$out/flite" "$lj" "$kathleen" "$out/languages" --cache "$out/cache" \
+        --takes 5,2,3,2,2,2,1,1 --shares .37,.13,.13,.07,.08,.10,.05,.07 --smoothness 3 \
+        --attribution-file "$here/attribution.txt" --teacher "$out/hear_ahead.npz" --sounds "$lj" "$kathleen" "$@"
+}
+taught --model host --start "$out/hear_ahead.npz" --rate .001 --steps HOST -o "$out/hear_host.npz"
+taught --model large --start "$out/first_large.npz" --rate .0012 --steps LARGE -o "$out/hear_large.npz"
+taught --model small --start "$out/first_small.npz" --rate .0012 --steps SMALL -o "$out/hear_small.npz"

@@ -67,6 +67,12 @@
 #define LABIAL_HEAR_SUMS 0
 #endif
 
+/* Units of a layer that a network of hearing may have, a multiple of four, 80 .. 252. Above 128 each four cost 16 bytes of
+ * a stream of sound: hear_small and hear_large have 68 and 76 units, hear_host and hear_ahead 192. */
+#ifndef LABIAL_HEAR_UNITS_MAX
+#define LABIAL_HEAR_UNITS_MAX 128
+#endif
+
 /* These values do not compile: numbers out of range, sums without parentheses (which the macros would break apart), and
  * unsigned numbers. */
 #define LABIAL_IS_NUMBER_(x, least, most) (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
@@ -87,6 +93,12 @@
 #endif
 #if !LABIAL_IS_NUMBER_(LABIAL_HEAR_SUMS, 0, 1)
 #error "LABIAL_HEAR_SUMS must be a number from 0 to 1."
+#endif
+#if !LABIAL_IS_NUMBER_(LABIAL_HEAR_UNITS_MAX, 80, 252)
+#error "LABIAL_HEAR_UNITS_MAX must be a number from 80 to 252."
+#endif
+#if LABIAL_HEAR_UNITS_MAX % 4
+#error "LABIAL_HEAR_UNITS_MAX must be a multiple of four."
 #endif
 #if LABIAL_WINDOW + LABIAL_LAG > 55
 #error "LABIAL_WINDOW and LABIAL_LAG must not be more than 55 together."

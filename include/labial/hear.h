@@ -11,8 +11,9 @@
  *
  * Frames are those of labial.h: 13 FAPs, 50 frames per second, so that rigs, blends and formats take them. Frame k
  * shows the lips in the sound of 20 ms that begins at 20 k ms. It is known once the sound that follows it is known, too:
- * labial_hear_latency() tells how much that is, 120 ms from a frame's begin with the bundled models. A program that has
- * its sound 120 ms before it is heard, as from a network, keeps frames until their time and has lips without delay.
+ * labial_hear_latency() tells how much that is, 120 ms from a frame's begin with the bundled models but hear_ahead, which
+ * needs 280 ms. A program that has its sound so long before it is heard, as from a network, keeps frames until their time
+ * and has lips without delay.
  *
  * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. A stream
  * begins and ends with the neutral face, all FAPs 0, and so is silence: sound whose samples differ by 32 at most for 140
@@ -66,8 +67,8 @@ uint32_t labial_hear_workspace_size(const labial_hear_model_t *model);
  * the model must stay where it is, until the stream is initialised again or no longer used. `callback` receives the
  * frames, with `user` as its first argument.
  *
- * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION, LABIAL_ERROR_SAMPLE_RATE, LABIAL_ERROR_RANGE (channels)
- * or LABIAL_ERROR_WORKSPACE. After an error the stream is unusable until it is initialised successfully.
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_VERSION, LABIAL_ERROR_SAMPLE_RATE, LABIAL_ERROR_RANGE (channels,
+ * or a model with more units than LABIAL_HEAR_UNITS_MAX of labial/config.h) or LABIAL_ERROR_WORKSPACE. After an error the stream is unusable until it is initialised successfully.
  */
 int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint32_t samples_per_second,
                      unsigned channels, void *workspace, size_t workspace_size, labial_frame_fn callback, void *user);

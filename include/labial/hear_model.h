@@ -6,8 +6,8 @@
  * these structures by hand: `labial export` writes a C file that does.
  *
  * A block is y = relu(W x + b), then z = memory(y): for each unit its own weighted sum of frames of y around the
- * present one. All blocks but the first add their input x to z. A dense layer follows, and two heads: a score for each
- * lip class, and 13 FAPs.
+ * present one. All blocks but the first add their input x to z. A dense layer follows, and three heads: a score for each
+ * lip class, a score of closed lips, and 13 FAPs.
  *
  * Number formats, the same in every table:
  *
@@ -28,15 +28,15 @@ extern "C" {
 #endif
 
 /* Version of this format. A generated model of another version does not compile. */
-#define LABIAL_HEAR_MODEL_FORMAT 2
+#define LABIAL_HEAR_MODEL_FORMAT 3
 
 /* What a frame of 20 ms hears: this many bands in each of its two hops. */
 #define LABIAL_HEAR_BANDS 24
 #define LABIAL_HEAR_INPUTS (2 * LABIAL_HEAR_BANDS)
 
-/* Limits, to which the exporter keeps. */
-#define LABIAL_HEAR_UNITS_MAX 128  /* units of a layer, a multiple of four */
+/* Limits, to which the exporter keeps; LABIAL_HEAR_UNITS_MAX of labial/config.h is that of a layer's units. */
 #define LABIAL_HEAR_BLOCKS_MAX 8   /* blocks */
+#define LABIAL_HEAR_AHEAD_MAX 25   /* frames that must follow a frame */
 #define LABIAL_HEAR_CLASSES_MAX 64 /* lip classes */
 #define LABIAL_HEAR_TAPS_MAX 16    /* taps of a block's memory */
 #define LABIAL_HEAR_ROWS_MAX 64    /* frames that a block's memory holds */
@@ -62,20 +62,20 @@ typedef struct {
 /* A model. */
 typedef struct {
     uint16_t format; /* LABIAL_HEAR_MODEL_FORMAT */
-    uint8_t units;   /* of every layer */
+    uint8_t units;   /* of every layer, a multiple of four */
     uint8_t blocks;  /* 1 and more */
     uint8_t classes; /* 2 and more */
-    uint8_t closure; /* the class of closed lips: p, b, m */
     uint8_t ahead;   /* frames that must follow a frame before it is known: the sum of ahead * dilation */
     uint8_t rows;    /* of the workspace: the sum of (past + ahead) * dilation, and of ahead * dilation but the first */
-    int32_t close_from;    /* lead of the closure's score over all others at which lips begin to close, Q9 */
-    int32_t close_width;   /* how much more of it closes them, Q9, 1 .. 65536 */
-    const int16_t *mean;   /* 13 positions; a frame is mean + scale * head */
-    const int16_t *scale;  /* 13 positions */
-    const int16_t *closed; /* 13 positions, the pose of closed lips */
+    int32_t close_from;     /* score of closed lips at which they begin to close, Q9 */
+    int32_t close_width;    /* how much more of it closes them, Q9, 1 .. 65536 */
+    const int16_t *mean;    /* 13 positions; a frame is mean + scale * head */
+    const int16_t *scale;   /* 13 positions */
+    const int16_t *closed;  /* 13 positions, the pose of closed lips */
+    const int16_t *closing; /* 13 shares, Q8, 0 .. 256: how far each channel follows that pose when lips are closed */
     const labial_hear_block_t *block;
     labial_hear_dense_t last;
-    labial_hear_dense_t heads; /* rows of the classes, then of the 13 FAPs */
+    labial_hear_dense_t heads; /* rows of the classes, then of closed lips, then of the 13 FAPs */
 } labial_hear_model_t;
 
 #if LABIAL_HEAR_SUMS

@@ -13,7 +13,10 @@
 
 #define LABIAL_HEAR_WINDOW_ 256 /* samples of a window */
 #define LABIAL_HEAR_HOP_ 160    /* from one window to the next */
-#define LABIAL_HEAR_TAPS_ 32    /* samples that the conversion of rates looks at */
+/* Numbers that a window and the network's layers take turns in. */
+#define LABIAL_HEAR_ROOM_                                                                                              \
+    (2 * LABIAL_HEAR_UNITS_MAX > LABIAL_HEAR_WINDOW_ ? 2 * LABIAL_HEAR_UNITS_MAX : LABIAL_HEAR_WINDOW_)
+#define LABIAL_HEAR_TAPS_ 32 /* samples that the conversion of rates looks at */
 
 /* The conversion of rates (hear_convert.c). Times are in tenths of a point of the grid on which the filter lies. */
 typedef struct {
@@ -41,7 +44,7 @@ typedef struct {
     labial_hear_level_t level;
     int16_t bands[LABIAL_HEAR_INPUTS];                    /* features of the frame, Q9 */
     int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_]; /* samples that a window shares with the next one */
-    int16_t window[LABIAL_HEAR_WINDOW_]; /* samples, then their spectrum, then what layers of the network put out */
+    int16_t window[LABIAL_HEAR_ROOM_]; /* samples, then their spectrum, then what layers of the network put out */
 } labial_hear_features_t;
 
 /* The network's memory (hear_network.c). */
@@ -56,8 +59,8 @@ typedef struct {
 /* Poses on their way to motion (hear_motion.c). */
 typedef struct {
     uint8_t held, leader; /* `now` is a pose; its class */
-    uint8_t silent;       /* frames without sound up to the latest one, 255 for more */
     uint8_t rest;         /* how far the face has come to rest in silence */
+    uint32_t loud;        /* whether the latest 32 frames had sound, the last one in bit 0 */
     labial_articulation_t articulation;
     int16_t before[LABIAL_CHANNELS]; /* the pose before `now`, Q4 */
     int16_t now[LABIAL_CHANNELS];    /* the pose that is due next, before it is smoothed */

@@ -7,7 +7,7 @@
 
 #include "labial/hear.h"
 
-#if LABIAL_HEAR_MODEL_FORMAT != 2
+#if LABIAL_HEAR_MODEL_FORMAT != 3
 #error "hear_fixture was exported for another version of Labial: run labial export again."
 #endif
 
@@ -27,7 +27,7 @@ enum {
     HEAR_FIXTURE_IY = 4
 };
 
-/* The model, 1202 bytes on a 32-bit target. */
+/* The model, 1232 bytes on a 32-bit target. */
 extern const labial_hear_model_t hear_fixture;
 
 /* The names of the classes; linked only when used. */

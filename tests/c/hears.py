@@ -43,9 +43,10 @@ def model() -> HearingModel:
         tuple(drawn(UNITS, memory.taps, scale=1.5) for memory in MEMORIES),
         drawn(UNITS, UNITS, scale=2.0), drawn(UNITS),
         drawn(len(CLASSES), UNITS, scale=2.0), drawn(len(CLASSES), scale=3.0),
+        drawn(UNITS, scale=2.0), drawn(1),
         drawn(CHANNELS, UNITS), drawn(CHANNELS),
-        CLASSES, "M", drawn(CHANNELS, scale=200.0), np.abs(drawn(CHANNELS, scale=400.0)) + 20,
-        drawn(CHANNELS, scale=100.0), -0.5, 0.3,
+        CLASSES, drawn(CHANNELS, scale=200.0), np.abs(drawn(CHANNELS, scale=400.0)) + 20,
+        drawn(CHANNELS, scale=100.0), np.linspace(1.0, 0.0, CHANNELS, dtype=np.float32), -0.5, 0.3,
     )  # fmt: skip
 
 

@@ -55,7 +55,7 @@ static inline void suite_within(const char *expression, long long found, long lo
 }
 
 /* All tests of the suite, and behind them nothing. */
-static struct CMUnitTest suite[40];
+static struct CMUnitTest suite[48];
 static size_t suite_count;
 
 /* A test, or one after `setup`. Its `state` is cmocka's, which few need. */

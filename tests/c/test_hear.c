@@ -450,23 +450,27 @@ TEST(articulation_is_a_factor)
     assert_true(wider > count);
 }
 
-/* Would catch closed lips that are pressed together, or apart, by a shout. */
+/* Would catch closed lips that are pressed together, or apart, by a shout, and a channel that follows them too far. */
 TEST(closed_lips_stay_closed)
 {
     static const int16_t zero[LABIAL_CHANNELS],
-        ones[LABIAL_CHANNELS] = { 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160 };
+        ones[LABIAL_CHANNELS] = { 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160, 160 },
+        all[LABIAL_CHANNELS] = { 256, 128, 0, 256, 256, 256, 256, 256, 256, 256, 256, 256, 256 };
     static const int32_t gains[] = { 0, 128, 256, 300, 512 };
     labial_hear_model_t model = hear_fixture;
-    int16_t heads[HEAR_FIXTURE_CLASSES + LABIAL_CHANNELS] = { 0 }, pose[LABIAL_CHANNELS];
+    int16_t heads[HEAR_FIXTURE_CLASSES + 1 + LABIAL_CHANNELS] = { 0 }, pose[LABIAL_CHANNELS];
     model.mean = zero;
     model.scale = zero;
     model.closed = ones;
+    model.closing = all;
     for (unsigned i = 0; i < sizeof gains / sizeof gains[0]; i++) {
-        heads[HEAR_FIXTURE_M] = 32767; /* leads by far */
+        heads[HEAR_FIXTURE_CLASSES] = 32767; /* the score of closed lips */
         model.mean = zero;
         labial_hear_pose(&model, heads, gains[i], pose);
         assert_int_equal(pose[4], gains[i] < 256 ? 160 * gains[i] / 256 : 160);
-        heads[HEAR_FIXTURE_M] = -32767;
+        assert_int_equal(pose[1], pose[4] / 2);
+        assert_int_equal(pose[2], 0);
+        heads[HEAR_FIXTURE_CLASSES] = -32767;
         model.mean = ones;
         labial_hear_pose(&model, heads, gains[i], pose);
         assert_int_equal(pose[4], (160 * gains[i] + 128) / 256);
@@ -511,7 +515,6 @@ TEST(classes_are_told_only_where_they_are_asked_for)
     assert_int_equal(stretch_count, 0);
     assert_true(frame_count > 0u);
     assert_string_equal(hear_fixture_classes[HEAR_FIXTURE_M], "M");
-    assert_int_equal(hear_fixture.closure, HEAR_FIXTURE_M);
 }
 
 /* ---- Memory and wrong calls ----------------------------------------------------------------------------------------- */
@@ -560,6 +563,9 @@ TEST(wrong_arguments_are_refused)
                      LABIAL_ERROR_WORKSPACE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, odd, size, on_frame, NULL),
                      LABIAL_ERROR_WORKSPACE);
+    other.units = LABIAL_HEAR_UNITS_MAX + 1;
+    assert_int_equal(labial_hear_init(&hear, &other, 16000, 1, workspace, SIZE_MAX, on_frame, NULL),
+                     LABIAL_ERROR_RANGE);
     other.format++;
     assert_int_equal(labial_hear_init(&hear, &other, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_VERSION);
     /* After an error the stream is unusable. */

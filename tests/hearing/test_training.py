@@ -14,18 +14,20 @@ import torch
 
 from labial.__main__ import main
 from labial.errors import LabialError
-from labial.hearing import features, network, quantise, train
+from labial.hearing import features, lessons, network, quantise, targets, train
 from labial.hearing.learner import Learner, Remembered, model_of, restore, rounded
 from labial.hearing.model import HearingModel, load
 from labial.hearing.plans import CLASSES, PLANS, Memory
 from labial.hearing.prepared import Prepared
+from labial.hearing.targets import Closure
 
+NO_CLOSURE = Closure(np.zeros(13, np.float32), np.zeros(13, np.float32))
 #: Files with a name of its own each, of which some are held out (labial.hearing.prepared.is_held).
 NAMES = [f"{k}" for k in range(30)]
 
 
-def made(learner: Learner, closed: float = 0.0) -> HearingModel:
-    return model_of(learner, np.full(13, 5.0), np.full(13, 50.0), np.full(13, closed), (-1.0, 1.0), "", {})
+def made(learner: Learner) -> HearingModel:
+    return model_of(learner, np.full(13, 5.0), np.full(13, 50.0), NO_CLOSURE, (-1.0, 1.0), "", {})
 
 
 @pytest.mark.parametrize("reach", [Memory(4, 1, 2), Memory(0, 2, 1), Memory(3, 0, 3)])
@@ -45,27 +47,37 @@ def test_what_is_trained_is_what_hears(name: str) -> None:
     heard = np.random.default_rng(0).uniform(-2.25, 2.75, (60, 48)).astype(np.float32)
     found = network.run(made(learner), heard)
     with torch.no_grad():
-        scores, faps, excess = learner(torch.from_numpy(heard)[None], True)
+        scores, closed, faps, excess = learner(torch.from_numpy(heard)[None], True)
+    assert np.abs(found.closed - closed[0].numpy()).max() < 1e-4
     assert np.abs(found.scores - scores[0].numpy()).max() < 1e-4
     assert np.abs(found.faps - (5.0 + 50.0 * faps[0].numpy())).max() < 5e-3 and float(excess) >= 0
 
 
 def test_a_model_can_be_the_beginning(tmp_path: Path) -> None:
-    """Its weights for frames of any mean and scale, after no step that changes much; another size is refused."""
+    """Its weights for frames of any mean and scale, after no step that changes much; a larger network, and one that
+    looks further ahead, begin with what it hears; a smaller one is refused."""
     torch.manual_seed(2)
     first = made(Learner(PLANS["small"]))
     learner, heard = Learner(PLANS["small"]), np.random.default_rng(0).uniform(-2, 2, (40, 48)).astype(np.float32)
     mean, scale = np.linspace(-20, 20, 13), np.linspace(10, 90, 13)
     restore(learner, first, mean, scale)
-    again = network.run(model_of(learner, mean, scale, np.zeros(13), (-1.0, 1.0), "", {}), heard)
+    again = network.run(model_of(learner, mean, scale, NO_CLOSURE, (-1.0, 1.0), "", {}), heard)
     found = network.run(first, heard)
     assert np.abs(again.scores - found.scores).max() < 1e-4
     assert np.abs(again.faps - found.faps).max() < 0.02 * np.abs(found.faps).max()  # the heads are rounded anew
-    with pytest.raises(LabialError, match="not of the size 'large'"):
+    with pytest.raises(LabialError, match="76 units in 4 blocks cannot begin with a model of 68 units in 3 blocks"):
         train.train([folder(0)], train.Options("large", 1), str(tmp_path / "a"), start=first)
+    large, ahead = Learner(PLANS["large"]), Learner(PLANS["ahead"])
+    restore(ahead, made(large), np.full(13, 5.0), np.full(13, 50.0))
+    given = torch.from_numpy(heard)[None]
+    with torch.no_grad():
+        for one, two in zip(large(given, True)[:3], ahead(given, True)[:3]):
+            assert float((one - two).abs().max()) < 1e-4
+    with pytest.raises(LabialError, match="a network of 76 units in 4 blocks cannot begin with a model of 192 units"):
+        restore(large, made(ahead), np.zeros(13), np.ones(13))
     steps = [train.train([folder(0)], train.Options("small", 1, rate), str(tmp_path / f"{rate}"), start=first)
              for rate in (1e-9, 1e-2)]
-    apart = [np.abs(model.dense[1] - first.dense[1]).max() for model in steps]
+    apart = [np.abs(model.bias[1] - first.bias[1]).max() for model in steps]
     assert apart[0] < 1e-6 < apart[1]
 
 
@@ -121,6 +133,34 @@ def test_it_learns_and_is_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         train.train(given, asked, str(stopped))
 
 
+def test_a_teacher_is_heard() -> None:
+    """By hand: the teacher's share of frames, classes and closures; of sounds without a text only what it hears."""
+    torch.manual_seed(3)
+    teacher, part = made(Learner(PLANS["small"])), folder(2, 4)
+    own, both, alone = (lessons.lesson(part, *given) for given in ((), (teacher, 0.25), (teacher, 1.0)))
+    energies = part.energies[: 2 * part.lengths[0]].astype(np.float32)
+    heard = network.run(teacher, features.normalise(energies).reshape(part.lengths[0], -1))
+    first = slice(0, part.lengths[0])
+    assert np.abs(alone.frames[first] - heard.faps).max() <= 0.51
+    assert np.abs(both.frames[first] - (0.75 * part.frames[first] + 0.25 * heard.faps)).max() <= 0.51
+    assert np.abs(alone.closed[first] - 1 / (1 + np.exp(-heard.closed))).max() < 1e-2
+    assert np.abs(both.likely - (0.75 * own.likely + 0.25 * alone.likely)).max() < 1e-2
+    assert (own.classes == part.classes).all() and (both.classes == part.classes).all()
+    assert (alone.classes[first] == heard.scores.argmax(axis=1)).mean() > 0.99
+    closed = (own.closed == 1) == ((part.classes == 1) & (targets.opening(part.frames) <= targets.TOUCHING))
+    assert closed.all() and own.weight[part.classes == 1].min() == 4
+
+
+def test_it_learns_from_a_teacher(tmp_path: Path) -> None:
+    """Takes without a truth alone make another network of it; nothing is chosen on them."""
+    torch.manual_seed(4)
+    teacher = made(Learner(PLANS["small"]))
+    asked = train.Options("small", 3, shares=(1.0, 1.0), taught=0.5)
+    found = [train.train([folder(0)], asked, str(tmp_path / f"{k}"), sounds=[folder(k)], teacher=teacher)
+             for k in (1, 2)]
+    assert np.abs(found[0].last - found[1].last).max() > 0
+
+
 @pytest.mark.parametrize(("shares", "count", "message"), [
     ((1.0,), 24, "1 shares are given for 2 folders"), ((1.0, -1.0), 24, "shares are given"),
     ((), 0, "folder 2 has no more than 200 frames"),
@@ -166,7 +206,9 @@ def test_the_command_trains(tmp_path: Path, capsys: pytest.CaptureFixture) -> No
                              (["--shares", "x"], "--shares: 'x' is not a number"),
                              (["--smoothness", "-1"], "--smoothness -1 is not within 0 .. 1000"),
                              (["--rate", "0"], "--rate 0 is not within 0 .. 1"),
-                             (["--model", "large", "--start", str(tmp_path / "a.npz")], "not of the size 'large'")):
+                             (["--model", "large", "--start", str(tmp_path / "a.npz")], "cannot begin with a model of"),
+                             (["--taught", "2"], "--taught 2 is not within 0 .. 1"),
+                             (["--sounds", str(tmp_path)], "--sounds needs a --teacher")):
         assert main([*given, "-o", str(tmp_path / "c.npz"), *options]) == 1
         assert message in capsys.readouterr().err
     (tmp_path / "in" / "3.lab").write_text("0 1 XYZ\n")

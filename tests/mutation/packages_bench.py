@@ -44,7 +44,8 @@ COVERED: Dict[str, Tuple[str, ...]] = {
     "web/words/readers.js": ("words.test.mjs", "test_npm_words.py"),
 }
 #: The packages of npm and the folders of their sources.
-PACKAGES = {"npm": "web", "npm-words": "web/words", "npm-hearing": "web/hearing", "npm-laughter": "web/laughter"}
+PACKAGES = {"npm": "web", "npm-words": "web/words", "npm-hearing": "web/hearing",
+            "npm-hearing-host": "web/hearing-host", "npm-laughter": "web/laughter"}
 #: A test hangs if it takes this many times the processor time of the unchanged sources.
 PATIENCE, LEAST_SECONDS = 5.0, 20.0
 

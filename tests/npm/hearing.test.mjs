@@ -224,7 +224,12 @@ test("misuse is told", async () => {
     await assert.rejects(labial.hear(null, { sampleRate: 11025 }), LabialError);
     await assert.rejects(labial.hear(null, { sampleRate: RATE, channels: 3 }), LabialError);
     await assert.rejects(labial.hear(null, { sampleRate: RATE, channels: 2 ** 32 + 1 }), LabialError);
-    await assert.rejects(labial.hear(null, { sampleRate: RATE, model: "huge" }), { message: /small, large/ });
+    for (const model of ["huge", 3, null]) {
+        await assert.rejects(labial.hear(null, { sampleRate: RATE, model }), { message: /small, large/ });
+    }
+    const no = { name: "LabialError", message: /is no model of hearing/ };
+    await assert.rejects(labial.hear(null, { sampleRate: RATE, model: Promise.resolve({ default: 3 }) }), no);
+    await assert.rejects(labial.hear(null, { sampleRate: RATE, model: () => ({}) }), no);
     await assert.rejects(labial.hear(null, { sampleRate: RATE, output: "arkitt" }), LabialError);
     await assert.rejects(labial.hear({}), { name: "TypeError", message: /MediaStream/ });
     await assert.rejects(labial.hear({ getAudioTracks: () => [] }), { message: /no AudioContext here/ });

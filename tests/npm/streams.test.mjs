@@ -289,6 +289,11 @@ test("what follows a free is an error in a sentence", () => {
     }
 });
 
+test("the mouth may move from not at all to twice as far", () => {
+    const stream = mouth.stream();
+    for (const percent of [0, 100, 200]) stream.articulation(percent);
+});
+
 test("hostile values are refused in a sentence, and change nothing", () => {
     const stream = mouth.stream();
     stream.push("m", 80);
@@ -296,7 +301,7 @@ test("hostile values are refused in a sentence, and change nothing", () => {
     const calls = [
         ...numbers.flatMap((x) => [() => stream.push("m", x), () => stream.laugh(x), () => stream.cancel(x ?? "")]),
         ...[NaN, -1, 1.1, "1", null].map((x) => () => stream.laugh(1, x)),
-        ...[...numbers, 200.1].map((x) => () => stream.articulation(x)),
+        ...[...numbers, 200.1, 201].map((x) => () => stream.articulation(x)),
         ...[1e9, 3600001].flatMap((x) => [() => stream.push("m", x), () => stream.laugh(x)]),
         ...[-1, 40, 0.5, NaN, 2 ** 40, null, {}, "", " ", "zzz", "x".repeat(1e6), "\ud800", "\0", Symbol("x"), () => 0]
             .map((x) => () => stream.push(x, 80)),

@@ -84,7 +84,7 @@ void labial_hear_motion_reset(labial_hear_motion_t *motion)
 
 void labial_hear_motion_hear(labial_hear_motion_t *motion, int loud)
 {
-    motion->silent = (uint8_t)(loud ? 0 : any_uint8);
+    motion->loud = loud ? 1u : any_uint32;
 }
 
 int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_model_t *any, const int16_t *heads,

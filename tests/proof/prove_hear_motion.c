@@ -32,14 +32,14 @@ uint32_t labial_quotient(uint32_t a, uint32_t b)
 
 int main(void)
 {
-    static int16_t heads[LABIAL_HEAR_CLASSES_MAX + LABIAL_CHANNELS], pose[LABIAL_CHANNELS];
+    static int16_t heads[LABIAL_HEAR_CLASSES_MAX + 1 + LABIAL_CHANNELS], pose[LABIAL_CHANNELS];
     FILL(heads);
     FILL(motion.before);
     FILL(motion.now);
     model.classes = (uint8_t)Frama_C_interval(2, LABIAL_HEAR_CLASSES_MAX);
-    model.ahead = any_uint8;
+    model.ahead = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_AHEAD_MAX);
     motion.held = (uint8_t)Frama_C_interval(0, 1);
-    motion.silent = any_uint8;
+    motion.loud = any_uint32;
     motion.rest = (uint8_t)Frama_C_interval(0, 5);
     motion.articulation.wanted = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
     motion.articulation.present = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);

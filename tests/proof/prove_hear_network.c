@@ -18,10 +18,10 @@
 typedef char are_those_of_small[HEAR_SMALL_WORKSPACE_SIZE == LABIAL_HEAR_WORKSPACE_SIZE(68, 27) ? 1 : -1];
 typedef char are_those_of_large[HEAR_LARGE_WORKSPACE_SIZE == LABIAL_HEAR_WORKSPACE_SIZE(UNITS, ROWS) ? 1 : -1];
 
-#define HEADS 40 /* 26 classes and 13 FAPs, and one that fills up */
+#define HEADS 40 /* 26 classes, closed lips and 13 FAPs */
 
 static int8_t weights[4][UNITS * UNITS], last_weights[UNITS * UNITS], heads_weights[HEADS * UNITS], taps[4][UNITS * 7];
-static int16_t biases[UNITS], positions[3][LABIAL_CHANNELS];
+static int16_t biases[UNITS], positions[3][LABIAL_CHANNELS], closing[LABIAL_CHANNELS];
 static uint8_t shifts[UNITS];
 static int16_t workspace[ROWS * UNITS];
 static labial_hear_block_t blocks[4];
@@ -58,7 +58,6 @@ static void set_model(unsigned units, unsigned count, unsigned ahead, unsigned r
     model.units = (uint8_t)units;
     model.blocks = (uint8_t)count;
     model.classes = 26;
-    model.closure = 1;
     model.ahead = (uint8_t)ahead;
     model.rows = (uint8_t)rows;
     model.block = blocks;
@@ -79,22 +78,25 @@ static void take(void)
     network.taken = (uint32_t)Frama_C_interval(0, model.ahead);
     heads = labial_hear_network(&network, features, scratch);
     if (heads)
-        any_int = heads[0] + heads[26 + LABIAL_CHANNELS - 1];
+        any_int = heads[0] + heads[26 + LABIAL_CHANNELS];
 }
 
 /* Any number of classes. */
 static void pose(void)
 {
-    int16_t heads[LABIAL_HEAR_CLASSES_MAX + LABIAL_CHANNELS], found[LABIAL_CHANNELS];
+    int16_t heads[LABIAL_HEAR_CLASSES_MAX + 1 + LABIAL_CHANNELS], found[LABIAL_CHANNELS];
+    unsigned k;
     FILL(heads);
     FILL(positions);
     model.classes = (uint8_t)Frama_C_interval(2, LABIAL_HEAR_CLASSES_MAX);
-    model.closure = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_CLASSES_MAX - 1);
     model.close_from = Frama_C_interval(-65536, 65536);
     model.close_width = Frama_C_interval(1, 65536);
     model.mean = positions[0];
     model.scale = positions[1];
     model.closed = positions[2];
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        closing[k] = (int16_t)Frama_C_interval(0, 256);
+    model.closing = closing;
     labial_hear_leader(&model, heads);
     labial_hear_pose(&model, heads, Frama_C_interval(0, 512), found);
 }

@@ -68,7 +68,7 @@ def lips(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
 
 def test_how_far_ahead() -> None:
     """Catches a delay of the renderer that is not that of hearing."""
-    with labial.Hearing() as hearing:
+    with labial.Hearing(model="hear_small") as hearing:
         assert hearing.latency == pytest.approx(AHEAD * 0.02)
     assert f"#define LIPS_RENDER_DELAY {AHEAD * 20}\n" in (EXAMPLE / "lips_render.h").read_text(encoding="ascii")
 
@@ -76,7 +76,7 @@ def test_how_far_ahead() -> None:
 def heard(samples: np.ndarray, rate: int, *ends: int) -> List[Faps]:
     """The frames of labial.Hearing; at samples `ends` the sound has ended, and another one begins."""
     found: List[Faps] = []
-    with labial.Hearing(rate, 1 if samples.ndim == 1 else samples.shape[1], exact=True) as hearing:
+    with labial.Hearing(rate, 1 if samples.ndim == 1 else samples.shape[1], model="hear_small", exact=True) as hearing:
         for part in np.split(samples, ends):
             found += [list(frame.faps) for frame in hearing.push(part) + hearing.end()]
             hearing.restart()

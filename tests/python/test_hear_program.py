@@ -140,7 +140,7 @@ def test_blocks_of_any_length(seed: int) -> None:
 def test_frames_leave_while_sound_arrives(options: List[str]) -> None:
     """Catches frames that are kept back: after 400 ms all frames are out that the library knows by then, and in the end
     all."""
-    with labial.Hearing() as hearing:
+    with labial.Hearing(model="hear_small") as hearing:
         known = len(hearing.push(SOUND[:6400]))
     assert known > 10
     lines: queue.Queue[bytes] = queue.Queue()
@@ -192,7 +192,7 @@ def test_classes_are_timings(tmp_path: Path) -> None:
     path = wav(tmp_path / "voice.wav", SOUND, 16000)
     done = hear(path, "--classes")
     assert done.returncode == 0 and done.stderr == b""
-    with labial.Hearing() as hearing:
+    with labial.Hearing(model="hear_small") as hearing:
         hearing.measure(SOUND)
         assert len(list(hearing.frames([SOUND]))) == 35 + 12
         shown = hearing.shown()

@@ -142,7 +142,7 @@ def test_targets_are_those_of_the_stream() -> None:
     assert frames.shape == (30, CHANNELS)
     assert np.array_equal(frames[:20], np.array(render([*timings, ("SIL", 400)]))[:20])
     assert [CLASSES[k] for k in targets.classes(timings, 26)] == ["SIL"] * 5 + ["M"] * 4 + ["AA"] * 16 + ["SIL"]
-    assert targets.opening(targets.closed_pose()) <= targets.TOUCHING < targets.opening(frames[15])
+    assert targets.opening(targets.closure().pose) <= targets.TOUCHING < targets.opening(frames[15])
     assert targets.frames([], 4).shape == (4, CHANNELS)
 
 

@@ -79,9 +79,9 @@ def fixture_sound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> np.ndarray
     return samples
 
 
-def heard(sound: np.ndarray) -> List[Any]:
+def heard(sound: np.ndarray, model: str = "hear_host") -> List[Any]:
     """The frames of the sound alone, at its level."""
-    with labial.Hearing(16000, exact=True) as hearing:
+    with labial.Hearing(16000, model=model, exact=True) as hearing:
         hearing.measure(sound)
         return [frame.faps for frame in hearing.frames([sound])]
 

@@ -64,6 +64,7 @@ def manifest_versions(root: Path) -> Dict[str, str]:
         "npm": json.loads((root / "web" / "package.json").read_text(encoding="utf-8"))["version"],
         "laughter": json.loads((root / "web/laughter/package.json").read_text(encoding="utf-8"))["version"],
         "hearing": json.loads((root / "web/hearing/package.json").read_text(encoding="utf-8"))["version"],
+        "host": json.loads((root / "web/hearing-host/package.json").read_text(encoding="utf-8"))["version"],
         "words": json.loads((root / "web/words/package.json").read_text(encoding="utf-8"))["version"],
         "__init__.py": re.findall(r'^__version__ = "(.*)"$', python, re.MULTILINE)[0],
         "pack.py": pack("version", root=root).strip(),
@@ -86,7 +87,7 @@ def test_version_is_set_everywhere(tmp_path: Path) -> None:
         target = tmp_path / name
         target.parent.mkdir(parents=True, exist_ok=True)
         (shutil.copytree if (SOURCE / name).is_dir() else shutil.copyfile)(SOURCE / name, target)
-    assert len(pack("version", "12.3.45", root=tmp_path).splitlines()) == 8
+    assert len(pack("version", "12.3.45", root=tmp_path).splitlines()) == 9
     assert header_version(tmp_path) == "12.3.45"
     assert set(manifest_versions(tmp_path).values()) == {"12.3.45"}
     before = (tmp_path / "library.json").read_bytes()

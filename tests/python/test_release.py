@@ -88,7 +88,8 @@ def check_bill(bill: Dict[str, Any], folder: Path) -> None:
     assert speech["licenses"] == [{"license": {"id": "CC-BY-4.0"}}]
     assert "synthetic" in components["model:laughter_synthetic"]["description"]
     assert {"pypi:numpy", "pypi:scipy", "pypi:mediapipe", "pypi:distributed", "build:ziglang"} <= set(components)
-    data = ["model:hear_large", "model:hear_small", "model:laughter_synthetic", "model:speech_en", "words:words_en"]
+    data = ["model:hear_ahead", "model:hear_host", "model:hear_large", "model:hear_small", "model:laughter_synthetic",
+            "model:speech_en", "words:words_en"]
     contents = {item["ref"]: item["dependsOn"] for item in bill["dependencies"]}
     assert set(contents) == {"labial", *files}
     for name, inside in contents.items():

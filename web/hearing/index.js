@@ -4,22 +4,20 @@ import { contextOf, tap } from "./tap.js";
 
 /** The models: each is a WebAssembly module of its own, with the code that hears. */
 const MODELS = { small: () => import("./small.js"), large: () => import("./large.js") };
-/** What is compiled already, by the model's name. */
-const compiled = {};
+/** What is compiled already, by the model's text. */
+const compiled = new Map();
 
 /** What to hear with `tools`, which are labial's: its own sources would be another copy. */
 export async function hear(tools, labial, source, options = {}) {
-    const { LabialError, allowed, shown, unpack } = tools;
+    const { LabialError, allowed, shown } = tools;
     const { model = "small", output = "faps", channels = 1, delay, play, exact } = options;
     labial.checkOutput(output);
-    if (!Object.hasOwn(MODELS, model)) {
+    const given = Object.hasOwn(MODELS, model) ? MODELS[model] : model;
+    if (given == null || !["function", "object"].includes(typeof given)) {
         throw new LabialError(`${shown(model)} is no model of hearing: ${Object.keys(MODELS).join(", ")}`);
     }
     const context = contextOf(tools, source ?? null, options.context);
-    const code = await (compiled[model] ??= allowed(module(model, unpack)).catch((error) => {
-        delete compiled[model]; // so that it can be tried again
-        throw error;
-    }));
+    const code = await allowed(module(tools, given));
     const wasm = (await WebAssembly.instantiate(code, {})).exports;
     const listened = source == null ? null : await tap(tools, context, source, play);
     try {
@@ -32,7 +30,14 @@ export async function hear(tools, labial, source, options = {}) {
     }
 }
 
-async function module(model, unpack) {
-    const { default: text } = await MODELS[model]();
-    return WebAssembly.compile(unpack(text));
+/** The compiled module of a model: of a module with its text, what loads one, or a promise of it. */
+async function module({ LabialError, shown, unpack }, model) {
+    let text = await (typeof model === "function" ? model() : model);
+    while (text?.default) text = text.default; // a module, or one inside another as CommonJS has it
+    if (typeof text !== "string") throw new LabialError(`${shown(text)} is no model of hearing`);
+    if (!compiled.has(text)) compiled.set(text, WebAssembly.compile(unpack(text)));
+    return compiled.get(text).catch((error) => {
+        compiled.delete(text); // so that it can be tried again
+        throw error;
+    });
 }

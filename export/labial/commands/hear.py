@@ -37,8 +37,10 @@ def add_hear(command: argparse.ArgumentParser) -> None:
                          "the extra align is installed; or - for 16-bit samples from standard input, low byte first")
     command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     add_format(command)
-    command.add_argument("--model", choices=("small", "large"), default="small",
-                         help="the network: small, or large, which is better and costs half as much again (small)")
+    command.add_argument("--model", choices=("small", "large", "host", "ahead"),
+                         default="host", help="the network: small and large are those of small chips, host is better; "
+                         "ahead looks 160 ms further ahead, and knows a frame 280 ms after its begin instead of 120 "
+                         "(host)")
     add_said(command)
     add_phones(command)
     command.add_argument("--sound-alone", action="store_true", help="look for no words. Without this, and without a "

@@ -21,12 +21,20 @@ def add_train_hear(command: argparse.ArgumentParser) -> None:
     command.add_argument("folder", nargs="+", metavar="FOLDER", help="sounds in any depth, each with timings or a text "
                          "(.txt) beside it, or with a metadata.csv in LJ Speech's layout")
     command.add_argument("-o", "--output", required=True, metavar="HEAR.npz")
-    command.add_argument("--model", choices=("small", "large"), default="small", help="size of the network (small)")
+    command.add_argument("--model", choices=("small", "large", "host", "ahead"), default="small",
+                         help="size of the network: host and ahead are for computers, and ahead knows a frame 160 ms "
+                         "later (small)")
     command.add_argument("--steps", type=positive, default=30000, help="batches of 160 s that are learned (30000)")
     command.add_argument("--rate", type=number, default=0.003, help="of learning, its highest (0.003)")
     command.add_argument("--smoothness", type=number, default=6.0, help="weight of the error of the frames' second "
                          "differences (6)")
-    command.add_argument("--start", metavar="HEAR.npz", help="begin with this model of the same size, rather than anew")
+    command.add_argument("--start", metavar="HEAR.npz", help="begin with what this model hears, which has as many "
+                         "blocks and no more units, rather than anew")
+    command.add_argument("--teacher", metavar="HEAR.npz", help="also learn what this model hears")
+    command.add_argument("--taught", type=number, default=0.5, help="with --teacher: its share where the truth is "
+                         "known (0.5)")
+    command.add_argument("--sounds", nargs="+", default=[], metavar="FOLDER", help="with --teacher: sounds whose text "
+                         "is not known; --shares and --takes name these folders last")
     command.add_argument("--shares", metavar="A,B,...", help="shares of the folders in each batch (the square roots of "
                          "their lengths)")
     command.add_argument("--takes", metavar="A,B,...", help="how many times each sound of each folder is prepared, all "
@@ -52,7 +60,9 @@ def run_train_hear(options: argparse.Namespace) -> int:
     from labial.files.outputs import check
 
     check(options.output)
-    count = len(options.folder)
+    if options.sounds and options.teacher is None:
+        raise LabialError("--sounds needs a --teacher")
+    count = len(options.folder) + len(options.sounds)
     shares = _values(options.shares, "--shares", count)
     takes = [round(value) for value in _values(options.takes, "--takes", count)] or [TAKES] * count
     if min(takes) < 1 or max(takes) > 100:
@@ -64,16 +74,20 @@ def run_train_hear(options: argparse.Namespace) -> int:
         raise LabialError(f"--rate {options.rate:g} is not within 0 .. 1")
     if not 0 <= options.smoothness <= 1000:
         raise LabialError(f"--smoothness {options.smoothness:g} is not within 0 .. 1000")
-    start = None if options.start is None else load(options.start)
-    begun = "" if start is None else hashlib.sha256(Path(options.start).read_bytes()).hexdigest()
+    if not 0 <= options.taught <= 1:
+        raise LabialError(f"--taught {options.taught:g} is not within 0 .. 1")
+    start, teacher = (None if path is None else load(path) for path in (options.start, options.teacher))
+    begun, by = ("" if path is None else hashlib.sha256(Path(path).read_bytes()).hexdigest()
+                 for path in (options.start, options.teacher))
     asked = train.Options(options.model, options.steps, options.rate, options.smoothness, options.seed, shares,
-                          attribution, begun)
+                          attribution, begun, by, options.taught if by else 0.0)
     cache = options.cache or f"{options.output}.cache"
 
     folders: List[Any] = []
-    for folder, times in zip(options.folder, takes):
+    for place, (folder, times) in enumerate(zip([*options.folder, *options.sounds], takes)):
         with tqdm(desc=f"{folder}: aligned", disable=not shows_progress(options)) as bar:
-            found = clips.read(folder, cache, options.jobs, lambda done, total: _tell(bar, done, total))
+            found = (clips.read(folder, cache, options.jobs, lambda done, total: _tell(bar, done, total))
+                     if place < len(options.folder) else clips.untold(folder))
         with tqdm(desc=f"{folder}: prepared", disable=not shows_progress(options)) as bar:
             folders.append(prepared.prepare(found, times, options.seed, cache, options.jobs,
                                             lambda done, total: _tell(bar, done, total)))
@@ -81,7 +95,9 @@ def run_train_hear(options: argparse.Namespace) -> int:
             seconds = len(folders[-1].classes) / 50
             print(f"{folder}: {len(found)} sounds, {seconds / 3600:.2f} hours prepared", file=sys.stderr)
     checkpoint = f"{options.output}.checkpoint"
-    model = train.train(folders, asked, checkpoint, None if options.quiet else _print, Path(options.output), start)
+    known = len(options.folder)
+    model = train.train(folders[:known], asked, checkpoint, None if options.quiet else _print, Path(options.output),
+                        start, folders[known:], teacher)
     save(model, options.output)
     Path(checkpoint).unlink()
     print(f"{options.output}: {options.model}, {options.steps} steps; {_reached(model.training)}")

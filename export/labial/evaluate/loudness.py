@@ -11,7 +11,7 @@ import numpy as np
 
 from labial.corpus.phonesets import SPEECH
 from labial.hearing.features import FRAME, RATE, frames_of
-from labial.hearing.targets import closed_pose, frames
+from labial.hearing.targets import closure, frames
 
 #: dB below the loud frames' level at which the mouth is shut.
 _RANGE = 30.0
@@ -30,7 +30,7 @@ def _open_pose() -> np.ndarray:
 
 @cache
 def _shut_pose() -> np.ndarray:
-    return closed_pose()
+    return closure().pose
 
 
 def _pieces(sound: np.ndarray) -> np.ndarray:

@@ -27,7 +27,7 @@ from labial.corpus.timings import PathLike
 from labial.errors import LabialError, apt, missing, needs
 from labial.files.faps import CHANNELS
 from labial.hearing.features import RATE, frames_of
-from labial.hearing.targets import FRAME_MS, closed_pose, durations, frames
+from labial.hearing.targets import FRAME_MS, closure, durations, frames
 from labial.sound.samples import prepared
 
 #: Oculus LipSync's visemes, and a phoneme of each.
@@ -119,7 +119,7 @@ def poses() -> np.ndarray:
     found = np.zeros((len(VISEMES), CHANNELS))
     for row, (viseme, phoneme) in enumerate(VISEMES.items()):
         if viseme == "PP":
-            found[row] = closed_pose()
+            found[row] = closure().pose
         elif phoneme:
             found[row] = frames([(SPEECH.silence, 200), (phoneme, 400)], 30)[20]
     return found

@@ -14,18 +14,18 @@ from labial.hearing.model import HearingModel
 from labial.hearing.network import Heard, closed, run, smoothed
 from labial.hearing.prepared import Prepared
 
-#: Leads of the closure's score at which lips begin to close and by how much more they are closed, to choose from.
-_BEGIN = (-2.5, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5)
+#: Scores of closed lips at which they begin to close, and by how much more they are closed, to choose from.
+_BEGIN = (-3.0, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0)
 _WIDTH = (0.8, 1.5, 2.5, 3.5)
 #: What a choice is judged by: correlation, closures, false ones per second and jerk above that of Labial's frames.
-_WEIGHTS = (1.0, 0.5, 0.35, 0.25)
+_WEIGHTS = (1.0, 0.5, 0.5, 0.25)
 #: False closures per second, and jerk relative to Labial's, that cost nothing.
 _FALSE, _JERK = 0.05, 1.05
 
 
 @dataclass(frozen=True)
 class Choice:
-    """The leads at which lips begin to close and are closed, and what a model reaches with them."""
+    """The scores at which lips begin to close and are closed, and what a model reaches with them."""
 
     edges: Tuple[float, float]
     reached: Figures

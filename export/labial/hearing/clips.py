@@ -55,12 +55,7 @@ def find(folder: PathLike) -> List[Tuple[str, Told]]:
     Raises DataError for a folder without sounds, for a sound without either and for a table with a wrong line, which it
     names. Lines of a table without a sound are passed over: parts of LJ Speech come with its whole table.
     """
-    place = Path(folder)
-    if not place.is_dir():
-        raise DataError(place, None, "not a folder")
-    sounds = sorted(item for item in place.rglob("*") if item.suffix.lower() in SOUNDS and item.is_file())
-    if not sounds:
-        raise DataError(place, None, f"no sounds ({', '.join(SOUNDS)})")
+    sounds = _sounds(folder)
     tables: Dict[Path, Dict[str, Told]] = {}
     found = []
     for sound in sounds:
@@ -69,6 +64,22 @@ def find(folder: PathLike) -> List[Tuple[str, Told]]:
                 tables[parent] = _table(parent / TABLE)
         found.append((str(sound), _told(sound, tables)))
     return found
+
+
+def untold(folder: PathLike) -> List[Clip]:
+    """The sounds of a folder in the order of their paths, of which no text is known: clips without segments. Raises
+    DataError for a folder without sounds."""
+    return [Clip(str(sound), ()) for sound in _sounds(folder)]
+
+
+def _sounds(folder: PathLike) -> List[Path]:
+    place = Path(folder)
+    if not place.is_dir():
+        raise DataError(place, None, "not a folder")
+    sounds = sorted(item for item in place.rglob("*") if item.suffix.lower() in SOUNDS and item.is_file())
+    if not sounds:
+        raise DataError(place, None, f"no sounds ({', '.join(SOUNDS)})")
+    return sounds
 
 
 def _told(sound: Path, tables: Dict[Path, Dict[str, Told]]) -> Told:

@@ -6,7 +6,8 @@ otherwise. What can be done to energies of bands is done there, anew in each bat
 
 from __future__ import annotations
 
-from typing import NamedTuple, Optional, Tuple
+import io
+from typing import Dict, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -18,6 +19,15 @@ PEAKS = (-45.0, 0.0)
 SPEEDS = (0.85, 1.2)
 
 
+#: Codecs of telephones, radios, calls and the web, as libsndfile has them: format, subtype, samples per second, and how
+#: hard it compresses, 0 .. 1.
+CODECS: Dict[str, Tuple[str, str, int, float]] = {
+    "gsm": ("WAV", "GSM610", 8000, 0.0), "adpcm": ("WAV", "IMA_ADPCM", 16000, 0.0),
+    "g726": ("AU", "G723_24", 8000, 0.0), "opus": ("OGG", "OPUS", 16000, 1.0),
+    "vorbis": ("OGG", "VORBIS", 16000, 1.0), "mp3": ("MP3", "MPEG_LAYER_III", 16000, 0.95),
+}  # fmt: skip
+
+
 class Distortion(NamedTuple):
     """What is done to a sound, in this order."""
 
@@ -27,7 +37,10 @@ class Distortion(NamedTuple):
     band: Optional[Tuple[float, float]] = None  #: Hz that a channel passes
     rumble: float = 0.0  #: amplitude of hum and rumble relative to the sound's RMS
     clip: float = 0.0  #: share of the samples that are cut off
+    echo: Tuple[float, float] = (0.0, 0.0)  #: seconds until a near surface's reflection comes, and its amplitude
+    evening: float = 0.0  #: how much a microphone's automatic gain evens out the level, 0 .. 1
     companded: bool = False  #: 8 bits by mu-law
+    codec: str = ""  #: of `CODECS`
     peak: float = -6.0  #: dB of full scale
     offset: float = 0.0  #: of all samples, relative to the peak
 
@@ -38,7 +51,7 @@ def drawn(random: np.random.Generator) -> Distortion:
     peak = float(random.uniform(*PEAKS))
     if random.random() < 0.5:
         return Distortion(speed=speed, peak=peak)
-    kind = random.random(6)
+    kind = random.random(9)
     return Distortion(
         speed=speed, peak=peak,
         decay=float(random.uniform(0.1, 0.6)) if kind[0] < 0.45 else 0.0,
@@ -48,6 +61,9 @@ def drawn(random: np.random.Generator) -> Distortion:
         clip=float(random.uniform(0.005, 0.08)) if kind[3] < 0.2 else 0.0,
         companded=bool(kind[4] < 0.25),
         offset=float(random.uniform(-0.3, 0.3)) if kind[5] < 0.2 else 0.0,
+        echo=(float(random.uniform(0.0004, 0.008)), float(random.uniform(0.2, 0.8))) if kind[6] < 0.3 else (0.0, 0.0),
+        evening=float(random.uniform(0.2, 0.7)) if kind[7] < 0.25 else 0.0,
+        codec=str(random.choice(list(CODECS))) if kind[8] < 0.35 else "",
     )  # fmt: skip
 
 
@@ -58,14 +74,20 @@ def distorted(samples: np.ndarray, distortion: Distortion, random: np.random.Gen
         sound = resampled(sound, distortion.speed)
     if distortion.decay > 0:
         sound = reverberated(sound, distortion.decay, distortion.dry, random)
+    if distortion.echo[1] > 0:
+        sound = echoed(sound, *distortion.echo)
     if distortion.band is not None:
         sound = limited(sound, *distortion.band)
     if distortion.rumble > 0:
         sound = sound + distortion.rumble * rms(sound) * rumbling(len(sound), random)
+    if distortion.evening > 0:
+        sound = evened(sound, distortion.evening)
     if distortion.clip > 0:
         sound = clipped(sound, distortion.clip)
     if distortion.companded:
         sound = companded(sound / max(float(np.abs(sound).max(initial=0.0)), 1e-9))
+    if distortion.codec:
+        sound = coded(sound / max(float(np.abs(sound).max(initial=0.0)), 1e-9), *CODECS[distortion.codec])
     return as_integers(sound, distortion.peak, distortion.offset)
 
 
@@ -131,6 +153,46 @@ def clipped(sound: np.ndarray, share: float) -> np.ndarray:
     """A sound of which the loudest `share` of the samples are cut off."""
     limit = float(np.quantile(np.abs(sound), 1 - share)) if len(sound) else 0.0
     result: np.ndarray = np.clip(sound, -limit, limit)
+    return result
+
+
+def echoed(sound: np.ndarray, delay: float, amplitude: float) -> np.ndarray:
+    """A sound with its reflection from a near surface, such as a table's, which reaches the microphone `delay` seconds
+    later: it dips at regular distances in frequency."""
+    samples = max(round(delay * RATE), 1)
+    result: np.ndarray = np.asarray(sound, dtype=np.float32).copy()
+    result[samples:] += np.float32(amplitude) * sound[: len(sound) - samples]
+    return result
+
+
+def evened(sound: np.ndarray, strength: float) -> np.ndarray:
+    """A sound as an automatic gain leaves it: its level, over 50 ms, goes `strength` of the way to the loudest."""
+    steps = max(len(sound) * 20 // RATE, 1)
+    power = np.array([np.mean(np.square(part)) for part in np.array_split(sound, steps)])
+    level = np.maximum(np.sqrt(power), 1e-3 * np.sqrt(power.max(initial=0.0)) + 1e-9)
+    gain = (level.max() / level) ** strength
+    at = np.interp(np.arange(len(sound)), (np.arange(steps) + 0.5) * len(sound) / steps, gain)
+    result: np.ndarray = (sound * at).astype(np.float32)
+    return result
+
+
+def coded(sound: np.ndarray, form: str, subtype: str, rate: int, compression: float) -> np.ndarray:
+    """A sound within -1 .. 1 through a codec of :data:`CODECS` and back, without the codec's delay."""
+    import soundfile
+    import soxr
+
+    given = np.clip(sound if rate == RATE else soxr.resample(sound, RATE, rate), -1, 1).astype(np.float32)
+    file = io.BytesIO()
+    more = {"compression_level": compression} if compression > 0 else {}
+    soundfile.write(file, given, rate, format=form, subtype=subtype, **more)
+    file.seek(0)
+    found = soundfile.read(file, dtype="float32")[0]
+    if len(found) != len(given):  # a codec of blocks, which may begin late
+        size = 1 << (len(found) + len(given)).bit_length()
+        product = np.fft.irfft(np.fft.rfft(found, size) * np.conj(np.fft.rfft(given, size)), size)
+        found = found[int(np.argmax(product[: max(len(found) - len(given) + 1, 1)])) :]
+    found = found if rate == RATE else soxr.resample(found, rate, RATE)
+    result: np.ndarray = np.pad(found[: len(sound)], (0, max(len(sound) - len(found), 0))).astype(np.float32)
     return result
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Iterable, List, Sequence, Union
+from typing import Iterable, List, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -19,7 +19,9 @@ from labial.hearing.network import SMOOTHING
 from labial.hearing.quantise import FORMAT, Dense, HearingTables
 
 #: Bytes that the descriptors take on a 32-bit target: of the model, and of a block.
-_MODEL, _BLOCK = 56, 24
+_MODEL, _BLOCK = 60, 24
+#: LABIAL_HEAR_UNITS_MAX by default.
+_UNITS_MAX = 128
 _BYTES = {"int8_t": 1, "uint8_t": 1, "int16_t": 2, "uint16_t": 2}
 
 
@@ -103,7 +105,7 @@ def _layer_member(name: str) -> str:
 
 def flash_bytes(tables: HearingTables) -> int:
     """Bytes of the model on a 32-bit target, without the names of its classes."""
-    total = _MODEL + _BLOCK * len(tables.blocks) + 3 * 2 * len(tables.mean)
+    total = _MODEL + _BLOCK * len(tables.blocks) + 4 * 2 * len(tables.mean)
     for dense in (*(block.dense for block in tables.blocks), tables.last, tables.heads):
         table = grouped(dense)
         total += table.weight.size + 3 * table.bias.size
@@ -122,11 +124,21 @@ def _comment(tables: HearingTables, what: str) -> str:
     return block_comment(f"{text} {tables.attribution}" if tables.attribution else text)
 
 
+def _limit(tables: HearingTables) -> Tuple[str, str]:
+    """What goes around the tables of a model that is larger than LABIAL_HEAR_UNITS_MAX is by default, so that a project
+    which compiles every model leaves it out."""
+    if tables.units <= _UNITS_MAX:
+        return "", ""
+    return ("/* For builds that have room for it (labial/config.h). */\n"
+            f"#if LABIAL_HEAR_UNITS_MAX >= {tables.units}\n\n", "\n#endif\n")
+
+
 def header(tables: HearingTables) -> str:
     """NAME.h: the model's symbol, its workspace and its classes."""
     upper = tables.name.upper()
     constants = ",\n".join(f"    {name} = {number}"
                            for number, name in enumerate(constants_of(tables.name, tables.classes)))
+    opens, closes = _limit(tables)
     return f"""{_comment(tables, f"{tables.name}.h - the")}#ifndef LABIAL_MODEL_{upper}_H
 #define LABIAL_MODEL_{upper}_H
 
@@ -148,12 +160,12 @@ enum {{
 {constants}
 }};
 
-/* The model, {flash_bytes(tables)} bytes on a 32-bit target. */
+{opens}/* The model, {flash_bytes(tables)} bytes on a 32-bit target. */
 extern const labial_hear_model_t {tables.name};
 
 /* The names of the classes; linked only when used. */
 extern const char *const {tables.name}_classes[{upper}_CLASSES];
-
+{closes}
 #ifdef __cplusplus
 }}
 #endif
@@ -164,7 +176,9 @@ extern const char *const {tables.name}_classes[{upper}_CLASSES];
 
 def source(tables: HearingTables) -> str:
     """NAME.c: the tables."""
+    opens, closes = _limit(tables)
     parts = [_comment(tables, f"{tables.name}.c - the"), f'#include "{tables.name}.h"\n']
+    parts += [f"\n{opens}"[:-1]] if opens else []
     blocks = []
     for k, block in enumerate(tables.blocks):
         name = f"block_{k}"
@@ -176,18 +190,18 @@ def source(tables: HearingTables) -> str:
     parts.append("\nstatic const labial_hear_block_t blocks[] = {\n" + ",\n".join(blocks) + "\n};\n")
     parts.append("\n/* The last layer, and the heads. */\n" + "".join(_layer("last", tables.last)))
     parts.append("".join(_layer("heads", tables.heads)))
-    parts.append("\n/* Frames: mean, scale and closed lips, Q4. */\n")
-    parts += [_array("int16_t", name, value)
-              for name, value in (("mean", tables.mean), ("scale", tables.scale), ("closed", tables.closed))]
+    parts.append("\n/* Frames: mean, scale and closed lips, Q4, and how far each channel follows those, Q8. */\n")
+    parts += [_array("int16_t", name, value) for name, value in (
+        ("mean", tables.mean), ("scale", tables.scale), ("closed", tables.closed), ("closing", tables.closing))]
     numbers = (("LABIAL_HEAR_MODEL_FORMAT", "format"), (tables.units, "units"), (len(tables.blocks), "blocks"),
-               (len(tables.classes), "classes"), (tables.closure, "closure"), (tables.ahead, "ahead"),
-               (tables.rows, "rows"), (tables.close_from, "close_from"), (tables.close_width, "close_width"))
+               (len(tables.classes), "classes"), (tables.ahead, "ahead"), (tables.rows, "rows"),
+               (tables.close_from, "close_from"), (tables.close_width, "close_width"))
     members = [f"    {value}, /* {name} */" for value, name in numbers]
-    members += ["    mean,", "    scale,", "    closed,", "    blocks,", f"    {_layer_member('last')},",
-                f"    {_layer_member('heads')}"]
+    members += [f"    {member}," for member in ("mean", "scale", "closed", "closing", "blocks", _layer_member("last"))]
+    members += [f"    {_layer_member('heads')}"]
     parts.append(f"\nconst labial_hear_model_t {tables.name} = {{\n" + "\n".join(members) + "\n};\n")
     parts.append(f"\nconst char *const {tables.name}_classes[] = {{\n{rows(_quoted(tables.classes))}\n}};\n")
-    return "".join(parts)
+    return "".join([*parts, closes])
 
 
 def _quoted(names: Sequence[str]) -> List[str]:

@@ -229,7 +229,7 @@ def _dense(table: Dense, x: np.ndarray) -> np.ndarray:
 
 
 def heads(tables: HearingTables, heard: np.ndarray) -> np.ndarray:
-    """(T, C + 13) Q9, the two heads for features (T, 48) in Q9."""
+    """(T, C + 14) Q9, the three heads for features (T, 48) in Q9."""
     x = np.asarray(heard, dtype=np.int64)
     for k, block in enumerate(tables.blocks):
         past, ahead, dilation = block.memory
@@ -243,14 +243,12 @@ def heads(tables: HearingTables, heard: np.ndarray) -> np.ndarray:
 
 
 def poses(tables: HearingTables, head: np.ndarray) -> np.ndarray:
-    """(T, 13) poses in Q4 of heads (T, C + 13)."""
+    """(T, 13) poses in Q4 of heads (T, C + 14)."""
     classes = len(tables.classes)
-    scores = head[:, :classes]
-    lead = scores[:, tables.closure] - np.delete(scores, tables.closure, axis=1).max(axis=1)
-    over = np.clip(lead - tables.close_from, 0, tables.close_width)
+    over = np.clip(head[:, classes] - tables.close_from, 0, tables.close_width)
     share = (over << 8) // tables.close_width
-    pose = tables.mean + ((head[:, classes:] * tables.scale) >> 9)
-    pose += ((tables.closed - pose) * share[:, None]) >> 8
+    pose = tables.mean + ((head[:, classes + 1 :] * tables.scale) >> 9)
+    pose += ((tables.closed - pose) * ((share[:, None] * tables.closing) >> 8)) >> 8
     result: np.ndarray = np.clip(pose, -32767, 32767)
     return result
 
@@ -265,8 +263,8 @@ class _Told(NamedTuple):
 
 
 def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000, begin: int = BEGIN) -> Heard:
-    """Scores (T, C) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end: what the
-    network tells, under way, from the level `begin` on."""
+    """Scores (T, C) and (T,) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end:
+    what the network tells, under way, from the level `begin` on."""
     return _of_sound(tables, sound, rate, begin).heard
 
 
@@ -276,7 +274,7 @@ def hear_energies(tables: HearingTables, energies: np.ndarray, count: int) -> He
     silent = energies.sum(axis=1) <= (FLOOR + 0.5) * LOG * BANDS
     told = _of_energies(tables, energies, silent, count, BEGIN)
     pose = _resting(told.pose, told.still, tables.ahead + SMOOTHING)
-    return Heard(told.heard.scores, (pose + 8) >> 4)
+    return told.heard._replace(faps=(pose + 8) >> 4)
 
 
 def _of_sound(tables: HearingTables, sound: np.ndarray, rate: int, begin: int) -> _Told:
@@ -295,7 +293,8 @@ def _of_energies(tables: HearingTables, energies: np.ndarray, silent: np.ndarray
     before = np.concatenate([pose[:1], pose])[:count]
     smooth = (before + 2 * pose[:count] + pose[1:known] + 2) >> 2
     sounds = (level.voiced & ~silent)[: HOPS * count].reshape(count, HOPS)
-    told = Heard(head[:count, : len(tables.classes)], (smooth + 8) >> 4)
+    classes = len(tables.classes)
+    told = Heard(head[:count, :classes], head[:count, classes], (smooth + 8) >> 4)
     return _Told(told, smooth, ~sounds.any(axis=1), level.last)
 
 
@@ -310,7 +309,7 @@ def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact
     pose = _faded(_resting(told.pose, told.still, tables.ahead + SMOOTHING))
     if len(pose) and not exact and np.abs(pose[-1]).max() > round(16 * NEAR):
         pose = np.concatenate([pose, pose[-1] + ((-pose[-1] * _eases(EASE, EASE)[:, None] + 8192) >> 14)])
-    return Heard(told.heard.scores, (pose + 8) >> 4)
+    return told.heard._replace(faps=(pose + 8) >> 4)
 
 
 def level_after(tables: HearingTables, sound: np.ndarray, rate: int = 16000, begin: int = BEGIN) -> int:
@@ -328,7 +327,7 @@ def _resting(pose: np.ndarray, silent: np.ndarray, ahead: int) -> np.ndarray:
     """Poses (T, 13), Q4, that come to rest where a frame, SILENT_BEFORE before it and `ahead` after it are `silent`
     (T,), as all are before the first and after the last."""
     padded = np.concatenate([np.ones(SILENT_BEFORE, dtype=bool), silent, np.ones(ahead, dtype=bool)])
-    span = SILENT_BEFORE + 1 + ahead
+    span = SILENT_BEFORE + 1 + min(ahead, RESTING)
     still = [padded[t : t + span].all() for t in range(len(pose))]
     eases, rest, shares = [0, *_eases(RESTING, RESTING)], RESTING, []
     for rests in still:

@@ -23,14 +23,14 @@ from labial.hearing.plans import Memory, Plan
 PathLike = Union[str, os.PathLike[str]]
 
 #: Version of the .npz layout, and what tells such a file from a model of speech or laughter.
-FORMAT = 1
+FORMAT = 2
 KIND = "hearing"
 #: Features of a frame.
 INPUTS = HOPS * BANDS
 
-#: Limits of `lib/hear_network.c`: units, a multiple of four; blocks; frames that a memory reaches back and ahead, times
-#: its dilation; classes.
-UNITS_MAX, BLOCKS_MAX, REACH_MAX, CLASSES_MAX = 128, 8, 64, 64
+#: Limits of `lib/hear_network.c`, the first where it is built for it: units, a multiple of four; blocks; frames that a
+#: memory reaches back and ahead, times its dilation; classes.
+UNITS_MAX, BLOCKS_MAX, REACH_MAX, CLASSES_MAX = 252, 8, 64, 64
 #: Most frames that a network may look ahead.
 AHEAD_MAX = 25
 #: The largest weight, bias, score; the largest FAP.
@@ -49,15 +49,17 @@ class HearingModel:
     last_bias: np.ndarray  #: (H,)
     class_weight: np.ndarray  #: (C, H)
     class_bias: np.ndarray  #: (C,)
+    closed_weight: np.ndarray  #: (H,) of the score of closed lips
+    closed_bias: np.ndarray  #: (1,)
     fap_weight: np.ndarray  #: (13, H)
     fap_bias: np.ndarray  #: (13,)
     classes: Tuple[str, ...]  #: C names
-    closure: str  #: the class that closes the lips
     fap_mean: np.ndarray  #: (13,) FAP units: a frame is fap_mean + fap_scale * head
     fap_scale: np.ndarray  #: (13,) FAP units, positive
     closed: np.ndarray  #: (13,) FAP units, the pose of closed lips
-    close_from: float  #: the lead of the closure's score over all other classes' at which lips begin to follow `closed`
-    close_to: float  #: and at which they follow it alone
+    closing: np.ndarray  #: (13,) 0 .. 1, how far each channel follows that pose when the lips are closed
+    close_from: float  #: the score of closed lips at which they begin to close
+    close_to: float  #: and at which they are closed
     attribution: str = ""  #: attribution that redistribution requires
     training: Dict[str, object] = field(default_factory=dict)  #: options and counts of the training, JSON values
 
@@ -70,10 +72,10 @@ class HearingModel:
         return Plan(len(self.last_bias), self.memories)
 
 
-_TEXT = ("memories", "classes", "closure", "close_from", "close_to", "attribution", "training")
+_TEXT = ("memories", "classes", "close_from", "close_to", "attribution", "training")
 #: Arrays, and those of which each block has one: ``dense_0`` and so on.
-_ARRAYS = ("last", "last_bias", "class_weight", "class_bias", "fap_weight", "fap_bias", "fap_mean", "fap_scale",
-           "closed")  # fmt: skip
+_ARRAYS = ("last", "last_bias", "class_weight", "class_bias", "closed_weight", "closed_bias", "fap_weight", "fap_bias",
+           "fap_mean", "fap_scale", "closed", "closing")  # fmt: skip
 _OF_BLOCKS = ("dense", "bias", "memory")
 
 
@@ -91,7 +93,6 @@ def check(model: HearingModel) -> None:
     _expect(2 <= classes <= CLASSES_MAX and len(set(model.classes)) == classes,
             f"there are not 2 to {CLASSES_MAX} classes with different names")
     _expect(all(name and name.isprintable() for name in model.classes), "a class has a name that is not printable")
-    _expect(model.closure in model.classes, f"the class of closed lips {model.closure!r:.40} is not a class")
     for past, ahead, dilation in model.memories:
         _expect(past >= 0 and ahead >= 0 and dilation >= 1 and (past + ahead) * dilation <= REACH_MAX,
                 f"a memory reaches {past} back and {ahead} ahead, times {dilation}")
@@ -105,6 +106,7 @@ def check(model: HearingModel) -> None:
         most = _FAP if name in ("fap_mean", "fap_scale", "closed") else _WEIGHT
         _expect(bool((np.abs(value) <= most).all()), f"{name} has a value that is not within {-most:g} .. {most:g}")
     _expect(bool((model.fap_scale > 0).all()), "fap_scale has a value that is not positive")
+    _expect(bool(((model.closing >= 0) & (model.closing <= 1)).all()), "closing has a value that is not within 0 .. 1")
     low, high = model.close_from, model.close_to
     _expect(-_WEIGHT <= low < high <= _WEIGHT, f"close_from {low:g} and close_to {high:g} are not in order")
 
@@ -116,8 +118,9 @@ def _shapes(model: HearingModel, units: int, classes: int) -> List[Tuple[str, np
         result += [(f"dense_{k}", model.dense[k], (units, units if k else INPUTS)),
                    (f"bias_{k}", model.bias[k], (units,)), (f"memory_{k}", model.memory[k], (units, memory.taps))]
     shapes = {"last": (units, units), "last_bias": (units,), "class_weight": (classes, units),
-              "class_bias": (classes,), "fap_weight": (CHANNELS, units), "fap_bias": (CHANNELS,),
-              "fap_mean": (CHANNELS,), "fap_scale": (CHANNELS,), "closed": (CHANNELS,)}
+              "class_bias": (classes,), "closed_weight": (units,), "closed_bias": (1,),
+              "fap_weight": (CHANNELS, units), "fap_bias": (CHANNELS,), "fap_mean": (CHANNELS,),
+              "fap_scale": (CHANNELS,), "closed": (CHANNELS,), "closing": (CHANNELS,)}
     result += [(name, getattr(model, name), shape) for name, shape in shapes.items()]
     return [(name, np.asarray(value), shape) for name, value, shape in result]
 
@@ -177,8 +180,7 @@ def _texts(data: bytes) -> Dict[str, Any]:
     _expect(version == FORMAT, f"format {version!r:.40}, but this version of labial reads format {FORMAT}")
     for name in _TEXT:
         _expect(name in text, f"model.json: no {name}")
-    for name in ("closure", "attribution"):
-        _expect(isinstance(text[name], str), f"model.json: {name} is not text")
+    _expect(isinstance(text["attribution"], str), "model.json: attribution is not text")
     for name in ("close_from", "close_to"):
         _expect(type(text[name]) in (int, float), f"model.json: {name} is not a number")
     classes, memories = text["classes"], text["memories"]
@@ -194,12 +196,13 @@ def _texts(data: bytes) -> Dict[str, Any]:
 def with_even_sides(model: HearingModel) -> HearingModel:
     """The model with both sides of the mouth at the mean of what it has for each of them, exactly: the mean of two
     linear outputs is one, which both sides have."""
-    made = {name: getattr(model, name).copy() for name in ("fap_weight", "fap_bias", "fap_mean", "fap_scale", "closed")}
+    made = {name: getattr(model, name).copy()
+            for name in ("fap_weight", "fap_bias", "fap_mean", "fap_scale", "closed", "closing")}
     scale = made["fap_scale"]
     for pair in map(list, SIDES):
         share = scale[pair] / scale[pair].sum()
         for name in ("fap_weight", "fap_bias"):
             made[name][pair] = share @ made[name][pair]
-        for name in ("fap_mean", "fap_scale", "closed"):
+        for name in ("fap_mean", "fap_scale", "closed", "closing"):
             made[name][pair] = made[name][pair].mean()
     return replace(model, **made)

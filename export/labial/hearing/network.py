@@ -1,8 +1,8 @@
 """The network of hearing in floating point, over a whole sound: what ``lib/hear_network.c`` computes frame by frame.
 
 A block is ``y = relu(W x + b)``, then ``z = memory(y)``, weighted frames of y around the present, for each unit its
-own; all but the first block add their input x. A dense layer follows, then two heads: scores of lip classes, and FAPs.
-Before the sound and a block's first input, y is zero.
+own; all but the first block add their input x. A dense layer follows, then three heads: scores of lip classes, a score
+of closed lips, and FAPs. Before the sound and a block's first input, y is zero.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ class Heard(NamedTuple):
     """What a network makes of T frames."""
 
     scores: np.ndarray  #: (T, C) float32
+    closed: np.ndarray  #: (T,) float32, the score of closed lips: the log of the odds that they touch in p, b, m
     faps: np.ndarray  #: (T, 13) float32, FAP units
 
 
@@ -37,7 +38,7 @@ def remembered(y: np.ndarray, weight: np.ndarray, past: int, ahead: int, dilatio
 
 
 def run(model: HearingModel, heard: np.ndarray) -> Heard:
-    """The two heads for the features (T, 48) of all frames, without closures."""
+    """The three heads for the features (T, 48) of all frames, without closures."""
     x = np.asarray(heard, dtype=np.float32)
     for k, memory in enumerate(model.memories):
         y = relu(x @ model.dense[k].T + model.bias[k])
@@ -45,21 +46,15 @@ def run(model: HearingModel, heard: np.ndarray) -> Heard:
         x = z + x if k else z
     x = relu(x @ model.last.T + model.last_bias)
     head = x @ model.fap_weight.T + model.fap_bias
-    return Heard(x @ model.class_weight.T + model.class_bias, model.fap_mean + model.fap_scale * head)
-
-
-def closing(model: HearingModel, scores: np.ndarray) -> np.ndarray:
-    """(T,) 0 .. 1, how far the lips follow the closed pose, by the scores (T, C)."""
-    own = model.classes.index(model.closure)
-    lead = scores[:, own] - np.delete(scores, own, axis=1).max(axis=1)
-    result: np.ndarray = np.clip((lead - model.close_from) / (model.close_to - model.close_from), 0.0, 1.0)
-    return result
+    return Heard(x @ model.class_weight.T + model.class_bias, x @ model.closed_weight + model.closed_bias,
+                 model.fap_mean + model.fap_scale * head)
 
 
 def closed(model: HearingModel, heard: Heard) -> Heard:
-    """The same with closed lips where the closure leads."""
-    share = closing(model, heard.scores)[:, None]
-    return Heard(heard.scores, heard.faps + (model.closed - heard.faps) * share)
+    """The same with lips closed as far as their score says: each channel goes its share of the way to that pose."""
+    share = np.clip((heard.closed - model.close_from) / (model.close_to - model.close_from), 0.0, 1.0)
+    way = (model.closed - heard.faps) * model.closing
+    return Heard(heard.scores, heard.closed, heard.faps + way * share[:, None])
 
 
 #: Frames that a frame waits for after the network has told it.
@@ -89,4 +84,4 @@ def hear_energies(model: HearingModel, energies: np.ndarray, count: int) -> Hear
     smoothing waits for."""
     features = normalise(energies).reshape(len(energies) // HOPS, HOPS * BANDS)
     result = closed(model, run(model, features))
-    return Heard(result.scores[:count], smoothed(result.faps[: count + SMOOTHING])[:count])
+    return Heard(result.scores[:count], result.closed[:count], smoothed(result.faps[: count + SMOOTHING])[:count])

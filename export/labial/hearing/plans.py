@@ -1,4 +1,4 @@
-"""The sizes of the two networks that Labial comes with, and what their classes are."""
+"""The sizes of the networks that Labial comes with, and what their classes are."""
 
 from __future__ import annotations
 
@@ -30,10 +30,13 @@ class Plan(NamedTuple):
         return sum(memory.ahead * memory.dilation for memory in self.memories)
 
 
-#: Both know a frame 80 ms after its end, and have smoothed it 20 ms later, 120 ms after its begin.
+#: The first three know a frame 80 ms after its end, and have smoothed it 20 ms later, 120 ms after its begin; the last
+#: one, for sound that is there before it is played, 280 ms after its begin.
 PLANS: Dict[str, Plan] = {
     "small": Plan(68, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 2))),
     "large": Plan(76, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1))),
+    "host": Plan(192, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1))),
+    "ahead": Plan(192, (Memory(5, 3, 1), Memory(5, 3, 1), Memory(5, 3, 1), Memory(5, 3, 1))),
 }
 
 #: The lip classes, each named by the ARPABET phoneme that stands for it.

@@ -30,7 +30,7 @@ from labial.hearing.distort import Distortion, distorted, drawn
 from labial.hearing.features import BANDS, HOPS, RATE, frames_of, log_energies
 
 #: Version of what is kept; changes with anything that these functions compute.
-_VERSION = 2
+_VERSION = 3
 #: One clip of so many is held out, by its name.
 HELD_OUT = 20
 #: Seconds of silence before and after a clip.

@@ -12,7 +12,7 @@ from labial.hearing.model import HearingModel
 from labial.hearing.plans import Memory
 
 #: LABIAL_HEAR_MODEL_FORMAT.
-FORMAT = 2
+FORMAT = 3
 #: One of an activation; of a position.
 ACTIVATION = 512
 POSITION = 16
@@ -45,15 +45,15 @@ class HearingTables:
 
     name: str  #: of the C symbol
     classes: Tuple[str, ...]
-    closure: int  #: the class of closed lips
     blocks: Tuple[BlockTables, ...]
     last: Dense
-    heads: Dense  #: rows of the classes, then of the 13 FAPs
+    heads: Dense  #: rows of the classes, then of closed lips, then of the 13 FAPs
     close_from: int  #: Q9
     close_width: int  #: Q9, 1 and more
     mean: np.ndarray  #: (13,) Q4
     scale: np.ndarray  #: (13,) Q4
     closed: np.ndarray  #: (13,) Q4
+    closing: np.ndarray  #: (13,) Q8
     attribution: str
 
     @property
@@ -111,10 +111,10 @@ def quantise(model: HearingModel, name: str) -> HearingTables:
     for k, memory in enumerate(model.memories):
         taps, shift = _rows(model.memory[k])
         blocks.append(BlockTables(_dense(f"block {k}", model.dense[k], model.bias[k]), memory, taps, shift))
-    heads = _dense("the heads", np.concatenate([model.class_weight, model.fap_weight]),
-                   np.concatenate([model.class_bias, model.fap_bias]))
+    heads = _dense("the heads", np.concatenate([model.class_weight, model.closed_weight[None], model.fap_weight]),
+                   np.concatenate([model.class_bias, model.closed_bias, model.fap_bias]))
     start, end = (round(value * ACTIVATION) for value in (model.close_from, model.close_to))
-    return HearingTables(name, model.classes, model.classes.index(model.closure), tuple(blocks),
+    return HearingTables(name, model.classes, tuple(blocks),
                          _dense("the last layer", model.last, model.last_bias), heads, start, max(end - start, 1),
                          _positions(model.fap_mean), _positions(model.fap_scale), _positions(model.closed),
-                         model.attribution)
+                         np.rint(model.closing * 256.0).astype(np.int64), model.attribution)

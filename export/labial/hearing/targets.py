@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import List, Sequence, Tuple
+from typing import List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -62,15 +62,31 @@ def classes(timings: Sequence[Tuple[str, int]], count: int) -> np.ndarray:
     return np.array([_CLASS[label] for label in phonemes_at(timings, count)], dtype=np.uint8)
 
 
-def closed_pose() -> np.ndarray:
-    """(13,) float32 FAP units: the pose of closed lips, the median of Labial's frames at the least opening of p, b and
-    m between all vowels."""
+def touching(shown: np.ndarray, found: np.ndarray) -> np.ndarray:
+    """(T,) bool: where lips touch in p, b or m, by Labial's frames (T, 13) and their classes (T,). A rest does not
+    count."""
+    result: np.ndarray = (opening(shown) <= TOUCHING) & (found == CLASSES.index(CLOSED))
+    return result
+
+
+class Closure(NamedTuple):
+    """What lips do when they close."""
+
+    pose: np.ndarray  #: (13,) float32 FAP units
+    share: np.ndarray  #: (13,) float32, 0 .. 1: how far each channel follows the pose
+
+
+def closure() -> Closure:
+    """The median of Labial's frames at the least opening of p, b and m between all vowels, and how far each channel is
+    there wherever it was before: 1 less its variance in these frames over that in all of these sounds. So lips close,
+    and corners stay as wide as the vowels around have them."""
     vowels = [label for label, edge in zip(SPEECH.phonemes, SPEECH.boundary) if edge and class_of(label) != CLOSED]
-    poses = []
+    poses, every = [], []
     for stop in ("P", "B", "M"):
         for vowel in vowels:
             shown = frames([(SPEECH.silence, 200), (vowel, 140), (stop, 100), (vowel, 140)], 30)
             within = shown[340 // FRAME_MS : 440 // FRAME_MS]
             poses.append(within[int(np.argmin(opening(within)))])
-    result: np.ndarray = np.median(np.array(poses), axis=0).astype(np.float32)
-    return result
+            every.append(shown[200 // FRAME_MS : 580 // FRAME_MS])
+    share = 1 - np.var(poses, axis=0) / np.maximum(np.var(np.concatenate(every), axis=0), 1e-9)
+    return Closure(np.median(np.array(poses), axis=0).astype(np.float32), np.clip(share, 0, 1).astype(np.float32))

@@ -1,8 +1,8 @@
 """``labial train-hear``: from folders of speech to a model of hearing. Needs PyTorch.
 
 Each batch has random crops of the folders' takes, in the folders' shares. The loss is the cross-entropy of the lip
-classes, and the squared error of the frames and of their differences, so that lips move as smoothly as Labial's. In the
-last tenth of the steps the weights are rounded as in the library.
+classes and of closed lips, and the squared error of the frames and of their differences, so that lips move as smoothly
+as Labial's. In the last tenth of the steps the weights are rounded as in the library.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import os
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 import torch
@@ -23,22 +23,24 @@ from labial.hearing.augment import augmented, noises, white
 from labial.hearing.choose import Choice, choose
 from labial.hearing.features import BANDS, FLOOR, HOPS, normalise_crops
 from labial.hearing.learner import Learner, model_of, restore
+from labial.hearing.lessons import lesson
 from labial.hearing.model import HearingModel, save, with_even_sides
 from labial.hearing.plans import CLASSES, CLOSED, PLANS
 from labial.hearing.prepared import Prepared
 
 #: Frames of a crop, and crops of a batch.
 LENGTH, BATCH = 200, 24
-#: Frames at a crop's begin and end that are not learned: they lack history, or what the network looks ahead to.
-_BEGIN, _END = 12, 6
+#: Frames at a crop's begin and end that are not learned: they lack history, or what the network looks ahead to, and so
+#: many more.
+_BEGIN, _END = 12, 2
 #: The steps over which the learning rate rises, and its least share at the end.
 _WARM, _LEAST = 200, 0.006
-#: Weights of the squared error and of the activations' excess.
-_FRAMES, _EXCESS = 2.5, 0.01
-#: Channels that count twice: the jaw and the lips' middles. Frames of closures count so many times.
-_IMPORTANT, _CLOSURE = (3, 51, 52), 3.0
-#: Rare classes count more, by this power of their rarity.
-_RARITY = 0.4
+#: Weights of the squared error, of the entropy of closed lips and of the activations' excess.
+_FRAMES, _LIPS, _EXCESS = 2.5, 1.0, 0.01
+#: Channels that count twice: the jaw, the lips' middles and the corners. Frames of closures count so many times.
+_IMPORTANT, _CLOSURE = (3, 51, 52, 53, 54), 3.0
+#: Rare classes count more, by this power of their rarity; so much of each frame's likelihood belongs to all classes.
+_RARITY, _SMOOTHED = 0.4, 0.03
 #: Share of the steps with rounded weights.
 _ROUNDED = 0.1
 #: Share of the crops that are noise alone, where lips rest, and its level, log2 energy.
@@ -61,13 +63,28 @@ class Options:
     shares: Tuple[float, ...] = ()  #: of each folder in a batch; without them the square roots of the lengths
     attribution: str = ""
     start: str = ""  #: SHA-256 of the model that it begins with, if it does not begin anew
+    teacher: str = ""  #: and of the one that teaches, if any
+    taught: float = 0.0  #: the teacher's share in what is learned of takes whose truth is known
+
+
+class _Batch(NamedTuple):
+    """B crops of T frames."""
+
+    classes: torch.Tensor  #: (B, T) int64
+    heard: torch.Tensor  #: (B, T, 48) features
+    frames: torch.Tensor  #: (B, T, 13) of mean 0 and scale 1
+    likely: torch.Tensor  #: (B, T, 26)
+    closed: torch.Tensor  #: (B, T)
+    weight: torch.Tensor  #: (B, T) of `closed`
 
 
 class _Data:
     """The takes that are learned, and how crops are drawn from them."""
 
-    def __init__(self, folders: Sequence[Prepared], options: Options) -> None:
-        parts = [item.part(held=False) for item in folders]
+    def __init__(self, folders: Sequence[Prepared], sounds: Sequence[Prepared], teacher: Optional[HearingModel],
+                 options: Options) -> None:
+        parts = [lesson(item.part(held=False), teacher, options.taught) for item in folders]
+        parts += [lesson(item.part(held=False), teacher, 1.0) for item in sounds]
         for number, part in enumerate(parts, 1):
             if len(part.classes) <= LENGTH:
                 raise LabialError(f"folder {number} has no more than {LENGTH} frames to learn from")
@@ -84,22 +101,26 @@ class _Data:
             count += share * np.bincount(part.classes, minlength=len(CLASSES)) / len(part.classes)
         self.weight = (1 / len(CLASSES) / np.maximum(count, 1e-4)) ** _RARITY
 
-    def batch(self, random: np.random.Generator, pool: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Features (B, T, 48), frames (B, T, 13) of mean 0 and scale 1, classes (B, T)."""
-        energies, frames, classes = [], [], []
+    def batch(self, random: np.random.Generator, pool: np.ndarray) -> _Batch:
+        """Random crops, with noise and channels."""
+        crops = []
         for k in random.choice(len(self.parts), size=BATCH, p=self.shares):
             part = self.parts[k]
             at = int(random.integers(len(part.classes) - LENGTH))
-            energies.append(part.energies[HOPS * at : HOPS * (at + LENGTH)])
-            frames.append(part.frames[at : at + LENGTH])
-            classes.append(part.classes[at : at + LENGTH])
-        mixed = augmented(np.stack(energies).astype(np.float32), pool, random)
+            crops.append([part.energies[HOPS * at : HOPS * (at + LENGTH)],
+                          *(item[at : at + LENGTH] for item in
+                            (part.frames, part.classes, part.likely, part.closed, part.weight))])
+        energies, frames, classes, likely, closed, weight = (np.stack(rows) for rows in zip(*crops))
+        mixed = augmented(energies.astype(np.float32), pool, random)
+        silence = CLASSES.index("SIL")
         for k in np.flatnonzero(random.random(BATCH) < _ALONE):
             mixed[k] = np.maximum(noises(1, HOPS * LENGTH, pool, random)[0] + random.uniform(*_LEVELS), FLOOR)
-            frames[k], classes[k] = np.tile(self.rest, (LENGTH, 1)), np.full(LENGTH, CLASSES.index("SIL"), np.uint8)
-        heard = normalise_crops(mixed)
-        wanted = ((np.stack(frames) - self.mean) / self.scale).astype(np.float32)
-        return heard.reshape(BATCH, LENGTH, HOPS * BANDS), wanted, np.stack(classes).astype(np.int64)
+            frames[k], classes[k], closed[k], weight[k] = self.rest, silence, 0.0, 1.0
+            likely[k] = np.eye(len(CLASSES))[silence]
+        wanted = (frames - self.mean) / self.scale
+        found = (normalise_crops(mixed).reshape(BATCH, LENGTH, HOPS * BANDS), wanted, likely, closed, weight)
+        return _Batch(torch.from_numpy(classes.astype(np.int64)),
+                      *(torch.from_numpy(item.astype(np.float32)) for item in found))
 
 
 class _State:
@@ -137,23 +158,25 @@ class _State:
 
 def train(
     folders: Sequence[Prepared], options: Options, checkpoint: str, told: Optional[Callable[[str], None]] = None,
-    early: Optional[Path] = None, start: Optional[HearingModel] = None,
+    early: Optional[Path] = None, start: Optional[HearingModel] = None, sounds: Sequence[Prepared] = (),
+    teacher: Optional[HearingModel] = None,
 ) -> HearingModel:
     """Trains, in one thread, and chooses how lips close by the takes that are held out.
 
     The training continues from the file `checkpoint` if there is one; it is written every `CHECKPOINT` steps. `told`
     receives a line of figures every `REPORT` steps. The unfinished model is written to `early` with each checkpoint.
-    With `start` it begins with the weights of that model. Raises LabialError for a folder with next to nothing to learn
-    from, for shares of other folders, and for a `start` of another plan.
+    With `start` it begins with what that model hears. Of `sounds` it learns what the `teacher` hears in them, which
+    also has its share in what is learned of the `folders`. Raises LabialError for a folder with next to nothing to
+    learn from, for shares of other folders, and for a `start` that is larger.
     """
     torch.set_num_threads(1)
     torch.use_deterministic_algorithms(True)
-    data = _Data(folders, options)
+    data = _Data(folders, sounds, teacher, options)
     pool = white(_NOISE, np.random.default_rng([options.seed, 2]))
     state = _State(options)
     if start is not None:
-        if start.plan != PLANS[options.model] or start.classes != CLASSES:
-            raise LabialError(f"the model to begin with is not of the size {options.model!r}")
+        if start.classes != CLASSES:
+            raise LabialError("the model to begin with has other classes")
         restore(state.learner, start, data.mean, data.scale)
     if os.path.exists(checkpoint):
         state.restore(checkpoint, options)
@@ -187,9 +210,10 @@ def finished(
 
     def made(edges: Tuple[float, float]) -> HearingModel:
         return with_even_sides(
-            model_of(state.learner, data.mean, data.scale, targets.closed_pose(), edges, options.attribution, about))
+            model_of(state.learner, data.mean, data.scale, targets.closure(), edges, options.attribution, about))
 
-    choice = choose(made((-1.0, 1.0)), [item.part(held=True) for item in folders], data.shares)
+    shares = data.shares[: len(folders)]
+    choice = choose(made((-1.0, 1.0)), [item.part(held=True) for item in folders], shares)
     about["held_out"] = choice.figures()
     return made(choice.edges), choice
 
@@ -202,22 +226,23 @@ def _rate(step: int, steps: int) -> float:
 
 def _step(state: _State, data: _Data, pool: np.ndarray, options: Options) -> np.ndarray:
     """One step; its loss, the share of right classes and the mean squared error of frames."""
-    heard, wanted, classes = (torch.from_numpy(item) for item in data.batch(state.random, pool))
+    batch = data.batch(state.random, pool)
     for group in state.optimiser.param_groups:
         group["lr"] = options.rate * _rate(state.step, options.steps)
-    scores, faps, excess = state.learner(heard, state.step >= (1 - _ROUNDED) * options.steps)
-    scores, faps = scores[:, _BEGIN:-_END], faps[:, _BEGIN:-_END]
-    wanted, classes = wanted[:, _BEGIN:-_END], classes[:, _BEGIN:-_END]
-    closed = classes == CLASSES.index(CLOSED)
-    entropy = torch.nn.functional.cross_entropy(
-        scores.reshape(-1, len(CLASSES)), classes.reshape(-1), label_smoothing=0.03,
-        weight=torch.from_numpy(data.weight.astype(np.float32)))
+    *told, excess = state.learner(batch.heard, state.step >= (1 - _ROUNDED) * options.steps)
+    end = -state.learner.plan.ahead - _END
+    scores, lips, faps = (item[:, _BEGIN:end] for item in told)
+    classes, _, wanted, likely, closed, weight = (item[:, _BEGIN:end] for item in batch)
+    rarity = torch.from_numpy(data.weight.astype(np.float32))
+    likely = (1 - _SMOOTHED) * likely + _SMOOTHED / len(CLASSES)
+    entropy = -(likely * rarity * scores.log_softmax(dim=2)).sum() / (likely * rarity).sum()
+    touching = torch.nn.functional.binary_cross_entropy_with_logits(lips, closed, weight)
     channels = torch.tensor([2.0 if number in _IMPORTANT else 1.0 for number in FAP_NUMBERS])
     difference = faps - wanted
     error = difference.square() * channels
-    frames = (error * (1 + (_CLOSURE - 1) * closed[..., None])).mean()
+    frames = (error * (1 + (_CLOSURE - 1) * (classes == CLASSES.index(CLOSED))[..., None])).mean()
     jumps = (torch.diff(difference, n=2, dim=1).square() * channels).mean()
-    loss = entropy + _FRAMES * frames + options.smoothness * jumps + _EXCESS * excess
+    loss = entropy + _FRAMES * frames + _LIPS * touching + options.smoothness * jumps + _EXCESS * excess
     state.optimiser.zero_grad()
     loss.backward()  # type: ignore[no-untyped-call, unused-ignore]
     torch.nn.utils.clip_grad_norm_(state.learner.parameters(), 1.0)

@@ -7,7 +7,7 @@ import math
 import sys
 from array import array
 from functools import cache
-from typing import Any, AsyncIterable, AsyncIterator, Iterable, Iterator, List, NamedTuple, Tuple, Union
+from typing import Any, AsyncIterable, AsyncIterator, Iterable, Iterator, List, NamedTuple, Optional, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import ARTICULATION_MAX, CANCEL_MAX, ERROR_STATE, checked, library, memory
@@ -18,6 +18,8 @@ from labial.runtime.frame import Frame
 
 #: Frames per second, LABIAL_HEAR_FPS.
 FPS = 50
+#: The models that are used where none is named.
+_FIRST = ("hear_host", "hear_small")
 #: Bytes of a sample.
 _SAMPLE = 2
 #: Most frames that the end delivers, and a cancel before it eases.
@@ -42,11 +44,12 @@ class Shown(NamedTuple):
 
 @cache
 def models() -> Tuple[str, ...]:
-    """The names of the models of hearing that the library has, the first of which is used where none is named."""
+    """The names of the models of hearing that the library has, the first of which is used where none is named:
+    hear_host, or hear_small in a library that has no room for it."""
     names: List[str] = []
     while name := library().hearing_name(len(names)):
         names.append(name.decode("ascii"))
-    return tuple(sorted(names, key=lambda item: item != "hear_small"))
+    return tuple(sorted(names, key=lambda item: (_FIRST.index(item) if item in _FIRST else len(_FIRST), item)))
 
 
 class Hearing:
@@ -67,13 +70,16 @@ class Hearing:
 
     Args:
         sample_rate: samples per second: 8000, 12000, 16000, 22050, 24000, 32000, 44100 or 48000. channels: 1 or 2, of
-        which the mean is heard. model: the name of a model, "hear_small" or "hear_large". exact: the end returns the
-        frames of the sound alone, without the 12 in which the face comes to rest.
+        which the mean is heard. model: "hear_host" (the default); "hear_ahead", which looks 160 ms further ahead, for
+        files and for sound that waits before it is played; "hear_large" or "hear_small", which are
+        those of small chips. exact: the end returns the frames of the sound alone, without the 12 in which the face
+        comes to rest.
     """
 
-    def __init__(self, sample_rate: int = 16000, channels: int = 1, *, model: str = "hear_small",
+    def __init__(self, sample_rate: int = 16000, channels: int = 1, *, model: Optional[str] = None,
                  exact: bool = False) -> None:
         core, names = library(), models()
+        model = names[0] if model is None and names else model or ""
         if model not in names:
             raise LabialError(f"{model!r} is no model of hearing: {did_you_mean(model, names)}")
         self._sample_rate, self._channels = whole(sample_rate, "a sample rate"), whole(channels, "a number of channels")
@@ -199,7 +205,7 @@ class Hearing:
     @property
     @alone
     def latency(self) -> float:
-        """Seconds from a frame's begin until it is known."""
+        """Seconds from a frame's begin until it is known: .12, with hear_ahead .28."""
         self._open()
         return float(self._library.ears_latency(self._address)) / 1000.0
 
