@@ -121,7 +121,7 @@ def costs(source: Sources) -> Iterator[Sentence]:
                    count(bench("speech: workspace")))
     yield sentence("| stack | {} | at most; {} with `-O2` |", count(bench("stack -Os: all of lib")),
                    count(bench("stack -O2: all of lib")))
-    words = sum(bench(f"code -Os: {name}.c") for name in ("words", "words_text", "words_time"))
+    words = sum(bench(f"code -Os: {name}.c") for name in _WORDS)
     yield sentence("rig {}; laughs {}; speaking while laughing {}; names {} and speech's {}; binary models {}; words "
                    "{} and their tables {} |", *(count(bench(f"code -Os: {name}.c")) for name in
                                                 ("rig", "laugh", "blend", "names")), count(bench("speech: names")),
@@ -162,6 +162,8 @@ def _closeness(diff: Dict[str, str], other: Dict[str, str], *unseen: Dict[str, s
 
 
 #: What pages fetch from npm, compressed, in bench/baseline.json.
+#: The files of labial/words.h.
+_WORDS = ("words", "words_characters", "words_dates", "words_letters", "words_numbers", "words_text", "words_time")
 _NPM = ("a page that speaks, each script compressed", "laughter, compressed", "words, each script compressed",
         "hearing by the small model, each script compressed", "hearing by the large model, each script compressed")
 
@@ -353,7 +355,7 @@ def _by_sound(source: Sources) -> Dict[Tuple[str, str], List[str]]:
 def words(source: Sources) -> Iterator[Sentence]:
     """docs/words.md."""
     bench = source.bench
-    code = sum(bench(f"code -Os: {name}.c") for name in ("words", "words_text", "words_time"))
+    code = sum(bench(f"code -Os: {name}.c") for name in _WORDS)
     yield sentence("{} KB of code and {} KB of tables in flash, 1 KB of RAM for a stream of words and {} bytes of "
                    "stack", _kilobytes(code, 1), _kilobytes(bench("words: tables")), count(bench("stack -Os: words.h")))
     yield sentence("A page fetches {} KB for it, compressed, when it asks for words",
