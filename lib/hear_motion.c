@@ -33,7 +33,7 @@ void labial_hear_motion_hear(labial_hear_motion_t *motion, int loud)
 }
 
 /* Whether the frame is silent that is due when so many after it are known. */
-static int is_silent(const labial_hear_motion_t *motion, unsigned known)
+static int frame_is_silent(const labial_hear_motion_t *motion, unsigned known)
 {
     const unsigned after = known < RESTING ? known : RESTING;
     return (motion->loud >> (known - after) & ((1u << (SILENT_BEFORE + 1u + after)) - 1u)) == 0;
@@ -54,7 +54,7 @@ int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_mode
         memcpy(motion->now, next, sizeof motion->now);
         return 0;
     }
-    if (is_silent(motion, model->ahead + 1u))
+    if (frame_is_silent(motion, model->ahead + 1u))
         motion->rest = (uint8_t)(motion->rest < RESTING ? motion->rest + 1u : RESTING);
     else
         motion->rest = (uint8_t)(motion->rest > 0 ? motion->rest - 1u : 0u);
