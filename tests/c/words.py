@@ -43,24 +43,35 @@ https://a.org/b-c_d node.js a.b.c end.Start wait...what (sighs) (pause) (pauses)
 abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab
 Pneumonoultramicroscopicsilicovolcanoconiosis bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb'b don't-can't-won't
 """.split()
-PHRASES = [*"""1/200 3/1000 a1/2 1/2x 1/0 100/3 12/34/5 1/2/ 2/3/2024x 2024-3 2024-3-4x 2024-003-4 32/12/2024 5-6-24 5.6.24
-    111/2/2024 1/222/2024 1.2/2024 12345-67-89 555-12345 555-123- 555-1234x 55-1234 12-34-5 10:5 10:60 10:30:5 10:30:15: 100:30
-    10:30x 0:00 13:00 10:00:05 5'100 5'x 555'1 5'10x 1990sx 1990'sx 15s 1995s 3000s 1000s 19s 2100s 1066 2000 2009x 1984%
-    1984.5 1984x 1stx 1sx 5x 5xx 5×a 5- 5-a 5-$ 5-$1 5– $k5 $5kx $5kn $5mn $5bnx $5t $5.5.5 $1,00 $007 $007.5 $00 $0 $0.00
-    $1.00 ¥1 ¥1.50 ₹1.01 ₹2.05 £0.01 £0.02 €1 $.5k $12345678901 $1234567890123456.50 $1234567890123456k 1234567890123456th
-    007th 1000000000000th 000 1,234th 1/3 9/10 31/32 99/100 50/64 13/16 2/4 1/4 2/2 5/4 x's 's s's Xs Ss Hs' O'S OS' A's AB'S
-    ABs' ABx ABC'x ABCDEFs a&b AT& &AT AM am US us CO co.uk a.co a.go a.me a.xyz a.b-c a.tx9 a.it's a://b a:/b a:b 1://2 .a .A
-    -.5 -a (- (-a [ [] < <1 <! <? </ <é *a* *** *1 (1) (sigh (sighs1 (sigh1) (sighx) (pausing) (clapping) *grins* *glass a*
-    *Leans a* *this a* *thisisverylongwords a* *as a* (abcdefghijklmn) C. c.C ° °C °Cx °F °K 5°x ¢ 5¢ 1¢ 1€ x€ € #a # ½x 5½ 5¼
-    5¾ ²  5m² 5x² 5/32/2024 5/0/2024 0/5/2024 2024-3-2024 2024/3/5 0/5 3/5/2100 3/5/1000 555-123 $007,x $007,1 $1M OBEV TABQS BINDS SUVS +A &A ABs& &ABs .:/ :// a.{ *word 5mi' $1M $1.50M $1.5M 5cmx 5cm's 5mi's 5° 1inx 5A's /a 5km/ 5km/1 5km/h 5km/x $5/ $5/1 é è ë ê à ï î í ô ó û ú ç ñ ö né née nëe ée
-    e\u0300 e\u0302 e\u0308 c\u0327 n\u0303 a\u0301 u\u0301 o\u0302 i\u0308 x\u0301 Zoë's NoëL \ufb03x \ufb05 µm \u2028 \u3000a
-    \u0085a \u205fa \u202fa \u2005a GYM YES NYC QUEUE EYE AAAA TRY HMM STRNG STRENG WRLDS ABBS TSK DIYS""".split(),
-           "a\u0085b", "a\u2028b", "a\u2029b", "a\u205fb", "a\u202fb", "a\u2005b", "a\u3000b", "a\xa0b", "a\tb", "March 5/x", "March 5:x", "*word a*", "*glass a*",
-           "March 5.a", "March 5,a", "March 5x", "March 5:30", "March 5/6", "March 32", "March 0", "March 123", "March 5,5", "march 5", "MARCH 5",
-           "3 in", "3 A", "3 M", "3 kmx", "1 am", "5 am", "5 Am", "5 aM", "3:00 AM", "3:00 o'clocks", "o'clock", "$5 billion",
-           "$5 bill", "5 million", "1 °F", "1 ½", "1 3/4", "5 ¢", "1 ¢", "5 p.m.s", "3:00 p.m.x", "3:00 b.m.", "3:00 a.b.",
-           "3:00 a.m.s.", "I US", "NO US", "no US", "A US", "*leans", "*leans x y z a b c d e f g", "<a b", "(sighs a) b",
-           "[a] b", "www. a", "a.com b-c", "a.com/b a/b", "$5 million", "3:00 pm", "9:00 a.m.", "9:00 o'clock", "March 5", "Dec. 25", "May 5-7", "March 5.5", "5 km",
+PHRASES = [*"""
+    1/200 3/1000 a1/2 1/2x 1/0 100/3 12/34/5 1/2/ 2/3/2024x 2024-3 2024-3-4x 2024-003-4 32/12/2024 5-6-24 5.6.24
+    111/2/2024 1/222/2024 1.2/2024 12345-67-89 555-12345 555-123- 555-1234x 55-1234 12-34-5 10:5 10:60 10:30:5
+    10:30:15: 100:30 10:30x 0:00 13:00 10:00:05 5'100 5'x 555'1 5'10x 1990sx 1990'sx 15s 1995s 3000s 1000s 19s
+    2100s 1066 2000 2009x 1984% 1984.5 1984x 1stx 1sx 5x 5xx 5×a 5- 5-a 5-$ 5-$1 5– $k5 $5kx $5kn $5mn $5bnx $5t
+    $5.5.5 $1,00 $007 $007.5 $00 $0 $0.00 $1.00 ¥1 ¥1.50 ₹1.01 ₹2.05 £0.01 £0.02 €1 $.5k $12345678901
+    $1234567890123456.50 $1234567890123456k 1234567890123456th 007th 1000000000000th 000 1,234th 1/3 9/10 31/32
+    99/100 50/64 13/16 2/4 1/4 2/2 5/4 x's 's s's Xs Ss Hs' O'S OS' A's AB'S ABs' ABx ABC'x ABCDEFs a&b AT& &AT AM
+    am US us CO co.uk a.co a.go a.me a.xyz a.b-c a.tx9 a.it's a://b a:/b a:b 1://2 .a .A -.5 -a (- (-a [ [] < <1
+    <! <? </ <é *a* *** *1 (1) (sigh (sighs1 (sigh1) (sighx) (pausing) (clapping) *grins* *glass a* *Leans a*
+    *this a* *thisisverylongwords a* *as a* (abcdefghijklmn) C. c.C ° °C °Cx °F °K 5°x ¢ 5¢ 1¢ 1€ x€ € #a # ½x 5½
+    5¼ 5¾ ² 5m² 5x² 5/32/2024 5/0/2024 0/5/2024 2024-3-2024 2024/3/5 0/5 3/5/2100 3/5/1000 555-123 $007,x $007,1
+    $1M OBEV TABQS BINDS SUVS +A &A ABs& &ABs .:/ :// a.{ *word 5mi' $1M $1.50M $1.5M 5cmx 5cm's 5mi's 5° 1inx
+    5A's /a 5km/ 5km/1 5km/h 5km/x $5/ $5/1 é è ë ê à ï î í ô ó û ú ç ñ ö né née nëe ée e\u0300 e\u0302 e\u0308
+    c\u0327 n\u0303 a\u0301 u\u0301 o\u0302 i\u0308 x\u0301 Zoë's NoëL \ufb03x \ufb05 µm \u2028 \u3000a \u0085a
+    \u205fa \u202fa \u2005a GYM YES NYC QUEUE EYE AAAA TRY HMM STRNG STRENG WRLDS ABBS TSK DIYS
+    """.split(),
+           "a\u0085b", "a\u2028b", "a\u2029b", "a\u205fb", "a\u202fb", "a\u2005b", "a\u3000b", "a\xa0b", "a\tb",
+           "March 5/x", "March 5:x", "*word a*", "*glass a*",
+           "March 5.a", "March 5,a", "March 5x", "March 5:30", "March 5/6", "March 32", "March 0", "March 123",
+           "March 5,5", "march 5", "MARCH 5",
+           "3 in", "3 A", "3 M", "3 kmx", "1 am", "5 am", "5 Am", "5 aM", "3:00 AM", "3:00 o'clocks", "o'clock",
+           "$5 billion",
+           "$5 bill", "5 million", "1 °F", "1 ½", "1 3/4", "5 ¢", "1 ¢", "5 p.m.s", "3:00 p.m.x", "3:00 b.m.",
+           "3:00 a.b.",
+           "3:00 a.m.s.", "I US", "NO US", "no US", "A US", "*leans", "*leans x y z a b c d e f g", "<a b",
+           "(sighs a) b",
+           "[a] b", "www. a", "a.com b-c", "a.com/b a/b", "$5 million", "3:00 pm", "9:00 a.m.", "9:00 o'clock",
+           "March 5", "Dec. 25", "May 5-7", "March 5.5", "5 km",
            "1 h", "10 AM", "I AM", "IS IT", "IT is", "(laughs softly) yes", "<break time='1s'/> go", "[a b] c",
            "[a b c d e f g h i j", "*leans in* yes", "*really* no", "2 1/2", "1 1/4", "20 €", "20 °C", "$20 / hour",
            "5 km / h", "5 in 6", "$5. Million"]
@@ -101,8 +112,11 @@ def header() -> str:
     tables = load(MODEL)
     common = read_common(COMMON)
     numbers = random.Random(1)
-    joined = ["".join(numbers.choice(["", "", " "]) + numbers.choice(TEXTS) for _ in range(numbers.randint(2, 4))).strip()
-              for _ in range(400)]
+
+    def piece() -> str:
+        return numbers.choice(["", "", " "]) + numbers.choice(TEXTS)
+
+    joined = ["".join(piece() for _ in range(numbers.randint(2, 4))).strip() for _ in range(400)]
     words = [*TEXTS, *PHRASES, *LONG, *joined, *common[:60], *random.Random(0).sample(common, 300)]
     readings = "\n".join(f"    {{ {quoted(word)}, {quoted(shown(tables, word))} }}," for word in dict.fromkeys(words))
     rows = []

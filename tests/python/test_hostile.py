@@ -271,7 +271,7 @@ def test_absurd_corpora(tmp_path: Path, told: Told, frames: Callable, lab: str, 
     ["page", "f.csv", "-o", "x", "--audio", "."], ["plot", "f.csv", "-o", "x.png", "--channels", ","],
     ["plot", "f.csv", "-o", "none/x.png"], ["plot", "f.csv", "-o", ""], ["rig", "/dev/null", "-o", "o"],
     ["rig", ".", "-o", "o"], ["rig", "face.toml", "-o", "a.lab"], ["rig", "/dev/zero", "-o", "o", "--name", "x"],
-    ["bake", "f.csv", "-o", ".h"], ["bake", "", "-o", "x.h"], ["bake", ".", "-o", "x.h"], ["nothing"], [], ["bake"],
+    ["bake", "f.csv", "-o", ".h"], ["bake", "", "-o", "x.h"], ["bake", ".", "-o", "x.h"], ["nothing"], ["bake"],
     ["align", "a.lab"], ["align", "/dev/null"], ["align", "."], ["align", "", "--text", "a"],
     ["align", "none.wav", "--text-file", "/dev/zero"],
 ])  # fmt: skip

@@ -42,7 +42,7 @@ from labial.reference.published import (
 )
 from labial.reference.tables import Equation, FloatTables
 from labial.reference.units import frame_counts
-from labial.rig.animation import FORMATS
+from labial.rig.animation import FORMATS, with_shares
 from labial.see import motion
 from labial.tables.model import load, save
 from labial.tables.phones import read_stream
@@ -266,7 +266,9 @@ def test_every_format_has_the_published_motion(given: Path, wanted: np.ndarray, 
     out = given / "out"
     assert main(["synth", str(given / "paper.npz"), str(given / "phones.lab"), "--to", name, "-o", str(out)]) == 0
     text = io.StringIO()
-    FORMATS[name].write(text, [wanted], 50, "paper", len(wanted))
+    model = load(given / "paper.npz")
+    spoken = [(model.phonemes[phoneme], length) for phoneme, length in read_stream(given / "phones.lab", model)]
+    FORMATS[name].write(text, [with_shares(wanted, spoken, 50)], 50, "paper", len(wanted))
     assert out.read_text() == text.getvalue()
 
 

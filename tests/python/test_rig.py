@@ -219,8 +219,8 @@ def test_a_servo_with_a_limit_of_acceleration_closes_too(tmp_path: Path) -> None
     frames = motion.frames.astype(np.int64)
     (tmp_path / "face.toml").write_text(CLOSING)
     meant = played(tmp_path / "face.toml", frames)[:, 0]
-    for slew, acceleration, ahead, least, wide in ((90, 30, 10, 0.98, 0.9), (60, 20, 10, 0.98, 0.85),
-                                                   (40, 10, 10, 0.9, 0.75), (40, 10, 32, 0.98, 0.75),
+    for slew, acceleration, ahead, least, wide in ((90, 30, 10, 0.98, 0.9), (60, 20, 10, 0.98, 0.84),
+                                                   (40, 10, 10, 0.9, 0.74), (40, 10, 32, 0.98, 0.7),
                                                    (60, 20, 1, 0.2, 0.9)):
         (tmp_path / "face.toml").write_text(CLOSING + ACCELERATION.format(slew=slew, acceleration=acceleration))
         values = played(tmp_path / "face.toml", frames, ahead)[:, 0]

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 from typing import Any, List, Tuple
 
+import numpy as np
 import pytest
 import websockets
 
@@ -28,7 +29,8 @@ EXAMPLES = SOURCE / "examples" / "voices"
 
 
 def test_lips_follow_a_websocket(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """Every frame is printed once, when it is due, and is that of the words and times that the service tells."""
+    """Every frame is printed once, when it is due, and is that of the words and times that the service tells. Its
+    sounds change slowly where more becomes known."""
     monkeypatch.setattr("player.shutil.which", lambda name: None)
     text = "Maybe hum by pool."
 
@@ -53,7 +55,8 @@ def test_lips_follow_a_websocket(monkeypatch: pytest.MonkeyPatch, capsys: pytest
         expected = [(frame.number, round(weights["jawOpen"], 3), round(weights["mouthPucker"], 3))
                     for k in range(len(shown)) for frame in voice.played(k / 50)
                     for weights in [frame.rig("arkit")]]
-    assert shown == expected and max(jaw for _, jaw, _ in shown) > 0.1
+    np.testing.assert_allclose(shown, expected, rtol=0, atol=0.03)
+    assert max(jaw for _, jaw, _ in shown) > 0.1
 
 
 def program(name: str, *arguments: str, **environment: str) -> subprocess.Popen:

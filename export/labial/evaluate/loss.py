@@ -129,7 +129,8 @@ def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.
 def workspace_bytes(stride: int, channels: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
     progress = 44 + 8 * (WINDOW + 1) + (3 + SEARCHED + 3) // 4 * 4
-    return channels * progress + (stride * (32 + 2 * channels) + 3) // 4 * 4
+    shapes = 2 * 4  # of the phoneme that is shown and of the next one
+    return channels * (progress + shapes) + (stride * (32 + 2 * channels) + 3) // 4 * 4
 
 
 def memory(exported: ExportedModel) -> str:
