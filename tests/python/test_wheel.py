@@ -155,7 +155,7 @@ def test_installed_exporter_brings_the_library(installed: Path, tmp_path: Path) 
     """With numpy, ``labial check`` has the library that came with the package, ``labial bake`` has its models."""
     env = {"PATH": "", "OPENBLAS_NUM_THREADS": "1",
            "PYTHONPATH": os.pathsep.join((sysconfig.get_path("purelib"), sysconfig.get_path("platlib")))}
-    (tmp_path / "word.lab").write_text("0 0.1 SIL\n0.1 0.2 M\n0.2 0.4 AY\n0.4 0.5 HH\n0.5 0.6 AH\n0.6 0.7 L\n"
+    (tmp_path / "word.lab").write_text("0 0.1 SIL\n0.1 0.2 M\n0.2 0.4 AY\n0.4 0.5 W\n0.5 0.6 IY\n0.6 0.7 L\n"
                                        "0.7 0.9 OW\n0.9 1 SIL\n")
     done = call([installed.with_name("labial"), "check", SOURCE / "export" / "models" / "speech_en.npz", "word.lab"],
                 env, tmp_path)
