@@ -9,7 +9,7 @@
 enum {
     PER_TICK = 3500,     /* the queue, floors and contact, fades, the callback's frame */
     PER_TAP = 190,       /* of the kernels, in all channels */
-    PER_COMPONENT = 700, /* of a phoneme whose shape is selected, in all channels */
+    PER_COMPONENT = 600, /* of a phoneme whose shape is selected, in all channels */
     PER_KNOT = 400,      /* of a pair, in all channels */
     PER_COMPARISON = 20, /* of a binary search */
     PER_SEARCH = 300,    /* of one channel */
