@@ -67,17 +67,34 @@ static uint32_t shown(const labial_t *stream)
     const labial_fade_t *fade = &stream->fade;
     if (!stream->resting)
         return stream->begun ? LABIAL_VISEME_ONE : 0u;
-    if (fade->step == 0 || fade->step > fade->length)
+    if (fade->step == 0 || fade->step >= fade->length)
         return 0;
     return labial_quotient(((uint32_t)fade->length - fade->step) * LABIAL_VISEME_ONE, (uint32_t)fade->length);
 }
+
+/* What the sounds of a frame and of up to `count` frames after it, or before it, are in it. `label` is the frame's phoneme
+ * among those around it. */
+static void gather(const labial_model_t *model, const uint8_t *visemes, const uint8_t *label, uint32_t count,
+                   uint32_t period, int later, uint16_t dominance[LABIAL_VISEMES])
+{
+    uint32_t k, ms;
+    for (k = 0, ms = 0; ms < AROUND_MS && k <= count; k++, ms += period) {
+        const unsigned phoneme = *(later ? label + k : label - k);
+        if (phoneme < model->phoneme_count)
+            dominate(dominance, visemes[phoneme], ms, later);
+    }
+}
+
+/* Frames whose phoneme and model a stream keeps, the latest accepted one first. */
+#define SLOTS (sizeof((labial_t *)NULL)->channels.slots)
+#define KEPT (LABIAL_REACH + 1u < SLOTS ? LABIAL_REACH + 1u : SLOTS)
 
 int labial_visemes(const labial_t *stream, const labial_model_t *model, const uint8_t *visemes,
                    uint8_t shares[LABIAL_VISEMES])
 {
     uint16_t dominance[LABIAL_VISEMES] = { 0 };
     const labial_units_t *units;
-    uint32_t period, ms, whole, k, place;
+    uint32_t whole, place;
     if (!stream || !model || !visemes || !shares)
         return LABIAL_ERROR_NULL;
     if (stream->magic != LABIAL_MAGIC_)
@@ -85,18 +102,13 @@ int labial_visemes(const labial_t *stream, const labial_model_t *model, const ui
     units = &stream->units;
     place = stream->pending - units->frames; /* frames that were accepted and are not delivered */
     whole = shown(stream);
-    if (LABIAL_PAPER || place > LABIAL_REACH || stream->models[stream->channels.slots[0]] != model)
+    if (LABIAL_PAPER || place >= KEPT || stream->models[stream->channels.slots[place]] != model)
         whole = 0;
     if (whole > 0) {
         const uint8_t *label = &units->labels[LABIAL_REACH - place];
-        period = labial_quotient(1000u, (uint32_t)model->frames_per_second);
-        period = period > 0 ? period : 1u;
-        for (k = 0, ms = 0; ms < AROUND_MS && k <= LABIAL_REACH - place; k++, ms += period)
-            if (label[-(int32_t)k] < model->phoneme_count)
-                dominate(dominance, visemes[label[-(int32_t)k]], ms, 0);
-        for (k = 1, ms = period; ms < AROUND_MS && k <= LABIAL_REACH + place; k++, ms += period)
-            if (label[k] < model->phoneme_count)
-                dominate(dominance, visemes[label[k]], ms, 1);
+        const uint32_t period = labial_quotient(1000u, (uint32_t)model->frames_per_second);
+        gather(model, visemes, label, LABIAL_REACH - place, period, 0, dominance);
+        gather(model, visemes, label, LABIAL_REACH + place, period, 1, dominance);
     }
     share_out(dominance, whole, shares);
     return LABIAL_OK;

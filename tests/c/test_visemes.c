@@ -30,6 +30,7 @@ static uint8_t found[FRAMES][LABIAL_VISEMES];
 static uint8_t spoken[FRAMES]; /* phoneme of each frame */
 static unsigned frames, known;
 static fixture_random_t dice;
+static const labial_model_t *asked; /* the model whose sounds are wanted */
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -37,7 +38,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
     (void)faps;
     assert_true(frame < FRAMES);
     memset(found[frame], 99, sizeof found[frame]);
-    assert_int_equal(labial_visemes(&stream, &rich.model, visemes, found[frame]), LABIAL_OK);
+    assert_int_equal(labial_visemes(&stream, asked, visemes, found[frame]), LABIAL_OK);
     frames = frame + 1u;
 }
 
@@ -47,6 +48,7 @@ SETUP(begin)
     fixture_laughter(&laughter);
     assert_int_equal(labial_init(&stream, &rich.model, workspace, sizeof workspace, on_frame, NULL), LABIAL_OK);
     frames = known = 0;
+    asked = &rich.model;
     return 0;
 }
 
@@ -173,6 +175,8 @@ TEST_AFTER(begin, another_model_is_silence)
     assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
     assert_int_equal(shares[LABIAL_VISEMES], 7);
     labial_exact(&stream, 1);
+    assert_int_equal(labial_visemes(&stream, &rich.model, visemes, shares), LABIAL_OK);
+    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
     assert_int_equal(labial_use(&stream, &laughter.model), LABIAL_OK);
     say(FIXTURE_HA, 40, 0);
     labial_end(&stream);
@@ -180,6 +184,45 @@ TEST_AFTER(begin, another_model_is_silence)
     assert_int_equal(frames, known);
     for (unsigned t = 0; t < frames; t++)
         assert_int_equal(found[t][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    assert_int_equal(labial_restart(&stream), LABIAL_OK);
+    assert_int_equal(labial_visemes(&stream, &laughter.model, visemes, shares), LABIAL_OK);
+    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+}
+
+/* Phonemes of the model before that this one does not have say nothing. */
+TEST_AFTER(begin, neighbours_of_another_model_say_nothing)
+{
+    const unsigned last = FIXTURE_SPEECH_COUNT - 1u;
+    assert_true(laughter.model.phoneme_count <= last);
+    asked = &laughter.model;
+    labial_exact(&stream, 1);
+    for (unsigned turn = 0; turn < 6; turn++) {
+        assert_int_equal(labial_use(&stream, turn % 2u ? &laughter.model : &rich.model), LABIAL_OK);
+        say(turn % 2u ? FIXTURE_A : last, 6, 0);
+    }
+    labial_end(&stream);
+    run();
+    assert_int_equal(frames, known);
+    for (unsigned t = 0; t < frames; t++)
+        if (t / 6u % 2u)
+            assert_true(found[t][LABIAL_VISEME_AA] > 20); /* beside the silence around it */
+        else
+            assert_int_equal(found[t][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+}
+
+/* At 250 frames per second sounds last for more frames than a stream keeps. */
+TEST_AFTER(begin, shares_at_the_highest_rate)
+{
+    rich.model.frames_per_second = 250;
+    assert_int_equal(labial_init(&stream, &rich.model, workspace, sizeof workspace, on_frame, NULL), LABIAL_OK);
+    labial_exact(&stream, 1);
+    assert_int_equal(labial_push(&stream, FIXTURE_A, 400), LABIAL_OK);
+    labial_end(&stream);
+    run();
+    assert_int_equal(frames, 100);
+    for (unsigned t = 0; t < frames; t++)
+        assert_int_equal(found[t][LABIAL_VISEME_AA] + found[t][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    assert_true(found[50][LABIAL_VISEME_AA] > 100); /* what follows further on is not yet known */
 }
 
 TEST_AFTER(begin, bad_arguments_are_errors)

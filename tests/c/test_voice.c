@@ -825,12 +825,15 @@ TEST_AFTER(begin_frames, an_utterance_in_two_months)
 
 TEST_AFTER(begin_frames, phonemes_that_the_model_does_not_have)
 {
+    uint8_t shares[LABIAL_VISEMES] = { 0 };
     int16_t faps[LABIAL_CHANNELS];
     assert_int_equal(labial_voice_init(&voice, &laughter_synthetic, memory, sizeof memory), LABIAL_OK);
     assert_int_equal(labial_voice_words(&voice, &words_en, NULL), LABIAL_OK);
     assert_int_equal(labial_voice_word(&voice, "zoo", 3, 0, 500), LABIAL_OK); /* no numbers were given */
     for (unsigned k = 0; k < 40; k++)
         assert_int_equal(labial_voice_next(&voice, 20 * k, NULL, faps), LABIAL_OK);
+    assert_int_equal(labial_voice_visemes(&voice, shares), LABIAL_OK);
+    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
 }
 
 TEST_AFTER(begin_frames, clocks_jump)
@@ -1075,6 +1078,8 @@ TEST_AFTER(begin, frames_tell_their_sounds)
     }
     assert_int_equal(shares[LABIAL_VISEME_TH], 0);
     assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    static labial_voice_t none;
+    assert_int_equal(labial_voice_visemes(&none, shares), LABIAL_ERROR_STATE);
     assert_int_equal(labial_voice_visemes(NULL, shares), LABIAL_ERROR_NULL);
     assert_int_equal(labial_voice_visemes(&voice, NULL), LABIAL_ERROR_NULL);
 }
