@@ -85,16 +85,13 @@ static void gather(const labial_model_t *model, const uint8_t *visemes, const ui
     }
 }
 
-/* Frames whose phoneme and model a stream keeps, the latest accepted one first. */
-#define SLOTS (sizeof((labial_t *)NULL)->channels.slots)
-#define KEPT (LABIAL_REACH + 1u < SLOTS ? LABIAL_REACH + 1u : SLOTS)
-
 int labial_visemes(const labial_t *stream, const labial_model_t *model, const uint8_t *visemes,
                    uint8_t shares[LABIAL_VISEMES])
 {
     uint16_t dominance[LABIAL_VISEMES] = { 0 };
     const labial_units_t *units;
     uint32_t whole, place;
+    const uint8_t *slots;
     if (!stream || !model || !visemes || !shares)
         return LABIAL_ERROR_NULL;
     if (stream->magic != LABIAL_MAGIC_)
@@ -102,7 +99,10 @@ int labial_visemes(const labial_t *stream, const labial_model_t *model, const ui
     units = &stream->units;
     place = stream->pending - units->frames; /* frames that were accepted and are not delivered */
     whole = shown(stream);
-    if (LABIAL_PAPER || place >= KEPT || stream->models[stream->channels.slots[place]] != model)
+    /* At a change of model the labels of the frames before it are gone. */
+    slots = stream->channels.slots;
+    if (LABIAL_PAPER || place > LABIAL_REACH || stream->models[slots[0]] != model ||
+        stream->models[slots[LABIAL_DELAY(model->search_stride)]] != model)
         whole = 0;
     if (whole > 0) {
         const uint8_t *label = &units->labels[LABIAL_REACH - place];

@@ -23,6 +23,7 @@ import pytest
 
 import labial
 import wheels
+from labial.core import library
 from packages import CC, CMAKE, SOURCE, attributions, run, single_spaced
 from runtime import conformance_frames, conformance_scripts
 from scripts import digest
@@ -265,16 +266,23 @@ def test_the_wheel_for_this_machine_plays_the_conformance_streams(built: Dict[st
 @pytest.mark.skipif(not QEMU or not ROOT.is_dir(), reason="needs an emulator: install qemu-user and libc6-arm64-cross")
 def test_the_wheel_for_aarch64_plays_the_conformance_streams(built: Dict[str, Path], builder: Path, cache: Path,
                                                              tmp_path: Path) -> None:
-    """The wheel's own library under qemu, called by the program that every board runs."""
+    """The sources of the wheel's library, by its compiler and with its limits, in the program of all boards. The library
+    itself exports the flat interface alone, and tells its number."""
     (tmp_path / "labial_runtime.so").write_bytes(_contents(built["aarch64"])[LIBRARY])
+    (tmp_path / "flat.c").write_text("#include <stdio.h>\nextern int flat_interface(void);\n"
+                                     "int main(void)\n{\n    return printf(\"%d\", flat_interface()) < 0;\n}\n")
+    zig = [builder, "-m", "ziglang", "cc", "-target", "aarch64-linux-gnu.2.17", "-O1"]
+    environment = {"ZIG_GLOBAL_CACHE_DIR": str(cache), "ZIG_LOCAL_CACHE_DIR": str(tmp_path / "local")}
+    run(*zig, "flat.c", "labial_runtime.so", "-Wl,-rpath,$ORIGIN", "-o", "flat", cwd=tmp_path, env=environment)
+    assert int(run(QEMU, "-L", ROOT, tmp_path / "flat")) == library._INTERFACE
     conformance = SOURCE / "tests" / "conformance"
     includes = [f"-I{SOURCE / name}" for name in ("include", "lib", "lib/models", "boards", "tests/conformance",
                                                   "tests/c")]  # fmt: skip
-    run(builder, "-m", "ziglang", "cc", "-target", "aarch64-linux-gnu.2.17", "-O1", *LIMITS,
-        '-DBOARD_NAME="aarch64"', *includes,
+    run(*zig, *LIMITS, '-DBOARD_NAME="aarch64"', *includes,
         *(conformance / f"{name}.c" for name in ("conformance", "player", "vectors")),
-        SOURCE / "boards" / "text.c", SOURCE / "boards" / "host" / "host.c", "labial_runtime.so", "-Wl,-rpath,$ORIGIN",
-        "-o", "conformance", cwd=tmp_path, env={"ZIG_GLOBAL_CACHE_DIR": str(cache),
-                                                "ZIG_LOCAL_CACHE_DIR": str(tmp_path / "local")})  # fmt: skip
+        *sorted((SOURCE / "lib").glob("*.c")),
+        *(SOURCE / "lib" / "models" / f"{name}.c" for name in ("speech_en", "laughter_synthetic")),
+        SOURCE / "boards" / "text.c", SOURCE / "boards" / "host" / "host.c", "-o", "conformance", cwd=tmp_path,
+        env=environment)  # fmt: skip
     said = run(QEMU, "-L", ROOT, tmp_path / "conformance")
     assert re.search(r"^\d\d streams, 0 failures$", said, re.M)
