@@ -266,8 +266,8 @@ def test_the_wheel_for_this_machine_plays_the_conformance_streams(built: Dict[st
 @pytest.mark.skipif(not QEMU or not ROOT.is_dir(), reason="needs an emulator: install qemu-user and libc6-arm64-cross")
 def test_the_wheel_for_aarch64_plays_the_conformance_streams(built: Dict[str, Path], builder: Path, cache: Path,
                                                              tmp_path: Path) -> None:
-    """The sources of the wheel's library, by its compiler and with its limits, in the program of all boards. The library
-    itself exports the flat interface alone, and tells its number."""
+    """The sources of the wheel's library, by its compiler and with its limits, in the program of all boards. The
+    library itself exports the flat interface alone, and tells its number."""
     (tmp_path / "labial_runtime.so").write_bytes(_contents(built["aarch64"])[LIBRARY])
     (tmp_path / "flat.c").write_text("#include <stdio.h>\nextern int flat_interface(void);\n"
                                      "int main(void)\n{\n    return printf(\"%d\", flat_interface()) < 0;\n}\n")
