@@ -35,8 +35,8 @@ void labial_hear_motion_hear(labial_hear_motion_t *motion, int loud)
 /* Whether the frame is silent that is due when so many after it are known. */
 static int frame_is_silent(const labial_hear_motion_t *motion, unsigned known)
 {
-    const unsigned after = known < RESTING ? known : RESTING;
-    return (motion->loud >> (known - after) & ((1u << (SILENT_BEFORE + 1u + after)) - 1u)) == 0;
+    const unsigned after = known < RESTING ? known : RESTING, further = known > RESTING ? known - RESTING : 0u;
+    return (motion->loud >> further & ((1u << (SILENT_BEFORE + 1u + after)) - 1u)) == 0;
 }
 
 int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_model_t *model, const int16_t *heads,

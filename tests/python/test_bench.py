@@ -391,7 +391,7 @@ def test_measured_figures_take_the_place_of_the_baselines() -> None:
     grown = [dataclasses.replace(one, value=one.value + 1000.0) if one.figure == "labial_t" else one
              for one in measured]
     (complaint,) = pages.refresh(SOURCE, figures.of(SOURCE, grown), write=False)
-    assert complaint.startswith("README.md:") and "should be 1,6" in complaint
+    assert complaint.startswith("docs/figures.md:") and "should be 1,524" in complaint
     others = [dataclasses.replace(one, tool="another compiler") for one in grown]
     assert pages.refresh(SOURCE, figures.of(SOURCE, others), write=False) == []
 

@@ -440,15 +440,18 @@ def test_servos_are_written_to_the_chip() -> None:
 
 @needs_programs
 def test_blendshapes_are_weights() -> None:
-    """Every shape is used and stays a weight; lips close over the open jaw; the laugh smiles and speech hardly does."""
+    """Every shape that does not follow sounds alone is used and stays a weight; lips close over the open jaw; the laugh smiles and speech hardly does."""
     header, *rows = output("arkit")
     names = header.split(",")[1:]
-    assert names == [item.name for item in read(SOURCE / "export" / "labial" / "rig" / "arkit.toml", "arkit").outputs]
+    shapes = read(SOURCE / "export" / "labial" / "rig" / "arkit.toml", "arkit").outputs
+    assert names == [item.name for item in shapes]
+    by_sounds = {item.name for item in shapes if not any(item.weights)}
     values = np.array([[float(x) for x in row.split(",")] for row in rows])
     assert np.allclose(values[:, 0], np.arange(FRAMES) / 50)
     weights = dict(zip(names, values[:, 1:].T))
     for name, column in weights.items():
-        assert column.min() >= 0 and column.max() <= 1 and column.max() > (0.04 if name == "mouthClose" else 0.1), name
+        assert column.min() >= 0 and column.max() <= 1, name
+        assert column.max() > (0.04 if name == "mouthClose" else 0.1) or name in by_sounds, name
     for begin, end in CLOSURES:
         gap = (weights["jawOpen"] - weights["mouthClose"])[begin:end]
         assert gap.min() < 0.05

@@ -85,7 +85,8 @@ def test_drawn_distortions_cover_their_ranges() -> None:
     peaks, speeds = (np.array([getattr(item, name) for item in every]) for name in ("peak", "speed"))
     assert -45 <= peaks.min() < -44 and -1 < peaks.max() <= 0 and 0.25 < (speeds == 1.0).mean() < 0.35
     assert 0.85 <= speeds.min() < 0.86 and 1.19 < speeds.max() <= 1.2
-    for item in (every[0], distort.Distortion(1.1, 0.2, 1.0, (200.0, 4000.0), 0.5, 0.05, True, -20.0, 0.1)):
+    for item in (every[0], distort.Distortion(1.1, 0.2, 1.0, (200.0, 4000.0), 0.5, 0.05, companded=True, peak=-20.0,
+                                                   offset=0.1)):
         found = distort.distorted(noise(0.5), item, np.random.default_rng(1))
         assert found.dtype == np.int16 and len(found) == round(8000 / item.speed)
 

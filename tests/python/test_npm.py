@@ -99,7 +99,7 @@ const refused = wrong.map((text) => {
     }
 });
 answer({
-    converted, refused, faps: Array.from(track.faps), track: [...track], between: track.at(0.1), stream: [...stream],
+    converted, refused, faps: Array.from(track.faps), visemes: Array.from(track.visemes), track: [...track], between: track.at(0.1), stream: [...stream],
     names: [mine.name, mine.outputs],
 });
 """
@@ -155,7 +155,9 @@ def test_weights_are_those_of_python(tmp_path: Path) -> None:
     assert all(found["refused"]) and len(found["refused"]) == len(wrong), found["refused"]
     rig = labial.Rig(paths[0])
     faps = [found["faps"][at : at + CHANNELS] for at in range(0, len(found["faps"]), CHANNELS)]
-    assert found["track"] == found["stream"] == [rig.apply(frame) for frame in faps] and len(faps) == 20 + 12  # at rest
+    sounds = [found["visemes"][at : at + 15] for at in range(0, len(found["visemes"]), 15)]
+    assert found["track"] == found["stream"] and len(faps) == 20 + 12  # at rest
+    assert found["track"] == [rig.apply(frame, visemes=shares) for frame, shares in zip(faps, sounds)]
     assert found["between"] == found["track"][5] and found["names"] == [paths[0].stem, list(rig.outputs)]
 
 
