@@ -99,7 +99,8 @@ const refused = wrong.map((text) => {
     }
 });
 answer({
-    converted, refused, faps: Array.from(track.faps), visemes: Array.from(track.visemes), track: [...track], between: track.at(0.1), stream: [...stream],
+    converted, refused, faps: Array.from(track.faps), visemes: Array.from(track.visemes),
+    track: [...track], between: track.at(0.1), stream: [...stream],
     names: [mine.name, mine.outputs],
 });
 """
