@@ -440,8 +440,8 @@ def test_servos_are_written_to_the_chip() -> None:
 
 @needs_programs
 def test_blendshapes_are_weights() -> None:
-    """Every shape is used, but for those that follow sounds alone, and stays a weight; lips close over the open jaw; the
-    laugh smiles and speech hardly does."""
+    """Every shape is used, but for those that follow sounds alone, and stays a weight; lips close over the open jaw;
+    the laugh smiles and speech hardly does."""
     header, *rows = output("arkit")
     names = header.split(",")[1:]
     shapes = read(SOURCE / "export" / "labial" / "rig" / "arkit.toml", "arkit").outputs
