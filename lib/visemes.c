@@ -91,7 +91,6 @@ int labial_visemes(const labial_t *stream, const labial_model_t *model, const ui
     uint16_t dominance[LABIAL_VISEMES] = { 0 };
     const labial_units_t *units;
     uint32_t whole, place;
-    const uint8_t *slots;
     if (!stream || !model || !visemes || !shares)
         return LABIAL_ERROR_NULL;
     if (stream->magic != LABIAL_MAGIC_)
@@ -99,10 +98,8 @@ int labial_visemes(const labial_t *stream, const labial_model_t *model, const ui
     units = &stream->units;
     place = stream->pending - units->frames; /* frames that were accepted and are not delivered */
     whole = shown(stream);
-    /* At a change of model the labels of the frames before it are gone. */
-    slots = stream->channels.slots;
-    if (LABIAL_PAPER || place > LABIAL_REACH || stream->models[slots[0]] != model ||
-        stream->models[slots[LABIAL_DELAY(model->search_stride)]] != model)
+    /* At a change of model the labels of the frames before it are gone, and they show what follows. */
+    if (LABIAL_PAPER || place > LABIAL_REACH || stream->models[stream->channels.slots[0]] != model)
         whole = 0;
     if (whole > 0) {
         const uint8_t *label = &units->labels[LABIAL_REACH - place];

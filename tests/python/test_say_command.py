@@ -59,7 +59,7 @@ def test_it_needs_nothing_but_python(tmp_path: Path) -> None:
     code = ("import sys; sys.modules['numpy'] = None\n"
             "from labial.__main__ import main; sys.exit(main(['say', 'Hello there', '-o', sys.argv[1]]))")
     done = subprocess.run([sys.executable, "-c", code, str(tmp_path / "a.html")], capture_output=True, text=True,
-                          check=False, env={"PATH": "", **_environment()})
+                          check=False, env={"PATH": "", "PYTHONDONTWRITEBYTECODE": "1", **_environment()})
     assert done.returncode == 0, done.stderr
     assert "labial-mouth" in (tmp_path / "a.html").read_text(encoding="utf-8")
 
