@@ -198,7 +198,7 @@ int labial_model_check(const labial_model_t *model);
  * them. Where models change, a tick takes at most the sum of their costs, one for each run of a model's phonemes within
  * the latest `search_stride` frames.
  *
- * The bundled models cost about 29,000 and 23,000, and their ticks take 14,200 at most, 15,500 where models change with
+ * The bundled models cost about 29,000 and 24,000, and their ticks take 14,200 at most, 15,500 where models change with
  * every phoneme. A model that labial_model_check() accepts can cost 140,000. So a program that plays foreign models compares this number with the
  * instructions that its processor has for a frame:
  *

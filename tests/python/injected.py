@@ -195,6 +195,7 @@ def cases() -> Dict[str, Case]:
         "page": Case(["page", "f.csv", "-o", "out/p.html"], ["p.html"]),
         "landmarks": Case(["landmarks", "v.mp4", "-o", "out/l.npz", "--quiet"], ["l.npz"], patch=_track),
         "record": Case(["record", "seen.npz", "-o", "out/c"], ["c/seen.csv", "c/seen.lab"], there=False),
+        "say": Case(["say", "Hi", "--voice", "none", "-o", "out/s.csv"], ["s.csv"]),
         "hear": Case(["hear", "a.wav", "--sound-alone", "-o", "out/h.csv"], ["h.csv"]),
         "train-hear": Case(["train-hear", "corpus", "-o", "out/h.npz", "--quiet"], ["h.npz"], patch=_train_hear),
         "evaluate-hear": Case(["evaluate-hear", str(MODELS / "hear_small.npz"), "-o", "out/t.md", "--cache", "cache"],
