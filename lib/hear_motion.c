@@ -29,7 +29,7 @@ void labial_hear_motion_reset(labial_hear_motion_t *motion)
 
 void labial_hear_motion_hear(labial_hear_motion_t *motion, int loud)
 {
-    motion->loud = motion->loud << 1 | (loud != 0);
+    motion->loud = motion->loud << 1 | (loud ? 1u : 0u);
 }
 
 /* Whether the frame is silent that is due when so many after it are known. */

@@ -521,7 +521,7 @@ def test_sounds(tmp_path: Path, told: Told, name: str) -> None:
     """``labial hear`` and ``labial align``."""
     make, message = SOUNDS[name]
     (tmp_path / "a.wav").write_bytes(make())
-    said = told("hear", "a.wav", "--sound-alone", "-o", "h.csv")
+    said = told("hear", "a.wav", "--sound-alone", "--model", "small", "-o", "h.csv")
     assert said.startswith("a.wav: " if message else "") and (message or "") in said, said
 
 
