@@ -39,9 +39,10 @@ static void dominate(uint16_t dominance[LABIAL_VISEMES], unsigned viseme, uint32
     uint32_t lost;
     if (viseme == LABIAL_VISEME_NONE)
         return;
-    row = &dominances[viseme < LABIAL_VISEMES ? viseme : (unsigned)LABIAL_VISEME_SIL];
+    if (viseme >= LABIAL_VISEMES)
+        viseme = LABIAL_VISEME_SIL;
+    row = &dominances[viseme];
     lost = ms * (later ? row->onset : row->release);
-    viseme = viseme < LABIAL_VISEMES ? viseme : (unsigned)LABIAL_VISEME_SIL;
     if (lost < row->strength && row->strength - lost > dominance[viseme])
         dominance[viseme] = (uint16_t)(row->strength - lost);
 }
