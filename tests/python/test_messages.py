@@ -20,7 +20,8 @@ import labial
 from labial.corpus.labels import LONGEST
 from labial.corpus.messages import Messages, Stats
 from labial.corpus.phonesets import PHONE_SETS
-from labial.corpus.services import SERVICES, read
+from labial.corpus.service_files import read
+from labial.corpus.services import SERVICES
 from labial.errors import LabialError
 from labial.files import limits
 from packages import SOURCE

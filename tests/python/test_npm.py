@@ -19,7 +19,7 @@ import pytest
 
 import labial
 from labial.__main__ import main
-from labial.corpus import services
+from labial.corpus import service_files
 from labial.corpus.phonesets import ARPABET, AUTO
 from labial.errors import DataError
 from labial.files.faps import CHANNELS, FAP_NAMES
@@ -203,7 +203,7 @@ def read_by_python(folder: Path, reader: str, text: str) -> Any:
     path = folder / "a"
     path.write_bytes(text.encode("utf-8"))
     try:
-        return [(item.start, item.end, item.label, item.labels) for item in services.read(path, READERS[reader])]
+        return [(item.start, item.end, item.label, item.labels) for item in service_files.read(path, READERS[reader])]
     except DataError as error:
         return str(error)
 

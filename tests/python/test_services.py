@@ -15,7 +15,8 @@ import pytest
 import labial
 from labial.__main__ import main
 from labial.corpus.formats import as_lab, read_timings
-from labial.corpus.services import LAST_VISEME, LONGEST_GAP, SERVICES, _phonemes_of
+from labial.corpus.service_files import LAST_VISEME, LONGEST_GAP, _phonemes_of
+from labial.corpus.services import SERVICES
 from labial.corpus.timings import SourceSegment, read_segments
 from labial.errors import DataError
 from labial.see.motion import read_bands

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
 from labial.core import lines
-from labial.corpus import services
+from labial.corpus import service_files, services
 from labial.corpus.entries import Parsed, read_entries
 from labial.corpus.phonesets import AUTO
 from labial.corpus.timings import PathLike, SourceSegment, lab_of, phone_set_of, phoneme_segments, read_segments
@@ -45,7 +45,7 @@ def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciatio
     the content. Where words are told, `how` says how they are pronounced. `offset` seconds are added to all times; what
     that moves before the beginning is cut off."""
     form = source or suffixes().get(Path(path).suffix.lower()) or _told_by_content(path)
-    segments = services.read(path, form, how) if form in services.SERVICES else read_segments(path, form)
+    segments = service_files.read(path, form, how) if form in services.SERVICES else read_segments(path, form)
     return _moved(segments, offset) if offset else segments
 
 

@@ -148,21 +148,14 @@ def match_states(
         anchor[channel] = scales.anchor / np.maximum(residual, own.floor[0])
     scale = np.array([scales.static, scales.delta, scales.acceleration])
     precision, anchor = limit_range(scale / variance, anchor)
-    return StateTables(
-        emission_mean=tables.emission_mean,
-        emission_variance=tables.emission_variance,
-        state_mean=mean,
-        state_precision=precision,
-        state_anchor=anchor,
+    return replace(
+        tables, state_mean=mean, state_precision=precision, state_anchor=anchor,
         # A path repeats each state throughout its block, so that the blocks' ends are the chain that was decoded; human
         # paths change in every frame, and codebooks count all pairs that lie a stride apart.
         log_transition=np.stack([
             transitions([item[viterbi.block_ends(len(item), tables.stride, k), k] for item in paths], size)
             for k in range(count)
-        ]),
-        log_initial=tables.log_initial,
-        stride=tables.stride,
-    )
+        ]))  # fmt: skip
 
 
 def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -180,7 +173,7 @@ def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, 
     return limited, anchor * hold_share
 
 
-# ---- Tracking states (docs/method ------------------------------------------------------------------------------------
+# ---- Tracking states (docs/method.md) --------------------------------------------------------------------------------
 
 #: Factors of precisions. Static and anchor share the precision from least squares.
 SCALES = Scales(static=1.0, delta=0.1, acceleration=0.1, anchor=1.0)
