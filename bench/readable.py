@@ -26,6 +26,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
+from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
 from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
@@ -185,8 +186,8 @@ def timed(motion: Motion) -> List[Tuple[str, float, float]]:
     """The viseme of each phoneme with its first frame and its end; Motion has them a frame wider on either side."""
     found = []
     for label, begin, end in motion.phonemes:
-        bare = {"ax": "AH", "pau": "SIL", "axr": "ER", "dx": "D"}.get(label, label.upper())
-        found.append((VISEME_OF.get(bare, "sil"), begin + 1.0, max(end - 1.0, begin + 2.0)))
+        viseme = VISEME_OF.get(SPEECH.nearest(label), "sil")
+        found.append((viseme, begin + 1.0, max(end - 1.0, begin + 2.0)))
     return found
 
 
