@@ -435,13 +435,13 @@ int labial_voice_init(labial_voice_t *voice, const labial_model_t *model, void *
     return append_utterance(voice, 0, 0, 0);
 }
 
-int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[40])
+int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[LABIAL_ARPABET_PHONEMES])
 {
     unsigned i;
     const int result = voice_status(voice);
     if (result != LABIAL_OK)
         return result;
-    for (i = 0; numbers && i < 40u; i++)
+    for (i = 0; numbers && i < LABIAL_ARPABET_PHONEMES; i++)
         if (numbers[i] >= voice->model->phoneme_count)
             return LABIAL_ERROR_PHONEME;
     voice->numbers = numbers;

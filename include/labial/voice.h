@@ -174,7 +174,7 @@ int labial_voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own, void 
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE or LABIAL_ERROR_PHONEME.
  */
-int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[40]);
+int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[LABIAL_ARPABET_PHONEMES]);
 
 /* Adds so many milliseconds to all times: with a service that reports them too early, a positive number.
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, or LABIAL_ERROR_RANGE beyond a day. */
