@@ -15,7 +15,7 @@ typedef struct {
     uint8_t onset, release;
 } dominance_t;
 
-/* Lips round early (onsets of 120 ms and less), and closed lips and teeth on the lip part fast (40 ms). The reference is
+/* Lips round early (onsets of 112 ms and less), and closed lips and teeth on the lip part fast (40 ms). The reference is
  * export/labial/reference/visemes.py. */
 static const dominance_t dominances[LABIAL_VISEMES] = {
     { 384, 6, 6 },   { 2048, 51, 51 }, { 2048, 51, 51 }, { 1536, 34, 51 }, { 512, 10, 12 },

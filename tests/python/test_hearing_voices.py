@@ -81,10 +81,11 @@ def test_voices_of_espeak_follow_each_other() -> None:
     first = one("espeak:en-us+f3")
     faster = next(iter(speak("espeak:en-gb-scotland+m2", ["Peter bought a map."], pace=1.4, pitch=0.8)))
     again = one("espeak:en-us+f3")
+    british = one("espeak:en-gb")  # a voice by its language
     assert len(faster.samples) < 0.85 * len(first.samples)
     assert len(again.samples) == pytest.approx(len(first.samples), rel=0.02)
     assert labels(first.segments) == labels(again.segments)
-    assert without_gaps(first) and "B" in labels(first.segments)
+    assert without_gaps(first) and "B" in labels(first.segments) and "B" in labels(british.segments)
 
 
 def test_a_closure_is_the_silence_before_the_burst() -> None:

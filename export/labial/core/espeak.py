@@ -40,6 +40,13 @@ def library() -> Tuple[Any, int]:
     return found, rate
 
 
+def set_voice(found: Any, voice: str) -> bool:
+    """Has the library speak with a voice, by its name or by that of its language, such as en-gb; False without one."""
+    name = voice.encode("utf-8")
+    return not found.espeak_SetVoiceByName(name) or not found.espeak_SetVoiceByProperties(
+        ctypes.byref(_Voice(None, name)))
+
+
 def ipa(texts: List[str], voice: str) -> Optional[List[str]]:
     """The IPA of each text, with ``_`` between phonemes and blanks between words; None if there is no such voice. The
     voice that was set stays set."""
@@ -47,8 +54,7 @@ def ipa(texts: List[str], voice: str) -> Optional[List[str]]:
         found, _ = library()
         current = found.espeak_GetCurrentVoice()
         before = current.contents.identifier if current else None
-        name = voice.encode("utf-8")
-        if found.espeak_SetVoiceByName(name) and found.espeak_SetVoiceByProperties(ctypes.byref(_Voice(None, name))):
+        if not set_voice(found, voice):
             return None
         try:
             return [_ipa(found, text) for text in texts]

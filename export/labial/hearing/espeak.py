@@ -52,7 +52,7 @@ class Speaker:
         self._samples: List[np.ndarray] = []
         self._events: List[Tuple[int, str]] = []
         self._callback = _CALLBACK(self._heard)  # kept: the library holds its address
-        if self._library.espeak_SetVoiceByName(voice.encode("utf-8")) != 0:
+        if not espeak.set_voice(self._library, voice):
             raise LabialError(f"espeak-ng has no voice {voice!r}")
         self._library.espeak_SetParameter(_RATE, round(_NORMAL_RATE * pace), 0)
         self._library.espeak_SetParameter(_PITCH, min(round(_NORMAL_PITCH * pitch), 99), 0)
