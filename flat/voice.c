@@ -163,12 +163,12 @@ static void move_addresses(void *addresses, unsigned count, size_t further)
 
 void voice_move(labial_model_t *model, size_t further)
 {
-    const size_t tables = offsetof(labial_model_t, channels) - offsetof(labial_model_t, phonemes);
-    move_addresses(&model->phonemes, (unsigned)(tables / sizeof(void *)) + 1u, further);
+    const size_t first = offsetof(labial_model_t, phonemes), last = offsetof(labial_model_t, channels);
+    move_addresses((char *)model + first, (unsigned)((last - first) / sizeof(void *)) + 1u, further);
     for (unsigned k = 0; k < model->channel_count; k++) {
         labial_channel_t channel;
         memcpy(&channel, model->channels + k, sizeof channel);
-        move_addresses(&channel.emissions, 4, further);
+        move_addresses((char *)&channel + offsetof(labial_channel_t, emissions), 4, further);
         memcpy((void *)(uintptr_t)(model->channels + k), &channel, sizeof channel);
     }
 }

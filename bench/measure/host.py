@@ -119,7 +119,8 @@ def npm(bench: Bench) -> None:
     bench.add("wasm", "words, each script compressed", sum(map(_compressed, words)), "bytes",
               ["gzip", "-9c", folder / "npm-words" / "*.js", "|", "wc", "-c"], compiler)
     for packed in sorted(folder.glob("labial-*.tgz")):
-        kinds = (f"packed {kind} package" for kind in ("laughter", "hearing", "words") if kind in packed.name)
+        kinds = (f"packed {kind} package" for kind in ("laughter", "hearing-host", "hearing", "words")
+                 if kind in packed.name)
         name = next(kinds, "packed package")
         bench.add("wasm", name, packed.stat().st_size, "bytes", ["ls", "-l", packed], compiler)
     command = ["node", bench.source / "bench" / "npm.mjs", folder / "npm"]

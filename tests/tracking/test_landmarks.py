@@ -156,7 +156,8 @@ def test_sound_and_picture_are_on_one_clock(tmp_path: Path) -> None:
 SENTENCES = ("My baby may be happy when we play by the pool.",
              "Put the butter on the table, and pour me a cup of coffee.",
              "Thank you very much for your visit, and have a pleasant journey home.",
-             "Bob may bring a map of the village and five more apples.")
+             "Bob may bring a map of the village and five more apples.",
+             "Every Friday my father makes a warm bowl of soup for the family.")
 
 
 def speaking(path: Path, sentence: str) -> None:
@@ -182,7 +183,7 @@ def speaking(path: Path, sentence: str) -> None:
 
 @pytest.mark.skipif(not shutil.which("flite"), reason="needs the Debian package flite")
 def test_the_five_commands_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first block of docs/record.md as it stands there, the first two lines for each of four videos."""
+    """The first block of docs/record.md as it stands there, the first two lines for each of the videos."""
     page = (Path(os.environ["LABIAL_SOURCE"]) / "docs" / "record.md").read_text(encoding="utf-8")
     lines = page.split("```sh\n")[1].split("```")[0].splitlines()
     assert [line.split()[1] for line in lines] == ["landmarks", "align", "record", "train", "page"]
