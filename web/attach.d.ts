@@ -11,7 +11,7 @@ export class Head<O extends Face | Rig = Face> {
     #private;
     private constructor();
     /** The form of the frames that it takes, for render(), hear() or voice(): "arkit" before "oculus" before "vrm", or
-     * the rig that was given. */
+     * the rig that was given. ARKit's shapes count only if the jaw opens at least half as far as the viseme of "ah". */
     readonly output: O;
     /** The meshes that have shapes: head, teeth, beard. */
     readonly meshes: readonly any[];

@@ -20,6 +20,7 @@ const KINDS = Object.entries({
     vrm: ["aa", "ih", "ou", "ee", "oh"],
 });
 const ENOUGH = { arkit: 4, oculus: 8, vrm: 3 };
+const AH = ["oculus", "vrm"].flatMap((kind) => namesOf(kind, "aa"));
 
 export class Head {
     #move; // by the plain name of a shape or an expression, what sets it
@@ -80,6 +81,7 @@ export function attach(avatar, { output } = {}) {
         throw new TypeError("the avatar is none: a scene of three.js, what GLTFLoader loads, or a VRM of three-vrm");
     }
     const move = new Map();
+    const reached = new Map(); // by the plain name of a shape, how far it moves the head
     const add = (name, set) => {
         const known = plain(name);
         if (!move.has(known)) move.set(known, []);
@@ -88,16 +90,20 @@ export function attach(avatar, { output } = {}) {
     const meshes = [];
     const manager = vrm?.expressionManager;
     for (const name of manager ? Object.keys(manager.expressionMap) : []) add(name, (weight) => manager.setValue(name, weight));
-    const expressed = manager && kindOf(move);
+    const expressed = manager && kindOf(move, reached);
     scene.traverse((mesh) => {
         if (!mesh.morphTargetDictionary) return;
         meshes.push(mesh);
         if (expressed) return; // the expressions move the shapes
         for (const [name, place] of Object.entries(mesh.morphTargetDictionary)) {
             add(name, (weight) => { mesh.morphTargetInfluences[place] = weight; });
+            const known = plain(name);
+            if (known === "jawopen" || AH.includes(known)) {
+                reached.set(known, Math.max(reached.get(known) ?? 0, reach(mesh.geometry?.morphAttributes?.position?.[place])));
+            }
         }
     });
-    const kind = output ?? kindOf(move);
+    const kind = output ?? kindOf(move, reached);
     if (!kind) {
         const names = [...new Set(meshes.flatMap((mesh) => Object.keys(mesh.morphTargetDictionary)))];
         throw new LabialError(names.length ? `the avatar's shapes are neither ARKit's nor visemes: ${names.slice(0, 8).join(", ")}` +
@@ -106,7 +112,18 @@ export function attach(avatar, { output } = {}) {
     return new Head(kind, meshes, move);
 }
 
-function kindOf(move) {
+/** How far a shape moves a vertex at most; endlessly where that is not known. */
+function reach(moves) {
+    let most = 0;
+    for (let i = 0; i < (moves?.count ?? 0); i++) most = Math.max(most, Math.hypot(moves.getX(i), moves.getY(i), moves.getZ(i)));
+    return moves ? most : Infinity;
+}
+
+/** The first kind whose names are there. Heads whose jaw hardly opens, as VRoid's to which ARKit's names were added, have
+ * visemes that open the mouth. */
+function kindOf(move, reached) {
     const has = (kind) => (name) => namesOf(kind, name).some((one) => move.has(one));
-    return KINDS.find(([kind, names]) => names.filter(has(kind)).length >= ENOUGH[kind])?.[0];
+    const opens = reached.get("jawopen") ?? Infinity, ah = Math.max(0, ...AH.map((name) => reached.get(name) ?? 0));
+    return KINDS.find(([kind, names]) => names.filter(has(kind)).length >= ENOUGH[kind] &&
+        (kind !== "arkit" || opens >= ah / 2))?.[0];
 }

@@ -109,6 +109,18 @@ test("an avatar's shapes are found by all names that are known of them", () => {
     }
 });
 
+test("a head whose jaw hardly opens is moved by its visemes", () => {
+    const shape = (x) => ({ count: 2, getX: (i) => x * i, getY: () => 0, getZ: () => 0 });
+    for (const [jaw, wanted] of [[0, "vrm"], [0.4, "vrm"], [0.5, "arkit"], [-3, "arkit"]]) {
+        const names = ["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose", "Fcl_MTH_A", "Fcl_MTH_I", "Fcl_MTH_U"];
+        const found = scene(names, names);
+        found.nodes[1].geometry = { morphAttributes: { position: names.map((name) => shape(name === "Fcl_MTH_A" ? 1 : name === "jawOpen" ? jaw : 9)) } };
+        found.nodes[0].geometry = { morphAttributes: { position: names.map(() => shape(0)) } }; // eyes
+        assert.equal(attach(found).output, wanted, `jaw ${jaw}`);
+    }
+    assert.equal(attach(scene(["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose", "aa"])).output, "arkit");
+});
+
 test("what is no avatar, and one that nothing is known of, is an error", () => {
     const errors = [[{}, TypeError, /^the avatar is none/], [scene(), undefined, /has no shapes/],
         [scene(["smile", "beak"]), undefined, /neither ARKit's nor visemes: smile, beak; labial fit/]];
