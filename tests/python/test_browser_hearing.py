@@ -46,6 +46,8 @@ const RECORDER = `registerProcessor("recorder", class extends AudioWorkletProces
 });`;
 const labial = window.labial = await Labial.load({ hearing: () => import("./node_modules/labial-hearing/index.js") });
 const data = await (await fetch("voice.wav")).arrayBuffer();
+window.host = { index: () => import("./node_modules/labial-hearing-host/index.js"),
+    ahead: () => import("./node_modules/labial-hearing-host/ahead.js") };
 
 /** A source of sound in each form: what is heard, and what begins it. */
 const sources = {
@@ -118,7 +120,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page, the voice and the packages."""
     folder = tmp_path_factory.mktemp("hearing") / "page"
     built = package(tmp_path_factory.mktemp("npm"))
-    for name in ("labial", "labial-hearing"):
+    for name in ("labial", "labial-hearing", "labial-hearing-host"):
         shutil.copytree(built.with_name(built.name + name[6:]), folder / "node_modules" / name)
     (folder / "index.html").write_text(PAGE, encoding="utf-8")
     subprocess.run([str(FLITE), "-voice", "slt", "-t", TEXT, "-o", str(folder / "voice.wav")], check=True, timeout=60)
@@ -162,12 +164,13 @@ def lips_of(heard: Dict[str, Any], model: str) -> np.ndarray:
 
 @pytest.mark.parametrize(("kind", "rate", "model"), [
     ("element", 0, "small"), ("stream", 0, "large"), ("stream", 44100, "small"), ("node", 96000, "small"),
-    ("remote", 0, "small"),
+    ("remote", 0, "small"), ("element", 0, "host"), ("node", 0, "ahead"),
 ])  # fmt: skip
 def test_lips_move_with_what_is_heard(page: Page, kind: str, rate: int, model: str) -> None:
     """Catches lips that are late by what it takes to know them, a sound that is not delayed as much, blocks that are
     lost, and a face that is drawn from another clock."""
-    page.evaluate(f"hear('{kind}', {rate}, {{ model: '{model}' }})")
+    wanted = {"host": "host.index", "ahead": "host.ahead"}.get(model, f"'{model}'")
+    page.evaluate(f"hear('{kind}', {rate}, {{ model: {wanted} }})")
     page.wait_for(f"heard.samples.length > {SECONDS} * heard.rate", 60)
     heard = page.evaluate("heard.over = true, heard")
     assert heard["delay"] >= heard["latency"]
