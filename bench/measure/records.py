@@ -241,20 +241,21 @@ def _run(root: Path, line: str) -> str:
 
 def with_tables(text: str, title: str, report: str) -> str:
     """RESULTS.md's text with the tables of a report in a section, each in the place of that with the same first column
-    heads."""
+    heads. Sections below it that have commands of their own keep theirs."""
     made = _blocks(report)
     begin = re.search(rf"^#+ {re.escape(title)}\n", text, re.MULTILINE)
     if not begin:
         raise ValueError(f"{RESULTS}: no section {title!r}")
-    level = len(begin[0].split()[0])
-    end = re.compile(rf"^#{{1,{level}}} ", re.MULTILINE).search(text, begin.end())
-    body = text[begin.end() : end.start() if end else len(text)]
+    level, others = len(begin[0].split()[0]), section_commands(text)
+    headings = re.compile(r"^(#+) (.*)$", re.MULTILINE).finditer(text, begin.end())
+    end = next((one.start() for one in headings if len(one[1]) <= level or one[2] in others), len(text))
+    body = text[begin.end() : end]
     for block in _blocks(body):
         new = [one for one in made if _kind(one) == _kind(block)]
         if new:
             body = body.replace(block, new[0])
             made.remove(new[0])
-    return text[: begin.end()] + body + text[end.start() if end else len(text) :]
+    return text[: begin.end()] + body + text[end:]
 
 
 def _blocks(text: str) -> List[str]:

@@ -352,6 +352,9 @@ def test_sections_of_results_get_their_tables() -> None:
     report = "| method | a | b |\n|---|---|---|\n| x | 5 | 6 |\n\n| method | c | d |\n|---|---|---|\n| x | 7 | 8 |\n"
     assert records.with_tables(PAGE, "Part", report) == PAGE.replace("| 3 | 4 |", "| 5 | 6 |")
     assert records.with_tables(PAGE, "One", report) == PAGE.replace("| 1 | 2 |", "| 5 | 6 |")
+    # Part has commands of its own, and keeps a table that One's report has, too.
+    longer = PAGE.replace("| x | 3 | 4 |\n", "| x | 3 | 4 |\n\n| method | c | d |\n|---|---|---|\n| x | 0 | 0 |\n")
+    assert records.with_tables(longer, "One", report) == longer.replace("| 1 | 2 |", "| 5 | 6 |")
 
 
 def test_a_section_tells_when_it_is_older_than_the_models() -> None:
