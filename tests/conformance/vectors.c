@@ -499,7 +499,7 @@ static const conformance_step_t articulated_turns_steps[] = {
 const conformance_stream_t conformance_streams[] = {
     { "sentence", sentence_steps, 17, 90, 0x9bfcfcd0u },
     { "phonemes", phonemes_steps, 41, 132, 0x30c418fau },
-    { "laugh", laugh_steps, 33, 158, 0x2c8f49e3u },
+    { "laugh", laugh_steps, 33, 158, 0x79e4375du },
     { "one_frame", one_frame_steps, 30, 41, 0xce2a9004u },
     { "one_millisecond", one_millisecond_steps, 161, 20, 0x446ac735u },
     { "rounding", rounding_steps, 17, 35, 0xe8bd1ba1u },
@@ -516,20 +516,20 @@ const conformance_stream_t conformance_streams[] = {
     { "minutes", minutes_steps, 7, 9039, 0xd5b62ae5u },
     { "endless", endless_steps, 7, 72, 0x5712aac4u },
     { "queue", queue_steps, 115, 126, 0xaf82eb52u },
-    { "switch", switch_steps, 19, 99, 0xa0e4d085u },
-    { "graded", graded_steps, 20, 103, 0x9f905b52u },
-    { "quick_switches", quick_switches_steps, 18, 73, 0x2659417au },
-    { "second_frame", second_frame_steps, 6, 47, 0xe956b27du },
-    { "turns", turns_steps, 182, 622, 0xbbba88b0u },
-    { "switch_in_long", switch_in_long_steps, 6, 189, 0x195103e3u },
-    { "restarted", restarted_steps, 13, 89, 0xf7532c32u },
-    { "cancelled", cancelled_steps, 52, 118, 0x169cc86au },
-    { "cancelled_twice", cancelled_twice_steps, 40, 93, 0xce79f6c2u },
+    { "switch", switch_steps, 19, 99, 0xb6d8e267u },
+    { "graded", graded_steps, 20, 103, 0x5fd37c3au },
+    { "quick_switches", quick_switches_steps, 18, 73, 0x94609429u },
+    { "second_frame", second_frame_steps, 6, 47, 0xa98b2db0u },
+    { "turns", turns_steps, 182, 622, 0x1c3224c2u },
+    { "switch_in_long", switch_in_long_steps, 6, 189, 0x2bf78c60u },
+    { "restarted", restarted_steps, 13, 89, 0xa6515be0u },
+    { "cancelled", cancelled_steps, 52, 118, 0xcaf9bdc7u },
+    { "cancelled_twice", cancelled_twice_steps, 40, 93, 0xe5d2f218u },
     { "saturated", saturated_steps, 4, 65, 0xcb73c289u },
     { "mumbled", mumbled_steps, 18, 103, 0xed0226beu },
     { "shouted", shouted_steps, 35, 169, 0x5dce58eau },
     { "articulated", articulated_steps, 31, 139, 0x1b4f2fd6u },
-    { "articulated_turns", articulated_turns_steps, 34, 150, 0xb2039502u }
+    { "articulated_turns", articulated_turns_steps, 34, 150, 0xd9c04273u }
 };
 
 const unsigned conformance_stream_count = 33;

@@ -261,13 +261,12 @@ def material_of(talkers: str) -> List[Recording]:
     return [replace(item, frames=rng.normal(0, 50, item.frames.shape)) for item in items]
 
 
-def test_equals_the_regression_with_each_talkers_deviation_as_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_equals_the_regression_with_each_talkers_deviation_as_columns() -> None:
     # Catches a marginal that is not that of the model, another prior for what is shared, a talker whose utterances are
     # not together, an own part that is another talker's.
-    monkeypatch.setattr("labial.train.kernels.PAIR_COUNT", 9)
     material = material_of("abacab")
     choice = choice_of(material)
-    asked = regression(material, tables(), CLASS, range(PHONEMES), 0, FPS, Penalties(intercept=np.inf))
+    asked = regression(material, tables(), CLASS, range(PHONEMES), 0, FPS, Penalties(intercept=np.inf), pair_count=9)
     shared, own = fit_talkers(asked, material, choice, VARIANCE)
 
     rows = _design(material, choice, asked.deviation, PHONEMES, asked.lag, 0, asked.pairs, asked.knots).toarray()

@@ -57,7 +57,7 @@ REACH_FRAMES = LIMITS["reach"]
 BLOCK = 65536
 
 #: Least occurrences of a pair with its own correction, regardless of their weights.
-PAIR_COUNT = 25
+PAIR_COUNT = 20
 
 #: Knots of a pair: one for a constant shape, two for one that changes from the phoneme's start to its end.
 PAIR_KNOTS = 2
@@ -338,12 +338,14 @@ def regression(
     penalties: Penalties,
     look_ahead: float = LOOK_AHEAD,
     knots: int = PAIR_KNOTS,
+    pair_count: int = PAIR_COUNT,
 ) -> Regression:
-    """The columns for `material`, of whose pairs those that are frequent. `viseme_class` is (P,), `stand_in` (P,) the
-    phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is in seconds; `knots` is K."""
+    """The columns for `material`, of whose pairs those that occur at least `pair_count` times. `viseme_class` is (P,),
+    `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is in seconds; `knots` is
+    K."""
     learnt = np.concatenate([item.learnt() for item in material])
     code, count = np.unique(pair_codes(material, len(viseme_class), silence)[learnt], return_counts=True)
-    return Regression(tables, viseme_class, stand_in, silence, fps, lags(fps, look_ahead), code[count >= PAIR_COUNT],
+    return Regression(tables, viseme_class, stand_in, silence, fps, lags(fps, look_ahead), code[count >= pair_count],
                       penalties, knots)
 
 

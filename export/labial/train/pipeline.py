@@ -48,7 +48,7 @@ from labial.train.states import (
     decode,
     match_states,
 )
-from labial.train.talkers import check_variance, counted_once, fit_talkers, penalties_of, weights_of
+from labial.train.talkers import check_variance, counted_once, fit_talkers, pair_count_of, penalties_of, weights_of
 from labial.train.workers import Workers
 
 #: Utterances that are decoded at once.
@@ -304,6 +304,7 @@ def _fit_shapes(
     asked = regression(
         material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
         _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
+        pair_count_of(setting.talker_variance),
     )
     if setting.talker_variance is None:
         kernels = fit_kernels(asked, material, choice)

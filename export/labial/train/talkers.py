@@ -26,7 +26,7 @@ from scipy.linalg import cho_factor, cho_solve
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.reference.shape import Choice
-from labial.train.kernels import Kernels, Penalties, Regression, columns_alike
+from labial.train.kernels import PAIR_COUNT, Kernels, Penalties, Regression, columns_alike
 from labial.train.recordings import Recording
 
 #: How many times stronger the prior of what talkers share is than that of one talker; chosen on talkers left out, where
@@ -40,6 +40,9 @@ LARGEST_VARIANCE = 1000.0
 #: single neighbours add, carries over to others least; how a phoneme looks, and its peak, most.
 PENALTIES = Penalties(smoothness=0.1, shape=5.0, slope=300.0, pair=40.0)
 
+#: Least occurrences of a pair with talkers: with 20 as without, the tables are larger and the motion no closer.
+PAIR_COUNT_SHARED = 25
+
 
 def check_variance(variance: Optional[float]) -> None:
     """Raises LabialError for an invalid variance of talkers."""
@@ -50,6 +53,11 @@ def check_variance(variance: Optional[float]) -> None:
 def penalties_of(variance: Optional[float]) -> Penalties:
     """The penalties of a regression with talkers of this variance, or without talkers."""
     return Penalties() if variance is None else PENALTIES
+
+
+def pair_count_of(variance: Optional[float]) -> int:
+    """The least occurrences of a pair with talkers of this variance, or without talkers."""
+    return PAIR_COUNT if variance is None else PAIR_COUNT_SHARED
 
 
 def counted_once(item: Recording) -> Recording:
