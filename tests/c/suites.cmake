@@ -13,7 +13,7 @@ endif()
 # labial_suite_label(<variable> <suite>): the part of the library that a suite tests, which is its label in ctest.
 function(labial_suite_label variable name)
   set(label core)
-  if(name MATCHES "^test_(hear|words)")
+  if(name MATCHES "^test_(hear|voice|words)")
     set(label ${CMAKE_MATCH_1})
   endif()
   set(${variable} ${label} PARENT_SCOPE)
