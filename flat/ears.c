@@ -48,6 +48,9 @@ static void take_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHA
     (void)frame;
     if (ears->faps && ears->frame_count < ears->room)
         memcpy(ears->faps + ears->frame_count * LABIAL_CHANNELS, faps, LABIAL_CHANNELS * sizeof *faps);
+    if (ears->visemes && ears->frame_count < ears->room)
+        (void)labial_hear_visemes(&ears->hear, labial_heard_visemes,
+                                  ears->visemes + ears->frame_count * LABIAL_VISEMES);
     ears->frame_count++;
 }
 
@@ -63,9 +66,10 @@ static void take_stretch(void *user, unsigned shown, uint32_t frame, uint32_t fr
     ears->stretch_count++;
 }
 
-static void take_to(ears_t *ears, int16_t *faps, uint32_t *stretches, uint32_t room)
+static void take_to(ears_t *ears, int16_t *faps, uint8_t *visemes, uint32_t *stretches, uint32_t room)
 {
     ears->faps = faps;
+    ears->visemes = visemes;
     ears->stretches = stretches;
     ears->room = room;
     ears->frame_count = ears->stretch_count = 0;
@@ -80,7 +84,7 @@ int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_p
 {
     const int result = labial_hear_init(&ears->hear, model, samples_per_second, channels, ears->workspace,
                                         sizeof ears->workspace, take_frame, ears);
-    take_to(ears, NULL, NULL, 0);
+    take_to(ears, NULL, NULL, NULL, 0);
     return result == LABIAL_OK ? labial_hear_classes(&ears->hear, take_stretch) : result;
 }
 
@@ -89,21 +93,23 @@ uint32_t ears_latency(const ears_t *ears)
     return labial_hear_latency(&ears->hear).delay_milliseconds;
 }
 
-int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint32_t *stretches, uint32_t room)
+int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint8_t *visemes,
+              uint32_t *stretches, uint32_t room)
 {
-    take_to(ears, faps, stretches, room);
+    take_to(ears, faps, visemes, stretches, room);
     return taken(ears, labial_hear_push(&ears->hear, samples, count));
 }
 
-int ears_end(ears_t *ears, int16_t *faps, uint32_t *stretches, uint32_t room)
+int ears_end(ears_t *ears, int16_t *faps, uint8_t *visemes, uint32_t *stretches, uint32_t room)
 {
-    take_to(ears, faps, stretches, room);
+    take_to(ears, faps, visemes, stretches, room);
     return taken(ears, labial_hear_end(&ears->hear));
 }
 
-int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint32_t *stretches, uint32_t room)
+int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint8_t *visemes, uint32_t *stretches,
+                uint32_t room)
 {
-    take_to(ears, faps, stretches, room);
+    take_to(ears, faps, visemes, stretches, room);
     return taken(ears, labial_hear_cancel(&ears->hear, milliseconds));
 }
 

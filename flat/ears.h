@@ -11,9 +11,11 @@
 /* A stream of sound with all that belongs to it. */
 typedef struct {
     labial_hear_t hear;
-    int16_t *faps; /* where the frames of the present call go, and the stretches of one class; null: nowhere */
+    /* Where the frames of the present call go, their sounds, and the stretches of one class; null: nowhere. */
+    int16_t *faps;
+    uint8_t *visemes;
     uint32_t *stretches;
-    uint32_t room;        /* for either */
+    uint32_t room;        /* for each */
     uint32_t frame_count; /* how many there were in the last call */
     uint32_t stretch_count;
     uint32_t workspace[LABIAL_HEAR_WORKSPACE_SIZE(LABIAL_HEAR_UNITS_MAX, 255) / 4u];
@@ -35,14 +37,16 @@ int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_p
 /* Milliseconds from the begin of a frame until it is known. */
 FLAT(ears_latency) uint32_t ears_latency(const ears_t *ears);
 
-/* These write the frames that they deliver to `faps`, 13 numbers each, and the stretches of one class to `stretches`,
- * class, first frame and number of frames, up to `room` of either. They return how many frames there were, or an error;
- * ears_stretches() is how many stretches. */
+/* These write the frames that they deliver to `faps`, 13 numbers each, the shares of their sounds to `visemes`, 15 each,
+ * and the stretches of one class to `stretches`, class, first frame and number of frames, up to `room` of each. They
+ * return how many frames there were, or an error; ears_stretches() is how many stretches. */
 FLAT(ears_push)
-int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint32_t *stretches, uint32_t room);
-FLAT(ears_end) int ears_end(ears_t *ears, int16_t *faps, uint32_t *stretches, uint32_t room);
+int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint8_t *visemes,
+              uint32_t *stretches, uint32_t room);
+FLAT(ears_end) int ears_end(ears_t *ears, int16_t *faps, uint8_t *visemes, uint32_t *stretches, uint32_t room);
 FLAT(ears_cancel)
-int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint32_t *stretches, uint32_t room);
+int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint8_t *visemes, uint32_t *stretches,
+                uint32_t room);
 FLAT(ears_stretches) uint32_t ears_stretches(const ears_t *ears);
 FLAT(ears_exact) int ears_exact(ears_t *ears, unsigned exact);
 FLAT(ears_level) unsigned ears_level(const ears_t *ears);

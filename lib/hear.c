@@ -22,6 +22,9 @@
 
 #define HEAR_FRAME_MS (1000u / LABIAL_HEAR_FPS)
 
+/* What the last frame shows. */
+enum { TOLD_NOTHING, TOLD_SOUND, TOLD_WAY_TO_REST };
+
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
 static int usable(const labial_hear_t *hear)
 {
@@ -48,6 +51,7 @@ static int tell_frame(labial_hear_t *hear, const int16_t *pose)
 static int tell_way_to_rest(labial_hear_t *hear, unsigned frames)
 {
     labial_fade_begin(&hear->fade, frames, 0);
+    hear->told = hear->told == TOLD_NOTHING ? TOLD_NOTHING : TOLD_WAY_TO_REST;
     for (; frames > 0; frames--)
         if (!tell_frame(hear, NULL))
             return 0;
@@ -79,7 +83,9 @@ static int deliver_heads(labial_hear_t *hear, const int16_t *heads)
     hear->sounding--;
     if (leader != hear->shown && !tell_class(hear))
         return 0;
+    hear->earlier = hear->told == TOLD_NOTHING ? leader : hear->shown;
     hear->shown = leader;
+    hear->told = TOLD_SOUND;
     return tell_frame(hear, pose);
 }
 
@@ -135,6 +141,7 @@ static void reset_sound(labial_hear_t *hear)
 {
     labial_fade_begin(&hear->fade, LABIAL_FADE_STEPS, 0);
     hear->sounding = 0;
+    hear->told = TOLD_NOTHING;
     hear->first = hear->frame;
     labial_hear_convert_reset(&hear->convert);
     labial_hear_features_reset(&hear->features);
@@ -178,6 +185,51 @@ int labial_hear_classes(labial_hear_t *hear, labial_hear_class_fn callback)
     if (result == LABIAL_OK)
         hear->class_callback = callback;
     return result;
+}
+
+/* How much of the sound of the last frame the face shows. */
+static uint32_t sound_shown(const labial_hear_t *hear)
+{
+    const labial_fade_t *fade = &hear->fade;
+    uint32_t whole;
+    if (hear->told == TOLD_NOTHING)
+        return 0;
+    whole = (uint32_t)(labial_hear_motion_share(&hear->motion) * LABIAL_VISEME_ONE) >> 14;
+    if (hear->told == TOLD_SOUND)
+        return whole;
+    if (fade->step == 0 || fade->step >= fade->length)
+        return 0;
+    return labial_quotient(((uint32_t)fade->length - fade->step) * whole, (uint32_t)fade->length);
+}
+
+/* Adds a class to the parts of the sounds. */
+static void add_class(const labial_hear_t *hear, const uint8_t *visemes, unsigned shown, unsigned part,
+                      uint8_t parts[LABIAL_VISEMES])
+{
+    const unsigned viseme = shown < hear->network.model->classes ? visemes[shown] : LABIAL_VISEME_SIL;
+    if (viseme != LABIAL_VISEME_NONE)
+        parts[viseme < LABIAL_VISEMES ? viseme : LABIAL_VISEME_SIL] += (uint8_t)part;
+}
+
+int labial_hear_visemes(const labial_hear_t *hear, const uint8_t *visemes, uint8_t shares[LABIAL_VISEMES])
+{
+    uint8_t parts[LABIAL_VISEMES] = { 0 };
+    uint32_t whole, sum = 0;
+    unsigned i;
+    if (!hear || !visemes || !shares)
+        return LABIAL_ERROR_NULL;
+    if (hear->magic != HEARING)
+        return LABIAL_ERROR_STATE;
+    add_class(hear, visemes, hear->earlier, 1, parts);
+    add_class(hear, visemes, hear->shown, 2, parts);
+    add_class(hear, visemes, hear->motion.leader, 1, parts);
+    for (i = 0; i < LABIAL_VISEMES; i++)
+        sum += parts[i];
+    whole = sum > 0 ? sound_shown(hear) : 0u;
+    for (i = 0; i < LABIAL_VISEMES; i++)
+        shares[i] = (uint8_t)(sum > 0 ? labial_quotient(parts[i] * whole + sum / 2u, sum) : 0u);
+    shares[LABIAL_VISEME_SIL] = (uint8_t)(shares[LABIAL_VISEME_SIL] + LABIAL_VISEME_ONE - whole);
+    return LABIAL_OK;
 }
 
 int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count)

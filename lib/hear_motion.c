@@ -39,6 +39,11 @@ static int frame_is_silent(const labial_hear_motion_t *motion, unsigned known)
     return (motion->loud >> further & ((1u << (SILENT_BEFORE + 1u + after)) - 1u)) == 0;
 }
 
+int32_t labial_hear_motion_share(const labial_hear_motion_t *motion)
+{
+    return labial_ease(RESTING - motion->rest, RESTING);
+}
+
 int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_model_t *model, const int16_t *heads,
                             int16_t pose[LABIAL_CHANNELS])
 {
@@ -58,7 +63,7 @@ int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_mode
         motion->rest = (uint8_t)(motion->rest < RESTING ? motion->rest + 1u : RESTING);
     else
         motion->rest = (uint8_t)(motion->rest > 0 ? motion->rest - 1u : 0u);
-    share = labial_ease(RESTING - motion->rest, RESTING);
+    share = labial_hear_motion_share(motion);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         pose[k] = (int16_t)((motion->before[k] + 2 * (int32_t)motion->now[k] + next[k] + 2) >> 2);
         pose[k] = (int16_t)((pose[k] * share + 8192) >> 14);

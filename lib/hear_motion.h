@@ -17,4 +17,7 @@ void labial_hear_motion_hear(labial_hear_motion_t *motion, int loud);
 int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_model_t *model, const int16_t *heads,
                             int16_t pose[LABIAL_CHANNELS]);
 
+/* How far the pose that was written last shows sound rather than silence, 0 .. 1 in Q14. */
+int32_t labial_hear_motion_share(const labial_hear_motion_t *motion);
+
 #endif

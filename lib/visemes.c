@@ -30,6 +30,12 @@ const uint8_t labial_arpabet_visemes[LABIAL_ARPABET_PHONEMES] = {
     V(KK),  V(NN), V(PP), V(NN), V(KK), V(OH), V(OH),   V(PP), V(RR), V(SS), /* K L M N NG OW OY P R S */
     V(CH),  V(DD), V(TH), V(OU), V(OU), V(FF), V(OU),   V(IH), V(SS), V(CH), /* SH T TH UH UW V W Y Z ZH */
 };
+
+const uint8_t labial_heard_visemes[LABIAL_HEARD_CLASSES] = {
+    V(SIL),  V(PP), V(FF), V(TH), V(DD), V(NN), V(SS), V(CH), V(KK), /* SIL M F TH T L S SH K */
+    V(NONE), V(RR), V(RR), V(OU), V(IH), V(IH), V(E),  V(AA), V(AA), /* HH R ER W IY IH EH AE AH */
+    V(AA),   V(OH), V(OH), V(OU), V(OU), V(AA), V(AA), V(E),         /* AA AO OW UW UH AY AW EY */
+};
 #undef V
 
 /* Raises each sound's dominance to that of a phoneme `ms` milliseconds away, `later` if it is still to come. */

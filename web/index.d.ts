@@ -197,6 +197,9 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     [Symbol.iterator](): IterableIterator<FrameOf<O>>;
     /** The frames to the end, each as soon as it is known. */
     [Symbol.asyncIterator](): AsyncIterableIterator<FrameOf<O>>;
+    /** How much of each sound the frame that was shown last shows, as a stream's `visemes`; taken from the lip classes that
+     * lead in it and beside it. */
+    readonly visemes: Uint8Array;
     /** The stretches of one lip class that ended since the last call; the label is a phoneme that stands for the class:
      * "M" for p, b, m. */
     segments(): Segment[];

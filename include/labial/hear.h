@@ -35,6 +35,7 @@
 #include "labial/hear_private.h"
 #include "labial/labial.h"
 #include "labial/result.h"
+#include "labial/visemes.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -80,6 +81,15 @@ int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_hear_classes(labial_hear_t *hear, labial_hear_class_fn callback);
+
+/*
+ * The sounds of the frame that was delivered last, in its callback or until the next call (labial/visemes.h): the classes
+ * that lead in it and in the frames beside it, a half and two quarters, as its pose is smoothed. `visemes` has the viseme
+ * of each class of the model: labial_heard_visemes for those that Labial trains. In silence, and on the way to rest, the shares pass to silence in step with the face.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (before labial_hear_init()).
+ */
+int labial_hear_visemes(const labial_hear_t *hear, const uint8_t *visemes, uint8_t shares[LABIAL_VISEMES]);
 
 /*
  * Hears `count` samples, of two channels as many pairs, left first, and calls the callbacks for all frames that these

@@ -70,12 +70,13 @@ typedef struct {
 typedef struct {
     uint32_t magic; /* set while the stream is initialised */
     uint8_t channels;
-    uint8_t ended, busy; /* no more sound is heard; a callback runs */
-    uint8_t exact;       /* the end delivers no way to rest */
-    uint8_t shown;       /* the class of the last frame */
-    uint32_t sounding;   /* frames with sound, also in part, that are not yet delivered */
-    uint32_t frame;      /* the next frame */
-    uint32_t first;      /* of the class that is shown; the next frame if none is */
+    uint8_t ended, busy;    /* no more sound is heard; a callback runs */
+    uint8_t exact;          /* the end delivers no way to rest */
+    uint8_t shown, earlier; /* the class of the last frame, and of the one before it */
+    uint8_t told;           /* what the last frame shows: nothing, sound, or the way to rest */
+    uint32_t sounding;      /* frames with sound, also in part, that are not yet delivered */
+    uint32_t frame;         /* the next frame */
+    uint32_t first;         /* of the class that is shown; the next frame if none is */
     void (*callback)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
     void (*class_callback)(void *user, unsigned shown, uint32_t frame, uint32_t frames);
     void *user;

@@ -64,6 +64,10 @@ enum {
 #define LABIAL_ARPABET_PHONEMES 40
 extern const uint8_t labial_arpabet_visemes[LABIAL_ARPABET_PHONEMES];
 
+/* Lip classes of the models of hearing that Labial trains, and the viseme of each, for labial_hear_visemes(). */
+#define LABIAL_HEARD_CLASSES 26
+extern const uint8_t labial_heard_visemes[LABIAL_HEARD_CLASSES];
+
 /*
  * The shares of the frame that the stream delivered last, in its callback or until the next tick. `visemes` has the
  * viseme of each phoneme of `model`; numbers that are none, and frames of other models, such as laughter, count as

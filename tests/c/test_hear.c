@@ -30,11 +30,17 @@ static unsigned frame_count, stretch_count;
 static uint32_t first_frame;
 static int user;
 
+/* Visemes of the fixture's classes: one that neighbours decide, one that is none and so silence. */
+static const uint8_t visemes[HEAR_FIXTURE_CLASSES] = { LABIAL_VISEME_PP, LABIAL_VISEME_AA, LABIAL_VISEME_NONE, 99,
+                                                       LABIAL_VISEME_SS };
+static uint8_t sounds[FRAMES][LABIAL_VISEMES]; /* of each frame */
+
 static void on_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     assert_true(given == &user);
     assert_true(frame_count < FRAMES);
     assert_int_equal(frame, first_frame + frame_count);
+    (void)labial_hear_visemes(&hear, visemes, sounds[frame_count]); /* which another copy of the stream may leave alone */
     memcpy(told[frame_count++], faps, sizeof told[0]);
 }
 
@@ -103,6 +109,14 @@ static void push_in_blocks(uint32_t count, unsigned channels, uint32_t block)
     }
 }
 
+static unsigned sum_of(const uint8_t *shares)
+{
+    unsigned i, sum = 0;
+    for (i = 0; i < LABIAL_VISEMES; i++)
+        sum += shares[i];
+    return sum;
+}
+
 /* ---- Frames -------------------------------------------------------------------------------------------------------- */
 
 /* Would catch any step that is not what the exporter computes and judges a model by, at any rate. */
@@ -119,6 +133,58 @@ TEST(frames_and_classes_are_the_exporters)
         assert_int_equal(stretch_count, hears[i].stretches);
         assert_int_equal(classes_crc(), hears[i].classes_crc);
     }
+}
+
+/* Would catch shares of another frame's classes, a class of a neighbour's that is left out, shares that do not pass to
+ * silence with the face, and sounds that outlast it. */
+TEST(sounds_are_those_of_the_classes_that_lead)
+{
+    static uint8_t leaders[FRAMES];
+    unsigned i, k, moving = 0;
+    begin(16000, 1);
+    make_sound(3, 32000, 1);
+    push_in_blocks(32000, 1, LONGEST);
+    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_true(frame_count >= 100);
+    for (i = 0; i < stretch_count; i++)
+        memset(leaders + stretches[i][1], (int)stretches[i][0], stretches[i][2]);
+    for (i = 1; i + 1 < 100; i++) { /* the last frame's neighbour is not told */
+        unsigned parts[LABIAL_VISEMES] = { 0 }, all = 0, whole = 0;
+        for (k = 0; k < 3; k++) {
+            const uint8_t viseme = visemes[leaders[i + k - 1]];
+            if (viseme != LABIAL_VISEME_NONE) {
+                parts[viseme < LABIAL_VISEMES ? viseme : LABIAL_VISEME_SIL] += k == 1 ? 2 : 1;
+                all += k == 1 ? 2 : 1;
+            }
+        }
+        assert_in_range(sum_of(sounds[i]), LABIAL_VISEME_ONE - 2, LABIAL_VISEME_ONE + 2);
+        for (k = 1; k < LABIAL_VISEMES; k++)
+            whole += sounds[i][k];
+        if (all == 0 || all == parts[LABIAL_VISEME_SIL]) {
+            assert_int_equal(whole, 0);
+            continue;
+        }
+        whole = whole * all / (all - parts[LABIAL_VISEME_SIL]); /* of the sound */
+        moving += whole > 120;
+        for (k = 1; k < LABIAL_VISEMES; k++)
+            assert_in_range(all * sounds[i][k] + 8, parts[k] * whole, parts[k] * whole + 16);
+    }
+    assert_true(moving > 20);
+    assert_int_equal(sounds[frame_count - 1][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    for (i = 100; i < frame_count; i++)
+        assert_true(sounds[i][LABIAL_VISEME_SIL] >= sounds[i - 1][LABIAL_VISEME_SIL]);
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);
+    assert_int_equal(sounds[0][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    push_in_blocks(16000, 1, LONGEST);
+    assert_int_equal(labial_hear_cancel(&hear, 200), LABIAL_OK);
+    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);
+    assert_int_equal(sounds[0][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    assert_int_equal(labial_hear_visemes(NULL, visemes, sounds[0]), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_visemes(&hear, NULL, sounds[0]), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_hear_visemes(&hear, visemes, NULL), LABIAL_ERROR_NULL);
+    memset(&hear, 0, sizeof hear);
+    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_ERROR_STATE);
 }
 
 /* Would catch a sample that is lost or heard twice at the border of blocks. */

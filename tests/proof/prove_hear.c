@@ -96,6 +96,12 @@ int labial_hear_motion_next(labial_hear_motion_t *motion, const labial_hear_mode
     return any_int;
 }
 
+int32_t labial_hear_motion_share(const labial_hear_motion_t *motion)
+{
+    touched = motion->rest;
+    return Frama_C_interval(0, 16384);
+}
+
 /* fixed.c's, which has its own proof. */
 uint32_t labial_quotient(uint32_t a, uint32_t b)
 {
@@ -133,6 +139,8 @@ static void any_state(void)
     hear.fade.step = any_uint16;
     hear.fade.length = any_uint16;
     hear.shown = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_CLASSES_MAX - 1);
+    hear.earlier = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_CLASSES_MAX - 1);
+    hear.told = (uint8_t)Frama_C_interval(0, 2);
     hear.motion.leader = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_CLASSES_MAX - 1);
     hear.motion.held = (uint8_t)Frama_C_interval(0, 1);
     hear.motion.articulation.wanted = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
@@ -159,6 +167,7 @@ static void misuse(void)
     labial_hear_exact(NULL, any_int);
     labial_hear_articulation(NULL, any_unsigned);
     labial_hear_level(NULL);
+    labial_hear_visemes(NULL, NULL, NULL);
     labial_hear_set_level(NULL, any_unsigned);
     labial_hear_restart(NULL);
     labial_hear_latency(NULL);
@@ -173,8 +182,11 @@ static int init(void)
 static void use(void)
 {
     static int16_t samples[8];
+    static uint8_t visemes[LABIAL_HEAR_CLASSES_MAX], shares[LABIAL_VISEMES];
     FILL(samples);
+    FILL(visemes);
     any_state();
+    labial_hear_visemes(&hear, OR_NULL(const uint8_t *, visemes), OR_NULL(uint8_t *, shares));
     labial_hear_classes(&hear, OR_NULL(labial_hear_class_fn, on_class));
     labial_hear_latency(&hear);
     labial_hear_push(&hear, OR_NULL(const int16_t *, samples), (size_t)Frama_C_interval(0, 4));

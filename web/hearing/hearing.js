@@ -1,6 +1,7 @@
 // One pair of ears: sound in, frames for every moment of it out.
 
 const CHANNELS = 13;
+const VISEMES = 15;
 /** Frames per second, LABIAL_HEAR_FPS. */
 const RATE = 50;
 /** Samples that are heard in one call, and the frames for which a call has room: the end delivers fewer. */
@@ -30,6 +31,7 @@ export class Hearing extends EventTarget {
     #at; // 0 when closed
     #samples; // where samples, frames and stretches lie for a call
     #faps;
+    #visemes;
     #stretches;
     #names = [];
     #channels;
@@ -37,7 +39,8 @@ export class Hearing extends EventTarget {
     #context;
     #tap;
     #ended = false;
-    #kept = new Int16Array(CHANNELS * 512); // the frames from number #first to #count
+    #kept = new Int16Array(CHANNELS * 512); // the frames from number #first to #count, and the shares of their sounds
+    #sounds = new Uint8Array(VISEMES * 512);
     #first = 0;
     #count = 0;
     #number = -1;
@@ -52,6 +55,7 @@ export class Hearing extends EventTarget {
     #found = []; // stretches of one class
     #waiting = []; // to be called when there are frames
     #pose = new Float32Array(CHANNELS);
+    #shares = Uint8Array.from({ length: VISEMES }, (_, i) => (i === 0 ? 128 : 0)); // of the moment shown last
     #weights = {};
 
     constructor(tools, labial, wasm, { sampleRate, channels, output, context, tap, delay, exact }) {
@@ -69,6 +73,7 @@ export class Hearing extends EventTarget {
         this.#at = memory.take(wasm.ears_size());
         this.#samples = memory.take(2 * 2 * PIECE);
         this.#faps = memory.take(2 * CHANNELS * ROOM);
+        this.#visemes = memory.take(VISEMES * ROOM);
         this.#stretches = memory.take(12 * ROOM);
         const given = [sampleRate, channels].map((value) => (Number.isInteger(value) && value === value >>> 0 ? value : 0));
         const result = wasm.ears_init(this.#at, wasm.hearing_model(0), ...given);
@@ -120,7 +125,8 @@ export class Hearing extends EventTarget {
         const steps = Math.max(1, Math.min(length, CANCEL_MAX));
         const place = this.#place(this.#moment(seconds));
         const pose = Array.from(this.#between(place));
-        this.#heard += this.#check(this.#wasm.ears_cancel(this.#at, 0, 0, 0, 0));
+        const sounds = Array.from(this.#shares);
+        this.#heard += this.#check(this.#wasm.ears_cancel(this.#at, 0, 0, 0, 0, 0));
         this.#count = Math.floor(place) + 1;
         this.#number = Math.min(this.#number, this.#count - 1);
         this.#found = this.#found.filter(({ start }) => start <= seconds);
@@ -129,7 +135,9 @@ export class Hearing extends EventTarget {
         for (let step = 1; step <= steps; step++) {
             const way = step / steps;
             const left = 1 - way * way * (3 - 2 * way);
-            this.#keep(pose.map((value) => Math.round(value * left)));
+            const shares = sounds.map((share) => Math.floor(share * left));
+            shares[0] += sounds.reduce((sum, share) => sum + share, 0) - shares.reduce((sum, share) => sum + share, 0);
+            this.#keep(pose.map((value) => Math.round(value * left)), shares);
         }
         this.#close(0);
     }
@@ -157,15 +165,16 @@ export class Hearing extends EventTarget {
         const place = this.#place(this.#moment(seconds));
         this.#number = Math.max(this.#number, Math.floor(place));
         const pose = this.#between(place);
-        return this.#output === "faps" ? pose : this.#labial.convert(pose, this.#output, this.#weights);
+        return this.#output === "faps" ? pose : this.#labial.convert(pose, this.#output, this.#weights, this.#shares);
     }
 
     *[Symbol.iterator]() {
         while (this.#number + 1 < this.#count) {
             this.#number = Math.max(this.#number + 1, this.#first);
-            const at = CHANNELS * (this.#number - this.#first);
-            const faps = this.#kept.slice(at, at + CHANNELS);
-            yield this.#output === "faps" ? faps : this.#labial.convert(faps, this.#output);
+            const place = this.#number - this.#first;
+            const faps = this.#kept.slice(CHANNELS * place, CHANNELS * (place + 1));
+            this.#shares.set(this.#sounds.subarray(VISEMES * place, VISEMES * (place + 1)));
+            yield this.#output === "faps" ? faps : this.#labial.convert(faps, this.#output, {}, this.#shares);
         }
     }
 
@@ -183,6 +192,10 @@ export class Hearing extends EventTarget {
 
     get number() {
         return this.#number;
+    }
+
+    get visemes() {
+        return this.#shares.slice();
     }
 
     get time() {
@@ -301,12 +314,13 @@ export class Hearing extends EventTarget {
 
     /** Where a call writes what it delivers. */
     #room() {
-        return [this.#faps, this.#stretches, ROOM];
+        return [this.#faps, this.#visemes, this.#stretches, ROOM];
     }
 
     /** Keeps what a call has delivered. */
     #take(count) {
-        this.#keep(this.#memory.int16(this.#faps, CHANNELS * this.#check(count)));
+        const sounds = this.#memory.bytes.subarray(this.#visemes, this.#visemes + VISEMES * this.#check(count));
+        this.#keep(this.#memory.int16(this.#faps, CHANNELS * count), sounds);
         this.#heard += count;
         const rows = this.#memory.int32(this.#stretches, 3 * this.#wasm.ears_stretches(this.#at));
         for (let i = 0; i < rows.length; i += 3) {
@@ -317,19 +331,25 @@ export class Hearing extends EventTarget {
         if (this.#found.length > STRETCHES_MOST) this.#found.splice(0, STRETCHES_MOST / 2);
     }
 
-    #keep(frames) {
+    #keep(frames, sounds) {
         const count = frames.length / CHANNELS;
         if (CHANNELS * (this.#count - this.#first + count) > this.#kept.length) {
             const shown = Math.min(this.#count, this.#number - BEHIND);
             const begin = Math.max(this.#first, shown, this.#count + count - MOST);
             const rest = this.#kept.subarray(CHANNELS * (begin - this.#first), CHANNELS * (this.#count - this.#first));
             const size = 2 * (rest.length + frames.length);
-            if (size > this.#kept.length) this.#kept = new Int16Array(size);
+            const heard = this.#sounds.subarray(VISEMES * (begin - this.#first), VISEMES * (this.#count - this.#first));
+            if (size > this.#kept.length) {
+                this.#kept = new Int16Array(size);
+                this.#sounds = new Uint8Array((VISEMES * size) / CHANNELS);
+            }
             this.#kept.set(rest);
+            this.#sounds.set(heard);
             this.#first = begin;
             while (this.#anchors.length > 1 && this.#anchors[1].frame <= begin) this.#anchors.shift();
         }
         this.#kept.set(frames, CHANNELS * (this.#count - this.#first));
+        this.#sounds.set(sounds, VISEMES * (this.#count - this.#first));
         this.#count += count;
     }
 
@@ -355,17 +375,16 @@ export class Hearing extends EventTarget {
         return Math.max(Math.min(this.#first, this.#count - 1), place);
     }
 
-    /** The pose there, always in the same array. */
+    /** The pose there, always in the same array; the shares of its sounds are in #shares. */
     #between(place) {
-        const pose = this.#pose.fill(0);
+        const pose = this.#pose.fill(0), shares = this.#shares.fill(0);
+        shares[0] = 128;
         if (place < 0) return pose;
         const number = Math.floor(place);
-        const from = CHANNELS * (number - this.#first);
-        const to = number + 1 < this.#count ? from + CHANNELS : from;
-        for (let i = 0; i < CHANNELS; i++) {
-            const value = this.#kept[from + i];
-            pose[i] = value + (this.#kept[to + i] - value) * (place - number);
-        }
+        const from = number - this.#first, to = number + 1 < this.#count ? from + 1 : from;
+        const mix = (all, width, i) => all[width * from + i] + (all[width * to + i] - all[width * from + i]) * (place - number);
+        for (let i = 0; i < CHANNELS; i++) pose[i] = mix(this.#kept, CHANNELS, i);
+        for (let i = 0; i < VISEMES; i++) shares[i] = Math.round(mix(this.#sounds, VISEMES, i));
         return pose;
     }
 }

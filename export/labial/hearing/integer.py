@@ -32,6 +32,7 @@ from labial.hearing.features import (
 from labial.hearing.network import SMOOTHING, Heard
 from labial.hearing.quantise import Dense, HearingTables
 from labial.reference.fade import EASE, FADE, NEAR
+from labial.tables.visemes import ONE, VISEME_OF, VISEMES
 
 #: log2 is in 1/256; the level in 1/64 of the sum of the bands' log2.
 LOG = 256
@@ -259,6 +260,7 @@ class _Told(NamedTuple):
     heard: Heard
     pose: np.ndarray  #: (T, 13) in Q4, smoothed
     still: np.ndarray  #: (T,) bool: silent, or before the first voice
+    leaders: np.ndarray  #: (T + 1,) the class that leads, also in the frame after the last
     level: int  #: after the last frame and what the network looks ahead, in 1 / `LEVEL_ONE`
 
 
@@ -295,7 +297,7 @@ def _of_energies(tables: HearingTables, energies: np.ndarray, silent: np.ndarray
     sounds = (level.voiced & ~silent)[: HOPS * count].reshape(count, HOPS)
     classes = len(tables.classes)
     told = Heard(head[:count, :classes], head[:count, classes], (smooth + 8) >> 4)
-    return _Told(told, smooth, ~sounds.any(axis=1), level.last)
+    return _Told(told, smooth, ~sounds.any(axis=1), head[:, :classes].argmax(axis=1), level.last)
 
 
 # ---- Beginning, silence and end -------------------------------------------------------------------------------------
@@ -312,6 +314,29 @@ def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact
     return told.heard._replace(faps=(pose + 8) >> 4)
 
 
+def visemes(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: bool = False,
+            begin: int = BEGIN) -> np.ndarray:
+    """(T, 15) int64: the shares of sounds in the frames that :func:`delivered` has (``labial_hear_visemes``), of a model
+    whose classes are phonemes."""
+    told = _of_sound(tables, sound, rate, begin)
+    count, frames = len(told.pose), len(delivered(tables, sound, rate, exact, begin).faps)
+    place = {name: k for k, name in enumerate(VISEMES)}
+    classes = [place[VISEME_OF[name]] if name in VISEME_OF else -1 for name in tables.classes]
+    leaders = np.array(classes)[told.leaders]
+    parts = np.zeros((count, len(VISEMES)), dtype=np.int64)
+    for part, there in ((1, np.concatenate([leaders[:1], leaders])[:count]), (2, leaders[:count]), (1, leaders[1:])):
+        known = there >= 0
+        parts[np.flatnonzero(known), there[known]] += part
+    shown = _rests(told.still, tables.ahead + SMOOTHING) * ONE >> 14
+    eased = shown[-1:] * np.maximum(np.arange(EASE - 2, -2, -1), 0) // EASE
+    parts = np.concatenate([parts, parts[-1:].repeat(EASE, axis=0)])[:frames]
+    whole = np.where(parts.any(axis=1), np.concatenate([shown, eased])[:frames], 0)
+    total = np.maximum(parts.sum(axis=1), 1)[:, None]
+    result: np.ndarray = (parts * whole[:, None] + total // 2) // total
+    result[:, 0] += ONE - whole
+    return result
+
+
 def level_after(tables: HearingTables, sound: np.ndarray, rate: int = 16000, begin: int = BEGIN) -> int:
     """The level, in 1 / `LEVEL_ONE`, when a stream has delivered a sound: that with which the next one begins."""
     return _of_sound(tables, sound, rate, begin).level
@@ -326,15 +351,20 @@ def _silent_hops(samples: np.ndarray) -> np.ndarray:
 def _resting(pose: np.ndarray, silent: np.ndarray, ahead: int) -> np.ndarray:
     """Poses (T, 13), Q4, that come to rest where a frame, SILENT_BEFORE before it and `ahead` after it are `silent`
     (T,), as all are before the first and after the last."""
+    result: np.ndarray = (pose * _rests(silent, ahead).reshape(-1, 1) + 8192) >> 14
+    return result
+
+
+def _rests(silent: np.ndarray, ahead: int) -> np.ndarray:
+    """(T,) int64, Q14: the share of each pose that is left of it there."""
     padded = np.concatenate([np.ones(SILENT_BEFORE, dtype=bool), silent, np.ones(ahead, dtype=bool)])
     span = SILENT_BEFORE + 1 + min(ahead, RESTING)
-    still = [padded[t : t + span].all() for t in range(len(pose))]
+    still = [padded[t : t + span].all() for t in range(len(silent))]
     eases, rest, shares = [0, *_eases(RESTING, RESTING)], RESTING, []
     for rests in still:
         rest = min(rest + 1, RESTING) if rests else max(rest - 1, 0)
         shares.append(eases[RESTING - rest])
-    result: np.ndarray = (pose * np.array(shares, dtype=np.int64).reshape(-1, 1) + 8192) >> 14
-    return result
+    return np.array(shares, dtype=np.int64)
 
 
 def _faded(pose: np.ndarray) -> np.ndarray:

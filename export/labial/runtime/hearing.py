@@ -15,6 +15,7 @@ from labial.core.numbers import duration, number, whole
 from labial.errors import LabialError, StreamError, did_you_mean
 from labial.files.faps import CHANNELS
 from labial.runtime.frame import Frame
+from labial.tables.visemes import VISEMES
 
 #: Frames per second, LABIAL_HEAR_FPS.
 FPS = 50
@@ -262,9 +263,12 @@ class Hearing:
     def _called(self, function: Any, room: int, *arguments: int) -> List[Frame]:
         """The frames of a call."""
         faps, shown = array("h", bytes(_SAMPLE * CHANNELS * room)), (ctypes.c_uint32 * (3 * room))()
-        count = checked(function(self._address, *arguments, faps.buffer_info()[0], ctypes.addressof(shown), room))
+        sounds = array("B", bytes(len(VISEMES) * room))
+        count = checked(function(self._address, *arguments, faps.buffer_info()[0], sounds.buffer_info()[0],
+                                 ctypes.addressof(shown), room))
         rows = zip(*[iter(faps[: CHANNELS * count])] * CHANNELS)
-        frames = [Frame(self._number + k, row) for k, row in enumerate(rows)]
+        shares = zip(*[iter(sounds)] * len(VISEMES))
+        frames = [Frame(self._number + k, row, own) for k, (row, own) in enumerate(zip(rows, shares))]
         self._number += count
         for k in range(min(self._library.ears_stretches(self._address), room)):
             name, first, length = shown[3 * k : 3 * k + 3]
