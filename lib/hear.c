@@ -202,13 +202,14 @@ static uint32_t sound_shown(const labial_hear_t *hear)
     return labial_quotient(((uint32_t)fade->length - fade->step) * whole, (uint32_t)fade->length);
 }
 
-/* Adds a class to the parts of the sounds. */
-static void add_class(const labial_hear_t *hear, const uint8_t *visemes, unsigned shown, unsigned part,
-                      uint8_t parts[LABIAL_VISEMES])
+/* Adds a class of this viseme to the parts of the sounds; what is no viseme is silence. */
+static void add_class(unsigned viseme, unsigned part, uint8_t parts[LABIAL_VISEMES])
 {
-    const unsigned viseme = shown < hear->network.model->classes ? visemes[shown] : LABIAL_VISEME_SIL;
-    if (viseme != LABIAL_VISEME_NONE)
-        parts[viseme < LABIAL_VISEMES ? viseme : LABIAL_VISEME_SIL] += (uint8_t)part;
+    if (viseme == LABIAL_VISEME_NONE)
+        return;
+    if (viseme >= LABIAL_VISEMES)
+        viseme = LABIAL_VISEME_SIL;
+    parts[viseme] = (uint8_t)(parts[viseme] + part);
 }
 
 int labial_hear_visemes(const labial_hear_t *hear, const uint8_t *visemes, uint8_t shares[LABIAL_VISEMES])
@@ -220,9 +221,9 @@ int labial_hear_visemes(const labial_hear_t *hear, const uint8_t *visemes, uint8
         return LABIAL_ERROR_NULL;
     if (hear->magic != HEARING)
         return LABIAL_ERROR_STATE;
-    add_class(hear, visemes, hear->earlier, 1, parts);
-    add_class(hear, visemes, hear->shown, 2, parts);
-    add_class(hear, visemes, hear->motion.leader, 1, parts);
+    add_class(visemes[hear->earlier], 1, parts);
+    add_class(visemes[hear->shown], 2, parts);
+    add_class(visemes[hear->motion.leader], 1, parts);
     for (i = 0; i < LABIAL_VISEMES; i++)
         sum += parts[i];
     whole = sum > 0 ? sound_shown(hear) : 0u;

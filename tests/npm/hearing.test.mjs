@@ -57,6 +57,31 @@ test("frames and stretches do not depend on how long blocks are, and 16 bits are
     assert.deepEqual(await heard([pairs], { channels: 2 }), whole);
 });
 
+test("the sounds of frames move what lips do not tell, and go with the face", async () => {
+    const one = await labial.hear(null, { sampleRate: RATE, output: "oculus" });
+    const plain = await labial.hear(null, { sampleRate: RATE });
+    assert.deepEqual([...one.visemes], [128, ...new Array(14).fill(0)]);
+    for (const each of [one, plain]) each.push(voice(2));
+    let spoken = 0, apart = 0;
+    for (const weights of one) {
+        const faps = plain[Symbol.iterator]().next().value, shares = one.visemes;
+        assert.ok(Math.abs(shares.reduce((sum, share) => sum + share, 0) - 128) <= 2, `${shares}`);
+        assert.deepEqual([...plain.visemes], [...shares]);
+        assert.deepEqual(weights, labial.convert(faps, "oculus", {}, shares));
+        const alone = labial.convert(faps, "oculus");
+        apart += Object.keys(weights).some((name) => weights[name] !== alone[name]);
+        spoken += shares[0] < 64;
+    }
+    assert.ok(spoken > 30 && apart > 30, `${spoken} ${apart}`);
+    one.at(1.51);
+    const shown = one.visemes;
+    one.cancel(200, 1.51);
+    one.at(1.6);
+    assert.ok(shown[0] < one.visemes[0] && one.visemes[0] < 128, `${shown} ${one.visemes}`);
+    one.at(2);
+    assert.deepEqual([...one.visemes], [128, ...new Array(14).fill(0)]);
+});
+
 test("models, outputs and rates", async () => {
     const sound = voice(1);
     assert.notDeepEqual(await heard([sound], { model: "large" }), await heard([sound]));
@@ -64,7 +89,8 @@ test("models, outputs and rates", async () => {
     const one = await labial.hear(null, { sampleRate: RATE, output: "arkit" });
     one.push(sound);
     one.end();
-    [...one].forEach((weights, i) => assert.deepEqual(weights, labial.convert(faps[i], "arkit")));
+    let i = 0;
+    for (const weights of one) assert.deepEqual(weights, labial.convert(faps[i++], "arkit", {}, one.visemes));
     for (const sampleRate of [8000, 12000, 22050, 24000, 32000, 44100, 48000]) {
         assert.equal((await heard([voice(1, sampleRate)], { sampleRate, exact: true })).length, 50);
     }

@@ -316,7 +316,8 @@ for (const { blocks, model, ...options } of JSON.parse(input)) {
     const hearing = await labial.hear(null, { ...options, model: others[model] ?? model });
     for (const block of blocks) hearing.push(Int16Array.from(block));
     hearing.end();
-    found.push([Array.from(hearing, (faps) => Array.from(faps)), hearing.segments(), hearing.latency]);
+    const frames = Array.from(hearing, (faps) => [Array.from(faps), Array.from(hearing.visemes)]);
+    found.push([frames, hearing.segments(), hearing.latency]);
     hearing.close();
 }
 process.stdout.write(JSON.stringify(found));
@@ -348,7 +349,8 @@ def test_frames_are_the_exporters(tmp_path: Path) -> None:
     for (model, rate, sound), (frames, segments, latency) in zip(sounds, found):
         trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
         heard = integer.delivered(quantise(trained, f"hear_{model}"), sound, rate)
-        assert frames == heard.faps.tolist(), (model, rate)
+        shares = integer.visemes(quantise(trained, f"hear_{model}"), sound, rate).tolist()
+        assert frames == [list(pair) for pair in zip(heard.faps.tolist(), shares)], (model, rate)
         rows = [
             (trained.classes[shown], first / 50, (first + length) / 50)
             for shown, first, length in hears.stretches(heard.scores)

@@ -324,9 +324,10 @@ def test_the_leading_sound_is_mostly_that_of_the_phoneme(tmp_path: Path) -> None
     these sentences for other voices and models."""
     right = count = 0
     for text in SENTENCES:
-        told = subprocess.run(["flite", "-voice", "rms", "-t", text, "-psdur", "-o", str(tmp_path / "a.wav")], check=True,
-                              stdout=subprocess.PIPE, text=True).stdout
-        with wave.open(str(tmp_path / "a.wav")) as file:
+        path = str(tmp_path / "a.wav")
+        told = subprocess.run(["flite", "-voice", "rms", "-t", text, "-psdur", "-o", path], check=True, text=True,
+                              stdout=subprocess.PIPE).stdout
+        with wave.open(path) as file:
             sound, rate = file.readframes(file.getnframes()), file.getframerate()
         with labial.Hearing(rate, model="hear_small", exact=True) as hearing:
             hearing.measure(sound)

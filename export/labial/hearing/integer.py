@@ -316,8 +316,8 @@ def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact
 
 def visemes(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: bool = False,
             begin: int = BEGIN) -> np.ndarray:
-    """(T, 15) int64: the shares of sounds in the frames that :func:`delivered` has (``labial_hear_visemes``), of a model
-    whose classes are phonemes."""
+    """(T, 15) int64: the shares of sounds in the frames that :func:`delivered` has (``labial_hear_visemes``), of a
+    model whose classes are phonemes."""
     told = _of_sound(tables, sound, rate, begin)
     count, frames = len(told.pose), len(delivered(tables, sound, rate, exact, begin).faps)
     place = {name: k for k, name in enumerate(VISEMES)}
