@@ -119,7 +119,7 @@ export class Stream {
         const whole = Math.ceil(Math.min(amount(milliseconds, "milliseconds"), DURATION_MAX));
         this.#check(this.#labial.wasm.mouth_cancel(at, whole));
         this.#waiting.length = this.#head = this.#refused = 0;
-        this.#closed = this.#ended = true;
+        this.#closed = true; // and the end that the library is told then changes nothing
     }
 
     restart() {

@@ -447,14 +447,21 @@ test("more than may wait is refused", () => {
 
 test("models that alternate faster than the stream can let them go", () => {
     const third = mouth.model(binary(mouth, mouth.models.speech));
-    const stream = mouth.stream({ exact: true });
-    for (const model of ["speech", third, "laughter", "speech", third]) {
-        stream.use(model);
-        stream.push(1, 200);
-        stream.push(2, 200);
-    }
-    stream.end();
-    assert.equal([...stream].length, 100);
+    const stream = () => {
+        const made = mouth.stream({ exact: true });
+        for (const model of ["speech", third, "laughter", "speech", third]) {
+            made.use(model);
+            made.push(1, 200);
+            made.push(2, 200);
+        }
+        made.end();
+        return made;
+    };
+    assert.equal([...stream()].length, 100);
+    const ticked = stream(); // the third model waits from the first tick on, and frames come with a delay
+    let frames = 0;
+    for (let tick = 0; tick < 200 && !ticked.done; tick++) frames += ticked.tick() !== null;
+    assert.deepEqual([frames, ticked.done], [100, true]);
     const short = mouth.stream();
     for (const model of ["speech", third, "laughter"]) {
         short.use(model);

@@ -113,6 +113,12 @@ test("an AudioContext counts from begin(), less what its device needs", async ()
         next.say("Mama", 0, 0.4);
         assert.deepEqual([...voice.at()], [...next.at(3)]);
     }
+    const again = await told({ clock: context }); // cancelled before its first sound: begin() is another utterance
+    again.cancel();
+    again.begin(context.currentTime);
+    again.say("Mama", 0, 0.4);
+    context.currentTime += 0.3;
+    assert.ok(again.played().some((faps) => faps.some((value) => Math.abs(value) > 30)), "what follows is told");
     const early = await labial.voice({ clock: { ...context, outputLatency: undefined, currentTime: 7 } });
     early.begin();
     assert.ok(Math.abs(early.time - (7 - 0.01 - 0.02)) < 1e-9, "begin() without a time is now, and no frame was shown");
