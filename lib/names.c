@@ -36,6 +36,33 @@ static int find_exactly(const labial_names_t *names, unsigned labels, const char
     return LABIAL_ERROR_NAME;
 }
 
+/* The phoneme of the first name in a text, and the longest there: in one pass over the table, however long the text. */
+static int find_within(const labial_names_t *names, unsigned labels, const char *text, size_t length)
+{
+    const uint8_t *entry = names->entries;
+    const uint8_t *const end = entry + names->size;
+    size_t begin = length, longest = 0, start, i;
+    int phoneme = LABIAL_ERROR_NAME;
+    for (; end - entry >= 2; entry += 2u + (entry[1] & LENGTH_MASK)) {
+        const size_t size = entry[1] & LENGTH_MASK;
+        if (size == 0u || (entry[1] & labels & LABIAL_LABELS_AUTO) == 0u)
+            continue;
+        for (start = 0; start + size <= length && start < begin + (size > longest ? 1u : 0u); start++) {
+            if (labels == LABIAL_LABELS_AUTO && size == 1u && is_digit(text[start]))
+                continue;
+            for (i = 0; i < size && entry[2 + i] == (uint8_t)text[start + i]; i++)
+                ;
+            if (i < size)
+                continue;
+            begin = start;
+            longest = size;
+            phoneme = entry[0];
+            break;
+        }
+    }
+    return phoneme;
+}
+
 /* ---- Marks, the same as in export/labial/corpus/labels.py ------------------------------------------------------ */
 
 static int is_one_of(char c, const char *set)
@@ -188,7 +215,6 @@ int labial_find_nearest(const labial_names_t *names, labial_labels_t labels, con
                         unsigned silence)
 {
     char text[LABEL_MAX];
-    size_t start, end;
     int phoneme = labial_find_in(names, labels, name, length);
     if (phoneme >= 0 || phoneme == LABIAL_ERROR_NULL)
         return phoneme;
@@ -198,12 +224,8 @@ int labial_find_nearest(const labial_names_t *names, labial_labels_t labels, con
     length = without_marks(name, length < LABEL_MAX ? length : LABEL_MAX, text);
     if (!has_letter(text, length))
         return (int)silence;
-    for (start = 0; start < length; start++)
-        for (end = length; end > start; end--) {
-            phoneme = find_exactly(names, labels, text + start, end - start);
-            if (phoneme >= 0)
-                return phoneme;
-        }
-    phoneme = find_exactly(names, LABIAL_LABELS_AUTO, "\xc9\x99", 2); /* schwa */
+    phoneme = find_within(names, labels, text, length);
+    if (phoneme < 0)
+        phoneme = find_exactly(names, LABIAL_LABELS_AUTO, "\xc9\x99", 2); /* schwa */
     return phoneme >= 0 ? phoneme : (int)silence;
 }

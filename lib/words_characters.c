@@ -22,16 +22,16 @@ static const char accents[] = "\1\2\3\4\5\0\0\6\1\2\3\5\1\2\3\5\0\4\1\2\3\4\5\0\
 static const struct {
     uint16_t character;
     uint8_t code, more, most;
-} others[] = { { 0xa2u, SIGN_CENT, 0, 0 },    { 0xa3u, SIGN_POUND, 0, 0 },   { 0xa5u, SIGN_YEN, 0, 0 },
-               { 0xb0u, SIGN_DEGREE, 0, 0 },  { 0xb2u, SIGN_SQUARE, 0, 0 },  { 0xb5u, 'u', 0, 0 },
-               { 0xbcu, SIGN_QUARTER, 0, 0 }, { 0xbdu, SIGN_HALF, 0, 0 },    { 0xbeu, SIGN_QUARTERS, 0, 0 },
-               { 0xc6u, 'A', 'E', 0 },        { 0xd7u, SIGN_TIMES, 0, 0 },   { 0xe6u, 'a', 'e', 0 },
-               { 0x152u, 'O', 'E', 0 },       { 0x153u, 'o', 'e', 0 },       { 0x2bcu, '\'', 0, 0 },
-               { 0x3bcu, 'u', 0, 0 },         { 0x2013u, SIGN_DASH, 0, 0 },  { 0x2019u, '\'', 0, 0 },
-               { 0x20acu, SIGN_EURO, 0, 0 },  { 0x20b9u, SIGN_RUPEE, 0, 0 }, { 0x2212u, SIGN_MINUS, 0, 0 },
-               { 0xfb00u, 'f', 'f', 0 },      { 0xfb01u, 'f', 'i', 0 },      { 0xfb02u, 'f', 'l', 0 },
-               { 0xfb03u, 'f', 'f', 'i' },    { 0xfb04u, 'f', 'f', 'l' },    { 0xfb05u, 's', 't', 0 },
-               { 0xfb06u, 's', 't', 0 } };
+} others[] = { { 0xa2u, SIGN_CENT, 0, 0 },    { 0xa3u, SIGN_POUND, 0, 0 },  { 0xa5u, SIGN_YEN, 0, 0 },
+               { 0xb0u, SIGN_DEGREE, 0, 0 },  { 0xb2u, SIGN_SQUARE, 0, 0 }, { 0xb5u, 'u', 0, 0 },
+               { 0xbcu, SIGN_QUARTER, 0, 0 }, { 0xbdu, SIGN_HALF, 0, 0 },   { 0xbeu, SIGN_QUARTERS, 0, 0 },
+               { 0xc6u, 'A', 'E', 0 },        { 0xd7u, SIGN_TIMES, 0, 0 },  { 0xe6u, 'a', 'e', 0 },
+               { 0xf7u, SIGN_DIVIDED, 0, 0 }, { 0x152u, 'O', 'E', 0 },      { 0x153u, 'o', 'e', 0 },
+               { 0x2bcu, '\'', 0, 0 },        { 0x3bcu, 'u', 0, 0 },        { 0x2013u, SIGN_DASH, 0, 0 },
+               { 0x2019u, '\'', 0, 0 },       { 0x20acu, SIGN_EURO, 0, 0 }, { 0x20b9u, SIGN_RUPEE, 0, 0 },
+               { 0x2212u, SIGN_MINUS, 0, 0 }, { 0xfb00u, 'f', 'f', 0 },     { 0xfb01u, 'f', 'i', 0 },
+               { 0xfb02u, 'f', 'l', 0 },      { 0xfb03u, 'f', 'f', 'i' },   { 0xfb04u, 'f', 'f', 'l' },
+               { 0xfb05u, 's', 't', 0 },      { 0xfb06u, 's', 't', 0 } };
 
 /* Ranges of letters of other scripts; what is between them are signs and private characters. */
 static const uint32_t foreign[][2] = { { 0x180u, 0x2ffu },   { 0x370u, 0x1fffu },  { 0x2c00u, 0x2dffu },

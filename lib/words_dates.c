@@ -28,7 +28,7 @@ static void say_year(labial_words_reading_t *reading, unsigned value, unsigned e
     labial_words_say_small(reading, rest, ending, character);
 }
 
-/* 2024-03-05, 3/5/2024, 3/5/24, 5.3.2024: month first, unless that cannot be or points are between. */
+/* 2024-03-05, 2024/03/05, 3/5/2024, 3/5/24, 5.3.2024: month first, unless that cannot be or points are between. */
 static int read_date(labial_words_reading_t *reading)
 {
     labial_words_place_t next = reading->here;
@@ -48,7 +48,7 @@ static int read_date(labial_words_reading_t *reading)
     }
     if (labial_words_is_inside(next.code) || parts[1].count > 2u)
         return 0;
-    if (parts[0].count == 4u && sign == '-' && parts[2].count <= 2u) {
+    if (parts[0].count == 4u && sign != '.' && parts[2].count <= 2u) {
         year = parts[0].value;
         month = parts[1].value;
         day = parts[2].value;
@@ -73,12 +73,13 @@ static int read_date(labial_words_reading_t *reading)
     return 1;
 }
 
-/* Numbers of telephones: 555-1234, or three groups and more. */
+/* Numbers of telephones: 555-1234, three groups and more, or the three digits of an area in parentheses. */
 static int read_phone(labial_words_reading_t *reading)
 {
     labial_words_place_t next = reading->here;
-    unsigned groups = 1, size = labial_words_take_digits(&next).count;
-    const unsigned first = size;
+    const labial_words_number_t first = labial_words_take_digits(&next);
+    unsigned groups = 1, size = first.count;
+    const int is_area = size == 3u && first.value >= 200u && next.code == ')' && reading->here.before == '(';
     if (size > 4u)
         return 0;
     while (next.code == '-' && labial_words_is_decimal(labial_words_following(&next))) {
@@ -89,7 +90,7 @@ static int read_phone(labial_words_reading_t *reading)
         groups++;
     }
     if (next.code == '-' || labial_words_is_inside(next.code) ||
-        !(groups > 2u || (groups == 2u && first == 3u && size == 4u)))
+        !(groups > 2u || (groups == 2u && first.count == 3u && size == 4u) || is_area))
         return 0;
     for (; groups > 0u; groups--) {
         labial_words_say_digits(reading, 0);

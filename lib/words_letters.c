@@ -24,22 +24,22 @@ static const char *const meanings[] = {
     "fi\0fie\0ftp\0eff tee pee\0",
     "govt\0government\0gnu\0new\0",
     "http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0",
-    "",
+    "ii\0two\0iii\0three\0",
     "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
     "",
     "ltd\0limited\0lt\0lieutenant\0",
     "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0",
     "",
     "",
-    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0",
+    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0pp\0pages\0",
     "",
     "rd\0road\0",
     "st\0saint\0sr\0senior\0sgt\0sergeant\0",
     "",
     "",
-    "vs\0versus\0",
+    "vs\0versus\0vol\0volume\0vii\0seven\0viii\0eight\0",
     "wi\0why\0wifi\0why fie\0www\0double you double you double you\0",
-    "",
+    "xii\0twelve\0xiv\0fourteen\0",
     "yaml\0yamel\0",
     "",
 };
@@ -53,13 +53,14 @@ static const char dates[] =
 
 static const char large_numbers[] = "hundred\0thousand\0million\0billion\0trillion\0";
 
-/* Units behind a number; behind a blank only the second list. */
+/* Units behind a number; behind a blank only the second list. Behind those that are first in their lists a number
+ * goes on: M, bn, sq. */
 static const char attached_units[] = "M\0million\0bn\0billion\0in\0inch|inches\0A\0amp_\0C\0degree_ celsius\0"
                                      "F\0degree_ fahrenheit\0";
 static const char units[] =
-    "km\0kilometer_\0m\0meter_\0cm\0centimeter_\0mm\0millimeter_\0nm\0nanometer_\0um\0micrometer_\0kg\0kilogram_\0"
-    "g\0gram_\0mg\0milligram_\0ug\0microgram_\0lb\0pound_\0lbs\0pound_\0oz\0ounce_\0ft\0foot|feet\0yd\0yard_\0"
-    "mi\0mile_\0mph\0mile_ per hour\0kph\0kilometer_ per hour\0L\0liter_\0l\0liter_\0ml\0milliliter_\0"
+    "sq\0square\0m\0meter_\0km\0kilometer_\0cm\0centimeter_\0mm\0millimeter_\0nm\0nanometer_\0um\0micrometer_\0"
+    "kg\0kilogram_\0g\0gram_\0mg\0milligram_\0ug\0microgram_\0lb\0pound_\0lbs\0pound_\0oz\0ounce_\0ft\0foot|feet\0"
+    "yd\0yard_\0mi\0mile_\0mph\0mile_ per hour\0kph\0kilometer_ per hour\0L\0liter_\0l\0liter_\0ml\0milliliter_\0"
     "mL\0milliliter_\0cl\0centiliter_\0dl\0deciliter_\0gal\0gallon_\0s\0second_\0sec\0second_\0secs\0second_\0"
     "ms\0millisecond_\0us\0microsecond_\0ns\0nanosecond_\0min\0minute_\0mins\0minute_\0h\0hour_\0hr\0hour_\0"
     "hrs\0hour_\0Hz\0hertz\0kHz\0kilohertz\0MHz\0megahertz\0GHz\0gigahertz\0kB\0kilobyte_\0KB\0kilobyte_\0"
@@ -67,7 +68,8 @@ static const char units[] =
     "Gbps\0gigabit_ per second\0W\0watt_\0kW\0kilowatt_\0MW\0megawatt_\0GW\0gigawatt_\0Wh\0watt hour_\0"
     "kWh\0kilowatt hour_\0V\0volt_\0mV\0millivolt_\0kV\0kilovolt_\0mA\0milliamp_\0mAh\0milliamp hour_\0dB\0decibel_\0"
     "px\0pixel_\0cal\0calorie_\0kcal\0kilocalorie_\0rpm\0are pee em\0bpm\0bee pee em\0fps\0eff pee ess\0"
-    "mpg\0mile_ per gallon\0EUR\0euro_\0GBP\0pound_\0USD\0you ess dollar_\0";
+    "mpg\0mile_ per gallon\0EUR\0euro_\0GBP\0pound_\0USD\0you ess dollar_\0yr\0year_\0yrs\0year_\0tbsp\0tablespoon_\0"
+    "tsp\0teaspoon_\0";
 
 /* Capitals that are read letter by letter although a word could look so, words of two letters, of three that begin with
  * a vowel and others that do not look like words, and words unless the word before is not in capitals. */
@@ -187,7 +189,7 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
         return (letters[0] != 'A' && letters[0] != 'I') ||
                (letters[0] == 'A' && run->small == 0u &&
                 (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
-                 labial_words_is_decimal(follows) || follows == '&' || follows == '+' || follows == '-'));
+                 !labial_words_is_blank(follows)));
     if (run->small != 0u) {
         if (run->letters[count - 1u].letter != 19u || (run->small >> (count - 1u)) == 0u) /* a small s */
             return 0;
@@ -286,28 +288,39 @@ static const char *takes_unit(labial_words_place_t *here, const char *list)
     return NULL;
 }
 
-/* Reads a unit behind a number, if there is one. */
+/* Reads a unit behind a number, if there is one. A foot's and an hour's names tell the context which smaller units may
+ * follow: "6 ft 2 in", "1h 30m". */
 static int read_unit(labial_words_reading_t *reading, unsigned after)
 {
     labial_words_place_t *here = &reading->here;
+    labial_words_context_t *const context = reading->context;
+    const unsigned larger = context->currency;
     const int is_apart = here->before == ' ';
     const unsigned character = here->characters - 1u;
     const char *name = takes_unit(here, units);
-    reading->context->after = AFTER_UNIT;
-    if (!name && !is_apart) {
+    context->after = AFTER_UNIT;
+    if (!name && (!is_apart || larger == 'f'))
         name = takes_unit(here, attached_units);
-        if (name == labial_words_listed(attached_units, 1) || name == labial_words_listed(attached_units, 3))
-            reading->context->after = AFTER_NUMBER; /* M, bn */
-    }
     if (!name) {
-        reading->context->after = AFTER_NOTHING;
+        context->after = AFTER_NOTHING;
         return 0;
     }
+    if (name == units + sizeof "sq" || name == attached_units + sizeof "M" ||
+        name == attached_units + sizeof "M\0million\0bn")
+        context->after = AFTER_NUMBER;
+    if (larger == 'h' && name == units + sizeof "sq\0square\0m")
+        name = "minute_";
+    context->tail = 0;
+    context->currency = name[1] == 'o' ? (uint8_t)name[0] : 0u;
     if (here->code == SIGN_SQUARE) {
         labial_words_say(reading, "square", SAID_PLAIN, character);
         labial_words_advance(here);
     }
     labial_words_say_name(reading, name, after == AFTER_NUMBER, character);
+    if (context->currency == 'f' && here->code == '.')
+        labial_words_advance(here);
+    else
+        (void)labial_words_read_range(reading);
     return 1;
 }
 
@@ -324,6 +337,16 @@ static int is_spelt_in_address(const run_t *run)
                             : run->count <= 4u && vowel_count == 0u;
 }
 
+/* What a month leaves behind: it makes the number before it an ordinal, or waits for its day. */
+static unsigned after_month(labial_words_reading_t *reading, unsigned after, unsigned character)
+{
+    if ((after != AFTER_ONE && after != AFTER_NUMBER) || reading->context->tail == 0u)
+        return AFTER_MONTH;
+    labial_words_take_back(reading);
+    labial_words_say_small(reading, reading->context->currency, ORDINAL, character);
+    return AFTER_NOTHING;
+}
+
 /* Reads a run that rules say otherwise than by its letters. */
 static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned after, unsigned shouting)
 {
@@ -338,6 +361,7 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
         if (after == AFTER_TIME)
             labial_words_take_back(reading);
         say_letters(reading, run, 2);
+        (void)labial_words_read_range(reading);
         return 1;
     }
     if (after == AFTER_TIME && find_run(run, "o'clock\0", 1) >= 0) {
@@ -354,11 +378,30 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
     }
     found = run->is_title ? find_run(run, dates, 2) : -1;
     if (found >= 0) {
-        labial_words_say(reading, labial_words_listed(dates, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
         if (found < DATE_MONTHS)
-            reading->context->after = AFTER_MONTH;
+            reading->context->after = (uint8_t)after_month(reading, after, character);
+        labial_words_say(reading, labial_words_listed(dates, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
         if (follows == '.')
             labial_words_advance(&reading->here);
+        return 1;
+    }
+    found = follows == '.' && run->is_title ? find_run(run, "no\0nos\0", 1) : -1;
+    if (found >= 0) {
+        count = reading->word->count;
+        labial_words_spell(reading->model, run->letters, run->count, reading->word);
+        labial_words_keep_tail(reading, count);
+        reading->context->after = (uint8_t)(AFTER_NO + found);
+        labial_words_advance(&reading->here);
+        return 1;
+    }
+    if (run->count == 1u && run->small != 0u && follows == '/' && run->capitals[0] == 'W') {
+        labial_words_say(reading, "with", SAID_PLAIN, character);
+        reading->context->after = AFTER_WITH;
+        labial_words_advance(&reading->here);
+        return 1;
+    }
+    if (after == AFTER_WITH && run->count == 1u && run->capitals[0] == 'O') {
+        labial_words_say(reading, "out", SAID_PLAIN, character);
         return 1;
     }
     list = meanings[(run->letters[0].letter - 1u) % 26u];
@@ -391,8 +434,8 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     context->shouting = 0;
     if (read_rule(reading, &run, after, shouting))
         return;
+    if (run.is_title && find_run(&run, labial_words_months, 1) >= 0)
+        context->after = (uint8_t)after_month(reading, after, run.letters[0].character);
     labial_words_spell(reading->model, run.letters, run.count, reading->word);
     context->shouting = run.small == 0u && (run.count > 1u || run.capitals[0] == 'I');
-    if (run.is_title && find_run(&run, labial_words_months, 1) >= 0)
-        context->after = AFTER_MONTH;
 }

@@ -176,7 +176,7 @@ int labial_words_has_fraction(const labial_words_place_t *here)
     return here->code == '.' && labial_words_is_decimal(labial_words_following(here));
 }
 
-static void say_fraction(labial_words_reading_t *reading)
+void labial_words_read_fraction(labial_words_reading_t *reading)
 {
     labial_words_say(reading, "point", SAID_PLAIN, labial_words_here(reading));
     labial_words_advance(&reading->here);
@@ -187,7 +187,7 @@ static void say_fraction(labial_words_reading_t *reading)
 int labial_words_read_range(labial_words_reading_t *reading)
 {
     labial_words_place_t next = reading->here;
-    if (next.code != '-' && next.code != SIGN_DASH)
+    if (next.code != '-' && next.code != ':' && next.code != SIGN_DASH)
         return 0;
     labial_words_advance(&next);
     if (!labial_words_is_decimal(next.code) && !labial_words_is_sum(&next))
@@ -231,6 +231,7 @@ static void read_behind(labial_words_reading_t *reading)
                                                 : "and three quarters",
                          SAID_PLAIN, labial_words_here(reading));
         reading->context->after = AFTER_NUMBER;
+        reading->context->tail = 0;
         labial_words_advance(here);
     } else if ((code == 'x' || code == SIGN_TIMES) && labial_words_is_decimal(labial_words_following(here))) {
         labial_words_say(reading, "by", SAID_PLAIN, labial_words_here(reading));
@@ -245,6 +246,7 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
     labial_words_place_t *here = &reading->here;
     const labial_words_place_t first = *here;
     const labial_words_number_t number = take_whole(here);
+    const unsigned said = reading->word->count;
     if (is_coded(&number)) {
         *here = first;
         labial_words_say_digits(reading, 1);
@@ -256,10 +258,15 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
         say_number(reading, &number, CARDINAL, first.characters - 1u);
         if (number.count == 1u && number.value == 1u)
             reading->context->after = AFTER_ONE;
+        if (is_start && reading->context->currency == 0u && number.value - 1u < 31u) { /* a month may follow */
+            reading->context->currency = (uint8_t)number.value;
+            labial_words_keep_tail(reading, said);
+        }
     }
     while (labial_words_has_fraction(here)) {
-        say_fraction(reading);
+        labial_words_read_fraction(reading);
         reading->context->after = AFTER_NUMBER;
+        reading->context->tail = 0;
     }
     if (is_start)
         read_behind(reading);
@@ -270,8 +277,14 @@ void labial_words_read_number(labial_words_reading_t *reading)
     labial_words_context_t *context = reading->context;
     const unsigned after = context->after;
     const int is_start = !labial_words_is_inside(reading->here.before);
+    if (after == AFTER_NO || after == AFTER_NOS) {
+        labial_words_take_back(reading);
+        labial_words_say(reading, "number", after == AFTER_NOS ? SAID_PLURAL : SAID_PLAIN, labial_words_here(reading));
+    }
     context->after = AFTER_NUMBER;
     context->tail = 0;
+    if (after != AFTER_UNIT)
+        context->currency = 0;
     if (is_start && labial_words_read_special(reading, after))
         return;
     read_plain(reading, is_start);

@@ -45,11 +45,24 @@ enum {
     SIGN_DASH,
     SIGN_HALF,
     SIGN_QUARTER,
-    SIGN_QUARTERS
+    SIGN_QUARTERS,
+    SIGN_DIVIDED
 };
 
 /* What was said last, in `after` of labial_words_context_t. */
-enum { AFTER_NOTHING, AFTER_ONE, AFTER_NUMBER, AFTER_TIME, AFTER_SUM, AFTER_UNIT, AFTER_PER, AFTER_MONTH };
+enum {
+    AFTER_NOTHING,
+    AFTER_ONE,
+    AFTER_NUMBER,
+    AFTER_TIME,
+    AFTER_SUM,
+    AFTER_UNIT,
+    AFTER_PER,
+    AFTER_MONTH,
+    AFTER_WITH, /* "w" of "w/" */
+    AFTER_NO,   /* "No.", "Nos." */
+    AFTER_NOS
+};
 
 /* A place in a text. */
 typedef struct {
@@ -160,11 +173,14 @@ void labial_words_say_digits(labial_words_reading_t *reading, int with_commas);
 /* Whether a point and a digit are at a place. */
 int labial_words_has_fraction(const labial_words_place_t *here);
 
+/* Reads a point and the digits behind it. */
+void labial_words_read_fraction(labial_words_reading_t *reading);
+
 /* Says a number up to 9,999; the last word of a number. */
 void labial_words_say_small(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character);
 void labial_words_say_last(labial_words_reading_t *reading, unsigned last, unsigned ending, unsigned character);
 
-/* Reads "to" behind a number where another one follows; whether it does. */
+/* Reads "to" behind a number, its unit or time of day where another number follows; whether it does. */
 int labial_words_read_range(labial_words_reading_t *reading);
 
 /* Reads dates, times and whatever is more than a number, `after` what was said before; whether there is any. */

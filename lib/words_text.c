@@ -16,8 +16,9 @@
 /* Letters of the longest word that is said: "approximately". */
 #define LONGEST_SAID 16u
 
-/* Signs that are said; a blank separates spoken words. */
-static const char signs[] = "&and\0@at\0%percent\0+plus\0=equals\0";
+/* Signs that are said; a blank separates spoken words. The last ones are SIGN_SQUARE, SIGN_TIMES, SIGN_MINUS and
+ * SIGN_DIVIDED. */
+static const char signs[] = "&and\0@at\0%percent\0+plus\0=equals\0\11squared\0\12times\0\13minus\0\20divided by\0";
 
 /* Signs that are said within an address. */
 static const char joints[] = "/slash\0-dash\0_underscore\0:colon\0";
@@ -312,7 +313,13 @@ static void read_sign(labial_words_reading_t *reading)
         return;
     }
     after = labial_words_forget(reading);
+    reading->context->tail = 0;
     is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
+    if (labial_words_has_fraction(here) && !labial_words_is_inside(here->before)) {
+        reading->context->after = AFTER_NUMBER;
+        labial_words_read_fraction(reading);
+        return;
+    }
     if (code == SIGN_DEGREE) {
         read_degrees(reading, after);
     } else if (code == '/' && (after == AFTER_UNIT || after == AFTER_SUM) && labial_words_is_latin(follows)) {
@@ -325,10 +332,6 @@ static void read_sign(labial_words_reading_t *reading)
                                        : code == SIGN_QUARTER ? "one quarter"
                                                               : "three quarters");
         reading->context->after = AFTER_NUMBER;
-    } else if (code == SIGN_MINUS) {
-        labial_words_say_here(reading, "minus");
-    } else if (code == SIGN_TIMES) {
-        labial_words_say_here(reading, "times");
     } else if (code == SIGN_CENT && is_counted) {
         labial_words_say_here(reading, after == AFTER_NUMBER ? "cents" : "cent");
     } else if (currency >= 0 && is_counted) {
@@ -336,6 +339,8 @@ static void read_sign(labial_words_reading_t *reading)
                               here->characters - 1u);
     } else if (code == '#' && labial_words_is_decimal(follows)) {
         labial_words_say_here(reading, "number");
+    } else if (code == '#' && labial_words_is_latin(here->before) && !labial_words_is_inside(follows)) {
+        labial_words_say_here(reading, "sharp");
     } else if (code == '<' && labial_words_is_decimal(follows)) {
         labial_words_say_here(reading, "less than");
     } else if (said) {

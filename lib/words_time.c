@@ -243,7 +243,11 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
         return LABIAL_ERROR_WORD;
     stream->context = context;
     stream->latest = start;
-    if (stream->holding && context.dropped < before->word.count) {
+    span->start = start;
+    if (stream->holding && context.dropped > 0u && context.dropped >= before->word.count) {
+        span->start = before->start; /* nothing of the word before is left: its time is this one's */
+        stream->holding = 0;
+    } else if (stream->holding) {
         const unsigned left = (unsigned)before->word.count - context.dropped;
         /*@ assert left <= 96; */
         LABIAL_CHECK(left <= LABIAL_WORDS_PHONEMES);
@@ -256,7 +260,6 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
         }
         return LABIAL_OK;
     }
-    span->start = start;
     span->end = end;
     span->open = end == LABIAL_WORDS_NO_END;
     span->spelt = 0;

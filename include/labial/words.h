@@ -121,10 +121,11 @@ typedef struct {
 
 /* What the words so far mean for the next one: all zero at the beginning of a text. The other members are private. */
 typedef struct {
-    uint8_t dropped;  /* phonemes at the end of the word before that are not said there: those of "dollars" in "$5
-                      * million", which labial_words_read_next() found only when it read "million" */
+    /* Phonemes at the end of the word before that are not said there: those of "dollars" in "$5 million", which
+     * labial_words_read_next() found only when it read "million"; all of "5" before "March", which makes it "fifth". */
+    uint8_t dropped;
     uint8_t after;    /* what was said last */
-    uint8_t currency; /* of a sum */
+    uint8_t currency; /* of a sum; or the number that a month may follow, or the unit that a smaller one may follow */
     uint8_t tail;     /* phonemes that the next word may drop */
     uint8_t shouting; /* the word before is in capitals and not spelt */
     uint8_t closing;  /* what ends the tag or stage direction that the text is in */

@@ -273,7 +273,14 @@ TEST(words_know_those_before)
                   { "in*", "silent", 0 },
                   { "in", "_IH:0 N:1", 0 },
                   { "9:00", "_N:0 AY:0 N:0 _AH:0 K:0 L:0 AA:0 K:0", 0 },
-                  { "a.m.", "_EY:0 _EH:2 M:2", 5 } };
+                  { "a.m.", "_EY:0 _EH:2 M:2", 5 },
+                  { "21", "_T:0 W:0 EH:0 N:0 T:0 IY:0 _W:0 AH:0 N:0", 0 },
+                  { "Mar.", "_T:0 W:0 EH:0 N:0 T:0 IY:0 _F:0 ER:0 S:0 T:0 _M:0 AA:0 R:0 CH:0", 9 },
+                  { "No.", "_N:0 OW:1", 0 },
+                  { "5", "_N:0 AH:0 M:0 B:0 ER:0 _F:0 AY:0 V:0", 2 },
+                  { "6ft", "_S:0 IH:0 K:0 S:0 _F:1 IY:1 T:1", 0 },
+                  { "2", "_T:0 UW:0", 0 },
+                  { "in", "_IH:0 N:0 CH:0 IH:0 Z:0", 0 } };
     labial_words_context_t context = { 0, 0, 0, 0, 0, 0, 0 };
     labial_word_t word;
     unsigned i;

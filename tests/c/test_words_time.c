@@ -142,6 +142,32 @@ TEST(a_word_takes_phonemes_from_the_one_before)
     assert_int_equal(spoken.count, 8 + 6);
 }
 
+/* Would catch a number that is said beside its ordinal, and time that neither of the two words gets. */
+TEST(a_word_takes_all_phonemes_of_the_one_before)
+{
+    static const uint8_t expected[] = { 0, 14, 17, 14, 32, 22, 1, 28, 8 }; /* fifth march */
+    static const uint32_t ends[] = { 500, 550, 600, 700, 800 };
+    spoken_t spoken = { 0 };
+    unsigned round, i;
+    for (round = 0; round < 2u; round++) {
+        begin(0);
+        spoken.count = 0;
+        say(&spoken, "5", 100, 400);
+        if (round == 0u)
+            say(&spoken, "March", 400, 800);
+        else
+            assert_int_equal(labial_words_push_characters(&stream, "March", 5, 400, ends, 5), LABIAL_OK);
+        flush(&spoken);
+        assert_int_equal(spoken.count, sizeof expected);
+        for (i = 0; i < spoken.count; i++) {
+            assert_int_equal(spoken.phonemes[i], expected[i]);
+            assert_true(i == 0u || spoken.lasts[i] >= 40u);
+        }
+        assert_int_equal(until(&spoken, 1), 100);
+        assert_int_equal(until(&spoken, spoken.count), 800);
+    }
+}
+
 /* Would catch a word that runs into the next one, and one without time that is spoken nevertheless. */
 TEST(a_word_ends_where_the_next_begins)
 {

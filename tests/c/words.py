@@ -59,7 +59,15 @@ PHRASES = [*"""
     5A's /a 5km/ 5km/1 5km/h 5km/x $5/ $5/1 é è ë ê à ï î í ô ó û ú ç ñ ö né née nëe ée e\u0300 e\u0302 e\u0308
     c\u0327 n\u0303 a\u0301 u\u0301 o\u0302 i\u0308 x\u0301 Zoë's NoëL \ufb03x \ufb05 µm \u2028 \u3000a \u0085a
     \u205fa \u202fa \u2005a GYM YES NYC QUEUE EYE AAAA TRY HMM STRNG STRENG WRLDS ABBS TSK DIYS
+    No.5 No.x No5 no. NO. Nos. Nos 2023/10/05 2023/10-05 2023/13/05 .5 -.5 a.5 ..5 x.5.5 5÷2 ÷ x² ² w/o w/ w/x W/x w/ox
+    w o C# C#x # 5# A. A, A/B A' AB/C 16:9 1:2:3 9am-5pm 9am-x 5km-10km 5km- (555) (155) (555 555) (5555) 5ft. 5m. II
+    iii VII viii XII XIV pp vol 2tbsp 1tsp 3yrs 1yr 5sq 5sqft 31 32
     """.split(),
+           "No. 5", "No. a", "No., 5", "Nos. 5 and 6", "No. 5th", "No. $5", "No. 2023/10/05", "5 March", "1 Mar. 5",
+           "31 May 1990", "32 May", "0 May", "5 may", "5 MAY", "5, May", "5.5 May", "5½ May", "5 ½ May", "5M May",
+           "5-7 May", "5th May", "$5 May", "1/2 May", "05 May", "5 km May", "5 million May", "x5 May", "6 ft 2 in",
+           "6 ft. 2 in.", "6 ft 2", "6 ft 2 May", "6 ft, 2 in", "6 ft x 2 in", "6 ft 2 3 in", "1h 30m", "1 hr 30 m",
+           "1h x 30m", "1 pound 3 in", "5 sq ft", "w/ x", "w/ o", "w/. o", "5 % May", "5 . 5 May",
            "a\u0085b", "a\u2028b", "a\u2029b", "a\u205fb", "a\u202fb", "a\u2005b", "a\u3000b", "a\xa0b", "a\tb",
            "March 5/x", "March 5:x", "*word a*", "*glass a*",
            "March 5.a", "March 5,a", "March 5x", "March 5:30", "March 5/6", "March 32", "March 0", "March 123",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import logging
 import re
+import subprocess
+import sys
 import time
 from collections import namedtuple
 from dataclasses import dataclass
@@ -12,19 +14,19 @@ from datetime import timedelta
 from enum import Enum
 from functools import partial
 from pathlib import Path
+from types import FrameType
 from typing import Any, Callable, Dict, List, Tuple
 
 import pytest
 
 import labial
-from labial.corpus.labels import LONGEST
 from labial.corpus.messages import Messages, Stats
-from labial.corpus.phonesets import PHONE_SETS
+from labial.corpus.phonesets import SPEECH
 from labial.corpus.service_files import read
 from labial.corpus.services import SERVICES
 from labial.errors import LabialError
 from labial.files import limits
-from packages import SOURCE
+from packages import CC, SOURCE
 from runtime import needs_runtime
 from services import SAMPLES
 
@@ -130,6 +132,7 @@ def _hostile() -> Dict[str, Any]:
         "words": json.dumps([{**GO, "start": -1}] * 1000),
         "fields": json.dumps({f"k{number}": number for number in range(7000)}), "label": phonemes("q" * 99_000),
         "digits": phonemes("7" * 99_000), "marks": phonemes("?" * 99_000), "labels": phonemes(*["ЖЯ" * 8] * 3000),
+        "labels of their own": phonemes(*(f"{number:04}#=%" * 4 + "Ж" for number in range(1800))),
         "characters": json.dumps({"alignment": chars}),
         "lines": '{"a":1}\n' * 12_500, "text": "lorem { ipsum " * 7000, "number": "9" * 100_000,
         "bytes": bytes(range(256)) * 400, "bytes of an object": b"{" + bytes(range(256)) * 400,
@@ -156,7 +159,6 @@ def test_limits_are_the_same_in_javascript_and_c() -> None:
         limits.MESSAGE_NESTING, limits.MESSAGE_DOCUMENTS, limits.MESSAGE_ITEMS, limits.MESSAGE_TEXT]
     header = (SOURCE / "include" / "labial" / "timings.h").read_text(encoding="utf-8")
     assert f"LABIAL_TIMINGS_LABEL_MAX {limits.LABEL - 1}\n" in header
-    assert max(len(name) for phones in PHONE_SETS.values() for name in phones.names()) <= LONGEST
 
 
 def _seconds(run: Callable[[], Any], count: int) -> float:
@@ -175,6 +177,76 @@ def _assert_linear(run: Callable[[int], Any]) -> None:
     while _seconds(partial(run, count), 1) < 0.005:
         count *= 2
     assert any(_seconds(partial(run, 2 * count), 3) <= 3 * _seconds(partial(run, count), 3) for _ in range(3))
+
+
+def _operations(run: Callable[[], Any]) -> int:
+    """How many operations Python executes."""
+    count = 0
+
+    def trace(frame: FrameType, event: str, _: Any) -> Any:
+        nonlocal count
+        frame.f_trace_opcodes = True
+        count += event == "opcode"
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        run()
+    finally:
+        sys.settrace(before)
+    return count
+
+
+#: A label that no set of labels knows any part of.
+UNKNOWN = "0123456789#=%0123456789#=%0123Ж"
+
+
+def test_an_unknown_label_costs_little() -> None:
+    """Its parts are compared only with names that begin as they do; with all others, too, it took 2,750 operations."""
+    SPEECH.nearest("Ж0")  # names are listed once
+    assert _operations(lambda: SPEECH.nearest(UNKNOWN, first="ipa")) < 1500
+
+
+@needs_runtime
+def test_an_unknown_label_costs_little_in_c(tmp_path: Path) -> None:
+    """The names are compared with all parts of a label in one pass: a label four times as long costs half as much more;
+    with a pass for each part it cost six times as much. Counts blocks of instructions."""
+    (tmp_path / "main.c").write_text("""\
+#include <stdio.h>
+#include <string.h>
+#include "speech_en.h"
+
+static unsigned long blocks;
+
+void __sanitizer_cov_trace_pc(void);
+void __sanitizer_cov_trace_pc(void)
+{
+    blocks++;
+}
+
+static unsigned long cost(const char *label)
+{
+    blocks = 0;
+    (void)labial_find_nearest(&speech_en_names, LABIAL_LABELS_AUTO, label, strlen(label), 0);
+    return blocks;
+}
+
+int main(int count, char **arguments)
+{
+    (void)count;
+    printf("%lu %lu\\n", cost(arguments[1]), cost(arguments[1] + 24));
+    return 0;
+}
+""", encoding="ascii")
+    options = [CC, "-O1", f"-I{SOURCE}/include", f"-I{SOURCE}/lib/models"]
+    subprocess.run([*options, "-fsanitize-coverage=trace-pc", "-c", SOURCE / "lib/names.c", "-o", tmp_path / "names.o"],
+                   check=True)
+    subprocess.run([*options, tmp_path / "main.c", tmp_path / "names.o", SOURCE / "lib/models/speech_en_names.c", "-o",
+                    tmp_path / "main"], check=True)
+    shown = subprocess.run([tmp_path / "main", UNKNOWN], check=True, capture_output=True, text=True).stdout
+    longer, shorter = map(int, shown.split())
+    assert 1000 < shorter < longer < 3 * shorter, (shorter, longer)
 
 
 @pytest.mark.parametrize("name", {sample.service: name for name, sample in SAMPLES.items()}.values())

@@ -325,7 +325,7 @@ if CMUDICT:
 
 
 #: What rules tell apart: characters, and parts of words.
-ALPHABET = ("abeigxyzAEIXYZTVUSmrstndhkKMBGCF0123456789012345..,,''-–--/:://&%@+=[]<>()**_  $€£¥₹¢°²½¼¾×−#\" "
+ALPHABET = ("abeigxyzAEIXYZTVUSmrstndhkKMBGCF0123456789012345..,,''-–--/:://&%@+=[]<>()**_  $€£¥₹¢°²½¼¾×÷−#\" "
             "éñÆßœŁ’Жﬁëïç中😀\u0301\u0308\u200b\u00a0Ａµ")
 PARTS = """1999 2005 1990s 80s 5 1 12 0 007 3:30 9:00 15:00 10:30:15 2024-03-05 3/5/2024 3/5/24 5.3.2024 1/2 3/4 5/12
     555-1234 1-800-555-0199 10-20 5'10 22nd $5 $1 $5.50 $0.99 $.50 $1.5 €20 ¥5.50 ₹1,000 5€ 50¢ $2M $10k $5/hour
@@ -336,6 +336,7 @@ PARTS = """1999 2005 1990s 80s 5 1 12 0 007 3:30 9:00 15:00 10:30:15 2024-03-05 
     *smiles* *leans in* *really* **bold** [tag] <break <b> x<3 -5 −5
     -$5 – - # #1 #tag ½ 3½ 3x4
     café Zoë Noël naïve ﬁn œuvre AT&T Q&A A+
+    No. Nos. 21 2023/10/05 6ft 6 ft ft. in 1h 30m sq w/o w/ C# .5 16:9 9am-5pm 5km-10km (555) II viii tbsp Mar May A.
     MP3 4K ’s Mr. Dr St. approx. Wi-Fi jpeg 50% ... ! ? . , ; :""".split()
 
 

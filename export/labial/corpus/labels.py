@@ -7,7 +7,8 @@ table.
 from __future__ import annotations
 
 import re
-from typing import Dict, List, Mapping, Optional, Tuple
+from functools import lru_cache
+from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from labial.files import limits
 
@@ -24,21 +25,25 @@ _TRAILING = re.compile(r"(?<=[^ ])(?:[:=~;.^\"-]|_[A-Za-z0-9=~^])$")
 _STRESS_DIGIT = re.compile(r"(?<=[A-Za-z]{2})[012]$")
 #: Diacritics, length and stress as Praat's backslash sequences. ``\h^`` is not one: it is a consonant.
 _PRAAT_MARK = re.compile(r"\\[|0OT\-+:~NUDn3cv'`^][v^()]|\\[:.]f|\\'[12]")
+_LETTER = re.compile(r"[A-Za-z\u0080-\U0010ffff]")
 _BLANKS = " \t\r\n"
 #: Bytes of a label without meaning in which a known part is looked for (LABEL_MAX of lib/names.c).
 _SEARCHED = 32
-#: Characters of the longest name of a phoneme.
-LONGEST = 16
 
 #: Sets of labels: one set, or "auto", any of them, ARPABET before the IPA before X-SAMPA.
 AUTO = "auto"
 
 
+@lru_cache(maxsize=8)  # a label without a meaning comes at once again
 def without_marks(label: str) -> str:
     """`label` without stress digits (0-2 after two letters or more), stress and length signs, ties and diacritics; ""
     when it consists of marks alone."""
-    text = _PRAAT_MARK.sub("", label.strip(_BLANKS))
-    text = _MODIFIER.sub("", _COMBINING.sub("", text)).lstrip(_LEADING)
+    text = label.strip(_BLANKS)
+    if "\\" in text:
+        text = _PRAAT_MARK.sub("", text)
+    if not text.isascii():
+        text = _MODIFIER.sub("", _COMBINING.sub("", text))
+    text = text.lstrip(_LEADING)
     while _TRAILING.search(text):
         text = _TRAILING.sub("", text)
     return _STRESS_DIGIT.sub("", text)
@@ -52,27 +57,44 @@ def normalise(label: str) -> str:
 def find(names: Mapping[str, str], label: str) -> Optional[str]:
     """The meaning of `label` in `names` (label or alias -> phoneme), or None: first without blanks around it, then also
     without its marks. A label longer than `limits.LABEL` bytes has none."""
+    return find_first((names,), label)
+
+
+def find_first(tables: Iterable[Mapping[str, str]], label: str) -> Optional[str]:
+    """The same in the first of several tables that knows `label`."""
     label = label.strip(_BLANKS)
     if len(label) > limits.LABEL or len(label.encode("utf-8", "replace")) > limits.LABEL:
         return None
-    return names.get(label, names.get(normalise(label)))
+    bare = without_marks(label) or label
+    for names in tables:
+        known = names.get(label, names.get(bare))
+        if known is not None:
+            return known
+    return None
 
 
-def nearest(names: Mapping[str, str], label: str, silence: str, neutral: str) -> str:
-    """A phoneme for any label: its meaning; silence for text in brackets, and for labels of nothing but marks, digits
-    and punctuation; else the first known part of its first 32 bytes, scanning from the left, and the longest there;
-    else `neutral`."""
-    known = find(names, label)
-    if known is not None:
-        return known
+def longest_of(names: Mapping[str, str]) -> Dict[str, int]:
+    """How long the names are that begin with a character, at most: what :func:`nearest` compares."""
+    longest: Dict[str, int] = {}
+    for name in names:
+        longest[name[0]] = max(len(name), longest.get(name[0], 0))
+    return longest
+
+
+def nearest(names: Mapping[str, str], longest: Mapping[str, int], label: str, silence: str, neutral: str) -> str:
+    """A phoneme for a label without a meaning: silence for text in brackets, and for labels of nothing but marks,
+    digits and punctuation; else the first known part of its first 32 bytes, scanning from the left, and the longest
+    there; else `neutral`."""
     label = label.strip(_BLANKS)
     if len(label) > 1 and label[0] + label[-1] in ("<>", "[]", "()", "{}", "++", "**", "##"):
         return silence
-    text = without_marks(label[:_SEARCHED].encode("utf-8", "replace")[:_SEARCHED].decode("utf-8", "replace"))
-    if not re.search(r"[A-Za-z\u0080-\U0010ffff]", text):
+    if len(label) > _SEARCHED or not label.isascii():
+        label = label[:_SEARCHED].encode("utf-8", "replace")[:_SEARCHED].decode("utf-8", "replace")
+    text = without_marks(label)
+    if not _LETTER.search(text):
         return silence
-    for start in range(len(text)):
-        for end in range(min(len(text), start + LONGEST), start, -1):
+    for start, first in enumerate(text):
+        for end in range(min(len(text), start + longest.get(first, 0)), start, -1):
             if text[start:end] in names:
                 return names[text[start:end]]
     return neutral

@@ -14,7 +14,6 @@ from labial.corpus.entries import Entry, documents, fields_of, shown
 from labial.corpus.phonesets import AUTO, SPEECH
 from labial.corpus.service_files import LONGEST_GAP, phoneme_segments_of
 from labial.corpus.services import SERVICES, Odd, Timed, Told, service_of
-from labial.corpus.timings import SourceSegment, meaning
 from labial.errors import DataError, LabialError, did_you_mean
 from labial.files.limits import MESSAGE_DOCUMENTS, MESSAGE_ITEMS, MESSAGE_TEXT
 
@@ -150,8 +149,8 @@ class Messages:
         """The phoneme that a label of the set `labels` means, or the one nearest to it; an empty one is silence."""
         known = self._phonemes.get((label, labels))
         if known is None:
-            segment = SourceSegment(0.0, 0.0, label, labels=labels)
-            known = meaning(segment, SPEECH, self._labels) or SPEECH.nearest(label, self._labels)
+            first = labels if self._labels == AUTO else ""
+            known = SPEECH.nearest(label, self._labels, first) if label else SPEECH.silence
             if len(self._phonemes) < MESSAGE_ITEMS:
                 self._phonemes[label[:MESSAGE_TEXT], labels] = known
         return known

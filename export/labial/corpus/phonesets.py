@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import Collection, Dict, List, Optional, Sequence, Tuple
 
 from labial.corpus.aliases import LABEL_SETS, LAUGHTER_LABELS, SPEECH_LABELS
-from labial.corpus.labels import AUTO, find, nearest, normalise
+from labial.corpus.labels import AUTO, find, find_first, longest_of, nearest, normalise
 
 __all__ = ["ARPABET", "AUTO", "LABEL_SETS", "LAUGHTER", "LAUGHTER_GRADES", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet",
            "aliases_for",
@@ -50,6 +50,10 @@ class PhoneSet:
     def _names(self) -> Dict[str, Dict[str, str]]:
         return {}
 
+    @cached_property
+    def _longest(self) -> Dict[str, Dict[str, int]]:
+        return {}
+
     def _names_of(self, labels: str) -> Dict[str, str]:
         own = {label: label for label in self.phonemes}
         if labels == "arpabet":
@@ -66,9 +70,16 @@ class PhoneSet:
         other marks."""
         return find(self.names(labels), label)
 
-    def nearest(self, label: str, labels: str = AUTO) -> str:
-        """A phoneme for any label: its meaning or the most similar phoneme; schwa if no part of it is known."""
-        return nearest(self.names(labels), label, self.silence, self.names().get("ə", self.silence))
+    def nearest(self, label: str, labels: str = AUTO, first: str = "") -> str:
+        """A phoneme for any label: its meaning, in the set `first` before `labels`, or the most similar phoneme; schwa
+        if no part of it is known."""
+        names = self.names(labels)
+        known = find_first((self.names(first), names) if first else (names,), label)
+        if known is not None:
+            return known
+        if labels not in self._longest:
+            self._longest[labels] = longest_of(names)
+        return nearest(names, self._longest[labels], label, self.silence, self.names().get("ə", self.silence))
 
 
 def _is_digit(label: str) -> bool:

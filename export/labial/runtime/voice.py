@@ -266,7 +266,8 @@ class Voice:
               key: int = 0, gap: int = 0) -> None:
         """Gives the library what a message tells of one kind."""
         if kind == "phonemes":
-            texts = [bytes([self._model.number(text)]) for text, _, _ in items]
+            numbers = {text: bytes([self._model.number(text)]) for text in {text for text, _, _ in items}}
+            texts = [numbers[text] for text, _, _ in items]
         else:
             self._model.nearest("SIL")  # raises an error for a model of other phonemes
             texts = [str(text).encode("utf-8", "replace")[:0xFFFF] for text, _, _ in items]

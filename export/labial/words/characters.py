@@ -11,10 +11,11 @@ from typing import Dict, List, NamedTuple, Optional, Tuple
 
 FOREIGN, NOTHING, BLANK = "\1", "\2", " "
 EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DASH = (chr(code) for code in range(3, 13))
-HALF, QUARTER, QUARTERS = (chr(code) for code in range(13, 16))
+HALF, QUARTER, QUARTERS, DIVIDED = (chr(code) for code in range(13, 17))
 
 _SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "×": TIMES, "−": MINUS,
-          "–": DASH, "½": HALF, "¼": QUARTER, "¾": QUARTERS, "’": "'", "ʼ": "'", "µ": "u", "μ": "u"}  # fmt: skip
+          "–": DASH, "½": HALF, "¼": QUARTER, "¾": QUARTERS, "÷": DIVIDED,
+          "’": "'", "ʼ": "'", "µ": "u", "μ": "u"}  # fmt: skip
 _BLANKS = ((9, 13), (0x20, 0x20), (0x85, 0x85), (0xA0, 0xA0), (0x2000, 0x200A), (0x2028, 0x2029), (0x202F, 0x202F),
            (0x205F, 0x205F), (0x3000, 0x3000))
 _FOREIGN = ((0x180, 0x2FF), (0x370, 0x1FFF), (0x2C00, 0x2DFF), (0x3041, 0xD7FF), (0xF900, 0xFAFF), (0x20000, 0x3FFFF))

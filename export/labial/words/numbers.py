@@ -29,9 +29,10 @@ END = r"(?![A-Za-z0-9\1])"
 _WHOLE = re.compile(r"[0-9]+(?:,[0-9]{3}(?![0-9]))*")
 _FRACTION = re.compile(r"\.([0-9]+)")
 _DIGITS = re.compile(r"[0-9](?:,?[0-9])*")
-_ISO = re.compile(r"([0-9]{4})-([0-9]{1,2})-([0-9]{1,2})" + END)
+_ISO = re.compile(r"([0-9]{4})([/-])([0-9]{1,2})\2([0-9]{1,2})" + END)
 _DATE = re.compile(r"([0-9]{1,2})([/.-])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})" + END)
 _PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4})(?![A-Za-z0-9\1-])")
+_AREA = re.compile(r"[2-9][0-9]{2}(?=\))")
 _TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})(?::([0-9]{2}))?(?![0-9:])")
 _SHARE = re.compile(r"([0-9]{1,2})/([0-9]{1,3})(?![A-Za-z0-9\1/])")
 _FEET = re.compile(r"([0-9]{1,2})'([0-9]{1,2})" + END)
@@ -74,11 +75,11 @@ def read_sum(said: Said, place: int) -> int:
         else:
             said.say(" ".join(cardinal(digits)), place)
     if fraction and cents is None:
-        _say_fraction(said, end, fraction[1])
+        read_fraction(said, end)
     if scale:
         said.say(_LETTER_SCALES[scale[1].lower()] + " " + inflected(name, True), after - 1)
         context.after = ""
-        return _range(said, scale.end())
+        return read_range(said, scale.end())
     plural = digits != "1" or (fraction is not None and cents is None)
     if cents is None:
         said.say_tail(inflected(name, plural), after - 1)
@@ -88,7 +89,7 @@ def read_sum(said: Said, place: int) -> int:
         if main:
             said.say("and", end)
         said.say(" ".join(cardinal(cents)) + " " + inflected(_HUNDREDTHS[currency], cents != "01"), end)
-    return _range(said, after)
+    return read_range(said, after)
 
 
 def read_number(said: Said, place: int) -> int:
@@ -96,6 +97,11 @@ def read_number(said: Said, place: int) -> int:
     is_start = not re.match("[A-Za-z0-9\1]", said.at(place - 1))
     month = said.context.after == "month"
     is_counted = said.context.after in ("one", "number")
+    if said.context.after in ("no", "nos"):
+        said.take_back()
+        said.say("numbers" if said.context.after == "nos" else "number", place)
+    if said.context.after != "unit":
+        said.context.mark = ""
     said.context.after, said.context.tail = "number", 0
     for rule in (_read_date, _read_phone, _read_time, _read_share, _read_feet, _read_decade) if is_start else ():
         end = rule(said, place, is_counted)
@@ -103,14 +109,14 @@ def read_number(said: Said, place: int) -> int:
             return end
     day = _DAY.match(said.simple, place) if month and is_start else None
     if day and 1 <= int(day[1]) <= 31:
-        _say_ordinal(said, day[1], place)
-        end = _range(said, day.end())
+        say_ordinal(said, day[1], place)
+        end = read_range(said, day.end())
         said.context.after = "month" if end > day.end() else ""
         return end
     year = _YEAR.match(said.simple, place) if is_start else None
     if year and not year[0].startswith("200"):
         said.say(" ".join(_year(year[0])), place)
-        return _range(said, year.end())
+        return read_range(said, year.end())
     return _read_plain(said, place, is_start)
 
 
@@ -126,16 +132,19 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
     else:
         ordinal = _ORDINAL.match(said.simple, end)
         if ordinal:
-            _say_ordinal(said, digits, place)
+            say_ordinal(said, digits, place)
             said.context.after = ""
             return ordinal.end()
-        said.say(" ".join(cardinal(digits)), place)
+        if is_start and not said.context.mark and len(digits) <= 2 and 1 <= int(digits) <= 31:
+            said.say_tail(" ".join(cardinal(digits)), place)
+            said.context.day = int(digits)
+        else:
+            said.say(" ".join(cardinal(digits)), place)
         if digits == "1":
             said.context.after = "one"
-    while fraction := _FRACTION.match(said.simple, end):
-        _say_fraction(said, end, fraction[1])
-        said.context.after = "number"
-        end = fraction.end()
+    while _FRACTION.match(said.simple, end):
+        end = read_fraction(said, end)
+        said.context.after, said.context.tail = "number", 0
     return _behind(said, end) if is_start else end
 
 
@@ -144,16 +153,17 @@ def _behind(said: Said, end: int) -> int:
     halves = {signs.HALF: "half", signs.QUARTER: "quarter", signs.QUARTERS: "three quarters"}.get(said.at(end))
     if halves:
         said.say("and" + (" a" if halves[0] != "t" else "") + " " + halves, end)
-        said.context.after = "number"
+        said.context.after, said.context.tail = "number", 0
         return end + 1
     if said.at(end) in ("x", signs.TIMES) and said.at(end + 1).isdigit():
         said.say("by", end)
         return end + 1
-    return _range(said, end)
+    return read_range(said, end)
 
 
-def _range(said: Said, end: int) -> int:
-    if said.at(end) in ("-", signs.DASH) and (said.at(end + 1).isdigit() or is_sum(said, end + 1)):
+def read_range(said: Said, end: int) -> int:
+    """Reads "to" where a number reaches up to another one; returns the place behind it."""
+    if said.at(end) in ("-", ":", signs.DASH) and (said.at(end + 1).isdigit() or is_sum(said, end + 1)):
         said.say("to", end)
         return end + 1
     return end
@@ -162,7 +172,7 @@ def _range(said: Said, end: int) -> int:
 def _read_date(said: Said, place: int, _: bool) -> Optional[int]:
     found = _ISO.match(said.simple, place)
     if found:
-        year, month, day = found[1], int(found[2]), int(found[3])
+        year, month, day = found[1], int(found[3]), int(found[4])
     else:
         found = _DATE.match(said.simple, place)
         if not found or (found[2] != "/" and len(found[4]) == 2):
@@ -174,7 +184,7 @@ def _read_date(said: Said, place: int, _: bool) -> Optional[int]:
     if not (1 <= month <= 12 and 1 <= day <= 31):
         return None
     said.say(MONTHS[month - 1].lower(), place)
-    _say_ordinal(said, str(day), place)
+    say_ordinal(said, str(day), place)
     said.say(" ".join(_year(year)), place)
     said.context.after = ""
     return found.end()
@@ -182,6 +192,8 @@ def _read_date(said: Said, place: int, _: bool) -> Optional[int]:
 
 def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
     found = _PHONE.match(said.simple, place)
+    if not found and said.at(place - 1) == "(":
+        found = _AREA.match(said.simple, place)
     if not found:
         return None
     _say_digits(said, found[0], place)
@@ -204,7 +216,7 @@ def _read_time(said: Said, place: int, _: bool) -> Optional[int]:
         said.say_tail("hundred", place)
     if found[3]:
         _say_minutes(said, found[3], found.start(3))
-    return _range(said, found.end())
+    return read_range(said, found.end())
 
 
 def _say_minutes(said: Said, digits: str, place: int) -> None:
@@ -260,12 +272,17 @@ def _say_digits(said: Said, text: str, place: int) -> None:
             said.say(_UNITS[int(digit)], place + offset)
 
 
-def _say_fraction(said: Said, point: int, digits: str) -> None:
+def read_fraction(said: Said, point: int) -> int:
+    """Reads a point and digits; returns the place behind them."""
+    found = _FRACTION.match(said.simple, point)
+    assert found is not None
     said.say("point", point)
-    _say_digits(said, digits, point + 1)
+    _say_digits(said, found[1], point + 1)
+    return found.end()
 
 
-def _say_ordinal(said: Said, digits: str, place: int) -> None:
+def say_ordinal(said: Said, digits: str, place: int) -> None:
+    """Says a number as an ordinal."""
     words = cardinal(digits)
     said.say(" ".join([*words[:-1], _ordinal(words[-1])]), place)
 

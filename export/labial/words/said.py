@@ -23,9 +23,12 @@ _PLURALS = {"h": "aitches", "s": "esses", "x": "exes"}
 class Context:
     """What the words so far mean for the next one: all as at the beginning of a text."""
 
-    after: str = ""  #: "one", "number", "time", "sum", "unit", "per" or "month", which was said last
+    #: Which was said last: "one", "number", "time", "sum", "unit", "per", "month", "no" or "nos", "with".
+    after: str = ""
     currency: int = 0  #: of a sum
-    tail: int = 0  #: phonemes that the next word may take back: "dollars" before "million", "o'clock" before "a.m."
+    day: int = 0  #: the number that `tail` says, which a month makes an ordinal
+    mark: str = ""  #: of the unit before, behind which a smaller one may follow
+    tail: int = 0  #: phonemes that the next word may take back: "dollars" before "million", "five" before "March"
     is_old: bool = False  #: these are of an earlier text
     dropped: int = 0  #: phonemes that the text now being read took from the one before
     shouting: bool = False  #: the last word was in capitals, but not spelt

@@ -21,14 +21,16 @@ CHARACTERS, PHONEMES = 255, 96
 #: Words of a tag or stage direction, at most.
 _DIRECTION = 8
 
-_SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals", signs.TIMES: "times"}
+_SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals", signs.TIMES: "times",
+          signs.DIVIDED: "divided by", signs.SQUARE: "squared"}
 _PARTS = {signs.HALF: "one half", signs.QUARTER: "one quarter", signs.QUARTERS: "three quarters"}
 _MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
 prof professor;jr junior;sr senior;vs versus;etc etcetera;approx approximately;dept department;govt government
 blvd boulevard;ave avenue;rd road;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
 wi why;fi fie;wifi why fie;ph pee aitch;phd pee aitch dee;www double_you double_you double_you
 http aitch tee tee pee;https aitch tee tee pee ess;ftp eff tee pee;edu ee dee you;ascii askey;jpeg jay peg
-jpg jay peg;mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new"""
+jpg jay peg;mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
+ii two;iii three;vii seven;viii eight;xii twelve;xiv fourteen"""
                                .replace("\n", ";").split(";"))
 _DATES = dict(zip("Jan Feb Mar Apr Jun Jul Aug Sep Sept Oct Nov Dec Mon Tue Tues Wed Thu Thur Thurs Fri".split(),
                   "January February March April June July August September September October November December Monday "
@@ -46,8 +48,11 @@ kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_;kbps kilobit_ p
 Gbps gigabit_ per second;W watt_;kW kilowatt_;MW megawatt_;GW gigawatt_;Wh watt hour_;kWh kilowatt hour_;V volt_
 mV millivolt_;kV kilovolt_;mA milliamp_;mAh milliamp hour_;dB decibel_;px pixel_;cal calorie_;kcal kilocalorie_
 rpm are pee em;bpm bee pee em;fps eff pee ess;mpg mile_ per gallon;EUR euro_;GBP pound_;USD you ess dollar_
+yr year_;yrs year_;tbsp tablespoon_;tsp teaspoon_;sq square
 M million;bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenheit""".replace("\n", ";").split(";"))
 _ATTACHED = ("M", "bn", "in", "A", "C", "F")
+#: Units behind which another number and its unit belong to the same length or duration, and what marks them.
+_PARTED = {"foot|feet": "f", "hour_": "h"}
 
 #: Capitals that are read letter by letter although a word could look so, and words of two letters, of three that begin
 #: with a vowel, and others that are words although they do not look so.
@@ -186,9 +191,13 @@ class _Reader:
         if here in "(*" and before != "*" and self._is_direction(place, ")" if here == "(" else "*"):
             return self._open(")" if here == "(" else "*", place)
         after = self._forget()
+        self.context.tail = 0
         is_counted = after in ("one", "number")
         if here == signs.DEGREE:
             return self._read_degrees(place, after)
+        if here == "." and follows.isdigit() and not is_inside(before):
+            self.context.after = "number"
+            return numbers.read_fraction(said, place)
         if here == "/" and after in ("unit", "sum") and follows.isascii() and follows.isalpha():
             said.say("per", place)
             self.context.after = "per"
@@ -205,6 +214,8 @@ class _Reader:
             said.say(inflected(numbers.CURRENCIES[numbers.currency_of(here)], after == "number"), place)
         elif here == "#" and follows.isdigit():
             said.say("number", place)
+        elif here == "#" and before.isascii() and before.isalpha() and not is_inside(follows):
+            said.say("sharp", place)
         elif here == "<" and follows.isdigit():
             said.say("less than", place)
         elif here in _SIGNS:
@@ -255,7 +266,11 @@ class _Reader:
             run = run[:-1]
         self._read_run(run, place, after, before)
         place += len(run)
-        return place + (run in _DATES and self.said.at(place) == ".")
+        if self.context.after == "with":
+            return place + 1
+        if run.lower() in ("am", "pm") and after in ("one", "number", "time"):
+            return numbers.read_range(self.said, place)
+        return place + (run in (*_DATES, "No", "Nos") and self.said.at(place) == ".")
 
     def _read_pointed(self, text: str, place: int, after: str) -> int:
         meaning = {"e.g": "for example", "i.e": "that is"}.get(text[:3].lower())
@@ -270,13 +285,18 @@ class _Reader:
     def _read_unit(self, place: int, after: str, is_apart: bool) -> int:
         """Reads a unit behind a number; returns the place behind it, or 0."""
         found = re.compile(r"[A-Za-z]{1,4}(?![A-Za-z0-9\1]|'[A-Za-z])").match(self.simple, place)
-        if not found or found[0] not in _UNITS or (is_apart and found[0] in _ATTACHED):
+        context, unit = self.context, found[0] if found else ""
+        if not found or unit not in _UNITS or (is_apart and unit in _ATTACHED and context.mark != "f"):
             return 0
-        name = inflected(_UNITS[found[0]], after == "number")
+        name = "minute_" if context.mark == "h" and unit == "m" else _UNITS[unit]
         power = {signs.SQUARE: "square "}.get(self.said.at(found.end()), "")
-        self.said.say(power + name, place)
-        self.context.after = "unit" if found[0] not in ("M", "bn") else "number"
-        return found.end() + bool(power)
+        self.said.say(power + inflected(name, after == "number"), place)
+        context.after = "unit" if unit not in ("M", "bn", "sq") else "number"
+        context.tail, context.mark = 0, _PARTED.get(name, "")
+        end = found.end() + bool(power)
+        if context.mark == "f" and self.said.at(end) == ".":
+            return end + 1
+        return numbers.read_range(self.said, end)
 
     def _read_run(self, run: str, place: int, after: str, before: str) -> None:
         said, context, small = self.said, self.context, run.lower()
@@ -292,8 +312,18 @@ class _Reader:
             said.take_back()
             said.say(f"{small} {inflected(numbers.CURRENCIES[context.currency], True)}", place)
         elif run in _DATES:
+            month = self._month(place, after) if list(_DATES).index(run) < 12 else ""
             said.say(_DATES[run], place)
-            context.after = "month" if list(_DATES).index(run) < 12 else ""
+            context.after = month
+        elif run in ("No", "Nos") and follows == ".":
+            before_it = len(said.phonemes)
+            self._spell(run, place)
+            context.after, context.tail, context.is_old = small, len(said.phonemes) - before_it, False
+        elif run == "w" and follows == "/":
+            said.say("with", place)
+            context.after = "with"
+        elif small == "o" and after == "with":
+            said.say("out", place)
         elif small in _MEANINGS:
             said.say(_MEANINGS[small], place)
         elif self.address and before == "." and self._is_spelt_in_address(small):
@@ -302,9 +332,17 @@ class _Reader:
             letters = _capitals(run)
             said.say_names(letters.lower(), range(place, place + len(letters)), letters != run)
         else:
+            context.after = self._month(place, after) if run in numbers.MONTHS else ""
             self._spell(run, place)
             context.shouting = run.isupper() and (len(run) > 1 or run == "I")
-            context.after = "month" if run in numbers.MONTHS else ""
+
+    def _month(self, place: int, after: str) -> str:
+        """What a month leaves behind: it makes the number before it an ordinal, or waits for its day."""
+        if after not in ("one", "number") or not self.context.tail:
+            return "month"
+        self.said.take_back()
+        numbers.say_ordinal(self.said, str(self.context.day), place)
+        return ""
 
     def _spell(self, run: str, place: int) -> None:
         sounds = [item.sound for item in self.said.characters[place : place + len(run)]]
@@ -318,8 +356,7 @@ class _Reader:
     def _is_spelt(self, run: str, before: str, follows: str, shouting: bool) -> bool:
         """Whether letters are read one by one."""
         if len(run) == 1:
-            beside = before + follows
-            return run not in "aAiI" or (run == "A" and bool(re.search("[0-9&+]", beside) or follows == "-"))
+            return run not in "aAiI" or (run == "A" and (bool(re.search("[0-9&+]", before)) or follows != BLANK))
         letters = _capitals(run)
         if not (letters.isalpha() and letters.isupper() and 2 <= len(letters) <= 5):
             return False
