@@ -40,7 +40,7 @@ static void on_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHAN
     assert_true(given == &user);
     assert_true(frame_count < FRAMES);
     assert_int_equal(frame, first_frame + frame_count);
-    (void)labial_hear_visemes(&hear, visemes, sounds[frame_count]); /* which another copy of the stream may leave alone */
+    (void)labial_hear_visemes(&hear, visemes, sounds[frame_count]); /* where a copy is heard, `hear` may be empty */
     memcpy(told[frame_count++], faps, sizeof told[0]);
 }
 
