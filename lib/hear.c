@@ -18,17 +18,12 @@
 #include "hear_motion.h"
 #include "hear_network.h"
 
-#define HEARING 0x48454152u /* "HEAR" */
-
 #define HEAR_FRAME_MS (1000u / LABIAL_HEAR_FPS)
-
-/* What the last frame shows. */
-enum { TOLD_NOTHING, TOLD_SOUND, TOLD_WAY_TO_REST };
 
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
 static int usable(const labial_hear_t *hear)
 {
-    return !hear ? LABIAL_ERROR_NULL : hear->magic != HEARING || hear->busy ? LABIAL_ERROR_STATE : LABIAL_OK;
+    return !hear ? LABIAL_ERROR_NULL : hear->magic != LABIAL_HEAR_MAGIC_ || hear->busy ? LABIAL_ERROR_STATE : LABIAL_OK;
 }
 
 /* ---- Frames out. These return 0 when a callback has initialised the stream anew. --------------------------------- */
@@ -51,7 +46,7 @@ static int tell_frame(labial_hear_t *hear, const int16_t *pose)
 static int tell_way_to_rest(labial_hear_t *hear, unsigned frames)
 {
     labial_fade_begin(&hear->fade, frames, 0);
-    hear->told = hear->told == TOLD_NOTHING ? TOLD_NOTHING : TOLD_WAY_TO_REST;
+    hear->told = hear->told == LABIAL_HEAR_NOTHING_ ? LABIAL_HEAR_NOTHING_ : LABIAL_HEAR_WAY_TO_REST_;
     for (; frames > 0; frames--)
         if (!tell_frame(hear, NULL))
             return 0;
@@ -83,9 +78,9 @@ static int deliver_heads(labial_hear_t *hear, const int16_t *heads)
     hear->sounding--;
     if (leader != hear->shown && !tell_class(hear))
         return 0;
-    hear->earlier = hear->told == TOLD_NOTHING ? leader : hear->shown;
+    hear->earlier = hear->told == LABIAL_HEAR_NOTHING_ ? leader : hear->shown;
     hear->shown = leader;
-    hear->told = TOLD_SOUND;
+    hear->told = LABIAL_HEAR_SOUND_;
     return tell_frame(hear, pose);
 }
 
@@ -141,7 +136,7 @@ static void reset_sound(labial_hear_t *hear)
 {
     labial_fade_begin(&hear->fade, LABIAL_FADE_STEPS, 0);
     hear->sounding = 0;
-    hear->told = TOLD_NOTHING;
+    hear->told = LABIAL_HEAR_NOTHING_;
     hear->first = hear->frame;
     labial_hear_convert_reset(&hear->convert);
     labial_hear_features_reset(&hear->features);
@@ -175,7 +170,7 @@ int labial_hear_init(labial_hear_t *hear, const labial_hear_model_t *model, uint
     hear->motion.articulation.wanted = 100;
     hear->features.level.level = LABIAL_HEAR_LEVEL_BEGIN * (LABIAL_HEAR_LEVEL_ONE / 256);
     reset_sound(hear);
-    hear->magic = HEARING;
+    hear->magic = LABIAL_HEAR_MAGIC_;
     return LABIAL_OK;
 }
 
@@ -185,52 +180,6 @@ int labial_hear_classes(labial_hear_t *hear, labial_hear_class_fn callback)
     if (result == LABIAL_OK)
         hear->class_callback = callback;
     return result;
-}
-
-/* How much of the sound of the last frame the face shows. */
-static uint32_t sound_shown(const labial_hear_t *hear)
-{
-    const labial_fade_t *fade = &hear->fade;
-    uint32_t whole;
-    if (hear->told == TOLD_NOTHING)
-        return 0;
-    whole = (uint32_t)(labial_hear_motion_share(&hear->motion) * LABIAL_VISEME_ONE) >> 14;
-    if (hear->told == TOLD_SOUND)
-        return whole;
-    if (fade->step == 0 || fade->step >= fade->length)
-        return 0;
-    return labial_quotient(((uint32_t)fade->length - fade->step) * whole, (uint32_t)fade->length);
-}
-
-/* Adds a class of this viseme to the parts of the sounds; what is no viseme is silence. */
-static void add_class(unsigned viseme, unsigned part, uint8_t parts[LABIAL_VISEMES])
-{
-    if (viseme == LABIAL_VISEME_NONE)
-        return;
-    if (viseme >= LABIAL_VISEMES)
-        viseme = LABIAL_VISEME_SIL;
-    parts[viseme] = (uint8_t)(parts[viseme] + part);
-}
-
-int labial_hear_visemes(const labial_hear_t *hear, const uint8_t *visemes, uint8_t shares[LABIAL_VISEMES])
-{
-    uint8_t parts[LABIAL_VISEMES] = { 0 };
-    uint32_t whole, sum = 0;
-    unsigned i;
-    if (!hear || !visemes || !shares)
-        return LABIAL_ERROR_NULL;
-    if (hear->magic != HEARING)
-        return LABIAL_ERROR_STATE;
-    add_class(visemes[hear->earlier], 1, parts);
-    add_class(visemes[hear->shown], 2, parts);
-    add_class(visemes[hear->motion.leader], 1, parts);
-    for (i = 0; i < LABIAL_VISEMES; i++)
-        sum += parts[i];
-    whole = sum > 0 ? sound_shown(hear) : 0u;
-    for (i = 0; i < LABIAL_VISEMES; i++)
-        shares[i] = (uint8_t)(sum > 0 ? labial_quotient(parts[i] * whole + sum / 2u, sum) : 0u);
-    shares[LABIAL_VISEME_SIL] = (uint8_t)(shares[LABIAL_VISEME_SIL] + LABIAL_VISEME_ONE - whole);
-    return LABIAL_OK;
 }
 
 int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count)
@@ -316,7 +265,7 @@ int labial_hear_set_level(labial_hear_t *hear, unsigned level)
 
 unsigned labial_hear_level(const labial_hear_t *hear)
 {
-    if (!hear || hear->magic != HEARING)
+    if (!hear || hear->magic != LABIAL_HEAR_MAGIC_)
         return 0;
     return labial_quotient((uint32_t)hear->features.level.level, LABIAL_HEAR_LEVEL_ONE / 256u);
 }
@@ -324,7 +273,7 @@ unsigned labial_hear_level(const labial_hear_t *hear)
 labial_latency_t labial_hear_latency(const labial_hear_t *hear)
 {
     labial_latency_t latency = { 0, 0, 0, 0, 0 };
-    if (hear && hear->magic == HEARING) {
+    if (hear && hear->magic == LABIAL_HEAR_MAGIC_) {
         const uint32_t stride = hear->convert.spacing * 10u, step = hear->convert.step;
         const uint32_t frame = labial_quotient(2u * LABIAL_HEAR_HOP_ * step, stride); /* samples */
         latency.frames = hear->sounding;

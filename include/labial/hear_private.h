@@ -11,8 +11,9 @@
 #include "labial/hear_model.h"
 #include "labial/private.h"
 
-#define LABIAL_HEAR_WINDOW_ 256 /* samples of a window */
-#define LABIAL_HEAR_HOP_ 160    /* from one window to the next */
+#define LABIAL_HEAR_MAGIC_ 0x48454152u /* "HEAR" */
+#define LABIAL_HEAR_WINDOW_ 256        /* samples of a window */
+#define LABIAL_HEAR_HOP_ 160           /* from one window to the next */
 /* Numbers that a window and the network's layers take turns in. */
 #define LABIAL_HEAR_ROOM_                                                                                              \
     (2 * LABIAL_HEAR_UNITS_MAX > LABIAL_HEAR_WINDOW_ ? 2 * LABIAL_HEAR_UNITS_MAX : LABIAL_HEAR_WINDOW_)
@@ -66,6 +67,9 @@ typedef struct {
     int16_t now[LABIAL_CHANNELS];    /* the pose that is due next, before it is smoothed */
 } labial_hear_motion_t;
 
+/* What the last frame shows. */
+enum { LABIAL_HEAR_NOTHING_, LABIAL_HEAR_SOUND_, LABIAL_HEAR_WAY_TO_REST_ };
+
 /* A stream of sound (hear.c). */
 typedef struct {
     uint32_t magic; /* set while the stream is initialised */
@@ -73,7 +77,7 @@ typedef struct {
     uint8_t ended, busy;    /* no more sound is heard; a callback runs */
     uint8_t exact;          /* the end delivers no way to rest */
     uint8_t shown, earlier; /* the class of the last frame, and of the one before it */
-    uint8_t told;           /* what the last frame shows: nothing, sound, or the way to rest */
+    uint8_t told;           /* what the last frame shows */
     uint32_t sounding;      /* frames with sound, also in part, that are not yet delivered */
     uint32_t frame;         /* the next frame */
     uint32_t first;         /* of the class that is shown; the next frame if none is */
