@@ -500,6 +500,11 @@ TEST_AFTER(begin, after_the_end_the_next_one_begins)
     tell_one("F", 0, 100);
     assert_string_equal(known(), "0-500 M, 500-600 AA, 600-700 S, 700-800 F");
     assert_int_equal(voice.utterance_count, 3);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    play(5000);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_int_equal(labial_voice_begin(&voice, 900, 0), LABIAL_OK); /* and one that began has not ended */
+    assert_int_equal(labial_voice_done(&voice), 0);
 }
 
 TEST_AFTER(begin, an_utterance_ends_where_the_next_begins)

@@ -171,14 +171,6 @@ def _seconds(run: Callable[[], Any], count: int) -> float:
     return min(times)
 
 
-def _assert_linear(run: Callable[[int], Any]) -> None:
-    """Twice as much takes at most three times as long."""
-    count = 64
-    while _seconds(partial(run, count), 1) < 0.005:
-        count *= 2
-    assert any(_seconds(partial(run, 2 * count), 3) <= 3 * _seconds(partial(run, count), 3) for _ in range(3))
-
-
 def _operations(run: Callable[[], Any]) -> int:
     """How many operations Python executes."""
     count = 0
@@ -196,6 +188,14 @@ def _operations(run: Callable[[], Any]) -> int:
     finally:
         sys.settrace(before)
     return count
+
+
+def _assert_linear(run: Callable[[int], Any]) -> None:
+    """Twice as much takes at most three times as many operations."""
+    count = 16
+    while (few := _operations(partial(run, count))) < 100_000:
+        count *= 2
+    assert _operations(partial(run, 2 * count)) <= 3 * few
 
 
 #: A label that no set of labels knows any part of.
