@@ -9,10 +9,15 @@
  * player of lips beside the audio. The face stays within its limits and in step with the clock; the player shows each
  * frame with its sample.
  *
+ * A voice that answers again and again: words ahead of their sound, told twice, too late, and cancelled, by a clock that
+ * stumbles. Each moment has its frame, the face rests between answers, and every hour one answer moves it as at first,
+ * within a hair.
+ *
  * Nothing beside the structures and their workspaces is ever written to.
  */
 #include "suite.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "fixture.h"
@@ -21,8 +26,10 @@
 #include "labial/beside.h"
 #include "labial/face.h"
 #include "labial/laugh.h"
+#include "labial/voice.h"
 #include "laughter_synthetic.h"
 #include "speech_en.h"
+#include "words_en.h"
 
 #define RATE SPEECH_EN_FPS
 #define HOUR (3600u * RATE) /* frames */
@@ -557,6 +564,204 @@ TEST(sound_stays_in_step_at_half_of_the_counters)
 {
     const unsigned minutes = FIXTURE_ROUNDS(60);
     work(minutes, 0x80000000u - minutes * 30000u, 0x80000000u - minutes * HOUR / 120u);
+}
+
+/* ---- A voice that is followed ------------------------------------------------------------------------------------ */
+
+#define PLACES 400
+#define WORDS 24u   /* of an answer, at most */
+#define ANSWER 300u /* frames that are kept of one */
+#define PAUSE 40    /* FAP units that a pause is away from the neutral face, at most */
+
+static struct {
+    uint32_t before[CANARIES];
+    labial_voice_t voice;
+    uint32_t between[CANARIES];
+    uint32_t memory[LABIAL_VOICE_SIZE(3, 8, PLACES) / 4];
+    uint32_t after[CANARIES];
+} agent;
+
+static struct {
+    fixture_random_t random;
+    uint64_t now;                     /* milliseconds */
+    uint64_t due;                     /* the frame that comes next */
+    uint32_t answers, identity;       /* how many there were; that of the present one */
+    uint32_t ends[WORDS];             /* of its words, milliseconds from its beginning */
+    unsigned words, told;             /* how many it has, and how many the voice knows */
+    uint64_t begins;                  /* when it does */
+    int16_t (*kept)[LABIAL_CHANNELS]; /* where frames go, or null */
+    unsigned frames, moved;           /* that were kept; that moved since the answer began */
+    unsigned cancels, twice;
+} talk;
+
+static const char *const vocabulary[] = { "maybe", "people", "Bob",      "water", "five",
+                                          "of",    "a",      "movement", "shoe",  "the" };
+
+static void guard_agent(int check)
+{
+    paint(agent.before, check);
+    paint(agent.between, check);
+    paint(agent.after, check);
+}
+
+/* Tells the words of an answer from one on, up to another. */
+static int tell_words(uint32_t identity, unsigned from, unsigned until)
+{
+    labial_voice_item_t items[WORDS];
+    labial_voice_message_t message = { .items = items, .utterance = identity, .kind = LABIAL_VOICE_WORDS };
+    memset(items, 0, sizeof items);
+    for (unsigned i = from; i < until; i++) {
+        labial_voice_item_t *const one = &items[message.count++];
+        one->text = vocabulary[(i * 7u + 3u) % (sizeof vocabulary / sizeof *vocabulary)];
+        one->size = (uint16_t)strlen(one->text);
+        one->start = (uint64_t)(i > 0 ? talk.ends[i - 1u] : 100u) * 1000u;
+        one->end = (uint64_t)talk.ends[i] * 1000u;
+    }
+    return labial_voice_tell(&agent.voice, &message);
+}
+
+/* The frames that are due, of which none is left out unless the clock jumped by more than a second. */
+static void follow(uint32_t milliseconds)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    uint32_t frame;
+    talk.now += milliseconds;
+    while (labial_voice_next(&agent.voice, talk.now, &frame, faps) == LABIAL_OK) {
+        int moves = 0;
+        assert_int_equal(frame, milliseconds > 1000u ? talk.now * RATE / 1000u : talk.due);
+        talk.due = (uint64_t)frame + 1u;
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
+            assert_in_range(faps[c], -1500, 1500);
+            moves |= faps[c] > 60 || faps[c] < -60;
+        }
+        talk.moved += (unsigned)moves;
+        if (talk.kept && talk.frames < ANSWER)
+            memcpy(talk.kept[talk.frames++], faps, sizeof faps);
+    }
+    assert_int_equal(talk.due, talk.now * RATE / 1000u + 1u);
+    guard_agent(1);
+}
+
+/* An answer of words of these lengths, with the next frame. */
+static void begin_answer(unsigned words, uint32_t shortest, uint32_t longest)
+{
+    char name[12];
+    uint32_t end = 100;
+    const int size = snprintf(name, sizeof name, "%lu", (unsigned long)talk.answers++);
+    talk.identity = labial_voice_identity(name, (size_t)size);
+    talk.begins = (talk.now / 20u + 1u) * 20u;
+    talk.words = words;
+    talk.told = talk.moved = 0;
+    for (unsigned i = 0; i < words; i++)
+        talk.ends[i] = end +=
+            shortest + (longest > shortest ? fixture_below(&talk.random, longest - shortest) : i % 5u * 60u);
+    assert_int_equal(labial_voice_begin(&agent.voice, talk.begins, talk.identity), LABIAL_OK);
+}
+
+/* Waits until nothing moves, and a while longer, in which the face is at rest. */
+static void come_to_rest(void)
+{
+    static int16_t rest[ANSWER][LABIAL_CHANNELS];
+    unsigned waits = 0;
+    while (!labial_voice_done(&agent.voice)) {
+        assert_true(++waits < 1000u);
+        follow(20);
+    }
+    talk.kept = rest;
+    talk.frames = 0;
+    for (unsigned i = 0; i < 10u; i++)
+        follow(20);
+    talk.kept = NULL;
+    for (unsigned i = 0; i < talk.frames; i++)
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
+            assert_in_range(rest[i][c], -PAUSE, PAUSE);
+}
+
+/* One answer, from rest to rest; returns its frames. */
+static unsigned answer(int16_t kept[ANSWER][LABIAL_CHANNELS])
+{
+    memset(kept, 0, ANSWER * sizeof kept[0]);
+    follow((uint32_t)(1000u - talk.now % 1000u)); /* streams are made from whole seconds on */
+    begin_answer(12, 120, 0);
+    assert_int_equal(tell_words(talk.identity, 0, talk.words), LABIAL_OK);
+    assert_int_equal(labial_voice_finish(&agent.voice), LABIAL_OK);
+    talk.kept = kept;
+    talk.frames = 0;
+    for (unsigned i = 0; i < ANSWER; i++)
+        follow(20);
+    talk.kept = NULL;
+    assert_true(talk.moved > 50u);
+    come_to_rest();
+    return talk.frames;
+}
+
+/* Goes on with the answer by one step: more of it becomes known, again or too late, it ends, or it is cancelled. */
+static void go_on(void)
+{
+    const uint32_t chance = fixture_below(&talk.random, 64), before = talk.identity;
+    unsigned more = talk.told + 1u + fixture_below(&talk.random, 4);
+    if (chance == 0) {
+        assert_int_equal(labial_voice_cancel(&agent.voice, fixture_below(&talk.random, 600)), LABIAL_OK);
+        come_to_rest();
+        assert_int_equal(tell_words(before, talk.told, talk.words), LABIAL_CANCELLED);
+        talk.words = 0;
+        talk.cancels++;
+        return;
+    }
+    more = more < talk.words ? more : talk.words;
+    assert_int_equal(tell_words(talk.identity, talk.told, more), LABIAL_OK);
+    if (chance < 8) {
+        assert_int_equal(tell_words(talk.identity, talk.told, more), LABIAL_OK);
+        talk.twice++;
+    }
+    talk.told = more;
+    if (talk.told < talk.words)
+        return;
+    if (chance < 32)
+        assert_int_equal(labial_voice_finish(&agent.voice), LABIAL_OK);
+    while (talk.now < talk.begins + talk.ends[talk.words - 1u] + LABIAL_VOICE_REST)
+        follow(20);
+    assert_true(talk.moved > 0);
+    talk.words = 0;
+}
+
+/* Would catch messages that are forgotten too early or never, a motion that depends on what was long ago, times that are
+ * wrong where they wrap, and a mouth that stays open between answers. */
+TEST(answers_go_on_for_hours)
+{
+    static int16_t first[ANSWER][LABIAL_CHANNELS], again[ANSWER][LABIAL_CHANNELS];
+    const uint64_t length = (uint64_t)FIXTURE_ROUNDS(8 * 60) * 60000u;
+    unsigned hours = 0;
+    uint64_t begin;
+    memset(&agent, 0, sizeof agent);
+    memset(&talk, 0, sizeof talk);
+    guard_agent(0);
+    talk.random.state = 34;
+    assert_int_equal(labial_voice_init(&agent.voice, &speech_en, agent.memory, sizeof agent.memory), LABIAL_OK);
+    assert_int_equal(labial_voice_words(&agent.voice, &words_en, NULL), LABIAL_OK);
+    agent.voice.serial = 0u - 1000u; /* no day has so many answers */
+    begin = ((UINT64_C(1) << 32) - length / 2u) / 20u * 20u;
+    follow((uint32_t)begin);
+    (void)answer(first); /* from the neutral face; all others from a pause */
+    const unsigned frames = answer(first);
+    while (talk.now < begin + length) {
+        if (talk.words == 0)
+            begin_answer(1u + fixture_below(&talk.random, WORDS), 60, 500);
+        go_on();
+        for (unsigned wait = fixture_below(&talk.random, 30); wait > 0; wait--)
+            follow(fixture_below(&talk.random, 8) == 0 ? fixture_below(&talk.random, 300) : 20u);
+        if ((talk.now - begin) / 3600000u > hours && talk.words == 0) {
+            hours++;
+            assert_int_equal(labial_voice_finish(&agent.voice), LABIAL_OK);
+            come_to_rest();
+            assert_int_equal(answer(again), frames);
+            for (unsigned i = 0; i < frames; i++) /* streams from another second on search a little otherwise */
+                for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
+                    assert_in_range(again[i][c] - first[i][c], -16, 16);
+        }
+    }
+    assert_true(talk.now > UINT64_C(1) << 32 && talk.answers > length / 30000u);
+    assert_true(talk.cancels > length / 600000u && talk.twice > length / 600000u);
 }
 
 SUITE(NULL, NULL)
