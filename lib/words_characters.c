@@ -10,7 +10,7 @@
 /* Accents that tell a sound. */
 enum { GRAVE = 1, ACUTE, CIRCUMFLEX, TILDE, DIAERESIS, CEDILLA };
 
-/* Letters of U+00C0 to U+017F without their marks; a blank stands for a sign. */
+/* Letters of U+00C0 to U+017F without their marks; a blank stands for a sign, which is among the others. */
 static const char plain_letters[] = "AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
                                     "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlL"
                                     "lLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs";
@@ -105,7 +105,7 @@ static unsigned simplified(uint32_t code, unsigned *pending)
             return others[i].code;
         }
     if (code >= 0xc0u && code < 0x180u)
-        return plain_letters[code - 0xc0u] == ' ' ? (unsigned)NO_CHARACTER : (unsigned char)plain_letters[code - 0xc0u];
+        return (unsigned char)plain_letters[code - 0xc0u];
     for (i = 0; i < sizeof foreign / sizeof foreign[0]; i++)
         if (code >= foreign[i][0] && code <= foreign[i][1])
             return FOREIGN;

@@ -176,6 +176,9 @@ TEST(sounds_are_those_of_the_classes_that_lead)
     assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
     assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);
     assert_int_equal(sounds[0][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    assert_int_equal(labial_hear_cancel(&hear, 200), LABIAL_OK); /* before there was a frame */
+    assert_int_equal(sounds[frame_count - 1][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
     push_in_blocks(16000, 1, LONGEST);
     assert_int_equal(labial_hear_cancel(&hear, 200), LABIAL_OK);
     assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);

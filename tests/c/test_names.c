@@ -198,6 +198,8 @@ static int find_nearest(const char *name)
 /* Would catch a label that stops the caller, a short beginning taken for a long one, and noise that moves the lips. */
 TEST(every_label_has_a_nearest_phoneme)
 {
+    static const uint8_t empty[] = { 9, ANY, 4, 1 | ANY, 'B' }; /* a name of no characters is none */
+    const labial_names_t odd = { sizeof empty, sizeof labels / sizeof labels[0], empty, labels };
     char longer[300];
     assert_int_equal(find_nearest("AA1"), 2);
     assert_int_equal(find_nearest("AAX"), 1);
@@ -210,8 +212,10 @@ TEST(every_label_has_a_nearest_phoneme)
     assert_int_equal(find_nearest(""), 77);
     assert_int_equal(find_nearest("2"), 77);
     assert_int_equal(find_nearest("\xcb\x90"), 77); /* a length mark alone */
+    assert_int_equal(find_nearest("5B"), 4);
     assert_int_equal(labial_find_nearest(&names, IPA, "Sa", 2, 77), 5);
     assert_int_equal(labial_find_nearest(&names, XSAMPA, "Sa", 2, 77), 7);
+    assert_int_equal(labial_find_nearest(&odd, ANY, "xB", 2, 77), 4);
     memset(longer, 'B', sizeof longer);
     assert_int_equal(labial_find_nearest(&names, ANY, longer, sizeof longer, 77), 4);
     assert_int_equal(labial_find_nearest(NULL, ANY, "B", 1, 77), LABIAL_ERROR_NULL);

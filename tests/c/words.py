@@ -54,7 +54,8 @@ PHRASES = [*"""
     am US us CO co.uk a.co a.go a.me a.xyz a.b-c a.tx9 a.it's a://b a:/b a:b 1://2 .a .A -.5 -a (- (-a [ [] < <1
     <! <? </ <é *a* *** *1 (1) (sigh (sighs1 (sigh1) (sighx) (pausing) (clapping) *grins* *glass a* *Leans a*
     *this a* *thisisverylongwords a* *as a* (abcdefghijklmn) C. c.C ° °C °Cx °F °K 5°x ¢ 5¢ 1¢ 1€ x€ € #a # ½x 5½
-    5¼ 5¾ ² 5m² 5x² 5/32/2024 5/0/2024 0/5/2024 2024-3-2024 2024/3/5 0/5 3/5/2100 3/5/1000 555-123 $007,x $007,1
+    5¼ 5¾ ² 5m² 5x² 5/32/2024 5/0/2024 0/5/2024 2024-3-2024 2024/3/5 2024.3.5 0/5 3/5/2100 3/5/1000 555-123 $007,x
+    $007,1
     $1M OBEV TABQS BINDS SUVS +A &A ABs& &ABs .:/ :// a.{ *word 5mi' $1M $1.50M $1.5M 5cmx 5cm's 5mi's 5° 1inx
     5A's /a 5km/ 5km/1 5km/h 5km/x $5/ $5/1 é è ë ê à ï î í ô ó û ú ç ñ ö né née nëe ée e\u0300 e\u0302 e\u0308
     c\u0327 n\u0303 a\u0301 u\u0301 o\u0302 i\u0308 x\u0301 Zoë's NoëL \ufb03x \ufb05 µm \u2028 \u3000a \u0085a
@@ -67,7 +68,7 @@ PHRASES = [*"""
            "31 May 1990", "32 May", "0 May", "5 may", "5 MAY", "5, May", "5.5 May", "5½ May", "5 ½ May", "5M May",
            "5-7 May", "5th May", "$5 May", "1/2 May", "05 May", "5 km May", "5 million May", "x5 May", "6 ft 2 in",
            "6 ft. 2 in.", "6 ft 2", "6 ft 2 May", "6 ft, 2 in", "6 ft x 2 in", "6 ft 2 3 in", "1h 30m", "1 hr 30 m",
-           "1h x 30m", "1 pound 3 in", "5 sq ft", "w/ x", "w/ o", "w/. o", "5 % May", "5 . 5 May",
+           "1h x 30m", "1h 5km", "1 pound 3 in", "5 sq ft", "w/ x", "w/ o", "w/. o", "5 % May", "5 . 5 May",
            "a\u0085b", "a\u2028b", "a\u2029b", "a\u205fb", "a\u202fb", "a\u2005b", "a\u3000b", "a\xa0b", "a\tb",
            "March 5/x", "March 5:x", "*word a*", "*glass a*",
            "March 5.a", "March 5,a", "March 5x", "March 5:30", "March 5/6", "March 32", "March 0", "March 123",
