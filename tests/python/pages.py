@@ -42,7 +42,7 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Set
 from packages import CC, CXX, SOURCE
 
 #: Seconds that a block may take, and that its processes have to end after it.
-LONGEST = 60.0
+LONGEST = 240.0
 GRACE = 2.0
 
 #: Labels of blocks that are only read.
